@@ -1,0 +1,30 @@
+# Every library Corda uses is a Debian 12 package; a missing one stops the configuration with its apt name.
+# src/cmake/setup.sh installs them all and gives a line of reason for each.
+
+macro(corda_find_package name apt_package)
+    find_package(${name} ${ARGN} QUIET)
+    if(NOT ${name}_FOUND)
+        message(FATAL_ERROR "${name} was not found. Install it with: apt-get install ${apt_package}")
+    endif()
+endmacro()
+
+macro(corda_find_pkgconfig prefix apt_packages)
+    pkg_check_modules(${prefix} QUIET IMPORTED_TARGET ${ARGN})
+    if(NOT ${prefix}_FOUND)
+        message(FATAL_ERROR "${ARGN} was not found. Install it with: apt-get install ${apt_packages}")
+    endif()
+endmacro()
+
+corda_find_package(PkgConfig pkg-config)
+corda_find_package(Threads libc6-dev)
+corda_find_package(fmt libfmt-dev)
+corda_find_package(CLI11 libcli11-dev)
+corda_find_package(nlohmann_json nlohmann-json3-dev)
+corda_find_package(PNG libpng-dev)
+corda_find_pkgconfig(TOMLPLUSPLUS libtomlplusplus-dev tomlplusplus)
+corda_find_pkgconfig(EPOXY "libepoxy-dev libegl-dev" epoxy egl)
+corda_find_pkgconfig(LIBAV "libavcodec-dev libavformat-dev libavutil-dev" libavcodec libavformat libavutil)
+if(CORDA_BUILD_TESTS)
+    corda_find_package(GTest "libgtest-dev libgmock-dev")
+    corda_find_package(benchmark libbenchmark-dev)
+endif()

@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# Installs the Debian 12 packages that Corda needs; does nothing when all are there.
+# Usage: setup.sh [build|test]   (test adds what only the tests use)
+set -euo pipefail
+
+packages=(
+    build-essential         # g++ 12 and make's companions: the compiler
+    cmake                   # the build
+    ninja-build             # runs the build on all cores
+    pkg-config              # finds the libraries that ship no CMake package
+    libepoxy-dev            # loads EGL and OpenGL functions on any driver
+    libegl-dev              # the EGL headers that epoxy includes
+    libegl-mesa0            # EGL without a screen, also where no GPU is
+    libgl1-mesa-dri         # llvmpipe: OpenGL on the CPU
+    libavcodec-dev          # the H.264 encoder (x264) and the decoder that checks its output
+    libavformat-dev         # the MP4 muxer and demuxer
+    libavutil-dev           # frames and error texts of the two above
+    libpng-dev              # stills and golden images, with their sRGB, pHYs and text chunks
+    libcli11-dev            # the command line
+    libtomlplusplus-dev     # scene files, with line and column of every value
+    nlohmann-json3-dev      # the --json output
+    libfmt-dev              # formatted text
+)
+if [[ "${1:-build}" == test ]]; then
+    packages+=(
+        libgtest-dev        # the tests
+        libgmock-dev        # its matchers
+        libbenchmark-dev    # measured speed
+        clang-format        # the style check
+        clang-tidy          # the static checks
+        ffmpeg              # a second opinion on the videos: ffprobe
+    )
+fi
+
+missing=()
+for package in "${packages[@]}"; do
+    status=$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null || true)
+    [[ "$status" == installed ]] || missing+=("$package")
+done
+[[ ${#missing[@]} -gt 0 ]] || exit 0
+
+as_root=()
+if [[ "$(id -u)" -ne 0 ]]; then
+    command -v sudo >/dev/null || { echo "setup.sh: run as root or install sudo; missing: ${missing[*]}" >&2; exit 1; }
+    as_root=(sudo)
+fi
+echo "Installing ${#missing[@]} Debian packages: ${missing[*]}" >&2
+"${as_root[@]}" apt-get update -q >&2
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}" >&2

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace corda {
+
+/// A half-open rectangle of pixels, x0 <= x < x1 and y0 <= y < y1, row 0 on top.
+struct PixelRect {
+    int x0 = 0;
+    int y0 = 0;
+    int x1 = 0;
+    int y1 = 0;
+
+    [[nodiscard]] bool empty() const { return x1 <= x0 || y1 <= y0; }
+    [[nodiscard]] int width() const { return x1 - x0; }
+    [[nodiscard]] int height() const { return y1 - y0; }
+
+    /// The smallest rectangle that holds both; an empty one adds nothing.
+    [[nodiscard]] PixelRect united(const PixelRect& other) const {
+        if (empty()) return other;
+        if (other.empty()) return *this;
+        return {std::min(x0, other.x0), std::min(y0, other.y0), std::max(x1, other.x1), std::max(y1, other.y1)};
+    }
+
+    [[nodiscard]] PixelRect intersected(const PixelRect& other) const {
+        return {std::max(x0, other.x0), std::max(y0, other.y0), std::min(x1, other.x1), std::min(y1, other.y1)};
+    }
+
+    friend bool operator==(const PixelRect&, const PixelRect&) = default;
+};
+
+/// A picture of 8-bit RGBA pixels (sRGB, straight alpha), row by row, row 0 on top, no padding.
+class Image {
+  public:
+    Image() = default;
+    Image(int width, int height)
+        : width_(width), height_(height),
+          rgba_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4) {}
+
+    [[nodiscard]] int width() const { return width_; }
+    [[nodiscard]] int height() const { return height_; }
+    [[nodiscard]] PixelRect rect() const { return {0, 0, width_, height_}; }
+    [[nodiscard]] std::size_t row_bytes() const { return static_cast<std::size_t>(width_) * 4; }
+
+    [[nodiscard]] std::uint8_t* data() { return rgba_.data(); }
+    [[nodiscard]] const std::uint8_t* data() const { return rgba_.data(); }
+    [[nodiscard]] std::size_t size_bytes() const { return rgba_.size(); }
+
+    /// The four bytes of pixel (x, y).
+    [[nodiscard]] std::uint8_t* pixel(int x, int y) { return rgba_.data() + offset(x, y); }
+    [[nodiscard]] const std::uint8_t* pixel(int x, int y) const { return rgba_.data() + offset(x, y); }
+
+    friend bool operator==(const Image&, const Image&) = default;
+
+  private:
+    [[nodiscard]] std::size_t offset(int x, int y) const {
+        return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)) * 4;
+    }
+
+    int width_ = 0;
+    int height_ = 0;
+    std::vector<std::uint8_t> rgba_;
+};
+
+}  // namespace corda

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "corda/sim/defs.hpp"
+
+namespace corda::sim {
+
+/// One rope's place among the particles and the bars of a System.
+struct RopeRange {
+    std::size_t first_particle = 0;
+    std::size_t particle_count = 0;
+    std::size_t first_bar = 0;
+    std::size_t bar_count = 0;   ///< all of them
+    std::size_t link_count = 0;  ///< real ones, between neighbours; they come first
+};
+
+/// Two particles held at a distance. A bar of reach 1 is real (a link of a rope); a bar of a longer reach is
+/// imaginary: it stiffens the rope and is not part of it.
+struct Bar {
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;
+    std::uint32_t reach = 1;
+    double rest_m = 0.0;  ///< length at the start
+};
+
+/// All particles and bars of a scene at t = 0, whatever they come from. Arrays have one entry a particle.
+///
+/// Positions are relative to `origin_m`, the first rope's own origin: the same scene far from (0, 0) is solved with
+/// the same bits.
+struct System {
+    Vec2 origin_m;
+    std::vector<double> x_m;
+    std::vector<double> y_m;
+    std::vector<double> vx_m_s;  ///< 0 for a pinned particle
+    std::vector<double> vy_m_s;
+    std::vector<double> mass_kg;          ///< payload included
+    std::vector<double> inverse_mass_1_kg;  ///< 0 means pinned
+    std::vector<Bar> bars;  ///< in the order of relaxation: rope by rope, all of reach 1, then all of reach 2, ...
+    std::vector<RopeRange> ropes;
+
+    [[nodiscard]] std::size_t particle_count() const { return x_m.size(); }
+    [[nodiscard]] std::size_t link_count() const;
+    [[nodiscard]] bool is_pinned(std::size_t particle) const { return inverse_mass_1_kg[particle] == 0.0; }
+};
+
+/// Number of bars of a rope of `particles` with bars to the next 1..`reach`: the sum of (particles - k), which for
+/// reach 7 is 7 n - 28.
+[[nodiscard]] std::uint64_t bar_count(std::uint64_t particles, std::uint64_t reach);
+
+/// Puts the ropes into one System. Requires what RopeDef says of its fields; `reach` >= 1.
+[[nodiscard]] System build_system(std::span<const RopeDef> ropes, int reach);
+
+}  // namespace corda::sim

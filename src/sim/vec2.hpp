@@ -1,0 +1,17 @@
+#pragma once
+
+namespace corda::sim {
+
+/// A point or a vector of the plane: x to the right, y up.
+struct Vec2 {
+    double x = 0;
+    double y = 0;
+
+    friend bool operator==(const Vec2&, const Vec2&) = default;
+};
+
+inline Vec2 operator+(Vec2 a, Vec2 b) { return {a.x + b.x, a.y + b.y}; }
+inline Vec2 operator-(Vec2 a, Vec2 b) { return {a.x - b.x, a.y - b.y}; }
+inline Vec2 operator*(double s, Vec2 v) { return {s * v.x, s * v.y}; }
+
+}  // namespace corda::sim
