@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "corda/sim/solver.hpp"
 #include "corda/sim/system.hpp"
@@ -16,7 +15,6 @@ enum class [[nodiscard]] Status { kOk, kDiverged };
 /// What a run has shown of itself, over the times that were asked for.
 struct Diagnostics {
     std::uint64_t steps = 0;
-    double wall_s = 0.0;      ///< filled by the caller: the module has no clock
     double max_strain = 0.0;  ///< largest | length / rest length - 1 | of a real bar
     /// Largest | E(t) - E(0) | over (total weight * total length), or over E(0) without a force; nothing where
     /// damping takes energy away on purpose.
@@ -45,6 +43,7 @@ class Simulation {
     System system_;
     std::unique_ptr<Solver> solver_;
     State state_;
+    State next_;  ///< kept for its memory
     bool conserves_energy_ = true;
     double initial_energy_j_ = 0.0;
     double energy_scale_j_ = 0.0;

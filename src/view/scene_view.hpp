@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "corda/sim/solver.hpp"
@@ -10,31 +11,46 @@
 
 namespace corda::view {
 
-/// Turns states into draw lists: which layers a scene has is settled once, their capsules anew each frame.
+/// Turns states into draw lists. What is drawn, and in which layer, is settled once; where, anew each frame.
+///
+/// From back to front: imaginary bars, ropes (one layer a colour), real bars, free particles, pinned particles.
 class SceneView {
   public:
-    /// `rope_styles` has one entry a rope of `system`, which must outlive this. Throws corda::Error (invalid scene)
-    /// where the ropes need more than kMaxLayers colours.
-    SceneView(const sim::System& system, const StyleDef& style, std::vector<RopeStyleDef> rope_styles, int width,
-              int height);
+    /// `rope_styles` has one entry a rope of `system`, which must outlive this. Throws corda::Error (kInvalidScene)
+    /// where the scene needs more than kMaxLayers layers.
+    SceneView(const sim::System& system, const StyleDef& style, const std::vector<RopeStyleDef>& rope_styles,
+              int width, int height);
 
-    /// Pixels around a particle's centre that the widest thing drawn on it can reach.
-    [[nodiscard]] double clearance_px() const;
+    /// Pixels around a particle's centre that the widest thing drawn on it reaches.
+    [[nodiscard]] double clearance_px() const { return clearance_px_; }
 
     /// Writes the frame of `state` into `list`, whose memory is used again.
     void draw(const sim::State& state, const Camera& camera, DrawList& list) const;
 
   private:
-    struct LayerPlan;
-    struct RopeLook {
-        std::size_t layer = 0;
-        double radius_px = 0.0;
+    /// A line from particle a to particle b, or a disc where they are the same.
+    struct Item {
+        std::size_t a;
+        std::size_t b;
+        double radius_px;
+    };
+    struct ItemLayer {
+        Color color;
+        std::vector<Item> items;
     };
 
+    void add_bars(const StyleDef& style, bool real);
+    void add_ropes(const StyleDef& style, const std::vector<RopeStyleDef>& rope_styles);
+    void add_markers(const StyleDef& style, bool pinned);
+    ItemLayer& layer_of(Color color, std::size_t first_layer);
+
     const sim::System* system_;
-    StyleDef style_;
+    Color background_;
     int width_;
     int height_;
+    double rope_width_px_;
+    double clearance_px_ = 0.0;
+    std::vector<ItemLayer> layers_;
 };
 
 }  // namespace corda::view

@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds Corda and renders the main example to swing.mp4 in the current folder.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+"$root/src/cmake/setup.sh" build
+preset=$root/build/release
+[[ -f "$preset/build.ninja" ]] || (cd "$root" && cmake --preset release >/dev/null)
+cmake --build "$preset" --target corda
+
+corda=$preset/corda
+# An existing video of these very inputs is kept: a second call does no needless work.
+if [[ -f swing.mp4 && swing.mp4 -nt "$corda" && swing.mp4 -nt "$root/examples/swing.toml" ]]; then
+    echo "swing.mp4 is up to date"
+    exit 0
+fi
+"$corda" render "$root/examples/swing.toml" -o swing.mp4 --force

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "console.hpp"
+#include "corda/core/exit_code.hpp"
+#include "corda/gl/context.hpp"
+#include "corda/scene/scene.hpp"
+
+namespace corda::app {
+
+/// What the chosen subcommand does; set by its `add_...` below once it is parsed.
+using Action = std::function<ExitCode(const Console&)>;
+
+// Each adds one subcommand to `app`; parsing it sets `action`.
+void add_render(CLI::App& app, Action& action);
+void add_still(CLI::App& app, Action& action);
+void add_simulate(CLI::App& app, Action& action);
+void add_compare(CLI::App& app, Action& action);
+void add_verify(CLI::App& app, Action& action);
+void add_doctor(CLI::App& app, Action& action);
+
+/// A scene file and what the command line puts in the place of its values.
+struct SceneOptions {
+    std::string path;
+    std::vector<std::string> settings;
+
+    void add_to(CLI::App& command);
+    /// Makes `--name VALUE` stand for `--set key=VALUE`.
+    void add_shortcut(CLI::App& command, const std::string& name, const std::string& key, const std::string& help);
+    /// `--size WxH` for `--set video.size=[W,H]`.
+    void add_size(CLI::App& command);
+    [[nodiscard]] scene::Scene load() const { return scene::load_scene(path, settings); }
+};
+
+/// Which OpenGL to draw with.
+struct GlOptions {
+    std::string backend;
+    bool require_gpu = false;
+
+    void add_to(CLI::App& command);
+    /// Throws corda::Error (kUsage) for an unknown backend.
+    [[nodiscard]] gl::ContextDef def() const;
+};
+
+/// A warning for a renderer on the CPU is no news there: said with -v only.
+void report_gl(const Console& console, const gl::Context& context);
+
+}  // namespace corda::app

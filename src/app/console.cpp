@@ -1,0 +1,113 @@
+#include "console.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "corda/core/error.hpp"
+
+namespace corda::app {
+namespace {
+
+constexpr double kSecondsBetweenBars = 0.1;
+constexpr int kBarCells = 30;
+
+void write_stdout(std::string_view text) {
+    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fputc('\n', stdout) != EOF &&
+                         std::fflush(stdout) == 0;
+    if (!written) throw Error(ExitCode::kIo, fmt::format("writing to standard output: {}", std::strerror(errno)));
+}
+
+bool is_set(const char* variable) {
+    const char* value = std::getenv(variable);
+    return value != nullptr && *value != '\0';
+}
+
+std::string duration_text(double seconds) {
+    const auto whole = static_cast<std::int64_t>(seconds + 0.5);
+    if (whole < 60) return fmt::format("{} s", whole);
+    if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+    return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
+}
+
+}  // namespace
+
+double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+Console::Console(const ConsoleDef& def)
+    : def_(def), is_terminal_(isatty(STDERR_FILENO) == 1), uses_color_(is_terminal_ && !is_set("NO_COLOR")) {}
+
+void Console::say(std::string_view label, std::string_view color, std::string_view text) const {
+    if (uses_color_ && !label.empty()) {
+        fmt::print(stderr, "corda: \x1b[{}m{}\x1b[0m{}\n", color, label, text);
+    } else {
+        fmt::print(stderr, "corda: {}{}\n", label, text);
+    }
+}
+
+void Console::info(std::string_view text) const {
+    if (!def_.quiet) say("", "", text);
+}
+
+void Console::detail(std::string_view text) const {
+    if (def_.verbose && !def_.quiet) say("", "", text);
+}
+
+void Console::warning(std::string_view text) const {
+    if (!def_.quiet) say("warning: ", "33", text);
+}
+
+void Console::error(std::string_view text) const { say("error: ", "31", text); }
+
+void Console::result(std::string_view text) const {
+    if (!def_.json) write_stdout(text);
+}
+
+void Console::result(const nlohmann::json& json) const {
+    if (def_.json) write_stdout(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+Progress::Progress(const Console& console, std::string_view what, std::int64_t total)
+    : console_(&console), what_(what), total_(std::max<std::int64_t>(1, total)), start_s_(now_s()) {}
+
+Progress::~Progress() {
+    if (bar_is_drawn_) fmt::print(stderr, "\r\x1b[K");
+}
+
+double Progress::seconds_left(std::int64_t done) const {
+    return (now_s() - start_s_) * static_cast<double>(total_ - done) / static_cast<double>(std::max<std::int64_t>(1, done));
+}
+
+void Progress::update(std::int64_t done) {
+    if (console_->quiet()) return;
+    if (console_->draws_bar()) {
+        const double now = now_s();
+        if (now - last_drawn_s_ < kSecondsBetweenBars && done < total_) return;
+        last_drawn_s_ = now;
+        draw_bar(done);
+        return;
+    }
+    const std::int64_t percent = 100 * done / total_;
+    if (percent < next_line_percent_) return;
+    next_line_percent_ = percent / 10 * 10 + 10;
+    console_->info(fmt::format("{} {} % ({} of {}), {} left", what_, percent / 10 * 10, done, total_,
+                               duration_text(seconds_left(done))));
+}
+
+void Progress::draw_bar(std::int64_t done) {
+    const auto cells = static_cast<int>(kBarCells * done / total_);
+    fmt::print(stderr, "\r\x1b[K{} [{:#<{}}{:.<{}}] {:3} % {}/{}, {} left", what_, "", cells, "", kBarCells - cells,
+               100 * done / total_, done, total_, duration_text(seconds_left(done)));
+    std::fflush(stderr);
+    bar_is_drawn_ = true;
+}
+
+}  // namespace corda::app

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace corda::app {
+
+/// How much is said, and whether results are JSON.
+struct ConsoleDef {
+    bool quiet = false;    ///< nothing but errors on stderr
+    bool verbose = false;  ///< also details
+    bool json = false;     ///< results on stdout as JSON in place of words
+};
+
+/// Results go to stdout, everything else to stderr.
+class Console {
+  public:
+    explicit Console(const ConsoleDef& def);
+
+    [[nodiscard]] bool json() const { return def_.json; }
+    [[nodiscard]] bool quiet() const { return def_.quiet; }
+    /// Whether stderr is a terminal that a progress bar can be drawn on.
+    [[nodiscard]] bool draws_bar() const { return is_terminal_ && !def_.quiet; }
+
+    void info(std::string_view text) const;
+    void detail(std::string_view text) const;
+    void warning(std::string_view text) const;
+    void error(std::string_view text) const;
+
+    /// A line of result on stdout, where results are words. Throws corda::Error (kIo) where stdout takes no more.
+    void result(std::string_view text) const;
+    /// The result on stdout, where results are JSON.
+    void result(const nlohmann::json& json) const;
+
+  private:
+    void say(std::string_view label, std::string_view color, std::string_view text) const;
+
+    ConsoleDef def_;
+    bool is_terminal_;
+    bool uses_color_;
+};
+
+/// Progress of a count of equal pieces of work: a bar with the time left on a terminal, otherwise a line every 10 %.
+class Progress {
+  public:
+    Progress(const Console& console, std::string_view what, std::int64_t total);
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+    /// Clears the bar.
+    ~Progress();
+
+    void update(std::int64_t done);
+
+  private:
+    [[nodiscard]] double seconds_left(std::int64_t done) const;
+    void draw_bar(std::int64_t done);
+
+    const Console* console_;
+    std::string what_;
+    std::int64_t total_;
+    std::int64_t next_line_percent_ = 10;
+    double start_s_;
+    double last_drawn_s_ = 0.0;
+    bool bar_is_drawn_ = false;
+};
+
+/// Seconds on a clock that only goes forward.
+[[nodiscard]] double now_s();
+
+}  // namespace corda::app

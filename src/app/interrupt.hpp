@@ -1,0 +1,14 @@
+#pragma once
+
+#include "corda/core/exit_code.hpp"
+
+namespace corda::app {
+
+/// From now on the first SIGINT or SIGTERM only asks the program to stop where nothing is lost; a second one ends it
+/// at once. SIGPIPE becomes an ordinary write error.
+void install_signal_handlers();
+
+/// The status to exit with once a signal has asked to stop; kOk before.
+[[nodiscard]] ExitCode interruption();
+
+}  // namespace corda::app

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "corda/scene/scene.hpp"
+#include "corda/sim/simulation.hpp"
+#include "corda/view/scene_view.hpp"
+
+namespace corda::app {
+
+/// Runs a scene's simulation to exact times and keeps its figures.
+class SceneSimulation {
+  public:
+    explicit SceneSimulation(const scene::Scene& scene);
+
+    /// The state at `time_s`, not before the last one. Throws corda::Error (kDiverged), naming the time.
+    const sim::State& at(double time_s);
+
+    [[nodiscard]] const sim::Simulation& simulation() const { return simulation_; }
+    [[nodiscard]] double wall_s() const { return wall_s_; }
+
+  private:
+    sim::Simulation simulation_;
+    double wall_s_ = 0.0;
+};
+
+/// A scene as draw lists: the camera is fitted to the whole motion first, so that a frame looks the same whichever
+/// others are drawn.
+class ScenePlayer {
+  public:
+    /// Throws corda::Error (kDiverged, kInvalidScene).
+    explicit ScenePlayer(const scene::Scene& scene);
+
+    /// The frame at `time_s`, not before the last one.
+    const view::DrawList& at(double time_s);
+
+    [[nodiscard]] const SceneSimulation& simulation() const { return simulation_; }
+    [[nodiscard]] const view::Camera& camera() const { return camera_; }
+
+  private:
+    SceneSimulation simulation_;
+    view::SceneView view_;
+    view::Camera camera_;
+    view::DrawList list_;
+};
+
+/// "40 particles, 252 bars (39 links)": what a scene amounts to.
+[[nodiscard]] std::string describe(const sim::System& system);
+
+/// Number of images of the scene's video.
+[[nodiscard]] std::int64_t frame_count(const scene::Scene& scene);
+
+}  // namespace corda::app

@@ -1,0 +1,62 @@
+#include "corda/media/verify.hpp"
+
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+
+namespace corda::app {
+namespace {
+
+nlohmann::json to_json(const std::string& path, const media::VerifyReport& report) {
+    return {{"schema", 1},
+            {"file", path},
+            {"ok", report.ok()},
+            {"problems", report.problems},
+            {"notes", report.notes},
+            {"container", report.container},
+            {"codec", report.codec},
+            {"profile", report.profile},
+            {"pixel_format", report.pixel_format},
+            {"width", report.width_px},
+            {"height", report.height_px},
+            {"fps", report.fps.text()},
+            {"frames", report.frames},
+            {"duration_s", report.duration_s.value()},
+            {"duration_exact", report.duration_s.text()},
+            {"range", report.range},
+            {"matrix", report.matrix},
+            {"primaries", report.primaries},
+            {"transfer", report.transfer},
+            {"chroma_location", report.chroma_location},
+            {"faststart", report.faststart}};
+}
+
+ExitCode verify(const Console& console, const std::string& path) {
+    const media::VerifyReport report = media::verify(path);
+    if (!report.codec.empty()) {
+        console.result(fmt::format("{}: {} {} {} {}x{}, {} frames at {} a second, {} s", path, report.container, report.codec,
+                                   report.profile, report.width_px, report.height_px, report.frames, report.fps.text(),
+                                   report.duration_s.value()));
+    }
+    for (const std::string& note : report.notes) console.result("note: " + note);
+    for (const std::string& problem : report.problems) console.result("problem: " + problem);
+    if (report.ok()) console.result("ok");
+    console.result(to_json(path, report));
+    return report.ok() ? ExitCode::kOk : ExitCode::kMismatch;
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app, Action& action) {
+    auto path = std::make_shared<std::string>();
+    CLI::App* command = app.add_subcommand("verify", "check a video's frames, times, tags and colours; exit 7 on a problem");
+    command->add_option("FILE", *path, "video file")->required();
+    command->callback([path, &action] {
+        action = [path](const Console& console) { return verify(console, *path); };
+    });
+}
+
+}  // namespace corda::app

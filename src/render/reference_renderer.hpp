@@ -1,0 +1,11 @@
+#pragma once
+
+#include "corda/core/image.hpp"
+#include "corda/view/draw_list.hpp"
+
+namespace corda::render {
+
+/// Draws a list in plain C++. Slow and simple: the oracle that every GL frame equals byte for byte.
+[[nodiscard]] Image render_reference(const view::DrawList& list);
+
+}  // namespace corda::render

@@ -1,0 +1,35 @@
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "corda/sim/defs.hpp"
+
+namespace corda::sim {
+namespace {
+
+constexpr std::array<std::pair<Method, std::string_view>, 1> kMethods{{
+    {Method::kRelaxation, "relaxation"},
+}};
+
+}  // namespace
+
+std::string_view method_name(Method method) {
+    const auto* found = std::find_if(kMethods.begin(), kMethods.end(),
+                                     [method](const auto& row) { return row.first == method; });
+    return found->second;
+}
+
+std::optional<Method> parse_method(std::string_view name) {
+    for (const auto& [method, method_text] : kMethods) {
+        if (method_text == name) return method;
+    }
+    return std::nullopt;
+}
+
+std::vector<std::string_view> method_names() {
+    std::vector<std::string_view> names;
+    for (const auto& row : kMethods) names.push_back(row.second);
+    return names;
+}
+
+}  // namespace corda::sim

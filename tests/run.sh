@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds Corda with warnings as errors and runs every test with ctest.
+# Usage: tests/run.sh [--preset ci|asan|debug] [--long] [-- CTEST ARGUMENTS]
+#   --long   the long form of the slow suites
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+preset=ci
+while [[ $# -gt 0 ]]; do
+    case "$1" in
+        --preset) preset=${2:?--preset needs a name}; shift 2 ;;
+        --long) export CORDA_TEST_LONG=1; shift ;;
+        --) shift; break ;;
+        *) echo "run.sh: unknown argument $1; see the head of this file" >&2; exit 2 ;;
+    esac
+done
+
+"$root/src/cmake/setup.sh" test
+cd "$root"
+[[ -f "build/$preset/build.ninja" ]] || cmake --preset "$preset" >/dev/null
+cmake --build "build/$preset"
+ctest --preset "$preset" "$@"

@@ -1,0 +1,51 @@
+#include "support/draw_lists.hpp"
+
+#include <cmath>
+#include <random>
+
+#include "corda/view/capsule.hpp"
+
+namespace corda::test {
+namespace {
+
+/// std::mt19937 is the same everywhere; the distributions of <random> are not.
+class Numbers {
+  public:
+    explicit Numbers(std::uint32_t seed) : generator_(seed) {}
+
+    double between(double low, double high) { return low + (high - low) * (static_cast<double>(generator_()) / 4294967296.0); }
+    std::uint8_t byte() { return static_cast<std::uint8_t>(generator_() >> 24U); }
+
+  private:
+    std::mt19937 generator_;
+};
+
+}  // namespace
+
+view::DrawList random_draw_list(std::uint32_t seed, int width, int height, std::size_t layer_count,
+                                std::size_t capsules_per_layer) {
+    Numbers numbers(seed);
+    view::DrawList list;
+    list.width = width;
+    list.height = height;
+    list.background = {numbers.byte(), numbers.byte(), numbers.byte(), 255};
+    for (std::size_t l = 0; l < layer_count; ++l) {
+        const Color color{numbers.byte(), numbers.byte(), numbers.byte(), l % 2 == 0 ? std::uint8_t{255} : numbers.byte()};
+        const std::size_t first = list.capsules.size();
+        for (std::size_t i = 0; i < capsules_per_layer; ++i) {
+            const view::PixelPoint a{numbers.between(-0.2, 1.2) * width, numbers.between(-0.2, 1.2) * height};
+            const double reach = i % 7 == 0 ? 1000.0 : 40.0;
+            view::PixelPoint b{a.x + numbers.between(-reach, reach), a.y + numbers.between(-reach, reach)};
+            if (i % 5 == 0) b = a;
+            const double radius_px = 0.1 * std::pow(600.0, numbers.between(0.0, i % 3 == 0 ? 1.0 : 0.5));
+            const auto capsule = view::make_capsule(a, b, radius_px, width, height);
+            if (!capsule) continue;
+            list.bounds = list.bounds.united(view::capsule_bounds(*capsule, width, height));
+            list.capsules.push_back(*capsule);
+        }
+        list.layers.push_back({color, first, list.capsules.size() - first});
+    }
+    return list;
+}
+
+}  // namespace corda::test
