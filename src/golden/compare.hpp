@@ -7,7 +7,8 @@
 
 namespace corda::golden {
 
-/// How far two pictures may be apart. Without any limit they must be equal; with some, only those given count.
+/// How far two pictures may be apart. Without any limit they must be equal; with some, only those given
+/// count.
 struct Limits {
     std::optional<double> max;    ///< largest difference of a channel, 0 .. 255
     std::optional<double> mean;   ///< mean difference over all channels and pixels, 0 .. 255
@@ -28,8 +29,8 @@ struct Comparison {
 
 [[nodiscard]] Comparison compare(const Image& a, const Image& b);
 
-/// A picture of where two of the same size differ: equal pixels as a dim grey copy of `a`, others in red to yellow by
-/// the size of the difference, never dimmer than what a person can see.
+/// A picture of where two of the same size differ: equal pixels as a dim grey copy of `a`, others in red to
+/// yellow by the size of the difference, never dimmer than what a person can see.
 [[nodiscard]] Image difference_image(const Image& a, const Image& b);
 
 }  // namespace corda::golden

@@ -23,12 +23,12 @@ struct Scene {
     media::VideoDef video;
 };
 
-/// One `--set key=value` of the command line, e.g. "video.fps=30" or "rope[0].mass=2". The value is read as TOML; one that
-/// is not TOML is taken as a string.
+/// One `--set key=value` of the command line, e.g. "video.fps=30" or "rope[0].mass=2". The value is read as
+/// TOML; one that is not TOML is taken as a string.
 using Setting = std::string;
 
-/// Reads a scene file, with `settings` put in the place of what it says. Throws corda::Error: kIo where the file
-/// cannot be read, kInvalidScene for anything wrong in it, kUsage for a setting that is not key=value.
+/// Reads a scene file, with `settings` put in the place of what it says. Throws corda::Error: kIo where the
+/// file cannot be read, kInvalidScene for anything wrong in it, kUsage for a setting that is not key=value.
 [[nodiscard]] Scene load_scene(const std::string& path, const std::vector<Setting>& settings = {});
 
 /// The same for TOML text; `source_name` stands in the messages in place of the path.
@@ -37,7 +37,7 @@ using Setting = std::string;
 
 /// What a scene may ask for at most. Checked before any memory is taken.
 struct Limits {
-    static constexpr std::int64_t kFileBytes = 64 << 20;
+    static constexpr std::int64_t kFileBytes = 16 << 20;
     static constexpr std::int64_t kParticles = 1'000'000;
     static constexpr std::int64_t kBars = 20'000'000;
     static constexpr std::int64_t kSidePixels = 16384;
@@ -45,7 +45,7 @@ struct Limits {
     static constexpr std::int64_t kFrames = 10'000'000;
     static constexpr std::int64_t kSteps = 1'000'000'000;
     static constexpr double kBarUpdates = 1e13;  // about a day
-    static constexpr double kCoordinate_m = 1e9;
+    static constexpr double kCoordinateMetres = 1e9;
 };
 
 }  // namespace corda::scene

@@ -1,23 +1,24 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <string>
 
 #include "corda/scene/scene.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/view/scene_view.hpp"
 
-namespace corda::app {
+namespace corda::scene {
 
 /// Runs a scene's simulation to exact times and keeps its figures.
-class SceneSimulation {
+class Run {
   public:
-    explicit SceneSimulation(const scene::Scene& scene);
+    explicit Run(const Scene& scene);
 
     /// The state at `time_s`, not before the last one. Throws corda::Error (kDiverged), naming the time.
     const sim::State& at(double time_s);
 
     [[nodiscard]] const sim::Simulation& simulation() const { return simulation_; }
+    /// Seconds spent in the stepping alone.
     [[nodiscard]] double wall_s() const { return wall_s_; }
 
   private:
@@ -25,21 +26,21 @@ class SceneSimulation {
     double wall_s_ = 0.0;
 };
 
-/// A scene as draw lists: the camera is fitted to the whole motion first, so that a frame looks the same whichever
-/// others are drawn.
-class ScenePlayer {
+/// A scene as draw lists: the camera is fitted to the whole motion first, so that a frame looks the same
+/// whichever others are drawn.
+class Player {
   public:
     /// Throws corda::Error (kDiverged, kInvalidScene).
-    explicit ScenePlayer(const scene::Scene& scene);
+    explicit Player(const Scene& scene);
 
     /// The frame at `time_s`, not before the last one.
     const view::DrawList& at(double time_s);
 
-    [[nodiscard]] const SceneSimulation& simulation() const { return simulation_; }
+    [[nodiscard]] const Run& run() const { return run_; }
     [[nodiscard]] const view::Camera& camera() const { return camera_; }
 
   private:
-    SceneSimulation simulation_;
+    Run run_;
     view::SceneView view_;
     view::Camera camera_;
     view::DrawList list_;
@@ -49,6 +50,6 @@ class ScenePlayer {
 [[nodiscard]] std::string describe(const sim::System& system);
 
 /// Number of images of the scene's video.
-[[nodiscard]] std::int64_t frame_count(const scene::Scene& scene);
+[[nodiscard]] std::int64_t frame_count(const Scene& scene);
 
-}  // namespace corda::app
+}  // namespace corda::scene

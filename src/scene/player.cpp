@@ -1,0 +1,63 @@
+#include "corda/scene/player.hpp"
+
+#include <chrono>
+
+#include <fmt/format.h>
+
+#include "corda/core/error.hpp"
+
+namespace corda::scene {
+namespace {
+
+view::Camera fit_camera(const Scene& scene, const sim::System& system, double clearance_px) {
+    view::MotionBounds bounds;
+    if (view::Camera::needs_motion(scene.camera)) {
+        Run rehearsal(scene);
+        const std::int64_t last = scene.video.fps.last_frame_within(scene.world.duration_s);
+        for (std::int64_t k = 0; k <= last; ++k) bounds.include(rehearsal.at(scene.video.fps.time_s(k)));
+    }
+    return {scene.camera, system.origin_m, bounds, scene.video.width_px, scene.video.height_px, clearance_px};
+}
+
+}  // namespace
+
+Run::Run(const Scene& scene)
+    : simulation_(sim::build_system(scene.ropes, scene.solver.reach), scene.world, scene.solver,
+                  scene.video.fps.interval_s()) {}
+
+const sim::State& Run::at(double time_s) {
+    const auto start = std::chrono::steady_clock::now();
+    const sim::Status status = simulation_.advance_to(time_s);
+    wall_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (status == sim::Status::kDiverged) {
+        throw Error(
+            ExitCode::kDiverged,
+            fmt::format(
+                "the simulation diverged before t = {:.6g} s (last good state at {:.6g} s); a smaller "
+                "solver.step or less force may help",
+                time_s, simulation_.state().time_s));
+    }
+    return simulation_.state();
+}
+
+Player::Player(const Scene& scene)
+    : run_(scene),
+      view_(run_.simulation().system(), scene.style, scene.rope_styles, scene.video.width_px,
+            scene.video.height_px),
+      camera_(fit_camera(scene, run_.simulation().system(), view_.clearance_px())) {}
+
+const view::DrawList& Player::at(double time_s) {
+    view_.draw(run_.at(time_s), camera_, list_);
+    return list_;
+}
+
+std::string describe(const sim::System& system) {
+    return fmt::format("{} particles, {} bars ({} links)", system.particle_count(), system.bars.size(),
+                       system.link_count());
+}
+
+std::int64_t frame_count(const Scene& scene) {
+    return scene.video.fps.frame_count(scene.world.duration_s);
+}
+
+}  // namespace corda::scene

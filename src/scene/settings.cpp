@@ -1,0 +1,197 @@
+#include "corda/scene/settings.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "corda/core/error.hpp"
+#include "corda/scene/document.hpp"
+#include "corda/scene/source.hpp"
+
+namespace corda::scene {
+namespace {
+
+constexpr std::size_t kLongestLabel = 80;
+constexpr std::string_view kWhitespace = " \t\r\n";
+
+/// One part of a dotted key: a name, or an index where the name is empty.
+struct Step {
+    std::string name;
+    std::size_t index = 0;
+
+    [[nodiscard]] bool is_index() const { return name.empty(); }
+};
+
+std::string label_of(const Setting& setting) {
+    return "--set " + printable(setting, kLongestLabel);
+}
+
+[[noreturn]] void fail_usage(const Setting& setting, std::string_view problem) {
+    throw Error(ExitCode::kUsage,
+                fmt::format("{}: {}; give --set key=value, e.g. --set video.fps=30 or --set rope[0].mass=2",
+                            label_of(setting), problem));
+}
+
+std::string_view trimmed(std::string_view text) {
+    const std::size_t begin = text.find_first_not_of(kWhitespace);
+    if (begin == std::string_view::npos) return {};
+    return text.substr(begin, text.find_last_not_of(kWhitespace) - begin + 1);
+}
+
+bool is_name_character(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+}
+
+/// Takes "name" from the front of `rest`.
+std::optional<Step> take_name(std::string_view& rest) {
+    std::size_t length = 0;
+    while (length < rest.size() && is_name_character(rest[length])) ++length;
+    if (length == 0) return std::nullopt;
+    Step step{std::string(rest.substr(0, length))};
+    rest.remove_prefix(length);
+    return step;
+}
+
+/// Takes "[3]" from the front of `rest`.
+std::optional<Step> take_index(std::string_view& rest) {
+    Step step;
+    const char* end = rest.data() + rest.size();
+    const auto [stop, status] = std::from_chars(rest.data() + 1, end, step.index);
+    if (status != std::errc{} || stop == end || *stop != ']') return std::nullopt;
+    rest.remove_prefix(static_cast<std::size_t>(stop - rest.data()) + 1);
+    return step;
+}
+
+/// "rope[0].mass" as its parts; nothing for text that is not a dotted key.
+std::optional<std::vector<Step>> parse_key(std::string_view key) {
+    std::vector<Step> steps;
+    std::string_view rest = key;
+    while (true) {
+        const auto name = take_name(rest);
+        if (!name) return std::nullopt;
+        steps.push_back(*name);
+        while (rest.starts_with('[')) {
+            const auto index = take_index(rest);
+            if (!index) return std::nullopt;
+            steps.push_back(*index);
+        }
+        if (rest.empty()) return steps;
+        if (rest.front() != '.') return std::nullopt;
+        rest.remove_prefix(1);
+    }
+}
+
+/// A table {value = ...} made from a setting's text; text that is not one TOML value is taken as a string.
+toml::table parse_value(std::string_view text, const std::string& label) {
+    const std::string line = fmt::format("value = {}", text);
+    if (find_deep_key(line) == std::string_view::npos) {
+        try {
+            toml::table parsed = toml::parse(line, std::string_view(label));
+            if (parsed.size() == 1) return parsed;
+        } catch (const toml::parse_error&) {
+            // A bare word such as `relaxation`, a colour, or "30000/1001": a string, below.
+        }
+    }
+    // Parsed once more, as only the parser can give a node its source.
+    toml::table parsed = toml::parse("value = ''", std::string_view(label));
+    parsed.get("value")->as_string()->get() = text;
+    return parsed;
+}
+
+/// Walks down a document along the key of one setting.
+class SettingWriter {
+  public:
+    SettingWriter(toml::table& document, const Setting& setting)
+        : node_(&document), label_(label_of(setting)) {}
+
+    void write(const std::vector<Step>& steps, std::string_view text) {
+        for (std::size_t i = 0; i + 1 < steps.size(); ++i) descend(steps[i], steps[i + 1].is_index());
+        toml::table parsed = parse_value(text, label_);
+        put(steps.back(), *parsed.get("value"));
+    }
+
+  private:
+    void descend(const Step& step, bool index_follows) {
+        if (step.is_index()) {
+            node_ = element(step);
+        } else {
+            toml::table& table = as_table();
+            if (!table.contains(step.name)) {
+                if (index_follows) fail(fmt::format("the scene gives no list \"{}\"", step.name));
+                toml::table made = toml::parse("value = {}", std::string_view(label_));
+                toml::node& node = *made.get("value");
+                table.insert_or_assign(toml::key(step.name, toml::source_region(node.source())),
+                                       std::move(node));
+            }
+            node_ = table.get(step.name);
+        }
+        extend_path(step);
+    }
+
+    void put(const Step& step, toml::node& value) {
+        if (step.is_index()) {
+            static_cast<void>(element(step));
+            toml::array& list = *node_->as_array();
+            list.replace(list.cbegin() + static_cast<std::ptrdiff_t>(step.index), std::move(value));
+        } else {
+            // A region of the same setting, as a message about an unknown key names the key's place.
+            const toml::key key(step.name, toml::source_region(value.source()));
+            as_table().insert_or_assign(key, std::move(value));
+        }
+    }
+
+    toml::node* element(const Step& step) {
+        toml::array* list = node_->as_array();
+        if (list == nullptr) fail(fmt::format("{}, not a list", described(*node_)));
+        if (step.index >= list->size()) {
+            fail(fmt::format("index {} is out of range; the list has {}", step.index, list->size()));
+        }
+        return list->get(step.index);
+    }
+
+    toml::table& as_table() {
+        if (node_->is_array_of_tables()) {
+            fail(fmt::format("this is a list of tables; give an index: {}[0]", path_));
+        }
+        if (!node_->is_table()) fail(fmt::format("{}, not a table", described(*node_)));
+        return *node_->as_table();
+    }
+
+    void extend_path(const Step& step) {
+        if (step.is_index()) {
+            path_ += fmt::format("[{}]", step.index);
+        } else {
+            path_ += path_.empty() ? step.name : "." + step.name;
+        }
+    }
+
+    [[noreturn]] void fail(const std::string& problem) const {
+        const std::string place = path_.empty() ? label_ : fmt::format("{}: {}", label_, path_);
+        throw Error(ExitCode::kInvalidScene, fmt::format("{}: {}", place, problem));
+    }
+
+    toml::node* node_;
+    std::string label_;
+    std::string path_;
+};
+
+}  // namespace
+
+void apply_setting(toml::table& document, const Setting& setting) {
+    const std::size_t equals = setting.find('=');
+    if (equals == std::string::npos) fail_usage(setting, "there is no '='");
+    const std::string_view key = trimmed(std::string_view(setting).substr(0, equals));
+    if (key.empty()) fail_usage(setting, "the key is empty");
+    const auto steps = parse_key(key);
+    if (!steps) fail_usage(setting, fmt::format("\"{}\" is not a key", printable(key)));
+    if (steps->size() > static_cast<std::size_t>(kKeyParts))
+        fail_usage(setting, "the key has too many parts");
+    SettingWriter(document, setting).write(*steps, trimmed(std::string_view(setting).substr(equals + 1)));
+}
+
+}  // namespace corda::scene

@@ -1,0 +1,206 @@
+// Thousands of broken scenes, the same ones on every run: each gives a scene or a corda::Error, nothing else.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <random>
+#include <string>
+#include <string_view>
+
+#include "corda/core/error.hpp"
+#include "corda/scene/scene.hpp"
+
+namespace corda::scene {
+namespace {
+
+constexpr std::array<std::string_view, 3> kScenes{
+    R"(schema = 1
+[world]
+gravity = 9.81
+duration = 2.0
+drag = 0.01
+[[rope]]
+line = { particles = 12, from = [0.0, 50.0], step = [0.1, -1.0] }
+mass = 1.0
+payload = 2.0
+velocity = [0.0, 1.0]
+pinned = [0, -1]
+color = "#e8c07d"
+[solver]
+method = "relaxation"
+step = 0.002
+reach = 7
+sweeps = 1
+delta = 0.001
+force = [0.0, -9.8]
+[video]
+size = [640, 360]
+fps = "30000/1001"
+)",
+    R"(schema = 1
+world = { gravity = [0.0, -9.81], duration = 1e1 }
+[[rope]]
+hang = { links = 20, length = 1.0, angle_deg = 45.0, from = [0.0, 0.0] }
+pinned = []
+[[rope]]
+points = [[0.0, 0.0], [0.1, -1.0], [0.3, -1.5]]
+mass = [1, 2.5, 3]
+velocity = [[0, 0], [1, 2], [3.0, -4.0]]
+width_px = 3.5
+[camera]
+center = [0.0, 1.0]
+height = 5.0
+margin = 0.1
+)",
+    R"(schema = 1 # comment
+rope = [{ line = { particles = 2, step = [1, 0] } }]
+[style]
+background = "#101010"
+palette = ["#ff0000", '#00ff00']
+rope_width_px = 4
+markers = "all"
+marker_radius_px = 6.0
+pinned_color = """#ff5d5d"""
+bars = "real"
+bar_width_px = 1.0
+imaginary_bar_color = "#54d6c270"
+[video]
+fps = 25
+codec = "libx264"
+preset = "medium"
+crf = 18
+threads = 2
+)"};
+
+constexpr std::array<std::string_view, 36> kTokens{"9223372036854775807",
+                                                   "-9223372036854775808",
+                                                   "1e308",
+                                                   "-1e308",
+                                                   "1e-320",
+                                                   "nan",
+                                                   "-inf",
+                                                   "0",
+                                                   "-0.0",
+                                                   "-1",
+                                                   "1000000",
+                                                   "999999999999",
+                                                   "0x7fffffff",
+                                                   "[",
+                                                   "]",
+                                                   "{",
+                                                   "}",
+                                                   "[[",
+                                                   "]]",
+                                                   "=",
+                                                   ",",
+                                                   ".",
+                                                   "\"",
+                                                   "'",
+                                                   "\"\"\"",
+                                                   "#",
+                                                   "\n",
+                                                   "\r\n",
+                                                   "\\u0000",
+                                                   "true",
+                                                   "1979-05-27T07:32:00Z",
+                                                   "[rope]",
+                                                   "[[rope]]\n",
+                                                   "a.b.c",
+                                                   "\xff\xfe",
+                                                   "\xf0\x9f\x98\x80"};
+
+/// std::mt19937's numbers are the same everywhere, those of the standard distributions are not.
+class Mutator {
+  public:
+    explicit Mutator(std::uint32_t seed) : random_(seed) {}
+
+    std::string broken_scene() {
+        std::string text(kScenes[below(kScenes.size())]);
+        const std::size_t count = 1 + below(4);
+        for (std::size_t i = 0; i < count; ++i) mutate(text);
+        return text;
+    }
+
+  private:
+    std::size_t below(std::size_t count) { return random_() % count; }
+
+    void mutate(std::string& text) {
+        if (text.empty()) return;
+        const std::size_t at = below(text.size());
+        switch (below(6)) {
+            case 0:
+                text[at] = static_cast<char>(static_cast<unsigned char>(text[at]) ^ (1U << below(8)));
+                break;
+            case 1:
+                text.erase(at, 1 + below(12));
+                break;
+            case 2:
+                text.insert(at, kTokens[below(kTokens.size())]);
+                break;
+            case 3:
+                replace_number(text, at);
+                break;
+            case 4:
+                text.insert(at, text.substr(below(text.size()), 1 + below(60)));
+                break;
+            default:
+                text.resize(at);
+                break;
+        }
+    }
+
+    /// The next number after `at` becomes one that is hard to hold.
+    void replace_number(std::string& text, std::size_t at) {
+        constexpr std::size_t kNumbers = 13;  // the first of kTokens
+        const std::size_t begin = text.find_first_of("0123456789", at);
+        if (begin == std::string::npos) return;
+        const std::size_t end = std::min(text.find_first_not_of("0123456789.e-", begin), text.size());
+        text.replace(begin, end - begin, kTokens[below(kNumbers)]);
+    }
+
+    std::mt19937 random_;
+};
+
+TEST(SceneMutations, GiveASceneOrAnError) {
+    constexpr std::uint32_t kRuns = 8000;
+    int scenes = 0;
+    for (std::uint32_t seed = 0; seed < kRuns; ++seed) {
+        const std::string text = Mutator(seed).broken_scene();
+        try {
+            static_cast<void>(parse_scene(text, "mutation.toml"));
+            ++scenes;
+        } catch (const Error& error) {
+            ASSERT_EQ(error.code(), ExitCode::kInvalidScene) << text;
+            ASSERT_NE(std::string_view(error.what()), "") << text;
+        } catch (const std::exception& error) {
+            FAIL() << "seed " << seed << ": " << error.what() << "\n" << text;
+        }
+    }
+    // Some mutations change only a comment or a number: were there none, the scenes themselves would be
+    // broken.
+    EXPECT_GT(scenes, 100);
+}
+
+TEST(SceneMutations, OfSettingsGiveASceneOrAnError) {
+    constexpr std::uint32_t kRuns = 3000;
+    constexpr std::array<std::string_view, 6> kKeys{"rope[0].mass", "world",       "video.size[1]",
+                                                    "rope[1].line", "solver.step", "a.b[0].c"};
+    for (std::uint32_t seed = 0; seed < kRuns; ++seed) {
+        std::mt19937 random(seed);
+        std::string setting(kKeys[random() % kKeys.size()]);
+        setting += '=';
+        for (std::uint32_t i = 0; i <= seed % 3; ++i) setting += kTokens[random() % kTokens.size()];
+        if (seed % 5 == 0) setting[random() % setting.size()] = static_cast<char>(random() % 256);
+        try {
+            static_cast<void>(parse_scene(kScenes[seed % kScenes.size()], "mutation.toml", {setting}));
+        } catch (const Error& error) {
+            ASSERT_TRUE(error.code() == ExitCode::kInvalidScene || error.code() == ExitCode::kUsage)
+                << setting;
+        } catch (const std::exception& error) {
+            FAIL() << "seed " << seed << ": " << error.what() << "\n" << setting;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace corda::scene

@@ -1,0 +1,275 @@
+// Every way in which a scene can be wrong has a message with the exact place, the value and the remedy.
+#include <gmock/gmock.h>
+
+#include "unit/scene_support.hpp"
+
+namespace corda::scene {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+struct Case {
+    std::string toml;
+    std::string begin;  ///< of the message: place and key
+    std::string part;   ///< stands in the message
+};
+
+void expect_errors(const std::vector<Case>& cases) {
+    for (const Case& wrong : cases) {
+        SCOPED_TRACE(wrong.toml);
+        const SceneError error = error_of(wrong.toml);
+        EXPECT_EQ(error.code, ExitCode::kInvalidScene);
+        EXPECT_THAT(error.message, StartsWith(wrong.begin));
+        EXPECT_THAT(error.message, HasSubstr(wrong.part));
+    }
+}
+
+TEST(SceneErrors, WholeMessages) {
+    EXPECT_EQ(error_of(rope_with("masss = 1")).message,
+              "swing.toml:4:1: rope[0].masss: unknown key \"masss\"; did you mean \"mass\"?");
+    EXPECT_EQ(error_of(rope_with("mass = -1")).message,
+              "swing.toml:4:8: rope[0].mass: -1 is not > 0; give a mass in kg");
+}
+
+TEST(SceneErrors, Schema) {
+    expect_errors({
+        {"", "swing.toml:1:1: schema: ", "missing; begin the file with schema = 1"},
+        {"[[rope]]\nfoo = 1\n", "swing.toml:1:1: schema: ", "missing"},
+        {"# later\nschema = 2\nnews = 1\n", "swing.toml:2:10: schema: ", "2 is not a known version"},
+        {"schema = \"1\"\n",
+         "swing.toml:1:10: schema: ", "\"1\" is a string, not an integer; give schema = 1"},
+    });
+}
+
+TEST(SceneErrors, UnknownKeys) {
+    expect_errors({
+        {with("vidio = 1"), "swing.toml:3:1: vidio: ", "unknown key \"vidio\"; did you mean \"video\"?"},
+        {with("[world]\n  gravty = 1"), "swing.toml:4:3: world.gravty: ", "did you mean \"gravity\"?"},
+        {with("[solver]\nsweps = 1"), "swing.toml:4:1: solver.sweps: ", "did you mean \"sweeps\"?"},
+        {with("[video]\nfbs = 1"), "swing.toml:4:1: video.fbs: ", "did you mean \"fps\"?"},
+        {with("[style]\nbackgruond = 1"),
+         "swing.toml:4:1: style.backgruond: ", "did you mean \"background\"?"},
+        {with("[camera]\nfoo = 1"), "swing.toml:4:1: camera.foo: ", "valid keys: center, height, margin"},
+        {with("fps = 1"), "swing.toml:3:1: fps: ", "it is a key of video"},
+        {"schema = 1\n[[rope]]\nline = { particle = 3 }",
+         "swing.toml:3:10: rope[0].line.particle: ", "did you mean \"particles\"?"},
+        {"schema = 1\n[[rope]]\nhang = { links = 3, length = 1, angel_deg = 3 }",
+         "swing.toml:3:33: rope[0].hang.angel_deg: ", "did you mean \"angle_deg\"?"},
+        {with("[world]\nzz = 1\naa = 2"),
+         "swing.toml:4:1: world.zz: ", "valid keys"},  // the first in the file
+        {with("\"a\\u0001b\" = 1"), "swing.toml:3:1: a\\x01b: ", "unknown key"},
+    });
+}
+
+TEST(SceneErrors, Syntax) {
+    expect_errors({
+        {"schema = \n", "swing.toml:1:10: ", "expected value"},
+        {"schema = 1\nschema = 2\n", "swing.toml:2:", "cannot redefine"},
+        {"a = [1,\n", "swing.toml:", "end-of-file"},
+        {"schema = 1\nx = \"\xff\"\n", "swing.toml:", "utf-8"},
+        {std::string("schema\0= 1\n", 11), "swing.toml:1:", ""},
+        {"schema = " + std::string(100'000, '['), "swing.toml:1:", "nest"},
+    });
+}
+
+TEST(SceneErrors, DeepDottedKeysAreRefusedBeforeTheParserRecurses) {
+    std::string parts = "a";
+    for (int i = 0; i < 1'000'000; ++i) parts.append(".a");
+    expect_errors({
+        {std::string("schema = 1 # a.b\n  ").append(parts).append(" = 1\n"),
+         "swing.toml:2:66: ", "a key of more than 32 parts"},
+        {std::string("[").append(parts).append("]\n"), "swing.toml:1:65: ", "a key of more than 32 parts"},
+    });
+    const std::string dots(100, '.');
+    EXPECT_EQ(error_of("# " + dots + "\n" + rope_with("color = \"" + dots + "\"")).message,
+              "swing.toml:5:9: rope[0].color: \"" + dots.substr(0, 60) +
+                  "...\" is not a colour; give a colour such as \"#e8c07d\" or, with alpha, \"#e8c07d80\"");
+}
+
+TEST(SceneErrors, Types) {
+    expect_errors({
+        {rope_with("mass = \"heavy\""),
+         "swing.toml:4:8: rope[0].mass: ", "\"heavy\" is a string, not a number; give a mass in kg"},
+        {rope_with("payload = true"),
+         "swing.toml:4:11: rope[0].payload: ", "true is a boolean, not a number"},
+        {rope_with("payload = 2020-01-01"),
+         "swing.toml:4:11: rope[0].payload: ", "a date or a time, not a number"},
+        {rope_with("payload = nan"), "swing.toml:4:11: rope[0].payload: ", "nan is not a finite number"},
+        {rope_with("payload = -inf"), "swing.toml:4:11: rope[0].payload: ", "-inf is not a finite number"},
+        {rope_with("pinned = 0"), "swing.toml:4:10: rope[0].pinned: ", "0 is an integer, not a list"},
+        {rope_with("pinned = [0.5]"),
+         "swing.toml:4:11: rope[0].pinned[0]: ", "0.5 is a number with a fraction, not an integer"},
+        {rope_with("color = 3"), "swing.toml:4:9: rope[0].color: ", "3 is an integer, not text"},
+        {with("world = 3"), "swing.toml:3:9: world: ", "3 is an integer, not a table; write [world]"},
+        {"schema = 1\n", "swing.toml:1:1: rope: ", "missing; give one or more [[rope]]"},
+        {"schema = 1\nrope = []\n", "swing.toml:2:8: rope: ", "the list is empty"},
+        {"schema = 1\nrope = [1]\n", "swing.toml:2:9: rope[0]: ", "1 is an integer, not a table"},
+        {"schema = 1\n[rope]\nmass = 1\n", "swing.toml:2:1: rope: ", "this is a table, not a list"},
+    });
+}
+
+TEST(SceneErrors, World) {
+    expect_errors({
+        {with("[world]\nduration = 0"),
+         "swing.toml:4:12: world.duration: ", "0 is not > 0; give a duration in s"},
+        {with("[world]\nduration = inf"), "swing.toml:4:12: world.duration: ", "inf is not a finite number"},
+        {with("[world]\ndrag = -0.5"),
+         "swing.toml:4:8: world.drag: ", "-0.5 is not >= 0; give a drag in 1/s"},
+        {with("[world]\ngravity = [1]"), "swing.toml:4:11: world.gravity: ", "a list of 1, not a pair"},
+        {with("[world]\ngravity = [1, nan]"), "swing.toml:4:15: world.gravity[1]: ", "nan is not a finite"},
+        {with("[world]\ngravity = \"down\""), "swing.toml:4:11: world.gravity: ", "or [gx, gy]"},
+    });
+}
+
+TEST(SceneErrors, Shapes) {
+    const std::string rope = "schema = 1\n[[rope]]\n";
+    expect_errors({
+        {rope, "swing.toml:2:1: rope[0]: ", "no shape; give one of: line, hang, points"},
+        {rope_with("points = [[0, 0], [1, 1]]"),
+         "swing.toml:2:1: rope[0]: ", "2 shapes (line, points); keep one"},
+        {rope + "line = { particles = 3 }",
+         "swing.toml:3:8: rope[0].line.step: ", "missing; give step = [dx, dy]"},
+        {rope + "line = { step = [0, 1] }", "swing.toml:3:8: rope[0].line.particles: ", "missing"},
+        {rope + "line = { particles = 1, step = [0, 1] }",
+         "swing.toml:3:22: rope[0].line.particles: ", "1 is not >= 2"},
+        {rope + "line = { particles = 2.5, step = [0, 1] }",
+         "swing.toml:3:22: rope[0].line.particles: ", "2.5 is a number with a fraction, not an integer"},
+        {rope + "line = { particles = 2, step = [0, 0] }",
+         "swing.toml:3:32: rope[0].line.step: ", "is no distance"},
+        {rope + "line = { particles = 2, step = [0, 1], from = [2e9, 0] }",
+         "swing.toml:3:48: rope[0].line.from[0]: ", "2000000000 is not <= 1000000000"},
+        {rope + "line = { particles = 20, step = [0, -1e8] }",
+         "swing.toml:3:8: rope[0].line: ", "beyond the limit of 1e+09 m"},
+        {rope + "line = [1, 2]", "swing.toml:3:8: rope[0].line: ", "a list of 2, not a table; give line = {"},
+        {rope + "hang = { links = 0, length = 1 }", "swing.toml:3:18: rope[0].hang.links: ", "0 is not >= 1"},
+        {rope + "hang = { links = 2 }",
+         "swing.toml:3:8: rope[0].hang.length: ", "missing; give a length in m"},
+        {rope + "hang = { links = 2, length = 0 }", "swing.toml:3:30: rope[0].hang.length: ", "0 is not > 0"},
+        {rope + "hang = { links = 2, length = 1e-13 }", "swing.toml:3:30: rope[0].hang.length: ", "a link"},
+        {rope + "hang = { links = 2, length = 2e9 }", "swing.toml:3:8: rope[0].hang: ", "beyond the limit"},
+        {rope + "hang = { links = 2, length = 1, angle_deg = inf }",
+         "swing.toml:3:45: rope[0].hang.angle_deg: ", "inf is not a finite number"},
+        {rope + "points = [[0, 0]]", "swing.toml:3:10: rope[0].points: ", "1 points are no rope"},
+        {rope + "points = [[0, 0], [1]]", "swing.toml:3:19: rope[0].points[1]: ", "a list of 1, not a pair"},
+        {rope + "points = [[0, 0], 3]",
+         "swing.toml:3:19: rope[0].points[1]: ", "3 is an integer, not a pair"},
+        {rope + "points = [[0, 0], [1, 1], [1, 1]]",
+         "swing.toml:3:27: rope[0].points[2]: ", "points 1 and 2 coincide"},
+        {rope + "points = [[0, 0], [1, 1], [0, 0]]", "swing.toml:3:27: rope[0].points[2]: ",
+         "points 0 and 2 coincide, and solver.reach = 7 ties them by a bar, which has no direction; move "
+         "one, or "
+         "give a reach below 2"},
+        {rope + "points = [[0, 0], [1, -1e10]]",
+         "swing.toml:3:23: rope[0].points[1][1]: ", "-10000000000 is not >= -1000000000"},
+    });
+}
+
+TEST(SceneErrors, Particles) {
+    expect_errors({
+        {rope_with("mass = 0"), "swing.toml:4:8: rope[0].mass: ", "0 is not > 0"},
+        {rope_with("mass = [1, 2]"), "swing.toml:4:8: rope[0].mass: ", "2 values for 3 particles"},
+        {rope_with("mass = [1, 2, 0]"), "swing.toml:4:15: rope[0].mass[2]: ", "0 is not > 0"},
+        {rope_with("mass = 1e-13"), "swing.toml:4:8: rope[0].mass: ", "1e-13 is not >= 1e-12"},
+        {rope_with("mass = 1e13"), "swing.toml:4:8: rope[0].mass: ", "is not <= 1000000000000"},
+        {rope_with("payload = -1"),
+         "swing.toml:4:11: rope[0].payload: ", "-1 is not >= 0; give a payload in kg"},
+        {rope_with("velocity = 3"), "swing.toml:4:12: rope[0].velocity: ", "3 is an integer, not a list"},
+        {rope_with("velocity = []"), "swing.toml:4:12: rope[0].velocity: ", "a list of 0, not a pair"},
+        {rope_with("velocity = [1, 2, 3]"), "swing.toml:4:12: rope[0].velocity: ", "a list of 3, not a pair"},
+        {rope_with("velocity = [[1, 2], [3, 4]]"),
+         "swing.toml:4:12: rope[0].velocity: ", "2 values for 3 particles"},
+        {rope_with("velocity = [[1, 2], 3, 4]"), "swing.toml:4:21: rope[0].velocity[1]: ", "not a pair"},
+        {rope_with("pinned = [3]"), "swing.toml:4:11: rope[0].pinned[0]: ",
+         "3 is out of range; the rope has particles 0 .. 2, or -1 .. -3 from its end"},
+        {rope_with("pinned = [-4]"), "swing.toml:4:11: rope[0].pinned[0]: ", "-4 is out of range"},
+        {rope_with("pinned = [2, 0, -1]"),
+         "swing.toml:4:17: rope[0].pinned[2]: ", "particle 2 is given twice"},
+        {rope_with("color = \"red\""), "swing.toml:4:9: rope[0].color: ", "\"red\" is not a colour"},
+        {rope_with("width_px = 0"), "swing.toml:4:12: rope[0].width_px: ", "0 is not >= 0.1"},
+    });
+}
+
+TEST(SceneErrors, Solver) {
+    const auto solver = [](const std::string& keys) { return with("[solver]\n" + keys); };
+    expect_errors({
+        {solver("method = \"auto\""),
+         "swing.toml:4:10: solver.method: ", "\"auto\" is not available in this version; give one of: "},
+        {solver("method = \"relaxatoin\""),
+         "swing.toml:4:10: solver.method: ", "\"relaxatoin\" is unknown; did you mean \"relaxation\"?"},
+        {solver("method = \"magic\""),
+         "swing.toml:4:10: solver.method: ", "\"magic\" is unknown; give one of: "},
+        {solver("step = 0"), "swing.toml:4:8: solver.step: ", "0 is not >= 1e-09; give a step in s"},
+        {solver("reach = 0"), "swing.toml:4:9: solver.reach: ", "0 is not >= 1"},
+        {solver("sweeps = 1000001"),
+         "swing.toml:4:10: solver.sweeps: ", "1000001 is over the limit of 1000000"},
+        {solver("delta = 1"), "swing.toml:4:9: solver.delta: ", "1 is not < 1"},
+        {solver("delta = -0.1"), "swing.toml:4:9: solver.delta: ", "-0.1 is not >= 0"},
+        {solver("force = 3"), "swing.toml:4:9: solver.force: ", "3 is an integer, not a pair of numbers"},
+        {solver("tolerance_px = 0"), "swing.toml:4:16: solver.tolerance_px: ", "0 is not > 0"},
+        {solver("tolerance_px = 0.1"), "swing.toml:4:16: solver.tolerance_px: ",
+         "method \"relaxation\" does not use it, only \"auto\"; remove it"},
+        {solver("tolerance = 0.02"), "swing.toml:4:13: solver.tolerance: ", "0.02 is not <= 0.01"},
+        {solver("tolerance = 1e-9"), "swing.toml:4:13: solver.tolerance: ", "only \"exact\"; remove it"},
+        {solver("order = 3"),
+         "swing.toml:4:9: solver.order: ", "3 is not even; give an order of 2, 4, 6 or 8"},
+        {solver("order = 10"), "swing.toml:4:9: solver.order: ", "10 is over the limit of 8"},
+        {solver("order = 4"), "swing.toml:4:9: solver.order: ", "only \"rope\"; remove it"},
+    });
+}
+
+TEST(SceneErrors, Video) {
+    const auto video = [](const std::string& keys) { return with("[video]\n" + keys); };
+    expect_errors({
+        {video("size = 100"), "swing.toml:4:8: video.size: ", "not a list; give a size as [width, height]"},
+        {video("size = [1, 2, 3]"), "swing.toml:4:8: video.size: ", "a list of 3, not a pair"},
+        {video("size = [0, 2]"), "swing.toml:4:9: video.size[0]: ", "0 is not >= 1"},
+        {video("size = [2, 2.5]"), "swing.toml:4:12: video.size[1]: ", "not an integer"},
+        {video("fps = 0"), "swing.toml:4:7: video.fps: ", "0 is not >= 0.001"},
+        {video("fps = 100001"), "swing.toml:4:7: video.fps: ", "100001 is not <= 100000"},
+        {video("fps = 23.976"), "swing.toml:4:7: video.fps: ", "\"24000/1001\""},
+        {video("fps = 29.97"), "swing.toml:4:7: video.fps: ",
+         "29.97 is not an exact rate; give a fraction in quotes: \"30000/1001\""},
+        {video("fps = 59.94"), "swing.toml:4:7: video.fps: ", "\"60000/1001\""},
+        {video("fps = 12.5"), "swing.toml:4:7: video.fps: ", "\"25/2\""},
+        {video("fps = 3.14159265"), "swing.toml:4:7: video.fps: ", "a fraction in quotes such as"},
+        {video("fps = \"30/0\""), "swing.toml:4:7: video.fps: ", "\"30/0\" is not a fraction"},
+        {video("fps = \"0/5\""), "swing.toml:4:7: video.fps: ", "not in 1/1000 .. 100000"},
+        {video("fps = \"1/1001\""), "swing.toml:4:7: video.fps: ", "not in 1/1000 .. 100000"},
+        {video("fps = \"-30\""), "swing.toml:4:7: video.fps: ", "\"-30\" is not a fraction"},
+        {video("crf = 0"), "swing.toml:4:7: video.crf: ",
+         "0 selects the profile High 4:4:4, which browsers refuse; give a crf of 1"},
+        {video("crf = 52"), "swing.toml:4:7: video.crf: ", "52 is over the limit of 51"},
+        {video("crf = -1"), "swing.toml:4:7: video.crf: ", "-1 is not >= 0"},
+        {video("preset = \"slwo\""), "swing.toml:4:10: video.preset: ", "did you mean \"slow\"?"},
+        {video("preset = \"x\""), "swing.toml:4:10: video.preset: ", "ultrafast, superfast"},
+        {video("codec = \"libx265\""), "swing.toml:4:9: video.codec: ", "did you mean \"libx264\"?"},
+        {video("threads = 65"), "swing.toml:4:11: video.threads: ", "65 is over the limit of 64"},
+        {video("threads = 0"), "swing.toml:4:11: video.threads: ", "0 is not >= 1"},
+    });
+}
+
+TEST(SceneErrors, StyleAndCamera) {
+    const auto style = [](const std::string& keys) { return with("[style]\n" + keys); };
+    const auto camera = [](const std::string& keys) { return with("[camera]\n" + keys); };
+    expect_errors({
+        {style("background = \"#00000080\""),
+         "swing.toml:4:14: style.background: ", "\"#00000080\" is not opaque"},
+        {style("palette = []"), "swing.toml:4:11: style.palette: ", "the list is empty"},
+        {style("palette = [\"#000000\", \"blue\"]"), "swing.toml:4:23: style.palette[1]: ", "not a colour"},
+        {style("rope_width_px = 1001"), "swing.toml:4:17: style.rope_width_px: ", "1001 is not <= 1000"},
+        {style("markers = \"al\""), "swing.toml:4:11: style.markers: ", "did you mean \"all\"?"},
+        {style("bars = \"imaginary\""), "swing.toml:4:8: style.bars: ", "give one of: none, real, all"},
+        {style("marker_radius_px = 0"), "swing.toml:4:20: style.marker_radius_px: ", "0 is not >= 0.1"},
+        {camera("center = 3"), "swing.toml:4:10: camera.center: ", "not a pair"},
+        {camera("height = 0"), "swing.toml:4:10: camera.height: ", "0 is not >= 1e-09; give a height in m"},
+        {camera("margin = 0.46"), "swing.toml:4:10: camera.margin: ", "0.46 is not <= 0.45"},
+    });
+    std::string colors;
+    for (int i = 0; i < 65; ++i) colors += "'#000000',";
+    expect_errors({{style("palette = [" + colors + "]"),
+                    "swing.toml:4:11: style.palette: ", "65 colours are over the limit of 64"}});
+}
+
+}  // namespace
+}  // namespace corda::scene

@@ -1,0 +1,85 @@
+// What asks for too much is refused before any memory is taken: these tests return at once.
+#include <gmock/gmock.h>
+
+#include "unit/scene_support.hpp"
+
+namespace corda::scene {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::string line_of(const std::string& particles) {
+    return "schema = 1\n[[rope]]\nline = { particles = " + particles + ", step = [0, -0.001] }\n";
+}
+
+void expect_limit(const std::string& toml, const std::string& begin, const std::string& part) {
+    SCOPED_TRACE(toml.substr(0, 200));
+    const SceneError error = error_of(toml);
+    EXPECT_EQ(error.code, ExitCode::kInvalidScene);
+    EXPECT_THAT(error.message, StartsWith(begin));
+    EXPECT_THAT(error.message, HasSubstr(part));
+}
+
+TEST(SceneLimits, Particles) {
+    expect_limit(line_of("1000000000"),
+                 "swing.toml:3:22: rope[0].line.particles: ", "1000000000 is over the limit of 1000000");
+    expect_limit(line_of("9223372036854775807"),
+                 "swing.toml:3:22: rope[0].line.particles: ", "over the limit");
+    expect_limit("schema = 1\n[[rope]]\nhang = { links = 1000000, length = 1 }\n",
+                 "swing.toml:3:18: rope[0].hang.links: ", "1000000 is over the limit of 999999");
+}
+
+TEST(SceneLimits, ParticlesOfAllRopesTogether) {
+    const std::string rope = "[[rope]]\nline = { particles = 600000, step = [0, -0.001] }\n";
+    expect_limit("schema = 1\nsolver.reach = 1\n" + rope + rope,
+                 "swing.toml:5:1: rope[1]: ", "1200000 particles, over the limit of 1000000");
+}
+
+TEST(SceneLimits, Bars) {
+    expect_limit(line_of("1000000") + "[solver]\nreach = 21\n", "swing.toml:2:1: rope[0]: ",
+                 "20999769 bars, over the limit of 20000000; give fewer particles or a smaller solver.reach");
+    expect_limit(line_of("1000000") + "[solver]\nreach = 1000000\n", "swing.toml:2:1: rope[0]: ", "bars");
+}
+
+TEST(SceneLimits, AFullRopeFits) {
+    EXPECT_EQ(parse_scene(line_of("1000000"), "a").ropes[0].points_m.size(), 1'000'000U);
+}
+
+TEST(SceneLimits, Pictures) {
+    expect_limit(with("[video]\nsize = [100000, 2]"),
+                 "swing.toml:4:9: video.size[0]: ", "100000 is over the limit of 16384");
+    expect_limit(with("[video]\nsize = [16384, 16384]"), "swing.toml:4:8: video.size: ",
+                 "16384 x 16384 are 268435456 pixels, over the limit of 67108864");
+    EXPECT_EQ(parse_scene(with("video.size = [16384, 4096]"), "a").video.width_px, 16384);
+}
+
+TEST(SceneLimits, Frames) {
+    expect_limit(with("[world]\nduration = 1e12"), "swing.toml:4:12: world.duration: ",
+                 "1e+12 s at 60 frames a second are 6e+13 frames, over the limit of 10000000");
+    expect_limit(with("[world]\nduration = 1e308"),
+                 "swing.toml:4:12: world.duration: ", "frames, over the limit");
+    expect_limit(with("[world]\nduration = 1e-300"), "swing.toml:4:12: world.duration: ", "hold no frame");
+    EXPECT_EQ(parse_scene(with("world.duration = 100\nvideo.fps = 100000"), "a").world.duration_s, 100.0);
+}
+
+TEST(SceneLimits, Steps) {
+    expect_limit(with("[solver]\nstep = 1e-9"),
+                 "swing.toml:4:8: solver.step: ", "10 s are 1e+10 steps, over the limit of 1000000000");
+}
+
+TEST(SceneLimits, BarUpdates) {
+    expect_limit(
+        line_of("1000000") + "[solver]\nsweeps = 1000000\n", "swing.toml:5:10: solver.sweeps: ",
+        "6999972 bars, 1000000 sweeps and 600 steps are 4.19998e+15 bar updates, over the limit of 1e+13");
+    expect_limit(line_of("1000000") + "[solver]\nstep = 1e-6\n",
+                 "swing.toml:5:8: solver.step: ", "bar updates");
+}
+
+TEST(SceneLimits, FileSize) {
+    const std::string large(static_cast<std::size_t>(Limits::kFileBytes) + 1, '\n');
+    expect_limit(large, "swing.toml: ", "over the limit of 16777216 bytes");
+}
+
+}  // namespace
+}  // namespace corda::scene

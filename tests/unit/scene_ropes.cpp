@@ -1,0 +1,126 @@
+// The shapes of ropes and what belongs to each particle.
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "unit/scene_support.hpp"
+
+namespace corda::scene {
+namespace {
+
+using sim::Vec2;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+sim::RopeDef rope_of(const std::string& toml) {
+    return parse_scene(toml, "swing.toml").ropes.at(0);
+}
+
+sim::RopeDef hang(const std::string& angle_deg, const std::string& from = "[0, 0]") {
+    return rope_of("schema = 1\n[[rope]]\nhang = { links = 4, length = 2.0, angle_deg = " + angle_deg +
+                   ", from = " + from + " }\n");
+}
+
+TEST(SceneLine, HasParticlesAtExactMultiplesOfItsStep) {
+    const auto rope =
+        rope_of("schema = 1\n[[rope]]\nline = { particles = 40, from = [0.0, 50.0], step = [0.1, -1.0] }\n");
+    EXPECT_EQ(rope.origin_m, (Vec2{0.0, 50.0}));
+    ASSERT_EQ(rope.points_m.size(), 40U);
+    for (int i = 0; i < 40; ++i)
+        EXPECT_EQ(rope.points_m[static_cast<std::size_t>(i)], (Vec2{i * 0.1, -1.0 * i}));
+    EXPECT_FALSE(std::signbit(rope.points_m[0].y));
+}
+
+TEST(SceneLine, FarFromTheOriginHasTheSamePoints) {
+    const std::string begin = "schema = 1\n[[rope]]\nline = { particles = 40, step = [0.1, -0.3], from = ";
+    const auto near = rope_of(begin + "[0, 0] }\n");
+    const auto far = rope_of(begin + "[123456.7, -9e8] }\n");
+    EXPECT_EQ(near.points_m, far.points_m);
+    EXPECT_EQ(far.origin_m, (Vec2{123456.7, -9e8}));
+}
+
+TEST(SceneHang, IsExactAtMultiplesOfARightAngle) {
+    EXPECT_THAT(hang("0").points_m,
+                ElementsAre(Vec2{0, 0}, Vec2{0, -0.5}, Vec2{0, -1}, Vec2{0, -1.5}, Vec2{0, -2}));
+    EXPECT_THAT(hang("90").points_m,
+                ElementsAre(Vec2{0, 0}, Vec2{0.5, 0}, Vec2{1, 0}, Vec2{1.5, 0}, Vec2{2, 0}));
+    EXPECT_EQ(hang("-90").points_m.back(), (Vec2{-2, 0}));
+    EXPECT_EQ(hang("270").points_m.back(), (Vec2{-2, 0}));
+    EXPECT_EQ(hang("180").points_m.back(), (Vec2{0, 2}));
+    EXPECT_EQ(hang("-180").points_m.back(), (Vec2{0, 2}));
+    EXPECT_EQ(hang("360").points_m.back(), (Vec2{0, -2}));
+    EXPECT_EQ(hang("3600000090").points_m.back(), (Vec2{2, 0}));
+}
+
+TEST(SceneHang, FollowsItsAngleFromStraightDown) {
+    for (const int degrees : {1, 30, 45, 60, 89, 91, 135, 179, 181, 225, 300, 359, -1, -45, -100, -200}) {
+        const double radians = degrees * std::numbers::pi / 180.0;
+        const Vec2 last = hang(std::to_string(degrees)).points_m.back();
+        EXPECT_NEAR(last.x, 2.0 * std::sin(radians), 4e-15) << degrees;  // measured 1e-15
+        EXPECT_NEAR(last.y, -2.0 * std::cos(radians), 4e-15) << degrees;
+    }
+}
+
+TEST(SceneHang, FarFromTheOriginHasTheSamePoints) {
+    EXPECT_EQ(hang("33").points_m, hang("33", "[1e8, -7.7e8]").points_m);
+    EXPECT_EQ(hang("33", "[1e8, -7.7e8]").origin_m, (Vec2{1e8, -7.7e8}));
+}
+
+TEST(SceneHang, HasItsDefaults) {
+    const auto rope = rope_of("schema = 1\n[[rope]]\nhang = { links = 1, length = 3 }\n");
+    EXPECT_EQ(rope.origin_m, Vec2{});
+    EXPECT_THAT(rope.points_m, ElementsAre(Vec2{0, 0}, Vec2{0, -3}));
+}
+
+TEST(ScenePoints, AreRelativeToTheFirst) {
+    const auto rope = rope_of("schema = 1\n[[rope]]\npoints = [[5, 7], [5.5, 6], [8, 8]]\n");
+    EXPECT_EQ(rope.origin_m, (Vec2{5, 7}));
+    EXPECT_THAT(rope.points_m, ElementsAre(Vec2{0, 0}, Vec2{0.5, -1}, Vec2{3, 1}));
+}
+
+TEST(ScenePoints, OfAClosedRopeAreFineWhereNoBarTiesThem) {
+    const std::string rope = "schema = 1\n[[rope]]\npoints = [[0, 0], [1, 0], [1, 1], [0, 0]]\n";
+    EXPECT_EQ(parse_scene(rope + "[solver]\nreach = 2\n", "a").ropes[0].points_m.size(), 4U);
+    EXPECT_NE(error_of(rope + "[solver]\nreach = 3\n").code, ExitCode::kOk);
+}
+
+TEST(SceneRope, MassIsOneForAllOrAList) {
+    EXPECT_THAT(rope_of(rope_with("mass = 2")).mass_kg, ElementsAre(2.0, 2.0, 2.0));
+    EXPECT_THAT(rope_of(rope_with("mass = [1, 2.5, 1e-12]")).mass_kg, ElementsAre(1.0, 2.5, 1e-12));
+}
+
+TEST(SceneRope, VelocityIsOneForAllOrAList) {
+    EXPECT_THAT(rope_of(rope_with("velocity = [1, -2]")).velocity_m_s,
+                ElementsAre(Vec2{1, -2}, Vec2{1, -2}, Vec2{1, -2}));
+    EXPECT_THAT(rope_of(rope_with("velocity = [[1, 2], [3, 4], [5, 6]]")).velocity_m_s,
+                ElementsAre(Vec2{1, 2}, Vec2{3, 4}, Vec2{5, 6}));
+    const auto two = rope_of(
+        "schema = 1\n[[rope]]\nline = { particles = 2, step = [1, 0] }\nvelocity = [[1, 2], [3, 4]]\n");
+    EXPECT_THAT(two.velocity_m_s, ElementsAre(Vec2{1, 2}, Vec2{3, 4}));
+}
+
+TEST(SceneRope, PinnedCountsFromEitherEnd) {
+    EXPECT_THAT(rope_of(rope_with("pinned = [0, -1]")).pinned, ElementsAre(0U, 2U));
+    EXPECT_THAT(rope_of(rope_with("pinned = [-3]")).pinned, ElementsAre(0U));
+    EXPECT_THAT(rope_of(rope_with("pinned = []")).pinned, IsEmpty());
+}
+
+TEST(SceneRope, PayloadColourAndWidth) {
+    const Scene scene = parse_scene(rope_with("payload = 3\ncolor = \"#10203040\"\nwidth_px = 0.1"), "a");
+    EXPECT_EQ(scene.ropes[0].payload_kg, 3.0);
+    EXPECT_EQ(scene.rope_styles[0].color, (Color{0x10, 0x20, 0x30, 0x40}));
+    EXPECT_EQ(scene.rope_styles[0].width_px, 0.1);
+}
+
+TEST(SceneRope, SeveralStayInTheirOrder) {
+    const Scene scene =
+        parse_scene(rope_with("mass = 2\n[[rope]]\npoints = [[0, 0], [1, 1]]\nmass = 3\n"), "a");
+    ASSERT_EQ(scene.ropes.size(), 2U);
+    EXPECT_THAT(scene.ropes[0].mass_kg, ElementsAre(2.0, 2.0, 2.0));
+    EXPECT_THAT(scene.ropes[1].mass_kg, ElementsAre(3.0, 3.0));
+    EXPECT_EQ(scene.rope_styles.size(), 2U);
+}
+
+}  // namespace
+}  // namespace corda::scene
