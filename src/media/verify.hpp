@@ -36,10 +36,11 @@ struct VerifyReport {
     [[nodiscard]] bool ok() const { return problems.empty(); }
 };
 
-/// Opens, decodes and checks a video: frame count, constant step from 0, exact duration, track and movie time scale,
-/// profile and pixel format, colour tags, faststart, and, where the file was made by corda (its comment says so), frame count,
-/// rate and colour patches of the first decoded frame against what was rendered. Throws corda::Error (kIo) only
-/// where the file cannot be opened for reading; a file that is not a video is a report with a problem.
+/// Opens, decodes and checks a video: frame count, constant step from 0, exact duration, track and movie time
+/// scale, profile and pixel format, colour tags, faststart, and, where the file was made by corda (its
+/// comment says so), frame count, rate and colour patches of the first decoded frame against what was
+/// rendered. Throws corda::Error (kIo) only where the file cannot be opened for reading; a file that is not a
+/// video is a report with a problem.
 [[nodiscard]] VerifyReport verify(const std::string& path);
 
 }  // namespace corda::media

@@ -1,0 +1,94 @@
+#include "corda/media/color_patch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace corda::media {
+namespace {
+
+constexpr std::size_t kPatchCount = 5;
+constexpr int kMargin =
+    8;  // a deblocked edge changes 3 pixels, the chroma filter reads 1, a 8x8 transform block 8
+
+bool same_rgb(const std::uint8_t* a, const std::uint8_t* b) {
+    return std::memcmp(a, b, 3) == 0;
+}
+
+bool is_uniform(const Image& frame, int x, int y) {
+    const PixelRect block =
+        PixelRect{x - kMargin, y - kMargin, x + kPatchSide + kMargin, y + kPatchSide + kMargin}.intersected(
+            frame.rect());
+    const std::uint8_t* first = frame.pixel(x, y);
+    for (int row = block.y0; row < block.y1; ++row) {
+        for (int column = block.x0; column < block.x1; ++column) {
+            if (!same_rgb(first, frame.pixel(column, row))) return false;
+        }
+    }
+    return true;
+}
+
+/// Block-aligned positions of a frame, the telling ones first: corners, centre, edge middles, then all by
+/// rows.
+std::vector<std::array<int, 2>> positions(const Image& frame) {
+    const int columns = frame.width() / kPatchSide;
+    const int rows = frame.height() / kPatchSide;
+    if (columns == 0 || rows == 0) return {};
+    const std::array<int, 3> xs{0, columns - 1, columns / 2};
+    const std::array<int, 3> ys{0, rows - 1, rows / 2};
+    std::vector<std::array<int, 2>> result;
+    for (const int row : ys) {
+        for (const int column : xs) result.push_back({column * kPatchSide, row * kPatchSide});
+    }
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column)
+            result.push_back({column * kPatchSide, row * kPatchSide});
+    }
+    return result;
+}
+
+bool has_color(const std::vector<ColorPatch>& patches, const ColorPatch& patch) {
+    return std::any_of(patches.begin(), patches.end(),
+                       [&](const ColorPatch& p) { return p.rgb == patch.rgb; });
+}
+
+bool has_place(const std::vector<ColorPatch>& patches, const ColorPatch& patch) {
+    return std::any_of(patches.begin(), patches.end(),
+                       [&](const ColorPatch& p) { return p.x == patch.x && p.y == patch.y; });
+}
+
+}  // namespace
+
+std::vector<ColorPatch> choose_patches(const Image& frame) {
+    std::vector<ColorPatch> chosen;
+    std::vector<ColorPatch> spare;  // further places of a colour that is already chosen
+    for (const auto& [x, y] : positions(frame)) {
+        const std::uint8_t* pixel = frame.pixel(x, y);
+        const ColorPatch patch{x, y, {pixel[0], pixel[1], pixel[2]}};
+        const bool new_color = !has_color(chosen, patch);
+        if (!new_color && spare.size() >= kPatchCount) continue;
+        if (has_place(chosen, patch) || has_place(spare, patch) || !is_uniform(frame, x, y)) continue;
+        (new_color ? chosen : spare).push_back(patch);
+        if (chosen.size() == kPatchCount) return chosen;
+    }
+    for (std::size_t i = 0; i < spare.size() && chosen.size() < kPatchCount; ++i) chosen.push_back(spare[i]);
+    return chosen;
+}
+
+std::array<double, 3> rgb_from_ycbcr(double y, double cb, double cr) {
+    const double luma = (y - 16.0) / 219.0;
+    const double blue = (cb - 128.0) / 224.0;
+    const double red = (cr - 128.0) / 224.0;
+    return {255.0 * (luma + 1.5748 * red),
+            255.0 * (luma - 0.2126 / 0.7152 * 1.5748 * red - 0.0722 / 0.7152 * 1.8556 * blue),
+            255.0 * (luma + 1.8556 * blue)};
+}
+
+double patch_tolerance(int crf) {
+    // Measured over random and saturated colours and five presets: at most 1.7 up to crf 25 (of which 1.6 is
+    // the rounding to 8-bit Y'CbCr), then 3.2 at 28, 3.9 at 33, 6.5 at 40, 11 at 45, 25 at 51. A wrong matrix
+    // or range is off by 15 and more.
+    return std::max(2.0, 2.0 * std::exp2((crf - 21) / 7.0));
+}
+
+}  // namespace corda::media

@@ -1,0 +1,88 @@
+#include "corda/media/libav_handles.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdarg>
+#include <mutex>
+
+#include "corda/core/error.hpp"
+#include "corda/media/file_ops.hpp"
+
+namespace corda::media {
+namespace {
+
+constexpr std::size_t kLongestLog = 400;  // characters; a broken stream can complain once a macroblock
+
+thread_local LogCapture* innermost_capture = nullptr;
+
+void on_log(void* object, int level, const char* format, va_list arguments) {
+    if (innermost_capture == nullptr || level > AV_LOG_ERROR) return;
+    std::array<char, 256> line{};
+    int print_prefix = 0;  // the prefix holds an address, which differs on every run
+    (void)object;
+    av_log_format_line(nullptr, level, format, arguments, line.data(), static_cast<int>(line.size()),
+                       &print_prefix);
+    std::string_view text(line.data());
+    while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.remove_suffix(1);
+    innermost_capture->add(text);
+}
+
+}  // namespace
+
+Options& Options::set(const char* name, const std::string& value) {
+    check_libav(av_dict_set(&dictionary_, name, value.c_str(), 0), ExitCode::kInternal,
+                "cannot keep an option");
+    return *this;
+}
+
+std::string Options::left_over() const {
+    const AVDictionaryEntry* entry = av_dict_get(dictionary_, "", nullptr, AV_DICT_IGNORE_SUFFIX);
+    return entry == nullptr ? std::string() : std::string(entry->key);
+}
+
+std::string libav_text(int status) {
+    std::array<char, AV_ERROR_MAX_STRING_SIZE> text{};
+    av_strerror(status, text.data(), text.size());
+    return text.data();
+}
+
+void fail_libav(ExitCode code, const std::string& what, int status, std::string_view hint) {
+    const std::string_view system_hint = hint_for_errno(AVUNERROR(status));
+    const bool out_of_space =
+        status == AVERROR(ENOSPC) || status == AVERROR(EDQUOT) || status == AVERROR(EIO);
+    const std::string_view shown_hint = system_hint.empty() ? hint : system_hint;
+    const std::string log = captured_log();
+    std::string message = fmt::format("{}: {}", what, libav_text(status));
+    if (!log.empty()) message += fmt::format(" ({})", log);
+    if (!shown_hint.empty()) message += fmt::format("; {}", shown_hint);
+    throw Error(out_of_space ? ExitCode::kIo : code, message);
+}
+
+int check_libav(int status, ExitCode code, const std::string& what, std::string_view hint) {
+    if (status < 0) fail_libav(code, what, status, hint);
+    return status;
+}
+
+LogCapture::LogCapture() : outer_(innermost_capture) {
+    static std::once_flag once;
+    std::call_once(once, [] { av_log_set_callback(&on_log); });
+    innermost_capture = this;
+}
+
+LogCapture::~LogCapture() {
+    innermost_capture = outer_;
+}
+
+void LogCapture::add(std::string_view line) {
+    if (line.empty() || text_.size() + line.size() > kLongestLog) return;
+    if (text_.find(line) != std::string::npos) return;
+    if (!text_.empty()) text_ += "; ";
+    text_ += line;
+}
+
+std::string captured_log() {
+    return innermost_capture == nullptr ? std::string() : innermost_capture->text();
+}
+
+}  // namespace corda::media

@@ -1,0 +1,124 @@
+#pragma once
+
+// The only header that includes libav. Private to src/media: what other modules see is free of it.
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/buffer.h>
+#include <libavutil/dict.h>
+#include <libavutil/error.h>
+#include <libavutil/frame.h>
+#include <libavutil/hwcontext.h>
+#include <libavutil/log.h>
+#include <libavutil/mathematics.h>
+#include <libavutil/pixdesc.h>
+}
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "corda/core/exit_code.hpp"
+#include "corda/core/rational.hpp"
+
+namespace corda::media {
+
+/// Deleter for libav's `void free(T**)`.
+template <auto kFree>
+struct PointerPointerDeleter {
+    template <typename T>
+    void operator()(T* object) const noexcept {
+        kFree(&object);
+    }
+};
+
+/// Deleter for libav's `void free(T*)`.
+template <auto kFree>
+struct PointerDeleter {
+    template <typename T>
+    void operator()(T* object) const noexcept {
+        kFree(object);
+    }
+};
+
+using CodecContext = std::unique_ptr<AVCodecContext, PointerPointerDeleter<&avcodec_free_context>>;
+using Packet = std::unique_ptr<AVPacket, PointerPointerDeleter<&av_packet_free>>;
+using Frame = std::unique_ptr<AVFrame, PointerPointerDeleter<&av_frame_free>>;
+using BufferRef = std::unique_ptr<AVBufferRef, PointerPointerDeleter<&av_buffer_unref>>;
+using InputFormat = std::unique_ptr<AVFormatContext, PointerPointerDeleter<&avformat_close_input>>;
+using OutputFormat = std::unique_ptr<AVFormatContext, PointerDeleter<&avformat_free_context>>;
+/// Closes without a word: a writer closes by hand and checks.
+using IoContext = std::unique_ptr<AVIOContext, PointerPointerDeleter<&avio_closep>>;
+
+/// Options for an open call, given by name.
+class Options {
+  public:
+    Options() = default;
+    Options(const Options&) = delete;
+    Options& operator=(const Options&) = delete;
+    ~Options() { av_dict_free(&dictionary_); }
+
+    Options& set(const char* name, const std::string& value);
+    [[nodiscard]] AVDictionary** get() { return &dictionary_; }
+    /// The name of an option that the open call did not take; empty where it took all.
+    [[nodiscard]] std::string left_over() const;
+
+  private:
+    AVDictionary* dictionary_ = nullptr;
+};
+
+/// libav's own text for a negative return value.
+[[nodiscard]] std::string libav_text(int status);
+
+/// Throws corda::Error: "WHAT: <libav's text> (<its log lines>); HINT". A full disk and the like get their
+/// own hint, and kIo.
+[[noreturn]] void fail_libav(ExitCode code, const std::string& what, int status, std::string_view hint = {});
+
+/// Throws like fail_libav where `status` is negative; returns it otherwise.
+int check_libav(int status, ExitCode code, const std::string& what, std::string_view hint = {});
+
+/// Returns `handle` or throws corda::Error (kInternal) where libav had no memory for `what`.
+template <typename Handle>
+Handle check_allocated(Handle handle, const char* what) {
+    if (!handle) fail_libav(ExitCode::kInternal, std::string("cannot make ") + what, AVERROR(ENOMEM));
+    return handle;
+}
+
+/// From its construction on, libav prints nothing; what it would have printed as an error from this thread
+/// while the object lives is kept, for messages. Objects may nest.
+class LogCapture {
+  public:
+    LogCapture();
+    LogCapture(const LogCapture&) = delete;
+    LogCapture& operator=(const LogCapture&) = delete;
+    ~LogCapture();
+
+    /// The lines so far, joined by "; "; at most a few hundred characters.
+    [[nodiscard]] const std::string& text() const { return text_; }
+    void clear() { text_.clear(); }
+    void add(std::string_view line);
+
+  private:
+    LogCapture* outer_;
+    std::string text_;
+};
+
+/// The text that the innermost LogCapture of this thread holds; empty without one.
+[[nodiscard]] std::string captured_log();
+
+/// The path as a URL of libav's file protocol, so that "a:b.mp4" or "-" are files too.
+[[nodiscard]] inline std::string file_url(const std::string& path) {
+    return "file:" + path;
+}
+
+[[nodiscard]] inline AVRational to_libav(Rational value) {
+    return {static_cast<int>(value.num), static_cast<int>(value.den)};
+}
+
+/// The duration of one frame: the time base in which frame n has the stamp n.
+[[nodiscard]] inline AVRational frame_time_base(Rational fps) {
+    return {static_cast<int>(fps.den), static_cast<int>(fps.num)};
+}
+
+}  // namespace corda::media

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace corda::media {
+
+/// One entry of an edit list: which part of the track is shown.
+struct Mp4Edit {
+    std::int64_t duration = 0;    ///< in movie ticks
+    std::int64_t media_time = 0;  ///< first stamp shown, in track ticks; -1 is an empty stretch
+};
+
+/// What the boxes of an MP4 file say, read without libav, which rounds and repairs.
+struct Mp4Boxes {
+    bool is_mp4 = false;  ///< begins with an ftyp box
+    bool whole = false;   ///< every top-level box ends within the file
+    std::uint64_t file_bytes = 0;
+    std::uint64_t whole_bytes =
+        0;  ///< end of the last whole box that is of use without the one behind it (not a moof)
+    bool has_index = false;    ///< a moov box was found and could be read
+    bool fragmented = false;   ///< moof boxes, or a moov that announces them
+    bool index_first = false;  ///< moov stands before mdat
+    std::uint32_t movie_timescale = 0;
+    std::uint64_t movie_duration = 0;
+    int tracks = 0;
+    // Of the first track:
+    std::uint32_t track_timescale = 0;
+    std::uint64_t track_duration = 0;      ///< mdhd: of the stored pictures, in track ticks
+    std::uint64_t track_presentation = 0;  ///< tkhd: of what is shown, in movie ticks
+    std::vector<Mp4Edit> edits;
+};
+
+/// Reads the boxes of any file; garbage gives a struct with little in it. Throws corda::Error (kIo) where the
+/// file cannot be opened for reading.
+[[nodiscard]] Mp4Boxes read_mp4_boxes(const std::string& path);
+
+}  // namespace corda::media

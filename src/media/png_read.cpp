@@ -1,0 +1,159 @@
+#include <fmt/format.h>
+#include <png.h>
+#include <sys/stat.h>
+
+#include <csetjmp>
+#include <cstring>
+
+#include "corda/core/error.hpp"
+#include "corda/media/file_ops.hpp"
+#include "corda/media/png.hpp"
+
+namespace corda::media {
+namespace {
+
+constexpr png_uint_32 kLargestSide = 16384;
+// Deflate cannot shrink more than 1032 to 1: a file that promises more than this is not whole.
+constexpr double kLargestRatio = 1032.0;
+
+/// What libpng's longjmp must find intact: plain data only.
+struct ReadJob {
+    png_structp png = nullptr;
+    png_infop info = nullptr;
+    std::FILE* file = nullptr;
+    char message[160] = "out of memory";
+
+    ReadJob() = default;
+    ReadJob(const ReadJob&) = delete;
+    ReadJob& operator=(const ReadJob&) = delete;
+    ~ReadJob() { png_destroy_read_struct(&png, &info, nullptr); }
+};
+
+void on_error(png_structp png, png_const_charp message) {
+    auto* job = static_cast<ReadJob*>(png_get_error_ptr(png));
+    std::strncpy(job->message, message, sizeof job->message - 1);
+    png_longjmp(png, 1);
+}
+
+void on_warning(png_structp, png_const_charp) {}
+
+// The three steps that libpng may leave through longjmp: no object with a destructor lives in them.
+
+bool read_header(ReadJob& job) {
+    if (setjmp(png_jmpbuf(job.png)) != 0) return false;
+    png_init_io(job.png, job.file);
+    png_set_user_limits(job.png, kLargestSide, kLargestSide);
+    png_read_info(job.png, job.info);
+    return true;
+}
+
+/// Palette, grey, 1 to 16 bits, tRNS: all become 8-bit RGBA. Colours are not converted (gAMA, iCCP): a
+/// comparison wants the numbers in the file.
+bool request_rgba8(ReadJob& job) {
+    if (setjmp(png_jmpbuf(job.png)) != 0) return false;
+    png_set_expand(job.png);
+    png_set_scale_16(job.png);
+    png_set_gray_to_rgb(job.png);
+    png_set_add_alpha(job.png, 0xff, PNG_FILLER_AFTER);
+    png_set_interlace_handling(job.png);
+    png_read_update_info(job.png, job.info);
+    return true;
+}
+
+bool read_rows(ReadJob& job, png_bytepp rows) {
+    if (setjmp(png_jmpbuf(job.png)) != 0) return false;
+    png_read_image(job.png, rows);
+    png_read_end(job.png, job.info);
+    return true;
+}
+
+[[noreturn]] void fail_png(const std::string& path, std::string_view reason) {
+    throw Error(
+        ExitCode::kIo,
+        fmt::format("cannot read PNG '{}': {}; write the file again, or give another one", path, reason));
+}
+
+void open_job(ReadJob& job, const std::string& path) {
+    png_byte signature[8] = {};
+    const std::size_t count = std::fread(signature, 1, sizeof signature, job.file);
+    if (count == 0) fail_png(path, "the file is empty");
+    if (count < sizeof signature || png_sig_cmp(signature, 0, sizeof signature) != 0) {
+        fail_png(path, "it does not begin like a PNG");
+    }
+    job.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);
+    if (job.png != nullptr) job.info = png_create_info_struct(job.png);
+    if (job.info == nullptr) fail_png(path, job.message);
+    png_set_sig_bytes(job.png, sizeof signature);
+    if (!read_header(job)) fail_png(path, job.message);
+}
+
+Image read_pixels(ReadJob& job, const std::string& path) {
+    const png_uint_32 width = png_get_image_width(job.png, job.info);
+    const png_uint_32 height = png_get_image_height(job.png, job.info);
+    struct stat status {};
+    const bool known_size = ::fstat(::fileno(job.file), &status) == 0 && S_ISREG(status.st_mode);
+    const double stored_bytes = static_cast<double>(png_get_rowbytes(job.png, job.info)) * height;
+    if (known_size && stored_bytes > kLargestRatio * static_cast<double>(status.st_size)) {
+        fail_png(path,
+                 fmt::format("a file of {} bytes cannot hold {} x {} pixels", status.st_size, width, height));
+    }
+    if (!request_rgba8(job)) fail_png(path, job.message);
+    Image image(static_cast<int>(width), static_cast<int>(height));
+    if (png_get_rowbytes(job.png, job.info) != image.row_bytes()) fail_png(path, "libpng gave no 8-bit RGBA");
+    std::vector<png_bytep> rows(height);
+    for (png_uint_32 y = 0; y < height; ++y) rows[y] = image.pixel(0, static_cast<int>(y));
+    if (!read_rows(job, rows.data())) fail_png(path, job.message);
+    return image;
+}
+
+std::string from_latin1(std::string_view latin1) {
+    std::string utf8;
+    for (const char character : latin1) {
+        const auto byte = static_cast<unsigned char>(character);
+        if (byte < 0x80) {
+            utf8.push_back(character);
+        } else {
+            utf8.push_back(static_cast<char>(0xc0U | (byte >> 6)));
+            utf8.push_back(static_cast<char>(0x80U | (byte & 0x3fU)));
+        }
+    }
+    return utf8;
+}
+
+PngInfo collect_info(const ReadJob& job) {
+    PngInfo info;
+    png_textp texts = nullptr;
+    int count = 0;
+    png_get_text(job.png, job.info, &texts, &count);
+    for (int i = 0; i < count; ++i) {
+        const bool international = texts[i].compression >= PNG_ITXT_COMPRESSION_NONE;
+        const std::string_view text(texts[i].text,
+                                    international ? texts[i].itxt_length : texts[i].text_length);
+        info.text.emplace_back(texts[i].key, international ? std::string(text) : from_latin1(text));
+    }
+    const png_uint_32 pixels_per_metre = png_get_pixels_per_meter(job.png, job.info);
+    if (pixels_per_metre > 0) info.pixels_per_inch = pixels_per_metre * 0.0254;
+    return info;
+}
+
+}  // namespace
+
+Image read_png(const std::string& path) {
+    const FileHandle file = open_for_reading(path);
+    ReadJob job;
+    job.file = file.get();
+    open_job(job, path);
+    return read_pixels(job, path);
+}
+
+PngInfo read_png_info(const std::string& path) {
+    const FileHandle file = open_for_reading(path);
+    ReadJob job;
+    job.file = file.get();
+    open_job(job, path);
+    // Text may stand after the pixels, so the whole file is read.
+    (void)read_pixels(job, path);
+    return collect_info(job);
+}
+
+}  // namespace corda::media

@@ -1,0 +1,195 @@
+#include "corda/media/verify_decode.hpp"
+
+#include <algorithm>
+
+#include "corda/core/error.hpp"
+#include "corda/media/color_patch.hpp"
+#include "corda/media/libav_handles.hpp"
+
+namespace corda::media {
+namespace {
+
+std::string named(const char* name) {
+    return name == nullptr ? "unknown" : name;
+}
+
+/// Mean of a square of an 8-bit plane.
+double plane_mean(const AVFrame& frame, int plane, int x, int y, int side) {
+    std::int64_t sum = 0;
+    for (int row = y; row < y + side; ++row) {
+        const std::uint8_t* line = frame.data[plane] + std::ptrdiff_t{row} * frame.linesize[plane];
+        for (int column = x; column < x + side; ++column) sum += line[column];
+    }
+    return static_cast<double>(sum) / (side * side);
+}
+
+/// Decodes one file and fills in a DecodedVideo.
+class Decoding {
+  public:
+    Decoding(DecodedVideo& video, std::vector<ColorPatch> (*patches_of)(const std::string&))
+        : video_(video), patches_of_(patches_of) {}
+
+    void run(const std::string& path) {
+        if (!open(path)) return;
+        video_.opened = true;
+        while (read_packet()) {
+        }
+        receive(nullptr);
+        // libav guesses the duration of a last frame; that it is one step follows from the track's stored
+        // duration.
+        if (video_.frames == 1) video_.step = std::max<std::int64_t>(stream_->duration, 0);
+        video_.end = last_pts_ + video_.step;
+        describe();
+    }
+
+  private:
+    bool refuse(int status, const char* what) {
+        video_.open_reason = std::string(what) + ": " + libav_text(status);
+        if (!log_.text().empty()) video_.open_reason += " (" + log_.text() + ")";
+        return false;
+    }
+
+    bool open(const std::string& path) {
+        AVFormatContext* format = nullptr;
+        // Named, not probed: libav would take a text file for a video of ANSI art, or follow a playlist.
+        const AVInputFormat* mov = av_find_input_format("mov");
+        int status = avformat_open_input(&format, file_url(path).c_str(), mov, nullptr);
+        if (status < 0) return refuse(status, "the file does not open");
+        format_.reset(format);
+        const AVCodec* codec = nullptr;
+        const int index = av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, &codec, 0);
+        if (index < 0) return refuse(index, "there is no video track that can be decoded");
+        stream_ = format->streams[index];
+        context_ = check_allocated(CodecContext(avcodec_alloc_context3(codec)), "a decoder");
+        status = avcodec_parameters_to_context(context_.get(), stream_->codecpar);
+        if (status < 0) return refuse(status, "the codec parameters are broken");
+        context_->thread_count = 2;
+        context_->pkt_timebase = stream_->time_base;
+        context_->err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_EXPLODE;
+        status = avcodec_open2(context_.get(), codec, nullptr);
+        if (status < 0) return refuse(status, "the decoder does not open");
+        frame_ = check_allocated(Frame(av_frame_alloc()), "a frame");
+        packet_ = check_allocated(Packet(av_packet_alloc()), "a packet");
+        const AVCodecParameters& parameters = *stream_->codecpar;
+        video_.container_tags = named(av_color_range_name(parameters.color_range)) + " " +
+                                named(av_color_space_name(parameters.color_space)) + " " +
+                                named(av_color_primaries_name(parameters.color_primaries)) + " " +
+                                named(av_color_transfer_name(parameters.color_trc));
+        const AVDictionaryEntry* comment = av_dict_get(format->metadata, "comment", nullptr, 0);
+        if (comment != nullptr) video_.comment = comment->value;
+        video_.tick = {stream_->time_base.num, stream_->time_base.den};
+        return true;
+    }
+
+    void note_bad(int status) {
+        if (video_.bad_frames++ > 0) return;
+        video_.bad_reason = log_.text().empty() ? libav_text(status) : log_.text();
+    }
+
+    bool read_packet() {
+        log_.clear();
+        const int status = av_read_frame(format_.get(), packet_.get());
+        if (status < 0) {
+            if (status != AVERROR_EOF) note_bad(status);
+            return false;
+        }
+        if (packet_->stream_index == stream_->index) {
+            if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) note_bad(AVERROR_INVALIDDATA);
+            receive(packet_.get());
+        }
+        av_packet_unref(packet_.get());
+        return true;
+    }
+
+    /// Sends a packet (none: the end) and takes every frame that is ready.
+    void receive(const AVPacket* packet) {
+        int status = avcodec_send_packet(context_.get(), packet);
+        if (status < 0) note_bad(status);
+        for (;;) {
+            status = avcodec_receive_frame(context_.get(), frame_.get());
+            if (status == AVERROR(EAGAIN) || status == AVERROR_EOF) return;
+            if (status < 0) {
+                note_bad(status);
+                // While draining, libav gives an error once a bad frame and goes on; else the next packet is
+                // due.
+                if (packet != nullptr || video_.bad_frames > kMostBadFrames) return;
+                continue;
+            }
+            take_frame();
+            av_frame_unref(frame_.get());
+        }
+    }
+
+    void take_frame() {
+        const AVFrame& frame = *frame_;
+        if (frame.decode_error_flags != 0 || (frame.flags & AV_FRAME_FLAG_CORRUPT) != 0)
+            note_bad(AVERROR_INVALIDDATA);
+        const std::int64_t pts = frame.pts;
+        if (video_.frames == 0) {
+            video_.first_pts = pts;
+            measure_patches();
+            // Only the first frame's pixels are looked at; the others need to decode, not to be smooth.
+            context_->skip_loop_filter = AVDISCARD_ALL;
+        } else {
+            if (video_.frames == 1) video_.step = pts - last_pts_;
+            if (pts - last_pts_ != video_.step && video_.uneven_at < 0) video_.uneven_at = video_.frames;
+        }
+        last_pts_ = pts;
+        ++video_.frames;
+    }
+
+    void measure_patches() {
+        describe_first_frame();
+        if (frame_->format != AV_PIX_FMT_YUV420P && frame_->format != AV_PIX_FMT_YUVJ420P) return;
+        for (const ColorPatch& patch : patches_of_(video_.comment)) {
+            const bool inside = patch.x >= 0 && patch.y >= 0 && patch.x <= frame_->width - kPatchSide &&
+                                patch.y <= frame_->height - kPatchSide;
+            if (!inside) continue;
+            const int half = kPatchSide / 2;
+            video_.patch_means.push_back({plane_mean(*frame_, 0, patch.x, patch.y, kPatchSide),
+                                          plane_mean(*frame_, 1, patch.x / 2, patch.y / 2, half),
+                                          plane_mean(*frame_, 2, patch.x / 2, patch.y / 2, half)});
+        }
+    }
+
+    void describe_first_frame() {
+        const AVFrame& frame = *frame_;
+        video_.width_px = frame.width;
+        video_.height_px = frame.height;
+        video_.pixel_format = named(av_get_pix_fmt_name(static_cast<AVPixelFormat>(frame.format)));
+        video_.range = named(av_color_range_name(frame.color_range));
+        video_.matrix = named(av_color_space_name(frame.colorspace));
+        video_.primaries = named(av_color_primaries_name(frame.color_primaries));
+        video_.transfer = named(av_color_transfer_name(frame.color_trc));
+        video_.chroma_location = named(av_chroma_location_name(frame.chroma_location));
+    }
+
+    void describe() {
+        video_.codec = avcodec_get_name(context_->codec_id);
+        video_.profile = named(avcodec_profile_name(context_->codec_id, context_->profile));
+        video_.container_duration_us = format_->duration == AV_NOPTS_VALUE ? 0 : format_->duration;
+    }
+
+    static constexpr std::int64_t kMostBadFrames = 1000;
+
+    DecodedVideo& video_;
+    std::vector<ColorPatch> (*patches_of_)(const std::string&);
+    LogCapture log_;
+    InputFormat format_;
+    const AVStream* stream_ = nullptr;
+    CodecContext context_;
+    Frame frame_;
+    Packet packet_;
+    std::int64_t last_pts_ = 0;
+};
+
+}  // namespace
+
+DecodedVideo decode_all(const std::string& path,
+                        std::vector<ColorPatch> (*patches_of)(const std::string& comment)) {
+    DecodedVideo video;
+    Decoding(video, patches_of).run(path);
+    return video;
+}
+
+}  // namespace corda::media

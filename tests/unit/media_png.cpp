@@ -1,0 +1,190 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <png.h>
+#include <sys/stat.h>
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "corda/core/error.hpp"
+#include "corda/media/png.hpp"
+
+namespace corda::media {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class Png : public testing::Test {
+  protected:
+    void SetUp() override {
+        const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = fs::path(testing::TempDir()) / (std::string("corda_png_") + info->name());
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+    [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }
+
+    fs::path folder_;
+};
+
+std::string bytes_of(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write_bytes(const std::string& path, const std::string& bytes) {
+    std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+
+Image random_image(int width, int height, bool opaque) {
+    std::mt19937 random(11);
+    Image image(width, height);
+    for (std::size_t i = 0; i < image.size_bytes(); ++i) {
+        image.data()[i] =
+            opaque && i % 4 == 3 ? std::uint8_t{255} : static_cast<std::uint8_t>(random() & 0xffU);
+    }
+    return image;
+}
+
+ExitCode code_of_reading(const std::string& path) {
+    try {
+        (void)read_png(path);
+    } catch (const Error& error) {
+        EXPECT_THAT(error.what(), HasSubstr(path));
+        return error.code();
+    }
+    return ExitCode::kOk;
+}
+
+TEST_F(Png, RoundTripKeepsEveryPixel) {
+    for (const bool opaque : {true, false}) {
+        const Image image = random_image(37, 23, opaque);
+        write_png(file("a.png"), image);
+        EXPECT_TRUE(read_png(file("a.png")) == image) << opaque;
+        EXPECT_EQ(bytes_of(file("a.png"))[25], opaque ? 2 : 6);  // IHDR colour type: RGB or RGBA
+        EXPECT_FALSE(fs::exists(file("a.png.tmp")));
+    }
+}
+
+TEST_F(Png, HoldsItsChunksAndNoDate) {
+    write_png(file("a.png"), random_image(4, 4, true),
+              {{{"Software", "corda"}, {"Title", "Pendule à corde"}}, 144.0});
+    const std::string bytes = bytes_of(file("a.png"));
+    EXPECT_THAT(bytes, HasSubstr(std::string("sRGB\0", 5)));  // 0: perceptual
+    EXPECT_THAT(bytes, HasSubstr("pHYs"));
+    EXPECT_THAT(bytes, HasSubstr("tEXtSoftware"));
+    EXPECT_THAT(bytes, HasSubstr("Pendule \xe0 corde"));  // Latin-1
+    EXPECT_THAT(bytes, testing::Not(HasSubstr("tIME")));
+    EXPECT_THAT(bytes, testing::Not(HasSubstr("iTXt")));
+}
+
+TEST_F(Png, TextComesBackInOrderAsUtf8) {
+    PngInfo info;
+    info.text = {{"Title", "Pendule à corde"}, {"Comment", "θ₀ = 90°"}, {"Empty", ""}, {"Title", "again"}};
+    info.pixels_per_inch = 300.0;
+    write_png(file("a.png"), random_image(4, 4, true), info);
+    EXPECT_THAT(bytes_of(file("a.png")), HasSubstr("iTXtComment"));
+    const PngInfo back = read_png_info(file("a.png"));
+    EXPECT_EQ(back.text, info.text);
+    EXPECT_NEAR(back.pixels_per_inch, 300.0, 0.013);  // whole pixels a metre
+}
+
+TEST_F(Png, SameBytesTwice) {
+    const Image image = random_image(64, 64, false);
+    write_png(file("a.png"), image, {{{"k", "v"}}, 96.0});
+    write_png(file("b.png"), image, {{{"k", "v"}}, 96.0});
+    EXPECT_EQ(bytes_of(file("a.png")), bytes_of(file("b.png")));
+}
+
+TEST_F(Png, BadFilesAreErrorsOfKindIo) {
+    write_png(file("a.png"), random_image(40, 40, true));
+    const std::string whole = bytes_of(file("a.png"));
+    EXPECT_EQ(code_of_reading(file("missing.png")), ExitCode::kIo);
+    EXPECT_EQ(code_of_reading(folder_.string()), ExitCode::kIo);
+    write_bytes(file("b.png"), "");
+    EXPECT_EQ(code_of_reading(file("b.png")), ExitCode::kIo);
+    write_bytes(file("b.png"), "this is no picture");
+    EXPECT_EQ(code_of_reading(file("b.png")), ExitCode::kIo);
+    for (std::size_t length = 1; length < whole.size(); length += 7) {
+        write_bytes(file("b.png"), whole.substr(0, length));
+        ASSERT_EQ(code_of_reading(file("b.png")), ExitCode::kIo) << length;
+    }
+    for (const std::size_t at : {std::size_t{18}, std::size_t{30}, whole.size() / 2}) {
+        std::string broken = whole;
+        broken[at] = static_cast<char>(broken[at] ^ 0x55);
+        write_bytes(file("b.png"), broken);
+        EXPECT_EQ(code_of_reading(file("b.png")), ExitCode::kIo) << at;
+    }
+}
+
+/// A PNG made by libpng's simplified API or by hand in another format.
+void write_raw(const std::string& path, int width, int height, int depth, int type,
+               const std::vector<png_byte>& row, const std::vector<png_color>& palette = {}) {
+    std::FILE* out = std::fopen(path.c_str(), "wb");
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+    png_infop info = png_create_info_struct(png);
+    png_init_io(png, out);
+    png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), depth, type,
+                 PNG_INTERLACE_ADAM7, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    if (!palette.empty()) png_set_PLTE(png, info, palette.data(), static_cast<int>(palette.size()));
+    png_write_info(png, info);
+    const int passes = png_set_interlace_handling(png);
+    for (int i = 0; i < passes * height; ++i) png_write_row(png, row.data());
+    png_write_end(png, nullptr);
+    png_destroy_write_struct(&png, &info);
+    std::fclose(out);
+}
+
+TEST_F(Png, EveryFormatBecomesRgba8) {
+    write_raw(file("grey1.png"), 2, 1, 1, PNG_COLOR_TYPE_GRAY, {0x40});
+    const Image grey = read_png(file("grey1.png"));
+    EXPECT_EQ(std::vector<int>(grey.data(), grey.data() + 8),
+              (std::vector<int>{0, 0, 0, 255, 255, 255, 255, 255}));
+    write_raw(file("palette.png"), 2, 2, 8, PNG_COLOR_TYPE_PALETTE, {1, 0}, {{1, 2, 3}, {4, 5, 6}});
+    const Image palette = read_png(file("palette.png"));
+    EXPECT_EQ(std::vector<int>(palette.data(), palette.data() + 8),
+              (std::vector<int>{4, 5, 6, 255, 1, 2, 3, 255}));
+    write_raw(file("rgb16.png"), 1, 1, 16, PNG_COLOR_TYPE_RGB, {0xff, 0xff, 0x80, 0x80, 0, 0});
+    const Image deep = read_png(file("rgb16.png"));
+    EXPECT_EQ(std::vector<int>(deep.data(), deep.data() + 4), (std::vector<int>{255, 128, 0, 255}));
+}
+
+TEST_F(Png, RefusesAHugePictureBeforeTakingMemory) {
+    // 16384 x 16384 promised by a file of a few bytes, and one side too many.
+    for (const int side : {16384, 16385}) {
+        std::FILE* out = std::fopen(file("huge.png").c_str(), "wb");
+        png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+        png_infop info = png_create_info_struct(png);
+        png_init_io(png, out);
+        png_set_IHDR(png, info, static_cast<png_uint_32>(side), static_cast<png_uint_32>(side), 8,
+                     PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                     PNG_FILTER_TYPE_DEFAULT);
+        png_write_info(png, info);
+        const std::array<png_byte, 4> data{};
+        png_write_chunk(png, reinterpret_cast<png_const_bytep>("IDAT"), data.data(), data.size());
+        png_destroy_write_struct(&png, &info);
+        std::fclose(out);
+        EXPECT_EQ(code_of_reading(file("huge.png")), ExitCode::kIo) << side;
+    }
+}
+
+TEST_F(Png, WritingWhereNothingCanBeWrittenSaysSo) {
+    const Image image = random_image(4, 4, true);
+    try {
+        write_png(file("no/such/folder/a.png"), image);
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::kIo);
+        EXPECT_THAT(error.what(), HasSubstr("No such file"));
+    }
+    EXPECT_THROW(write_png(file("a.png"), image, {{{"", "no keyword"}}, 96.0}), Error);
+    EXPECT_FALSE(fs::exists(file("a.png")));
+}
+
+}  // namespace
+}  // namespace corda::media
