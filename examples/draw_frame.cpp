@@ -20,7 +20,8 @@ void draw(const char* path) {
     list.height = kHeight;
     list.background = {0x12, 0x16, 0x1f, 255};
     for (int i = 0; i < 8; ++i) {
-        const auto line = corda::view::make_capsule({40.0 + 30.0 * i, 20.0}, {40.0 + 24.0 * i, 160.0}, 1.0 + i, kWidth, kHeight);
+        const auto line = corda::view::make_capsule({40.0 + 30.0 * i, 20.0}, {40.0 + 24.0 * i, 160.0},
+                                                    1.0 + i, kWidth, kHeight);
         if (!line) continue;
         list.bounds = list.bounds.united(corda::view::capsule_bounds(*line, kWidth, kHeight));
         list.capsules.push_back(*line);

@@ -1,4 +1,5 @@
-// The simulation alone: no scene file, no graphics. Prints the tip of a hanging rope that was let go at 30 degrees.
+// The simulation alone: no scene file, no graphics. Prints the tip of a hanging rope that was let go at 30
+// degrees.
 //
 //   x_next = x + (1 - delta) (x - x_previous) + h^2 f / m, then every bar is pushed back to its length
 //

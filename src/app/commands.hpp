@@ -31,7 +31,8 @@ struct SceneOptions {
 
     void add_to(CLI::App& command);
     /// Makes `--name VALUE` stand for `--set key=VALUE`.
-    void add_shortcut(CLI::App& command, const std::string& name, const std::string& key, const std::string& help);
+    void add_shortcut(CLI::App& command, const std::string& name, const std::string& key,
+                      const std::string& help);
     /// `--size WxH` for `--set video.size=[W,H]`.
     void add_size(CLI::App& command);
     [[nodiscard]] scene::Scene load() const { return scene::load_scene(path, settings); }

@@ -22,8 +22,10 @@ struct CompareOptions {
 };
 
 nlohmann::json report(const golden::Comparison& comparison, bool passed) {
-    nlohmann::json json = {{"schema", 1},    {"equal", comparison.equal}, {"passed", passed}, {"same_size", comparison.same_size},
-                           {"max", nullptr}, {"mean", nullptr},           {"share", nullptr}};
+    nlohmann::json json = {{"schema", 1},      {"equal", comparison.equal},
+                           {"passed", passed}, {"same_size", comparison.same_size},
+                           {"max", nullptr},   {"mean", nullptr},
+                           {"share", nullptr}};
     if (comparison.same_size) {
         json["max"] = comparison.max;
         json["mean"] = comparison.mean;
@@ -42,18 +44,20 @@ ExitCode compare(const Console& console, const CompareOptions& options) {
     const golden::Comparison comparison = golden::compare(a, b);
     const bool passed = comparison.within(options.limits);
     if (!comparison.same_size) {
-        console.result(fmt::format("different sizes: {}x{} and {}x{}", a.width(), a.height(), b.width(), b.height()));
+        console.result(
+            fmt::format("different sizes: {}x{} and {}x{}", a.width(), a.height(), b.width(), b.height()));
     } else if (comparison.equal) {
         console.result("equal");
     } else {
-        console.result(fmt::format("{}: max {}, mean {:.6g}, share {:.6g}", passed ? "within the limits" : "different",
-                                   comparison.max, comparison.mean, comparison.share));
+        console.result(fmt::format("{}: max {}, mean {:.6g}, share {:.6g}",
+                                   passed ? "within the limits" : "different", comparison.max,
+                                   comparison.mean, comparison.share));
     }
     if (!options.diff.empty() && comparison.same_size) {
         media::write_png(options.diff, golden::difference_image(a, b));
         console.info(fmt::format("difference picture: {}", options.diff));
     }
-    console.result(report(comparison, passed));
+    console.report(report(comparison, passed));
     return passed ? ExitCode::kOk : ExitCode::kMismatch;
 }
 
@@ -61,12 +65,17 @@ ExitCode compare(const Console& console, const CompareOptions& options) {
 
 void add_compare(CLI::App& app, Action& action) {
     auto options = std::make_shared<CompareOptions>();
-    CLI::App* command = app.add_subcommand("compare", "compare two PNG files; exit 7 where they differ (by more than the limits)");
+    CLI::App* command = app.add_subcommand(
+        "compare", "compare two PNG files; exit 7 where they differ (by more than the limits)");
     command->add_option("A", options->a, "PNG file")->required();
     command->add_option("B", options->b, "PNG file")->required();
-    command->add_option("--max", options->limits.max, "largest difference of a channel that passes, 0 .. 255")->check(CLI::Range(0.0, 255.0));
-    command->add_option("--mean", options->limits.mean, "mean difference of all channels that passes, 0 .. 255")->check(CLI::Range(0.0, 255.0));
-    command->add_option("--share", options->limits.share, "share of differing pixels that passes, 0 .. 1")->check(CLI::Range(0.0, 1.0));
+    command->add_option("--max", options->limits.max, "largest difference of a channel that passes, 0 .. 255")
+        ->check(CLI::Range(0.0, 255.0));
+    command
+        ->add_option("--mean", options->limits.mean, "mean difference of all channels that passes, 0 .. 255")
+        ->check(CLI::Range(0.0, 255.0));
+    command->add_option("--share", options->limits.share, "share of differing pixels that passes, 0 .. 1")
+        ->check(CLI::Range(0.0, 1.0));
     command->add_option("--diff", options->diff, "write a picture of the differences to this PNG file");
     command->add_flag("--force", options->force, "replace an existing difference picture");
     command->callback([options, &action] {

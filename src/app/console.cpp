@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -21,9 +22,10 @@ constexpr double kSecondsBetweenBars = 0.1;
 constexpr int kBarCells = 30;
 
 void write_stdout(std::string_view text) {
-    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fputc('\n', stdout) != EOF &&
-                         std::fflush(stdout) == 0;
-    if (!written) throw Error(ExitCode::kIo, fmt::format("writing to standard output: {}", std::strerror(errno)));
+    const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() &&
+                         std::fputc('\n', stdout) != EOF && std::fflush(stdout) == 0;
+    if (!written)
+        throw Error(ExitCode::kIo, fmt::format("writing to standard output: {}", std::strerror(errno)));
 }
 
 bool is_set(const char* variable) {
@@ -32,7 +34,7 @@ bool is_set(const char* variable) {
 }
 
 std::string duration_text(double seconds) {
-    const auto whole = static_cast<std::int64_t>(seconds + 0.5);
+    const auto whole = std::llround(seconds);
     if (whole < 60) return fmt::format("{} s", whole);
     if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
     return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
@@ -40,7 +42,9 @@ std::string duration_text(double seconds) {
 
 }  // namespace
 
-double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double now_s() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 Console::Console(const ConsoleDef& def)
     : def_(def), is_terminal_(isatty(STDERR_FILENO) == 1), uses_color_(is_terminal_ && !is_set("NO_COLOR")) {}
@@ -65,13 +69,15 @@ void Console::warning(std::string_view text) const {
     if (!def_.quiet) say("warning: ", "33", text);
 }
 
-void Console::error(std::string_view text) const { say("error: ", "31", text); }
+void Console::error(std::string_view text) const {
+    say("error: ", "31", text);
+}
 
 void Console::result(std::string_view text) const {
     if (!def_.json) write_stdout(text);
 }
 
-void Console::result(const nlohmann::json& json) const {
+void Console::report(const nlohmann::json& json) const {
     if (def_.json) write_stdout(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
@@ -83,7 +89,8 @@ Progress::~Progress() {
 }
 
 double Progress::seconds_left(std::int64_t done) const {
-    return (now_s() - start_s_) * static_cast<double>(total_ - done) / static_cast<double>(std::max<std::int64_t>(1, done));
+    return (now_s() - start_s_) * static_cast<double>(total_ - done) /
+           static_cast<double>(std::max<std::int64_t>(1, done));
 }
 
 void Progress::update(std::int64_t done) {
@@ -104,8 +111,8 @@ void Progress::update(std::int64_t done) {
 
 void Progress::draw_bar(std::int64_t done) {
     const auto cells = static_cast<int>(kBarCells * done / total_);
-    fmt::print(stderr, "\r\x1b[K{} [{:#<{}}{:.<{}}] {:3} % {}/{}, {} left", what_, "", cells, "", kBarCells - cells,
-               100 * done / total_, done, total_, duration_text(seconds_left(done)));
+    fmt::print(stderr, "\r\x1b[K{} [{:#<{}}{:.<{}}] {:3} % {}/{}, {} left", what_, "", cells, "",
+               kBarCells - cells, 100 * done / total_, done, total_, duration_text(seconds_left(done)));
     std::fflush(stderr);
     bar_is_drawn_ = true;
 }

@@ -30,10 +30,11 @@ class Console {
     void warning(std::string_view text) const;
     void error(std::string_view text) const;
 
-    /// A line of result on stdout, where results are words. Throws corda::Error (kIo) where stdout takes no more.
+    /// A line of result on stdout, where results are words. Throws corda::Error (kIo) where stdout takes no
+    /// more.
     void result(std::string_view text) const;
     /// The result on stdout, where results are JSON.
-    void result(const nlohmann::json& json) const;
+    void report(const nlohmann::json& json) const;
 
   private:
     void say(std::string_view label, std::string_view color, std::string_view text) const;
@@ -43,7 +44,8 @@ class Console {
     bool uses_color_;
 };
 
-/// Progress of a count of equal pieces of work: a bar with the time left on a terminal, otherwise a line every 10 %.
+/// Progress of a count of equal pieces of work: a bar with the time left on a terminal, otherwise a line
+/// every 10 %.
 class Progress {
   public:
     Progress(const Console& console, std::string_view what, std::int64_t total);

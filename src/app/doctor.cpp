@@ -17,9 +17,11 @@ void print_contexts(const Console& console, const std::vector<gl::Attempt>& atte
             continue;
         }
         const gl::ContextInfo& info = *attempt.info;
-        console.result(fmt::format("  yes  {}: {} on the {}", attempt.platform, info.gl_renderer, info.software ? "CPU" : "GPU"));
-        console.result(fmt::format("       OpenGL {} by {}; EGL {} by {}; frames up to {} pixels a side", info.gl_version,
-                                   info.gl_vendor, info.egl_version, info.egl_vendor, info.max_texture_px));
+        console.result(fmt::format("  yes  {}: {} on the {}", attempt.platform, info.gl_renderer,
+                                   info.software ? "CPU" : "GPU"));
+        console.result(fmt::format("       OpenGL {} by {}; EGL {} by {}; frames up to {} pixels a side",
+                                   info.gl_version, info.gl_vendor, info.egl_version, info.egl_vendor,
+                                   info.max_texture_px));
     }
 }
 
@@ -43,7 +45,8 @@ nlohmann::json to_json(const gl::Attempt& attempt) {
 ExitCode doctor(const Console& console) {
     const std::vector<gl::Attempt> attempts = gl::probe_contexts();
     const std::vector<media::EncoderProbe> encoders = media::probe_encoders();
-    const bool has_gl = std::any_of(attempts.begin(), attempts.end(), [](const gl::Attempt& a) { return a.info.has_value(); });
+    const bool has_gl = std::any_of(attempts.begin(), attempts.end(),
+                                    [](const gl::Attempt& a) { return a.info.has_value(); });
     const bool has_h264 = std::any_of(encoders.begin(), encoders.end(), [](const media::EncoderProbe& e) {
         return e.name == "libx264" && e.usable;
     });
@@ -53,16 +56,19 @@ ExitCode doctor(const Console& console) {
         console.result(encoder.usable ? fmt::format("  yes  {}", encoder.name)
                                       : fmt::format("  no   {}: {}", encoder.name, encoder.reason));
     }
-    console.result(has_gl ? "This machine can draw." : "This machine cannot draw: apt-get install libegl-mesa0 libgl1-mesa-dri");
-    console.result(has_h264 ? "This machine can write MP4." : "This machine cannot write MP4: libavcodec has no libx264");
+    console.result(has_gl ? "This machine can draw."
+                          : "This machine cannot draw: apt-get install libegl-mesa0 libgl1-mesa-dri");
+    console.result(has_h264 ? "This machine can write MP4."
+                            : "This machine cannot write MP4: libavcodec has no libx264");
     nlohmann::json json = {{"schema", 1}, {"can_draw", has_gl}, {"can_write_mp4", has_h264}};
     json["contexts"] = nlohmann::json::array();
     for (const gl::Attempt& attempt : attempts) json["contexts"].push_back(to_json(attempt));
     json["encoders"] = nlohmann::json::array();
     for (const media::EncoderProbe& encoder : encoders) {
-        json["encoders"].push_back({{"name", encoder.name}, {"usable", encoder.usable}, {"reason", encoder.reason}});
+        json["encoders"].push_back(
+            {{"name", encoder.name}, {"usable", encoder.usable}, {"reason", encoder.reason}});
     }
-    console.result(json);
+    console.report(json);
     if (!has_gl) return ExitCode::kNoGl;
     return has_h264 ? ExitCode::kOk : ExitCode::kEncoder;
 }

@@ -7,7 +7,9 @@ namespace {
 
 volatile std::sig_atomic_t asked_to_stop_by = 0;
 
-void ask_to_stop(int signal) { asked_to_stop_by = signal; }
+void ask_to_stop(int signal) {
+    asked_to_stop_by = signal;
+}
 
 }  // namespace
 
@@ -15,7 +17,8 @@ void install_signal_handlers() {
     for (const int signal : {SIGINT, SIGTERM}) {
         struct sigaction action = {};
         action.sa_handler = ask_to_stop;
-        action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);  // the second signal has its default effect
+        action.sa_flags =
+            static_cast<int>(SA_RESETHAND | SA_RESTART);  // the second signal has its default effect
         sigemptyset(&action.sa_mask);
         sigaction(signal, &action, nullptr);
     }
@@ -24,9 +27,12 @@ void install_signal_handlers() {
 
 ExitCode interruption() {
     switch (asked_to_stop_by) {
-        case SIGINT: return ExitCode::kInterrupted;
-        case SIGTERM: return ExitCode::kTerminated;
-        default: return ExitCode::kOk;
+        case SIGINT:
+            return ExitCode::kInterrupted;
+        case SIGTERM:
+            return ExitCode::kTerminated;
+        default:
+            return ExitCode::kOk;
     }
 }
 

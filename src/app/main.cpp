@@ -13,7 +13,8 @@ namespace {
 
 std::string exit_code_table() {
     std::string text = "Exit codes:\n";
-    for (const ExitCodeText& row : kExitCodes) text += fmt::format("  {:>3}  {}\n", static_cast<int>(row.code), row.meaning);
+    for (const ExitCodeText& row : kExitCodes)
+        text += fmt::format("  {:>3}  {}\n", static_cast<int>(row.code), row.meaning);
     return text;
 }
 
@@ -26,7 +27,9 @@ void add_console_flags(CLI::App& app, ConsoleDef& def) {
 }
 
 int run(int argc, char** argv) {
-    CLI::App app{"Corda turns a rope scene into a video, a still or a comparable picture on a machine without a screen."};
+    CLI::App app{
+        "Corda turns a rope scene into a video, a still or a comparable picture on a machine without a "
+        "screen."};
     app.set_version_flag("--version", "corda " CORDA_VERSION);
     app.require_subcommand(1);
     app.footer(exit_code_table());

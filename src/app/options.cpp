@@ -17,7 +17,8 @@ std::string size_setting(const std::string& text) {
     const std::string width = text.substr(0, cross);
     const std::string height = cross == std::string::npos ? "" : text.substr(cross + 1);
     if (!is_number(width) || !is_number(height)) {
-        throw Error(ExitCode::kUsage, fmt::format("--size {}: is not WIDTHxHEIGHT; write e.g. 1920x1080", text));
+        throw Error(ExitCode::kUsage,
+                    fmt::format("--size {}: is not WIDTHxHEIGHT; write e.g. 1920x1080", text));
     }
     return fmt::format("video.size=[{},{}]", width, height);
 }
@@ -27,7 +28,8 @@ std::string size_setting(const std::string& text) {
 void SceneOptions::add_to(CLI::App& command) {
     command.add_option("SCENE", path, "scene file (TOML)")->required();
     // One value a flag: a value may have commas and brackets of its own.
-    command.add_option("--set", settings, "put VALUE in the place of a key of the scene, e.g. rope[0].mass=2")
+    command
+        .add_option("--set", settings, "put VALUE in the place of a key of the scene, e.g. rope[0].mass=2")
         ->type_name("KEY=VALUE")
         ->expected(1)
         ->take_all()
@@ -62,8 +64,8 @@ gl::ContextDef GlOptions::def() const {
 }
 
 void report_gl(const Console& console, const gl::Context& context) {
-    console.detail(fmt::format("drawing with {} ({}), OpenGL {}, by {}", context.info().gl_renderer, context.info().gl_vendor,
-                               context.info().gl_version, context.platform()));
+    console.detail(fmt::format("drawing with {} ({}), OpenGL {}, by {}", context.info().gl_renderer,
+                               context.info().gl_vendor, context.info().gl_version, context.platform()));
 }
 
 }  // namespace corda::app

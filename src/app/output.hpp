@@ -6,9 +6,9 @@
 
 namespace corda::app {
 
-/// Refuses an output that cannot be written, before any work is done: throws corda::Error (kIo) where `path` exists
-/// and `force` is not set, where it is no ordinary file, or where its folder is missing, and (kUsage) where it is
-/// the input file itself.
+/// Refuses an output that cannot be written, before any work is done: throws corda::Error (kIo) where `path`
+/// exists and `force` is not set, where it is no ordinary file, or where its folder is missing, and (kUsage)
+/// where it is the input file itself.
 void check_output(const std::string& path, const std::string& input, bool force);
 
 /// Makes a folder and those above it. Throws corda::Error (kIo).

@@ -9,9 +9,9 @@
 #include "corda/core/error.hpp"
 #include "corda/media/video_writer.hpp"
 #include "corda/render/frame_renderer.hpp"
+#include "corda/scene/player.hpp"
 #include "interrupt.hpp"
 #include "output.hpp"
-#include "scene_player.hpp"
 
 namespace corda::app {
 namespace {
@@ -47,15 +47,18 @@ FrameRange parse_range(const std::string& text, std::int64_t frames) {
         range = {parse_frame(text.substr(0, colon), 0), parse_frame(text.substr(colon + 1), frames)};
     }
     if (range.first < 0 || range.last > frames || range.first >= range.last) {
-        throw Error(ExitCode::kUsage,
-                    fmt::format("--frames {}: is not FIRST:END with 0 <= FIRST < END <= {} (END is not drawn)", text, frames));
+        throw Error(
+            ExitCode::kUsage,
+            fmt::format("--frames {}: is not FIRST:END with 0 <= FIRST < END <= {} (END is not drawn)", text,
+                        frames));
     }
     return range;
 }
 
 void check_video_name(const std::string& output) {
     if (std::filesystem::path(output).extension() == ".mp4") return;
-    throw Error(ExitCode::kUsage, fmt::format("-o {}: the ending names the container, and .mp4 is the one there is", output));
+    throw Error(ExitCode::kUsage,
+                fmt::format("-o {}: the ending names the container, and .mp4 is the one there is", output));
 }
 
 /// What the file says of itself beside its pictures.
@@ -68,8 +71,8 @@ media::VideoMetadata metadata(const scene::Scene& scene, const FrameRange& range
 }
 
 /// Draws and encodes the frames; returns how many.
-std::int64_t draw_frames(const Console& console, const scene::Scene& scene, const FrameRange& range, ScenePlayer& player,
-                         media::VideoWriter& writer) {
+std::int64_t draw_frames(const Console& console, const scene::Scene& scene, const FrameRange& range,
+                         scene::Player& player, media::VideoWriter& writer) {
     render::FrameRenderer renderer(scene.video.width_px, scene.video.height_px);
     Progress progress(console, "render", range.count());
     for (std::int64_t k = range.first; k < range.last; ++k) {
@@ -81,9 +84,9 @@ std::int64_t draw_frames(const Console& console, const scene::Scene& scene, cons
     return writer.frames();
 }
 
-nlohmann::json report(const scene::Scene& scene, const std::string& output, std::int64_t frames, double wall_s,
-                      const ScenePlayer& player, const std::string& gl_renderer) {
-    const sim::System& system = player.simulation().simulation().system();
+nlohmann::json report(const scene::Scene& scene, const std::string& output, std::int64_t frames,
+                      double wall_s, const scene::Player& player, const std::string& gl_renderer) {
+    const sim::System& system = player.run().simulation().system();
     return {{"schema", 1},
             {"output", output},
             {"frames", frames},
@@ -104,24 +107,27 @@ ExitCode keep_interrupted(const Console& console, const RenderOptions& options, 
                           const FrameRange& range) {
     const std::int64_t frames = writer.frames();
     const std::string kept = writer.abandon();
-    console.warning(frames > 0 ? fmt::format("interrupted: frames {}..{} of {} are in {}, which plays; {} was not written", range.first,
-                                range.first + frames - 1, range.count(), kept, options.output)
-                               : fmt::format("interrupted before the first frame; {} was not written", options.output));
+    console.warning(
+        frames > 0
+            ? fmt::format("interrupted: frames {}..{} of {} are in {}, which plays; {} was not written",
+                          range.first, range.first + frames - 1, range.count(), kept, options.output)
+            : fmt::format("interrupted before the first frame; {} was not written", options.output));
     return interruption();
 }
 
 ExitCode render(const Console& console, const RenderOptions& options) {
     const double start_s = now_s();
     const scene::Scene scene = options.scene.load();
-    const FrameRange range = parse_range(options.frames, frame_count(scene));
+    const FrameRange range = parse_range(options.frames, scene::frame_count(scene));
     const gl::ContextDef context_def = options.gl.def();
     check_video_name(options.output);
-    media::check_video(scene.video);
+    media::check_video_def(scene.video);
     check_output(options.output, options.scene.path, options.force);
-    ScenePlayer player(scene);
+    scene::Player player(scene);
     console.info(fmt::format("{}: {}, method {}; {} frames of {}x{} at {} a second", scene.name,
-                             describe(player.simulation().simulation().system()), sim::method_name(scene.solver.method),
-                             range.count(), scene.video.width_px, scene.video.height_px, scene.video.fps.rational().text()));
+                             scene::describe(player.run().simulation().system()),
+                             sim::method_name(scene.solver.method), range.count(), scene.video.width_px,
+                             scene.video.height_px, scene.video.fps.rational().text()));
     if (options.dry_run) return ExitCode::kOk;
 
     const gl::Context context(context_def);
@@ -131,9 +137,10 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     if (interruption() != ExitCode::kOk) return keep_interrupted(console, options, writer, range);
     writer.finish();
     const double wall_s = now_s() - start_s;
-    console.info(fmt::format("{} frames in {:.3g} s, {:.1f} a second; verified", frames, wall_s, static_cast<double>(frames) / wall_s));
+    console.info(fmt::format("{} frames in {:.3g} s, {:.1f} a second; verified", frames, wall_s,
+                             static_cast<double>(frames) / wall_s));
     console.result(options.output);
-    console.result(report(scene, options.output, frames, wall_s, player, context.info().gl_renderer));
+    console.report(report(scene, options.output, frames, wall_s, player, context.info().gl_renderer));
     return ExitCode::kOk;
 }
 

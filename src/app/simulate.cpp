@@ -6,9 +6,9 @@
 
 #include "commands.hpp"
 #include "corda/core/error.hpp"
+#include "corda/scene/player.hpp"
 #include "interrupt.hpp"
 #include "output.hpp"
-#include "scene_player.hpp"
 
 namespace corda::app {
 namespace {
@@ -36,7 +36,7 @@ void write_row(const sim::State& state, sim::Vec2 origin_m, std::string& line) {
     line += '\n';
 }
 
-nlohmann::json report(const scene::Scene& scene, const SceneSimulation& run) {
+nlohmann::json report(const scene::Scene& scene, const scene::Run& run) {
     const sim::System& system = run.simulation().system();
     const sim::Diagnostics figures = run.simulation().diagnostics();
     nlohmann::json json = {{"schema", 1},
@@ -56,7 +56,7 @@ nlohmann::json report(const scene::Scene& scene, const SceneSimulation& run) {
 }
 
 /// Runs all frame times; returns whether it got to the end.
-bool run_to_end(const Console& console, const scene::Scene& scene, SceneSimulation& run, TextOutput* csv) {
+bool run_to_end(const Console& console, const scene::Scene& scene, scene::Run& run, TextOutput* csv) {
     const sim::Vec2 origin_m = run.simulation().system().origin_m;
     const std::int64_t last = scene.video.fps.last_frame_within(scene.world.duration_s);
     Progress progress(console, "simulate", last + 1);
@@ -80,9 +80,10 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     const scene::Scene scene = options.scene.load();
     const bool to_file = !options.output.empty() && options.output != "-";
     if (to_file) check_output(options.output, options.scene.path, options.force);
-    SceneSimulation run(scene);
+    scene::Run run(scene);
     const sim::System& system = run.simulation().system();
-    console.info(fmt::format("{}: {}, method {}", scene.name, describe(system), sim::method_name(scene.solver.method)));
+    console.info(fmt::format("{}: {}, method {}", scene.name, scene::describe(system),
+                             sim::method_name(scene.solver.method)));
     if (options.dry_run) return ExitCode::kOk;
 
     std::unique_ptr<TextOutput> csv;
@@ -95,7 +96,8 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
         complete = run_to_end(console, scene, run, csv.get());
     } catch (const Error& error) {
         if (!to_file || error.code() != ExitCode::kDiverged) throw;
-        throw Error(error.code(), fmt::format("{}; the rows before it are in {}", error.what(), csv->part_path()));
+        throw Error(error.code(),
+                    fmt::format("{}; the rows before it are in {}", error.what(), csv->part_path()));
     }
     if (!complete) {
         if (to_file) console.warning(fmt::format("interrupted; the rows so far are in {}", csv->part_path()));
@@ -105,11 +107,12 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     const sim::Diagnostics figures = run.simulation().diagnostics();
     console.info(fmt::format("{} steps in {:.3g} s: {:.4g} updates/s, {:.3g} ns a bar; largest strain {:.3g}",
                              figures.steps, run.wall_s(), static_cast<double>(figures.steps) / run.wall_s(),
-                             1e9 * run.wall_s() / static_cast<double>(figures.steps * system.bars.size() *
-                                                                      static_cast<std::size_t>(scene.solver.sweeps)),
+                             1e9 * run.wall_s() /
+                                 static_cast<double>(figures.steps * system.bars.size() *
+                                                     static_cast<std::size_t>(scene.solver.sweeps)),
                              figures.max_strain));
     if (to_file) console.result(options.output);
-    console.result(report(scene, run));
+    console.report(report(scene, run));
     return ExitCode::kOk;
 }
 
@@ -117,9 +120,11 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
 
 void add_simulate(CLI::App& app, Action& action) {
     auto options = std::make_shared<SimulateOptions>();
-    CLI::App* command = app.add_subcommand("simulate", "run the simulation alone; positions as CSV, figures as JSON");
+    CLI::App* command =
+        app.add_subcommand("simulate", "run the simulation alone; positions as CSV, figures as JSON");
     options->scene.add_to(*command);
-    command->add_option("-o,--output", options->output, "CSV file, or - for standard output; none: figures only");
+    command->add_option("-o,--output", options->output,
+                        "CSV file, or - for standard output; none: figures only");
     options->scene.add_shortcut(*command, "--fps", "video.fps", "rows a second");
     options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
     command->add_flag("--force", options->force, "replace an existing output");

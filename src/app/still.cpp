@@ -11,8 +11,8 @@
 #include "corda/core/error.hpp"
 #include "corda/media/png.hpp"
 #include "corda/render/frame_renderer.hpp"
+#include "corda/scene/player.hpp"
 #include "output.hpp"
-#include "scene_player.hpp"
 
 namespace corda::app {
 namespace {
@@ -34,14 +34,17 @@ struct Shot {
     std::string path;
 };
 
-bool is_file_name(const std::string& output) { return std::filesystem::path(output).extension() == ".png"; }
+bool is_file_name(const std::string& output) {
+    return std::filesystem::path(output).extension() == ".png";
+}
 
 std::vector<Shot> list_shots(const StillOptions& options, const scene::Scene& scene) {
     std::vector<Shot> shots;
     for (const double time_s : options.times_s) {
         if (!std::isfinite(time_s) || time_s < 0.0 || time_s > scene.world.duration_s) {
-            throw Error(ExitCode::kUsage, fmt::format("--at {}: is not within 0 .. {} s; world.duration sets the end", time_s,
-                                                      scene.world.duration_s));
+            throw Error(ExitCode::kUsage,
+                        fmt::format("--at {}: is not within 0 .. {} s; world.duration sets the end", time_s,
+                                    scene.world.duration_s));
         }
         shots.push_back({time_s, std::nullopt, fmt::format("{}_t{:011.6f}.png", scene.name, time_s)});
     }
@@ -50,12 +53,16 @@ std::vector<Shot> list_shots(const StillOptions& options, const scene::Scene& sc
         if (frame < 0 || frame > last) {
             throw Error(ExitCode::kUsage, fmt::format("--frame {}: is not within 0 .. {}", frame, last));
         }
-        shots.push_back({scene.video.fps.time_s(frame), frame, fmt::format("{}_f{:06}.png", scene.name, frame)});
+        shots.push_back(
+            {scene.video.fps.time_s(frame), frame, fmt::format("{}_f{:06}.png", scene.name, frame)});
     }
-    std::stable_sort(shots.begin(), shots.end(), [](const Shot& a, const Shot& b) { return a.time_s < b.time_s; });
-    const auto same = std::adjacent_find(shots.begin(), shots.end(), [](const Shot& a, const Shot& b) { return a.path == b.path; });
+    std::stable_sort(shots.begin(), shots.end(),
+                     [](const Shot& a, const Shot& b) { return a.time_s < b.time_s; });
+    const auto same = std::adjacent_find(shots.begin(), shots.end(),
+                                         [](const Shot& a, const Shot& b) { return a.path == b.path; });
     if (same != shots.end()) {
-        throw Error(ExitCode::kUsage, fmt::format("two stills would both be {}; ask for each time once", same->path));
+        throw Error(ExitCode::kUsage,
+                    fmt::format("two stills would both be {}; ask for each time once", same->path));
     }
     return shots;
 }
@@ -63,7 +70,8 @@ std::vector<Shot> list_shots(const StillOptions& options, const scene::Scene& sc
 void set_paths(const StillOptions& options, std::vector<Shot>& shots) {
     if (is_file_name(options.output)) {
         if (shots.size() != 1) {
-            throw Error(ExitCode::kUsage, fmt::format("-o {}: is one file for {} stills; give a folder", options.output, shots.size()));
+            throw Error(ExitCode::kUsage, fmt::format("-o {}: is one file for {} stills; give a folder",
+                                                      options.output, shots.size()));
         }
         shots.front().path = options.output;
     } else {
@@ -80,7 +88,7 @@ media::PngInfo describe_shot(const Shot& shot, const scene::Scene& scene, double
     info.text = {{"Software", "corda " CORDA_VERSION},
                  {"Title", scene.name},
                  {"Scene", scene.name},
-                 {"Time", fmt::format("{:.17g} s", shot.time_s)}};
+                 {"Time", fmt::format("{} s", shot.time_s)}};
     if (shot.frame) info.text.emplace_back("Frame", fmt::format("{}", *shot.frame));
     return info;
 }
@@ -90,8 +98,8 @@ ExitCode still(const Console& console, const StillOptions& options) {
     std::vector<Shot> shots = list_shots(options, scene);
     const gl::ContextDef context_def = options.gl.def();
     set_paths(options, shots);
-    ScenePlayer player(scene);
-    console.detail(fmt::format("{}: {}", scene.name, describe(player.simulation().simulation().system())));
+    scene::Player player(scene);
+    console.detail(fmt::format("{}: {}", scene.name, scene::describe(player.run().simulation().system())));
     nlohmann::json outputs = nlohmann::json::array();
     if (!options.dry_run) {
         const gl::Context context(context_def);
@@ -99,7 +107,8 @@ ExitCode still(const Console& console, const StillOptions& options) {
         render::FrameRenderer renderer(scene.video.width_px, scene.video.height_px);
         for (const Shot& shot : shots) {
             renderer.render(player.at(shot.time_s));
-            media::write_png(shot.path, renderer.image(), describe_shot(shot, scene, options.pixels_per_inch));
+            media::write_png(shot.path, renderer.image(),
+                             describe_shot(shot, scene, options.pixels_per_inch));
         }
     }
     for (const Shot& shot : shots) {
@@ -107,7 +116,7 @@ ExitCode still(const Console& console, const StillOptions& options) {
         if (!options.dry_run) console.result(shot.path);
         outputs.push_back({{"path", shot.path}, {"time_s", shot.time_s}});
     }
-    console.result(nlohmann::json{{"schema", 1},
+    console.report(nlohmann::json{{"schema", 1},
                                   {"outputs", outputs},
                                   {"width", scene.video.width_px},
                                   {"height", scene.video.height_px},
@@ -121,14 +130,19 @@ void add_still(CLI::App& app, Action& action) {
     auto options = std::make_shared<StillOptions>();
     CLI::App* command = app.add_subcommand("still", "draw frames at exact times as PNG files");
     options->scene.add_to(*command);
-    auto* at = command->add_option("--at", options->times_s, "times in seconds, e.g. 0,0.5,1.25")->delimiter(',')->type_name("T[,T...]");
-    auto* frame = command->add_option("--frame", options->frames, "frames of the video, from 0")->delimiter(',')->type_name("K[,K...]");
+    auto* at = command->add_option("--at", options->times_s, "times in seconds, e.g. 0,0.5,1.25")
+                   ->delimiter(',')
+                   ->type_name("T[,T...]");
+    auto* frame = command->add_option("--frame", options->frames, "frames of the video, from 0")
+                      ->delimiter(',')
+                      ->type_name("K[,K...]");
     at->excludes(frame);
     command->add_option("-o,--output", options->output, "folder, or a .png file for one still")->required();
     options->scene.add_size(*command);
     options->scene.add_shortcut(*command, "--fps", "video.fps", "frames a second");
     options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
-    command->add_option("--ppi", options->pixels_per_inch, "pixels per inch, for the size in print")->check(CLI::Range(1.0, 10000.0));
+    command->add_option("--ppi", options->pixels_per_inch, "pixels per inch, for the size in print")
+        ->check(CLI::Range(1.0, 10000.0));
     options->gl.add_to(*command);
     command->add_flag("--force", options->force, "replace existing files");
     command->add_flag("--dry-run", options->dry_run, "check everything and write nothing");

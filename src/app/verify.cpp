@@ -37,14 +37,15 @@ nlohmann::json to_json(const std::string& path, const media::VerifyReport& repor
 ExitCode verify(const Console& console, const std::string& path) {
     const media::VerifyReport report = media::verify(path);
     if (!report.codec.empty()) {
-        console.result(fmt::format("{}: {} {} {} {}x{}, {} frames at {} a second, {} s", path, report.container, report.codec,
-                                   report.profile, report.width_px, report.height_px, report.frames, report.fps.text(),
+        console.result(fmt::format("{}: {} {} {} {}x{}, {} frames at {} a second, {} s", path,
+                                   report.container, report.codec, report.profile, report.width_px,
+                                   report.height_px, report.frames, report.fps.text(),
                                    report.duration_s.value()));
     }
     for (const std::string& note : report.notes) console.result("note: " + note);
     for (const std::string& problem : report.problems) console.result("problem: " + problem);
     if (report.ok()) console.result("ok");
-    console.result(to_json(path, report));
+    console.report(to_json(path, report));
     return report.ok() ? ExitCode::kOk : ExitCode::kMismatch;
 }
 
@@ -52,11 +53,11 @@ ExitCode verify(const Console& console, const std::string& path) {
 
 void add_verify(CLI::App& app, Action& action) {
     auto path = std::make_shared<std::string>();
-    CLI::App* command = app.add_subcommand("verify", "check a video's frames, times, tags and colours; exit 7 on a problem");
+    CLI::App* command =
+        app.add_subcommand("verify", "check a video's frames, times, tags and colours; exit 7 on a problem");
     command->add_option("FILE", *path, "video file")->required();
-    command->callback([path, &action] {
-        action = [path](const Console& console) { return verify(console, *path); };
-    });
+    command->callback(
+        [path, &action] { action = [path](const Console& console) { return verify(console, *path); }; });
 }
 
 }  // namespace corda::app

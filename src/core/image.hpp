@@ -22,11 +22,13 @@ struct PixelRect {
     [[nodiscard]] PixelRect united(const PixelRect& other) const {
         if (empty()) return other;
         if (other.empty()) return *this;
-        return {std::min(x0, other.x0), std::min(y0, other.y0), std::max(x1, other.x1), std::max(y1, other.y1)};
+        return {std::min(x0, other.x0), std::min(y0, other.y0), std::max(x1, other.x1),
+                std::max(y1, other.y1)};
     }
 
     [[nodiscard]] PixelRect intersected(const PixelRect& other) const {
-        return {std::max(x0, other.x0), std::max(y0, other.y0), std::min(x1, other.x1), std::min(y1, other.y1)};
+        return {std::max(x0, other.x0), std::max(y0, other.y0), std::min(x1, other.x1),
+                std::min(y1, other.y1)};
     }
 
     friend bool operator==(const PixelRect&, const PixelRect&) = default;
@@ -37,7 +39,8 @@ class Image {
   public:
     Image() = default;
     Image(int width, int height)
-        : width_(width), height_(height),
+        : width_(width),
+          height_(height),
           rgba_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4) {}
 
     [[nodiscard]] int width() const { return width_; }
@@ -57,7 +60,9 @@ class Image {
 
   private:
     [[nodiscard]] std::size_t offset(int x, int y) const {
-        return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)) * 4;
+        return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                static_cast<std::size_t>(x)) *
+               4;
     }
 
     int width_ = 0;

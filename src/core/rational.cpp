@@ -18,15 +18,17 @@ std::optional<std::int64_t> parse_part(std::string_view text) {
     return value;
 }
 
-double tolerance_at(double frames) { return kFrameTolerance * std::max(1.0, std::abs(frames)); }
+double tolerance_at(double frames) {
+    return kFrameTolerance * std::max(1.0, std::abs(frames));
+}
 
 }  // namespace
 
 std::optional<Rational> Rational::parse(std::string_view text) {
     const auto slash = text.find('/');
     const auto num = parse_part(text.substr(0, slash));
-    const auto den = slash == std::string_view::npos ? std::optional<std::int64_t>{1}
-                                                     : parse_part(text.substr(slash + 1));
+    const auto den =
+        slash == std::string_view::npos ? std::optional<std::int64_t>{1} : parse_part(text.substr(slash + 1));
     if (!num || !den || *den == 0) return std::nullopt;
     return reduced(*num, *den);
 }

@@ -12,7 +12,8 @@ struct Rational {
     std::int64_t num = 0;
     std::int64_t den = 1;
 
-    /// Reads "60" or "30000/1001". Returns nothing for any other text, a zero denominator, or a part over 1e9.
+    /// Reads "60" or "30000/1001". Returns nothing for any other text, a zero denominator, or a part over
+    /// 1e9.
     static std::optional<Rational> parse(std::string_view text);
 
     /// The fraction in lowest terms. Requires `den != 0`.
@@ -39,15 +40,18 @@ class FrameRate {
     [[nodiscard]] double per_second() const { return rate_.value(); }
 
     /// Seconds between two frames, rounded once.
-    [[nodiscard]] double interval_s() const { return static_cast<double>(rate_.den) / static_cast<double>(rate_.num); }
+    [[nodiscard]] double interval_s() const {
+        return static_cast<double>(rate_.den) / static_cast<double>(rate_.num);
+    }
 
     /// The time of frame `k` in seconds, rounded once.
     [[nodiscard]] double time_s(std::int64_t k) const {
         return static_cast<double>(k * rate_.den) / static_cast<double>(rate_.num);
     }
 
-    /// Number of images of a video of `duration_s`: the frames that start before its end. A duration within 1e-9
-    /// of a frame's time counts as that time, so 0.1 s at 30 a second are 3 frames although 0.1 * 30 > 3 in binary.
+    /// Number of images of a video of `duration_s`: the frames that start before its end. A duration within
+    /// 1e-9 of a frame's time counts as that time, so 0.1 s at 30 a second are 3 frames although 0.1 * 30 > 3
+    /// in binary.
     [[nodiscard]] std::int64_t frame_count(double duration_s) const;
 
     /// Index of the last frame time that is not after `duration_s` (same 1e-9 rule).

@@ -35,8 +35,10 @@ ContextDef ContextDef::parse(std::string_view text) {
     const bool known = def.backend != Backend::kAuto || text == "auto";
     const bool has_index = def.device || def.backend != Backend::kDevice || text == "device";
     if (!known || !has_index) {
-        throw Error(ExitCode::kUsage,
-                    fmt::format("backend \"{}\" is unknown; use auto, device, device:N, surfaceless or default", text));
+        throw Error(
+            ExitCode::kUsage,
+            fmt::format("backend \"{}\" is unknown; use auto, device, device:N, surfaceless or default",
+                        text));
     }
     return def;
 }
@@ -59,15 +61,19 @@ Context::Context(const ContextDef& def) : impl_(std::make_unique<Impl>()) {
         impl_->session.reset();
     }
     if (reasons.empty()) reasons = "\n  no such EGL device";
-    throw Error(ExitCode::kNoGl,
-                "no usable OpenGL. Tried:" + reasons + "\nOn Debian: apt-get install libegl-mesa0 libgl1-mesa-dri");
+    throw Error(ExitCode::kNoGl, "no usable OpenGL. Tried:" + reasons +
+                                     "\nOn Debian: apt-get install libegl-mesa0 libgl1-mesa-dri");
 }
 
 Context::~Context() = default;
 
-const ContextInfo& Context::info() const { return impl_->session->info(); }
+const ContextInfo& Context::info() const {
+    return impl_->session->info();
+}
 
-const std::string& Context::platform() const { return impl_->platform; }
+const std::string& Context::platform() const {
+    return impl_->platform;
+}
 
 std::vector<Attempt> probe_contexts() {
     std::vector<Attempt> attempts;

@@ -37,12 +37,12 @@ struct Attempt {
     std::string failure;
 };
 
-/// An OpenGL 4.2 core context without a window, current on the thread that made it.
+/// An OpenGL 4.3 core context without a window, current on the thread that made it.
 class Context {
   public:
-    /// Tries EGL devices (GPUs first), Mesa's surfaceless platform and the default display, in this order, or only
-    /// what `def` names. Throws corda::Error (kNoGl) with every reason where none works, or where the first that
-    /// works runs on the CPU and `def` requires a GPU.
+    /// Tries EGL devices (GPUs first), Mesa's surfaceless platform and the default display, in this order, or
+    /// only what `def` names. Throws corda::Error (kNoGl) with every reason where none works, or where the
+    /// first that works runs on the CPU and `def` requires a GPU.
     explicit Context(const ContextDef& def = {});
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;

@@ -13,22 +13,34 @@ namespace corda::gl {
 namespace {
 
 constexpr int kMajor = 4;
-constexpr int kMinor = 2;
+constexpr int kMinor = 3;
 
 std::string egl_error_text() {
     switch (const EGLint error = eglGetError()) {
-        case EGL_SUCCESS: return "no reason given";
-        case EGL_NOT_INITIALIZED: return "EGL_NOT_INITIALIZED";
-        case EGL_BAD_ACCESS: return "EGL_BAD_ACCESS";
-        case EGL_BAD_ALLOC: return "EGL_BAD_ALLOC";
-        case EGL_BAD_ATTRIBUTE: return "EGL_BAD_ATTRIBUTE";
-        case EGL_BAD_CONFIG: return "EGL_BAD_CONFIG";
-        case EGL_BAD_CONTEXT: return "EGL_BAD_CONTEXT";
-        case EGL_BAD_DISPLAY: return "EGL_BAD_DISPLAY";
-        case EGL_BAD_MATCH: return "EGL_BAD_MATCH";
-        case EGL_BAD_PARAMETER: return "EGL_BAD_PARAMETER";
-        case EGL_CONTEXT_LOST: return "EGL_CONTEXT_LOST";
-        default: return fmt::format("EGL error {:#x}", error);
+        case EGL_SUCCESS:
+            return "no reason given";
+        case EGL_NOT_INITIALIZED:
+            return "EGL_NOT_INITIALIZED";
+        case EGL_BAD_ACCESS:
+            return "EGL_BAD_ACCESS";
+        case EGL_BAD_ALLOC:
+            return "EGL_BAD_ALLOC";
+        case EGL_BAD_ATTRIBUTE:
+            return "EGL_BAD_ATTRIBUTE";
+        case EGL_BAD_CONFIG:
+            return "EGL_BAD_CONFIG";
+        case EGL_BAD_CONTEXT:
+            return "EGL_BAD_CONTEXT";
+        case EGL_BAD_DISPLAY:
+            return "EGL_BAD_DISPLAY";
+        case EGL_BAD_MATCH:
+            return "EGL_BAD_MATCH";
+        case EGL_BAD_PARAMETER:
+            return "EGL_BAD_PARAMETER";
+        case EGL_CONTEXT_LOST:
+            return "EGL_CONTEXT_LOST";
+        default:
+            return fmt::format("EGL error {:#x}", error);
     }
 }
 
@@ -36,30 +48,36 @@ std::string egl_error_text() {
     throw Error(ExitCode::kNoGl, fmt::format("{} failed: {}", step, egl_error_text()));
 }
 
-bool has_client_extension(const char* name) { return epoxy_has_egl_extension(EGL_NO_DISPLAY, name); }
+bool has_client_extension(const char* name) {
+    return epoxy_has_egl_extension(EGL_NO_DISPLAY, name);
+}
 
 bool is_software_device(EGLDeviceEXT device) {
     const char* extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
-    return extensions != nullptr && std::string_view(extensions).find("EGL_MESA_device_software") != std::string_view::npos;
+    return extensions != nullptr &&
+           std::string_view(extensions).find("EGL_MESA_device_software") != std::string_view::npos;
 }
 
 std::string device_name(EGLDeviceEXT device, int index) {
     if (is_software_device(device)) return fmt::format("EGL device {} (software)", index);
     const char* extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
-    const bool has_file =
-        extensions != nullptr && std::string_view(extensions).find("EGL_EXT_device_drm") != std::string_view::npos;
+    const bool has_file = extensions != nullptr &&
+                          std::string_view(extensions).find("EGL_EXT_device_drm") != std::string_view::npos;
     const char* file = has_file ? eglQueryDeviceStringEXT(device, EGL_DRM_DEVICE_FILE_EXT) : nullptr;
-    return file != nullptr ? fmt::format("EGL device {} ({})", index, file) : fmt::format("EGL device {}", index);
+    return file != nullptr ? fmt::format("EGL device {} ({})", index, file)
+                           : fmt::format("EGL device {}", index);
 }
 
 std::vector<Platform> list_devices() {
     // epoxy ends the program when a function is called that no library has: ask for the extensions first.
-    const bool can_list = has_client_extension("EGL_EXT_device_base") ||
-                          (has_client_extension("EGL_EXT_device_enumeration") && has_client_extension("EGL_EXT_device_query"));
+    const bool can_list =
+        has_client_extension("EGL_EXT_device_base") ||
+        (has_client_extension("EGL_EXT_device_enumeration") && has_client_extension("EGL_EXT_device_query"));
     if (!can_list || !has_client_extension("EGL_EXT_platform_device")) return {};
     std::array<EGLDeviceEXT, 64> devices{};
     EGLint count = 0;
-    if (eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count) != EGL_TRUE) return {};
+    if (eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count) != EGL_TRUE)
+        return {};
     std::vector<Platform> platforms;
     for (int i = 0; i < count; ++i) {
         platforms.push_back({Platform::Kind::kDevice, device_name(devices[i], i), i, devices[i]});
@@ -82,7 +100,8 @@ std::string gl_string(GLenum name) {
 }
 
 bool is_software_renderer(std::string renderer) {
-    std::transform(renderer.begin(), renderer.end(), renderer.begin(), [](unsigned char c) { return std::tolower(c); });
+    std::transform(renderer.begin(), renderer.end(), renderer.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
     const std::array<std::string_view, 4> names{"llvmpipe", "softpipe", "swrast", "software rasterizer"};
     return std::any_of(names.begin(), names.end(),
                        [&](std::string_view name) { return renderer.find(name) != std::string::npos; });
@@ -95,7 +114,8 @@ std::vector<Platform> list_platforms(const ContextDef& def) {
     std::vector<Platform> platforms;
     if (def.backend == Backend::kAuto || def.backend == Backend::kDevice) platforms = list_devices();
     if (def.device) {
-        std::erase_if(platforms, [&](const Platform& platform) { return platform.device_index != *def.device; });
+        std::erase_if(platforms,
+                      [&](const Platform& platform) { return platform.device_index != *def.device; });
     }
     const bool automatic = def.backend == Backend::kAuto;
     if (automatic || def.backend == Backend::kSurfaceless) {
@@ -118,7 +138,9 @@ EglSession::EglSession(const Platform& platform) {
     }
 }
 
-EglSession::~EglSession() { close(); }
+EglSession::~EglSession() {
+    close();
+}
 
 void EglSession::open_display(const Platform& platform) {
     switch (platform.kind) {
@@ -126,12 +148,15 @@ void EglSession::open_display(const Platform& platform) {
             display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, platform.device, nullptr);
             break;
         case Platform::Kind::kSurfaceless:
-            if (!has_client_extension("EGL_EXT_platform_base") || !has_client_extension("EGL_MESA_platform_surfaceless")) {
+            if (!has_client_extension("EGL_EXT_platform_base") ||
+                !has_client_extension("EGL_MESA_platform_surfaceless")) {
                 throw Error(ExitCode::kNoGl, "this EGL library has no EGL_MESA_platform_surfaceless");
             }
             display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
             break;
-        case Platform::Kind::kDefault: display_ = eglGetDisplay(EGL_DEFAULT_DISPLAY); break;
+        case Platform::Kind::kDefault:
+            display_ = eglGetDisplay(EGL_DEFAULT_DISPLAY);
+            break;
     }
     if (display_ == EGL_NO_DISPLAY) fail("getting the display");
     EGLint major = 0;
@@ -148,19 +173,28 @@ void EglSession::create_context() {
         throw Error(ExitCode::kNoGl, "the display has no EGL_KHR_surfaceless_context");
     }
     if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) fail("binding desktop OpenGL");
-    const std::array<EGLint, 5> config_attributes{EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+    const std::array<EGLint, 5> config_attributes{EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT,
+                                                  EGL_NONE};
     EGLConfig config = nullptr;
     EGLint config_count = 0;
     if (!epoxy_has_egl_extension(display_, "EGL_KHR_no_config_context")) {
-        if (eglChooseConfig(display_, config_attributes.data(), &config, 1, &config_count) != EGL_TRUE || config_count == 0) {
+        if (eglChooseConfig(display_, config_attributes.data(), &config, 1, &config_count) != EGL_TRUE ||
+            config_count == 0) {
             fail("choosing a configuration");
         }
     }
-    const std::array<EGLint, 7> attributes{EGL_CONTEXT_MAJOR_VERSION, kMajor, EGL_CONTEXT_MINOR_VERSION, kMinor,
-                                           EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    const std::array<EGLint, 7> attributes{EGL_CONTEXT_MAJOR_VERSION,
+                                           kMajor,
+                                           EGL_CONTEXT_MINOR_VERSION,
+                                           kMinor,
+                                           EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                           EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                           EGL_NONE};
     context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, attributes.data());
-    if (context_ == EGL_NO_CONTEXT) fail(fmt::format("creating an OpenGL {}.{} core context", kMajor, kMinor));
-    if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE) fail("making the context current");
+    if (context_ == EGL_NO_CONTEXT)
+        fail(fmt::format("creating an OpenGL {}.{} core context", kMajor, kMinor));
+    if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE)
+        fail("making the context current");
 }
 
 void EglSession::read_info() {
@@ -171,7 +205,8 @@ void EglSession::read_info() {
     info_.gl_version = gl_string(GL_VERSION);
     info_.software = is_software_renderer(info_.gl_renderer);
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &info_.max_texture_px);
-    if (info_.gl_version.empty()) throw Error(ExitCode::kNoGl, "the context is current but OpenGL does not answer");
+    if (info_.gl_version.empty())
+        throw Error(ExitCode::kNoGl, "the context is current but OpenGL does not answer");
 }
 
 void EglSession::close() {

@@ -8,8 +8,8 @@
 
 namespace corda::gl {
 
-/// Owns one GL name and gives it back with `Kind::destroy`. Move-only. The context that made it must be current when
-/// it dies, so contexts are declared before the objects made in them.
+/// Owns one GL name and gives it back with `Kind::destroy`. Move-only. The context that made it must be
+/// current when it dies, so contexts are declared before the objects made in them.
 template <typename Kind>
 class Object {
   public:

@@ -28,7 +28,8 @@ void compile(GLuint shader, const char* source, const std::string& what) {
 
 }  // namespace
 
-Program::Program(const std::string& name, const char* vertex_source, const char* fragment_source) : name_(name) {
+Program::Program(const std::string& name, const char* vertex_source, const char* fragment_source)
+    : name_(name) {
     const Object<ShaderKind<GL_VERTEX_SHADER>> vertex;
     const Object<ShaderKind<GL_FRAGMENT_SHADER>> fragment;
     compile(vertex.id(), vertex_source, name + " vertex");
@@ -48,7 +49,9 @@ Program::Program(const std::string& name, const char* vertex_source, const char*
     throw Error(ExitCode::kNoGl, fmt::format("the driver does not link the {} program: {}", name, log));
 }
 
-void Program::use() const { glUseProgram(program_.id()); }
+void Program::use() const {
+    glUseProgram(program_.id());
+}
 
 GLint Program::uniform(const char* uniform_name) const {
     const GLint location = glGetUniformLocation(program_.id(), uniform_name);

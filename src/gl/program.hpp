@@ -9,8 +9,8 @@ namespace corda::gl {
 /// A linked pair of a vertex and a fragment shader.
 class Program {
   public:
-    /// `name` stands in error messages. Throws corda::Error (kNoGl) with the driver's log where a shader does not
-    /// compile or the pair does not link.
+    /// `name` stands in error messages. Throws corda::Error (kNoGl) with the driver's log where a shader does
+    /// not compile or the pair does not link.
     Program(const std::string& name, const char* vertex_source, const char* fragment_source);
 
     void use() const;

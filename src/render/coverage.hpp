@@ -10,15 +10,17 @@
 
 namespace corda::render {
 
-// The arithmetic of a pixel, shared by definition with shaders/capsule.frag and shaders/composite.frag: single
-// precision +, -, *, comparisons and integers alone, one rounding a step, no contraction. Change both together.
+// The arithmetic of a pixel, shared by definition with shaders/capsule.frag and shaders/composite.frag:
+// single precision +, -, *, comparisons and integers alone, one rounding a step, no contraction. Change both
+// together.
 
 /// Coverage of the pixel with centre (center_x, center_y) by a capsule, 0..255.
 ///
-/// The overlap of a box one pixel wide, across the edge, with the capsule's width: right for lines thinner than a pixel too.
-/// The distance to a cap needs a root, taken by three of Newton's steps for 1 / sqrt from the known integer first
-/// guess (relative error below 1e-6, far under 1/255 of a pixel).
-[[nodiscard]] inline std::uint32_t capsule_coverage(const view::Capsule& capsule, float center_x, float center_y) {
+/// The overlap of a box one pixel wide, across the edge, with the capsule's width: right for lines thinner
+/// than a pixel too. The distance to a cap needs a root, taken by three of Newton's steps for 1 / sqrt from
+/// the known integer first guess (relative error below 1e-6, far under 1/255 of a pixel).
+[[nodiscard]] inline std::uint32_t capsule_coverage(const view::Capsule& capsule, float center_x,
+                                                    float center_y) {
     const float dx = center_x - capsule.ax;
     const float dy = center_y - capsule.ay;
     const float along = dx * capsule.ux + dy * capsule.uy;
@@ -45,10 +47,10 @@ namespace corda::render {
     return (t + (t >> 8U)) >> 8U;
 }
 
-/// One channel of a layer's colour painted over `below` where the layer covers `coverage` of the pixel, in gamma
-/// space (straight 8-bit sRGB).
-[[nodiscard]] inline std::uint32_t paint_over(std::uint32_t below, std::uint32_t channel, std::uint32_t layer_alpha,
-                                              std::uint32_t coverage) {
+/// One channel of a layer's colour painted over `below` where the layer covers `coverage` of the pixel, in
+/// gamma space (straight 8-bit sRGB).
+[[nodiscard]] inline std::uint32_t paint_over(std::uint32_t below, std::uint32_t channel,
+                                              std::uint32_t layer_alpha, std::uint32_t coverage) {
     const std::uint32_t alpha = over_255(coverage * layer_alpha);
     return over_255(below * (255 - alpha) + channel * alpha);
 }

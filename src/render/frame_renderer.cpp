@@ -25,12 +25,15 @@ void check_size(int width, int height) {
     const int widest = std::min(largest_texture_px, largest_viewport_px[0]);
     const int highest = std::min(largest_texture_px, largest_viewport_px[1]);
     if (width <= widest && height <= highest) return;
-    throw Error(ExitCode::kNoGl, fmt::format("a frame of {}x{} pixels is larger than this OpenGL can draw ({}x{}); choose a "
-                                             "smaller video.size",
-                                             width, height, widest, highest));
+    throw Error(ExitCode::kNoGl,
+                fmt::format("a frame of {}x{} pixels is larger than this OpenGL can draw ({}x{}); choose a "
+                            "smaller video.size",
+                            width, height, widest, highest));
 }
 
-void set_scissor(const PixelRect& rect) { glScissor(rect.x0, rect.y0, rect.width(), rect.height()); }
+void set_scissor(const PixelRect& rect) {
+    glScissor(rect.x0, rect.y0, rect.width(), rect.height());
+}
 
 }  // namespace
 
@@ -54,17 +57,19 @@ FrameRenderer::FrameRenderer(int width, int height)
 
     static_assert(std::is_standard_layout_v<view::Capsule> && sizeof(view::Capsule) == 6 * sizeof(float));
     glBindVertexArray(capsule_array_.id());
-    glBindBuffer(GL_ARRAY_BUFFER, capsule_buffer_.id());
+    glBindBuffer(GL_ARRAY_BUFFER, capsule_buffer_.id());  // a buffer comes to be when it is bound
+    glBindVertexBuffer(0, capsule_buffer_.id(), 0, sizeof(view::Capsule));
+    glVertexBindingDivisor(0, 1);
     for (const GLuint attribute : {0U, 1U}) {
         glEnableVertexAttribArray(attribute);
-        glVertexAttribDivisor(attribute, 1);
+        glVertexAttribBinding(attribute, 0);
     }
-    glVertexAttribPointer(0, 4, GL_FLOAT, GL_FALSE, sizeof(view::Capsule), nullptr);
-    glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, sizeof(view::Capsule),
-                          reinterpret_cast<const void*>(offsetof(view::Capsule, length)));
+    glVertexAttribFormat(0, 4, GL_FLOAT, GL_FALSE, offsetof(view::Capsule, ax));
+    glVertexAttribFormat(1, 2, GL_FLOAT, GL_FALSE, offsetof(view::Capsule, length));
 
     capsule_program_.use();
-    glUniform2f(capsule_program_.uniform("frame_size"), static_cast<float>(width), static_cast<float>(height));
+    glUniform2f(capsule_program_.uniform("frame_size"), static_cast<float>(width),
+                static_cast<float>(height));
     glUniform1f(capsule_program_.uniform("edge_margin"), view::kEdgeMargin);
     channel_uniform_ = capsule_program_.uniform("channel");
     composite_program_.use();
@@ -96,15 +101,18 @@ PixelRect FrameRenderer::render(const view::DrawList& list) {
 }
 
 void FrameRenderer::reserve_masks(std::size_t layer_count) {
-    const std::size_t slices = std::max<std::size_t>(1, (layer_count + kLayersPerSlice - 1) / kLayersPerSlice);
+    const std::size_t slices =
+        std::max<std::size_t>(1, (layer_count + kLayersPerSlice - 1) / kLayersPerSlice);
     if (slices <= mask_slices_) return;
     masks_ = gl::Texture();
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_2D_ARRAY, masks_.id());
-    glTexStorage3D(GL_TEXTURE_2D_ARRAY, 1, GL_RGBA8, image_.width(), image_.height(), static_cast<GLsizei>(slices));
+    glTexStorage3D(GL_TEXTURE_2D_ARRAY, 1, GL_RGBA8, image_.width(), image_.height(),
+                   static_cast<GLsizei>(slices));
     glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    gl::check_errors(fmt::format("making masks for {} layers of {}x{} pixels", layer_count, image_.width(), image_.height()));
+    gl::check_errors(fmt::format("making masks for {} layers of {}x{} pixels", layer_count, image_.width(),
+                                 image_.height()));
     mask_slices_ = slices;
 }
 

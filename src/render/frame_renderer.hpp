@@ -11,15 +11,17 @@ namespace corda::render {
 
 /// Draws lists with OpenGL into a picture in memory. Every frame equals render_reference byte for byte.
 ///
-/// Each layer's capsules are united in a mask (GL_MAX of values that are exactly k/255, four layers a texture), then one
-/// pass paints all layers in integers. Only what differs from the last frame is cleared, drawn and read back.
+/// Each layer's capsules are united in a mask (GL_MAX of values that are exactly k/255, four layers a
+/// texture), then one pass paints all layers in integers. Only what differs from the last frame is cleared,
+/// drawn and read back.
 class FrameRenderer {
   public:
-    /// A gl::Context must be current and outlive this. Throws corda::Error (kNoGl) where the driver cannot hold a
-    /// frame of that size.
+    /// A gl::Context must be current and outlive this. Throws corda::Error (kNoGl) where the driver cannot
+    /// hold a frame of that size.
     FrameRenderer(int width, int height);
 
-    /// Draws the next frame, of this renderer's size, and returns the pixels that may differ from the last one.
+    /// Draws the next frame, of this renderer's size, and returns the pixels that may differ from the last
+    /// one.
     PixelRect render(const view::DrawList& list);
 
     /// The last frame.

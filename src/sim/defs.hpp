@@ -18,14 +18,16 @@ struct WorldDef {
 
 /// A chain of particles, each tied to the next by a bar of its initial length.
 struct RopeDef {
-    /// Where `points_m` are measured from, in metres. Kept apart so that a rope far from the origin has the same
-    /// bits as one at the origin.
+    /// Where `points_m` are measured from, in metres. Kept apart so that a rope far from the origin has the
+    /// same bits as one at the origin.
     Vec2 origin_m;
-    std::vector<Vec2> points_m;       ///< start of every particle relative to `origin_m`; at least 2, neighbours apart
-    std::vector<double> mass_kg;      ///< one a particle, > 0 (the pinned ones too)
-    std::vector<Vec2> velocity_m_s;   ///< one a particle at t = 0; those of pinned particles are ignored
-    std::vector<std::uint32_t> pinned{0};  ///< indices of the particles that never move, each < points_m.size()
-    double payload_kg = 0.0;          ///< added to the mass of the last particle; >= 0
+    std::vector<Vec2>
+        points_m;  ///< start of every particle relative to `origin_m`; at least 2, neighbours apart
+    std::vector<double> mass_kg;     ///< one a particle, > 0 (the pinned ones too)
+    std::vector<Vec2> velocity_m_s;  ///< one a particle at t = 0; those of pinned particles are ignored
+    std::vector<std::uint32_t> pinned{
+        0};                   ///< indices of the particles that never move, each < points_m.size()
+    double payload_kg = 0.0;  ///< added to the mass of the last particle; >= 0
 };
 
 /// The solvers of PHYSICS; `method_names()` lists those that exist.
@@ -34,11 +36,11 @@ enum class Method { kRelaxation };
 /// How a scene is solved. A key that does not belong to the chosen method is refused by the scene reader.
 struct SolverDef {
     Method method = Method::kRelaxation;
-    std::optional<double> step_s;    ///< relaxation: > 0; default one frame of the video
-    int reach = 7;                   ///< relaxation: bars to the next 1..reach particles; >= 1
-    int sweeps = 1;                  ///< relaxation: passes over all bars a step; >= 1
-    double delta = 0.0;              ///< relaxation: share of the velocity lost a step; 0 <= delta < 1
-    std::optional<Vec2> force_n;     ///< relaxation: force on every particle in place of gravity
+    std::optional<double> step_s;  ///< relaxation: > 0; default one frame of the video
+    int reach = 7;                 ///< relaxation: bars to the next 1..reach particles; >= 1
+    int sweeps = 1;                ///< relaxation: passes over all bars a step; >= 1
+    double delta = 0.0;            ///< relaxation: share of the velocity lost a step; 0 <= delta < 1
+    std::optional<Vec2> force_n;   ///< relaxation: force on every particle in place of gravity
 };
 
 /// The name a scene file uses for a method.

@@ -1,5 +1,6 @@
 #include "corda/sim/relaxation.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
@@ -9,34 +10,41 @@
 namespace corda::sim {
 namespace {
 
-/// A time within this share of a step of n steps is n steps: times that come from a fraction or from a decimal text
-/// are rounded. The state there is the stored one, not an interpolated one.
+/// A time within this share of a step of n steps is n steps: times that come from a fraction or from a
+/// decimal text are rounded. The state there is the stored one, not an interpolated one.
 constexpr double kGridTolerance = 1e-9;
 
 }  // namespace
 
-Relaxation::Relaxation(const System& system, const WorldDef& world, const SolverDef& def, double default_step_s)
-    : step_s_(def.step_s.value_or(default_step_s)), sweeps_(def.sweeps), start_vx_m_s_(system.vx_m_s),
-      start_vy_m_s_(system.vy_m_s), mass_kg_(system.mass_kg) {
+Relaxation::Relaxation(const System& system, const WorldDef& world, const SolverDef& def,
+                       double default_step_s)
+    : step_s_(def.step_s.value_or(default_step_s)),
+      sweeps_(def.sweeps),
+      x_m_(system.x_m),
+      y_m_(system.y_m),
+      unrelaxed_x_m_(x_m_),
+      unrelaxed_y_m_(y_m_),
+      mass_kg_(system.mass_kg) {
     assert(step_s_ > 0.0 && sweeps_ >= 1);
     keep_ = (1.0 - def.delta) * std::exp(-world.drag_1_s * step_s_);
     const std::size_t count = system.particle_count();
-    current_ = {system.x_m, system.y_m};
-    previous_ = current_;
-    older_ = current_;
     for (std::size_t i = 0; i < count; ++i) {
-        const bool free = !system.is_pinned(i);
         const Vec2 weight = mass_kg_[i] * world.gravity_m_s2;
-        const Vec2 force = free ? def.force_n.value_or(weight) : Vec2{};
-        is_free_.push_back(free ? 1 : 0);
+        const Vec2 force = system.is_pinned(i) ? Vec2{} : def.force_n.value_or(weight);
         force_x_n_.push_back(force.x);
         force_y_n_.push_back(force.y);
         push_x_m_.push_back(step_s_ * step_s_ / mass_kg_[i] * force.x);
         push_y_m_.push_back(step_s_ * step_s_ / mass_kg_[i] * force.y);
+        move_x_m_.push_back(step_s_ * system.vx_m_s[i]);
+        move_y_m_.push_back(step_s_ * system.vy_m_s[i]);
     }
+    last_move_x_m_ = move_x_m_;
+    last_move_y_m_ = move_y_m_;
     for (const Bar& bar : system.bars) {
-        if (is_free_[bar.a] == 0 && is_free_[bar.b] == 0) continue;
-        const double share_a = is_free_[bar.a] == 0 ? 0.0 : (is_free_[bar.b] == 0 ? 1.0 : 0.5);
+        const bool a_is_pinned = system.is_pinned(bar.a);
+        const bool b_is_pinned = system.is_pinned(bar.b);
+        if (a_is_pinned && b_is_pinned) continue;
+        const double share_a = a_is_pinned ? 0.0 : (b_is_pinned ? 1.0 : 0.5);
         constraints_.push_back({bar.a, bar.b, bar.rest_m, share_a, 1.0 - share_a});
     }
     for (const RopeRange& rope : system.ropes) {
@@ -59,39 +67,36 @@ void Relaxation::advance_to(double time_s, State& state) {
     while (step_ < target) step();
     state.time_s = time_s;
     if (on_grid) {
-        state.x_m = current_.x;
-        state.y_m = current_.y;
+        state.x_m = x_m_;
+        state.y_m = y_m_;
     } else {
         interpolate(steps - std::floor(steps), state);
     }
 }
 
 void Relaxation::step() {
-    if (step_ == 0) {
-        euler_start();
-    } else {
-        verlet_update();
+    const std::size_t count = x_m_.size();
+    // The first step is Euler's: its move, h v(0), is there from the start.
+    if (step_ > 0) {
+        std::swap(last_move_x_m_, move_x_m_);
+        std::swap(last_move_y_m_, move_y_m_);
+        for (std::size_t i = 0; i < count; ++i) {
+            move_x_m_[i] = keep_ * last_move_x_m_[i] + push_x_m_[i];
+            move_y_m_[i] = keep_ * last_move_y_m_[i] + push_y_m_[i];
+        }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        x_m_[i] += move_x_m_[i];
+        y_m_[i] += move_y_m_[i];
+        unrelaxed_x_m_[i] = x_m_[i];
+        unrelaxed_y_m_[i] = y_m_[i];
     }
     relax();
+    for (std::size_t i = 0; i < count; ++i) {
+        move_x_m_[i] += x_m_[i] - unrelaxed_x_m_[i];
+        move_y_m_[i] += y_m_[i] - unrelaxed_y_m_[i];
+    }
     ++step_;
-}
-
-void Relaxation::euler_start() {
-    for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
-        if (is_free_[i] == 0) continue;
-        current_.x[i] = previous_.x[i] + step_s_ * start_vx_m_s_[i];
-        current_.y[i] = previous_.y[i] + step_s_ * start_vy_m_s_[i];
-    }
-}
-
-void Relaxation::verlet_update() {
-    std::swap(older_, previous_);
-    std::swap(previous_, current_);
-    for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
-        if (is_free_[i] == 0) continue;
-        current_.x[i] = previous_.x[i] + keep_ * (previous_.x[i] - older_.x[i]) + push_x_m_[i];
-        current_.y[i] = previous_.y[i] + keep_ * (previous_.y[i] - older_.y[i]) + push_y_m_[i];
-    }
 }
 
 void Relaxation::relax() {
@@ -99,8 +104,8 @@ void Relaxation::relax() {
 }
 
 void Relaxation::relax_once() {
-    double* const x = current_.x.data();
-    double* const y = current_.y.data();
+    double* const x = x_m_.data();
+    double* const y = y_m_.data();
     for (const Constraint& bar : constraints_) {
         const double dx = x[bar.b] - x[bar.a];
         const double dy = y[bar.b] - y[bar.a];
@@ -118,31 +123,34 @@ void Relaxation::relax_once() {
 }
 
 void Relaxation::interpolate(double fraction, State& state) const {
-    // Newton's form through the states at (step_ - 2), (step_ - 1) and step_; a straight line in the first step.
+    // Newton's form through the states at step_ - 2, step_ - 1 and step_; a straight line in the first step.
     const double second = step_ >= 2 ? 0.5 * fraction * (fraction - 1.0) : 0.0;
-    const auto at = [&](double older, double previous, double current) {
-        return previous + fraction * (current - previous) + second * (current - 2.0 * previous + older);
+    const auto at = [&](double current, double move, double last_move) {
+        return current - (1.0 - fraction) * move + second * (move - last_move);
     };
-    for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
-        state.x_m[i] = at(older_.x[i], previous_.x[i], current_.x[i]);
-        state.y_m[i] = at(older_.y[i], previous_.y[i], current_.y[i]);
+    for (std::size_t i = 0; i < x_m_.size(); ++i) {
+        state.x_m[i] = at(x_m_[i], move_x_m_[i], last_move_x_m_[i]);
+        state.y_m[i] = at(y_m_[i], move_y_m_[i], last_move_y_m_[i]);
     }
 }
 
 double Relaxation::energy_j() const {
-    // At the middle of the last step, where (current - previous) / h is the velocity to second order.
+    // At the middle of the last step, where move / h is the velocity to second order; at the start, at the
+    // start.
+    const double back = step_ == 0 ? 0.0 : 0.5;
     double energy_j = 0.0;
-    for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
-        if (is_free_[i] == 0) continue;
-        const double vx = step_ == 0 ? start_vx_m_s_[i] : (current_.x[i] - previous_.x[i]) / step_s_;
-        const double vy = step_ == 0 ? start_vy_m_s_[i] : (current_.y[i] - previous_.y[i]) / step_s_;
+    for (std::size_t i = 0; i < x_m_.size(); ++i) {
+        const double vx = move_x_m_[i] / step_s_;
+        const double vy = move_y_m_[i] / step_s_;
         energy_j += 0.5 * mass_kg_[i] * (vx * vx + vy * vy);
-        energy_j -= 0.5 * force_x_n_[i] * (current_.x[i] + previous_.x[i]);
-        energy_j -= 0.5 * force_y_n_[i] * (current_.y[i] + previous_.y[i]);
+        energy_j -= force_x_n_[i] * (x_m_[i] - back * move_x_m_[i]);
+        energy_j -= force_y_n_[i] * (y_m_[i] - back * move_y_m_[i]);
     }
     return energy_j;
 }
 
-double Relaxation::energy_scale_j() const { return energy_scale_j_; }
+double Relaxation::energy_scale_j() const {
+    return energy_scale_j_;
+}
 
 }  // namespace corda::sim

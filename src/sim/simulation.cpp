@@ -11,19 +11,21 @@
 namespace corda::sim {
 namespace {
 
-/// Farther out than this (in metres) nothing is meant to go: the run has diverged.
-constexpr double kFarthest_m = 1e12;
+/// Farther out than this nothing is meant to go: the run has diverged.
+constexpr double kFarthestMetres = 1e12;
 
 bool is_sound(const State& state) {
-    const auto near = [](double x_m) { return std::abs(x_m) < kFarthest_m; };  // false for NaN
-    return std::all_of(state.x_m.begin(), state.x_m.end(), near) && std::all_of(state.y_m.begin(), state.y_m.end(), near);
+    const auto near = [](double x_m) { return std::abs(x_m) < kFarthestMetres; };  // false for NaN
+    return std::all_of(state.x_m.begin(), state.x_m.end(), near) &&
+           std::all_of(state.y_m.begin(), state.y_m.end(), near);
 }
 
 double max_strain(const System& system, const State& state) {
     double largest = 0.0;
     for (const Bar& bar : system.bars) {
         if (bar.reach != 1) continue;
-        const double distance = length(state.x_m[bar.b] - state.x_m[bar.a], state.y_m[bar.b] - state.y_m[bar.a]);
+        const double distance =
+            length(state.x_m[bar.b] - state.x_m[bar.a], state.y_m[bar.b] - state.y_m[bar.a]);
         largest = std::max(largest, std::abs(distance / bar.rest_m - 1.0));
     }
     return largest;
@@ -34,16 +36,21 @@ double max_strain(const System& system, const State& state) {
 std::unique_ptr<Solver> make_solver(const System& system, const WorldDef& world, const SolverDef& def,
                                     double frame_interval_s) {
     switch (def.method) {
-        case Method::kRelaxation: return std::make_unique<Relaxation>(system, world, def, frame_interval_s);
+        case Method::kRelaxation:
+            return std::make_unique<Relaxation>(system, world, def, frame_interval_s);
     }
     assert(false && "make_solver: a method without a solver");
     return nullptr;
 }
 
 Simulation::Simulation(System system, const WorldDef& world, const SolverDef& solver, double frame_interval_s)
-    : system_(std::move(system)), solver_(make_solver(system_, world, solver, frame_interval_s)),
-      state_{0.0, system_.x_m, system_.y_m}, next_(state_), conserves_energy_(solver_->conserves_energy()),
-      initial_energy_j_(solver_->energy_j()), energy_scale_j_(solver_->energy_scale_j()) {
+    : system_(std::move(system)),
+      solver_(make_solver(system_, world, solver, frame_interval_s)),
+      state_{0.0, system_.x_m, system_.y_m},
+      next_(state_),
+      conserves_energy_(solver_->conserves_energy()),
+      initial_energy_j_(solver_->energy_j()),
+      energy_scale_j_(solver_->energy_scale_j()) {
     if (energy_scale_j_ == 0.0) energy_scale_j_ = std::abs(initial_energy_j_);
 }
 
@@ -59,7 +66,8 @@ Status Simulation::advance_to(double time_s) {
 void Simulation::observe() {
     max_strain_ = std::max(max_strain_, max_strain(system_, state_));
     if (!conserves_energy_) return;
-    largest_energy_change_j_ = std::max(largest_energy_change_j_, std::abs(solver_->energy_j() - initial_energy_j_));
+    largest_energy_change_j_ =
+        std::max(largest_energy_change_j_, std::abs(solver_->energy_j() - initial_energy_j_));
 }
 
 Diagnostics Simulation::diagnostics() const {

@@ -10,26 +10,26 @@
 namespace corda::sim {
 
 /// Whether a run can go on. A run that diverged keeps the last good state.
-enum class [[nodiscard]] Status { kOk, kDiverged };
+enum class [[nodiscard]] Status{kOk, kDiverged};
 
 /// What a run has shown of itself, over the times that were asked for.
 struct Diagnostics {
     std::uint64_t steps = 0;
     double max_strain = 0.0;  ///< largest | length / rest length - 1 | of a real bar
-    /// Largest | E(t) - E(0) | over (total weight * total length), or over E(0) without a force; nothing where
-    /// damping takes energy away on purpose.
+    /// Largest | E(t) - E(0) | over (total weight * total length), or over E(0) without a force; nothing
+    /// where damping takes energy away on purpose.
     std::optional<double> energy_error;
 };
 
 /// A scene in motion: particles and bars, a solver, and a check of every state that it hands out.
 class Simulation {
   public:
-    /// `frame_interval_s` is the default step of a method that has no step of its own. Throws corda::Error where
-    /// the method cannot run the system.
+    /// `frame_interval_s` is the default step of a method that has no step of its own. Throws corda::Error
+    /// where the method cannot run the system.
     Simulation(System system, const WorldDef& world, const SolverDef& solver, double frame_interval_s);
 
-    /// Goes on to `time_s` seconds, which must not be before the state's time. The state is that of exactly this
-    /// time; the same bits come out whatever times were asked for on the way.
+    /// Goes on to `time_s` seconds, which must not be before the state's time. The state is that of exactly
+    /// this time; the same bits come out whatever times were asked for on the way.
     Status advance_to(double time_s);
 
     /// Positions relative to `system().origin_m`, at the last time that was reached.

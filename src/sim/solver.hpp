@@ -24,7 +24,8 @@ class Solver {
     Solver& operator=(const Solver&) = delete;
     virtual ~Solver() = default;
 
-    /// Writes the positions at exactly `time_s` to `state`, which has room for all particles. Times never go back.
+    /// Writes the positions at exactly `time_s` to `state`, which has room for all particles. Times never go
+    /// back.
     virtual void advance_to(double time_s, State& state) = 0;
 
     /// Kinetic plus potential energy in joules at the solver's own time nearest to the last `advance_to`.
@@ -41,7 +42,7 @@ class Solver {
 };
 
 /// The solver that `def` names. `system` must outlive it.
-[[nodiscard]] std::unique_ptr<Solver> make_solver(const System& system, const WorldDef& world, const SolverDef& def,
-                                                  double frame_interval_s);
+[[nodiscard]] std::unique_ptr<Solver> make_solver(const System& system, const WorldDef& world,
+                                                  const SolverDef& def, double frame_interval_s);
 
 }  // namespace corda::sim

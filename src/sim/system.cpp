@@ -20,7 +20,8 @@ void append_particles(const RopeDef& rope, System& system) {
         system.mass_kg.push_back(rope.mass_kg[i]);
     }
     system.mass_kg.back() += rope.payload_kg;
-    for (std::size_t i = first; i < first + count; ++i) system.inverse_mass_1_kg.push_back(1.0 / system.mass_kg[i]);
+    for (std::size_t i = first; i < first + count; ++i)
+        system.inverse_mass_1_kg.push_back(1.0 / system.mass_kg[i]);
     for (const std::uint32_t index : rope.pinned) {
         assert(index < count);
         system.inverse_mass_1_kg[first + index] = 0.0;

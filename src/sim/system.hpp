@@ -29,17 +29,18 @@ struct Bar {
 
 /// All particles and bars of a scene at t = 0, whatever they come from. Arrays have one entry a particle.
 ///
-/// Positions are relative to `origin_m`, the first rope's own origin: the same scene far from (0, 0) is solved with
-/// the same bits.
+/// Positions are relative to `origin_m`, the first rope's own origin: the same scene far from (0, 0) is
+/// solved with the same bits.
 struct System {
     Vec2 origin_m;
     std::vector<double> x_m;
     std::vector<double> y_m;
     std::vector<double> vx_m_s;  ///< 0 for a pinned particle
     std::vector<double> vy_m_s;
-    std::vector<double> mass_kg;          ///< payload included
+    std::vector<double> mass_kg;            ///< payload included
     std::vector<double> inverse_mass_1_kg;  ///< 0 means pinned
-    std::vector<Bar> bars;  ///< in the order of relaxation: rope by rope, all of reach 1, then all of reach 2, ...
+    std::vector<Bar>
+        bars;  ///< in the order of relaxation: rope by rope, all of reach 1, then all of reach 2, ...
     std::vector<RopeRange> ropes;
 
     [[nodiscard]] std::size_t particle_count() const { return x_m.size(); }
@@ -47,8 +48,8 @@ struct System {
     [[nodiscard]] bool is_pinned(std::size_t particle) const { return inverse_mass_1_kg[particle] == 0.0; }
 };
 
-/// Number of bars of a rope of `particles` with bars to the next 1..`reach`: the sum of (particles - k), which for
-/// reach 7 is 7 n - 28.
+/// Number of bars of a rope of `particles` with bars to the next 1..`reach`: the sum of (particles - k),
+/// which for reach 7 is 7 n - 28.
 [[nodiscard]] std::uint64_t bar_count(std::uint64_t particles, std::uint64_t reach);
 
 /// Puts the ropes into one System. Requires what RopeDef says of its fields; `reach` >= 1.

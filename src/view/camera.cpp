@@ -7,7 +7,7 @@ namespace corda::view {
 namespace {
 
 /// A scene whose motion has no extent is shown this many metres high.
-constexpr double kSmallestView_m = 1e-6;
+constexpr double kSmallestViewMetres = 1e-6;
 
 }  // namespace
 
@@ -22,7 +22,9 @@ void MotionBounds::include(const sim::State& state) {
     }
 }
 
-bool Camera::needs_motion(const CameraDef& def) { return !def.center_m || !def.height_m; }
+bool Camera::needs_motion(const CameraDef& def) {
+    return !def.center_m || !def.height_m;
+}
 
 Camera::Camera(const CameraDef& def, sim::Vec2 origin_m, const MotionBounds& bounds, int width, int height,
                double clearance_px)
@@ -36,8 +38,8 @@ Camera::Camera(const CameraDef& def, sim::Vec2 origin_m, const MotionBounds& bou
     // Half extents about the centre, which a scene may have set off the motion's middle.
     const sim::Vec2 low = center_ - bounds.min_m();
     const sim::Vec2 high = bounds.max_m() - center_;
-    const double half_x_m = std::max({low.x, high.x, 0.5 * kSmallestView_m});
-    const double half_y_m = std::max({low.y, high.y, 0.5 * kSmallestView_m});
+    const double half_x_m = std::max({low.x, high.x, 0.5 * kSmallestViewMetres});
+    const double half_y_m = std::max({low.y, high.y, 0.5 * kSmallestViewMetres});
     const double border_px = def.margin * std::min(width, height) + clearance_px;
     // Thick lines in a tiny picture leave no room: then the motion still gets a tenth of it.
     const double room_x_px = std::max(0.1 * half_width_px_, half_width_px_ - border_px);

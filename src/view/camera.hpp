@@ -27,13 +27,17 @@ class Camera {
     /// True where `def` leaves something to the motion, so that its bounds are needed.
     [[nodiscard]] static bool needs_motion(const CameraDef& def);
 
-    /// Fits `bounds` (ignored where `def` says it all) into `width` x `height` pixels with `clearance_px` around
-    /// for the width of what is drawn. `origin_m` is the system's.
+    /// Fits `bounds` (ignored where `def` says it all) into `width` x `height` pixels with `clearance_px`
+    /// around for the width of what is drawn. `origin_m` is the system's.
     Camera(const CameraDef& def, sim::Vec2 origin_m, const MotionBounds& bounds, int width, int height,
            double clearance_px);
 
-    [[nodiscard]] double x_px(double x_m) const { return half_width_px_ + (x_m - center_.x) * pixels_per_metre_; }
-    [[nodiscard]] double y_px(double y_m) const { return half_height_px_ - (y_m - center_.y) * pixels_per_metre_; }
+    [[nodiscard]] double x_px(double x_m) const {
+        return half_width_px_ + (x_m - center_.x) * pixels_per_metre_;
+    }
+    [[nodiscard]] double y_px(double y_m) const {
+        return half_height_px_ - (y_m - center_.y) * pixels_per_metre_;
+    }
     [[nodiscard]] double pixels_per_metre() const { return pixels_per_metre_; }
 
   private:

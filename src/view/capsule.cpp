@@ -8,9 +8,12 @@ namespace {
 
 constexpr double kSnap = 1024.0;  // steps a pixel: 16384 px * 1024 still fits a float's 24 bits
 
-double snapped(double x_px) { return std::round(x_px * kSnap) / kSnap; }
+double snapped(double x_px) {
+    return std::round(x_px * kSnap) / kSnap;
+}
 
-/// Cuts the range [t0, t1] of a + t (b - a) to low <= coordinate <= high (Liang-Barsky); false where nothing is left.
+/// Cuts the range [t0, t1] of a + t (b - a) to low <= coordinate <= high (Liang-Barsky); false where nothing
+/// is left.
 bool cut(double a, double b, double low, double high, double& t0, double& t1) {
     const double d = b - a;
     if (d == 0.0) return a >= low && a <= high;

@@ -14,8 +14,8 @@ struct PixelPoint {
 };
 
 /// The capsule of `radius_px` around the segment from `a` to `b`, or nothing where it cannot touch a frame of
-/// `width` x `height` pixels. A segment that leaves the frame is cut outside of what can be seen, so that no number is
-/// too large for float.
+/// `width` x `height` pixels. A segment that leaves the frame is cut outside of what can be seen, so that no
+/// number is too large for float.
 [[nodiscard]] std::optional<Capsule> make_capsule(PixelPoint a, PixelPoint b, double radius_px, int width,
                                                   int height);
 

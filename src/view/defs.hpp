@@ -22,13 +22,13 @@ struct StyleDef {
                                {0x8f, 0xd1, 0x9e, 255}, {0xc3, 0xa6, 0xe8, 255}, {0xf0, 0xe3, 0x9a, 255}};
     std::optional<double> rope_width_px;  ///< 0.1 .. 1000; default height / 216, at least 1.5
     Markers markers = Markers::kPinned;
-    std::optional<double> marker_radius_px;  ///< 0.1 .. 1000; default 1.8 rope widths (pinned), 1 (free)
+    std::optional<double> marker_radius_px;  ///< 0.1 .. 1000; default stands out beside the rope
     Color pinned_color{0xff, 0x5d, 0x5d, 255};
     Color free_color{0xf5, 0xf1, 0xe6, 255};
     Bars bars = Bars::kNone;
     std::optional<double> bar_width_px;  ///< 0.1 .. 1000; default a quarter of the rope's width, at least 1
     Color real_bar_color{0xff, 0xff, 0xff, 255};
-    Color imaginary_bar_color{0x54, 0xd6, 0xc2, 0x70};
+    Color imaginary_bar_color{0x54, 0xd6, 0xc2, 0xb0};
 };
 
 /// What a single rope overrides of the style.
@@ -41,7 +41,7 @@ struct RopeStyleDef {
 struct CameraDef {
     std::optional<sim::Vec2> center_m;  ///< what stands in the middle of the picture, in world coordinates
     std::optional<double> height_m;     ///< height of the picture in metres, > 0
-    double margin = 0.08;               ///< share of the picture's smaller side left free at each edge, 0 .. 0.45
+    double margin = 0.08;  ///< share of the picture's smaller side left free at each edge, 0 .. 0.45
 };
 
 }  // namespace corda::view

@@ -11,9 +11,9 @@ namespace corda::view {
 
 /// A line with round caps, or a disc where `length` is 0: all points within `radius` of the segment.
 ///
-/// Pixels, x to the right and y down, the centre of the top left pixel at (0.5, 0.5). (ax, ay) is a multiple of
-/// 1/1024, so that differences to pixel centres are exact in float; (ux, uy) is the unit direction, rounded once
-/// from double.
+/// Pixels, x to the right and y down, the centre of the top left pixel at (0.5, 0.5). (ax, ay) is a multiple
+/// of 1/1024, so that differences to pixel centres are exact in float; (ux, uy) is the unit direction,
+/// rounded once from double.
 struct Capsule {
     float ax = 0;
     float ay = 0;
@@ -23,8 +23,8 @@ struct Capsule {
     float radius = 0;
 };
 
-/// Capsules that are united before they are painted in one colour, so that joints and crossings of a see-through
-/// or smooth-edged line do not darken.
+/// Capsules that are united before they are painted in one colour, so that joints and crossings of a
+/// see-through or smooth-edged line do not darken.
 struct Layer {
     Color color;
     std::size_t first_capsule = 0;
@@ -41,7 +41,8 @@ struct DrawList {
     PixelRect bounds;           ///< holds every pixel that differs from the background; within the frame
 };
 
-/// How far outside `radius` a capsule can still touch a pixel: half a pixel of smooth edge, and slack for rounding.
+/// How far outside `radius` a capsule can still touch a pixel: half a pixel of smooth edge, and slack for
+/// rounding.
 inline constexpr float kEdgeMargin = 2.0F;
 
 /// Most layers that one frame may have: the renderer keeps a mask a layer.

@@ -11,18 +11,21 @@ namespace corda::view {
 namespace {
 
 constexpr double kHeightPerRopeWidth = 216.0;
-constexpr double kThinnestRope_px = 1.5;
-constexpr double kPinnedRadiusPerRopeWidth = 1.8;
-constexpr double kFreeRadiusPerRopeWidth = 1.0;
+constexpr double kThinnestRopePx = 1.5;
+constexpr double kHeightPerPinnedRim = 150.0;  // how far a marker stands out beside the rope
+constexpr double kHeightPerFreeRim = 400.0;
 constexpr double kBarWidthPerRopeWidth = 0.25;
-constexpr double kThinnestBar_px = 1.0;
+constexpr double kThinnestBarPx = 1.0;
 
 }  // namespace
 
-SceneView::SceneView(const sim::System& system, const StyleDef& style, const std::vector<RopeStyleDef>& rope_styles,
-                     int width, int height)
-    : system_(&system), background_(style.background), width_(width), height_(height),
-      rope_width_px_(style.rope_width_px.value_or(std::max(kThinnestRope_px, height / kHeightPerRopeWidth))) {
+SceneView::SceneView(const sim::System& system, const StyleDef& style,
+                     const std::vector<RopeStyleDef>& rope_styles, int width, int height)
+    : system_(&system),
+      background_(style.background),
+      width_(width),
+      height_(height),
+      rope_width_px_(style.rope_width_px.value_or(std::max(kThinnestRopePx, height / kHeightPerRopeWidth))) {
     if (style.bars == Bars::kAll) add_bars(style, false);
     add_ropes(style, rope_styles);
     if (style.bars != Bars::kNone) add_bars(style, true);
@@ -30,9 +33,9 @@ SceneView::SceneView(const sim::System& system, const StyleDef& style, const std
     if (style.markers != Markers::kNone) add_markers(style, true);
     std::erase_if(layers_, [](const ItemLayer& layer) { return layer.items.empty(); });
     if (layers_.size() > kMaxLayers) {
-        throw Error(ExitCode::kInvalidScene, "the scene needs " + std::to_string(layers_.size()) +
-                                                 " layers of colour, the limit is " + std::to_string(kMaxLayers) +
-                                                 "; give more ropes the same colour");
+        throw Error(ExitCode::kInvalidScene,
+                    "the scene needs " + std::to_string(layers_.size()) + " layers of colour, the limit is " +
+                        std::to_string(kMaxLayers) + "; give more ropes the same colour");
     }
     for (const ItemLayer& layer : layers_) {
         for (const Item& item : layer.items) clearance_px_ = std::max(clearance_px_, item.radius_px);
@@ -53,6 +56,7 @@ void SceneView::add_ropes(const StyleDef& style, const std::vector<RopeStyleDef>
         const RopeStyleDef& own = rope_styles[r];
         const Color color = own.color ? *own.color : style.palette[next_color++ % style.palette.size()];
         const double radius_px = 0.5 * own.width_px.value_or(rope_width_px_);
+        rope_radius_px_.push_back(radius_px);
         const sim::RopeRange& rope = system_->ropes[r];
         ItemLayer& layer = layer_of(color, first_layer);
         for (std::size_t i = 0; i + 1 < rope.particle_count; ++i) {
@@ -62,7 +66,8 @@ void SceneView::add_ropes(const StyleDef& style, const std::vector<RopeStyleDef>
 }
 
 void SceneView::add_bars(const StyleDef& style, bool real) {
-    const double width_px = style.bar_width_px.value_or(std::max(kThinnestBar_px, kBarWidthPerRopeWidth * rope_width_px_));
+    const double width_px =
+        style.bar_width_px.value_or(std::max(kThinnestBarPx, kBarWidthPerRopeWidth * rope_width_px_));
     ItemLayer layer{real ? style.real_bar_color : style.imaginary_bar_color, {}};
     for (const sim::Bar& bar : system_->bars) {
         if ((bar.reach == 1) == real) layer.items.push_back({bar.a, bar.b, 0.5 * width_px});
@@ -71,11 +76,14 @@ void SceneView::add_bars(const StyleDef& style, bool real) {
 }
 
 void SceneView::add_markers(const StyleDef& style, bool pinned) {
-    const double per_width = pinned ? kPinnedRadiusPerRopeWidth : kFreeRadiusPerRopeWidth;
-    const double radius_px = style.marker_radius_px.value_or(per_width * rope_width_px_);
+    const double rim_px = height_ / (pinned ? kHeightPerPinnedRim : kHeightPerFreeRim);
     ItemLayer layer{pinned ? style.pinned_color : style.free_color, {}};
-    for (std::size_t i = 0; i < system_->particle_count(); ++i) {
-        if (system_->is_pinned(i) == pinned) layer.items.push_back({i, i, radius_px});
+    for (std::size_t r = 0; r < system_->ropes.size(); ++r) {
+        const sim::RopeRange& rope = system_->ropes[r];
+        const double radius_px = style.marker_radius_px.value_or(rope_radius_px_[r] + rim_px);
+        for (std::size_t i = rope.first_particle; i < rope.first_particle + rope.particle_count; ++i) {
+            if (system_->is_pinned(i) == pinned) layer.items.push_back({i, i, radius_px});
+        }
     }
     layers_.push_back(std::move(layer));
 }

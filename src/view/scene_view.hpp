@@ -13,11 +13,12 @@ namespace corda::view {
 
 /// Turns states into draw lists. What is drawn, and in which layer, is settled once; where, anew each frame.
 ///
-/// From back to front: imaginary bars, ropes (one layer a colour), real bars, free particles, pinned particles.
+/// From back to front: imaginary bars, ropes (one layer a colour), real bars, free particles, pinned
+/// particles.
 class SceneView {
   public:
-    /// `rope_styles` has one entry a rope of `system`, which must outlive this. Throws corda::Error (kInvalidScene)
-    /// where the scene needs more than kMaxLayers layers.
+    /// `rope_styles` has one entry a rope of `system`, which must outlive this. Throws corda::Error
+    /// (kInvalidScene) where the scene needs more than kMaxLayers layers.
     SceneView(const sim::System& system, const StyleDef& style, const std::vector<RopeStyleDef>& rope_styles,
               int width, int height);
 
@@ -49,6 +50,7 @@ class SceneView {
     int width_;
     int height_;
     double rope_width_px_;
+    std::vector<double> rope_radius_px_;  // one a rope
     double clearance_px_ = 0.0;
     std::vector<ItemLayer> layers_;
 };

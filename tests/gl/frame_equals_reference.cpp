@@ -28,11 +28,13 @@ TEST_P(RandomCapsules, EqualTheReferenceByteForByte) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, RandomCapsules,
-                         testing::Values(std::tuple{64, 64, 1}, std::tuple{641, 359, 4}, std::tuple{1920, 1080, 5},
-                                         std::tuple{333, 77, 64}, std::tuple{1, 1, 2}),
+                         testing::Values(std::tuple{64, 64, 1}, std::tuple{641, 359, 4},
+                                         std::tuple{1920, 1080, 5}, std::tuple{333, 77, 64},
+                                         std::tuple{1, 1, 2}),
                          [](const auto& param) {
-                             return std::to_string(std::get<0>(param.param)) + "x" + std::to_string(std::get<1>(param.param)) +
-                                    "_" + std::to_string(std::get<2>(param.param)) + "_layers";
+                             return std::to_string(std::get<0>(param.param)) + "x" +
+                                    std::to_string(std::get<1>(param.param)) + "_" +
+                                    std::to_string(std::get<2>(param.param)) + "_layers";
                          });
 
 TEST(DamagedRedraw, EqualsTheFullRedrawByteForByte) {
@@ -48,8 +50,9 @@ TEST(DamagedRedraw, EqualsTheFullRedrawByteForByte) {
         const PixelRect damage = damaged.render(list);
         full.invalidate();
         EXPECT_EQ(full.render(list), damaged.image().rect());
-        EXPECT_TRUE(equal_images(damaged.image(), full.image())) << "frame " << seed << " damage " << damage.x0 << ','
-                                                                 << damage.y0 << ' ' << damage.x1 << ',' << damage.y1;
+        EXPECT_TRUE(equal_images(damaged.image(), full.image()))
+            << "frame " << seed << " damage " << damage.x0 << ',' << damage.y0 << ' ' << damage.x1 << ','
+            << damage.y1;
     }
 }
 

@@ -13,7 +13,9 @@ class Numbers {
   public:
     explicit Numbers(std::uint32_t seed) : generator_(seed) {}
 
-    double between(double low, double high) { return low + (high - low) * (static_cast<double>(generator_()) / 4294967296.0); }
+    double between(double low, double high) {
+        return low + (high - low) * (static_cast<double>(generator_()) / 4294967296.0);
+    }
     std::uint8_t byte() { return static_cast<std::uint8_t>(generator_() >> 24U); }
 
   private:
@@ -30,7 +32,8 @@ view::DrawList random_draw_list(std::uint32_t seed, int width, int height, std::
     list.height = height;
     list.background = {numbers.byte(), numbers.byte(), numbers.byte(), 255};
     for (std::size_t l = 0; l < layer_count; ++l) {
-        const Color color{numbers.byte(), numbers.byte(), numbers.byte(), l % 2 == 0 ? std::uint8_t{255} : numbers.byte()};
+        const Color color{numbers.byte(), numbers.byte(), numbers.byte(),
+                          l % 2 == 0 ? std::uint8_t{255} : numbers.byte()};
         const std::size_t first = list.capsules.size();
         for (std::size_t i = 0; i < capsules_per_layer; ++i) {
             const view::PixelPoint a{numbers.between(-0.2, 1.2) * width, numbers.between(-0.2, 1.2) * height};

@@ -1,0 +1,194 @@
+// Every exit code of the program, from a real run.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "support/command.hpp"
+
+namespace corda {
+namespace {
+
+using test::run_corda;
+using test::run_shell;
+using test::ScratchFolder;
+using testing::HasSubstr;
+
+const char* const kScene = R"(schema = 1
+[world]
+duration = 0.2
+[[rope]]
+hang = { links = 6, length = 1.0, angle_deg = 30.0 }
+[video]
+size = [64, 64]
+fps = 30
+)";
+
+class ExitCodes : public testing::Test {
+  protected:
+    ScratchFolder folder_;
+    std::string scene_ = folder_.write("scene.toml", kScene);
+    std::string video_ = folder_.file("out.mp4");
+};
+
+TEST_F(ExitCodes, ZeroForSuccess) {
+    const auto result = run_corda({"render", scene_, "-o", video_});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.out, video_ + "\n");
+    EXPECT_EQ(run_corda({"--help"}).exit_code, 0);
+    EXPECT_EQ(run_corda({"render", "--help"}).exit_code, 0);
+}
+
+TEST_F(ExitCodes, HelpPrintsThemAll) {
+    const auto result = run_corda({"--help"});
+    for (const char* row : {"0  success", "2  usage", "3  invalid scene", "4  no usable OpenGL", "5  codec",
+                            "6  input/output", "7  compare or verify", "8  the simulation diverged",
+                            "75  temporary", "130  interrupted", "143  terminated"}) {
+        EXPECT_THAT(result.out, HasSubstr(row));
+    }
+}
+
+TEST_F(ExitCodes, TwoForUsage) {
+    EXPECT_EQ(run_corda({}).exit_code, 2);
+    EXPECT_EQ(run_corda({"rendr"}).exit_code, 2);
+    EXPECT_EQ(run_corda({"render", scene_}).exit_code, 2);
+    EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--no-such-flag"}).exit_code, 2);
+    EXPECT_EQ(run_corda({"render", scene_, "-o", folder_.file("out.txt")}).exit_code, 2);
+    EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--size", "64by64"}).exit_code, 2);
+    EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--frames", "3:2"}).exit_code, 2);
+    EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--backend", "magic"}).exit_code, 2);
+    EXPECT_EQ(run_corda({"still", scene_, "-o", folder_.path()}).exit_code, 2);
+    EXPECT_EQ(run_corda({"still", scene_, "--at", "99", "-o", folder_.path()}).exit_code, 2);
+    EXPECT_EQ(run_corda({"compare", scene_}).exit_code, 2);
+    EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--set", "nonsense"}).exit_code, 2);
+}
+
+TEST_F(ExitCodes, TwoForAnOddVideoSizeNamingTheEvenOnes) {
+    const auto result = run_corda({"render", scene_, "-o", video_, "--size", "65x64"});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr("64"));
+    EXPECT_THAT(result.err, HasSubstr("66"));
+}
+
+TEST_F(ExitCodes, ThreeForAnInvalidScene) {
+    const std::string bad =
+        folder_.write("bad.toml", "schema = 1\n[[rope]]\nhang = { links = 6, length = 1.0 }\nmasss = 2\n");
+    const auto result = run_corda({"render", bad, "-o", video_});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_THAT(result.err, HasSubstr("bad.toml:4:1: "));
+    EXPECT_THAT(result.err, HasSubstr("masss"));
+    EXPECT_THAT(result.err, HasSubstr("did you mean \"mass\""));
+    EXPECT_EQ(run_corda({"simulate", scene_, "--set", "solver.method=magic"}).exit_code, 3);
+}
+
+TEST_F(ExitCodes, FourWithoutUsableGl) {
+    const auto result = run_corda({"render", scene_, "-o", video_, "--backend", "device:63"});
+    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_THAT(result.err, HasSubstr("no such EGL device"));
+    EXPECT_EQ(
+        run_corda({"still", scene_, "--at", "0", "-o", folder_.path()}, "CORDA_BACKEND=device:63").exit_code,
+        4);
+}
+
+TEST_F(ExitCodes, FiveForAnEncoderThatFails) {
+    const auto result = run_corda({"render", scene_, "-o", video_}, "LD_LIBRARY_PATH=" BROKEN_X264_FOLDER);
+    EXPECT_EQ(result.exit_code, 5) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("libx264"));
+    EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});
+}
+
+TEST_F(ExitCodes, SixForInputAndOutput) {
+    EXPECT_EQ(run_corda({"render", folder_.file("none.toml"), "-o", video_}).exit_code, 6);
+    EXPECT_EQ(run_corda({"render", scene_, "-o", folder_.file("no/such/folder/out.mp4")}).exit_code, 6);
+    EXPECT_EQ(run_corda({"compare", folder_.file("a.png"), folder_.file("b.png")}).exit_code, 6);
+    EXPECT_EQ(run_corda({"verify", folder_.file("none.mp4")}).exit_code, 6);
+}
+
+TEST_F(ExitCodes, SixWhenNoMoreCanBeWritten) {
+    // A file may grow to 4 KiB: what a full disk looks like to a program.
+    const auto result = run_shell("trap '' XFSZ; ulimit -f 4; " + test::quoted(CORDA_PROGRAM) + " render " +
+                                  scene_ + " -o " + video_ + " --size 640x360 --crf 1 --duration 2");
+    EXPECT_EQ(result.exit_code, 6) << result.err;
+    const auto files = folder_.files();
+    EXPECT_THAT(files, testing::Not(testing::Contains("out.mp4")));
+    const auto csv = run_shell("trap '' XFSZ; ulimit -f 4; " + test::quoted(CORDA_PROGRAM) + " simulate " +
+                               scene_ + " -o " + folder_.file("out.csv") + " --duration 5");
+    EXPECT_EQ(csv.exit_code, 6) << csv.err;
+}
+
+TEST_F(ExitCodes, SixRatherThanOverwriteWithoutForce) {
+    const std::string old = folder_.write("out.mp4", "precious");
+    const auto refused = run_corda({"render", scene_, "-o", old});
+    EXPECT_EQ(refused.exit_code, 6);
+    EXPECT_THAT(refused.err, HasSubstr("--force"));
+    EXPECT_EQ(test::read_file(old), "precious");
+    EXPECT_EQ(run_corda({"render", scene_, "-o", old, "--force"}).exit_code, 0);
+    EXPECT_NE(test::read_file(old), "precious");
+    const std::string csv = folder_.write("out.csv", "precious");
+    EXPECT_EQ(run_corda({"simulate", scene_, "-o", csv}).exit_code, 6);
+    const std::string png = folder_.write("out.png", "precious");
+    EXPECT_EQ(run_corda({"still", scene_, "--at", "0", "-o", png}).exit_code, 6);
+    EXPECT_EQ(test::read_file(csv) + test::read_file(png), "preciousprecious");
+}
+
+TEST_F(ExitCodes, SevenForADifferenceOrAProblem) {
+    ASSERT_EQ(run_corda({"still", scene_, "--at", "0,0.2", "-o", folder_.file("stills")}).exit_code, 0);
+    const std::string a = folder_.file("stills/scene_t0000.000000.png");
+    const std::string b = folder_.file("stills/scene_t0000.200000.png");
+    EXPECT_EQ(run_corda({"compare", a, a}).exit_code, 0);
+    EXPECT_EQ(run_corda({"compare", a, b}).exit_code, 7);
+    EXPECT_EQ(run_corda({"compare", a, b, "--max", "255"}).exit_code, 0);
+    EXPECT_EQ(run_corda({"verify", a}).exit_code, 7);
+}
+
+TEST_F(ExitCodes, EightForADivergedSimulation) {
+    const std::vector<std::string> wild{"--set", "solver.method=relaxation", "--set",
+                                        "solver.force=[1e300, 0.0]"};
+    auto arguments = std::vector<std::string>{"render", scene_, "-o", video_};
+    arguments.insert(arguments.end(), wild.begin(), wild.end());
+    const auto result = run_corda(arguments);
+    EXPECT_EQ(result.exit_code, 8) << result.err;
+    arguments[0] = "simulate";
+    arguments[3] = folder_.file("out.csv");
+    const auto simulated = run_corda(arguments);
+    EXPECT_EQ(simulated.exit_code, 8);
+    EXPECT_THAT(simulated.err, HasSubstr("out.csv.part"));
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.csv.part", "scene.toml"}));
+}
+
+#if !defined(__SANITIZE_ADDRESS__)  // which reserves more memory than any limit
+TEST_F(ExitCodes, SeventyFiveWithoutMemory) {
+    const std::string many = folder_.write(
+        "many.toml", "schema = 1\n[[rope]]\nline = { particles = 900000, step = [0.001, 0.0] }\n");
+    const auto result = run_shell("ulimit -v 400000; " + test::quoted(CORDA_PROGRAM) + " simulate " + many);
+    EXPECT_EQ(result.exit_code, 75) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("out of memory"));
+}
+#endif
+
+/// Starts a long render, sends `signal` once it draws, and returns its end.
+test::CommandResult interrupted_render(const std::string& signal, const std::string& scene,
+                                       const std::string& video) {
+    return run_shell(test::quoted(CORDA_PROGRAM) + " render " + scene + " -o " + video +
+                     " --size 640x360 --duration 5000 & pid=$!; for i in $(seq 200); do sleep 0.1; [ -s " +
+                     video + ".part ] && break; done; sleep 0.5; kill -" + signal + " $pid; wait $pid");
+}
+
+TEST_F(ExitCodes, OneHundredThirtyWhenInterruptedKeepingAPlayablePart) {
+    const auto result = interrupted_render("INT", scene_, video_);
+    EXPECT_EQ(result.exit_code, 130) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("out.mp4.part"));
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.mp4.part", "scene.toml"}));
+    // It plays: the other side's program counts its frames.
+    const auto frames =
+        run_shell("ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 -f mp4 " +
+                  video_ + ".part");
+    EXPECT_GT(std::atoi(frames.out.c_str()), 0) << frames.out << frames.err;
+}
+
+TEST_F(ExitCodes, OneHundredFortyThreeWhenTerminated) {
+    EXPECT_EQ(interrupted_render("TERM", scene_, video_).exit_code, 143);
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.mp4.part", "scene.toml"}));
+}
+
+}  // namespace
+}  // namespace corda

@@ -1,0 +1,198 @@
+// What the program says, where, and in which form.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/command.hpp"
+
+namespace corda {
+namespace {
+
+using nlohmann::json;
+using test::run_corda;
+using test::ScratchFolder;
+using testing::HasSubstr;
+using testing::Not;
+
+const char* const kScene = R"(schema = 1
+[world]
+duration = 1.0
+[[rope]]
+line = { particles = 40, from = [0.0, 50.0], step = [0.1, -1.0] }
+[solver]
+method = "relaxation"
+[video]
+size = [64, 64]
+fps = 20
+)";
+
+class Output : public testing::Test {
+  protected:
+    ScratchFolder folder_;
+    std::string scene_ = folder_.write("scene.toml", kScene);
+    std::string video_ = folder_.file("out.mp4");
+};
+
+TEST_F(Output, SimulateWritesARowAFrameTimeWithSeventeenDigits) {
+    const std::string csv = folder_.file("out.csv");
+    const auto result = run_corda({"simulate", scene_, "-o", csv});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.out, csv + "\n");
+    EXPECT_THAT(result.err, HasSubstr("40 particles, 252 bars (39 links)"));
+    std::istringstream lines(test::read_file(csv));
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_THAT(line, testing::StartsWith("t,x0,y0,x1,y1,"));
+    EXPECT_THAT(line, testing::EndsWith(",x39,y39"));
+    std::vector<std::string> rows;
+    while (std::getline(lines, line)) rows.push_back(line);
+    ASSERT_EQ(rows.size(), 21U);  // both ends: t = 0 and t = 1
+    EXPECT_THAT(rows[0], testing::StartsWith("0,0,50,0.10000000000000001,49,0.20000000000000001,48,"));
+    EXPECT_THAT(rows[1], testing::StartsWith("0.050000000000000003,0,50,"));
+    EXPECT_THAT(rows[20], testing::StartsWith("1,0,50,"));
+    EXPECT_EQ(std::count(rows[20].begin(), rows[20].end(), ','), 80);
+}
+
+TEST_F(Output, SimulateToStandardOutputIsTheSameText) {
+    ASSERT_EQ(run_corda({"simulate", scene_, "-o", folder_.file("out.csv")}).exit_code, 0);
+    EXPECT_EQ(run_corda({"simulate", scene_, "-o", "-"}).out, test::read_file(folder_.file("out.csv")));
+    EXPECT_EQ(run_corda({"simulate", scene_, "-o", "-", "--json"}).exit_code, 2);
+}
+
+TEST_F(Output, SimulateJsonCarriesTheFigures) {
+    const auto result = run_corda({"simulate", scene_, "--json", "-q"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    const json figures = json::parse(result.out);
+    EXPECT_EQ(figures["schema"], 1);
+    EXPECT_EQ(figures["method"], "relaxation");
+    EXPECT_EQ(figures["particles"], 40);
+    EXPECT_EQ(figures["bars"], 252);
+    EXPECT_EQ(figures["links"], 39);
+    EXPECT_EQ(figures["steps"], 20);
+    EXPECT_GT(figures["wall_s"], 0.0);
+    EXPECT_GT(figures["max_strain"], 0.0);
+    EXPECT_TRUE(figures["energy_error"].is_number());
+    for (const char* key : {"error_bound_m", "error_bound_px", "horizon_s"})
+        EXPECT_TRUE(figures.at(key).is_null()) << key;
+}
+
+TEST_F(Output, SimulateNeedsNoOpenGl) {
+    EXPECT_EQ(
+        run_corda({"simulate", scene_}, "CORDA_BACKEND=device:63 __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null")
+            .exit_code,
+        0);
+}
+
+TEST_F(Output, RenderJsonCarriesTheFigures) {
+    const auto result = run_corda({"render", scene_, "-o", video_, "--json"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const json figures = json::parse(result.out);
+    EXPECT_EQ(figures["schema"], 1);
+    EXPECT_EQ(figures["output"], video_);
+    EXPECT_EQ(figures["frames"], 20);
+    EXPECT_GT(figures["wall_s"], 0.0);
+    EXPECT_EQ(figures["fps"], 20.0);
+    EXPECT_EQ(figures["method"], "relaxation");
+    EXPECT_EQ(figures["encoder"], "libx264");
+    EXPECT_EQ(figures["bars"], 252);
+    EXPECT_FALSE(figures["gl_renderer"].get<std::string>().empty());
+}
+
+TEST_F(Output, ProgressIsALineEveryTenPercentWithoutATerminal) {
+    const auto result = run_corda({"render", scene_, "-o", video_});
+    std::size_t lines = 0;
+    for (std::size_t at = result.err.find(" % ("); at != std::string::npos;
+         at = result.err.find(" % (", at + 1))
+        ++lines;
+    EXPECT_EQ(lines, 10U) << result.err;
+    EXPECT_THAT(result.err, Not(HasSubstr("\x1b")));
+}
+
+TEST_F(Output, ProgressIsABarOnATerminal) {
+    const std::string inner = test::quoted(CORDA_PROGRAM) + " render " + scene_ + " -o " + video_;
+    const auto result = test::run_shell("script -qec " + test::quoted(inner) + " /dev/null");
+    EXPECT_EQ(result.exit_code, 0) << result.out;
+    EXPECT_THAT(result.out, HasSubstr("[##############################] 100 % 20/20"));
+}
+
+TEST_F(Output, NoColorIsObeyed) {
+    const std::string inner = test::quoted(CORDA_PROGRAM) + " simulate " + folder_.file("none.toml");
+    const std::string script = "script -qec " + test::quoted(inner) + " /dev/null";
+    EXPECT_THAT(test::run_shell("unset NO_COLOR; " + script).out, HasSubstr("\x1b[31merror"));
+    EXPECT_THAT(test::run_shell("export NO_COLOR=1; " + script).out, Not(HasSubstr("\x1b[31m")));
+}
+
+TEST_F(Output, QuietSaysNothingButErrors) {
+    const auto result = run_corda({"render", scene_, "-o", video_, "-q"});
+    EXPECT_EQ(result.err, "");
+    EXPECT_EQ(result.out, video_ + "\n");
+    EXPECT_THAT(run_corda({"render", scene_, "-o", video_, "-q"}).err, HasSubstr("--force"));
+}
+
+TEST_F(Output, VerboseNamesTheRenderer) {
+    EXPECT_THAT(run_corda({"still", scene_, "--at", "0", "-o", folder_.file("a.png"), "-v"}).err,
+                HasSubstr("OpenGL"));
+}
+
+TEST_F(Output, DryRunWritesNothingAndNeedsNoOpenGl) {
+    const auto result = run_corda({"render", scene_, "-o", video_, "--dry-run"}, "CORDA_BACKEND=device:63");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("20 frames of 64x64 at 20 a second"));
+    EXPECT_EQ(run_corda({"simulate", scene_, "-o", folder_.file("out.csv"), "--dry-run"}).exit_code, 0);
+    EXPECT_EQ(run_corda({"still", scene_, "--at", "0", "-o", folder_.file("stills"), "--dry-run"}).exit_code,
+              0);
+    EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});
+}
+
+TEST_F(Output, CompareSaysHowFarApart) {
+    ASSERT_EQ(run_corda({"still", scene_, "--at", "0", "-o", folder_.file("a.png")}).exit_code, 0);
+    ASSERT_EQ(run_corda({"still", scene_, "--at", "0", "-o", folder_.file("b.png"), "--set",
+                         "style.rope_width_px=9"})
+                  .exit_code,
+              0);
+    const auto same =
+        json::parse(run_corda({"compare", folder_.file("a.png"), folder_.file("a.png"), "--json"}).out);
+    EXPECT_EQ(same["equal"], true);
+    EXPECT_EQ(same["max"], 0);
+    EXPECT_EQ(same["share"], 0.0);
+    const auto result = run_corda(
+        {"compare", folder_.file("a.png"), folder_.file("b.png"), "--json", "--diff", folder_.file("d.png")});
+    EXPECT_EQ(result.exit_code, 7);
+    const json other = json::parse(result.out);
+    EXPECT_EQ(other["equal"], false);
+    EXPECT_GT(other["max"], 0);
+    EXPECT_GT(other["mean"], 0.0);
+    EXPECT_GT(other["share"], 0.0);
+    EXPECT_LT(other["share"], 1.0);
+    EXPECT_FALSE(test::read_file(folder_.file("d.png")).empty());
+}
+
+TEST_F(Output, DoctorTellsWhatThisMachineCanDo) {
+    const auto result = run_corda({"doctor", "--json"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const json report = json::parse(result.out);
+    EXPECT_EQ(report["can_draw"], true);
+    EXPECT_EQ(report["can_write_mp4"], true);
+    ASSERT_FALSE(report["contexts"].empty());
+    for (const json& context : report["contexts"]) {
+        const char* key = context["usable"] == true ? "gl_renderer" : "reason";
+        EXPECT_FALSE(context[key].get<std::string>().empty()) << context;
+    }
+    for (const json& encoder : report["encoders"]) {
+        EXPECT_EQ(encoder["usable"] == true, encoder["reason"].get<std::string>().empty()) << encoder;
+    }
+    EXPECT_THAT(run_corda({"doctor"}).out, HasSubstr("This machine can draw."));
+}
+
+TEST_F(Output, DoctorSaysWhyThereIsNoOpenGl) {
+    const auto result = run_corda({"doctor"}, "__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null");
+    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_THAT(result.out, HasSubstr("  no   EGL"));
+    EXPECT_THAT(result.out, HasSubstr("This machine cannot draw"));
+}
+
+}  // namespace
+}  // namespace corda

@@ -1,0 +1,219 @@
+// Videos and stills of the program, opened again.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "corda/gl/context.hpp"
+#include "corda/media/png.hpp"
+#include "corda/render/frame_renderer.hpp"
+#include "corda/scene/player.hpp"
+#include "support/command.hpp"
+#include "support/decode_video.hpp"
+#include "support/image_matchers.hpp"
+#include "support/yuv_figures.hpp"
+
+namespace corda {
+namespace {
+
+using nlohmann::json;
+using test::run_corda;
+using test::ScratchFolder;
+
+const char* const kScene = R"(schema = 1
+[world]
+duration = 1.0
+[[rope]]
+hang = { links = 20, length = 1.0, angle_deg = 60.0 }
+[solver]
+method = "relaxation"
+step = 0.005
+reach = 1
+sweeps = 30
+[video]
+size = [320, 180]
+fps = 30
+)";
+
+/// Wide bars of one colour each, all pinned, on grey: patches whose decoded colour is known.
+const char* const kPatches = R"(schema = 1
+[world]
+duration = 0.5
+[[rope]]
+points = [[0.0, 3.0], [8.0, 3.0]]
+pinned = [0, 1]
+color = "#ff0000"
+[[rope]]
+points = [[0.0, 2.0], [8.0, 2.0]]
+pinned = [0, 1]
+color = "#00ff00"
+[[rope]]
+points = [[0.0, 1.0], [8.0, 1.0]]
+pinned = [0, 1]
+color = "#0000ff"
+[style]
+background = "#808080"
+rope_width_px = 40.0
+markers = "none"
+[camera]
+center = [4.0, 2.0]
+height = 5.0
+[video]
+size = [640, 360]
+fps = 30
+)";
+
+class Video : public testing::Test {
+  protected:
+    ScratchFolder folder_;
+    std::string scene_ = folder_.write("scene.toml", kScene);
+    std::string video_ = folder_.file("out.mp4");
+};
+
+class VideoTimes
+    : public Video,
+      public testing::WithParamInterface<std::tuple<const char*, int, std::int64_t, std::int64_t>> {};
+
+TEST_P(VideoTimes, AreExact) {
+    const auto [rate, frames, num, den] = GetParam();
+    ASSERT_EQ(run_corda({"render", scene_, "-o", video_, "--fps", rate, "--duration", "2"}).exit_code, 0);
+    const auto probe = test::run_shell(
+        "ffprobe -v error -count_frames -of json -show_format -show_streams -show_entries frame=pts " +
+        video_);
+    const json report = json::parse(probe.out);
+    const json& stream = report["streams"][0];
+    EXPECT_EQ(stream["nb_read_frames"], std::to_string(frames));
+    EXPECT_EQ(stream["nb_frames"], std::to_string(frames));
+    EXPECT_EQ(stream["r_frame_rate"], std::to_string(num) + "/" + std::to_string(den));
+    EXPECT_EQ(stream["avg_frame_rate"], std::to_string(num) + "/" + std::to_string(den));
+    EXPECT_EQ(stream["time_base"], "1/" + std::to_string(num));
+    EXPECT_EQ(stream["duration_ts"], frames * den);
+    EXPECT_EQ(stream["start_pts"], 0);
+    EXPECT_NEAR(std::stod(report["format"]["duration"].get<std::string>()),
+                static_cast<double>(frames * den) / static_cast<double>(num), 1e-6);
+    ASSERT_EQ(report["frames"].size(), static_cast<std::size_t>(frames));
+    for (int k = 0; k < frames; ++k) ASSERT_EQ(report["frames"][static_cast<std::size_t>(k)]["pts"], k * den);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rates, VideoTimes,
+                         testing::Values(std::tuple{"60", 120, 60, 1}, std::tuple{"25", 50, 25, 1},
+                                         std::tuple{"30000/1001", 60, 30000, 1001},
+                                         std::tuple{"24000/1001", 48, 24000, 1001}));
+
+TEST_F(Video, IsTaggedForBrowsers) {
+    ASSERT_EQ(run_corda({"render", scene_, "-o", video_}).exit_code, 0);
+    const auto probe = test::run_shell("ffprobe -v error -of json -show_streams " + video_);
+    const json stream = json::parse(probe.out)["streams"][0];
+    EXPECT_EQ(stream["codec_name"], "h264");
+    EXPECT_EQ(stream["profile"], "High");
+    EXPECT_EQ(stream["pix_fmt"], "yuv420p");
+    EXPECT_EQ(stream["color_range"], "tv");
+    EXPECT_EQ(stream["color_space"], "bt709");
+    EXPECT_EQ(stream["color_primaries"], "bt709");
+    EXPECT_EQ(stream["color_transfer"], "iec61966-2-1");
+    EXPECT_EQ(stream["chroma_location"], "left");
+    const std::string bytes = test::read_file(video_);
+    EXPECT_LT(bytes.find("moov"), bytes.find("mdat"));  // faststart
+    EXPECT_EQ(run_corda({"verify", video_}).exit_code, 0);
+}
+
+TEST_F(Video, LeavesNothingButTheVideo) {
+    ASSERT_EQ(run_corda({"render", scene_, "-o", video_}).exit_code, 0);
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.mp4", "scene.toml"}));
+}
+
+TEST_F(Video, KeepsPureColoursAndTheFirstFrame) {
+    const std::string patches = folder_.write("patches.toml", kPatches);
+    ASSERT_EQ(run_corda({"render", patches, "-o", video_}).exit_code, 0);
+    ASSERT_EQ(run_corda({"still", patches, "--frame", "0", "-o", folder_.file("first.png")}).exit_code, 0);
+    const test::DecodedFrames decoded = test::decode_video(video_);
+    ASSERT_EQ(decoded.pictures.size(), 15U);
+    struct Patch {
+        int y;
+        std::array<double, 3> rgb;
+    };
+    // The ropes' middles: 72 px a metre; grey between the picture's edge and the first one.
+    for (const Patch& patch : {Patch{108, {255, 0, 0}}, Patch{180, {0, 255, 0}}, Patch{252, {0, 0, 255}},
+                               Patch{40, {128, 128, 128}}}) {
+        const std::array<double, 3> rgb = test::rgb_at(decoded.pictures[0], 320, patch.y);
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(rgb[c], patch.rgb[c], 2.0) << "row " << patch.y << " channel " << c;
+    }
+    EXPECT_GE(test::luma_psnr_db(decoded.pictures[0], media::read_png(folder_.file("first.png"))), 40.0);
+}
+
+TEST_F(Video, OfAMovingRopeKeepsItsFirstFrame) {
+    ASSERT_EQ(run_corda({"render", scene_, "-o", video_}).exit_code, 0);
+    ASSERT_EQ(run_corda({"still", scene_, "--frame", "0", "-o", folder_.file("first.png")}).exit_code, 0);
+    const test::DecodedFrames decoded = test::decode_video(video_);
+    EXPECT_GE(test::luma_psnr_db(decoded.pictures[0], media::read_png(folder_.file("first.png"))), 40.0);
+}
+
+TEST_F(Video, IsTheSameBytesOnEveryRunAndThreadCount) {
+    std::vector<std::string> videos;
+    for (const char* threads : {"", "LP_NUM_THREADS=0", "LP_NUM_THREADS=1", "LP_NUM_THREADS=2"}) {
+        ASSERT_EQ(run_corda({"render", scene_, "-o", video_, "--force"}, threads).exit_code, 0);
+        videos.push_back(test::read_file(video_));
+        EXPECT_EQ(videos.back(), videos.front()) << threads;
+    }
+}
+
+TEST_F(Video, FramesTakeAPartOfIt) {
+    ASSERT_EQ(run_corda({"render", scene_, "-o", video_, "--frames", "10:15"}).exit_code, 0);
+    ASSERT_EQ(run_corda({"still", scene_, "--frame", "10", "-o", folder_.file("tenth.png")}).exit_code, 0);
+    const test::DecodedFrames decoded = test::decode_video(video_);
+    ASSERT_EQ(decoded.pictures.size(), 5U);
+    EXPECT_GE(test::luma_psnr_db(decoded.pictures[0], media::read_png(folder_.file("tenth.png"))), 40.0);
+}
+
+TEST_F(Video, StillsAreTheFramesBeforeEncodingByteForByte) {
+    ASSERT_EQ(run_corda({"still", scene_, "--at", "0,0.1,0.5,0.7333333333333333", "-o", folder_.file("at")})
+                  .exit_code,
+              0);
+    ASSERT_EQ(run_corda({"still", scene_, "--frame", "22", "-o", folder_.file("frame.png")}).exit_code, 0);
+    // The video's frames, drawn one after the other as render does.
+    const scene::Scene scene = scene::load_scene(scene_);
+    scene::Player player(scene);
+    const gl::Context context;
+    render::FrameRenderer renderer(320, 180);
+    const std::map<int, std::string> stills{
+        {0, "0000.000000"}, {3, "0000.100000"}, {15, "0000.500000"}, {22, "0000.733333"}};
+    for (int k = 0; k <= 22; ++k) {
+        renderer.render(player.at(scene.video.fps.time_s(k)));
+        if (!stills.contains(k)) continue;
+        const std::string path = folder_.file("at/scene_t" + stills.at(k) + ".png");
+        EXPECT_TRUE(test::equal_images(media::read_png(path), renderer.image())) << path;
+    }
+    EXPECT_TRUE(test::equal_images(media::read_png(folder_.file("frame.png")), renderer.image()));
+}
+
+TEST_F(Video, StillsSayWhatTheyShow) {
+    ASSERT_EQ(run_corda({"still", scene_, "--at", "0.3", "-o", folder_.file("a.png"), "--ppi", "300",
+                         "--size", "65x33"})
+                  .exit_code,
+              0);
+    const media::PngInfo info = media::read_png_info(folder_.file("a.png"));
+    EXPECT_THAT(info.text, testing::Contains(testing::Pair("Scene", "scene")));
+    EXPECT_THAT(info.text, testing::Contains(testing::Pair("Time", "0.3 s")));
+    EXPECT_NEAR(info.pixels_per_inch, 300.0, 0.02);
+    EXPECT_EQ(media::read_png(folder_.file("a.png")).width(), 65);
+    const std::string bytes = test::read_file(folder_.file("a.png"));
+    EXPECT_NE(bytes.find("sRGB"), std::string::npos);
+    EXPECT_NE(bytes.find("pHYs"), std::string::npos);
+}
+
+TEST_F(Video, StillsAreTheSameBytesOnEveryRunAndThreadCount) {
+    std::vector<std::string> stills;
+    for (const char* threads : {"", "LP_NUM_THREADS=0", "LP_NUM_THREADS=1", "LP_NUM_THREADS=2"}) {
+        ASSERT_EQ(run_corda({"still", scene_, "--at", "0.5", "-o", folder_.file("a.png"), "--force"}, threads)
+                      .exit_code,
+                  0);
+        stills.push_back(test::read_file(folder_.file("a.png")));
+        EXPECT_EQ(stills.back(), stills.front()) << threads;
+    }
+}
+
+}  // namespace
+}  // namespace corda

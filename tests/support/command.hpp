@@ -1,0 +1,48 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace corda::test {
+
+/// What a finished command left behind.
+struct CommandResult {
+    int exit_code = -1;  ///< 128 + the signal where one ended it
+    std::string out;
+    std::string err;
+};
+
+/// Runs a command with bash and waits for it.
+[[nodiscard]] CommandResult run_shell(const std::string& command);
+
+/// `text` as one word of a shell command.
+[[nodiscard]] std::string quoted(const std::string& text);
+
+/// Runs the corda program that was built with the tests; `environment` is put before it, e.g.
+/// "LP_NUM_THREADS=1".
+[[nodiscard]] CommandResult run_corda(const std::vector<std::string>& arguments,
+                                      const std::string& environment = "");
+
+/// A folder of its own for a test, removed with all in it.
+class ScratchFolder {
+  public:
+    ScratchFolder();
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+    ~ScratchFolder();
+
+    [[nodiscard]] std::string file(const std::string& name) const { return path_ + "/" + name; }
+    [[nodiscard]] const std::string& path() const { return path_; }
+    /// Writes a file and returns its path.
+    [[nodiscard]] std::string write(const std::string& name, const std::string& text) const;
+    /// Names of the files in it, sorted.
+    [[nodiscard]] std::vector<std::string> files() const;
+
+  private:
+    std::string path_;
+};
+
+/// The bytes of a file; empty where there is none.
+[[nodiscard]] std::string read_file(const std::string& path);
+
+}  // namespace corda::test

@@ -1,0 +1,79 @@
+#include "corda/sim/system.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "support/ropes.hpp"
+
+namespace corda::sim {
+namespace {
+
+TEST(BarCount, IsTheReportsSevenTimesNLessTwentyEight) {
+    EXPECT_EQ(bar_count(20, 7), 112U);
+    EXPECT_EQ(bar_count(40, 7), 252U);
+    EXPECT_EQ(bar_count(80, 7), 532U);
+    EXPECT_EQ(bar_count(100, 7), 672U);
+}
+
+TEST(BarCount, AReachBeyondTheRopeAddsNothing) {
+    EXPECT_EQ(bar_count(3, 7), 3U);
+    EXPECT_EQ(bar_count(2, 1), 1U);
+    EXPECT_EQ(bar_count(5, 4), bar_count(5, 1000));
+}
+
+TEST(System, HasTheBarsThatBarCountPromises) {
+    for (const int particles : {2, 3, 7, 8, 20, 100}) {
+        for (const int reach : {1, 2, 7, 10}) {
+            const RopeDef rope = test::report_rope(particles);
+            const System system = build_system({&rope, 1}, reach);
+            EXPECT_EQ(system.bars.size(), bar_count(particles, reach))
+                << particles << " particles, reach " << reach;
+            EXPECT_EQ(system.link_count(), static_cast<std::size_t>(particles - 1));
+        }
+    }
+}
+
+TEST(System, OrdersBarsByReachAndThenAlongTheRope) {
+    const RopeDef rope = test::report_rope(4);
+    const System system = build_system({&rope, 1}, 2);
+    ASSERT_EQ(system.bars.size(), 5U);
+    const std::array<std::array<unsigned, 3>, 5> expected{
+        {{0, 1, 1}, {1, 2, 1}, {2, 3, 1}, {0, 2, 2}, {1, 3, 2}}};
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        EXPECT_EQ(system.bars[i].a, expected[i][0]);
+        EXPECT_EQ(system.bars[i].b, expected[i][1]);
+        EXPECT_EQ(system.bars[i].reach, expected[i][2]);
+    }
+}
+
+TEST(System, SharesItsArraysAmongRopes) {
+    RopeDef first = test::straight_rope(3, 3.0, 0.0);
+    RopeDef second = test::straight_rope(2, 1.0, 90.0);
+    first.origin_m = {10.0, 20.0};
+    second.origin_m = {11.0, 20.0};
+    second.payload_kg = 5.0;
+    second.pinned = {1};
+    second.velocity_m_s = {{1.0, 2.0}, {3.0, 4.0}, {5.0, 6.0}};
+    const std::array<RopeDef, 2> ropes{first, second};
+    const System system = build_system(ropes, 1);
+    ASSERT_EQ(system.particle_count(), 7U);
+    ASSERT_EQ(system.bars.size(), 5U);
+    EXPECT_EQ(system.origin_m, (Vec2{10.0, 20.0}));
+    EXPECT_EQ(system.x_m[4], 1.0);  // the second rope stands 1 m to the right of the first one's origin
+    EXPECT_EQ(system.ropes[1].first_particle, 4U);
+    EXPECT_EQ(system.bars[3].a, 4U);
+    EXPECT_EQ(system.mass_kg[6], 6.0);
+    EXPECT_TRUE(system.is_pinned(5));
+    EXPECT_EQ(system.vx_m_s[5], 0.0);  // a pinned particle has no velocity
+    EXPECT_EQ(system.vy_m_s[6], 6.0);
+    EXPECT_EQ(system.inverse_mass_1_kg[6], 1.0 / 6.0);
+}
+
+TEST(Method, NamesAreReadBack) {
+    for (const std::string_view name : method_names()) EXPECT_EQ(method_name(*parse_method(name)), name);
+    EXPECT_FALSE(parse_method("magic").has_value());
+}
+
+}  // namespace
+}  // namespace corda::sim

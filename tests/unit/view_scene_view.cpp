@@ -1,0 +1,94 @@
+#include "corda/view/scene_view.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "corda/core/error.hpp"
+#include "support/ropes.hpp"
+
+namespace corda::view {
+namespace {
+
+struct Drawn {
+    DrawList list;
+    double clearance_px = 0.0;
+};
+
+Drawn draw(const std::vector<sim::RopeDef>& ropes, const StyleDef& style,
+           std::vector<RopeStyleDef> styles = {}) {
+    const sim::System system = sim::build_system(ropes, 3);
+    styles.resize(ropes.size());
+    const SceneView view(system, style, styles, 200, 100);
+    const sim::State state{0.0, system.x_m, system.y_m};
+    MotionBounds bounds;
+    bounds.include(state);
+    const Camera camera({}, system.origin_m, bounds, 200, 100, view.clearance_px());
+    Drawn drawn;
+    drawn.clearance_px = view.clearance_px();
+    view.draw(state, camera, drawn.list);
+    return drawn;
+}
+
+StyleDef plain() {
+    StyleDef style;
+    style.markers = Markers::kNone;
+    style.rope_width_px = 4.0;
+    return style;
+}
+
+TEST(SceneView, APlainRopeIsOneLayerOfItsLinks) {
+    const Drawn drawn = draw({test::straight_rope(5, 1.0, 30.0)}, plain());
+    ASSERT_EQ(drawn.list.layers.size(), 1U);
+    EXPECT_EQ(drawn.list.layers[0].capsule_count, 5U);
+    EXPECT_EQ(drawn.list.capsules[0].radius, 2.0F);
+    EXPECT_EQ(drawn.clearance_px, 2.0);
+}
+
+TEST(SceneView, RopesOfOneColourShareALayer) {
+    StyleDef style = plain();
+    style.palette = {Color{1, 2, 3, 255}, Color{4, 5, 6, 255}};
+    const std::vector<sim::RopeDef> ropes(4, test::straight_rope(2, 1.0, 30.0));
+    EXPECT_EQ(draw(ropes, style).list.layers.size(), 2U);
+    // A rope of its own colour uses none of the palette up.
+    std::vector<RopeStyleDef> styles(4);
+    styles[0].color = Color{9, 9, 9, 255};
+    const Drawn drawn = draw(ropes, style, styles);
+    ASSERT_EQ(drawn.list.layers.size(), 3U);
+    EXPECT_EQ(drawn.list.layers[1].color, (Color{1, 2, 3, 255}));
+    EXPECT_EQ(drawn.list.layers[1].capsule_count, 4U);
+}
+
+TEST(SceneView, BarsAndMarkersHaveLayersOfTheirOwn) {
+    StyleDef style = plain();
+    style.markers = Markers::kAll;
+    style.bars = Bars::kAll;
+    const Drawn drawn = draw({test::straight_rope(5, 1.0, 30.0)}, style);
+    ASSERT_EQ(drawn.list.layers.size(), 5U);
+    EXPECT_EQ(drawn.list.layers[0].color, style.imaginary_bar_color);
+    EXPECT_EQ(drawn.list.layers[0].capsule_count, 4U + 3U);  // reach 2 and 3 among 6 particles
+    EXPECT_EQ(drawn.list.layers[2].color, style.real_bar_color);
+    EXPECT_EQ(drawn.list.layers[2].capsule_count, 5U);
+    EXPECT_EQ(drawn.list.layers[3].capsule_count, 5U);  // free particles
+    EXPECT_EQ(drawn.list.layers[4].capsule_count, 1U);  // the pinned one on top
+    EXPECT_EQ(drawn.list.layers[4].color, style.pinned_color);
+}
+
+TEST(SceneView, TheRopesStayInsideThePicture) {
+    const Drawn drawn = draw({test::straight_rope(5, 1.0, 30.0)}, plain());
+    EXPECT_GT(drawn.list.bounds.x0, 0);
+    EXPECT_GT(drawn.list.bounds.y0, 0);
+    EXPECT_LT(drawn.list.bounds.x1, 200);
+    EXPECT_LT(drawn.list.bounds.y1, 100);
+}
+
+TEST(SceneView, RefusesMoreColoursThanLayers) {
+    const std::vector<sim::RopeDef> ropes(kMaxLayers + 1, test::straight_rope(1, 1.0, 0.0));
+    std::vector<RopeStyleDef> styles(ropes.size());
+    for (std::size_t i = 0; i < styles.size(); ++i)
+        styles[i].color = Color{static_cast<std::uint8_t>(i), 0, 0, 255};
+    EXPECT_THROW(draw(ropes, plain(), styles), Error);
+}
+
+}  // namespace
+}  // namespace corda::view
