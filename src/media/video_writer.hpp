@@ -39,8 +39,8 @@ void check_video_def(const VideoDef& def);
 /// What stands in the file beside the pictures.
 struct VideoMetadata {
     std::string title;
-    /// Compact JSON that `verify` reads back; VideoWriter adds "frames", "fps" and "patches" to it (see
-    /// verify.hpp).
+    /// Compact JSON that `verify` reads back; VideoWriter adds "frames", "fps", "crf" and "patches" to it
+    /// (see verify.hpp).
     std::string comment_json = "{}";
 };
 

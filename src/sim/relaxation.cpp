@@ -58,7 +58,7 @@ Relaxation::Relaxation(const System& system, const WorldDef& world, const Solver
     }
 }
 
-void Relaxation::advance_to(double time_s, State& state) {
+Status Relaxation::advance_to(double time_s, State& state) {
     const double steps = time_s / step_s_;
     const double nearest = std::round(steps);
     const bool on_grid = std::abs(steps - nearest) <= kGridTolerance * std::max(1.0, nearest);
@@ -72,6 +72,7 @@ void Relaxation::advance_to(double time_s, State& state) {
     } else {
         interpolate(steps - std::floor(steps), state);
     }
+    return Status::kOk;
 }
 
 void Relaxation::step() {

@@ -28,7 +28,7 @@ class Relaxation final : public Solver {
   public:
     Relaxation(const System& system, const WorldDef& world, const SolverDef& def, double default_step_s);
 
-    void advance_to(double time_s, State& state) override;
+    Status advance_to(double time_s, State& state) override;
     [[nodiscard]] double energy_j() const override;
     [[nodiscard]] double energy_scale_j() const override;
     [[nodiscard]] bool conserves_energy() const override { return keep_ == 1.0; }

@@ -56,8 +56,7 @@ Simulation::Simulation(System system, const WorldDef& world, const SolverDef& so
 
 Status Simulation::advance_to(double time_s) {
     assert(time_s >= state_.time_s);
-    solver_->advance_to(time_s, next_);
-    if (!is_sound(next_)) return Status::kDiverged;
+    if (solver_->advance_to(time_s, next_) == Status::kDiverged || !is_sound(next_)) return Status::kDiverged;
     std::swap(state_, next_);
     observe();
     return Status::kOk;

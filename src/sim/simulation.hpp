@@ -9,9 +9,6 @@
 
 namespace corda::sim {
 
-/// Whether a run can go on. A run that diverged keeps the last good state.
-enum class [[nodiscard]] Status{kOk, kDiverged};
-
 /// What a run has shown of itself, over the times that were asked for.
 struct Diagnostics {
     std::uint64_t steps = 0;

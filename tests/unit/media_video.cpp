@@ -213,6 +213,15 @@ TEST_F(Video, DamagedFramesEqualWholeOnes) {
     EXPECT_EQ(bytes_of(file("a.mp4")), bytes_of(file("b.mp4")));
 }
 
+TEST_F(Video, TheFirstFrameIsTakenWholeAndAnEmptyDamageRepeatsIt) {
+    for (const PixelRect damage : {PixelRect{0, 0, kWidth, kHeight}, PixelRect{}}) {
+        VideoWriter writer(file(damage.empty() ? "b.mp4" : "a.mp4"), small_video(), {});
+        for (int k = 0; k < 5; ++k) writer.write(frame_image(0), damage);
+        writer.finish();
+    }
+    EXPECT_EQ(bytes_of(file("a.mp4")), bytes_of(file("b.mp4")));
+}
+
 TEST_F(Video, SameBytesOnTwoRuns) {
     make_video(file("a.mp4"), small_video(), 60);
     make_video(file("b.mp4"), small_video(), 60);
