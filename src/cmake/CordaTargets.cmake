@@ -19,6 +19,13 @@ if(CORDA_SANITIZE)
     target_link_options(corda_options INTERFACE -fsanitize=address,undefined)
 endif()
 
+# corda_link_sanitizer(<executable>): what an executable needs for readable reports, under CORDA_SANITIZE alone.
+function(corda_link_sanitizer target)
+    if(CORDA_SANITIZE)
+        target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support/keep_modules.cpp)
+    endif()
+endfunction()
+
 # corda_add_library(<folder> SOURCES <files> [PUBLIC <targets>] [PRIVATE <targets>])
 function(corda_add_library folder)
     cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})

@@ -7,6 +7,8 @@
 #include <initializer_list>
 #include <span>
 
+#include "corda/sim/system.hpp"
+
 namespace corda::scene {
 namespace {
 
@@ -24,10 +26,9 @@ struct Place {
     sections.ropes.front().fail(problem);
 }
 
-/// Bars between the next 1..reach particles: the sum of (particles - k).
-std::int64_t bars_of(std::int64_t particles, std::int64_t reach) {
-    const std::int64_t longest = std::min(reach, particles - 1);
-    return longest * particles - longest * (longest + 1) / 2;
+std::int64_t bars_of(std::int64_t particles, int reach) {
+    return static_cast<std::int64_t>(
+        sim::bar_count(static_cast<std::uint64_t>(particles), static_cast<std::uint64_t>(reach)));
 }
 
 void check_frames(const Sections& sections, const Scene& scene) {

@@ -65,6 +65,13 @@ size = [640, 360]
 fps = 30
 )";
 
+/// llvmpipe with so many threads. Its threads and LeakSanitizer's own do not agree at exit (it crashes now
+/// and then), so leaks are looked for in the other tests.
+std::vector<std::string> thread_counts() {
+    return {"", "ASAN_OPTIONS=detect_leaks=0 LP_NUM_THREADS=0",
+            "ASAN_OPTIONS=detect_leaks=0 LP_NUM_THREADS=1", "ASAN_OPTIONS=detect_leaks=0 LP_NUM_THREADS=2"};
+}
+
 class Video : public testing::Test {
   protected:
     ScratchFolder folder_;
@@ -153,7 +160,7 @@ TEST_F(Video, OfAMovingRopeKeepsItsFirstFrame) {
 
 TEST_F(Video, IsTheSameBytesOnEveryRunAndThreadCount) {
     std::vector<std::string> videos;
-    for (const char* threads : {"", "LP_NUM_THREADS=0", "LP_NUM_THREADS=1", "LP_NUM_THREADS=2"}) {
+    for (const std::string& threads : thread_counts()) {
         ASSERT_EQ(run_corda({"render", scene_, "-o", video_, "--force"}, threads).exit_code, 0);
         videos.push_back(test::read_file(video_));
         EXPECT_EQ(videos.back(), videos.front()) << threads;
@@ -162,7 +169,8 @@ TEST_F(Video, IsTheSameBytesOnEveryRunAndThreadCount) {
 
 TEST_F(Video, FramesTakeAPartOfIt) {
     ASSERT_EQ(run_corda({"render", scene_, "-o", video_, "--frames", "10:15"}).exit_code, 0);
-    ASSERT_EQ(run_corda({"still", scene_, "--frame", "10", "-o", folder_.file("tenth.png")}).exit_code, 0);
+    const auto still = run_corda({"still", scene_, "--frame", "10", "-o", folder_.file("tenth.png")});
+    ASSERT_EQ(still.exit_code, 0) << still.err;
     const test::DecodedFrames decoded = test::decode_video(video_);
     ASSERT_EQ(decoded.pictures.size(), 5U);
     EXPECT_GE(test::luma_psnr_db(decoded.pictures[0], media::read_png(folder_.file("tenth.png"))), 40.0);
@@ -206,7 +214,7 @@ TEST_F(Video, StillsSayWhatTheyShow) {
 
 TEST_F(Video, StillsAreTheSameBytesOnEveryRunAndThreadCount) {
     std::vector<std::string> stills;
-    for (const char* threads : {"", "LP_NUM_THREADS=0", "LP_NUM_THREADS=1", "LP_NUM_THREADS=2"}) {
+    for (const std::string& threads : thread_counts()) {
         ASSERT_EQ(run_corda({"still", scene_, "--at", "0.5", "-o", folder_.file("a.png"), "--force"}, threads)
                       .exit_code,
                   0);

@@ -4,4 +4,4 @@
 set -euo pipefail
 build=${1:?usage: tidy.sh BUILD_FOLDER}
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
-find src examples -name '*.cpp' -print0 | xargs -0 -n 4 -P "$(nproc)" clang-tidy -p "$build" --quiet
+find src examples -name '*.cpp' -print0 | xargs -0 -n 4 -P "$(nproc)" clang-tidy -p "$build" --quiet --extra-arg=-Wno-unknown-warning-option

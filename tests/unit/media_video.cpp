@@ -16,12 +16,6 @@
 #include "corda/media/yuv420.hpp"
 #include "support/decode_video.hpp"
 
-// libx265 3.5 keeps 1168 bytes for good when an encoder is opened and freed; no caller can free them.
-// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming)
-extern "C" const char* __lsan_default_suppressions() {
-    return "leak:libx265.so";
-}
-
 namespace corda::media {
 namespace {
 
