@@ -1,0 +1,465 @@
+#include "corda/sim/chain_dynamics.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <string>
+
+#include "corda/core/error.hpp"
+#include "corda/sim/distance.hpp"
+
+namespace corda::sim {
+namespace {
+
+/// A chain between two pins that is longer than their distance by less than this share of its length is taut:
+/// its tensions are not determined.
+constexpr double kTaut = 1e-12;
+
+/// Components of a direction and rates in 1/s below this size are set to zero after a step. A damped rope
+/// would bring them, and their products three at a time, to denormal numbers, which cost a hundred times as
+/// much; 1e-60 is far below all that can be seen in sums with numbers of the usual size.
+constexpr double kNegligible = 1e-60;
+
+/// Fractions are rescaled, by a power of two and so without rounding, before they grow out of range.
+constexpr double kLargeFraction = 0x1p+300;
+constexpr double kSmallFraction = 0x1p-300;
+
+/// Newton steps that close a chain between two pins, all with the first one's matrix: each leaves of what is
+/// open about the share by which a step missed, 1e-4 at the largest tolerance.
+constexpr int kClosingSteps = 4;
+
+double dot(Vec2 a, Vec2 b) {
+    return a.x * b.x + a.y * b.y;
+}
+
+/// A right angle to the left of it.
+Vec2 left_of(Vec2 a) {
+    return {-a.y, a.x};
+}
+
+double length_of(Vec2 a) {
+    return length(a.x, a.y);
+}
+
+Vec2 at(const std::vector<double>& x, const std::vector<double>& y, std::size_t i) {
+    return {x[i], y[i]};
+}
+
+/// The symmetric 2 x 2 system of a chain's closing: sum of a_i p_i p_i^T. A little of the identity is added,
+/// so that links that all lie in one line, which no turning moves along it, are left as they are.
+struct ClosingMatrix {
+    double xx = 0.0;
+    double xy = 0.0;
+    double yy = 0.0;
+
+    void add(double length_m, Vec2 across) {
+        xx += length_m * across.x * across.x;
+        xy += length_m * across.x * across.y;
+        yy += length_m * across.y * across.y;
+    }
+    [[nodiscard]] Vec2 solve(Vec2 right) const {
+        const double extra = 1e-14 * (xx + yy);
+        const double x1 = xx + extra;
+        const double y1 = yy + extra;
+        const double determinant = x1 * y1 - xy * xy;
+        return {(y1 * right.x - xy * right.y) / determinant, (x1 * right.y - xy * right.x) / determinant};
+    }
+};
+
+}  // namespace
+
+ChainDynamics::ChainDynamics(const System& system, const WorldDef& world)
+    : gravity_m_s2_(world.gravity_m_s2), drag_1_s_(world.drag_1_s), mass_kg_(system.mass_kg) {
+    for (const Bar& bar : system.bars) {
+        if (bar.reach == 1) continue;
+        throw Error(ExitCode::kInvalidScene,
+                    "method exact moves links between neighbours only, and this scene has bars of reach " +
+                        std::to_string(bar.reach) +
+                        ", which would make a rope a rigid rod; set reach = 1 or use method relaxation");
+    }
+    for (const RopeRange& rope : system.ropes) add_rope(system, rope);
+    const std::size_t links = length_m_.size();
+    for (std::vector<double>* array : {&cosine_, &sine_, &along_, &pivot_, &weight_, &tension_n_}) {
+        array->assign(links, 0.0);
+    }
+    initial_state_.assign(3 * links + extra_count_, 0.0);
+    double* const y = initial_state_.data();
+    for (Chain& chain : chains_) {
+        if (!chain.starts_pinned) chain.first_extra += 3 * links;
+        for (std::size_t i = 0; i < chain.link_count; ++i) {
+            const std::size_t before = i == 0 ? chain.first_particle : chain.particle(i - 1);
+            const Vec2 along =
+                at(system.x_m, system.y_m, chain.particle(i)) - at(system.x_m, system.y_m, before);
+            const double distance_m = length_of(along);
+            assert(distance_m > 0.0);
+            y[chain.first_link + i] = along.x / distance_m;
+            y[links + chain.first_link + i] = along.y / distance_m;
+        }
+        add_initial_velocities(system, chain, y);
+    }
+    settle(y);
+}
+
+void ChainDynamics::add_rope(const System& system, const RopeRange& rope) {
+    const std::size_t end = rope.first_particle + rope.particle_count;
+    std::vector<std::size_t> pinned;
+    double weight_n = 0.0;
+    double length_m = 0.0;
+    for (std::size_t i = rope.first_particle; i < end; ++i) {
+        if (system.is_pinned(i)) {
+            pinned.push_back(i);
+            mass_kg_[i] = 0.0;
+        }
+        weight_n += mass_kg_[i] * length_of(gravity_m_s2_);
+    }
+    for (std::size_t i = 0; i < rope.link_count; ++i) length_m += system.bars[rope.first_bar + i].rest_m;
+    energy_scale_j_ += weight_n * length_m;
+    if (pinned.empty()) {
+        add_chain(system, rope, rope.first_particle, end - 1);
+        return;
+    }
+    for (const std::size_t i : pinned) pins_.push_back({i, at(system.x_m, system.y_m, i), {}});
+    if (pinned.front() > rope.first_particle) add_chain(system, rope, pinned.front(), rope.first_particle);
+    for (std::size_t k = 1; k < pinned.size(); ++k) add_chain(system, rope, pinned[k - 1], pinned[k]);
+    if (pinned.back() < end - 1) add_chain(system, rope, pinned.back(), end - 1);
+}
+
+void ChainDynamics::add_chain(const System& system, const RopeRange& rope, std::size_t from, std::size_t to) {
+    Chain chain;
+    chain.first_link = length_m_.size();
+    chain.runs_backwards = to < from;
+    chain.link_count = chain.runs_backwards ? from - to : to - from;
+    chain.first_particle = from;
+    chain.starts_pinned = system.is_pinned(from);
+    chain.ends_pinned = system.is_pinned(to);
+    if (chain.starts_pinned && chain.ends_pinned && chain.link_count == 1) return;  // it never moves
+    const auto pin = [&](std::size_t particle) {
+        const auto is_it = [&](const Pin& it) { return it.particle == particle; };
+        return static_cast<std::size_t>(std::find_if(pins_.begin(), pins_.end(), is_it) - pins_.begin());
+    };
+    chain.start_pin = pin(from);
+    chain.end_pin = pin(to);
+    chain.start_m = at(system.x_m, system.y_m, from);
+    chain.span_m = at(system.x_m, system.y_m, to) - chain.start_m;
+    chain.inverse_mass_1_kg = system.inverse_mass_1_kg[from];
+    if (!chain.starts_pinned) {
+        chain.first_extra = extra_count_;
+        extra_count_ += 4;
+        energy_offset_j_ -= mass_kg_[from] * dot(gravity_m_s2_, chain.start_m);
+    }
+    double fastest_m_s = length_of(at(system.vx_m_s, system.vy_m_s, from));
+    for (std::size_t i = 0; i < chain.link_count; ++i) {
+        const std::size_t particle = chain.particle(i);
+        const std::size_t bar = (chain.runs_backwards ? particle : particle - 1) - rope.first_particle;
+        length_m_.push_back(system.bars[rope.first_bar + bar].rest_m);
+        inverse_length_1_m_.push_back(1.0 / length_m_.back());
+        inverse_mass_1_kg_.push_back(system.inverse_mass_1_kg[particle]);
+        chain.length_m += length_m_.back();
+        fastest_m_s = std::max(fastest_m_s, length_of(at(system.vx_m_s, system.vy_m_s, particle)));
+        energy_offset_j_ -= mass_kg_[particle] * dot(gravity_m_s2_, chain.start_m);
+    }
+    chain.rate_1_s =
+        std::max(std::sqrt(length_of(gravity_m_s2_) / chain.length_m), fastest_m_s / chain.length_m);
+    if (chain.rate_1_s == 0.0) chain.rate_1_s = 1.0;
+    if (chain.starts_pinned && chain.ends_pinned &&
+        chain.length_m - length_of(chain.span_m) <= kTaut * chain.length_m) {
+        throw Error(ExitCode::kInvalidScene,
+                    "method exact cannot work out the tensions of a rope that is taut between two pins "
+                    "(particles " +
+                        std::to_string(from) + " and " + std::to_string(to) + ", " +
+                        std::to_string(chain.length_m) +
+                        " m apart); move the pins closer together or pin the particles between them too");
+    }
+    chains_.push_back(chain);
+}
+
+void ChainDynamics::add_initial_velocities(const System& system, const Chain& chain, double* y) {
+    const std::size_t links = link_count();
+    const auto velocity = [&](std::size_t particle) { return at(system.vx_m_s, system.vy_m_s, particle); };
+    measure_turns(chain, y);
+    // The impulses follow from the same equations as the tensions, with velocities for accelerations.
+    Vec2 before = velocity(chain.first_particle);
+    for (std::size_t i = 0; i < chain.link_count; ++i) {
+        const std::size_t link = chain.first_link + i;
+        const Vec2 after = velocity(chain.particle(i));
+        const Vec2 direction{y[link], y[links + link]};
+        along_[link] = dot(direction, after - before);
+        y[2 * links + link] = dot(left_of(direction), after - before);
+        before = after;
+    }
+    solve_tensions(chain);
+    for (std::size_t i = 0; i < chain.link_count; ++i) {
+        const std::size_t link = chain.first_link + i;
+        y[2 * links + link] = (y[2 * links + link] + pull_across(chain, i)) * inverse_length_1_m_[link];
+    }
+    if (chain.starts_pinned) return;
+    const std::size_t first = chain.first_link;
+    const Vec2 start = velocity(chain.first_particle);
+    const double impulse = chain.inverse_mass_1_kg * tension_n_[first];
+    y[chain.first_extra + 2] = start.x + impulse * y[first];
+    y[chain.first_extra + 3] = start.y + impulse * y[links + first];
+}
+
+std::vector<ErrorScale> ChainDynamics::error_scales() const {
+    std::vector<ErrorScale> scales;
+    const std::size_t links = link_count();
+    scales.push_back({0, 2 * links, 1.0, 0.0});
+    for (const Chain& chain : chains_) {
+        scales.push_back({2 * links + chain.first_link, chain.link_count, chain.rate_1_s, 1.0});
+        if (chain.starts_pinned) continue;
+        scales.push_back({chain.first_extra, 2, chain.length_m, 0.0});
+        scales.push_back({chain.first_extra + 2, 2, chain.length_m * chain.rate_1_s, 1.0});
+    }
+    return scales;
+}
+
+double ChainDynamics::largest_rate_1_s() const {
+    double largest = 0.0;
+    for (const Chain& chain : chains_) largest = std::max(largest, chain.rate_1_s);
+    return largest > 0.0 ? largest : 1.0;
+}
+
+void ChainDynamics::measure_turns(const Chain& chain, const double* y) {
+    const double* const c = y + chain.first_link;
+    const double* const s = c + link_count();
+    const double* const inverse_mass = inverse_mass_1_kg_.data() + chain.first_link;
+    double* __restrict const cosine = cosine_.data() + chain.first_link;
+    double* __restrict const sine = sine_.data() + chain.first_link;
+    for (std::size_t i = 0; i + 1 < chain.link_count; ++i) {
+        cosine[i] = inverse_mass[i] * (c[i] * c[i + 1] + s[i] * s[i + 1]);
+        sine[i] = inverse_mass[i] * (c[i] * s[i + 1] - s[i] * c[i + 1]);
+    }
+}
+
+void ChainDynamics::measure_loads(const Chain& chain, const double* y) {
+    const std::size_t first = chain.first_link;
+    const std::size_t last = first + chain.link_count - 1;
+    const double* const s = y + link_count();
+    const double* const rate = y + 2 * link_count();
+    const double* const length = length_m_.data();
+    double* __restrict const along = along_.data();
+    for (std::size_t i = first; i <= last; ++i) along[i] = length[i] * (rate[i] * rate[i]);
+    if (chain.starts_pinned) along[first] += dot(gravity_m_s2_, {y[first], s[first]});
+    if (chain.ends_pinned) along[last] -= dot(gravity_m_s2_, {y[last], s[last]});
+}
+
+void ChainDynamics::solve_tensions(const Chain& chain) {
+    const std::size_t count = chain.link_count;
+    const double* const inverse_mass = inverse_mass_1_kg_.data() + chain.first_link;
+    const double* const along = along_.data() + chain.first_link;
+    const double* const cosine = cosine_.data() + chain.first_link;
+    const double* const sine = sine_.data() + chain.first_link;
+    double* __restrict const pivot = pivot_.data() + chain.first_link;
+    double* __restrict const weight = weight_.data() + chain.first_link;
+    double* __restrict const tension = tension_n_.data() + chain.first_link;
+    double p = inverse_mass[count - 1];
+    double q = 1.0;
+    double load = along[count - 1];  // of the row, times Q
+    for (std::size_t i = count - 1; i > 0; --i) {
+        const double before = inverse_mass[i - 1];
+        const double divisor = p + before * q;
+        pivot[i] = divisor;
+        weight[i] = q;
+        tension[i] = load;
+        p = before * p + sine[i - 1] * sine[i - 1] * q;
+        load = along[i - 1] * divisor + cosine[i - 1] * load;
+        q = divisor;
+        if (q > kLargeFraction || q < kSmallFraction) {
+            const double scale = q > 1.0 ? kSmallFraction : kLargeFraction;
+            p *= scale;
+            q *= scale;
+            load *= scale;
+        }
+    }
+    tension[0] = load / (p + chain.inverse_mass_1_kg * q);
+    for (std::size_t i = 1; i < count; ++i) {
+        const double inverse = 1.0 / pivot[i];
+        tension[i] *= inverse;
+        weight[i] *= cosine[i - 1] * inverse;
+    }
+    for (std::size_t i = 1; i < count; ++i) tension[i] += weight[i] * tension[i - 1];
+}
+
+double ChainDynamics::pull_across(const Chain& chain, std::size_t link) const {
+    const std::size_t i = chain.first_link + link;
+    const double after = link + 1 < chain.link_count ? sine_[i] * tension_n_[i + 1] : 0.0;
+    const double before = link > 0 ? sine_[i - 1] * tension_n_[i - 1] : 0.0;
+    return after - before;
+}
+
+void ChainDynamics::derivative(const double* y, double* slope) {
+    const std::size_t links = link_count();
+    const double* const c = y;
+    const double* const s = y + links;
+    const double* const rate = y + 2 * links;
+    double* __restrict const slope_c = slope;
+    double* __restrict const slope_s = slope + links;
+    double* __restrict const slope_rate = slope + 2 * links;
+    for (std::size_t i = 0; i < links; ++i) {
+        slope_c[i] = -(rate[i] * s[i]);
+        slope_s[i] = rate[i] * c[i];
+    }
+    for (const Chain& chain : chains_) {
+        measure_turns(chain, y);
+        measure_loads(chain, y);
+        solve_tensions(chain);
+        const std::size_t first = chain.first_link;
+        const std::size_t last = first + chain.link_count - 1;
+        const auto turn = [&](std::size_t i, double across) {
+            slope_rate[i] = across * inverse_length_1_m_[i] - drag_1_s_ * rate[i];
+        };
+        const double* const sine = sine_.data();
+        const double* const tension = tension_n_.data();
+        for (std::size_t i = first + 1; i < last; ++i) {
+            turn(i, sine[i] * tension[i + 1] - sine[i - 1] * tension[i - 1]);
+        }
+        turn(first, pull_across(chain, 0));
+        turn(last, pull_across(chain, chain.link_count - 1));
+        if (chain.starts_pinned) {
+            slope_rate[first] +=
+                dot(gravity_m_s2_, left_of({c[first], s[first]})) * inverse_length_1_m_[first];
+        } else {
+            const double pull = chain.inverse_mass_1_kg * tension[first];
+            const double* const extra = y + chain.first_extra;
+            double* const slope_extra = slope + chain.first_extra;
+            slope_extra[0] = extra[2];
+            slope_extra[1] = extra[3];
+            slope_extra[2] = gravity_m_s2_.x + pull * c[first] - drag_1_s_ * extra[2];
+            slope_extra[3] = gravity_m_s2_.y + pull * s[first] - drag_1_s_ * extra[3];
+        }
+        if (chain.ends_pinned) {
+            slope_rate[last] -= dot(gravity_m_s2_, left_of({c[last], s[last]})) * inverse_length_1_m_[last];
+        }
+    }
+}
+
+void ChainDynamics::settle(double* y) {
+    const std::size_t links = link_count();
+    double* __restrict const c = y;
+    double* __restrict const s = y + links;
+    double* __restrict const rate = y + 2 * links;
+    const auto keep = [](double value) { return std::abs(value) < kNegligible ? 0.0 : value; };
+    for (std::size_t i = 0; i < links; ++i) {
+        const double inverse = 1.0 / std::sqrt(c[i] * c[i] + s[i] * s[i]);
+        c[i] = keep(c[i] * inverse);
+        s[i] = keep(s[i] * inverse);
+        rate[i] = keep(rate[i]);
+    }
+    for (const Chain& chain : chains_) {
+        if (chain.starts_pinned && chain.ends_pinned) close(chain, y);
+    }
+}
+
+void ChainDynamics::close(const Chain& chain, double* y) const {
+    const std::size_t links = link_count();
+    const std::size_t end = chain.first_link + chain.link_count;
+    const auto direction = [&](std::size_t i) { return Vec2{y[i], y[links + i]}; };
+    ClosingMatrix matrix;
+    for (std::size_t i = chain.first_link; i < end; ++i) matrix.add(length_m_[i], left_of(direction(i)));
+    for (int k = 0; k < kClosingSteps; ++k) {
+        Vec2 open = chain.span_m;
+        for (std::size_t i = chain.first_link; i < end; ++i) open = open - length_m_[i] * direction(i);
+        const Vec2 multiplier = matrix.solve(open);
+        for (std::size_t i = chain.first_link; i < end; ++i) {
+            const Vec2 across = left_of(direction(i));
+            const Vec2 turned = direction(i) + dot(across, multiplier) * across;
+            const double inverse = 1.0 / length_of(turned);
+            y[i] = inverse * turned.x;
+            y[links + i] = inverse * turned.y;
+        }
+    }
+    Vec2 open;
+    for (std::size_t i = chain.first_link; i < end; ++i) {
+        open = open - (length_m_[i] * y[2 * links + i]) * left_of(direction(i));
+    }
+    const Vec2 multiplier = matrix.solve(open);
+    for (std::size_t i = chain.first_link; i < end; ++i) {
+        y[2 * links + i] += dot(left_of(direction(i)), multiplier);
+    }
+}
+
+void ChainDynamics::positions(const double* y, State& state) const {
+    const std::size_t links = link_count();
+    for (const Pin& pin : pins_) {
+        state.x_m[pin.particle] = pin.position_m.x;
+        state.y_m[pin.particle] = pin.position_m.y;
+    }
+    for (const Chain& chain : chains_) {
+        Vec2 moved;
+        if (!chain.starts_pinned) {
+            moved = {y[chain.first_extra], y[chain.first_extra + 1]};
+            state.x_m[chain.first_particle] = chain.start_m.x + moved.x;
+            state.y_m[chain.first_particle] = chain.start_m.y + moved.y;
+        }
+        const std::size_t moving = chain.ends_pinned ? chain.link_count - 1 : chain.link_count;
+        for (std::size_t i = 0; i < moving; ++i) {
+            const std::size_t link = chain.first_link + i;
+            moved = moved + length_m_[link] * Vec2{y[link], y[links + link]};
+            state.x_m[chain.particle(i)] = chain.start_m.x + moved.x;
+            state.y_m[chain.particle(i)] = chain.start_m.y + moved.y;
+        }
+    }
+}
+
+double ChainDynamics::energy_j(const double* y) const {
+    const std::size_t links = link_count();
+    double energy_j = 0.0;
+    for (const Chain& chain : chains_) {
+        Vec2 moved;
+        Vec2 velocity;
+        const auto add = [&](std::size_t particle) {
+            energy_j += mass_kg_[particle] * (0.5 * dot(velocity, velocity) - dot(gravity_m_s2_, moved));
+        };
+        if (!chain.starts_pinned) {
+            const double* const extra = y + chain.first_extra;
+            moved = {extra[0], extra[1]};
+            velocity = {extra[2], extra[3]};
+            add(chain.first_particle);
+        }
+        for (std::size_t i = 0; i < chain.link_count; ++i) {
+            const std::size_t link = chain.first_link + i;
+            const Vec2 direction{y[link], y[links + link]};
+            moved = moved + length_m_[link] * direction;
+            velocity = velocity + (length_m_[link] * y[2 * links + link]) * left_of(direction);
+            add(chain.particle(i));
+        }
+    }
+    return energy_offset_j_ + energy_j;
+}
+
+void ChainDynamics::tensions(const double* y, std::vector<double>& tension_n) {
+    for (const Chain& chain : chains_) {
+        measure_turns(chain, y);
+        measure_loads(chain, y);
+        solve_tensions(chain);
+    }
+    tension_n = tension_n_;
+}
+
+Loads ChainDynamics::loads(const double* y) {
+    const std::size_t links = link_count();
+    Loads loads;
+    for (Pin& pin : pins_) pin.force_n = {};
+    for (const Chain& chain : chains_) {
+        measure_turns(chain, y);
+        measure_loads(chain, y);
+        solve_tensions(chain);
+        const std::size_t first = chain.first_link;
+        const std::size_t last = first + chain.link_count - 1;
+        for (std::size_t i = first; i <= last; ++i) {
+            loads.largest_tension_n = std::max(loads.largest_tension_n, std::abs(tension_n_[i]));
+        }
+        if (chain.starts_pinned) {
+            Vec2& force = pins_[chain.start_pin].force_n;
+            force = force + tension_n_[first] * Vec2{y[first], y[links + first]};
+        }
+        if (chain.ends_pinned) {
+            Vec2& force = pins_[chain.end_pin].force_n;
+            force = force - tension_n_[last] * Vec2{y[last], y[links + last]};
+        }
+    }
+    for (const Pin& pin : pins_) loads.pin_force_n = std::max(loads.pin_force_n, length_of(pin.force_n));
+    return loads;
+}
+
+}  // namespace corda::sim

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "corda/sim/chain_dynamics.hpp"
+#include "corda/sim/dop853.hpp"
+#include "corda/sim/solver.hpp"
+
+namespace corda::sim {
+
+/// Ropes of rigid links in the directions of their links (ChainDynamics), by an adaptive Runge-Kutta method
+/// of order 8 with interpolation (Dop853). Links keep their lengths whatever the error. That of the
+/// positions, relative to the rope's length, is about `SolverDef::tolerance` after some seconds; it goes on
+/// growing, in proportion to the time squared where a rope swings and exponentially where its motion is
+/// chaotic.
+///
+/// A rope that stands exactly upright stays: nothing pushes it off.
+class Exact final : public Solver {
+  public:
+    /// Throws corda::Error where `system` has bars between particles that are not neighbours, or a rope that
+    /// is taut between two pins. `frame_interval_s` has no effect: steps follow the motion alone.
+    Exact(const System& system, const WorldDef& world, const SolverDef& def, double frame_interval_s);
+
+    Status advance_to(double time_s, State& state) override;
+    [[nodiscard]] double energy_j() const override;
+    [[nodiscard]] double energy_scale_j() const override { return dynamics_.energy_scale_j(); }
+    [[nodiscard]] bool conserves_energy() const override { return conserves_energy_; }
+    [[nodiscard]] std::optional<Loads> loads() const override;
+    [[nodiscard]] std::uint64_t steps() const override { return integrator_.accepted_steps(); }
+
+    /// Steps that were tried and found too long.
+    [[nodiscard]] std::uint64_t rejected_steps() const { return integrator_.rejected_steps(); }
+
+  private:
+    mutable ChainDynamics dynamics_;  ///< loads() needs its work space
+    bool conserves_energy_;
+    std::vector<double> output_;  ///< state at the last time asked for
+    Dop853 integrator_;
+};
+
+}  // namespace corda::sim

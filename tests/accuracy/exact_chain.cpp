@@ -1,0 +1,317 @@
+// The method `exact` with chains against PHYSICS section 4: R4 to R8 and R11.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/exact_run.hpp"
+
+namespace corda::sim {
+namespace {
+
+/// A chain of length 1 bent a little into the small oscillation of angular frequency `omega_1_s`, and the
+/// shape of it.
+struct Mode {
+    RopeDef rope;
+    std::vector<double> shape;
+};
+
+Mode make_mode(int links, double omega_1_s, double tip_mass_kg) {
+    const auto count = static_cast<std::size_t>(links);
+    const double a_m = 1.0 / links;
+    std::vector<double> mass_kg(count + 1, 1.0);
+    mass_kg.back() = tip_mass_kg;
+    std::vector<double> tension_n(count + 2, 0.0);
+    for (std::size_t i = count; i >= 1; --i) tension_n[i] = tension_n[i + 1] + 9.81 * mass_kg[i];
+    // From the tip up, the direction in which the rows of (K - omega^2 M) x = 0 are stable.
+    std::vector<double> x(count + 2, 0.0);
+    x[count] = 1.0;
+    double steepest = 0.0;
+    for (std::size_t i = count; i >= 1; --i) {
+        const double below = i < count ? x[i + 1] : 0.0;
+        const double pull = tension_n[i] + tension_n[i + 1] - a_m * mass_kg[i] * omega_1_s * omega_1_s;
+        x[i - 1] = (pull * x[i] - tension_n[i + 1] * below) / tension_n[i];
+        steepest = std::max(steepest, std::abs(x[i] - x[i - 1]));
+    }
+    EXPECT_NEAR(x[0], 0.0, 1e-9 * *std::max_element(x.begin(), x.end()));
+    x[0] = 0.0;
+    Mode mode;
+    mode.rope.points_m = {{0.0, 0.0}};
+    for (std::size_t i = 1; i <= count; ++i) {
+        const double dx_m = 1e-5 * a_m * (x[i] - x[i - 1]) / steepest;
+        mode.rope.points_m.push_back(mode.rope.points_m.back() +
+                                     Vec2{dx_m, -std::sqrt(a_m * a_m - dx_m * dx_m)});
+    }
+    mode.rope.velocity_m_s.assign(count + 1, {});
+    mode.rope.mass_kg = mass_kg;
+    for (std::size_t i = 0; i <= count; ++i) mode.shape.push_back(mass_kg[i] * x[i]);
+    return mode;
+}
+
+/// Angular frequency from the 21st time at which the part of the mode in the shape is zero.
+double measured_omega_1_s(const Mode& mode, double expected_1_s) {
+    constexpr int kZero = 21;
+    const auto part = [&](const State& state) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < mode.shape.size(); ++i) sum += mode.shape[i] * state.x_m[i];
+        return sum;
+    };
+    const double half_period_s = std::numbers::pi / expected_1_s;
+    test::ExactRun run(mode.rope, 1e-13);
+    double last = part(run.state);
+    int zeros = 0;
+    int k = 0;
+    for (; zeros < kZero && k < 20 * kZero; ++k) {
+        EXPECT_TRUE(run.advance_to((k + 1) * half_period_s / 8.0));
+        const double next = part(run.state);
+        if ((next < 0.0) != (last < 0.0)) ++zeros;
+        last = next;
+    }
+    EXPECT_EQ(zeros, kZero);
+    const auto part_at = [&](double time_s) {
+        test::ExactRun again(mode.rope, 1e-13);
+        EXPECT_TRUE(again.advance_to(time_s));
+        return part(again.state);
+    };
+    const double zero_s = test::root(part_at, (k - 1) * half_period_s / 8.0, k * half_period_s / 8.0);
+    return (kZero - 0.5) * std::numbers::pi / zero_s;
+}
+
+TEST(SmallOscillationsR4, HaveTheFrequenciesOfTheLaguerreZeros) {
+    struct Row {
+        int links;
+        double tip_mass_kg;
+        double omega_1_s;
+    };
+    for (const Row& row :
+         {Row{5, 1, 3.5955018679142}, Row{10, 1, 3.6766206576178}, Row{10, 1, 8.4592843258908},
+          Row{10, 1, 54.177674155542}, Row{20, 1, 3.7202051499303}, Row{20, 1, 8.5446639308937},
+          Row{20, 1, 114.245746189}, Row{50, 1, 3.7474350221806}, Row{50, 1, 8.6027948917509},
+          Row{50, 1, 297.71217239}, Row{10, 10, 3.3130928700043}, Row{10, 100, 3.1568078379578},
+          Row{10, 1000, 3.1346641280336}}) {
+        const Mode mode = make_mode(row.links, row.omega_1_s, row.tip_mass_kg);
+        const double error = measured_omega_1_s(mode, row.omega_1_s) / row.omega_1_s - 1.0;
+        std::printf("R4 N=%d tip %g omega %g: %.2e\n", row.links, row.tip_mass_kg, row.omega_1_s, error);
+        EXPECT_LT(std::abs(error), 1e-6);  // measured 1.8e-8 (N = 50, largest), 2e-11 (lowest)
+    }
+}
+
+struct Release {
+    int links;
+    double length_m;
+    double angle_deg;
+    double tip_mass_kg;
+    double time_s;
+    double x_m;
+    double y_m;
+};
+
+constexpr Release kReleases[] = {
+    {2, 2, 90, 1, 1, -1.44481884994347579652, -1.32179446138146455585},
+    {2, 2, 90, 1, 5, -1.55077846947044280041, -1.07591273481265245654},
+    {2, 2, 90, 1, 10, -1.04076578324617048611, -1.70734766246932744698},
+    {2, 2, 179, 1, 5, 0.67314150466155481520, -0.62722634568900508337},
+    {3, 1, 90, 1, 5, -0.53194662963776443892, 0.19179241928334740955},
+    {5, 1, 90, 1, 2, 0.83771529818003690575, -0.16765931615339712151},
+    {10, 1, 45, 1, 1, -0.67948993189750683016, -0.72711223860003900537},
+    {10, 1, 45, 1, 5, 0.39214385389268969475, -0.90225644487398941636},
+    {10, 1, 90, 1, 1, -0.91331222940637701239, -0.14965514141883061700},
+    {10, 1, 90, 1, 2, 0.47978859926682898140, -0.15417531322773500122},
+    {20, 1, 45, 1, 1, -0.67016053525568878136, -0.73674338218714743406},
+    {20, 1, 45, 1, 2, 0.53700529500088304879, -0.81916411877801124437},
+    {20, 1, 90, 1, 1, -0.90868883153230172068, -0.16339488036472364311},
+    {10, 1, 90, 1000, 2, 0.79574428267767040194, -0.60334843538712810990},
+    {10, 1, 90, 1000, 5, 0.92550693774088658561, -0.34521126487484581376},
+};
+
+RopeDef released(const Release& row) {
+    RopeDef rope = row.angle_deg == 90 ? test::horizontal_rope(row.links, row.length_m)
+                                       : test::straight_rope(row.links, row.length_m, row.angle_deg);
+    rope.mass_kg.back() = row.tip_mass_kg;
+    return rope;
+}
+
+TEST(ReleaseR5, EndsAtTheReference) {
+    for (const Release& row : kReleases) {
+        std::printf("R5 N=%d L=%g %g deg tip %g t=%g:", row.links, row.length_m, row.angle_deg,
+                    row.tip_mass_kg, row.time_s);
+        for (const double tolerance : {1e-9, 1e-12}) {
+            test::ExactRun run(released(row), tolerance);
+            ASSERT_TRUE(run.advance_to(row.time_s));
+            const double error_m = run.tip_error_m(row.x_m, row.y_m);
+            std::printf("  %.1e at %g", error_m, tolerance);
+            EXPECT_LT(error_m, 1e-9);  // measured 6.2e-10 (N = 2, 179 deg), 2.6e-11 at 1e-12
+        }
+        std::printf("\n");
+    }
+}
+
+/// Accelerations of all particles at the start, from the rates at which the links' directions change.
+std::vector<Vec2> start_accelerations(ChainDynamics& dynamics) {
+    const std::vector<double>& y = dynamics.initial_state();
+    std::vector<double> slope(y.size());
+    dynamics.derivative(y.data(), slope.data());
+    const std::size_t links = dynamics.link_count();
+    std::vector<Vec2> result = {{}};
+    for (std::size_t i = 0; i < links; ++i) {
+        const double rate = y[2 * links + i];
+        const double turning = slope[2 * links + i];
+        const Vec2 direction{y[i], y[links + i]};
+        const Vec2 across{-direction.y, direction.x};
+        const double length_m = 1.0 / static_cast<double>(links);
+        result.push_back(result.back() + length_m * (turning * across - rate * rate * direction));
+    }
+    return result;
+}
+
+TEST(HorizontalRelease, FallsFreelyAtFirst) {
+    for (const int links : {2, 10, 50}) {
+        const RopeDef rope = test::horizontal_rope(links, 1.0);
+        const System system = build_system({&rope, 1}, 1);
+        ChainDynamics dynamics(system, WorldDef{});
+        std::vector<double> tension_n;
+        dynamics.tensions(dynamics.initial_state().data(), tension_n);
+        for (const double tension : tension_n) EXPECT_LT(std::abs(tension), 1e-13);
+        const std::vector<Vec2> accelerations = start_accelerations(dynamics);
+        // The links but the first turn at no rate: every free particle has the first one's acceleration.
+        for (std::size_t i = 1; i < accelerations.size(); ++i) {
+            EXPECT_NEAR(accelerations[i].x, 0.0, 1e-13);
+            EXPECT_NEAR(accelerations[i].y, -9.81, 1e-13);  // measured 1.8e-15; tensions and x exactly 0
+        }
+    }
+}
+
+TEST(FreeRope, FallsWithoutAnErrorOfTheStart) {
+    RopeDef rope = test::straight_rope(5, 1.0, 30.0);
+    rope.pinned = {};
+    test::ExactRun run(rope);
+    for (const double time_s : {1.0 / 60.0, 0.1, 1.0, 3.0}) {
+        ASSERT_TRUE(run.advance_to(time_s));
+        for (std::size_t i = 0; i < rope.points_m.size(); ++i) {
+            EXPECT_NEAR(run.state.x_m[i], rope.points_m[i].x, 1e-15);
+            EXPECT_NEAR(run.state.y_m[i], rope.points_m[i].y - 0.5 * 9.81 * time_s * time_s, 3e-14);
+        }
+    }
+}
+
+TEST(HangingR6, BetweenTwoPinsComesToRestAsACatenary) {
+    struct Row {
+        int links;
+        double horizontal;  ///< tension over the weight of a particle
+        double lowest_m;
+    };
+    for (const Row& row :
+         {Row{10, 2.0510510143091193, -0.50594593157108448}, Row{20, 4.107878988926029, -0.50344663434019265},
+          Row{40, 8.2186678030027642, -0.50283577286535318}}) {
+        RopeDef rope;
+        for (int i = 0; i <= row.links; ++i) {
+            const double along = 2.0 * std::min(i, row.links - i) / row.links;
+            const double x_m = 2 * i <= row.links ? 0.5 * along : 1.0 - 0.5 * along;
+            rope.points_m.push_back({x_m, -along * std::sqrt(0.75 * 0.75 - 0.25)});
+        }
+        rope.mass_kg.assign(rope.points_m.size(), 1.0);
+        rope.velocity_m_s.assign(rope.points_m.size(), {});
+        rope.pinned = {0, static_cast<std::uint32_t>(row.links)};
+        test::ExactRun run(rope, 1e-12, WorldDef{{0.0, -9.81}, 40.0, 4.0});
+        ASSERT_TRUE(run.advance_to(40.0));
+        // Each pin carries half of the weight and the horizontal tension.
+        const double pull = run.solver.loads().value().pin_force_n / 9.81;
+        const double half_weight = 0.5 * (row.links - 1);
+        const double horizontal = std::sqrt(pull * pull - half_weight * half_weight);
+        const double lowest_m = *std::min_element(run.state.y_m.begin(), run.state.y_m.end());
+        std::printf("R6 N=%d: tension %.1e lowest %.1e\n", row.links, horizontal - row.horizontal,
+                    lowest_m - row.lowest_m);
+        EXPECT_NEAR(horizontal, row.horizontal, 1e-10);  // measured 2e-13
+        EXPECT_NEAR(lowest_m, row.lowest_m, 1e-10);      // measured 3e-16
+    }
+}
+
+TEST(FoldedR7, FallsFasterThanFreely) {
+    struct Row {
+        int links;
+        double times_s[3];
+    };
+    for (const Row& row : {Row{21, {.2261503, .3137222, .3707585}}, Row{41, {.2242086, .3088361, .3646133}},
+                           Row{81, {.2226169, .3062475, .3606003}}}) {
+        const double a_m = 1.0 / row.links;
+        const int half = row.links / 2;
+        RopeDef rope;
+        for (int i = 0; i <= half; ++i) rope.points_m.push_back({0.0, -a_m * i});
+        for (int i = half; i >= 0; --i) rope.points_m.push_back({a_m, -a_m * i});
+        rope.mass_kg.assign(rope.points_m.size(), 1.0);
+        rope.velocity_m_s.assign(rope.points_m.size(), {});
+        for (int k = 0; k < 3; ++k) {
+            const auto above_m = [&](double time_s) {
+                test::ExactRun run(rope, 1e-10);
+                EXPECT_TRUE(run.advance_to(time_s));
+                return run.state.y_m.back() + 0.25 * (k + 1);
+            };
+            const double time_s = test::root(above_m, row.times_s[k] - 1e-4, row.times_s[k] + 1e-4);
+            std::printf("R7 N=%d fallen %g: error %.1e s\n", row.links, 0.25 * (k + 1),
+                        time_s - row.times_s[k]);
+            EXPECT_NEAR(time_s, row.times_s[k], 1e-6);  // measured 1.2e-7: digits of the reference
+        }
+    }
+}
+
+TEST(SpinningR8, StaysARigidRotation) {
+    constexpr int kLinks = 10;
+    constexpr double kRate = 3.0;
+    RopeDef rope = test::horizontal_rope(kLinks, 1.0);
+    for (std::size_t i = 0; i <= kLinks; ++i) rope.velocity_m_s[i] = {0.0, kRate * rope.points_m[i].x};
+    const WorldDef world{{0.0, 0.0}, 10.0, 0.0};
+    test::ExactRun run(rope, 1e-10, world);
+    double largest_m = 0.0;
+    for (int k = 1; k <= 100; ++k) {
+        ASSERT_TRUE(run.advance_to(0.1 * k));
+        for (std::size_t i = 0; i <= kLinks; ++i) {
+            const double radius_m = rope.points_m[i].x;
+            largest_m = std::max(largest_m, length(run.state.x_m[i] - radius_m * std::cos(kRate * 0.1 * k),
+                                                   run.state.y_m[i] - radius_m * std::sin(kRate * 0.1 * k)));
+        }
+    }
+    std::printf("R8 after 10 s: %.1e m\n", largest_m);
+    EXPECT_LT(largest_m, 1e-11);  // measured 2.1e-12; 2.2e-11 at a tolerance of 1e-9
+
+    ChainDynamics dynamics(run.system, world);
+    std::vector<double> tension_n;
+    dynamics.tensions(dynamics.initial_state().data(), tension_n);
+    for (int i = 1; i <= kLinks; ++i) {
+        double outside = 0.0;
+        for (int j = i; j <= kLinks; ++j) outside += j;
+        EXPECT_NEAR(tension_n[static_cast<std::size_t>(i - 1)], kRate * kRate * outside / kLinks, 1e-12);
+    }
+}
+
+TEST(ReportRopeR11, StaysOnTheReference) {
+    std::ifstream file(std::filesystem::path(__FILE__).parent_path() / "data" / "swing40.txt");
+    test::ExactRun run(test::report_rope(40), 1e-9, WorldDef{{0.0, -9.8}, 10.0, 0.0});
+    int rows = 0;
+    for (std::string line; std::getline(file, line);) {
+        if (line.starts_with('#')) continue;
+        std::istringstream numbers(line);
+        double time_s = 0.0;
+        numbers >> time_s;
+        ASSERT_TRUE(run.advance_to(time_s));
+        double largest_m = 0.0;
+        for (std::size_t i = 0; i < 40; ++i) {
+            double x_m = 0.0;
+            double y_m = 0.0;
+            numbers >> x_m >> y_m;
+            largest_m = std::max(largest_m, length(run.state.x_m[i] - x_m, run.state.y_m[i] - y_m));
+        }
+        std::printf("R11 t=%g: %.1e m\n", time_s, largest_m);
+        EXPECT_LT(largest_m, 1e-10);  // measured 1.5e-12 (of 39 m)
+        ++rows;
+    }
+    EXPECT_EQ(rows, 4);
+}
+
+}  // namespace
+}  // namespace corda::sim

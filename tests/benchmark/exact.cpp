@@ -1,0 +1,48 @@
+// Cost of the method `exact`: time a particle and step, a particle and evaluation of the right-hand side, and
+// the simulated seconds a second, against the number of particles.
+
+#include <benchmark/benchmark.h>
+
+#include "support/exact_run.hpp"
+
+namespace corda::sim {
+namespace {
+
+void count_particles(benchmark::State& bench, double times) {
+    bench.counters["s/particle"] =
+        benchmark::Counter(times * static_cast<double>(bench.range(0)),
+                           benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void exact_step(benchmark::State& bench) {
+    test::ExactRun run(test::straight_rope(static_cast<int>(bench.range(0)), 1.0, 45.0));
+    double time_s = 0.0;
+    const double interval_s = 1.0 / static_cast<double>(bench.range(0));
+    for (auto _ : bench) {
+        time_s += interval_s;
+        if (!run.advance_to(time_s)) bench.SkipWithError("diverged");
+    }
+    count_particles(bench, static_cast<double>(run.solver.steps() + run.solver.rejected_steps()));
+    bench.counters["simulated_s/s"] = benchmark::Counter(time_s, benchmark::Counter::kIsRate);
+}
+
+void exact_derivative(benchmark::State& bench) {
+    const RopeDef rope = test::straight_rope(static_cast<int>(bench.range(0)), 1.0, 45.0);
+    const System system = build_system({&rope, 1}, 1);
+    ChainDynamics dynamics(system, WorldDef{});
+    std::vector<double> slope(dynamics.initial_state().size());
+    for (auto _ : bench) {
+        dynamics.derivative(dynamics.initial_state().data(), slope.data());
+        benchmark::DoNotOptimize(slope.data());
+        benchmark::ClobberMemory();
+    }
+    count_particles(bench, static_cast<double>(bench.iterations()));
+}
+
+BENCHMARK(exact_step)->Arg(20)->Arg(100)->Arg(1000)->Arg(100'000);
+BENCHMARK(exact_derivative)->Arg(20)->Arg(100)->Arg(1000)->Arg(100'000);
+
+}  // namespace
+}  // namespace corda::sim
+
+BENCHMARK_MAIN();
