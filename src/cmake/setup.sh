@@ -15,6 +15,7 @@ packages=(
     libavcodec-dev          # the H.264 encoder (x264) and the decoder that checks its output
     libavformat-dev         # the MP4 muxer and demuxer
     libavutil-dev           # frames and error texts of the two above
+    libeigen3-dev           # sparse factorisation for nets of bars
     libpng-dev              # stills and golden images, with their sRGB, pHYs and text chunks
     libcli11-dev            # the command line
     libtomlplusplus-dev     # scene files, with line and column of every value

@@ -1,0 +1,246 @@
+#include "corda/sim/chain_constraints.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <string>
+
+#include "corda/core/error.hpp"
+#include "corda/sim/tridiagonal.hpp"
+
+namespace corda::sim {
+namespace {
+
+/// Newton's method stops when what is left of every squared length is below this share of it: far below the
+/// rounding of the squares themselves. Larger than 1e-15 would show as strain.
+constexpr double kSquareTolerance = 1e-16;
+/// Two or three are normal. Where twenty do not do, more would not either.
+constexpr int kMaxNewtonSteps = 20;
+/// A chain between two pins is refused as straight where the last pivot of its matrix is below this share of
+/// the diagonal: bends of about 1e-6 radians. A straight one leaves the square of the rounding, 1e-32.
+constexpr double kStraightPivot = 1e-12;
+
+}  // namespace
+
+bool ChainConstraints::suits(const System& system) {
+    for (std::size_t k = 0; k < system.bars.size(); ++k) {
+        const Bar& bar = system.bars[k];
+        if (bar.b != bar.a + 1 || (k > 0 && bar.a <= system.bars[k - 1].a)) return false;
+    }
+    return true;
+}
+
+ChainConstraints::ChainConstraints(const System& system) {
+    assert(suits(system));
+    inverse_mass_1_kg_ = system.inverse_mass_1_kg;
+    std::size_t longest = 0;
+    for (std::size_t i = 0; i < system.particle_count(); ++i) {
+        if (system.is_pinned(i)) pinned_.push_back(static_cast<std::uint32_t>(i));
+    }
+    for (const Bar& bar : system.bars) {
+        if (system.is_pinned(bar.a) && system.is_pinned(bar.b)) continue;
+        const bool goes_on = !links_.empty() && links_.back().b == bar.a && !system.is_pinned(bar.a);
+        if (!goes_on) chains_.push_back({bar.a, links_.size(), 0});
+        links_.push_back({bar.a, bar.b, bar.rest_m});
+        square_m2_.push_back(bar.rest_m * bar.rest_m);
+        longest = std::max(longest, ++chains_.back().count);
+    }
+    for (std::vector<double>* scratch : {&dx_m_, &dy_m_, &lower_, &diagonal_, &upper_, &right_})
+        scratch->assign(longest + 2, 0.0);
+    change_x_m_s_.assign(longest + 1, 0.0);
+    change_y_m_s_.assign(longest + 1, 0.0);
+    refuse_straight_between_pins(system);
+}
+
+void ChainConstraints::refuse_straight_between_pins(const System& system) const {
+    for (const Chain& chain : chains_) {
+        const std::size_t last = chain.first_particle + chain.count;
+        if (!system.is_pinned(chain.first_particle) || !system.is_pinned(last)) continue;
+        // The pivots of the matrix of unit bar vectors, without cancellation: pivot_k = w_(k+1) + rest_k,
+        // rest_k = w_k (rest_(k-1) + w_k sin^2) / pivot_(k-1), the angle being that between bars k-1 and k.
+        double rest = 0.0;
+        for (std::size_t k = 1; k < chain.count; ++k) {
+            const std::size_t i = chain.first_particle + k;
+            const double weight = system.inverse_mass_1_kg[i];
+            const double ax = system.x_m[i] - system.x_m[i - 1];
+            const double ay = system.y_m[i] - system.y_m[i - 1];
+            const double bx = system.x_m[i + 1] - system.x_m[i];
+            const double by = system.y_m[i + 1] - system.y_m[i];
+            const double cross = ax * by - ay * bx;
+            const double sine_squared = cross * cross / ((ax * ax + ay * ay) * (bx * bx + by * by));
+            rest = weight * (rest + weight * sine_squared) / (weight + rest);
+        }
+        if (rest <= kStraightPivot * system.inverse_mass_1_kg[last - 1]) {
+            throw Error(ExitCode::kInvalidScene,
+                        "solver \"rope\": the rope between particles " +
+                            std::to_string(chain.first_particle) + " and " + std::to_string(last) +
+                            " is pinned at both ends and straight: it cannot move, and its tension is not "
+                            "determined; let it sag, or remove a pin");
+        }
+    }
+}
+
+void ChainConstraints::bar_vectors(const Chain& chain, const Motion& motion) {
+    const double* const x = motion.x_m.data() + chain.first_particle;
+    const double* const y = motion.y_m.data() + chain.first_particle;
+    double* const dx = dx_m_.data() + 1;
+    double* const dy = dy_m_.data() + 1;
+    for (std::size_t k = 0; k < chain.count; ++k) {
+        dx[k] = x[k + 1] - x[k];
+        dy[k] = y[k + 1] - y[k];
+    }
+    dx[chain.count] = 0.0;
+    dy[chain.count] = 0.0;
+}
+
+void ChainConstraints::assemble(const Chain& chain, double span_s, const Motion& motion) {
+    const double* const vx = motion.vx_m_s.data() + chain.first_particle;
+    const double* const vy = motion.vy_m_s.data() + chain.first_particle;
+    const double* const w = inverse_mass_1_kg_.data() + chain.first_particle;
+    const double* const square = square_m2_.data() + chain.first_link;
+    const double* const dx = dx_m_.data();
+    const double* const dy = dy_m_.data();
+    const double factor = 0.5 / span_s;
+    for (std::size_t k = 0; k < chain.count; ++k) {
+        // The bar at the end of the stage.
+        const double ex = dx[k + 1] + span_s * (vx[k + 1] - vx[k]);
+        const double ey = dy[k + 1] + span_s * (vy[k + 1] - vy[k]);
+        right_[k + 1] = factor * (ex * ex + ey * ey - square[k]);
+        lower_[k + 1] = -w[k] * (ex * dx[k] + ey * dy[k]);
+        diagonal_[k + 1] = (w[k] + w[k + 1]) * (ex * dx[k + 1] + ey * dy[k + 1]);
+        upper_[k + 1] = -w[k + 1] * (ex * dx[k + 2] + ey * dy[k + 2]);
+    }
+}
+
+bool ChainConstraints::apply(const Chain& chain, double span_s, const double* impulse, Motion& motion) {
+    double* const vx = motion.vx_m_s.data() + chain.first_particle;
+    double* const vy = motion.vy_m_s.data() + chain.first_particle;
+    const double* const w = inverse_mass_1_kg_.data() + chain.first_particle;
+    const double* const square = square_m2_.data() + chain.first_link;
+    const double* const dx = dx_m_.data();
+    const double* const dy = dy_m_.data();
+    double* const cx = change_x_m_s_.data();
+    double* const cy = change_y_m_s_.data();
+    for (std::size_t i = 0; i <= chain.count; ++i) {
+        cx[i] = w[i] * (impulse[i + 1] * dx[i + 1] - impulse[i] * dx[i]);
+        cy[i] = w[i] * (impulse[i + 1] * dy[i + 1] - impulse[i] * dy[i]);
+        vx[i] += cx[i];
+        vy[i] += cy[i];
+    }
+    const double factor = span_s * span_s / kSquareTolerance;
+    int all_met = 1;
+    for (std::size_t k = 0; k < chain.count; ++k) {
+        const double ux = cx[k + 1] - cx[k];
+        const double uy = cy[k + 1] - cy[k];
+        all_met &= static_cast<int>(factor * (ux * ux + uy * uy) <= square[k]);
+    }
+    return all_met != 0;
+}
+
+bool ChainConstraints::meet_lengths(const Chain& chain, double span_s, Motion& motion, double* impulse) {
+    bar_vectors(chain, motion);
+    std::copy_n(impulse, chain.count, right_.data() + 1);
+    right_[chain.count + 1] = 0.0;
+    (void)apply(chain, span_s, right_.data(), motion);
+    bool met = false;
+    for (int i = 0; i < kMaxNewtonSteps && !met; ++i) {
+        assemble(chain, span_s, motion);
+        solve_tridiagonal(chain.count, lower_.data() + 1, diagonal_.data() + 1, upper_.data() + 1,
+                          right_.data() + 1);
+        for (std::size_t k = 0; k < chain.count; ++k) impulse[k] += right_[k + 1];
+        met = apply(chain, span_s, right_.data(), motion);
+    }
+    if (!met) return false;
+    // The turn of a bar, |e - d|^2 = 2 rest^2 (1 - cos).
+    const double* const vx = motion.vx_m_s.data() + chain.first_particle;
+    const double* const vy = motion.vy_m_s.data() + chain.first_particle;
+    const double factor = span_s * span_s / (2.0 * (1.0 - Stage::kSmallestTurnCosine));
+    int all_gentle = 1;
+    for (std::size_t k = 0; k < chain.count; ++k) {
+        const double ux = vx[k + 1] - vx[k];
+        const double uy = vy[k + 1] - vy[k];
+        all_gentle &= static_cast<int>(factor * (ux * ux + uy * uy) <= square_m2_[chain.first_link + k]);
+    }
+    return all_gentle != 0;
+}
+
+bool ChainConstraints::move(const Stage& stage, Motion& motion, std::span<double> impulse) {
+    const std::size_t count = motion.x_m.size();
+    double* const vx = motion.vx_m_s.data();
+    double* const vy = motion.vy_m_s.data();
+    for (std::size_t i = 0; i < count; ++i) {
+        vx[i] = stage.decay * vx[i] + stage.push_m_s.x;
+        vy[i] = stage.decay * vy[i] + stage.push_m_s.y;
+    }
+    for (const std::uint32_t i : pinned_) vx[i] = vy[i] = 0.0;
+    for (const Chain& chain : chains_) {
+        if (!meet_lengths(chain, stage.span_s, motion, impulse.data() + chain.first_link)) return false;
+    }
+    double* const x = motion.x_m.data();
+    double* const y = motion.y_m.data();
+    for (std::size_t i = 0; i < count; ++i) {
+        x[i] += stage.span_s * vx[i];
+        y[i] += stage.span_s * vy[i];
+    }
+    return true;
+}
+
+bool ChainConstraints::solve(const Motion& motion, std::span<double> right) {
+    bool is_finite = true;
+    for (const Chain& chain : chains_) {
+        const double* const w = inverse_mass_1_kg_.data() + chain.first_particle;
+        bar_vectors(chain, motion);
+        const double* const dx = dx_m_.data();
+        const double* const dy = dy_m_.data();
+        for (std::size_t k = 0; k < chain.count; ++k) {
+            right_[k + 1] = right[chain.first_link + k];
+            lower_[k + 1] = -w[k] * (dx[k + 1] * dx[k] + dy[k + 1] * dy[k]);
+            diagonal_[k + 1] = (w[k] + w[k + 1]) * (dx[k + 1] * dx[k + 1] + dy[k + 1] * dy[k + 1]);
+            upper_[k + 1] = -w[k + 1] * (dx[k + 1] * dx[k + 2] + dy[k + 1] * dy[k + 2]);
+        }
+        solve_tridiagonal(chain.count, lower_.data() + 1, diagonal_.data() + 1, upper_.data() + 1,
+                          right_.data() + 1);
+        for (std::size_t k = 0; k < chain.count; ++k) {
+            right[chain.first_link + k] = right_[k + 1];
+            is_finite = is_finite && std::isfinite(right_[k + 1]);
+        }
+    }
+    return is_finite;
+}
+
+double ChainConstraints::square_frequency(std::span<const double> rate) const {
+    double largest = 0.0;
+    for (const Chain& chain : chains_) {
+        const double* const w = inverse_mass_1_kg_.data() + chain.first_particle;
+        double before = 0.0;
+        for (std::size_t k = 0; k < chain.count; ++k) {
+            const double here = std::abs(rate[chain.first_link + k]);
+            const double bound = w[k] * (before + here);
+            largest = largest > bound ? largest : bound;
+            before = here;
+        }
+        largest = std::max(largest, w[chain.count] * before);
+    }
+    return 2.0 * largest;
+}
+
+std::vector<double> ChainConstraints::carried_mass(std::span<const double> mass_kg) const {
+    std::vector<double> carried(links_.size(), 0.0);
+    for (const Chain& chain : chains_) {
+        const bool first_is_pinned = inverse_mass_1_kg_[chain.first_particle] == 0.0;
+        const bool last_is_pinned = inverse_mass_1_kg_[chain.first_particle + chain.count] == 0.0;
+        double all_kg = 0.0;
+        for (std::size_t i = first_is_pinned ? 1 : 0; i + (last_is_pinned ? 1 : 0) <= chain.count; ++i)
+            all_kg += mass_kg[chain.first_particle + i];
+        double before_kg = 0.0;  // free particles up to the link
+        for (std::size_t k = 0; k < chain.count; ++k) {
+            if (k > 0 || !first_is_pinned) before_kg += mass_kg[chain.first_particle + k];
+            double& mass = carried[chain.first_link + k];
+            if (first_is_pinned) mass = last_is_pinned ? all_kg : all_kg - before_kg;
+            if (last_is_pinned && !first_is_pinned) mass = before_kg;
+        }
+    }
+    return carried;
+}
+
+}  // namespace corda::sim

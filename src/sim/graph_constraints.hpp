@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
+#include <cstdint>
+#include <vector>
+
+#include "corda/sim/constraint_solver.hpp"
+
+namespace corda::sim {
+
+/// Bars in any graph: closed chains, nets. The matrix G W G' of the bars as they lie at the start of a stage
+/// is factorised once a stage (Eigen's sparse LDL', its pattern and order analysed once), and serves all
+/// corrections of the stage: a Newton method with a matrix that is late by the bars' turn, which converges by
+/// about the sine of that turn a correction.
+class GraphConstraints final : public ConstraintSolver {
+  public:
+    /// Throws corda::Error for bars whose lengths do not determine the motion: some say what others imply.
+    explicit GraphConstraints(const System& system);
+
+    [[nodiscard]] bool move(const Stage& stage, Motion& motion, std::span<double> impulse) override;
+    [[nodiscard]] bool solve(const Motion& motion, std::span<double> right) override;
+    [[nodiscard]] double square_frequency(std::span<const double> rate) const override;
+    [[nodiscard]] std::vector<double> carried_mass(std::span<const double> mass_kg) const override;
+
+  private:
+    /// An entry of the lower triangle, in the order of the matrix's values: factor d_row . d_column.
+    struct Entry {
+        std::uint32_t row = 0;
+        std::uint32_t column = 0;
+        double factor = 0.0;  ///< sum of the shared particles' inverse masses, signed
+    };
+    void analyse();
+    [[nodiscard]] bool factorise(const Motion& motion);
+    void apply(const double* impulse, Motion& motion) const;
+    [[nodiscard]] bool correct(double span_s, const Motion& motion);
+
+    std::vector<std::uint32_t> pinned_;
+    std::vector<Entry> entries_;
+    Eigen::SparseMatrix<double> matrix_;  ///< lower triangle
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors_;
+    std::vector<double> dx_m_;  ///< bar vectors at the start of a stage
+    std::vector<double> dy_m_;
+    Eigen::VectorXd right_;
+    mutable std::vector<double> load_;  ///< scratch, one entry a particle
+};
+
+}  // namespace corda::sim

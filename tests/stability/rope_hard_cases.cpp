@@ -1,0 +1,233 @@
+// The hard cases of PHYSICS section 5 for the method `rope`: a result within bounds, or a named failure.
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <vector>
+
+#include "corda/core/error.hpp"
+#include "support/rattle_run.hpp"
+
+namespace corda::sim {
+namespace {
+
+bool long_tests() {
+    return std::getenv("CORDA_TEST_LONG") != nullptr;
+}
+
+double seconds_now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+class Payload : public testing::TestWithParam<std::tuple<int, double, double>> {};
+
+TEST_P(Payload, KeepsLengthsAndEnergy) {
+    const auto [links, angle_deg, payload_kg] = GetParam();
+    RopeDef rope = test::straight_rope(links, 1.0, angle_deg);
+    rope.payload_kg = payload_kg;
+    test::RattleRun run(rope, WorldDef{}, 6);
+    const double start_s = seconds_now();
+    // A light rope with a heavy payload takes 2e5 steps a second: all of the ten seconds in the long form
+    // only.
+    ASSERT_TRUE(run.go(links * payload_kg > 2e7 && !long_tests() ? 1.0 : 10.0, 600));
+    std::printf("N=%d %g deg payload %g: strain %.1e energy %.1e, %llu steps %llu parts, %.2f s\n", links,
+                angle_deg, payload_kg, run.max_strain(), run.energy_error(),
+                static_cast<unsigned long long>(run.solver().steps()),
+                static_cast<unsigned long long>(run.solver().parts()), seconds_now() - start_s);
+    EXPECT_LT(run.max_strain(), 1e-9);
+    EXPECT_LT(run.energy_error(), 1e-3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Section5, Payload,
+                         testing::Combine(testing::Values(10, 50), testing::Values(45.0, 90.0),
+                                          testing::Values(1e3, 1e6)));
+
+TEST(LongRope, OfAThousandLinksFinishes) {
+    test::RattleRun run(test::straight_rope(1000, 1.0, 45.0), WorldDef{}, 2);
+    const double start_s = seconds_now();
+    ASSERT_TRUE(run.go(long_tests() ? 5.0 : 0.5, 30));
+    std::printf("N=1000: strain %.1e energy %.1e, %llu steps, %.2f s\n", run.max_strain(), run.energy_error(),
+                static_cast<unsigned long long>(run.solver().steps()), seconds_now() - start_s);
+    EXPECT_LT(run.max_strain(), 1e-11);
+    EXPECT_LT(run.energy_error(), 1e-3);
+}
+
+TEST(LinkLengths, FromOneToAHundredKeepLengthsAndEnergy) {
+    RopeDef rope;
+    rope.points_m.push_back({});
+    constexpr int kLinks = 11;
+    for (int i = 0; i < kLinks; ++i) {
+        const double link_m = 0.002 * std::pow(100.0, (i * 7 % kLinks) / (kLinks - 1.0));
+        const Vec2 last = rope.points_m.back();
+        rope.points_m.push_back({last.x + link_m * std::sqrt(0.5), last.y - link_m * std::sqrt(0.5)});
+    }
+    rope.mass_kg.assign(rope.points_m.size(), 1.0);
+    rope.velocity_m_s.assign(rope.points_m.size(), {});
+    test::RattleRun run(rope, WorldDef{}, 8);
+    ASSERT_TRUE(run.go(10.0, 600));
+    std::printf("links 1:100: strain %.1e energy %.1e, %llu steps %llu parts\n", run.max_strain(),
+                run.energy_error(), static_cast<unsigned long long>(run.solver().steps()),
+                static_cast<unsigned long long>(run.solver().parts()));
+    EXPECT_LT(run.max_strain(), 1e-12);
+    EXPECT_LT(run.energy_error(), 1e-8);
+}
+
+TEST(Masses, FromAMillionthToAMillionKilogramsWork) {
+    for (const bool heavy_first : {true, false}) {
+        RopeDef rope = test::straight_rope(6, 1.0, 60.0);
+        rope.mass_kg = {1.0, 1e6, 1e-6, 1.0, 1e-6, 1e6, 1e-3};
+        if (heavy_first) rope.mass_kg = {1.0, 1e6, 1e4, 1e2, 1.0, 1e-3, 1e-6};
+        test::RattleRun run(rope, WorldDef{}, 8);
+        ASSERT_TRUE(run.go(0.02, 60));
+        std::printf("masses: strain %.1e energy %.1e, h %.1e, %llu steps %llu parts\n", run.max_strain(),
+                    run.energy_error(), run.solver().step_s(),
+                    static_cast<unsigned long long>(run.solver().steps()),
+                    static_cast<unsigned long long>(run.solver().parts()));
+        EXPECT_LT(run.max_strain(), 1e-12);
+        EXPECT_LT(run.energy_error(), 1e-8);
+    }
+}
+
+TEST(ThrownTip, AtAHundredMetresPerSecondKeepsItsEnergy) {
+    for (const int links : {1, 10, 20}) {
+        RopeDef rope = test::straight_rope(links, 1.0, 30.0);
+        rope.velocity_m_s.back() = {100.0 * std::cos(std::numbers::pi / 6.0), 100.0 * 0.5};
+        test::RattleRun run(rope, WorldDef{}, 8);
+        const double start_s = seconds_now();
+        ASSERT_TRUE(run.go(links == 1 ? 10.0 : 1.0, 600));
+        const double relative = run.largest_energy_change_j() / (0.5 * 100.0 * 100.0);
+        std::printf("thrown, N=%d: strain %.1e energy %.1e, h %.1e, %llu steps %llu parts, %.2f s\n", links,
+                    run.max_strain(), relative, run.solver().step_s(),
+                    static_cast<unsigned long long>(run.solver().steps()),
+                    static_cast<unsigned long long>(run.solver().parts()), seconds_now() - start_s);
+        EXPECT_LT(run.max_strain(), 1e-12);
+        EXPECT_LT(relative, 1e-6) << links;
+    }
+}
+
+TEST(Undamped, FiftyLinksFromTheHorizontalForAMinute) {
+    test::RattleRun run(test::straight_rope(50, 1.0, 90.0), WorldDef{}, 8);
+    const double start_s = seconds_now();
+    ASSERT_TRUE(run.go(60.0, 3600));
+    std::printf("N=50 60 s: strain %.1e energy %.1e, %.2f s\n", run.max_strain(), run.energy_error(),
+                seconds_now() - start_s);
+    EXPECT_LT(run.max_strain(), 1e-12);
+    EXPECT_LT(run.energy_error(), 1e-3);
+}
+
+TEST(DampedToRest, StaysAsFastAsItWas) {
+    RopeDef rope = test::straight_rope(20, 1.0, 45.0);
+    WorldDef world;
+    world.drag_1_s = 5.0;
+    const int steps = 1000000;
+    const double step_s = 1.0 / 500.0;
+    test::RattleRun run(rope, world, 2, step_s);
+    // Ten slices; a busy machine can only make one slower, so the last has three tries of a slice each.
+    const double start_s = seconds_now();
+    ASSERT_TRUE(run.go(0.1 * steps * step_s));
+    const double first_s = seconds_now() - start_s;
+    ASSERT_TRUE(run.go(0.7 * steps * step_s));
+    double last_s = 1e9;
+    for (const double end : {0.8, 0.9, 1.0}) {
+        const double from_s = seconds_now();
+        ASSERT_TRUE(run.go(end * steps * step_s));
+        last_s = std::min(last_s, seconds_now() - from_s);
+    }
+    std::printf("damped: first 10%% %.3f s, last 10%% %.3f s, tip %.1e %.17g\n", first_s, last_s, run.tip_x(),
+                run.tip_y());
+    EXPECT_LT(last_s, 1.2 * first_s);
+    EXPECT_NEAR(run.tip_y(), -1.0, 1e-13);
+    EXPECT_NEAR(run.tip_x(), 0.0, 1e-100);
+}
+
+TEST(ManySteps, OfOneLinkKeepTheEnergyWithoutATrend) {
+    const int steps = long_tests() ? 10000000 : 1000000;
+    for (const int order : {2, 8}) {
+        if (order == 8 && !long_tests()) continue;
+        const double step_s = order == 2 ? 1.0 / 1000.0 : 1.0 / 100.0;
+        test::RattleRun run(test::straight_rope(1, 1.0, 90.0), WorldDef{}, order, step_s);
+        ASSERT_TRUE(run.go(0.1 * steps * step_s, 5000));
+        const double early = run.energy_error();
+        ASSERT_TRUE(run.go(1.0 * steps * step_s, 45000));
+        std::printf("order %d, %d steps: energy %.3e in the first tenth, %.3e in all\n", order, steps, early,
+                    run.energy_error());
+        // measured: 3.7e-6, the method's own; with order 8, 2.5e-10 after 1e7 steps, which is rounding and
+        // grows by 2.5e-17 a step of 17 stages.
+        EXPECT_LT(run.energy_error(), order == 2 ? 1e-5 : 1e-9);
+        // A trend would make it ten times as large.
+        if (order == 2) {
+            EXPECT_LT(run.energy_error(), 1.01 * early);
+        }
+    }
+}
+
+TEST(Inverted, ExactlyUprightStays) {
+    RopeDef rope = test::straight_rope(10, 1.0, 0.0);
+    for (Vec2& point : rope.points_m) point = {0.0, -point.y};
+    test::RattleRun run(rope, WorldDef{}, 4);
+    ASSERT_TRUE(run.go(10.0, 10));
+    EXPECT_EQ(run.tip_x(), 0.0);
+    EXPECT_NEAR(run.tip_y(), 1.0, 1e-14);
+    EXPECT_NEAR(run.solver().loads()->largest_tension_n, 98.1, 1e-10);
+}
+
+TEST(Steps, ThatAreMuchTooLongAreDivided) {
+    for (const double step_s : {1.0, 0.1}) {
+        test::RattleRun run(test::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, step_s);
+        ASSERT_TRUE(run.go(2.0));
+        EXPECT_GT(run.solver().parts(), 100U);
+        std::printf("h=%g: error %.1e with %llu parts\n", step_s,
+                    run.tip_distance(0.53700529500088304879, -0.81916411877801124437),
+                    static_cast<unsigned long long>(run.solver().parts()));
+        EXPECT_LT(run.tip_distance(0.53700529500088304879, -0.81916411877801124437), 1e-6);
+    }
+}
+
+TEST(Steps, OfANanosecondWork) {
+    test::RattleRun run(test::straight_rope(20, 1.0, 45.0), WorldDef{}, 4, 1e-9);
+    ASSERT_TRUE(run.go(1e-5));
+    EXPECT_EQ(run.solver().steps(), 10000U);
+    EXPECT_LT(run.max_strain(), 1e-13);
+    EXPECT_NEAR(run.tip_y() - run.system().y_m.back(), -0.5 * 9.81 * 0.5 * 1e-10, 1e-12);
+}
+
+TEST(StraightBetweenPins, IsRefusedWithTheReason) {
+    RopeDef rope = test::straight_rope(10, 1.0, 90.0);
+    rope.pinned = {0, 10};
+    try {
+        test::RattleRun run(rope, WorldDef{}, 4);
+        FAIL() << "not refused";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::kInvalidScene);
+        EXPECT_NE(std::string(error.what()).find("straight"), std::string::npos) << error.what();
+    }
+}
+
+TEST(PulledTaut, BetweenPinsItGoesOnOrSaysThatItDiverged) {
+    // Thrown upwards so hard that the middle is pulled straight against both pins.
+    RopeDef rope = test::straight_rope(2, 1.0, 90.0);
+    rope.points_m = {{0.0, 0.0}, {0.4, -0.3}, {0.8, 0.0}};
+    rope.pinned = {0, 2};
+    test::RattleRun run(rope, WorldDef{}, 4);
+    EXPECT_TRUE(run.go(1.0));  // a triangle: it cannot move at all
+    RopeDef longer = test::straight_rope(10, 1.0, 90.0);
+    for (std::size_t i = 0; i <= 10; ++i)
+        longer.points_m[i] = {0.08 * static_cast<double>(i), i % 2 == 0 ? 0.0 : -0.06};
+    longer.pinned = {0, 10};
+    for (std::size_t i = 1; i < 10; ++i) longer.velocity_m_s[i] = {0.0, 5.0};
+    test::RattleRun taut(longer, WorldDef{}, 4);
+    if (taut.go(5.0, 300)) {
+        EXPECT_LT(taut.max_strain(), 1e-9);
+        std::printf("taut: energy %.1e parts %llu/%llu\n", taut.energy_error(),
+                    static_cast<unsigned long long>(taut.solver().parts()),
+                    static_cast<unsigned long long>(taut.solver().steps()));
+    } else {
+        std::printf("taut: diverged\n");
+    }
+}
+
+}  // namespace
+}  // namespace corda::sim

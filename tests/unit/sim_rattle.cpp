@@ -1,0 +1,221 @@
+// The parts of the method `rope`: composition coefficients, the tridiagonal solver, the grid and its bits,
+// graphs.
+
+#include "corda/sim/rattle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <vector>
+
+#include "corda/core/error.hpp"
+#include "corda/sim/composition.hpp"
+#include "corda/sim/tridiagonal.hpp"
+#include "support/rattle_run.hpp"
+
+namespace corda::sim {
+namespace {
+
+TEST(Compositions, AreSymmetricAndAddUpToOne) {
+    for (const auto& [order, stages] : {std::pair{2, 1U}, {4, 5U}, {6, 9U}, {8, 17U}}) {
+        const Composition& table = composition(order);
+        EXPECT_EQ(table.order, order);
+        ASSERT_EQ(table.stages.size(), stages);
+        EXPECT_NEAR(std::accumulate(table.stages.begin(), table.stages.end(), 0.0), 1.0, 2e-16);
+        for (std::size_t i = 0; i < stages; ++i) EXPECT_EQ(table.stages[i], table.stages[stages - 1 - i]);
+        // Conditions of order 4 and, in part, 6 and 8: the odd power sums vanish below the order.
+        for (int power = 3; power < order; power += 2) {
+            double sum = 0.0;
+            for (const double stage : table.stages) sum += std::pow(stage, power);
+            EXPECT_NEAR(sum, 0.0, 1e-15) << order << " " << power;
+        }
+    }
+}
+
+TEST(Compositions, AreStableUpToTheTablesLimit) {
+    // Half the trace of the composed leapfrog's matrix on x'' = -x with step z.
+    const auto half_trace = [](const Composition& table, double z) {
+        double a = 1.0, b = 0.0, c = 0.0, d = 1.0;
+        for (const double stage : table.stages) {
+            const double t = stage * z;
+            const double m11 = 1.0 - 0.5 * t * t;
+            const double m21 = -t + 0.25 * t * t * t;
+            const double a1 = m11 * a + t * c, b1 = m11 * b + t * d;
+            c = m21 * a + m11 * c;
+            d = m21 * b + m11 * d;
+            a = a1;
+            b = b1;
+        }
+        return 0.5 * (a + d);
+    };
+    for (const int order : {2, 4, 6, 8}) {
+        const Composition& table = composition(order);
+        for (double z = 0.01; z < table.stable_omega_h; z += 0.01)
+            EXPECT_LE(std::abs(half_trace(table, z)), 1.0 + 1e-12) << order << " " << z;
+        EXPECT_GT(std::abs(half_trace(table, table.stable_omega_h + 0.02)), 1.0) << order;
+    }
+}
+
+TEST(Tridiagonal, SolvesSystemsOfEverySmallSize) {
+    std::mt19937 random(1);
+    const auto draw = [&] { return static_cast<double>(random() % 2001) / 1000.0 - 1.0; };
+    for (std::size_t count = 1; count <= 12; ++count) {
+        std::vector<double> lower(count), diagonal(count), upper(count), right(count);
+        for (std::size_t k = 0; k < count; ++k) {
+            lower[k] = draw();
+            upper[k] = draw();
+            diagonal[k] = 3.0 + draw();
+            right[k] = draw();
+        }
+        std::vector<double> l = lower, d = diagonal, u = upper, z = right;
+        solve_tridiagonal(count, l.data(), d.data(), u.data(), z.data());
+        for (std::size_t k = 0; k < count; ++k) {
+            double sum = diagonal[k] * z[k];
+            if (k > 0) sum += lower[k] * z[k - 1];
+            if (k + 1 < count) sum += upper[k] * z[k + 1];
+            EXPECT_NEAR(sum, right[k], 2e-15) << count << " " << k;
+        }
+    }
+}
+
+TEST(Grid, GivesTheSameBitsWhateverTimesAreAskedFor) {
+    for (const double drag_1_s : {0.0, 0.3}) {
+        WorldDef world;
+        world.drag_1_s = drag_1_s;
+        const RopeDef rope = test::straight_rope(20, 1.0, 80.0);
+        test::RattleRun direct(rope, world, 4, 1.0 / 240.0);
+        test::RattleRun often(rope, world, 4, 1.0 / 240.0);
+        ASSERT_TRUE(direct.go(1.51));
+        for (const double time_s : {0.0, 0.001, 0.001, 0.35, 0.7, 1.0, 1.0, 1.5, 1.505, 1.51}) {
+            ASSERT_TRUE(often.go(time_s));
+            (void)often.solver().loads();
+        }
+        EXPECT_EQ(direct.state().x_m, often.state().x_m);
+        EXPECT_EQ(direct.state().y_m, often.state().y_m);
+        EXPECT_EQ(direct.solver().energy_j(), often.solver().energy_j());
+        EXPECT_EQ(direct.solver().steps(), 362U);
+    }
+}
+
+TEST(Grid, TimesBetweenItsPointsAreAsGoodAsThePoints) {
+    test::RattleRun fine(test::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 640.0);
+    test::RattleRun coarse(test::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 333.0);
+    ASSERT_TRUE(fine.go(1.0));
+    ASSERT_TRUE(coarse.go(1.0 - 0.4 / 333.0));
+    ASSERT_TRUE(coarse.go(1.0));
+    EXPECT_LT(coarse.tip_distance(fine.tip_x(), fine.tip_y()), 1e-12);
+    test::RattleRun between(test::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 330.7);
+    ASSERT_TRUE(between.go(1.0));
+    EXPECT_LT(between.tip_distance(fine.tip_x(), fine.tip_y()), 1e-12);
+}
+
+TEST(Step, IsAWholeShareOfTheFrameWhereNoneIsGiven) {
+    test::RattleRun run(test::straight_rope(20, 1.0, 45.0), WorldDef{}, 4);
+    const double parts = 1.0 / 60.0 / run.solver().step_s();
+    EXPECT_DOUBLE_EQ(parts, std::round(parts));
+    EXPECT_GT(parts, 1.0);
+    ASSERT_TRUE(run.go(1.0));
+    EXPECT_EQ(run.solver().steps(), static_cast<std::uint64_t>(std::lround(60.0 * parts)));
+}
+
+TEST(Drag, SlowsAFreeFallExactlyAndKeepsTheOrder) {
+    RopeDef rope = test::straight_rope(4, 1.0, 20.0);
+    rope.pinned = {};
+    WorldDef world;
+    world.drag_1_s = 1.5;
+    const auto error_m = [&](int order, double step_s) {
+        test::RattleRun run(rope, world, order, step_s);
+        EXPECT_TRUE(run.go(1.0));
+        const double c = world.drag_1_s;
+        const double fallen_m = -9.81 / c * (1.0 - (1.0 - std::exp(-c)) / c);
+        return std::abs(run.tip_y() - run.system().y_m.back() - fallen_m);
+    };
+    EXPECT_NEAR(std::log2(error_m(2, 0.1) / error_m(2, 0.05)), 2.0, 0.1);
+    EXPECT_NEAR(std::log2(error_m(4, 0.1) / error_m(4, 0.05)), 4.0, 0.1);
+    EXPECT_LT(error_m(8, 0.05), 1e-13);
+}
+
+/// A net of squares hanging from its pinned top row: columns x rows particles, 0.1 m apart.
+System net(std::uint32_t columns, std::uint32_t rows, bool diagonals) {
+    System system;
+    const auto join = [&](std::uint32_t a, std::uint32_t b) {
+        const double dx = system.x_m[b] - system.x_m[a];
+        const double dy = system.y_m[b] - system.y_m[a];
+        system.bars.push_back({a, b, 1, std::sqrt(dx * dx + dy * dy)});
+    };
+    for (std::uint32_t r = 0; r < rows; ++r) {
+        for (std::uint32_t c = 0; c < columns; ++c) {
+            system.x_m.push_back(0.1 * c + 0.03 * r);
+            system.y_m.push_back(-0.1 * r);
+            system.mass_kg.push_back(1.0);
+            system.inverse_mass_1_kg.push_back(r == 0 ? 0.0 : 1.0);
+        }
+    }
+    system.vx_m_s.assign(system.x_m.size(), 0.0);
+    system.vy_m_s.assign(system.x_m.size(), 0.0);
+    for (std::uint32_t r = 0; r < rows; ++r) {
+        for (std::uint32_t c = 0; c < columns; ++c) {
+            const std::uint32_t i = r * columns + c;
+            if (c + 1 < columns) join(i, i + 1);
+            if (r + 1 < rows) join(i, i + columns);
+            if (diagonals && c + 1 < columns && r + 1 < rows) join(i, i + columns + 1);
+        }
+    }
+    system.ropes.push_back({0, system.x_m.size(), 0, system.bars.size(), system.bars.size()});
+    return system;
+}
+
+TEST(Graph, AChainSaysTheSameAsAChain) {
+    const RopeDef rope = test::straight_rope(10, 1.0, 60.0);
+    const System chain = build_system({&rope, 1}, 1);
+    System shuffled = chain;
+    std::swap(shuffled.bars[2], shuffled.bars[7]);
+    SolverDef def;
+    def.order = 6;
+    def.step_s = 1.0 / 500.0;
+    Rattle first(chain, WorldDef{}, def, 1.0 / 60.0);
+    Rattle second(shuffled, WorldDef{}, def, 1.0 / 60.0);
+    State a{0.0, chain.x_m, chain.y_m};
+    State b = a;
+    ASSERT_EQ(first.advance_to(1.0, a), Status::kOk);
+    ASSERT_EQ(second.advance_to(1.0, b), Status::kOk);
+    double largest_m = 0.0;
+    for (std::size_t i = 0; i < a.x_m.size(); ++i)
+        largest_m = std::max({largest_m, std::abs(a.x_m[i] - b.x_m[i]), std::abs(a.y_m[i] - b.y_m[i])});
+    std::printf("graph against chain: %.1e m\n", largest_m);
+    EXPECT_LT(largest_m, 1e-11);
+}
+
+TEST(Graph, ANetSwingsWithItsLengthsAndItsEnergy) {
+    const System system = net(8, 6, false);
+    SolverDef def;
+    Rattle solver(system, WorldDef{}, def, 1.0 / 60.0);
+    State state{0.0, system.x_m, system.y_m};
+    const double start_j = solver.energy_j();
+    ASSERT_EQ(solver.advance_to(1.0, state), Status::kOk);
+    double strain = 0.0;
+    for (const Bar& bar : system.bars) {
+        const double dx = state.x_m[bar.b] - state.x_m[bar.a];
+        const double dy = state.y_m[bar.b] - state.y_m[bar.a];
+        strain = std::max(strain, std::abs(std::sqrt(dx * dx + dy * dy) / bar.rest_m - 1.0));
+    }
+    std::printf("net: strain %.1e, energy %.1e, h %.1e, parts %llu / %llu\n", strain,
+                (solver.energy_j() - start_j) / solver.energy_scale_j(), solver.step_s(),
+                static_cast<unsigned long long>(solver.parts()),
+                static_cast<unsigned long long>(solver.steps()));
+    EXPECT_LT(strain, 1e-13);
+    EXPECT_LT(std::abs(solver.energy_j() - start_j) / solver.energy_scale_j(), 1e-6);
+}
+
+TEST(Graph, RedundantBarsAreRefused) {
+    const SolverDef def;
+    EXPECT_THROW(Rattle(net(5, 5, true), WorldDef{}, def, 1.0 / 60.0), Error);
+    const RopeDef rope = test::straight_rope(20, 1.0, 45.0);
+    const System seven_neighbours = build_system({&rope, 1}, 7);
+    EXPECT_THROW(Rattle(seven_neighbours, WorldDef{}, def, 1.0 / 60.0), Error);
+}
+
+}  // namespace
+}  // namespace corda::sim
