@@ -23,6 +23,7 @@ int main() {
     }
     corda::sim::WorldDef world;
     corda::sim::SolverDef solver;
+    solver.method = corda::sim::Method::kRelaxation;
     solver.step_s = 1e-3;
     solver.reach = 1;
     solver.sweeps = 100;
@@ -32,6 +33,6 @@ int main() {
         const corda::sim::State& state = simulation.state();
         std::printf("t %.1f s  tip (%+.4f, %+.4f) m\n", state.time_s, state.x_m.back(), state.y_m.back());
     }
-    std::printf("energy error %.2e of M g L\n", simulation.diagnostics().energy_error.value_or(0.0));
+    std::printf("energy error %.2e of M g L\n", simulation.diagnostics().largest.energy_error.value_or(0.0));
     return 0;
 }

@@ -3,12 +3,14 @@
 #include <CLI/CLI.hpp>
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "console.hpp"
 #include "corda/core/exit_code.hpp"
 #include "corda/gl/context.hpp"
+#include "corda/scene/auto_plan.hpp"
 #include "corda/scene/scene.hpp"
 
 namespace corda::app {
@@ -23,6 +25,7 @@ void add_simulate(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);
 void add_doctor(CLI::App& app, Action& action);
+void add_plan(CLI::App& app, Action& action);
 
 /// A scene file and what the command line puts in the place of its values.
 struct SceneOptions {
@@ -47,6 +50,15 @@ struct GlOptions {
     /// Throws corda::Error (kUsage) for an unknown backend.
     [[nodiscard]] gl::ContextDef def() const;
 };
+
+/// Settles method auto and says what it became and how far it can be trusted.
+[[nodiscard]] std::optional<scene::AutoPlan> settle_method(const Console& console, scene::Scene& scene);
+
+/// Puts "error_bound_m", "error_bound_px" and "horizon_s" into a report; null where nothing was proved.
+void report_proof(const std::optional<scene::AutoPlan>& proof, nlohmann::json& json);
+
+/// The solver in words: "exact at tolerance 1e-08".
+[[nodiscard]] std::string describe(const sim::SolverDef& solver);
 
 /// A warning for a renderer on the CPU is no news there: said with -v only.
 void report_gl(const Console& console, const gl::Context& context);

@@ -41,6 +41,7 @@ int run(int argc, char** argv) {
     add_compare(app, action);
     add_verify(app, action);
     add_doctor(app, action);
+    add_plan(app, action);
     add_console_flags(app, console_def);
     try {
         app.parse(argc, argv);

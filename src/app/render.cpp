@@ -62,11 +62,13 @@ void check_video_name(const std::string& output) {
 }
 
 /// What the file says of itself beside its pictures.
-media::VideoMetadata metadata(const scene::Scene& scene, const FrameRange& range) {
-    const nlohmann::json comment = {{"corda", CORDA_VERSION},
-                                    {"scene", scene.name},
-                                    {"method", sim::method_name(scene.solver.method)},
-                                    {"first_frame", range.first}};
+media::VideoMetadata metadata(const scene::Scene& scene, const FrameRange& range,
+                              const std::optional<scene::AutoPlan>& proof) {
+    nlohmann::json comment = {{"corda", CORDA_VERSION},
+                              {"scene", scene.name},
+                              {"method", sim::method_name(scene.solver.method)},
+                              {"first_frame", range.first}};
+    report_proof(proof, comment);
     return {scene.name, comment.dump()};
 }
 
@@ -117,12 +119,13 @@ ExitCode keep_interrupted(const Console& console, const RenderOptions& options, 
 
 ExitCode render(const Console& console, const RenderOptions& options) {
     const double start_s = now_s();
-    const scene::Scene scene = options.scene.load();
+    scene::Scene scene = options.scene.load();
     const FrameRange range = parse_range(options.frames, scene::frame_count(scene));
     const gl::ContextDef context_def = options.gl.def();
     check_video_name(options.output);
     media::check_video_def(scene.video);
     check_output(options.output, options.scene.path, options.force);
+    const auto proof = settle_method(console, scene);
     scene::Player player(scene);
     console.info(fmt::format("{}: {}, method {}; {} frames of {}x{} at {} a second", scene.name,
                              scene::describe(player.run().simulation().system()),
@@ -132,7 +135,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
 
     const gl::Context context(context_def);
     report_gl(console, context);
-    media::VideoWriter writer(options.output, scene.video, metadata(scene, range));
+    media::VideoWriter writer(options.output, scene.video, metadata(scene, range, proof));
     const std::int64_t frames = draw_frames(console, scene, range, player, writer);
     if (interruption() != ExitCode::kOk) return keep_interrupted(console, options, writer, range);
     writer.finish();
@@ -140,7 +143,9 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     console.info(fmt::format("{} frames in {:.3g} s, {:.1f} a second; verified", frames, wall_s,
                              static_cast<double>(frames) / wall_s));
     console.result(options.output);
-    console.report(report(scene, options.output, frames, wall_s, player, context.info().gl_renderer));
+    nlohmann::json json = report(scene, options.output, frames, wall_s, player, context.info().gl_renderer);
+    report_proof(proof, json);
+    console.report(json);
     return ExitCode::kOk;
 }
 

@@ -94,10 +94,11 @@ media::PngInfo describe_shot(const Shot& shot, const scene::Scene& scene, double
 }
 
 ExitCode still(const Console& console, const StillOptions& options) {
-    const scene::Scene scene = options.scene.load();
+    scene::Scene scene = options.scene.load();
     std::vector<Shot> shots = list_shots(options, scene);
     const gl::ContextDef context_def = options.gl.def();
     set_paths(options, shots);
+    const auto proof = settle_method(console, scene);
     scene::Player player(scene);
     console.detail(fmt::format("{}: {}", scene.name, scene::describe(player.run().simulation().system())));
     nlohmann::json outputs = nlohmann::json::array();
@@ -116,11 +117,13 @@ ExitCode still(const Console& console, const StillOptions& options) {
         if (!options.dry_run) console.result(shot.path);
         outputs.push_back({{"path", shot.path}, {"time_s", shot.time_s}});
     }
-    console.report(nlohmann::json{{"schema", 1},
-                                  {"outputs", outputs},
-                                  {"width", scene.video.width_px},
-                                  {"height", scene.video.height_px},
-                                  {"method", sim::method_name(scene.solver.method)}});
+    nlohmann::json json = {{"schema", 1},
+                           {"outputs", outputs},
+                           {"width", scene.video.width_px},
+                           {"height", scene.video.height_px},
+                           {"method", sim::method_name(scene.solver.method)}};
+    report_proof(proof, json);
+    console.report(json);
     return ExitCode::kOk;
 }
 

@@ -2,70 +2,59 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
+#include <vector>
 
 #include "corda/scene/readers.hpp"
 
 namespace corda::scene {
 namespace {
 
-/// A key that only some methods use, by the names of scene files.
+/// A key that only some methods use.
 struct MethodKey {
     std::string_view key;
-    std::string_view methods;
-    bool relaxation;
+    std::initializer_list<sim::Method> methods;
+    std::string_view remedy = "remove it";
 };
 
-constexpr std::array kMethodKeys{
-    MethodKey{"tolerance_px", "\"auto\"", false}, MethodKey{"tolerance", "\"exact\"", false},
-    MethodKey{"order", "\"rope\"", false},        MethodKey{"step", "\"rope\" and \"relaxation\"", true},
-    MethodKey{"reach", "\"relaxation\"", true},   MethodKey{"sweeps", "\"relaxation\"", true},
-    MethodKey{"delta", "\"relaxation\"", true},   MethodKey{"force", "\"relaxation\"", true},
-};
-
-/// The methods of the schema that a build may lack.
-constexpr std::array<std::string_view, 3> kPlannedMethods{"auto", "rope", "exact"};
+const std::array<MethodKey, 8> kMethodKeys{{
+    {"tolerance_px", {sim::Method::kAuto}},
+    {"tolerance", {sim::Method::kExact}},
+    {"order", {sim::Method::kRope}},
+    {"step", {sim::Method::kRope, sim::Method::kRelaxation}},
+    {"reach",
+     {sim::Method::kRelaxation},
+     "remove it: bars to farther particles make a straight rope a rigid rod, and its equations singular"},
+    {"sweeps", {sim::Method::kRelaxation}},
+    {"delta", {sim::Method::kRelaxation}, "remove it, or give world.drag"},
+    {"force", {sim::Method::kRelaxation}, "remove it, or give world.gravity"},
+}};
 
 sim::Method read_method(const TableReader& solver) {
     const auto value = solver.find("method");
     if (!value) return sim::SolverDef{}.method;
     const auto names = sim::method_names();
-    const std::string_view name = value->text("give one of: " + joined(names));
-    if (const auto method = sim::parse_method(name)) return *method;
-    if (std::find(kPlannedMethods.begin(), kPlannedMethods.end(), name) != kPlannedMethods.end()) {
-        value->fail(
-            fmt::format("\"{}\" is not available in this version; give one of: {}", name, joined(names)));
-    }
-    return sim::parse_method(names[value->choice(names)]).value_or(sim::Method::kRelaxation);
-}
-
-bool uses(sim::Method method, const MethodKey& key) {
-    switch (method) {
-        case sim::Method::kRelaxation:
-            return key.relaxation;
-    }
-    return false;
+    return *sim::parse_method(names[value->choice(names)]);
 }
 
 void refuse_foreign_keys(const TableReader& solver, sim::Method method) {
     for (const MethodKey& key : kMethodKeys) {
         const auto value = solver.find(key.key);
-        if (!value || uses(method, key)) continue;
-        value->fail(fmt::format("method \"{}\" does not use it, only {}; remove it", sim::method_name(method),
-                                key.methods));
+        if (!value || std::find(key.methods.begin(), key.methods.end(), method) != key.methods.end())
+            continue;
+        std::vector<std::string_view> users;
+        for (const sim::Method user : key.methods) users.push_back(sim::method_name(user));
+        value->fail(fmt::format("method \"{}\" does not use it, only {}; {}", sim::method_name(method),
+                                joined(users), key.remedy));
     }
 }
 
-/// Keys of methods that do not exist yet: a value that is wrong is wrong whatever the method.
-void check_other_methods(const TableReader& solver) {
-    constexpr std::string_view kOrder = "give an order of 2, 4, 6 or 8";
-    double unused = 0.0;
-    solver.read_number("tolerance_px", unused, kPositive, "give a tolerance in pixels");
-    solver.read_number("tolerance", unused, {.low = 0.0, .high = 1e-2, .low_open = true},
-                       "give a tolerance relative to the rope's length");
-    if (const auto order = solver.find("order")) {
-        const std::int64_t value = order->integer(2, 8, kOrder);
-        if (value % 2 != 0) order->fail(fmt::format("{} is not even; {}", value, kOrder));
-    }
+void read_order(const TableReader& solver, int& order) {
+    constexpr std::string_view kRemedy = "give an order of 2, 4, 6 or 8";
+    const auto value = solver.find("order");
+    if (!value) return;
+    order = static_cast<int>(value->integer(2, 8, kRemedy));
+    if (order % 2 != 0) value->fail(fmt::format("{} is not even; {}", order, kRemedy));
 }
 
 }  // namespace
@@ -74,7 +63,10 @@ sim::SolverDef read_solver(const TableReader& solver) {
     constexpr int kMostSweeps = 1'000'000;
     sim::SolverDef def;
     def.method = read_method(solver);
-    check_other_methods(solver);
+    solver.read_number("tolerance_px", def.tolerance_px, kPositive, "give a tolerance in pixels");
+    solver.read_number("tolerance", def.tolerance, {.low = 1e-15, .high = 1e-2},
+                       "give a tolerance relative to the rope's length");
+    read_order(solver, def.order);
     solver.read_number("step", def.step_s, {.low = 1e-9}, "give a step in s");
     solver.read_integer("reach", def.reach, 1, static_cast<int>(Limits::kParticles),
                         "give the number of next particles that bars go to");
@@ -85,6 +77,7 @@ sim::SolverDef read_solver(const TableReader& solver) {
         def.force_n = force->pair(kAnyNumber, "give a force as [fx, fy] in N");
     }
     refuse_foreign_keys(solver, def.method);
+    if (def.method != sim::Method::kRelaxation) def.reach = 1;  // links alone
     return def;
 }
 

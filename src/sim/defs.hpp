@@ -30,15 +30,17 @@ struct RopeDef {
     double payload_kg = 0.0;  ///< added to the mass of the last particle; >= 0
 };
 
-/// The solvers of PHYSICS; `method_names()` lists those that exist.
-enum class Method { kRelaxation };
+/// How a scene is solved. kAuto is settled by a Plan (planner.hpp) before anything runs.
+enum class Method { kAuto, kRelaxation, kRope, kExact };
 
 /// How a scene is solved. A key that does not belong to the chosen method is refused by the scene reader.
 struct SolverDef {
-    Method method = Method::kRelaxation;
+    Method method = Method::kAuto;
+    double tolerance_px = 0.1;  ///< auto: bound of the displayed position error; > 0
+    double tolerance =
+        1e-9;  ///< exact: error after some seconds, relative to the rope's length; 1e-15 .. 1e-2
     std::optional<double> step_s;  ///< relaxation, rope: > 0; default one frame (relaxation), chosen (rope)
     int order = 4;                 ///< rope: order of the composition, 2, 4, 6 or 8
-    double tolerance = 1e-9;       ///< exact: error a step, relative to the rope's length; 1e-15 .. 1e-2
     int reach = 7;                 ///< relaxation: bars to the next 1..reach particles; >= 1
     int sweeps = 1;                ///< relaxation: passes over all bars a step; >= 1
     double delta = 0.0;            ///< relaxation: share of the velocity lost a step; 0 <= delta < 1

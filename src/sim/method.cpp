@@ -7,8 +7,11 @@
 namespace corda::sim {
 namespace {
 
-constexpr std::array<std::pair<Method, std::string_view>, 1> kMethods{{
+constexpr std::array<std::pair<Method, std::string_view>, 4> kMethods{{
+    {Method::kAuto, "auto"},
     {Method::kRelaxation, "relaxation"},
+    {Method::kRope, "rope"},
+    {Method::kExact, "exact"},
 }};
 
 }  // namespace

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "corda/sim/distance.hpp"
+#include "corda/sim/exact.hpp"
+#include "corda/sim/rattle.hpp"
 #include "corda/sim/relaxation.hpp"
 
 namespace corda::sim {
@@ -36,10 +38,16 @@ double max_strain(const System& system, const State& state) {
 std::unique_ptr<Solver> make_solver(const System& system, const WorldDef& world, const SolverDef& def,
                                     double frame_interval_s) {
     switch (def.method) {
+        case Method::kAuto:
+            break;
         case Method::kRelaxation:
             return std::make_unique<Relaxation>(system, world, def, frame_interval_s);
+        case Method::kRope:
+            return std::make_unique<Rattle>(system, world, def, frame_interval_s);
+        case Method::kExact:
+            return std::make_unique<Exact>(system, world, def, frame_interval_s);
     }
-    assert(false && "make_solver: a method without a solver");
+    assert(false && "make_solver: auto has to be settled by a plan first");
     return nullptr;
 }
 
@@ -63,20 +71,21 @@ Status Simulation::advance_to(double time_s) {
 }
 
 void Simulation::observe() {
-    max_strain_ = std::max(max_strain_, max_strain(system_, state_));
-    if (!conserves_energy_) return;
-    largest_energy_change_j_ =
-        std::max(largest_energy_change_j_, std::abs(solver_->energy_j() - initial_energy_j_));
+    figures_.strain = max_strain(system_, state_);
+    largest_.strain = std::max(largest_.strain, figures_.strain);
+    if (conserves_energy_ && energy_scale_j_ > 0.0) {
+        figures_.energy_error = std::abs(solver_->energy_j() - initial_energy_j_) / energy_scale_j_;
+        largest_.energy_error = std::max(largest_.energy_error.value_or(0.0), *figures_.energy_error);
+    }
+    figures_.loads = solver_->loads();
+    if (!figures_.loads) return;
+    const Loads before = largest_.loads.value_or(Loads{});
+    largest_.loads = Loads{std::max(before.pin_force_n, figures_.loads->pin_force_n),
+                           std::max(before.largest_tension_n, figures_.loads->largest_tension_n)};
 }
 
 Diagnostics Simulation::diagnostics() const {
-    Diagnostics result;
-    result.steps = solver_->steps();
-    result.max_strain = max_strain_;
-    if (conserves_energy_ && energy_scale_j_ > 0.0) {
-        result.energy_error = largest_energy_change_j_ / energy_scale_j_;
-    }
-    return result;
+    return {solver_->steps(), largest_};
 }
 
 }  // namespace corda::sim

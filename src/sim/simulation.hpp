@@ -9,13 +9,19 @@
 
 namespace corda::sim {
 
-/// What a run has shown of itself, over the times that were asked for.
+/// What a state shows of its own quality.
+struct Figures {
+    double strain = 0.0;  ///< largest | length / rest length - 1 | of a real bar
+    /// | E(t) - E(0) | over (total weight * total length), or over E(0) without a force; nothing where
+    /// damping takes energy away on purpose.
+    std::optional<double> energy_error;
+    std::optional<Loads> loads;  ///< nothing where the method does not know them
+};
+
+/// What a run has shown of itself: the largest figures over the times that were asked for.
 struct Diagnostics {
     std::uint64_t steps = 0;
-    double max_strain = 0.0;  ///< largest | length / rest length - 1 | of a real bar
-    /// Largest | E(t) - E(0) | over (total weight * total length), or over E(0) without a force; nothing
-    /// where damping takes energy away on purpose.
-    std::optional<double> energy_error;
+    Figures largest;
 };
 
 /// A scene in motion: particles and bars, a solver, and a check of every state that it hands out.
@@ -32,6 +38,8 @@ class Simulation {
     /// Positions relative to `system().origin_m`, at the last time that was reached.
     [[nodiscard]] const State& state() const { return state_; }
     [[nodiscard]] const System& system() const { return system_; }
+    /// Figures of the state alone.
+    [[nodiscard]] const Figures& figures() const { return figures_; }
     [[nodiscard]] Diagnostics diagnostics() const;
 
   private:
@@ -44,8 +52,8 @@ class Simulation {
     bool conserves_energy_ = true;
     double initial_energy_j_ = 0.0;
     double energy_scale_j_ = 0.0;
-    double largest_energy_change_j_ = 0.0;
-    double max_strain_ = 0.0;
+    Figures figures_;
+    Figures largest_;
 };
 
 }  // namespace corda::sim

@@ -20,7 +20,7 @@ RopeDef falling_pair(double mass_kg) {
 }
 
 double fall_m(double mass_kg, double step_s, int n, double delta, double force_n) {
-    SolverDef solver;
+    SolverDef solver = test::relaxation();
     solver.step_s = step_s;
     solver.delta = delta;
     solver.force_n = Vec2{0.0, force_n};
@@ -63,7 +63,7 @@ TEST(FreeFallR10, WithoutDampingIsLateByHalfAStepsSpeed) {
 /// When a horizontal rod of ten unit masses, length 1 m, gets to the vertical: the time at which its tip
 /// passes under the pin, by bisection between steps.
 double quarter_period_s(double step_s, int sweeps) {
-    SolverDef solver;
+    SolverDef solver = test::relaxation();
     solver.step_s = step_s;
     solver.sweeps = sweeps;
     Simulation run = test::simulate(test::straight_rope(10, 1.0, 90.0), WorldDef{}, solver);

@@ -9,6 +9,7 @@
 #include "corda/gl/context.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/render/reference_renderer.hpp"
+#include "corda/scene/auto_plan.hpp"
 #include "corda/scene/player.hpp"
 #include "support/files.hpp"
 #include "support/image_matchers.hpp"
@@ -24,7 +25,8 @@ TEST_P(Examples, EqualTheReferenceByteForByte) {
     for (const char* width : {"", "0.5", "60"}) {
         std::vector<scene::Setting> settings{"video.size=" + size};
         if (*width != '\0') settings.push_back(std::string("style.rope_width_px=") + width);
-        const scene::Scene scene = scene::load_scene(path, settings);
+        scene::Scene scene = scene::load_scene(path, settings);
+        static_cast<void>(scene::settle_method(scene));
         scene::Player player(scene);
         render::FrameRenderer renderer(scene.video.width_px, scene.video.height_px);
         for (const double time_s : {0.0, 0.37 * scene.world.duration_s, scene.world.duration_s}) {

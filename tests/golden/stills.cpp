@@ -11,6 +11,7 @@
 #include "corda/media/png.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/render/reference_renderer.hpp"
+#include "corda/scene/auto_plan.hpp"
 #include "corda/scene/player.hpp"
 #include "support/files.hpp"
 #include "support/image_matchers.hpp"
@@ -25,7 +26,8 @@ class GoldenStill : public testing::TestWithParam<std::string> {};
 TEST_P(GoldenStill, IsUnchanged) {
     const std::string golden_path =
         std::string(CORDA_GOLDENS) + "/stills/" + test::test_name(GetParam()) + ".png";
-    const scene::Scene scene = scene::load_scene(GetParam(), {"video.size=[128,128]", "world.duration=1.0"});
+    scene::Scene scene = scene::load_scene(GetParam(), {"video.size=[128,128]", "world.duration=1.0"});
+    static_cast<void>(scene::settle_method(scene));
     scene::Player player(scene);
     const gl::Context context;
     render::FrameRenderer renderer(128, 128);

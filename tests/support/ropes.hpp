@@ -30,6 +30,13 @@ inline sim::RopeDef report_rope(int particles) {
     return rope;
 }
 
+/// Method relaxation with its defaults.
+inline sim::SolverDef relaxation() {
+    sim::SolverDef solver;
+    solver.method = sim::Method::kRelaxation;
+    return solver;
+}
+
 /// A simulation of one rope.
 inline sim::Simulation simulate(const sim::RopeDef& rope, const sim::WorldDef& world,
                                 const sim::SolverDef& solver) {

@@ -156,7 +156,8 @@ TEST(SceneErrors, Shapes) {
          "swing.toml:3:19: rope[0].points[1]: ", "3 is an integer, not a pair"},
         {rope + "points = [[0, 0], [1, 1], [1, 1]]",
          "swing.toml:3:27: rope[0].points[2]: ", "points 1 and 2 coincide"},
-        {rope + "points = [[0, 0], [1, 1], [0, 0]]", "swing.toml:3:27: rope[0].points[2]: ",
+        {rope + "points = [[0, 0], [1, 1], [0, 0]]\n[solver]\nmethod = \"relaxation\"",
+         "swing.toml:3:27: rope[0].points[2]: ",
          "points 0 and 2 coincide, and solver.reach = 7 ties them by a bar, which has no direction; move "
          "one, or "
          "give a reach below 2"},
@@ -192,29 +193,47 @@ TEST(SceneErrors, Particles) {
 
 TEST(SceneErrors, Solver) {
     const auto solver = [](const std::string& keys) { return with("[solver]\n" + keys); };
+    const auto method = [&](const std::string& name, const std::string& keys) {
+        return solver("method = \"" + name + "\"\n" + keys);
+    };
     expect_errors({
-        {solver("method = \"auto\""),
-         "swing.toml:4:10: solver.method: ", "\"auto\" is not available in this version; give one of: "},
         {solver("method = \"relaxatoin\""),
          "swing.toml:4:10: solver.method: ", "\"relaxatoin\" is unknown; did you mean \"relaxation\"?"},
-        {solver("method = \"magic\""),
-         "swing.toml:4:10: solver.method: ", "\"magic\" is unknown; give one of: "},
-        {solver("step = 0"), "swing.toml:4:8: solver.step: ", "0 is not >= 1e-09; give a step in s"},
-        {solver("reach = 0"), "swing.toml:4:9: solver.reach: ", "0 is not >= 1"},
-        {solver("sweeps = 1000001"),
-         "swing.toml:4:10: solver.sweeps: ", "1000001 is over the limit of 1000000"},
-        {solver("delta = 1"), "swing.toml:4:9: solver.delta: ", "1 is not < 1"},
-        {solver("delta = -0.1"), "swing.toml:4:9: solver.delta: ", "-0.1 is not >= 0"},
-        {solver("force = 3"), "swing.toml:4:9: solver.force: ", "3 is an integer, not a pair of numbers"},
+        {solver("method = \"magic\""), "swing.toml:4:10: solver.method: ",
+         "\"magic\" is unknown; give one of: auto, relaxation, rope, exact"},
+        {method("rope", "step = 0"), "swing.toml:5:8: solver.step: ", "0 is not >= 1e-09; give a step in s"},
+        {method("relaxation", "reach = 0"), "swing.toml:5:9: solver.reach: ", "0 is not >= 1"},
+        {method("relaxation", "sweeps = 1000001"),
+         "swing.toml:5:10: solver.sweeps: ", "1000001 is over the limit of 1000000"},
+        {method("relaxation", "delta = 1"), "swing.toml:5:9: solver.delta: ", "1 is not < 1"},
+        {method("relaxation", "delta = -0.1"), "swing.toml:5:9: solver.delta: ", "-0.1 is not >= 0"},
+        {method("relaxation", "force = 3"),
+         "swing.toml:5:9: solver.force: ", "3 is an integer, not a pair of numbers"},
         {solver("tolerance_px = 0"), "swing.toml:4:16: solver.tolerance_px: ", "0 is not > 0"},
-        {solver("tolerance_px = 0.1"), "swing.toml:4:16: solver.tolerance_px: ",
-         "method \"relaxation\" does not use it, only \"auto\"; remove it"},
-        {solver("tolerance = 0.02"), "swing.toml:4:13: solver.tolerance: ", "0.02 is not <= 0.01"},
-        {solver("tolerance = 1e-9"), "swing.toml:4:13: solver.tolerance: ", "only \"exact\"; remove it"},
-        {solver("order = 3"),
-         "swing.toml:4:9: solver.order: ", "3 is not even; give an order of 2, 4, 6 or 8"},
-        {solver("order = 10"), "swing.toml:4:9: solver.order: ", "10 is over the limit of 8"},
-        {solver("order = 4"), "swing.toml:4:9: solver.order: ", "only \"rope\"; remove it"},
+        {method("exact", "tolerance = 0.02"), "swing.toml:5:13: solver.tolerance: ", "0.02 is not <= 0.01"},
+        {method("rope", "order = 3"),
+         "swing.toml:5:9: solver.order: ", "3 is not even; give an order of 2, 4, 6 or 8"},
+        {method("rope", "order = 10"), "swing.toml:5:9: solver.order: ", "10 is over the limit of 8"},
+    });
+}
+
+TEST(SceneErrors, KeysOfOtherMethods) {
+    const auto solver = [](const std::string& keys) { return with("[solver]\n" + keys); };
+    const auto method = [&](const std::string& name, const std::string& keys) {
+        return solver("method = \"" + name + "\"\n" + keys);
+    };
+    expect_errors({
+        {method("relaxation", "tolerance_px = 0.1"), "swing.toml:5:16: solver.tolerance_px: ",
+         "method \"relaxation\" does not use it, only auto; remove it"},
+        {solver("tolerance = 1e-9"), "swing.toml:4:13: solver.tolerance: ", "only exact; remove it"},
+        {method("exact", "order = 4"), "swing.toml:5:9: solver.order: ", "only rope; remove it"},
+        {method("exact", "step = 0.01"), "swing.toml:5:8: solver.step: ", "only rope, relaxation; remove it"},
+        {method("rope", "reach = 7"),
+         "swing.toml:5:9: solver.reach: ", "a rigid rod, and its equations singular"},
+        {method("exact", "reach = 7"),
+         "swing.toml:5:9: solver.reach: ", "a rigid rod, and its equations singular"},
+        {method("rope", "delta = 0.1"), "swing.toml:5:9: solver.delta: ", "give world.drag"},
+        {method("exact", "force = [0, 1]"), "swing.toml:5:9: solver.force: ", "give world.gravity"},
     });
 }
 

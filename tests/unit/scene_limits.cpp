@@ -32,14 +32,16 @@ TEST(SceneLimits, Particles) {
 
 TEST(SceneLimits, ParticlesOfAllRopesTogether) {
     const std::string rope = "[[rope]]\nline = { particles = 600000, step = [0, -0.001] }\n";
-    expect_limit("schema = 1\nsolver.reach = 1\n" + rope + rope,
-                 "swing.toml:5:1: rope[1]: ", "1200000 particles, over the limit of 1000000");
+    expect_limit("schema = 1\nsolver.method = \"relaxation\"\nsolver.reach = 1\n" + rope + rope,
+                 "swing.toml:6:1: rope[1]: ", "1200000 particles, over the limit of 1000000");
 }
 
 TEST(SceneLimits, Bars) {
-    expect_limit(line_of("1000000") + "[solver]\nreach = 21\n", "swing.toml:2:1: rope[0]: ",
+    expect_limit(line_of("1000000") + "[solver]\nmethod = \"relaxation\"\nreach = 21\n",
+                 "swing.toml:2:1: rope[0]: ",
                  "20999769 bars, over the limit of 20000000; give fewer particles or a smaller solver.reach");
-    expect_limit(line_of("1000000") + "[solver]\nreach = 1000000\n", "swing.toml:2:1: rope[0]: ", "bars");
+    expect_limit(line_of("1000000") + "[solver]\nmethod = \"relaxation\"\nreach = 1000000\n",
+                 "swing.toml:2:1: rope[0]: ", "bars");
 }
 
 TEST(SceneLimits, AFullRopeFits) {
@@ -64,16 +66,17 @@ TEST(SceneLimits, Frames) {
 }
 
 TEST(SceneLimits, Steps) {
-    expect_limit(with("[solver]\nstep = 1e-9"),
-                 "swing.toml:4:8: solver.step: ", "10 s are 1e+10 steps, over the limit of 1000000000");
+    expect_limit(with("[solver]\nmethod = \"rope\"\nstep = 1e-9"),
+                 "swing.toml:5:8: solver.step: ", "10 s are 1e+10 steps, over the limit of 1000000000");
 }
 
 TEST(SceneLimits, BarUpdates) {
     expect_limit(
-        line_of("1000000") + "[solver]\nsweeps = 1000000\n", "swing.toml:5:10: solver.sweeps: ",
+        line_of("1000000") + "[solver]\nmethod = \"relaxation\"\nsweeps = 1000000\n",
+        "swing.toml:6:10: solver.sweeps: ",
         "6999972 bars, 1000000 sweeps and 600 steps are 4.19998e+15 bar updates, over the limit of 1e+13");
-    expect_limit(line_of("1000000") + "[solver]\nstep = 1e-6\n",
-                 "swing.toml:5:8: solver.step: ", "bar updates");
+    expect_limit(line_of("1000000") + "[solver]\nmethod = \"relaxation\"\nstep = 1e-6\n",
+                 "swing.toml:6:8: solver.step: ", "bar updates");
 }
 
 TEST(SceneLimits, FileSize) {

@@ -30,9 +30,10 @@ TEST(SceneReader, MinimalFileHasAllDefaults) {
     EXPECT_EQ(scene.ropes[0].payload_kg, 0.0);
     EXPECT_FALSE(scene.rope_styles[0].color);
     EXPECT_FALSE(scene.rope_styles[0].width_px);
-    EXPECT_EQ(scene.solver.method, sim::Method::kRelaxation);
+    EXPECT_EQ(scene.solver.method, sim::Method::kAuto);
+    EXPECT_EQ(scene.solver.tolerance_px, 0.1);
     EXPECT_FALSE(scene.solver.step_s);
-    EXPECT_EQ(scene.solver.reach, 7);
+    EXPECT_EQ(scene.solver.reach, 1);
     EXPECT_FALSE(scene.solver.force_n);
     EXPECT_EQ(scene.video.width_px, 1920);
     EXPECT_EQ(scene.video.height_px, 1080);

@@ -81,8 +81,10 @@ TEST(ScenePoints, AreRelativeToTheFirst) {
 
 TEST(ScenePoints, OfAClosedRopeAreFineWhereNoBarTiesThem) {
     const std::string rope = "schema = 1\n[[rope]]\npoints = [[0, 0], [1, 0], [1, 1], [0, 0]]\n";
-    EXPECT_EQ(parse_scene(rope + "[solver]\nreach = 2\n", "a").ropes[0].points_m.size(), 4U);
-    EXPECT_NE(error_of(rope + "[solver]\nreach = 3\n").code, ExitCode::kOk);
+    EXPECT_EQ(
+        parse_scene(rope + "[solver]\nmethod = \"relaxation\"\nreach = 2\n", "a").ropes[0].points_m.size(),
+        4U);
+    EXPECT_NE(error_of(rope + "[solver]\nmethod = \"relaxation\"\nreach = 3\n").code, ExitCode::kOk);
 }
 
 TEST(SceneRope, MassIsOneForAllOrAList) {

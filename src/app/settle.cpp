@@ -1,0 +1,51 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+
+namespace corda::app {
+
+std::string describe(const sim::SolverDef& solver) {
+    const std::string name(sim::method_name(solver.method));
+    switch (solver.method) {
+        case sim::Method::kAuto:
+            return fmt::format("{} within {} px", name, solver.tolerance_px);
+        case sim::Method::kRelaxation:
+            return fmt::format("{} with reach {}, {} sweeps", name, solver.reach, solver.sweeps);
+        case sim::Method::kRope:
+            return fmt::format("{} of order {}", name, solver.order) +
+                   (solver.step_s ? fmt::format(", step {} s", *solver.step_s) : std::string());
+        case sim::Method::kExact:
+            return fmt::format("{} at tolerance {:.3g}", name, solver.tolerance);
+    }
+    return name;
+}
+
+std::optional<scene::AutoPlan> settle_method(const Console& console, scene::Scene& scene) {
+    const double tolerance_px = scene.solver.tolerance_px;
+    const auto proof = scene::settle_method(scene);
+    if (!proof) return proof;
+    console.info(fmt::format("auto: {}; displayed error at most {:.2g} px ({:.2g} m), shown by a tighter run",
+                             describe(scene.solver), proof->error_bound_px(), proof->plan.error_bound_m));
+    if (proof->plan.horizon_s) {
+        console.warning(fmt::format(
+            "predictability ends at {:.6g} s: from there two runs of the highest precision differ by more "
+            "than "
+            "{:g} px, because the motion is chaotic; what is drawn after it is one possible motion",
+            *proof->plan.horizon_s, tolerance_px));
+    }
+    return proof;
+}
+
+void report_proof(const std::optional<scene::AutoPlan>& proof, nlohmann::json& json) {
+    json["error_bound_m"] = nullptr;
+    json["error_bound_px"] = nullptr;
+    json["horizon_s"] = nullptr;
+    if (!proof) return;
+    json["error_bound_m"] = proof->plan.error_bound_m;
+    json["error_bound_px"] = proof->error_bound_px();
+    if (proof->plan.horizon_s) json["horizon_s"] = *proof->plan.horizon_s;
+}
+
+}  // namespace corda::app

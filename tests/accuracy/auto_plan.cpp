@@ -1,0 +1,145 @@
+// Method auto: what it claims against numbers worked out by others (PHYSICS section 4, R5 and R11). A claim
+// that proves false is a failed test.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "corda/sim/planner.hpp"
+#include "support/ropes.hpp"
+
+namespace corda::sim {
+namespace {
+
+struct ReleasedChain {
+    int links;
+    double length_m;
+    double angle_deg;
+    double time_s;
+    Vec2 tip_m;
+    double tip_mass_kg = 1.0;
+};
+
+// R5, all rows.
+const std::vector<ReleasedChain> kReleasedChains{
+    {2, 2, 90, 1, {-1.44481884994347579652, -1.32179446138146455585}},
+    {2, 2, 90, 5, {-1.55077846947044280041, -1.07591273481265245654}},
+    {2, 2, 90, 10, {-1.04076578324617048611, -1.70734766246932744698}},
+    {2, 2, 179, 5, {0.67314150466155481520, -0.62722634568900508337}},
+    {3, 1, 90, 5, {-0.53194662963776443892, 0.19179241928334740955}},
+    {5, 1, 90, 2, {0.83771529818003690575, -0.16765931615339712151}},
+    {10, 1, 45, 1, {-0.67948993189750683016, -0.72711223860003900537}},
+    {10, 1, 45, 5, {0.39214385389268969475, -0.90225644487398941636}},
+    {10, 1, 90, 1, {-0.91331222940637701239, -0.14965514141883061700}},
+    {10, 1, 90, 2, {0.47978859926682898140, -0.15417531322773500122}},
+    {20, 1, 45, 1, {-0.67016053525568878136, -0.73674338218714743406}},
+    {20, 1, 45, 2, {0.53700529500088304879, -0.81916411877801124437}},
+    {20, 1, 90, 1, {-0.90868883153230172068, -0.16339488036472364311}},
+    {10, 1, 90, 2, {0.79574428267767040194, -0.60334843538712810990}, 1000.0},
+    {10, 1, 90, 5, {0.92550693774088658561, -0.34521126487484581376}, 1000.0},
+};
+
+class AutoBound : public testing::TestWithParam<std::tuple<std::size_t, double>> {};
+
+TEST_P(AutoBound, IsTrueUnderTheHorizon) {
+    const auto [row, tolerance] = GetParam();
+    const ReleasedChain& chain = kReleasedChains[row];
+    RopeDef rope = test::straight_rope(chain.links, chain.length_m, chain.angle_deg);
+    rope.mass_kg.back() = chain.tip_mass_kg;
+    const System system = build_system({&rope, 1}, 1);
+    const FrameRate frames(Rational{60, 1});
+    const PlanDef def{tolerance * chain.length_m, frames, frames.last_frame_within(chain.time_s)};
+    const Plan plan = plan_solver(system, WorldDef{}, def);
+    EXPECT_LE(plan.error_bound_m, def.tolerance_m);
+    if (plan.horizon_s) return;  // nothing is claimed at the row's time
+    Simulation run(system, WorldDef{}, plan.solver, frames.interval_s());
+    ASSERT_EQ(run.advance_to(chain.time_s), Status::kOk);
+    const double error_m =
+        std::hypot(run.state().x_m.back() - chain.tip_m.x, run.state().y_m.back() - chain.tip_m.y);
+    // Measured: the error is 0.01 .. 0.4 of the bound.
+    EXPECT_LE(error_m, plan.error_bound_m + 1e-13 * chain.length_m);
+}
+
+INSTANTIATE_TEST_SUITE_P(R5, AutoBound,
+                         testing::Combine(testing::Range<std::size_t>(0, 15),
+                                          testing::Values(1e-3, 1e-4, 1e-6, 1e-9)));
+
+TEST(AutoPlan, FindsNoHorizonWithinTheRegularRowsOfR5) {
+    // At a thousandth of the length every row of R5 can be predicted but for one: N = 10 at 90 degrees is
+    // chaotic past 2 s.
+    for (const ReleasedChain& chain : kReleasedChains) {
+        RopeDef rope = test::straight_rope(chain.links, chain.length_m, chain.angle_deg);
+        rope.mass_kg.back() = chain.tip_mass_kg;
+        const System system = build_system({&rope, 1}, 1);
+        const FrameRate frames(Rational{60, 1});
+        const PlanDef def{1e-3 * chain.length_m, frames, frames.last_frame_within(chain.time_s)};
+        EXPECT_FALSE(plan_solver(system, WorldDef{}, def).horizon_s.has_value())
+            << chain.links << " links, " << chain.angle_deg << " degrees, " << chain.time_s << " s";
+    }
+}
+
+TEST(AutoPlan, SaysWhereAChaoticMotionCanNoLongerBePredicted) {
+    const RopeDef rope = test::straight_rope(10, 1.0, 90.0);
+    const System system = build_system({&rope, 1}, 1);
+    const FrameRate frames(Rational{60, 1});
+    const Plan plan = plan_solver(system, WorldDef{}, {1e-4, frames, 600});
+    ASSERT_TRUE(plan.horizon_s.has_value());
+    EXPECT_GT(*plan.horizon_s, 3.0);  // measured 3.9
+    EXPECT_LT(*plan.horizon_s, 5.0);  // PHYSICS: a perturbation grows by 1e15 in 5 s
+}
+
+TEST(AutoPlan, TakesALooserMethodForALooserTolerance) {
+    const RopeDef rope = test::straight_rope(20, 1.0, 45.0);
+    const System system = build_system({&rope, 1}, 1);
+    const FrameRate frames(Rational{60, 1});
+    const Plan loose = plan_solver(system, WorldDef{}, {1e-3, frames, 120});
+    const Plan tight = plan_solver(system, WorldDef{}, {1e-9, frames, 120});
+    EXPECT_GT(loose.solver.tolerance, tight.solver.tolerance);
+    EXPECT_LT(loose.trials.back().steps, tight.trials.back().steps);
+}
+
+TEST(AutoPlan, IsTheSameOnEveryRun) {
+    const RopeDef rope = test::straight_rope(10, 1.0, 90.0);
+    const System system = build_system({&rope, 1}, 1);
+    const FrameRate frames(Rational{60, 1});
+    const Plan a = plan_solver(system, WorldDef{}, {1e-4, frames, 300});
+    const Plan b = plan_solver(system, WorldDef{}, {1e-4, frames, 300});
+    EXPECT_EQ(a.solver.tolerance, b.solver.tolerance);
+    EXPECT_EQ(a.error_bound_m, b.error_bound_m);
+    EXPECT_EQ(a.horizon_s, b.horizon_s);
+}
+
+TEST(AutoBound, IsTrueForTheSourceReportsStart) {
+    // R11: all 40 particles at 1, 2, 5 and 10 s.
+    std::ifstream file(CORDA_TEST_DATA "/swing40.txt");
+    ASSERT_TRUE(file.is_open());
+    const RopeDef rope = test::report_rope(40);
+    const System system = build_system({&rope, 1}, 1);
+    const WorldDef world{{0.0, -9.8}, 10.0, 0.0};
+    const FrameRate frames(Rational{60, 1});
+    const Plan plan = plan_solver(system, world, {1e-3, frames, 600});
+    ASSERT_FALSE(plan.horizon_s.has_value());
+    Simulation run(system, world, plan.solver, frames.interval_s());
+    int rows = 0;
+    for (std::string line; std::getline(file, line);) {
+        if (line.empty() || line.front() == '#') continue;
+        std::istringstream numbers(line);
+        double time_s = 0.0;
+        numbers >> time_s;
+        ASSERT_EQ(run.advance_to(time_s), Status::kOk);
+        for (std::size_t i = 0; i < 40; ++i) {
+            Vec2 expected;
+            numbers >> expected.x >> expected.y;
+            const double error_m =
+                std::hypot(run.state().x_m[i] - expected.x, run.state().y_m[i] - expected.y);
+            EXPECT_LE(error_m, plan.error_bound_m) << "particle " << i << " at " << time_s << " s";
+        }
+        ++rows;
+    }
+    EXPECT_EQ(rows, 4);
+}
+
+}  // namespace
+}  // namespace corda::sim
