@@ -7,7 +7,7 @@
 namespace corda::app {
 
 std::string describe(const sim::SolverDef& solver) {
-    const std::string name(sim::method_name(solver.method));
+    std::string name(sim::method_name(solver.method));
     switch (solver.method) {
         case sim::Method::kAuto:
             return fmt::format("{} within {} px", name, solver.tolerance_px);
@@ -24,7 +24,7 @@ std::string describe(const sim::SolverDef& solver) {
 
 std::optional<scene::AutoPlan> settle_method(const Console& console, scene::Scene& scene) {
     const double tolerance_px = scene.solver.tolerance_px;
-    const auto proof = scene::settle_method(scene);
+    auto proof = scene::settle_method(scene);
     if (!proof) return proof;
     console.info(fmt::format("auto: {}; displayed error at most {:.2g} px ({:.2g} m), shown by a tighter run",
                              describe(scene.solver), proof->error_bound_px(), proof->plan.error_bound_m));

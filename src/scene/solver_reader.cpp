@@ -17,7 +17,7 @@ struct MethodKey {
     std::string_view remedy = "remove it";
 };
 
-const std::array<MethodKey, 8> kMethodKeys{{
+const std::array<MethodKey, 8> method_keys{{
     {"tolerance_px", {sim::Method::kAuto}},
     {"tolerance", {sim::Method::kExact}},
     {"order", {sim::Method::kRope}},
@@ -38,7 +38,7 @@ sim::Method read_method(const TableReader& solver) {
 }
 
 void refuse_foreign_keys(const TableReader& solver, sim::Method method) {
-    for (const MethodKey& key : kMethodKeys) {
+    for (const MethodKey& key : method_keys) {
         const auto value = solver.find(key.key);
         if (!value || std::find(key.methods.begin(), key.methods.end(), method) != key.methods.end())
             continue;
