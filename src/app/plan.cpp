@@ -1,3 +1,4 @@
+#include <cmath>
 #include <memory>
 
 #include <fmt/format.h>
@@ -81,7 +82,7 @@ ExitCode plan(const Console& console, const SceneOptions& options) {
         const double interval_s = scene.video.fps.interval_s();
         const bool fixed = scene.solver.method != sim::Method::kExact;
         const double steps = scene.world.duration_s / scene.solver.step_s.value_or(interval_s);
-        if (fixed) json["steps"] = static_cast<std::uint64_t>(steps + 0.5);
+        if (fixed) json["steps"] = std::llround(steps);
         if (fixed)
             console.result(fmt::format("expected cost: {:.0f} steps of {} bars", steps, system.bars.size()));
     }
