@@ -79,6 +79,38 @@ TEST_F(Output, SimulateJsonCarriesTheFigures) {
         EXPECT_TRUE(figures.at(key).is_null()) << key;
 }
 
+TEST_F(Output, SimulateAddsDiagnosticsToEveryRow) {
+    const std::vector<std::string> exact{"--set", "solver={ method = \"exact\" }"};
+    std::vector<std::string> arguments{"simulate", scene_, "-o", "-", "--diagnostics"};
+    const auto relaxed = run_corda(arguments);
+    EXPECT_THAT(relaxed.out, HasSubstr(",x39,y39,energy_error,strain,pin_force_n,largest_tension_n\n"));
+    EXPECT_THAT(relaxed.out, testing::EndsWith(",,\n"));  // relaxation does not know its loads
+    arguments.insert(arguments.end(), exact.begin(), exact.end());
+    const std::string rows = run_corda(arguments).out;
+    const std::string last = rows.substr(rows.rfind("\n1,"));
+    const double tension_n = std::stod(last.substr(last.rfind(',') + 1));
+    // A rope that hangs almost straight carries its weight: 39 free masses of 1 kg.
+    EXPECT_NEAR(tension_n, 39 * 9.81, 1.0);  // measured 382.62; the weight is 382.59
+}
+
+TEST_F(Output, AutoReportsItsBoundAndPlanSaysWhy) {
+    const std::string chaotic = folder_.write(
+        "chaotic.toml", "schema = 1\n[[rope]]\nhang = { links = 10, length = 1.0, angle_deg = 90.0 }\n");
+    const json calm = json::parse(run_corda({"simulate", chaotic, "--duration", "1", "--json"}).out);
+    EXPECT_EQ(calm["method"], "exact");
+    EXPECT_GT(calm["error_bound_m"], 0.0);
+    EXPECT_LE(calm["error_bound_px"], 0.1);
+    EXPECT_TRUE(calm["horizon_s"].is_null());
+    const auto result = run_corda({"plan", chaotic, "--json"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_THAT(result.err, HasSubstr("predictability ends at"));
+    const json plan = json::parse(result.out);
+    EXPECT_GT(plan["horizon_s"], 3.0);
+    EXPECT_LT(plan["horizon_s"], 5.0);
+    EXPECT_GE(plan["trials"].size(), 2U);
+    EXPECT_THAT(run_corda({"plan", scene_}).out, HasSubstr("because the scene asks for relaxation"));
+}
+
 TEST_F(Output, SimulateNeedsNoOpenGl) {
     EXPECT_EQ(
         run_corda({"simulate", scene_}, "CORDA_BACKEND=device:63 __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null")
