@@ -8,46 +8,17 @@
 #include <sstream>
 
 #include "corda/sim/planner.hpp"
-#include "support/ropes.hpp"
+#include "support/released_chains.hpp"
 
 namespace corda::sim {
 namespace {
-
-struct ReleasedChain {
-    int links;
-    double length_m;
-    double angle_deg;
-    double time_s;
-    Vec2 tip_m;
-    double tip_mass_kg = 1.0;
-};
-
-// R5, all rows.
-const std::vector<ReleasedChain> kReleasedChains{
-    {2, 2, 90, 1, {-1.44481884994347579652, -1.32179446138146455585}},
-    {2, 2, 90, 5, {-1.55077846947044280041, -1.07591273481265245654}},
-    {2, 2, 90, 10, {-1.04076578324617048611, -1.70734766246932744698}},
-    {2, 2, 179, 5, {0.67314150466155481520, -0.62722634568900508337}},
-    {3, 1, 90, 5, {-0.53194662963776443892, 0.19179241928334740955}},
-    {5, 1, 90, 2, {0.83771529818003690575, -0.16765931615339712151}},
-    {10, 1, 45, 1, {-0.67948993189750683016, -0.72711223860003900537}},
-    {10, 1, 45, 5, {0.39214385389268969475, -0.90225644487398941636}},
-    {10, 1, 90, 1, {-0.91331222940637701239, -0.14965514141883061700}},
-    {10, 1, 90, 2, {0.47978859926682898140, -0.15417531322773500122}},
-    {20, 1, 45, 1, {-0.67016053525568878136, -0.73674338218714743406}},
-    {20, 1, 45, 2, {0.53700529500088304879, -0.81916411877801124437}},
-    {20, 1, 90, 1, {-0.90868883153230172068, -0.16339488036472364311}},
-    {10, 1, 90, 2, {0.79574428267767040194, -0.60334843538712810990}, 1000.0},
-    {10, 1, 90, 5, {0.92550693774088658561, -0.34521126487484581376}, 1000.0},
-};
 
 class AutoBound : public testing::TestWithParam<std::tuple<std::size_t, double>> {};
 
 TEST_P(AutoBound, IsTrueUnderTheHorizon) {
     const auto [row, tolerance] = GetParam();
-    const ReleasedChain& chain = kReleasedChains[row];
-    RopeDef rope = test::straight_rope(chain.links, chain.length_m, chain.angle_deg);
-    rope.mass_kg.back() = chain.tip_mass_kg;
+    const test::ReleasedChain& chain = test::kReleasedChains[row];
+    const RopeDef rope = chain.rope();
     const System system = build_system({&rope, 1}, 1);
     const FrameRate frames(Rational{60, 1});
     const PlanDef def{tolerance * chain.length_m, frames, frames.last_frame_within(chain.time_s)};
@@ -69,9 +40,8 @@ INSTANTIATE_TEST_SUITE_P(R5, AutoBound,
 TEST(AutoPlan, FindsNoHorizonWithinTheRegularRowsOfR5) {
     // At a thousandth of the length every row of R5 can be predicted but for one: N = 10 at 90 degrees is
     // chaotic past 2 s.
-    for (const ReleasedChain& chain : kReleasedChains) {
-        RopeDef rope = test::straight_rope(chain.links, chain.length_m, chain.angle_deg);
-        rope.mass_kg.back() = chain.tip_mass_kg;
+    for (const test::ReleasedChain& chain : test::kReleasedChains) {
+        const RopeDef rope = chain.rope();
         const System system = build_system({&rope, 1}, 1);
         const FrameRate frames(Rational{60, 1});
         const PlanDef def{1e-3 * chain.length_m, frames, frames.last_frame_within(chain.time_s)};

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "support/exact_run.hpp"
+#include "support/released_chains.hpp"
 
 namespace corda::sim {
 namespace {
@@ -102,49 +103,21 @@ TEST(SmallOscillationsR4, HaveTheFrequenciesOfTheLaguerreZeros) {
     }
 }
 
-struct Release {
-    int links;
-    double length_m;
-    double angle_deg;
-    double tip_mass_kg;
-    double time_s;
-    double x_m;
-    double y_m;
-};
-
-constexpr Release kReleases[] = {
-    {2, 2, 90, 1, 1, -1.44481884994347579652, -1.32179446138146455585},
-    {2, 2, 90, 1, 5, -1.55077846947044280041, -1.07591273481265245654},
-    {2, 2, 90, 1, 10, -1.04076578324617048611, -1.70734766246932744698},
-    {2, 2, 179, 1, 5, 0.67314150466155481520, -0.62722634568900508337},
-    {3, 1, 90, 1, 5, -0.53194662963776443892, 0.19179241928334740955},
-    {5, 1, 90, 1, 2, 0.83771529818003690575, -0.16765931615339712151},
-    {10, 1, 45, 1, 1, -0.67948993189750683016, -0.72711223860003900537},
-    {10, 1, 45, 1, 5, 0.39214385389268969475, -0.90225644487398941636},
-    {10, 1, 90, 1, 1, -0.91331222940637701239, -0.14965514141883061700},
-    {10, 1, 90, 1, 2, 0.47978859926682898140, -0.15417531322773500122},
-    {20, 1, 45, 1, 1, -0.67016053525568878136, -0.73674338218714743406},
-    {20, 1, 45, 1, 2, 0.53700529500088304879, -0.81916411877801124437},
-    {20, 1, 90, 1, 1, -0.90868883153230172068, -0.16339488036472364311},
-    {10, 1, 90, 1000, 2, 0.79574428267767040194, -0.60334843538712810990},
-    {10, 1, 90, 1000, 5, 0.92550693774088658561, -0.34521126487484581376},
-};
-
-RopeDef released(const Release& row) {
-    RopeDef rope = row.angle_deg == 90 ? test::horizontal_rope(row.links, row.length_m)
-                                       : test::straight_rope(row.links, row.length_m, row.angle_deg);
-    rope.mass_kg.back() = row.tip_mass_kg;
+/// An exactly horizontal one where the angle is 90 degrees.
+RopeDef released(const test::ReleasedChain& row) {
+    RopeDef rope = row.rope();
+    if (row.angle_deg == 90) rope.points_m = test::horizontal_rope(row.links, row.length_m).points_m;
     return rope;
 }
 
 TEST(ReleaseR5, EndsAtTheReference) {
-    for (const Release& row : kReleases) {
+    for (const test::ReleasedChain& row : test::kReleasedChains) {
         std::printf("R5 N=%d L=%g %g deg tip %g t=%g:", row.links, row.length_m, row.angle_deg,
                     row.tip_mass_kg, row.time_s);
         for (const double tolerance : {1e-9, 1e-12}) {
             test::ExactRun run(released(row), tolerance);
             ASSERT_TRUE(run.advance_to(row.time_s));
-            const double error_m = run.tip_error_m(row.x_m, row.y_m);
+            const double error_m = run.tip_error_m(row.tip_m.x, row.tip_m.y);
             std::printf("  %.1e at %g", error_m, tolerance);
             EXPECT_LT(error_m, 1e-9);  // measured 6.2e-10 (N = 2, 179 deg), 2.6e-11 at 1e-12
         }

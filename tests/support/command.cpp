@@ -52,7 +52,7 @@ ScratchFolder::~ScratchFolder() {
 }
 
 std::string ScratchFolder::write(const std::string& name, const std::string& text) const {
-    std::ofstream(file(name), std::ios::binary) << text;
+    write_file(file(name), text);
     return file(name);
 }
 
@@ -61,6 +61,10 @@ std::vector<std::string> ScratchFolder::files() const {
     for (const auto& entry : fs::directory_iterator(path_)) names.push_back(entry.path().filename().string());
     std::sort(names.begin(), names.end());
     return names;
+}
+
+void write_file(const std::string& path, const std::string& bytes) {
+    std::ofstream(path, std::ios::binary) << bytes;
 }
 
 std::string read_file(const std::string& path) {

@@ -42,6 +42,9 @@ class ScratchFolder {
     std::string path_;
 };
 
+/// Writes a file's bytes.
+void write_file(const std::string& path, const std::string& bytes);
+
 /// The bytes of a file; empty where there is none.
 [[nodiscard]] std::string read_file(const std::string& path);
 

@@ -5,12 +5,11 @@
 
 #include <array>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <random>
 
 #include "corda/core/error.hpp"
 #include "corda/media/png.hpp"
+#include "support/command.hpp"
 
 namespace corda::media {
 namespace {
@@ -20,26 +19,10 @@ using testing::HasSubstr;
 
 class Png : public testing::Test {
   protected:
-    void SetUp() override {
-        const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = fs::path(testing::TempDir()) / (std::string("corda_png_") + info->name());
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-    [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }
+    [[nodiscard]] std::string file(const std::string& name) const { return folder_.file(name); }
 
-    fs::path folder_;
+    test::ScratchFolder folder_;
 };
-
-std::string bytes_of(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
-void write_bytes(const std::string& path, const std::string& bytes) {
-    std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-}
 
 Image random_image(int width, int height, bool opaque) {
     std::mt19937 random(11);
@@ -66,7 +49,7 @@ TEST_F(Png, RoundTripKeepsEveryPixel) {
         const Image image = random_image(37, 23, opaque);
         write_png(file("a.png"), image);
         EXPECT_TRUE(read_png(file("a.png")) == image) << opaque;
-        EXPECT_EQ(bytes_of(file("a.png"))[25], opaque ? 2 : 6);  // IHDR colour type: RGB or RGBA
+        EXPECT_EQ(test::read_file(file("a.png"))[25], opaque ? 2 : 6);  // IHDR colour type: RGB or RGBA
         EXPECT_FALSE(fs::exists(file("a.png.tmp")));
     }
 }
@@ -74,7 +57,7 @@ TEST_F(Png, RoundTripKeepsEveryPixel) {
 TEST_F(Png, HoldsItsChunksAndNoDate) {
     write_png(file("a.png"), random_image(4, 4, true),
               {{{"Software", "corda"}, {"Title", "Pendule à corde"}}, 144.0});
-    const std::string bytes = bytes_of(file("a.png"));
+    const std::string bytes = test::read_file(file("a.png"));
     EXPECT_THAT(bytes, HasSubstr(std::string("sRGB\0", 5)));  // 0: perceptual
     EXPECT_THAT(bytes, HasSubstr("pHYs"));
     EXPECT_THAT(bytes, HasSubstr("tEXtSoftware"));
@@ -88,7 +71,7 @@ TEST_F(Png, TextComesBackInOrderAsUtf8) {
     info.text = {{"Title", "Pendule à corde"}, {"Comment", "θ₀ = 90°"}, {"Empty", ""}, {"Title", "again"}};
     info.pixels_per_inch = 300.0;
     write_png(file("a.png"), random_image(4, 4, true), info);
-    EXPECT_THAT(bytes_of(file("a.png")), HasSubstr("iTXtComment"));
+    EXPECT_THAT(test::read_file(file("a.png")), HasSubstr("iTXtComment"));
     const PngInfo back = read_png_info(file("a.png"));
     EXPECT_EQ(back.text, info.text);
     EXPECT_NEAR(back.pixels_per_inch, 300.0, 0.013);  // whole pixels a metre
@@ -98,26 +81,26 @@ TEST_F(Png, SameBytesTwice) {
     const Image image = random_image(64, 64, false);
     write_png(file("a.png"), image, {{{"k", "v"}}, 96.0});
     write_png(file("b.png"), image, {{{"k", "v"}}, 96.0});
-    EXPECT_EQ(bytes_of(file("a.png")), bytes_of(file("b.png")));
+    EXPECT_EQ(test::read_file(file("a.png")), test::read_file(file("b.png")));
 }
 
 TEST_F(Png, BadFilesAreErrorsOfKindIo) {
     write_png(file("a.png"), random_image(40, 40, true));
-    const std::string whole = bytes_of(file("a.png"));
+    const std::string whole = test::read_file(file("a.png"));
     EXPECT_EQ(code_of_reading(file("missing.png")), ExitCode::kIo);
-    EXPECT_EQ(code_of_reading(folder_.string()), ExitCode::kIo);
-    write_bytes(file("b.png"), "");
+    EXPECT_EQ(code_of_reading(folder_.path()), ExitCode::kIo);
+    test::write_file(file("b.png"), "");
     EXPECT_EQ(code_of_reading(file("b.png")), ExitCode::kIo);
-    write_bytes(file("b.png"), "this is no picture");
+    test::write_file(file("b.png"), "this is no picture");
     EXPECT_EQ(code_of_reading(file("b.png")), ExitCode::kIo);
     for (std::size_t length = 1; length < whole.size(); length += 7) {
-        write_bytes(file("b.png"), whole.substr(0, length));
+        test::write_file(file("b.png"), whole.substr(0, length));
         ASSERT_EQ(code_of_reading(file("b.png")), ExitCode::kIo) << length;
     }
     for (const std::size_t at : {std::size_t{18}, std::size_t{30}, whole.size() / 2}) {
         std::string broken = whole;
         broken[at] = static_cast<char>(broken[at] ^ 0x55);
-        write_bytes(file("b.png"), broken);
+        test::write_file(file("b.png"), broken);
         EXPECT_EQ(code_of_reading(file("b.png")), ExitCode::kIo) << at;
     }
 }

@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "corda/core/error.hpp"
 #include "corda/media/mp4_remux.hpp"
@@ -14,6 +12,7 @@
 #include "corda/media/verify.hpp"
 #include "corda/media/video_writer.hpp"
 #include "corda/media/yuv420.hpp"
+#include "support/command.hpp"
 #include "support/decode_video.hpp"
 
 namespace corda::media {
@@ -29,28 +28,10 @@ constexpr int kHeight = 180;
 
 class Video : public testing::Test {
   protected:
-    void SetUp() override {
-        const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-        std::string name = std::string("corda_video_") + info->name();
-        std::replace(name.begin(), name.end(), '/', '_');
-        folder_ = fs::path(testing::TempDir()) / name;
-        fs::remove_all(folder_);
-        fs::create_directories(folder_);
-    }
-    void TearDown() override { fs::remove_all(folder_); }
-    [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }
+    [[nodiscard]] std::string file(const std::string& name) const { return folder_.file(name); }
 
-    fs::path folder_;
+    test::ScratchFolder folder_;
 };
-
-std::string bytes_of(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
-void write_bytes(const std::string& path, const std::string& bytes) {
-    std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-}
 
 void fill(Image& image, const PixelRect& rect, std::array<std::uint8_t, 3> rgb) {
     const PixelRect inside = rect.intersected(image.rect());
@@ -204,7 +185,7 @@ TEST_F(Video, DamagedFramesEqualWholeOnes) {
         for (int k = 0; k < 30; ++k) writer.write(frame_image(k), {0, 0, kWidth, kHeight});
         writer.finish();
     }
-    EXPECT_EQ(bytes_of(file("a.mp4")), bytes_of(file("b.mp4")));
+    EXPECT_EQ(test::read_file(file("a.mp4")), test::read_file(file("b.mp4")));
 }
 
 TEST_F(Video, TheFirstFrameIsTakenWholeAndAnEmptyDamageRepeatsIt) {
@@ -213,13 +194,13 @@ TEST_F(Video, TheFirstFrameIsTakenWholeAndAnEmptyDamageRepeatsIt) {
         for (int k = 0; k < 5; ++k) writer.write(frame_image(0), damage);
         writer.finish();
     }
-    EXPECT_EQ(bytes_of(file("a.mp4")), bytes_of(file("b.mp4")));
+    EXPECT_EQ(test::read_file(file("a.mp4")), test::read_file(file("b.mp4")));
 }
 
 TEST_F(Video, SameBytesOnTwoRuns) {
     make_video(file("a.mp4"), small_video(), 60);
     make_video(file("b.mp4"), small_video(), 60);
-    EXPECT_EQ(bytes_of(file("a.mp4")), bytes_of(file("b.mp4")));
+    EXPECT_EQ(test::read_file(file("a.mp4")), test::read_file(file("b.mp4")));
 }
 
 TEST_F(Video, OneFrame) {
@@ -289,9 +270,9 @@ TEST_F(Video, ATornPartLosesOnlyItsLastFragment) {
         write_frames(writer, kFrames);
         writer.abandon();
     }
-    const std::string whole = bytes_of(file("a.mp4.part"));
+    const std::string whole = test::read_file(file("a.mp4.part"));
     const std::size_t last_fragment = whole.rfind("mdat");
-    write_bytes(file("b.part"), whole.substr(0, last_fragment + 40));
+    test::write_file(file("b.part"), whole.substr(0, last_fragment + 40));
     const RemuxResult torn = recover_part(file("b.part"), file("b.mp4"));
     EXPECT_TRUE(torn.truncated);
     EXPECT_EQ(torn.frames, 80);
@@ -299,7 +280,7 @@ TEST_F(Video, ATornPartLosesOnlyItsLastFragment) {
     const std::size_t second_fragment = whole.find("moof", whole.find("moof") + 4);
     // Wherever it is cut: whole fragments, or nothing at all.
     for (std::size_t length = 0; length < whole.size(); length += 61) {
-        write_bytes(file("b.part"), whole.substr(0, length));
+        test::write_file(file("b.part"), whole.substr(0, length));
         try {
             const auto frames = recover_part(file("b.part"), file("b.mp4")).frames;
             ASSERT_EQ(frames % 20, 0) << length;
@@ -358,7 +339,7 @@ TEST_F(Video, NoFramesIsAnErrorAndLeavesNothing) {
         VideoWriter writer(file("a.mp4"), small_video(), {});
         EXPECT_THROW(writer.finish(), Error);
     }
-    EXPECT_TRUE(fs::is_empty(folder_));
+    EXPECT_TRUE(fs::is_empty(folder_.path()));
 }
 
 TEST_F(Video, AFullDiskIsAnIoError) {
@@ -379,29 +360,29 @@ TEST_F(Video, AFullDiskIsAnIoError) {
 
 TEST_F(Video, VerifyFindsATruncatedFile) {
     make_video(file("a.mp4"), small_video(), 60);
-    const std::string whole = bytes_of(file("a.mp4"));
+    const std::string whole = test::read_file(file("a.mp4"));
     for (std::size_t length = 0; length < whole.size(); length += whole.size() / 40 + 1) {
-        write_bytes(file("b.mp4"), whole.substr(0, length));
+        test::write_file(file("b.mp4"), whole.substr(0, length));
         EXPECT_FALSE(verify(file("b.mp4")).ok()) << length;
     }
-    write_bytes(file("b.mp4"), whole.substr(0, whole.size() - 1));
+    test::write_file(file("b.mp4"), whole.substr(0, whole.size() - 1));
     EXPECT_THAT(all_problems(verify(file("b.mp4"))), HasSubstr("breaks off"));
 }
 
 TEST_F(Video, VerifySurvivesDamageAndNoticesIt) {
     make_video(file("a.mp4"), small_video(), 60);
-    const std::string whole = bytes_of(file("a.mp4"));
+    const std::string whole = test::read_file(file("a.mp4"));
     // Any byte may be hit: no crash. In the picture data it must be noticed.
     for (std::size_t at = 0; at < whole.size(); at += 97) {
         std::string broken = whole;
         broken[at] = static_cast<char>(broken[at] ^ 0xff);
-        write_bytes(file("b.mp4"), broken);
+        test::write_file(file("b.mp4"), broken);
         EXPECT_NO_THROW((void)verify(file("b.mp4"))) << at;
     }
     std::string broken = whole;
     const std::size_t data = whole.find("mdat");
     for (std::size_t i = data + 1200; i < data + 1300; ++i) broken[i] = static_cast<char>(broken[i] ^ 0xa5);
-    write_bytes(file("b.mp4"), broken);
+    test::write_file(file("b.mp4"), broken);
     EXPECT_FALSE(verify(file("b.mp4")).ok());
 }
 
@@ -430,13 +411,13 @@ TEST_F(Video, VerifyFindsWrongTags) {
 
 TEST_F(Video, VerifyComparesWithWhatWasRendered) {
     make_video(file("a.mp4"), small_video(), 60);
-    const std::string whole = bytes_of(file("a.mp4"));
+    const std::string whole = test::read_file(file("a.mp4"));
     const auto with = [&](const std::string& from, const std::string& to) {
         std::string changed = whole;
         const std::size_t at = changed.find(from);
         EXPECT_NE(at, std::string::npos) << from;
         changed.replace(at, from.size(), to);
-        write_bytes(file("b.mp4"), changed);
+        test::write_file(file("b.mp4"), changed);
         return all_problems(verify(file("b.mp4")));
     };
     EXPECT_THAT(with("\"frames\":60", "\"frames\":61"), HasSubstr("61 frames were rendered"));
@@ -447,7 +428,7 @@ TEST_F(Video, VerifyComparesWithWhatWasRendered) {
 
 TEST_F(Video, VerifyTellsGarbageFromVideos) {
     EXPECT_THROW((void)verify(file("missing.mp4")), Error);
-    EXPECT_THROW((void)verify(folder_.string()), Error);
+    EXPECT_THROW((void)verify(folder_.path()), Error);
     for (const std::string& text :
          {std::string(), std::string("hello, this is text\n"), std::string(5000, '\0'),
           std::string("\0\0\0\x08"
@@ -459,7 +440,7 @@ TEST_F(Video, VerifyTellsGarbageFromVideos) {
           std::string("\0\0\0\x08"
                       "ftyp\0\0\0\x10moov\0\0\0\x08trak",
                       24)}) {
-        write_bytes(file("b.mp4"), text);
+        test::write_file(file("b.mp4"), text);
         EXPECT_THAT(verify(file("b.mp4")).problems, testing::Not(IsEmpty()));
     }
     write_png(file("b.mp4"), Image(8, 8));
