@@ -60,7 +60,7 @@ void report_proof(const std::optional<scene::AutoPlan>& proof, nlohmann::json& j
 /// The solver in words: "exact at tolerance 1e-08".
 [[nodiscard]] std::string describe(const sim::SolverDef& solver);
 
-/// A warning for a renderer on the CPU is no news there: said with -v only.
+/// Says with -v what draws, and how it was reached.
 void report_gl(const Console& console, const gl::Context& context);
 
 }  // namespace corda::app

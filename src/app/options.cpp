@@ -1,6 +1,3 @@
-#include <charconv>
-#include <cstdlib>
-
 #include <fmt/format.h>
 
 #include "commands.hpp"

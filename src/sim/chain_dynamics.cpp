@@ -219,6 +219,12 @@ double ChainDynamics::largest_rate_1_s() const {
     return largest > 0.0 ? largest : 1.0;
 }
 
+void ChainDynamics::find_tensions(const Chain& chain, const double* y) {
+    measure_turns(chain, y);
+    measure_loads(chain, y);
+    solve_tensions(chain);
+}
+
 void ChainDynamics::measure_turns(const Chain& chain, const double* y) {
     const double* const c = y + chain.first_link;
     const double* const s = c + link_count();
@@ -300,9 +306,7 @@ void ChainDynamics::derivative(const double* y, double* slope) {
         slope_s[i] = rate[i] * c[i];
     }
     for (const Chain& chain : chains_) {
-        measure_turns(chain, y);
-        measure_loads(chain, y);
-        solve_tensions(chain);
+        find_tensions(chain, y);
         const std::size_t first = chain.first_link;
         const std::size_t last = first + chain.link_count - 1;
         const auto turn = [&](std::size_t i, double across) {
@@ -429,9 +433,7 @@ double ChainDynamics::energy_j(const double* y) const {
 
 void ChainDynamics::tensions(const double* y, std::vector<double>& tension_n) {
     for (const Chain& chain : chains_) {
-        measure_turns(chain, y);
-        measure_loads(chain, y);
-        solve_tensions(chain);
+        find_tensions(chain, y);
     }
     tension_n = tension_n_;
 }
@@ -441,9 +443,7 @@ Loads ChainDynamics::loads(const double* y) {
     Loads loads;
     for (Pin& pin : pins_) pin.force_n = {};
     for (const Chain& chain : chains_) {
-        measure_turns(chain, y);
-        measure_loads(chain, y);
-        solve_tensions(chain);
+        find_tensions(chain, y);
         const std::size_t first = chain.first_link;
         const std::size_t last = first + chain.link_count - 1;
         for (std::size_t i = first; i <= last; ++i) {

@@ -113,6 +113,7 @@ class ChainDynamics final : public Ode {
     void add_rope(const System& system, const RopeRange& rope);
     void add_chain(const System& system, const RopeRange& rope, std::size_t from, std::size_t to);
     void add_initial_velocities(const System& system, const Chain& chain, double* y);
+    void find_tensions(const Chain& chain, const double* y);
     void measure_turns(const Chain& chain, const double* y);
     void measure_loads(const Chain& chain, const double* y);
     void solve_tensions(const Chain& chain);

@@ -92,7 +92,7 @@ void Relaxation::step() {
         unrelaxed_x_m_[i] = x_m_[i];
         unrelaxed_y_m_[i] = y_m_[i];
     }
-    relax();
+    for (int sweep = 0; sweep < sweeps_; ++sweep) relax();
     for (std::size_t i = 0; i < count; ++i) {
         move_x_m_[i] += x_m_[i] - unrelaxed_x_m_[i];
         move_y_m_[i] += y_m_[i] - unrelaxed_y_m_[i];
@@ -101,10 +101,6 @@ void Relaxation::step() {
 }
 
 void Relaxation::relax() {
-    for (int sweep = 0; sweep < sweeps_; ++sweep) relax_once();
-}
-
-void Relaxation::relax_once() {
     double* const x = x_m_.data();
     double* const y = y_m_.data();
     for (const Constraint& bar : constraints_) {

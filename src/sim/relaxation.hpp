@@ -34,9 +34,6 @@ class Relaxation final : public Solver {
     [[nodiscard]] bool conserves_energy() const override { return keep_ == 1.0; }
     [[nodiscard]] std::uint64_t steps() const override { return step_; }
 
-    /// One pass over all bars: what a sweep costs, for the benchmark.
-    void relax_once();
-
   private:
     struct Constraint {
         std::uint32_t a;
@@ -46,7 +43,7 @@ class Relaxation final : public Solver {
         double share_b;
     };
     void step();
-    void relax();
+    void relax();  ///< one pass over all bars
     void interpolate(double fraction, State& state) const;
 
     double step_s_;

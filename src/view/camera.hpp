@@ -1,7 +1,5 @@
 #pragma once
 
-#include <span>
-
 #include "corda/sim/solver.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/defs.hpp"
