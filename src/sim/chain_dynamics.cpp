@@ -68,16 +68,12 @@ struct ClosingMatrix {
 
 }  // namespace
 
-ChainDynamics::ChainDynamics(const System& system, const WorldDef& world)
+ChainDynamics::ChainDynamics(const System& system, std::span<const Body> bodies, const WorldDef& world)
     : gravity_m_s2_(world.gravity_m_s2), drag_1_s_(world.drag_1_s), mass_kg_(system.mass_kg) {
-    for (const Bar& bar : system.bars) {
-        if (bar.reach == 1) continue;
-        throw Error(ExitCode::kInvalidScene,
-                    "method exact moves links between neighbours only, and this scene has bars of reach " +
-                        std::to_string(bar.reach) +
-                        ", which would make a rope a rigid rod; set reach = 1 or use method relaxation");
+    for (const Body& body : bodies) {
+        assert(body.is_chain);
+        add_body(system, body);
     }
-    for (const RopeRange& rope : system.ropes) add_rope(system, rope);
     const std::size_t links = length_m_.size();
     for (std::vector<double>* array : {&cosine_, &sine_, &along_, &pivot_, &weight_, &tension_n_}) {
         array->assign(links, 0.0);
@@ -100,31 +96,31 @@ ChainDynamics::ChainDynamics(const System& system, const WorldDef& world)
     settle(y);
 }
 
-void ChainDynamics::add_rope(const System& system, const RopeRange& rope) {
-    const std::size_t end = rope.first_particle + rope.particle_count;
+void ChainDynamics::add_body(const System& system, const Body& body) {
+    const std::size_t end = body.first_particle + body.particle_count;
     std::vector<std::size_t> pinned;
     double weight_n = 0.0;
     double length_m = 0.0;
-    for (std::size_t i = rope.first_particle; i < end; ++i) {
+    for (std::size_t i = body.first_particle; i < end; ++i) {
         if (system.is_pinned(i)) {
             pinned.push_back(i);
             mass_kg_[i] = 0.0;
         }
         weight_n += mass_kg_[i] * length_of(gravity_m_s2_);
     }
-    for (std::size_t i = 0; i < rope.link_count; ++i) length_m += system.bars[rope.first_bar + i].rest_m;
+    for (std::size_t i = 0; i < body.link_count; ++i) length_m += system.bars[body.first_bar + i].rest_m;
     energy_scale_j_ += weight_n * length_m;
     if (pinned.empty()) {
-        add_chain(system, rope, rope.first_particle, end - 1);
+        add_chain(system, body, body.first_particle, end - 1);
         return;
     }
     for (const std::size_t i : pinned) pins_.push_back({i, at(system.x_m, system.y_m, i), {}});
-    if (pinned.front() > rope.first_particle) add_chain(system, rope, pinned.front(), rope.first_particle);
-    for (std::size_t k = 1; k < pinned.size(); ++k) add_chain(system, rope, pinned[k - 1], pinned[k]);
-    if (pinned.back() < end - 1) add_chain(system, rope, pinned.back(), end - 1);
+    if (pinned.front() > body.first_particle) add_chain(system, body, pinned.front(), body.first_particle);
+    for (std::size_t k = 1; k < pinned.size(); ++k) add_chain(system, body, pinned[k - 1], pinned[k]);
+    if (pinned.back() < end - 1) add_chain(system, body, pinned.back(), end - 1);
 }
 
-void ChainDynamics::add_chain(const System& system, const RopeRange& rope, std::size_t from, std::size_t to) {
+void ChainDynamics::add_chain(const System& system, const Body& body, std::size_t from, std::size_t to) {
     Chain chain;
     chain.first_link = length_m_.size();
     chain.runs_backwards = to < from;
@@ -150,8 +146,8 @@ void ChainDynamics::add_chain(const System& system, const RopeRange& rope, std::
     double fastest_m_s = length_of(at(system.vx_m_s, system.vy_m_s, from));
     for (std::size_t i = 0; i < chain.link_count; ++i) {
         const std::size_t particle = chain.particle(i);
-        const std::size_t bar = (chain.runs_backwards ? particle : particle - 1) - rope.first_particle;
-        length_m_.push_back(system.bars[rope.first_bar + bar].rest_m);
+        const std::size_t bar = (chain.runs_backwards ? particle : particle - 1) - body.first_particle;
+        length_m_.push_back(system.bars[body.first_bar + bar].rest_m);
         inverse_length_1_m_.push_back(1.0 / length_m_.back());
         inverse_mass_1_kg_.push_back(system.inverse_mass_1_kg[particle]);
         chain.length_m += length_m_.back();

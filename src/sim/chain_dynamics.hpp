@@ -1,16 +1,15 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
-#include "corda/sim/dop853.hpp"
-#include "corda/sim/solver.hpp"
+#include "corda/sim/dynamics.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::sim {
 
-/// The motion of ropes of rigid links as a system of ordinary differential equations, and what can be read
-/// off its states.
+/// The motion of ropes of rigid links as a system of ordinary differential equations.
 ///
 /// A rope is cut at its pinned particles into chains that move apart from each other. Link i of a chain leads
 /// from particle i-1 to i along the unit vector u_i = (c_i, s_i) and turns at the rate w_i. With
@@ -43,22 +42,22 @@ namespace corda::sim {
 ///
 /// nothing but positive numbers are added: no digit is lost however unequal the masses are, and the only
 /// divisions, by W_{i-1} Q_i + P_i, do not wait for each other.
-class ChainDynamics final : public Ode {
+class ChainDynamics final : public Dynamics {
   public:
-    /// Throws corda::Error for a rope that leaves no room to move between two pins, and for bars between
-    /// particles that are not neighbours.
-    ChainDynamics(const System& system, const WorldDef& world);
+    /// Of `bodies`, chains of the system; the others are left alone. Throws corda::Error for a rope that
+    /// leaves no room to move between two pins.
+    ChainDynamics(const System& system, std::span<const Body> bodies, const WorldDef& world);
 
-    /// The state at t = 0. Velocities that would change the length of a link are taken out by the impulses
-    /// that rigid links would exert.
-    [[nodiscard]] const std::vector<double>& initial_state() const { return initial_state_; }
+    /// Velocities that would change the length of a link are taken out by the impulses that rigid links would
+    /// exert.
+    [[nodiscard]] const std::vector<double>& initial_state() const override { return initial_state_; }
 
     /// How errors in a state are measured: directions by themselves, positions by the rope's length, rates by
     /// the rope's own rate and themselves.
-    [[nodiscard]] std::vector<ErrorScale> error_scales() const;
+    [[nodiscard]] std::vector<ErrorScale> error_scales() const override;
 
     /// The inverse of the shortest time in which a rope moves by about its own length, 1/s; > 0.
-    [[nodiscard]] double largest_rate_1_s() const;
+    [[nodiscard]] double largest_rate_1_s() const override;
 
     void derivative(const double* y, double* slope) override;
 
@@ -66,16 +65,10 @@ class ChainDynamics final : public Ode {
     /// and sets what is too small to matter to zero.
     void settle(double* y) override;
 
-    /// Writes the positions of all particles, relative to the system's origin.
-    void positions(const double* y, State& state) const;
-
-    /// Kinetic plus potential energy, the latter relative to the system's origin.
-    [[nodiscard]] double energy_j(const double* y) const;
-
-    /// Sum over all ropes of the weight of the particles that are not pinned times the length.
-    [[nodiscard]] double energy_scale_j() const { return energy_scale_j_; }
-
-    [[nodiscard]] Loads loads(const double* y);
+    void positions(const double* y, State& state) const override;
+    [[nodiscard]] double energy_j(const double* y) const override;
+    [[nodiscard]] double energy_scale_j() const override { return energy_scale_j_; }
+    [[nodiscard]] Loads loads(const double* y) override;
 
     /// Writes the tension of every link in the state's order; positive pulls.
     void tensions(const double* y, std::vector<double>& tension_n);
@@ -110,8 +103,8 @@ class ChainDynamics final : public Ode {
         Vec2 force_n;  ///< worked out by loads()
     };
 
-    void add_rope(const System& system, const RopeRange& rope);
-    void add_chain(const System& system, const RopeRange& rope, std::size_t from, std::size_t to);
+    void add_body(const System& system, const Body& body);
+    void add_chain(const System& system, const Body& body, std::size_t from, std::size_t to);
     void add_initial_velocities(const System& system, const Chain& chain, double* y);
     void find_tensions(const Chain& chain, const double* y);
     void measure_turns(const Chain& chain, const double* y);

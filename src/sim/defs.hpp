@@ -16,6 +16,18 @@ struct WorldDef {
     double drag_1_s = 0.0;          ///< exact linear drag: velocities decay by exp(-drag t); >= 0
 };
 
+/// What a body's bars are made of. By default they keep their lengths; a term that is not asked for costs
+/// nothing.
+struct MaterialDef {
+    /// Strain of a bar per newton of tension, 1 / (E A), in 1/N; 0: rigid, else the bars stretch by Hooke's
+    /// law.
+    double compliance_1_n = 0.0;
+    /// Bars pull and never push. Rigid ones that come taut do so plastically: momentum is kept, and the
+    /// relative velocity along the bar is gone (a string). With compliance: no force while shorter than at
+    /// rest (a bungee).
+    bool is_string = false;
+};
+
 /// A chain of particles, each tied to the next by a bar of its initial length.
 struct RopeDef {
     /// Where `points_m` are measured from, in metres. Kept apart so that a rope far from the origin has the
@@ -28,6 +40,34 @@ struct RopeDef {
     std::vector<std::uint32_t> pinned{
         0};                   ///< indices of the particles that never move, each < points_m.size()
     double payload_kg = 0.0;  ///< added to the mass of the last particle; >= 0
+    bool closed = false;      ///< the last particle is tied to the first one too; needs at least 3
+    /// Lengths of the links at rest, one a link (the closing one last), > 0; empty: the initial distances.
+    /// Others than these only for a material that stretches, or that may hang slack: at least the distance
+    /// there.
+    std::vector<double> rest_m;
+    MaterialDef material;
+    /// Bending stiffness E I in N m^2, >= 0: the energy E I / a (1 - cos(angle)) at every inner particle, a
+    /// being the mean of the two links' lengths at rest; 0: perfectly flexible. A link between two pins
+    /// clamps.
+    double bending_n_m2 = 0.0;
+};
+
+/// A bar of a net between particles `a` and `b`.
+struct NetBar {
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;
+    bool is_real = true;  ///< false: it stiffens the net and is not part of it (a diagonal)
+};
+
+/// Particles and bars in any graph, e.g. a cloth.
+struct NetDef {
+    Vec2 origin_m;                   ///< as of a RopeDef
+    std::vector<Vec2> points_m;      ///< relative to `origin_m`; at least 2
+    std::vector<double> mass_kg;     ///< one a particle, > 0
+    std::vector<Vec2> velocity_m_s;  ///< one a particle
+    std::vector<NetBar> bars;        ///< in the order of relaxation, real ones first; a != b, no pair twice
+    std::vector<std::uint32_t> pinned;
+    MaterialDef material;
 };
 
 /// How a scene is solved. kAuto is settled by a Plan (planner.hpp) before anything runs.

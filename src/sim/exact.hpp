@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "corda/sim/chain_dynamics.hpp"
-#include "corda/sim/dop853.hpp"
+#include "corda/sim/exact_part.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::sim {
@@ -25,19 +25,17 @@ class Exact final : public Solver {
 
     Status advance_to(double time_s, State& state) override;
     [[nodiscard]] double energy_j() const override;
-    [[nodiscard]] double energy_scale_j() const override { return dynamics_.energy_scale_j(); }
-    [[nodiscard]] bool conserves_energy() const override { return conserves_energy_; }
+    [[nodiscard]] double energy_scale_j() const override;
+    [[nodiscard]] bool conserves_energy() const override;
     [[nodiscard]] std::optional<Loads> loads() const override;
-    [[nodiscard]] std::uint64_t steps() const override { return integrator_.accepted_steps(); }
+    /// Of all parts together: bodies that do not move as one take their own steps.
+    [[nodiscard]] std::uint64_t steps() const override;
 
     /// Steps that were tried and found too long.
-    [[nodiscard]] std::uint64_t rejected_steps() const { return integrator_.rejected_steps(); }
+    [[nodiscard]] std::uint64_t rejected_steps() const;
 
   private:
-    mutable ChainDynamics dynamics_;  ///< loads() needs its work space
-    bool conserves_energy_;
-    std::vector<double> output_;  ///< state at the last time asked for
-    Dop853 integrator_;
+    std::vector<std::unique_ptr<ExactPart>> parts_;
 };
 
 }  // namespace corda::sim

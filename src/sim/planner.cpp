@@ -17,9 +17,9 @@ constexpr double kTightestCheck = 1e-15;
 
 double chain_length_m(const System& system) {
     double longest_m = 0.0;
-    for (const RopeRange& rope : system.ropes) {
+    for (const Body& body : system.bodies) {
         double length_m = 0.0;
-        for (std::size_t i = 0; i < rope.link_count; ++i) length_m += system.bars[rope.first_bar + i].rest_m;
+        for (std::size_t i = 0; i < body.link_count; ++i) length_m += system.bars[body.first_bar + i].rest_m;
         longest_m = std::max(longest_m, length_m);
     }
     return longest_m;

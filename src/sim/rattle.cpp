@@ -82,13 +82,13 @@ Rattle::Rattle(const System& system, const WorldDef& world, const SolverDef& def
         step_s_ = frame_interval_s / std::max(1.0, std::ceil(frame_interval_s / stable_s));
     }
     assert(step_s_ > 0.0);
-    for (const RopeRange& rope : system.ropes) {
+    for (const Body& body : system.bodies) {
         double mass_kg = 0.0;
         double length_m = 0.0;
-        for (std::size_t i = 0; i < rope.particle_count; ++i) {
-            if (!system.is_pinned(rope.first_particle + i)) mass_kg += mass_kg_[rope.first_particle + i];
+        for (std::size_t i = 0; i < body.particle_count; ++i) {
+            if (!system.is_pinned(body.first_particle + i)) mass_kg += mass_kg_[body.first_particle + i];
         }
-        for (std::size_t i = 0; i < rope.link_count; ++i) length_m += system.bars[rope.first_bar + i].rest_m;
+        for (std::size_t i = 0; i < body.link_count; ++i) length_m += system.bars[body.first_bar + i].rest_m;
         energy_scale_j_ += mass_kg * length(gravity_m_s2_.x, gravity_m_s2_.y) * length_m;
     }
 }

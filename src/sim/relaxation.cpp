@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "corda/core/error.hpp"
 #include "corda/sim/distance.hpp"
 
 namespace corda::sim {
@@ -13,6 +14,18 @@ namespace {
 /// A time within this share of a step of n steps is n steps: times that come from a fraction or from a
 /// decimal text are rounded. The state there is the stored one, not an interpolated one.
 constexpr double kGridTolerance = 1e-9;
+
+void refuse_materials(const System& system) {
+    const bool plain =
+        system.bends.empty() && std::all_of(system.bodies.begin(), system.bodies.end(), [](const Body& body) {
+            return body.material.compliance_1_n == 0.0 && !body.material.is_string;
+        });
+    if (plain) return;
+    throw Error(
+        ExitCode::kInvalidScene,
+        "method relaxation knows bars of one kind alone, as its source describes them; remove compliance, "
+        "string and bending, or use method exact");
+}
 
 }  // namespace
 
@@ -26,6 +39,7 @@ Relaxation::Relaxation(const System& system, const WorldDef& world, const Solver
       unrelaxed_y_m_(y_m_),
       mass_kg_(system.mass_kg) {
     assert(step_s_ > 0.0 && sweeps_ >= 1);
+    refuse_materials(system);
     keep_ = (1.0 - def.delta) * std::exp(-world.drag_1_s * step_s_);
     const std::size_t count = system.particle_count();
     for (std::size_t i = 0; i < count; ++i) {
@@ -47,13 +61,13 @@ Relaxation::Relaxation(const System& system, const WorldDef& world, const Solver
         const double share_a = a_is_pinned ? 0.0 : (b_is_pinned ? 1.0 : 0.5);
         constraints_.push_back({bar.a, bar.b, bar.rest_m, share_a, 1.0 - share_a});
     }
-    for (const RopeRange& rope : system.ropes) {
+    for (const Body& body : system.bodies) {
         double force_n = 0.0;
         double length_m = 0.0;
-        for (std::size_t i = 0; i < rope.particle_count; ++i) {
-            force_n += length(force_x_n_[rope.first_particle + i], force_y_n_[rope.first_particle + i]);
+        for (std::size_t i = 0; i < body.particle_count; ++i) {
+            force_n += length(force_x_n_[body.first_particle + i], force_y_n_[body.first_particle + i]);
         }
-        for (std::size_t i = 0; i < rope.link_count; ++i) length_m += system.bars[rope.first_bar + i].rest_m;
+        for (std::size_t i = 0; i < body.link_count; ++i) length_m += system.bars[body.first_bar + i].rest_m;
         energy_scale_j_ += force_n * length_m;
     }
 }

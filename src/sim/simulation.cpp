@@ -24,11 +24,14 @@ bool is_sound(const State& state) {
 
 double max_strain(const System& system, const State& state) {
     double largest = 0.0;
-    for (const Bar& bar : system.bars) {
-        if (bar.reach != 1) continue;
-        const double distance =
-            length(state.x_m[bar.b] - state.x_m[bar.a], state.y_m[bar.b] - state.y_m[bar.a]);
-        largest = std::max(largest, std::abs(distance / bar.rest_m - 1.0));
+    for (const Body& body : system.bodies) {
+        for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k) {
+            const Bar& bar = system.bars[k];
+            const double distance =
+                length(state.x_m[bar.b] - state.x_m[bar.a], state.y_m[bar.b] - state.y_m[bar.a]);
+            const double strain = distance / bar.rest_m - 1.0;
+            largest = std::max(largest, body.material.is_string ? strain : std::abs(strain));
+        }
     }
     return largest;
 }

@@ -11,7 +11,8 @@ namespace corda::sim {
 
 /// What a state shows of its own quality.
 struct Figures {
-    double strain = 0.0;  ///< largest | length / rest length - 1 | of a real bar
+    /// Largest | length / rest length - 1 | of a real bar; one that hangs slack on purpose counts as 0.
+    double strain = 0.0;
     /// | E(t) - E(0) | over (total weight * total length), or over E(0) without a force; nothing where
     /// damping takes energy away on purpose.
     std::optional<double> energy_error;

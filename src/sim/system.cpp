@@ -8,71 +8,131 @@
 namespace corda::sim {
 namespace {
 
-void append_particles(const RopeDef& rope, System& system) {
-    const Vec2 offset = rope.origin_m - system.origin_m;
+/// What a rope and a net have in common: origin, particles and pins.
+template <class BodyDef>
+Body append_particles(const BodyDef& def, System& system) {
+    const Vec2 offset = def.origin_m - system.origin_m;
     const std::size_t first = system.particle_count();
-    const std::size_t count = rope.points_m.size();
+    const std::size_t count = def.points_m.size();
     for (std::size_t i = 0; i < count; ++i) {
-        system.x_m.push_back(offset.x + rope.points_m[i].x);
-        system.y_m.push_back(offset.y + rope.points_m[i].y);
-        system.vx_m_s.push_back(rope.velocity_m_s[i].x);
-        system.vy_m_s.push_back(rope.velocity_m_s[i].y);
-        system.mass_kg.push_back(rope.mass_kg[i]);
+        system.x_m.push_back(offset.x + def.points_m[i].x);
+        system.y_m.push_back(offset.y + def.points_m[i].y);
+        system.vx_m_s.push_back(def.velocity_m_s[i].x);
+        system.vy_m_s.push_back(def.velocity_m_s[i].y);
+        system.mass_kg.push_back(def.mass_kg[i]);
     }
-    system.mass_kg.back() += rope.payload_kg;
+    if constexpr (requires { def.payload_kg; }) system.mass_kg.back() += def.payload_kg;
     for (std::size_t i = first; i < first + count; ++i)
         system.inverse_mass_1_kg.push_back(1.0 / system.mass_kg[i]);
-    for (const std::uint32_t index : rope.pinned) {
+    for (const std::uint32_t index : def.pinned) {
         assert(index < count);
         system.inverse_mass_1_kg[first + index] = 0.0;
         system.vx_m_s[first + index] = 0.0;
         system.vy_m_s[first + index] = 0.0;
     }
+    Body body;
+    body.first_particle = first;
+    body.particle_count = count;
+    body.first_bar = system.bars.size();
+    body.material = def.material;
+    return body;
 }
 
-void append_bars(const RopeDef& rope, std::size_t first_particle, std::size_t reach, System& system) {
+/// Distance of two particles from the body's own coordinates: where it stands must not change it.
+template <class BodyDef>
+double distance_m(const BodyDef& def, std::size_t a, std::size_t b) {
+    const Vec2 along = def.points_m[b] - def.points_m[a];
+    return length(along.x, along.y);
+}
+
+/// How many bars of a reach a rope has: 0 where it is too short for them.
+std::size_t bars_of_reach(std::size_t particles, std::size_t reach, bool closed) {
+    if (!closed) return particles > reach ? particles - reach : 0;
+    if (2 * reach == particles) return reach;
+    return 2 * reach < particles ? particles : 0;
+}
+
+void append_bars(const RopeDef& rope, std::size_t reach, Body& body, System& system) {
     const std::size_t count = rope.points_m.size();
+    const auto particle = [&](std::size_t i) {
+        return static_cast<std::uint32_t>(body.first_particle + i % count);
+    };
     for (std::size_t stride = 1; stride <= std::min(reach, count - 1); ++stride) {
-        for (std::size_t i = 0; i + stride < count; ++i) {
-            // Lengths from the rope's own coordinates: where the rope stands must not change them.
-            const Vec2 along = rope.points_m[i + stride] - rope.points_m[i];
-            system.bars.push_back({static_cast<std::uint32_t>(first_particle + i),
-                                   static_cast<std::uint32_t>(first_particle + i + stride),
-                                   static_cast<std::uint32_t>(stride), length(along.x, along.y)});
+        for (std::size_t i = 0; i < bars_of_reach(count, stride, rope.closed); ++i) {
+            const double rest_m = stride == 1 && !rope.rest_m.empty()
+                                      ? rope.rest_m[i]
+                                      : distance_m(rope, i, (i + stride) % count);
+            system.bars.push_back(
+                {particle(i), particle(i + stride), static_cast<std::uint32_t>(stride), rest_m});
         }
     }
+    body.bar_count = system.bars.size() - body.first_bar;
+    body.link_count = bars_of_reach(count, 1, rope.closed);
+    body.is_chain = !rope.closed;
+}
+
+void append_bends(const RopeDef& rope, const Body& body, System& system) {
+    if (rope.bending_n_m2 == 0.0) return;
+    const Bar* const links = system.bars.data() + body.first_bar;
+    const std::size_t corners = rope.closed ? body.link_count : body.link_count - 1;
+    for (std::size_t k = 0; k < corners; ++k) {
+        const Bar& before = links[k];
+        const Bar& after = links[(k + 1) % body.link_count];
+        system.bends.push_back(
+            {before.a, before.b, after.b, rope.bending_n_m2 / (0.5 * (before.rest_m + after.rest_m))});
+    }
+}
+
+void append(const RopeDef& rope, std::size_t reach, System& system) {
+    Body body = append_particles(rope, system);
+    append_bars(rope, reach, body, system);
+    append_bends(rope, body, system);
+    system.bodies.push_back(body);
+}
+
+void append(const NetDef& net, System& system) {
+    Body body = append_particles(net, system);
+    for (const NetBar& bar : net.bars) {
+        assert(bar.a != bar.b && (bar.is_real || body.link_count <= body.bar_count));
+        system.bars.push_back({static_cast<std::uint32_t>(body.first_particle + bar.a),
+                               static_cast<std::uint32_t>(body.first_particle + bar.b), bar.is_real ? 1U : 2U,
+                               distance_m(net, bar.a, bar.b)});
+        if (bar.is_real) ++body.link_count;
+        ++body.bar_count;
+    }
+    body.is_chain = false;
+    system.bodies.push_back(body);
 }
 
 }  // namespace
 
 std::size_t System::link_count() const {
     std::size_t count = 0;
-    for (const RopeRange& rope : ropes) count += rope.link_count;
+    for (const Body& body : bodies) count += body.link_count;
     return count;
 }
 
-std::uint64_t bar_count(std::uint64_t particles, std::uint64_t reach) {
+std::uint64_t bar_count(std::uint64_t particles, std::uint64_t reach, bool closed) {
     if (particles == 0) return 0;
+    if (closed) {
+        const bool has_opposite = particles % 2 == 0 && reach >= particles / 2;
+        return std::min(reach, (particles - 1) / 2) * particles + (has_opposite ? particles / 2 : 0);
+    }
     const std::uint64_t longest = std::min(reach, particles - 1);
     return longest * particles - longest * (longest + 1) / 2;
 }
 
-System build_system(std::span<const RopeDef> ropes, int reach) {
-    assert(!ropes.empty() && reach >= 1);
+System build_system(std::span<const RopeDef> ropes, std::span<const NetDef> nets, int reach) {
+    assert(!(ropes.empty() && nets.empty()) && reach >= 1);
     System system;
-    system.origin_m = ropes.front().origin_m;
-    for (const RopeDef& rope : ropes) {
-        RopeRange range;
-        range.first_particle = system.particle_count();
-        range.first_bar = system.bars.size();
-        range.particle_count = rope.points_m.size();
-        range.link_count = range.particle_count - 1;
-        append_particles(rope, system);
-        append_bars(rope, range.first_particle, static_cast<std::size_t>(reach), system);
-        range.bar_count = system.bars.size() - range.first_bar;
-        system.ropes.push_back(range);
-    }
+    system.origin_m = ropes.empty() ? nets.front().origin_m : ropes.front().origin_m;
+    for (const RopeDef& rope : ropes) append(rope, static_cast<std::size_t>(reach), system);
+    for (const NetDef& net : nets) append(net, system);
     return system;
+}
+
+System build_system(std::span<const RopeDef> ropes, int reach) {
+    return build_system(ropes, {}, reach);
 }
 
 }  // namespace corda::sim

@@ -52,12 +52,12 @@ SceneView::ItemLayer& SceneView::layer_of(Color color, std::size_t first_layer) 
 void SceneView::add_ropes(const StyleDef& style, const std::vector<RopeStyleDef>& rope_styles) {
     const std::size_t first_layer = layers_.size();
     std::size_t next_color = 0;
-    for (std::size_t r = 0; r < system_->ropes.size(); ++r) {
+    for (std::size_t r = 0; r < system_->bodies.size(); ++r) {
         const RopeStyleDef& own = rope_styles[r];
         const Color color = own.color ? *own.color : style.palette[next_color++ % style.palette.size()];
         const double radius_px = 0.5 * own.width_px.value_or(rope_width_px_);
         rope_radius_px_.push_back(radius_px);
-        const sim::RopeRange& rope = system_->ropes[r];
+        const sim::Body& rope = system_->bodies[r];
         ItemLayer& layer = layer_of(color, first_layer);
         for (std::size_t i = 0; i + 1 < rope.particle_count; ++i) {
             layer.items.push_back({rope.first_particle + i, rope.first_particle + i + 1, radius_px});
@@ -78,8 +78,8 @@ void SceneView::add_bars(const StyleDef& style, bool real) {
 void SceneView::add_markers(const StyleDef& style, bool pinned) {
     const double rim_px = height_ / (pinned ? kHeightPerPinnedRim : kHeightPerFreeRim);
     ItemLayer layer{pinned ? style.pinned_color : style.free_color, {}};
-    for (std::size_t r = 0; r < system_->ropes.size(); ++r) {
-        const sim::RopeRange& rope = system_->ropes[r];
+    for (std::size_t r = 0; r < system_->bodies.size(); ++r) {
+        const sim::Body& rope = system_->bodies[r];
         const double radius_px = style.marker_radius_px.value_or(rope_radius_px_[r] + rim_px);
         for (std::size_t i = rope.first_particle; i < rope.first_particle + rope.particle_count; ++i) {
             if (system_->is_pinned(i) == pinned) layer.items.push_back({i, i, radius_px});

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "corda/sim/chain_dynamics.hpp"
 #include "support/exact_run.hpp"
 #include "support/released_chains.hpp"
 
@@ -147,7 +148,7 @@ TEST(HorizontalRelease, FallsFreelyAtFirst) {
     for (const int links : {2, 10, 50}) {
         const RopeDef rope = test::horizontal_rope(links, 1.0);
         const System system = build_system({&rope, 1}, 1);
-        ChainDynamics dynamics(system, WorldDef{});
+        ChainDynamics dynamics(system, system.bodies, WorldDef{});
         std::vector<double> tension_n;
         dynamics.tensions(dynamics.initial_state().data(), tension_n);
         for (const double tension : tension_n) EXPECT_LT(std::abs(tension), 1e-13);
@@ -252,7 +253,7 @@ TEST(SpinningR8, StaysARigidRotation) {
     std::printf("R8 after 10 s: %.1e m\n", largest_m);
     EXPECT_LT(largest_m, 1e-11);  // measured 2.1e-12; 2.2e-11 at a tolerance of 1e-9
 
-    ChainDynamics dynamics(run.system, world);
+    ChainDynamics dynamics(run.system, run.system.bodies, world);
     std::vector<double> tension_n;
     dynamics.tensions(dynamics.initial_state().data(), tension_n);
     for (int i = 1; i <= kLinks; ++i) {

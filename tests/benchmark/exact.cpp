@@ -29,7 +29,7 @@ void exact_step(benchmark::State& bench) {
 void exact_derivative(benchmark::State& bench) {
     const RopeDef rope = test::straight_rope(static_cast<int>(bench.range(0)), 1.0, 45.0);
     const System system = build_system({&rope, 1}, 1);
-    ChainDynamics dynamics(system, WorldDef{});
+    ChainDynamics dynamics(system, system.bodies, WorldDef{});
     std::vector<double> slope(dynamics.initial_state().size());
     for (auto _ : bench) {
         dynamics.derivative(dynamics.initial_state().data(), slope.data());

@@ -163,7 +163,7 @@ System net(std::uint32_t columns, std::uint32_t rows, bool diagonals) {
             if (diagonals && c + 1 < columns && r + 1 < rows) join(i, i + columns + 1);
         }
     }
-    system.ropes.push_back({0, system.x_m.size(), 0, system.bars.size(), system.bars.size()});
+    system.bodies.push_back({0, system.x_m.size(), 0, system.bars.size(), system.bars.size(), false, {}});
     return system;
 }
 

@@ -61,7 +61,7 @@ TEST(System, SharesItsArraysAmongRopes) {
     ASSERT_EQ(system.bars.size(), 5U);
     EXPECT_EQ(system.origin_m, (Vec2{10.0, 20.0}));
     EXPECT_EQ(system.x_m[4], 1.0);  // the second rope stands 1 m to the right of the first one's origin
-    EXPECT_EQ(system.ropes[1].first_particle, 4U);
+    EXPECT_EQ(system.bodies[1].first_particle, 4U);
     EXPECT_EQ(system.bars[3].a, 4U);
     EXPECT_EQ(system.mass_kg[6], 6.0);
     EXPECT_TRUE(system.is_pinned(5));
