@@ -3,6 +3,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "corda/sim/chain_dynamics.hpp"
 #include "support/exact_run.hpp"
 
 namespace corda::sim {
