@@ -37,6 +37,17 @@ std::string why(const scene::Scene& scene, const std::optional<scene::AutoPlan>&
                  : fmt::format("the scene asks for {}", sim::method_name(scene.solver.method));
 }
 
+/// Steps from the start to the end, where they are known before the run: those of the plan's trial, or of a
+/// literal step.
+std::optional<double> expected_steps(const scene::Scene& scene, const std::optional<scene::AutoPlan>& proof) {
+    if (proof && !proof->plan.trials.empty()) {
+        return static_cast<double>(proof->plan.trials.back().steps);
+    }
+    const bool has_default = scene.solver.method == sim::Method::kRelaxation;
+    if (!scene.solver.step_s && !has_default) return std::nullopt;
+    return scene.world.duration_s / scene.solver.step_s.value_or(scene.video.fps.interval_s());
+}
+
 nlohmann::json to_json(const sim::Trial& trial) {
     return {{"solver", describe(trial.solver)},
             {"check", describe(trial.check)},
@@ -61,6 +72,7 @@ ExitCode plan(const Console& console, const SceneOptions& options) {
                            {"links", system.link_count()},
                            {"frames", scene::frame_count(scene)},
                            {"steps", nullptr},
+                           {"cost_s", nullptr},
                            {"trials", nlohmann::json::array()}};
     report_proof(proof, json);
     console.result(fmt::format("{}: {}", scene.name, scene::describe(system)));
@@ -73,18 +85,17 @@ ExitCode plan(const Console& console, const SceneOptions& options) {
                                        describe(trial.solver), describe(trial.check), trial.steps,
                                        trial.largest_difference_m, trial.reached_s));
         }
-        json["steps"] = proof->plan.trials.back().steps;
-        console.result(fmt::format("expected error: at most {:.2g} px, {:.2g} m", proof->error_bound_px(),
-                                   proof->plan.error_bound_m));
-        console.result(fmt::format("expected cost: {} steps of {} particles", proof->plan.trials.back().steps,
-                                   system.particle_count()));
-    } else {
-        const double interval_s = scene.video.fps.interval_s();
-        const bool fixed = scene.solver.method != sim::Method::kExact;
-        const double steps = scene.world.duration_s / scene.solver.step_s.value_or(interval_s);
-        if (fixed) json["steps"] = std::llround(steps);
-        if (fixed)
-            console.result(fmt::format("expected cost: {:.0f} steps of {} bars", steps, system.bars.size()));
+    }
+    if (proof && proof->plan.error_bound_m) {
+        console.result(fmt::format("expected error: at most {:.2g} px, {:.2g} m", *proof->error_bound_px(),
+                                   *proof->plan.error_bound_m));
+    }
+    if (const auto steps = expected_steps(scene, proof)) {
+        const double cost_s = 1e-9 * *steps * sim::step_cost_ns(system, scene.solver);
+        json["steps"] = std::llround(*steps);
+        json["cost_s"] = cost_s;
+        console.result(fmt::format("expected cost: {:.0f} steps of {} particles and {} bars, some {:.2g} s",
+                                   *steps, system.particle_count(), system.bars.size(), cost_s));
     }
     console.report(json);
     return ExitCode::kOk;

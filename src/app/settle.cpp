@@ -26,14 +26,19 @@ std::optional<scene::AutoPlan> settle_method(const Console& console, scene::Scen
     const double tolerance_px = scene.solver.tolerance_px;
     auto proof = scene::settle_method(scene);
     if (!proof) return proof;
+    const sim::Plan& plan = proof->plan;
+    if (!plan.error_bound_m) {
+        console.warning(fmt::format("auto: {}: {}", describe(scene.solver), plan.reason));
+        return proof;
+    }
     console.info(fmt::format("auto: {}; displayed error at most {:.2g} px ({:.2g} m), shown by a tighter run",
-                             describe(scene.solver), proof->error_bound_px(), proof->plan.error_bound_m));
-    if (proof->plan.horizon_s) {
+                             describe(scene.solver), *proof->error_bound_px(), *plan.error_bound_m));
+    if (plan.horizon_s) {
         console.warning(fmt::format(
             "predictability ends at {:.6g} s: from there two runs of the highest precision differ by more "
             "than "
             "{:g} px, because the motion is chaotic; what is drawn after it is one possible motion",
-            *proof->plan.horizon_s, tolerance_px));
+            *plan.horizon_s, tolerance_px));
     }
     return proof;
 }
@@ -42,9 +47,9 @@ void report_proof(const std::optional<scene::AutoPlan>& proof, nlohmann::json& j
     json["error_bound_m"] = nullptr;
     json["error_bound_px"] = nullptr;
     json["horizon_s"] = nullptr;
-    if (!proof) return;
-    json["error_bound_m"] = proof->plan.error_bound_m;
-    json["error_bound_px"] = proof->error_bound_px();
+    if (!proof || !proof->plan.error_bound_m) return;
+    json["error_bound_m"] = *proof->plan.error_bound_m;
+    json["error_bound_px"] = *proof->error_bound_px();
     if (proof->plan.horizon_s) json["horizon_s"] = *proof->plan.horizon_s;
 }
 

@@ -5,14 +5,9 @@
 namespace corda::scene {
 namespace {
 
-/// How precisely the motion is known when the camera is fitted to tell the size of a pixel: far below a pixel
-/// of any picture, and cheap.
-constexpr double kFittingTolerance = 1e-6;
-
-double pixels_per_metre(const Scene& scene) {
+double pixels_per_metre(const Scene& scene, const sim::System& system) {
     Scene rehearsal = scene;
-    rehearsal.solver.method = sim::Method::kExact;
-    rehearsal.solver.tolerance = kFittingTolerance;
+    rehearsal.solver = sim::scouting_solver(system, scene.world, scene.video.fps.interval_s());
     return Player(rehearsal).camera().pixels_per_metre();
 }
 
@@ -20,11 +15,12 @@ double pixels_per_metre(const Scene& scene) {
 
 std::optional<AutoPlan> settle_method(Scene& scene) {
     if (scene.solver.method != sim::Method::kAuto) return std::nullopt;
+    const sim::System system = sim::build_system(scene.ropes, scene.solver.reach);
     AutoPlan result;
-    result.pixels_per_metre = pixels_per_metre(scene);
+    result.pixels_per_metre = pixels_per_metre(scene, system);
     const sim::PlanDef def{scene.solver.tolerance_px / result.pixels_per_metre, scene.video.fps,
                            scene.video.fps.last_frame_within(scene.world.duration_s)};
-    result.plan = sim::plan_solver(sim::build_system(scene.ropes, scene.solver.reach), scene.world, def);
+    result.plan = sim::plan_solver(system, scene.world, def);
     scene.solver = result.plan.solver;
     return result;
 }

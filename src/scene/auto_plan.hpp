@@ -12,7 +12,11 @@ struct AutoPlan {
     sim::Plan plan;
     double pixels_per_metre = 0.0;
 
-    [[nodiscard]] double error_bound_px() const { return plan.error_bound_m * pixels_per_metre; }
+    /// Nothing where the plan has no bound.
+    [[nodiscard]] std::optional<double> error_bound_px() const {
+        if (!plan.error_bound_m) return std::nullopt;
+        return *plan.error_bound_m * pixels_per_metre;
+    }
 };
 
 /// Settles a scene's method: where it is `auto`, puts the cheapest method that keeps the displayed error

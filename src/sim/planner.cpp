@@ -1,11 +1,11 @@
 #include "corda/sim/planner.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "corda/core/error.hpp"
-#include "corda/sim/distance.hpp"
-#include "corda/sim/solver.hpp"
+#include "corda/sim/rattle.hpp"
 
 namespace corda::sim {
 namespace {
@@ -14,8 +14,31 @@ constexpr double kLoosestTolerance = 1e-3;
 constexpr double kTightestTolerance = 1e-13;  // below, rounding is all that is left
 constexpr double kCheckPerTolerance = 1e-2;
 constexpr double kTightestCheck = 1e-15;
+constexpr double kScoutingTolerance = 1e-6;
 
-double chain_length_m(const System& system) {
+constexpr std::array<int, 4> kOrders{2, 4, 6, 8};
+/// What is tried for closed ropes and nets: an order of `rope` and how often its step is halved. In the order
+/// of cost; each gains several digits on the one before it.
+struct Rung {
+    int order;
+    int halvings;
+};
+constexpr std::array<Rung, 6> kGraphLadder{{{2, 0}, {4, 0}, {4, 1}, {6, 1}, {8, 1}, {8, 2}}};
+/// An order of `rope` is tried where it costs less than this share of `exact`: a trial that fails costs a run
+/// too.
+constexpr double kWorthATrial = 0.7;
+
+// Nanoseconds a particle and step at 20 to 1000 particles; `exact` with its tried steps.
+constexpr double kExactCost = 140.0;
+constexpr std::array<double, 4> kChainCosts{45.0, 180.0, 330.0, 600.0};  // of kOrders
+constexpr double kStageCostInAGraph = 1500.0;  // the factorisation of a cloth of 40 x 30
+constexpr double kBarCost = 8.0;               // relaxation, a bar and sweep
+
+std::size_t index_of(int order) {
+    return static_cast<std::size_t>(order / 2 - 1);
+}
+
+double largest_length_m(const System& system) {
     double longest_m = 0.0;
     for (const Body& body : system.bodies) {
         double length_m = 0.0;
@@ -25,97 +48,184 @@ double chain_length_m(const System& system) {
     return longest_m;
 }
 
-/// A turn of the plane by the angle whose cosine is 0.8 and whose sine is 0.6.
-Vec2 turned(Vec2 v) {
-    return {0.8 * v.x - 0.6 * v.y, 0.6 * v.x + 0.8 * v.y};
+bool is_chains(const System& system) {
+    return std::all_of(system.bodies.begin(), system.bodies.end(),
+                       [](const Body& body) { return body.is_chain && body.material.compliance_1_n == 0.0; });
 }
 
-/// The same scene in turned coordinates: another start by rounding alone, and other rounding from there on.
-System turned(const System& system) {
-    System result = system;
-    for (std::size_t i = 0; i < system.particle_count(); ++i) {
-        const Vec2 position = turned(Vec2{system.x_m[i], system.y_m[i]});
-        const Vec2 velocity = turned(Vec2{system.vx_m_s[i], system.vy_m_s[i]});
-        result.x_m[i] = position.x;
-        result.y_m[i] = position.y;
-        result.vx_m_s[i] = velocity.x;
-        result.vy_m_s[i] = velocity.y;
-    }
-    return result;
+SolverDef exact_solver(double tolerance) {
+    SolverDef solver;
+    solver.method = Method::kExact;
+    solver.reach = 1;
+    solver.tolerance = tolerance;
+    return solver;
 }
 
-/// Largest distance of a particle of `state` from where the turned `checked` has it; infinite for a NaN.
-double largest_distance_m(const State& state, const State& checked) {
-    double largest_m = 0.0;
-    for (std::size_t i = 0; i < state.x_m.size(); ++i) {
-        const Vec2 position = turned(Vec2{state.x_m[i], state.y_m[i]});
-        const double distance_m = length(position.x - checked.x_m[i], position.y - checked.y_m[i]);
-        if (!(distance_m <= largest_m)) largest_m = std::isnan(distance_m) ? HUGE_VAL : distance_m;
-    }
-    return largest_m;
+SolverDef rope_solver(int order, std::optional<double> step_s = std::nullopt) {
+    SolverDef solver;
+    solver.method = Method::kRope;
+    solver.reach = 1;
+    solver.order = order;
+    solver.step_s = step_s;
+    return solver;
 }
 
-/// Runs the trial's two solvers frame by frame until they part by more than the tolerance allows, or to the
-/// end.
-void compare(const System& system, const WorldDef& world, const PlanDef& def, Trial& trial) {
-    const double interval_s = def.frames.interval_s();
-    const System turned_system = turned(system);
-    WorldDef turned_world = world;
-    turned_world.gravity_m_s2 = turned(world.gravity_m_s2);
-    const auto run = make_solver(system, world, trial.solver, interval_s);
-    const auto check = make_solver(turned_system, turned_world, trial.check, interval_s);
-    State state{0.0, system.x_m, system.y_m};
-    State checked{0.0, turned_system.x_m, turned_system.y_m};
-    for (std::int64_t k = 0; k <= def.last_frame; ++k) {
-        const double time_s = def.frames.time_s(k);
-        if (run->advance_to(time_s, state) == Status::kDiverged) return;
-        if (check->advance_to(time_s, checked) == Status::kDiverged) return;
-        const double difference_m = largest_distance_m(state, checked);
-        if (kBoundPerDifference * difference_m > def.tolerance_m) return;
-        trial.largest_difference_m = std::max(trial.largest_difference_m, difference_m);
-        trial.reached_s = time_s;
-        trial.steps = run->steps();
-    }
-    trial.to_the_end = true;
+/// As many sweeps as keep a cloth of some thirty rows from sagging like rubber.
+SolverDef relaxation_solver(double frame_interval_s) {
+    constexpr int kSweeps = 8;
+    constexpr double kStepsAFrame = 4.0;
+    SolverDef solver;
+    solver.method = Method::kRelaxation;
+    solver.reach = 1;
+    solver.sweeps = kSweeps;
+    solver.step_s = frame_interval_s / kStepsAFrame;
+    return solver;
 }
 
 /// Trials of `exact`, each a hundred times tighter than the last.
 std::vector<Trial> exact_trials(const System& system, const PlanDef& def) {
     std::vector<Trial> trials;
-    const double wanted = def.tolerance_m / chain_length_m(system);
+    const double wanted = def.tolerance_m / largest_length_m(system);
     double tolerance = std::clamp(wanted, kTightestTolerance, kLoosestTolerance);
     for (bool tightest = false; !tightest; tolerance *= kCheckPerTolerance) {
         tightest = tolerance <= kTightestTolerance;
         Trial& trial = trials.emplace_back();
-        trial.solver.method = Method::kExact;
-        trial.solver.reach = 1;
-        trial.solver.tolerance = std::max(tolerance, kTightestTolerance);
-        trial.check = trial.solver;
-        trial.check.tolerance = std::max(kCheckPerTolerance * trial.solver.tolerance, kTightestCheck);
+        trial.solver = exact_solver(std::max(tolerance, kTightestTolerance));
+        trial.check = exact_solver(std::max(kCheckPerTolerance * trial.solver.tolerance, kTightestCheck));
     }
     return trials;
 }
 
-}  // namespace
-
-Plan plan_solver(const System& system, const WorldDef& world, const PlanDef& def) {
-    Plan plan;
-    plan.reason = "every body is a chain: exact, whose links keep their lengths whatever the step";
-    for (Trial& trial : exact_trials(system, def)) {
-        compare(system, world, def, trial);
-        plan.trials.push_back(trial);
-        if (trial.to_the_end) break;
+/// Orders of `rope` at the step that it chooses itself where they are cheaper than `limit_ns` from the start
+/// to the end, cheapest first; all checked by `check`.
+std::vector<Trial> cheaper_rope_trials(const System& system, const WorldDef& world, const PlanDef& def,
+                                       const SolverDef& check, double limit_ns) {
+    std::vector<Trial> trials;
+    for (const int order : kOrders) {
+        Trial trial;
+        trial.solver = rope_solver(order);
+        trial.check = check;
+        const Rattle rope(system, world, trial.solver, def.frames.interval_s());
+        trial.solver.step_s = rope.step_s();
+        const double steps = def.frames.time_s(def.last_frame) / rope.step_s();
+        if (steps * step_cost_ns(system, trial.solver) < kWorthATrial * limit_ns) trials.push_back(trial);
     }
-    // Where none gets to the end, the one that gets farthest; of equals the first, which is the cheapest.
-    const auto best =
-        std::max_element(plan.trials.begin(), plan.trials.end(), [](const Trial& a, const Trial& b) {
-            return a.to_the_end != b.to_the_end ? b.to_the_end : a.reached_s < b.reached_s;
-        });
-    std::rotate(best, best + 1, plan.trials.end());
-    const Trial& chosen = plan.trials.back();
+    return trials;
+}
+
+/// Trials of `rope` for a graph; each checked by order 8 at half its step.
+std::vector<Trial> graph_trials(const System& system, const WorldDef& world, double frame_interval_s) {
+    std::vector<Trial> trials;
+    for (const Rung& rung : kGraphLadder) {
+        const double stable_s = Rattle(system, world, rope_solver(rung.order), frame_interval_s).step_s();
+        const double step_s = stable_s / static_cast<double>(1 << rung.halvings);
+        Trial& trial = trials.emplace_back();
+        trial.solver = rope_solver(rung.order, step_s);
+        trial.check = rope_solver(8, 0.5 * step_s);
+    }
+    return trials;
+}
+
+/// Makes the last of the trials the plan.
+void adopt_last(std::vector<Trial> trials, Plan& plan) {
+    const Trial& chosen = trials.back();
     plan.solver = chosen.solver;
     plan.error_bound_m = kBoundPerDifference * chosen.largest_difference_m;
     if (!chosen.to_the_end) plan.horizon_s = chosen.reached_s;
+    plan.trials = std::move(trials);
+}
+
+/// Moves to the end the trial that got to the end or, where none did, the one that got farthest; of equals
+/// the first, which is the cheapest.
+void put_best_last(std::vector<Trial>& trials) {
+    const auto best = std::max_element(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) {
+        return a.to_the_end != b.to_the_end ? b.to_the_end : a.reached_s < b.reached_s;
+    });
+    std::rotate(best, best + 1, trials.end());
+}
+
+/// Runs the trials one after the other until one gets to the end, and puts the best one last.
+std::vector<Trial> run_until_one_holds(const System& system, const WorldDef& world, const PlanDef& def,
+                                       std::vector<Trial> trials) {
+    for (std::size_t k = 0; k < trials.size(); ++k) {
+        run_trial(system, world, def, trials[k]);
+        if (!trials[k].to_the_end) continue;
+        trials.resize(k + 1);
+        break;
+    }
+    put_best_last(trials);
+    return trials;
+}
+
+Plan plan_exact(const System& system, const WorldDef& world, const PlanDef& def) {
+    Plan plan;
+    adopt_last(run_until_one_holds(system, world, def, exact_trials(system, def)), plan);
+    plan.reason =
+        "exact moves every body of this scene, and no order of rope would cost less at a stable step";
+    if (plan.horizon_s) return plan;
+    const Trial exact = plan.trials.back();
+    if (!refusal(system, world, rope_solver(2), def.frames.interval_s()).empty()) return plan;
+    const double cost_ns = static_cast<double>(exact.steps) * step_cost_ns(system, exact.solver);
+    std::vector<Trial> ropes = cheaper_rope_trials(system, world, def, exact.check, cost_ns);
+    if (ropes.empty()) return plan;
+    ropes = run_until_one_holds(system, world, def, std::move(ropes));
+    if (!ropes.back().to_the_end) {
+        plan.trials.insert(plan.trials.begin(), ropes.begin(), ropes.end());
+        plan.reason =
+            "exact moves every body of this scene; orders of rope that would cost less miss the tolerance";
+        return plan;
+    }
+    ropes.insert(ropes.begin(), plan.trials.begin(), plan.trials.end());
+    adopt_last(std::move(ropes), plan);
+    plan.reason = "rope at a stable step is good enough here and costs less than exact";
+    return plan;
+}
+
+}  // namespace
+
+double step_cost_ns(const System& system, const SolverDef& solver) {
+    const auto particles = static_cast<double>(system.particle_count());
+    switch (solver.method) {
+        case Method::kAuto:
+            return 0.0;
+        case Method::kRelaxation:
+            return kBarCost * static_cast<double>(system.bars.size()) * solver.sweeps;
+        case Method::kRope:
+            if (is_chains(system)) return kChainCosts[index_of(solver.order)] * particles;
+            return kStageCostInAGraph * particles *
+                   static_cast<double>(composition(solver.order).stages.size());
+        case Method::kExact:
+            return kExactCost * particles;
+    }
+    return 0.0;
+}
+
+SolverDef scouting_solver(const System& system, const WorldDef& world, double frame_interval_s) {
+    const SolverDef exact = exact_solver(kScoutingTolerance);
+    const std::string exact_refusal = refusal(system, world, exact, frame_interval_s);
+    if (exact_refusal.empty()) return exact;
+    if (is_chains(system)) throw Error(ExitCode::kInvalidScene, exact_refusal);
+    const std::string rope_refusal = refusal(system, world, rope_solver(4), frame_interval_s);
+    if (rope_refusal.empty()) return rope_solver(4);
+    const SolverDef relaxation = relaxation_solver(frame_interval_s);
+    if (refusal(system, world, relaxation, frame_interval_s).empty()) return relaxation;
+    throw Error(ExitCode::kInvalidScene, rope_refusal);
+}
+
+Plan plan_solver(const System& system, const WorldDef& world, const PlanDef& def) {
+    const double interval_s = def.frames.interval_s();
+    const SolverDef scout = scouting_solver(system, world, interval_s);
+    if (scout.method == Method::kExact) return plan_exact(system, world, def);
+    Plan plan;
+    if (scout.method == Method::kRope) {
+        adopt_last(run_until_one_holds(system, world, def, graph_trials(system, world, interval_s)), plan);
+        plan.reason = "rope keeps the bars of closed ropes and nets at their lengths";
+        return plan;
+    }
+    plan.solver = scout;
+    plan.reason =
+        "the bars of a net depend on each other, so that no method can tell its true motion; relaxation "
+        "runs it, without a bound of the error";
     return plan;
 }
 

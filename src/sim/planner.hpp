@@ -1,54 +1,49 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "corda/core/rational.hpp"
-#include "corda/sim/system.hpp"
+#include "corda/sim/trial.hpp"
 
 namespace corda::sim {
 
-/// What a plan has to reach: the positions at the frame times 0 .. last_frame within a distance of the truth.
-struct PlanDef {
-    double tolerance_m = 0.0;  ///< > 0; of the position of any particle
-    FrameRate frames;
-    std::int64_t last_frame = 0;
-};
-
-/// A method that was tried, and how far it stayed from a tighter run.
-struct Trial {
-    SolverDef solver;
-    SolverDef check;  ///< the tighter run it was compared with
-    std::uint64_t steps = 0;
-    double largest_difference_m = 0.0;  ///< up to `reached_s`
-    double reached_s = 0.0;             ///< the last frame time up to which it was within the tolerance
-    bool to_the_end = false;
-};
-
 /// The method `auto` runs, and the proof that it is good enough.
 struct Plan {
-    SolverDef solver;            ///< never kAuto
-    double error_bound_m = 0.0;  ///< of the position of any particle at any frame time up to the horizon
-    /// The time after which no method's positions mean anything: a run and a hundred times tighter one differ
-    /// by more than the tolerance. Nothing where the scene ends before.
+    SolverDef solver;  ///< never kAuto
+    /// Of the position of any particle at any frame time up to the horizon. Nothing where no method can tell
+    /// how the system truly moves: bars that depend on each other.
+    std::optional<double> error_bound_m;
+    /// The time after which no method's positions mean anything: a run and a much tighter one differ by more
+    /// than the tolerance. Nothing where the scene ends before.
     std::optional<double> horizon_s;
     std::vector<Trial> trials;  ///< all that were tried, the chosen one last
     std::string reason;         ///< in words: why this method
 };
 
-/// Finds the loosest tolerance of `exact` whose positions stay within `def.tolerance_m`, and proves it by a
-/// second, a hundred times tighter run in step with the first.
+/// Finds the cheapest method whose positions stay within `def.tolerance_m`, and proves it by a second,
+/// tighter run in step with the first.
+///
+/// - Chains and bodies that stretch: the loosest tolerance of `exact` that does, checked by a hundred times
+/// tighter
+///   run; then any order of `rope` that by step_cost_ns() is cheaper, checked by that same tight run of the
+///   other formulation.
+/// - Nets and closed ropes of rigid bars: orders of `rope` and halved steps, cheapest first, each checked by
+/// order 8
+///   at half its step.
+/// - Bars whose lengths depend on each other (a net with diagonals): `relaxation`, and no bound.
 ///
 /// The bound is kBoundPerDifference times the largest difference of the two runs. Everything is decided by
 /// counts and positions, never by a clock: the same scene gives the same plan. Throws corda::Error
 /// (kInvalidScene) where no method can run the system.
 [[nodiscard]] Plan plan_solver(const System& system, const WorldDef& world, const PlanDef& def);
 
-/// The true error may be larger than the difference to a tighter run by that run's own error. Normally 1.01
-/// would do, since the check is a hundred times tighter; at the limit of double precision both runs are
-/// equally wrong, and 2 would.
-inline constexpr double kBoundPerDifference = 3.0;
+/// A quick method that can run the system at all, to some 1e-6 of its size where a method can tell: what a
+/// camera is fitted by before there is a plan. Throws as plan_solver() does.
+[[nodiscard]] SolverDef scouting_solver(const System& system, const WorldDef& world, double frame_interval_s);
+
+/// What a step of a method costs, in nanoseconds on the machine that the table in the source was measured on:
+/// good for the choice between methods and for a rough forecast.
+[[nodiscard]] double step_cost_ns(const System& system, const SolverDef& solver);
 
 }  // namespace corda::sim
