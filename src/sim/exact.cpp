@@ -20,10 +20,20 @@ void refuse_imaginary_bars(const System& system) {
     }
 }
 
+void refuse_rigid_graphs(const System& system) {
+    for (const Body& body : system.bodies) {
+        if (body.is_chain) continue;
+        throw Error(ExitCode::kInvalidScene,
+                    "method exact moves chains of rigid links; a closed rope or a net of rigid bars needs "
+                    "method = \"rope\", or compliance");
+    }
+}
+
 }  // namespace
 
 Exact::Exact(const System& system, const WorldDef& world, const SolverDef& def, double /*frame_interval_s*/) {
     refuse_imaginary_bars(system);
+    refuse_rigid_graphs(system);
     parts_.push_back(std::make_unique<OdePart>(std::make_unique<ChainDynamics>(system, system.bodies, world),
                                                def.tolerance, world.drag_1_s == 0.0));
 }

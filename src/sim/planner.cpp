@@ -31,7 +31,7 @@ constexpr double kWorthATrial = 0.7;
 // Nanoseconds a particle and step at 20 to 1000 particles; `exact` with its tried steps.
 constexpr double kExactCost = 140.0;
 constexpr std::array<double, 4> kChainCosts{45.0, 180.0, 330.0, 600.0};  // of kOrders
-constexpr double kStageCostInAGraph = 1500.0;  // the factorisation of a cloth of 40 x 30
+constexpr double kStageCostInAGraph = 500.0;  // the factorisation of a cloth of 40 x 30
 constexpr double kBarCost = 8.0;               // relaxation, a bar and sweep
 
 std::size_t index_of(int order) {

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "corda/sim/system.hpp"
+
+namespace corda::test {
+
+/// A closed rope of `particles` unit masses on a circle of radius 1 m whose top is at the origin, at rest;
+/// the top one pinned.
+inline sim::RopeDef ring(int particles) {
+    sim::RopeDef rope;
+    for (int i = 0; i < particles; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / particles;
+        rope.points_m.push_back({std::sin(angle), std::cos(angle) - 1.0});
+    }
+    rope.mass_kg.assign(rope.points_m.size(), 1.0);
+    rope.velocity_m_s.assign(rope.points_m.size(), {});
+    rope.closed = true;
+    return rope;
+}
+
+/// A net of unit masses, particle r * columns + c at spacing * (c + 0.3 r, -r): leaning to the right; bars
+/// along rows, then along columns, then, with `diagonals`, both of every cell. The top row is pinned.
+inline sim::NetDef leaning_net(std::uint32_t columns, std::uint32_t rows, double spacing_m,
+                               bool diagonals = false) {
+    sim::NetDef net;
+    for (std::uint32_t r = 0; r < rows; ++r) {
+        for (std::uint32_t c = 0; c < columns; ++c)
+            net.points_m.push_back({spacing_m * (c + 0.3 * r), -spacing_m * r});
+    }
+    net.mass_kg.assign(net.points_m.size(), 1.0);
+    net.velocity_m_s.assign(net.points_m.size(), {});
+    const auto index = [columns](std::uint32_t r, std::uint32_t c) { return r * columns + c; };
+    for (std::uint32_t c = 0; c < columns; ++c) net.pinned.push_back(c);
+    for (std::uint32_t r = 1; r < rows; ++r) {
+        for (std::uint32_t c = 0; c + 1 < columns; ++c) net.bars.push_back({index(r, c), index(r, c + 1)});
+    }
+    for (std::uint32_t r = 0; r + 1 < rows; ++r) {
+        for (std::uint32_t c = 0; c < columns; ++c) net.bars.push_back({index(r, c), index(r + 1, c)});
+    }
+    for (std::uint32_t r = 0; diagonals && r + 1 < rows; ++r) {
+        for (std::uint32_t c = 0; c + 1 < columns; ++c) {
+            net.bars.push_back({index(r, c), index(r + 1, c + 1), false});
+            net.bars.push_back({index(r, c + 1), index(r + 1, c), false});
+        }
+    }
+    return net;
+}
+
+}  // namespace corda::test
