@@ -117,6 +117,17 @@ ExitCode keep_interrupted(const Console& console, const RenderOptions& options, 
     return interruption();
 }
 
+/// The frames up to a divergence are kept, and the message says where.
+[[noreturn]] void keep_diverged(const Error& error, const RenderOptions& options, media::VideoWriter& writer,
+                                const FrameRange& range) {
+    const std::int64_t frames = writer.frames();
+    if (frames == 0) throw Error(error.code(), error.what());
+    const std::string kept = writer.abandon();
+    throw Error(error.code(),
+                fmt::format("{}; frames {}..{} before it are in {}, which plays; {} was not written",
+                            error.what(), range.first, range.first + frames - 1, kept, options.output));
+}
+
 ExitCode render(const Console& console, const RenderOptions& options) {
     const double start_s = now_s();
     scene::Scene scene = options.scene.load();
@@ -136,7 +147,13 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     const gl::Context context(context_def);
     report_gl(console, context);
     media::VideoWriter writer(options.output, scene.video, metadata(scene, range, proof));
-    const std::int64_t frames = draw_frames(console, scene, range, player, writer);
+    std::int64_t frames = 0;
+    try {
+        frames = draw_frames(console, scene, range, player, writer);
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::kDiverged) throw;
+        keep_diverged(error, options, writer, range);
+    }
     if (interruption() != ExitCode::kOk) return keep_interrupted(console, options, writer, range);
     writer.finish();
     const double wall_s = now_s() - start_s;

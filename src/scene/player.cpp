@@ -12,24 +12,33 @@ namespace {
 view::Camera fit_camera(const Scene& scene, const sim::System& system, double clearance_px) {
     view::MotionBounds bounds;
     if (view::Camera::needs_motion(scene.camera)) {
-        Run rehearsal(scene);
+        Run rehearsal(scene, sim::Figured::kNo);
         const std::int64_t last = scene.video.fps.last_frame_within(scene.world.duration_s);
-        for (std::int64_t k = 0; k <= last; ++k) bounds.include(rehearsal.at(scene.video.fps.time_s(k)));
+        for (std::int64_t k = 0; k <= last; ++k) {
+            if (rehearsal.go(scene.video.fps.time_s(k)) == sim::Status::kDiverged) break;
+            bounds.include(rehearsal.simulation().state());
+        }
+        // The start is there even where the first step diverges.
+        if (bounds.empty()) bounds.include(rehearsal.simulation().state());
     }
     return {scene.camera, system.origin_m, bounds, scene.video.width_px, scene.video.height_px, clearance_px};
 }
 
 }  // namespace
 
-Run::Run(const Scene& scene)
+Run::Run(const Scene& scene, sim::Figured figured)
     : simulation_(sim::build_system(scene.ropes, scene.solver.reach), scene.world, scene.solver,
-                  scene.video.fps.interval_s()) {}
+                  scene.video.fps.interval_s(), figured) {}
 
-const sim::State& Run::at(double time_s) {
+sim::Status Run::go(double time_s) {
     const auto start = std::chrono::steady_clock::now();
     const sim::Status status = simulation_.advance_to(time_s);
     wall_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (status == sim::Status::kDiverged) {
+    return status;
+}
+
+const sim::State& Run::at(double time_s) {
+    if (go(time_s) == sim::Status::kDiverged) {
         throw Error(
             ExitCode::kDiverged,
             fmt::format(

@@ -12,7 +12,10 @@ namespace corda::scene {
 /// Runs a scene's simulation to exact times and keeps its figures.
 class Run {
   public:
-    explicit Run(const Scene& scene);
+    explicit Run(const Scene& scene, sim::Figured figured = sim::Figured::kYes);
+
+    /// Goes on to `time_s`, not before the last time.
+    sim::Status go(double time_s);
 
     /// The state at `time_s`, not before the last one. Throws corda::Error (kDiverged), naming the time.
     const sim::State& at(double time_s);
@@ -30,10 +33,10 @@ class Run {
 /// whichever others are drawn.
 class Player {
   public:
-    /// Throws corda::Error (kDiverged, kInvalidScene).
+    /// Throws corda::Error (kInvalidScene). A motion that diverges is shown as far as it goes.
     explicit Player(const Scene& scene);
 
-    /// The frame at `time_s`, not before the last one.
+    /// The frame at `time_s`, not before the last one. Throws corda::Error (kDiverged).
     const view::DrawList& at(double time_s);
 
     [[nodiscard]] const Run& run() const { return run_; }

@@ -25,12 +25,16 @@ struct Diagnostics {
     Figures largest;
 };
 
+/// Whether a Simulation works out the figures of every state that it reaches: some 10 ns a particle.
+enum class Figured { kNo, kYes };
+
 /// A scene in motion: particles and bars, a solver, and a check of every state that it hands out.
 class Simulation {
   public:
     /// `frame_interval_s` is the default step of a method that has no step of its own. Throws corda::Error
-    /// where the method cannot run the system.
-    Simulation(System system, const WorldDef& world, const SolverDef& solver, double frame_interval_s);
+    /// where the method cannot run the system. Figures stay empty with Figured::kNo, e.g. in a rehearsal.
+    Simulation(System system, const WorldDef& world, const SolverDef& solver, double frame_interval_s,
+               Figured figured = Figured::kYes);
 
     /// Goes on to `time_s` seconds, which must not be before the state's time. The state is that of exactly
     /// this time; the same bits come out whatever times were asked for on the way.
@@ -50,6 +54,7 @@ class Simulation {
     std::unique_ptr<Solver> solver_;
     State state_;
     State next_;  ///< kept for its memory
+    Figured figured_;
     bool conserves_energy_ = true;
     double initial_energy_j_ = 0.0;
     double energy_scale_j_ = 0.0;

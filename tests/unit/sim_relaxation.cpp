@@ -160,6 +160,14 @@ TEST(Simulation, ReportsDivergenceAndKeepsTheLastGoodState) {
     EXPECT_EQ(run.state().time_s, 2.0);
 }
 
+TEST(Simulation, WorksOutNoFiguresInARehearsal) {
+    const RopeDef rope = test::report_rope(10);
+    Simulation run(build_system({&rope, 1}, 7), WorldDef{}, with_step(0.01), 1.0 / 60.0, Figured::kNo);
+    ASSERT_EQ(run.advance_to(1.0), Status::kOk);
+    EXPECT_EQ(run.diagnostics().largest.strain, 0.0);
+    EXPECT_EQ(run.diagnostics().steps, 100U);
+}
+
 TEST(Simulation, EnergyErrorIsWithheldWhereDampingTakesEnergy) {
     SolverDef solver = with_step(0.01);
     Simulation undamped = test::simulate(test::report_rope(10), WorldDef{}, solver);
