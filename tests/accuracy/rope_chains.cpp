@@ -5,6 +5,8 @@
 
 #include <array>
 #include <cmath>
+#include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,30 @@ TEST(SwingingChainsR5, TipsAreWhereTheReferenceHasThem) {
         EXPECT_LT(error_m, bound_m) << row.links << " links, " << row.angle_deg
                                     << " degrees, t = " << row.time_s;
     }
+}
+
+TEST(ReportRopeR11, StaysOnTheReference) {
+    std::ifstream file(CORDA_TEST_DATA "/swing40.txt");
+    ASSERT_TRUE(file.is_open());
+    test::RattleRun run(test::report_rope(40), WorldDef{{0.0, -9.8}, 10.0, 0.0}, 8, 1.0 / 600.0);
+    int rows = 0;
+    double largest_m = 0.0;
+    for (std::string line; std::getline(file, line);) {
+        if (line.empty() || line.front() == '#') continue;
+        std::istringstream numbers(line);
+        double time_s = 0.0;
+        numbers >> time_s;
+        ASSERT_TRUE(run.go(time_s));
+        for (std::size_t i = 0; i < 40; ++i) {
+            Vec2 expected;
+            numbers >> expected.x >> expected.y;
+            largest_m = std::max(
+                largest_m, std::hypot(run.state().x_m[i] - expected.x, run.state().y_m[i] - expected.y));
+        }
+        ++rows;
+    }
+    EXPECT_EQ(rows, 4);
+    EXPECT_LT(largest_m, 1e-12);  // measured 6.5e-14, of 39 m
 }
 
 /// The tip's error after 1 s, N = 20.

@@ -1,0 +1,112 @@
+// What PHYSICS section 5 asks of all methods alike: the same positions at every frame rate, the same bits
+// wherever the pin is, the same bytes from two processes.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "corda/sim/planner.hpp"
+#include "support/command.hpp"
+#include "support/ropes.hpp"
+
+namespace corda::sim {
+namespace {
+
+SolverDef solver_of(Method method) {
+    SolverDef solver;
+    solver.method = method;
+    solver.reach = 1;
+    if (method == Method::kRelaxation) solver.step_s = 1.0 / 960.0;
+    if (method == Method::kRope) solver.order = 8;
+    return solver;
+}
+
+class EveryMethod : public testing::TestWithParam<Method> {};
+
+TEST_P(EveryMethod, AgreesAtCommonTimesOfAllFrameRates) {
+    const RopeDef rope = test::straight_rope(20, 1.0, 45.0);
+    constexpr double kToleranceM = 1e-13;
+    const auto run_at = [&](int rate) {
+        return Simulation(build_system({&rope, 1}, 1), WorldDef{}, solver_of(GetParam()), 1.0 / rate);
+    };
+    double largest_m = 0.0;
+    for (const int rate : {30, 60, 120}) {
+        Simulation first = run_at(24);
+        Simulation other = run_at(rate);
+        for (int k = 0; k <= 12; ++k) {  // sixths of a second are frame times of all of them
+            for (int frame = 1; frame <= rate / 6 && k > 0; ++frame) {
+                ASSERT_EQ(other.advance_to((k - 1) / 6.0 + static_cast<double>(frame) / rate), Status::kOk);
+            }
+            ASSERT_EQ(first.advance_to(k / 6.0), Status::kOk);
+            for (std::size_t i = 0; i <= 20; ++i) {
+                largest_m = std::max(largest_m, std::hypot(first.state().x_m[i] - other.state().x_m[i],
+                                                           first.state().y_m[i] - other.state().y_m[i]));
+            }
+        }
+    }
+    // Measured: 0 for relaxation, 7e-16 for exact (the times themselves are rounded), 7e-15 for rope.
+    EXPECT_LE(largest_m, kToleranceM);
+}
+
+TEST_P(EveryMethod, HasTheSameBitsWithThePinFarAway) {
+    RopeDef rope = test::straight_rope(10, 1.0, 70.0);
+    const auto start = [&] {
+        return Simulation(build_system({&rope, 1}, 1), WorldDef{}, solver_of(GetParam()), 1.0 / 60.0);
+    };
+    Simulation near = start();
+    rope.origin_m = {1e6, 1e6};
+    Simulation far = start();
+    for (const double time_s : {0.1, 1.0, 3.0}) {
+        ASSERT_EQ(near.advance_to(time_s), Status::kOk);
+        ASSERT_EQ(far.advance_to(time_s), Status::kOk);
+        EXPECT_EQ(near.state().x_m, far.state().x_m);
+        EXPECT_EQ(near.state().y_m, far.state().y_m);
+    }
+}
+
+TEST_P(EveryMethod, WritesTheSameBytesFromTwoProcesses) {
+    const test::ScratchFolder folder;
+    const std::string scene = folder.write(
+        "scene.toml",
+        "schema = 1\n[world]\nduration = 2.0\n[[rope]]\nhang = { links = 20, length = 1.0, angle_deg = "
+        "80.0 }\n");
+    const auto run = [&](const std::string& name) {
+        const std::string csv = folder.file(name);
+        const auto result = test::run_corda({"simulate", scene, "-o", csv, "--diagnostics", "--set",
+                                             "solver.method=" + std::string(method_name(GetParam()))});
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        return test::read_file(csv);
+    };
+    const std::string first = run("a.csv");
+    EXPECT_GT(first.size(), 10'000U);
+    EXPECT_TRUE(first == run("b.csv"));
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EveryMethod,
+                         testing::Values(Method::kRelaxation, Method::kRope, Method::kExact),
+                         [](const auto& param) { return std::string(method_name(param.param)); });
+
+TEST(Auto, AgreesAtCommonTimesOfAllFrameRatesWithinItsTolerance) {
+    const RopeDef rope = test::straight_rope(20, 1.0, 45.0);
+    const System system = build_system({&rope, 1}, 1);
+    constexpr double kToleranceM = 1e-5;
+    std::vector<State> ends;
+    for (const int rate : {24, 30, 60, 120}) {
+        const FrameRate frames(Rational{rate, 1});
+        const Plan plan = plan_solver(system, WorldDef{}, {kToleranceM, frames, 2 * rate});
+        ASSERT_FALSE(plan.horizon_s.has_value());
+        Simulation run(system, WorldDef{}, plan.solver, frames.interval_s());
+        ASSERT_EQ(run.advance_to(2.0), Status::kOk);
+        ends.push_back(run.state());
+    }
+    for (const State& end : ends) {
+        for (std::size_t i = 0; i <= 20; ++i) {
+            const double apart_m =
+                std::hypot(end.x_m[i] - ends.front().x_m[i], end.y_m[i] - ends.front().y_m[i]);
+            EXPECT_LE(apart_m, 2.0 * kToleranceM);  // each is within the tolerance of the truth
+        }
+    }
+}
+
+}  // namespace
+}  // namespace corda::sim
