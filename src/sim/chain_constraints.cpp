@@ -47,8 +47,9 @@ ChainConstraints::ChainConstraints(const System& system) {
     }
     for (std::vector<double>* scratch : {&dx_m_, &dy_m_, &lower_, &diagonal_, &upper_, &right_})
         scratch->assign(longest + 2, 0.0);
-    change_x_m_s_.assign(longest + 1, 0.0);
-    change_y_m_s_.assign(longest + 1, 0.0);
+    for (std::vector<double>* scratch :
+         {&start_x_m_s_, &start_y_m_s_, &total_x_m_s_, &total_y_m_s_, &change_x_m_s_, &change_y_m_s_})
+        scratch->assign(longest + 1, 0.0);
     refuse_straight_between_pins(system);
 }
 
@@ -83,11 +84,13 @@ void ChainConstraints::refuse_straight_between_pins(const System& system) const 
 void ChainConstraints::bar_vectors(const Chain& chain, const Motion& motion) {
     const double* const x = motion.x_m.data() + chain.first_particle;
     const double* const y = motion.y_m.data() + chain.first_particle;
-    double* const dx = dx_m_.data() + 1;
-    double* const dy = dy_m_.data() + 1;
+    const double* const rest_x = motion.x_rest_m.data() + chain.first_particle;
+    const double* const rest_y = motion.y_rest_m.data() + chain.first_particle;
+    double* __restrict const dx = dx_m_.data() + 1;
+    double* __restrict const dy = dy_m_.data() + 1;
     for (std::size_t k = 0; k < chain.count; ++k) {
-        dx[k] = x[k + 1] - x[k];
-        dy[k] = y[k + 1] - y[k];
+        dx[k] = (x[k + 1] - x[k]) + (rest_x[k + 1] - rest_x[k]);
+        dy[k] = (y[k + 1] - y[k]) + (rest_y[k + 1] - rest_y[k]);
     }
     dx[chain.count] = 0.0;
     dy[chain.count] = 0.0;
@@ -113,19 +116,25 @@ void ChainConstraints::assemble(const Chain& chain, double span_s, const Motion&
 }
 
 bool ChainConstraints::apply(const Chain& chain, double span_s, const double* impulse, Motion& motion) {
-    double* const vx = motion.vx_m_s.data() + chain.first_particle;
-    double* const vy = motion.vy_m_s.data() + chain.first_particle;
+    double* __restrict const vx = motion.vx_m_s.data() + chain.first_particle;
+    double* __restrict const vy = motion.vy_m_s.data() + chain.first_particle;
     const double* const w = inverse_mass_1_kg_.data() + chain.first_particle;
     const double* const square = square_m2_.data() + chain.first_link;
     const double* const dx = dx_m_.data();
     const double* const dy = dy_m_.data();
-    double* const cx = change_x_m_s_.data();
-    double* const cy = change_y_m_s_.data();
+    const double* const start_x = start_x_m_s_.data();
+    const double* const start_y = start_y_m_s_.data();
+    double* __restrict const total_x = total_x_m_s_.data();
+    double* __restrict const total_y = total_y_m_s_.data();
+    double* __restrict const cx = change_x_m_s_.data();
+    double* __restrict const cy = change_y_m_s_.data();
     for (std::size_t i = 0; i <= chain.count; ++i) {
         cx[i] = w[i] * (impulse[i + 1] * dx[i + 1] - impulse[i] * dx[i]);
         cy[i] = w[i] * (impulse[i + 1] * dy[i + 1] - impulse[i] * dy[i]);
-        vx[i] += cx[i];
-        vy[i] += cy[i];
+        total_x[i] += cx[i];
+        total_y[i] += cy[i];
+        vx[i] = start_x[i] + total_x[i];
+        vy[i] = start_y[i] + total_y[i];
     }
     const double factor = span_s * span_s / kSquareTolerance;
     int all_met = 1;
@@ -139,6 +148,11 @@ bool ChainConstraints::apply(const Chain& chain, double span_s, const double* im
 
 bool ChainConstraints::meet_lengths(const Chain& chain, double span_s, Motion& motion, double* impulse) {
     bar_vectors(chain, motion);
+    const std::size_t particles = chain.count + 1;
+    std::copy_n(motion.vx_m_s.data() + chain.first_particle, particles, start_x_m_s_.data());
+    std::copy_n(motion.vy_m_s.data() + chain.first_particle, particles, start_y_m_s_.data());
+    std::fill_n(total_x_m_s_.data(), particles, 0.0);
+    std::fill_n(total_y_m_s_.data(), particles, 0.0);
     std::copy_n(impulse, chain.count, right_.data() + 1);
     right_[chain.count + 1] = 0.0;
     (void)apply(chain, span_s, right_.data(), motion);
@@ -151,6 +165,7 @@ bool ChainConstraints::meet_lengths(const Chain& chain, double span_s, Motion& m
         met = apply(chain, span_s, right_.data(), motion);
     }
     if (!met) return false;
+    add_total(chain, motion);
     // The turn of a bar, |e - d|^2 = 2 rest^2 (1 - cos).
     const double* const vx = motion.vx_m_s.data() + chain.first_particle;
     const double* const vy = motion.vy_m_s.data() + chain.first_particle;
@@ -164,24 +179,25 @@ bool ChainConstraints::meet_lengths(const Chain& chain, double span_s, Motion& m
     return all_gentle != 0;
 }
 
-bool ChainConstraints::move(const Stage& stage, Motion& motion, std::span<double> impulse) {
-    const std::size_t count = motion.x_m.size();
-    double* const vx = motion.vx_m_s.data();
-    double* const vy = motion.vy_m_s.data();
-    for (std::size_t i = 0; i < count; ++i) {
-        vx[i] = stage.decay * vx[i] + stage.push_m_s.x;
-        vy[i] = stage.decay * vy[i] + stage.push_m_s.y;
+void ChainConstraints::add_total(const Chain& chain, Motion& motion) const {
+    double* __restrict const vx = motion.vx_m_s.data() + chain.first_particle;
+    double* __restrict const vy = motion.vy_m_s.data() + chain.first_particle;
+    double* __restrict const rest_x = motion.vx_rest_m_s.data() + chain.first_particle;
+    double* __restrict const rest_y = motion.vy_rest_m_s.data() + chain.first_particle;
+    for (std::size_t i = 0; i <= chain.count; ++i) {
+        vx[i] = start_x_m_s_[i];
+        vy[i] = start_y_m_s_[i];
+        add_unrounded(vx[i], rest_x[i], total_x_m_s_[i]);
+        add_unrounded(vy[i], rest_y[i], total_y_m_s_[i]);
     }
-    for (const std::uint32_t i : pinned_) vx[i] = vy[i] = 0.0;
+}
+
+bool ChainConstraints::move(const Stage& stage, Motion& motion, std::span<double> impulse) {
+    kick(stage, motion);
     for (const Chain& chain : chains_) {
         if (!meet_lengths(chain, stage.span_s, motion, impulse.data() + chain.first_link)) return false;
     }
-    double* const x = motion.x_m.data();
-    double* const y = motion.y_m.data();
-    for (std::size_t i = 0; i < count; ++i) {
-        x[i] += stage.span_s * vx[i];
-        y[i] += stage.span_s * vy[i];
-    }
+    drift(stage.span_s, motion);
     return true;
 }
 

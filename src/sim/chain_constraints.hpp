@@ -37,10 +37,10 @@ class ChainConstraints final : public ConstraintSolver {
     void bar_vectors(const Chain& chain, const Motion& motion);
     void assemble(const Chain& chain, double span_s, const Motion& motion);
     [[nodiscard]] bool apply(const Chain& chain, double span_s, const double* impulse, Motion& motion);
+    void add_total(const Chain& chain, Motion& motion) const;
     [[nodiscard]] bool meet_lengths(const Chain& chain, double span_s, Motion& motion, double* impulse);
 
     std::vector<Chain> chains_;
-    std::vector<std::uint32_t> pinned_;
     std::vector<double> square_m2_;  ///< rest^2 of a link
     // Scratch of one chain. Entry k + 1 is that of its link k; the entries before the first and behind the
     // last stand for bars that are not there and are 0.
@@ -50,7 +50,12 @@ class ChainConstraints final : public ConstraintSolver {
     std::vector<double> diagonal_;
     std::vector<double> upper_;
     std::vector<double> right_;
-    // Of one chain too: velocity changes, one entry a particle.
+    // Of one chain too, one entry a particle: velocities before the impulses, what all impulses together and
+    // what the last ones change.
+    std::vector<double> start_x_m_s_;
+    std::vector<double> start_y_m_s_;
+    std::vector<double> total_x_m_s_;
+    std::vector<double> total_y_m_s_;
     std::vector<double> change_x_m_s_;
     std::vector<double> change_y_m_s_;
 };

@@ -11,12 +11,31 @@
 namespace corda::sim {
 
 /// Positions and velocities, one entry a particle. A pinned particle's velocity is 0.
+///
+/// Each number is kept as an unrounded sum: the double nearest to it and the small rest that rounding took
+/// off (Kahan's summation). A million short steps then lose no more than one: without the rests, order 8
+/// drifts by 2.5e-17 of the energy a step, and R5's last row is off by 1e-8 in place of 1e-10.
 struct Motion {
     std::vector<double> x_m;
     std::vector<double> y_m;
     std::vector<double> vx_m_s;
     std::vector<double> vy_m_s;
+    std::vector<double> x_rest_m;
+    std::vector<double> y_rest_m;
+    std::vector<double> vx_rest_m_s;
+    std::vector<double> vy_rest_m_s;
+
+    /// The start of a system, with rests of 0.
+    [[nodiscard]] static Motion start_of(const System& system);
 };
+
+/// sum + rest += change, with the rounding kept in `rest`.
+inline void add_unrounded(double& sum, double& rest, double change) {
+    const double wanted = change + rest;
+    const double next = sum + wanted;
+    rest = wanted - (next - sum);
+    sum = next;
+}
 
 /// A bar with at least one free end.
 struct Link {
@@ -67,8 +86,13 @@ class ConstraintSolver {
     [[nodiscard]] std::span<const Link> links() const { return links_; }
 
   protected:
+    /// The first and the last part of a stage: the kick of all free particles, and the way.
+    void kick(const Stage& stage, Motion& motion) const;
+    static void drift(double span_s, Motion& motion);
+
     std::vector<Link> links_;
     std::vector<double> inverse_mass_1_kg_;
+    std::vector<std::uint32_t> pinned_;
 };
 
 /// The solver that suits the bars of a system: along chains where every bar joins a particle to the next one,

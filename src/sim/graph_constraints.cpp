@@ -33,7 +33,7 @@ GraphConstraints::GraphConstraints(const System& system) {
     load_.assign(system.particle_count(), 0.0);
     right_.setZero(static_cast<Eigen::Index>(links_.size()));
     analyse();
-    if (!factorise({system.x_m, system.y_m, system.vx_m_s, system.vy_m_s})) {
+    if (!factorise(Motion::start_of(system))) {
         throw Error(
             ExitCode::kInvalidScene,
             "solver \"rope\": the lengths of the bars depend on each other, so that their tensions are not "
@@ -74,8 +74,9 @@ void GraphConstraints::analyse() {
 
 bool GraphConstraints::factorise(const Motion& motion) {
     for (std::size_t k = 0; k < links_.size(); ++k) {
-        dx_m_[k] = motion.x_m[links_[k].b] - motion.x_m[links_[k].a];
-        dy_m_[k] = motion.y_m[links_[k].b] - motion.y_m[links_[k].a];
+        const auto [a, b, rest_m] = links_[k];
+        dx_m_[k] = (motion.x_m[b] - motion.x_m[a]) + (motion.x_rest_m[b] - motion.x_rest_m[a]);
+        dy_m_[k] = (motion.y_m[b] - motion.y_m[a]) + (motion.y_rest_m[b] - motion.y_rest_m[a]);
     }
     double* const values = matrix_.valuePtr();
     for (std::size_t e = 0; e < entries_.size(); ++e) {
@@ -98,10 +99,10 @@ void GraphConstraints::apply(const double* impulse, Motion& motion) const {
         const auto [a, b, rest_m] = links_[k];
         const double px = impulse[k] * dx_m_[k];
         const double py = impulse[k] * dy_m_[k];
-        motion.vx_m_s[a] += inverse_mass_1_kg_[a] * px;
-        motion.vy_m_s[a] += inverse_mass_1_kg_[a] * py;
-        motion.vx_m_s[b] -= inverse_mass_1_kg_[b] * px;
-        motion.vy_m_s[b] -= inverse_mass_1_kg_[b] * py;
+        add_unrounded(motion.vx_m_s[a], motion.vx_rest_m_s[a], inverse_mass_1_kg_[a] * px);
+        add_unrounded(motion.vy_m_s[a], motion.vy_rest_m_s[a], inverse_mass_1_kg_[a] * py);
+        add_unrounded(motion.vx_m_s[b], motion.vx_rest_m_s[b], -inverse_mass_1_kg_[b] * px);
+        add_unrounded(motion.vy_m_s[b], motion.vy_rest_m_s[b], -inverse_mass_1_kg_[b] * py);
     }
 }
 
@@ -121,12 +122,7 @@ bool GraphConstraints::correct(double span_s, const Motion& motion) {
 }
 
 bool GraphConstraints::move(const Stage& stage, Motion& motion, std::span<double> impulse) {
-    const std::size_t count = motion.x_m.size();
-    for (std::size_t i = 0; i < count; ++i) {
-        motion.vx_m_s[i] = stage.decay * motion.vx_m_s[i] + stage.push_m_s.x;
-        motion.vy_m_s[i] = stage.decay * motion.vy_m_s[i] + stage.push_m_s.y;
-    }
-    for (const std::uint32_t i : pinned_) motion.vx_m_s[i] = motion.vy_m_s[i] = 0.0;
+    kick(stage, motion);
     if (!factorise(motion)) return false;
     apply(impulse.data(), motion);
     bool met = correct(stage.span_s, motion);
@@ -137,10 +133,7 @@ bool GraphConstraints::move(const Stage& stage, Motion& motion, std::span<double
         met = correct(stage.span_s, motion);
     }
     if (!met) return false;
-    for (std::size_t i = 0; i < count; ++i) {
-        motion.x_m[i] += stage.span_s * motion.vx_m_s[i];
-        motion.y_m[i] += stage.span_s * motion.vy_m_s[i];
-    }
+    drift(stage.span_s, motion);
     return true;
 }
 

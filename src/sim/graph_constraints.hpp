@@ -35,7 +35,6 @@ class GraphConstraints final : public ConstraintSolver {
     void apply(const double* impulse, Motion& motion) const;
     [[nodiscard]] bool correct(double span_s, const Motion& motion);
 
-    std::vector<std::uint32_t> pinned_;
     std::vector<Entry> entries_;
     Eigen::SparseMatrix<double> matrix_;  ///< lower triangle
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors_;

@@ -32,7 +32,7 @@ constexpr double kWorthATrial = 0.7;
 constexpr double kExactCost = 140.0;
 constexpr std::array<double, 4> kChainCosts{45.0, 180.0, 330.0, 600.0};  // of kOrders
 constexpr double kStageCostInAGraph = 500.0;  // the factorisation of a cloth of 40 x 30
-constexpr double kBarCost = 8.0;               // relaxation, a bar and sweep
+constexpr double kBarCost = 8.0;              // relaxation, a bar and sweep
 
 std::size_t index_of(int order) {
     return static_cast<std::size_t>(order / 2 - 1);

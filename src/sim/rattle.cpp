@@ -64,7 +64,7 @@ Rattle::Rattle(const System& system, const WorldDef& world, const SolverDef& def
       impulse_(constraints_->links().size(), 0.0),
       tension_over_length_n_m_(impulse_.size(), 0.0),
       pin_force_n_(mass_kg_.size()) {
-    grid_.motion = {system.x_m, system.y_m, system.vx_m_s, system.vy_m_s};
+    grid_.motion = Motion::start_of(system);
     history_.rates.assign(kHistory * composition_.stages.size() * impulse_.size(), 0.0);
     if (!complete(grid_) || !find_tensions()) {
         throw Error(
