@@ -24,7 +24,7 @@ std::optional<AutoPlan> settle_method(Scene& scene) {
     result.pixels_per_metre = pixels_per_metre(scene);
     const sim::PlanDef def{scene.solver.tolerance_px / result.pixels_per_metre, scene.video.fps,
                            scene.video.fps.last_frame_within(scene.world.duration_s)};
-    result.plan = sim::plan_solver(sim::build_system(scene.ropes, scene.solver.reach), scene.world, def);
+    result.plan = sim::plan_solver(system_of(scene), scene.world, def);
     scene.solver = result.plan.solver;
     return result;
 }
