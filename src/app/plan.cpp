@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -11,24 +12,97 @@
 namespace corda::app {
 namespace {
 
+/// The values above 0 of one figure of all bodies.
+class Values {
+  public:
+    void include(double value) {
+        if (value == 0.0) return;
+        low_ = std::min(low_, value);
+        high_ = std::max(high_, value);
+    }
+    [[nodiscard]] bool empty() const { return high_ == 0.0; }
+    [[nodiscard]] std::string text() const {
+        return low_ == high_ ? fmt::format("{}", low_) : fmt::format("{} .. {}", low_, high_);
+    }
+
+  private:
+    double low_ = HUGE_VAL;
+    double high_ = 0.0;
+};
+
+/// What the bodies are made of.
+struct Materials {
+    Values compliance_1_n;
+    Values bending_n_m2;
+    bool rigid = false;
+    bool slack = false;    ///< a string, of either kind
+    bool plastic = false;  ///< a rigid string: energy is lost where it comes taut
+};
+
+Materials list_materials(const scene::Scene& scene) {
+    Materials result;
+    const auto include = [&result](const sim::MaterialDef& material) {
+        const bool rigid = material.compliance_1_n == 0.0;
+        result.compliance_1_n.include(material.compliance_1_n);
+        result.rigid = result.rigid || rigid;
+        result.slack = result.slack || material.is_string;
+        result.plastic = result.plastic || (material.is_string && rigid);
+    };
+    for (const sim::RopeDef& rope : scene.ropes) {
+        include(rope.material);
+        result.bending_n_m2.include(rope.bending_n_m2);
+    }
+    for (const sim::NetDef& net : scene.nets) include(net.material);
+    return result;
+}
+
+std::string force_term(const scene::Scene& scene) {
+    if (scene.solver.method == sim::Method::kRelaxation && scene.solver.force_n) {
+        return fmt::format("a force of ({}, {}) N on every particle, in place of gravity",
+                           scene.solver.force_n->x, scene.solver.force_n->y);
+    }
+    const sim::Vec2 gravity_m_s2 = scene.world.gravity_m_s2;
+    if (gravity_m_s2 == sim::Vec2{}) return "no gravity";
+    return fmt::format("gravity of ({}, {}) m/s2", gravity_m_s2.x, gravity_m_s2.y);
+}
+
+std::string drag_term(const scene::Scene& scene, const Materials& materials) {
+    if (scene.world.drag_1_s != 0.0) return fmt::format("linear drag of {} 1/s, exact", scene.world.drag_1_s);
+    return materials.plastic ? "no drag: energy is lost only where a string comes taut"
+                             : "no drag: energy is kept";
+}
+
+std::string nets_term(const scene::Scene& scene) {
+    std::size_t real = 0;
+    std::size_t all = 0;
+    for (const sim::NetDef& net : scene.nets) {
+        all += net.bars.size();
+        real += static_cast<std::size_t>(std::count_if(net.bars.begin(), net.bars.end(),
+                                                       [](const sim::NetBar& bar) { return bar.is_real; }));
+    }
+    return fmt::format("nets: {}, of {} bars and {} imaginary ones", scene.nets.size(), real, all - real);
+}
+
 /// What the scene asks for and what it therefore costs nothing to leave out.
 std::vector<std::string> list_terms(const scene::Scene& scene) {
-    std::vector<std::string> terms;
-    const bool relaxation = scene.solver.method == sim::Method::kRelaxation;
-    if (relaxation && scene.solver.force_n) {
-        terms.push_back(fmt::format("a force of ({}, {}) N on every particle, in place of gravity",
-                                    scene.solver.force_n->x, scene.solver.force_n->y));
-    } else if (scene.world.gravity_m_s2 == sim::Vec2{}) {
-        terms.emplace_back("no gravity");
-    } else {
-        terms.push_back(
-            fmt::format("gravity of ({}, {}) m/s2", scene.world.gravity_m_s2.x, scene.world.gravity_m_s2.y));
+    const Materials materials = list_materials(scene);
+    std::vector<std::string> terms{force_term(scene), drag_term(scene, materials)};
+    if (scene.solver.method == sim::Method::kRelaxation) {
+        terms.emplace_back("bars that stretch by what the passes leave");
+    } else if (materials.rigid) {
+        terms.emplace_back("links that do not stretch");
     }
-    terms.push_back(scene.world.drag_1_s == 0.0
-                        ? "no drag: energy is kept"
-                        : fmt::format("linear drag of {} 1/s, exact", scene.world.drag_1_s));
-    terms.emplace_back(relaxation ? "bars that stretch by what the passes leave"
-                                  : "links that do not stretch");
+    if (!materials.compliance_1_n.empty()) {
+        terms.push_back(fmt::format("links that stretch by {} of their length a newton",
+                                    materials.compliance_1_n.text()));
+    }
+    if (materials.slack) terms.emplace_back("strings: links that pull and never push");
+    if (!materials.bending_n_m2.empty())
+        terms.push_back(fmt::format("bending stiffness of {} N m2", materials.bending_n_m2.text()));
+    const auto closed = std::count_if(scene.ropes.begin(), scene.ropes.end(),
+                                      [](const sim::RopeDef& rope) { return rope.closed; });
+    if (closed > 0) terms.push_back(fmt::format("closed ropes: {}", closed));
+    if (!scene.nets.empty()) terms.push_back(nets_term(scene));
     return terms;
 }
 
@@ -60,7 +134,7 @@ nlohmann::json to_json(const sim::Trial& trial) {
 ExitCode plan(const Console& console, const SceneOptions& options) {
     scene::Scene scene = options.load();
     const auto proof = settle_method(console, scene);
-    const sim::System system = sim::build_system(scene.ropes, scene.solver.reach);
+    const sim::System system = scene::system_of(scene);
     const std::vector<std::string> terms = list_terms(scene);
     nlohmann::json json = {{"schema", 1},
                            {"method", sim::method_name(scene.solver.method)},

@@ -15,7 +15,7 @@ double pixels_per_metre(const Scene& scene, const sim::System& system) {
 
 std::optional<AutoPlan> settle_method(Scene& scene) {
     if (scene.solver.method != sim::Method::kAuto) return std::nullopt;
-    const sim::System system = sim::build_system(scene.ropes, scene.solver.reach);
+    const sim::System system = system_of(scene);
     AutoPlan result;
     result.pixels_per_metre = pixels_per_metre(scene, system);
     const sim::PlanDef def{scene.solver.tolerance_px / result.pixels_per_metre, scene.video.fps,

@@ -7,8 +7,6 @@
 #include <initializer_list>
 #include <span>
 
-#include "corda/sim/system.hpp"
-
 namespace corda::scene {
 namespace {
 
@@ -17,18 +15,13 @@ struct Place {
     std::string_view key;
 };
 
-/// Fails at the first of the keys that the file gives, else at the first rope.
+/// Fails at the first of the keys that the file gives, else at the first body.
 [[noreturn]] void fail_at(const Sections& sections, std::initializer_list<Place> places,
                           std::string_view problem) {
     for (const Place& place : places) {
         if (const auto value = place.table->find(place.key)) value->fail(problem);
     }
-    sections.ropes.front().fail(problem);
-}
-
-std::int64_t bars_of(std::int64_t particles, int reach) {
-    return static_cast<std::int64_t>(
-        sim::bar_count(static_cast<std::uint64_t>(particles), static_cast<std::uint64_t>(reach)));
+    (sections.ropes.empty() ? sections.nets : sections.ropes).front().fail(problem);
 }
 
 void check_frames(const Sections& sections, const Scene& scene) {
@@ -75,34 +68,38 @@ void check_bar_updates(const Sections& sections, const Scene& scene, std::int64_
                     bars, scene.solver.sweeps, steps, updates, Limits::kBarUpdates));
 }
 
-}  // namespace
-
-std::vector<std::int64_t> count_particles(const Sections& sections, const sim::SolverDef& solver) {
-    std::vector<std::int64_t> counts;
-    std::int64_t particles = 0;
-    std::int64_t bars = 0;
-    for (const TableReader& rope : sections.ropes) {
-        counts.push_back(read_particle_count(rope));
-        particles += counts.back();
-        if (particles > Limits::kParticles) {
-            rope.fail(
-                fmt::format("the ropes up to this one have {} particles, over the limit of {}; give fewer",
-                            particles, Limits::kParticles));
-        }
-        bars += bars_of(counts.back(), solver.reach);
-        if (bars > Limits::kBars) {
-            rope.fail(
-                fmt::format("the ropes up to this one have {} bars, over the limit of {}; give fewer "
-                            "particles or a smaller solver.reach",
-                            bars, Limits::kBars));
-        }
+/// Adds one body to what all ask for together.
+void add_size(const TableReader& body, const BodySize& size, std::string_view fewer_bars, BodySize& all) {
+    all.particles += size.particles;
+    if (all.particles > Limits::kParticles) {
+        body.fail(
+            fmt::format("the ropes and nets up to this one have {} particles, over the limit of {}; give "
+                        "fewer",
+                        all.particles, Limits::kParticles));
     }
-    return counts;
+    all.bars += size.bars;
+    if (all.bars > Limits::kBars) {
+        body.fail(fmt::format("the ropes and nets up to this one have {} bars, over the limit of {}; give {}",
+                              all.bars, Limits::kBars, fewer_bars));
+    }
 }
 
-void check_work(const Sections& sections, const Scene& scene, const std::vector<std::int64_t>& particles) {
-    std::int64_t bars = 0;
-    for (const std::int64_t count : particles) bars += bars_of(count, scene.solver.reach);
+}  // namespace
+
+SceneSize count_bodies(const Sections& sections, const sim::SolverDef& solver) {
+    SceneSize size;
+    BodySize all;
+    for (const TableReader& rope : sections.ropes) {
+        const BodySize own = read_rope_size(rope, solver.reach);
+        add_size(rope, own, "fewer particles or a smaller solver.reach", all);
+        size.rope_particles.push_back(own.particles);
+    }
+    for (const TableReader& net : sections.nets) add_size(net, read_net_size(net), "fewer", all);
+    size.bars = all.bars;
+    return size;
+}
+
+void check_work(const Sections& sections, const Scene& scene, std::int64_t bars) {
     check_frames(sections, scene);
     check_steps(sections, scene);
     check_bar_updates(sections, scene, bars);

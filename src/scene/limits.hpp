@@ -7,13 +7,18 @@
 
 namespace corda::scene {
 
-/// The particles of every rope. Throws kInvalidScene where all together, or the bars between them, are too
-/// many.
-[[nodiscard]] std::vector<std::int64_t> count_particles(const Sections& sections,
-                                                        const sim::SolverDef& solver);
+/// What the bodies of a scene ask for.
+struct SceneSize {
+    std::vector<std::int64_t> rope_particles;  ///< one a rope
+    std::int64_t bars = 0;                     ///< of all bodies together
+};
+
+/// Counts without making anything. Throws kInvalidScene where the particles of all ropes and nets together,
+/// or the bars between them, are too many.
+[[nodiscard]] SceneSize count_bodies(const Sections& sections, const sim::SolverDef& solver);
 
 /// Throws kInvalidScene where the video has no frame or too many, or the simulation would take too many steps
-/// or bar updates for ropes of `particles`.
-void check_work(const Sections& sections, const Scene& scene, const std::vector<std::int64_t>& particles);
+/// or bar updates for that many bars.
+void check_work(const Sections& sections, const Scene& scene, std::int64_t bars);
 
 }  // namespace corda::scene

@@ -1,5 +1,6 @@
 #include "corda/scene/player.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include <fmt/format.h>
@@ -27,8 +28,7 @@ view::Camera fit_camera(const Scene& scene, const sim::System& system, double cl
 }  // namespace
 
 Run::Run(const Scene& scene, sim::Figured figured)
-    : simulation_(sim::build_system(scene.ropes, scene.solver.reach), scene.world, scene.solver,
-                  scene.video.fps.interval_s(), figured) {}
+    : simulation_(system_of(scene), scene.world, scene.solver, scene.video.fps.interval_s(), figured) {}
 
 sim::Status Run::go(double time_s) {
     const auto start = std::chrono::steady_clock::now();
@@ -51,7 +51,7 @@ const sim::State& Run::at(double time_s) {
 
 Player::Player(const Scene& scene)
     : run_(scene),
-      view_(run_.simulation().system(), scene.style, scene.rope_styles, scene.video.width_px,
+      view_(run_.simulation().system(), scene.style, scene.body_styles, scene.video.width_px,
             scene.video.height_px),
       camera_(fit_camera(scene, run_.simulation().system(), view_.clearance_px())) {}
 
@@ -61,8 +61,11 @@ const view::DrawList& Player::at(double time_s) {
 }
 
 std::string describe(const sim::System& system) {
-    return fmt::format("{} particles, {} bars ({} links)", system.particle_count(), system.bars.size(),
-                       system.link_count());
+    const auto nets = std::count_if(system.bodies.begin(), system.bodies.end(),
+                                    [](const sim::Body& body) { return body.is_net; });
+    const std::string what = nets == 0 ? "" : fmt::format("{} net{}: ", nets, nets == 1 ? "" : "s");
+    return what + fmt::format("{} particles, {} bars ({} links)", system.particle_count(), system.bars.size(),
+                              system.link_count());
 }
 
 std::int64_t frame_count(const Scene& scene) {

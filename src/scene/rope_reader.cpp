@@ -1,75 +1,76 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "corda/scene/readers.hpp"
+#include "corda/sim/distance.hpp"
 
 namespace corda::scene {
 namespace {
 
-constexpr Range kMass{.low = 1e-12, .high = 1e12};
+constexpr Range kStiffness{.low = 0.0, .high = 1e12};
+constexpr Range kLinkLength{.low = kShortestBar, .high = 4 * Limits::kCoordinateMetres};
 
-void check_length(const Value& list, std::size_t count, std::int64_t particles, std::string_view remedy) {
-    if (count == static_cast<std::size_t>(particles)) return;
-    list.fail(fmt::format("{} values for {} particles; {}", count, particles, remedy));
-}
+/// A string's link may be shorter than the distance that it spans by this share of it: lengths are written
+/// with fewer digits than distances have.
+constexpr double kLengthSlack = 1e-9;
 
-double mass_of(const Value& value) {
-    constexpr std::string_view kRemedy = "give a mass in kg";
-    static_cast<void>(value.number(kPositive, kRemedy));
-    return value.number(kMass, kRemedy);
-}
-
-void read_mass(const TableReader& rope, std::int64_t particles, std::vector<double>& mass_kg) {
-    constexpr std::string_view kRemedy = "give a mass in kg, or a list with one a particle";
-    const auto value = rope.find("mass");
-    const auto count = static_cast<std::size_t>(particles);
-    if (value && value->is_list()) {
-        check_length(*value, value->size(kRemedy), particles, kRemedy);
-        mass_kg.reserve(count);
-        for (std::size_t i = 0; i < count; ++i) mass_kg.push_back(mass_of(value->at(i)));
-    } else {
-        mass_kg.assign(count, value ? mass_of(*value) : 1.0);
-    }
-}
-
-void read_velocity(const TableReader& rope, std::int64_t particles, std::vector<sim::Vec2>& velocity_m_s) {
-    constexpr std::string_view kRemedy = "give [vx, vy] in m/s, or a list with one such pair a particle";
-    const auto value = rope.find("velocity");
-    const auto count = static_cast<std::size_t>(particles);
-    if (!value) {
-        velocity_m_s.assign(count, {});
-        return;
-    }
-    // [a, b] is one velocity for all; [[a, b], [c, d]] is a list, also for a rope of two particles.
-    const std::size_t size = value->size(kRemedy);
-    if (size == 0 || !value->at(0).is_list()) {
-        velocity_m_s.assign(count, value->pair(kAnyNumber, kRemedy));
-        return;
-    }
-    check_length(*value, size, particles, kRemedy);
-    velocity_m_s.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) velocity_m_s.push_back(value->at(i).pair(kAnyNumber, kRemedy));
-}
-
-void read_pinned(const TableReader& rope, std::int64_t particles, std::vector<std::uint32_t>& pinned) {
+void read_pins(const TableReader& rope, std::int64_t particles, std::vector<std::uint32_t>& pinned) {
     constexpr std::string_view kRemedy = "give a list of particle indices, -1 is the last";
     const auto value = rope.find("pinned");
     if (!value) return;
-    pinned.clear();
-    std::vector<bool> seen(static_cast<std::size_t>(particles));
-    for (std::size_t i = 0; i < value->size(kRemedy); ++i) {
-        const Value entry = value->at(i);
-        const std::int64_t written = entry.integer(INT64_MIN, INT64_MAX, kRemedy);
-        if (written < -particles || written >= particles) {
-            entry.fail(
-                fmt::format("{} is out of range; the rope has particles 0 .. {}, or -1 .. -{} from its end",
-                            written, particles - 1, particles));
-        }
-        const std::int64_t index = written < 0 ? written + particles : written;
-        if (seen[static_cast<std::size_t>(index)]) {
-            entry.fail(fmt::format("particle {} is given twice; remove one", index));
-        }
-        seen[static_cast<std::size_t>(index)] = true;
-        pinned.push_back(static_cast<std::uint32_t>(index));
+    pinned = read_pinned(*value, particles, kRemedy, [&](const Value& entry) {
+        return read_index(entry, particles, "the rope has particles", kRemedy);
+    });
+}
+
+void refuse_contradictions(const TableReader& rope, const sim::RopeDef& def) {
+    const bool stretches = def.material.compliance_1_n > 0.0;
+    if (!def.material.is_string) return;
+    if (def.bending_n_m2 > 0.0) {
+        rope.find("bending")->fail(
+            "a string hangs slack, and so has no bending stiffness; remove bending or string");
+    }
+    if (def.closed && !stretches) {
+        rope.find("string")->fail(
+            "a closed rope can only hang slack where it stretches; give a compliance, or remove string or "
+            "closed");
+    }
+}
+
+/// The rest length of the link between particles `a` and `b`.
+double read_link_length(const Value& entry, const sim::RopeDef& def, std::size_t a, std::size_t b) {
+    const double rest_m = entry.number(kLinkLength, "give a length of a link in m");
+    if (def.material.compliance_1_n > 0.0) return rest_m;
+    const sim::Vec2 along = def.points_m[b] - def.points_m[a];
+    const double distance_m = sim::length(along.x, along.y);
+    if (rest_m < (1.0 - kLengthSlack) * distance_m) {
+        entry.fail(
+            fmt::format("{} m are less than the {} m between particles {} and {}, which a string that "
+                        "does not stretch cannot span; give at least that, or a compliance",
+                        rest_m, distance_m, a, b));
+    }
+    return std::max(rest_m, distance_m);
+}
+
+void read_link_lengths(const TableReader& rope, sim::RopeDef& def) {
+    constexpr std::string_view kRemedy = "give a length in m, or a list with one a link";
+    const auto value = rope.find("link_length");
+    if (!value) return;
+    if (def.material.compliance_1_n == 0.0 && !def.material.is_string) {
+        value->fail(
+            "links that neither stretch nor hang slack are as long as their particles are apart at the "
+            "start; give compliance or string = true, or remove it");
+    }
+    const std::size_t particles = def.points_m.size();
+    const std::size_t links = def.closed ? particles : particles - 1;
+    if (value->is_list() && value->size(kRemedy) != links) {
+        value->fail(fmt::format("{} values for {} links; {}", value->size(kRemedy), links, kRemedy));
+    }
+    def.rest_m.reserve(links);
+    for (std::size_t k = 0; k < links; ++k) {
+        const Value entry = value->is_list() ? value->at(k) : *value;
+        def.rest_m.push_back(read_link_length(entry, def, k, (k + 1) % particles));
     }
 }
 
@@ -77,11 +78,16 @@ void read_pinned(const TableReader& rope, std::int64_t particles, std::vector<st
 
 sim::RopeDef read_rope(const TableReader& rope, std::int64_t particles, int reach) {
     sim::RopeDef def;
+    if (const auto closed = rope.find("closed")) def.closed = closed->boolean("give true or false");
     read_shape(rope, particles, reach, def);
-    read_mass(rope, particles, def.mass_kg);
-    read_velocity(rope, particles, def.velocity_m_s);
-    read_pinned(rope, particles, def.pinned);
+    def.mass_kg = read_mass(rope, particles);
+    def.velocity_m_s = read_velocity(rope, particles);
+    read_pins(rope, particles, def.pinned);
     rope.read_number("payload", def.payload_kg, {.low = 0.0, .high = kMass.high}, "give a payload in kg");
+    def.material = read_material(rope);
+    rope.read_number("bending", def.bending_n_m2, kStiffness, "give a bending stiffness in N m2");
+    refuse_contradictions(rope, def);
+    read_link_lengths(rope, def);
     return def;
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "corda/scene/readers.hpp"
+#include "corda/sim/system.hpp"
 
 namespace corda::scene {
 namespace {
@@ -15,9 +16,6 @@ constexpr std::string_view kLine = "give line = { particles = 40, from = [0.0, 0
 constexpr std::string_view kHang = "give hang = { links = 20, length = 1.0, angle_deg = 45.0 }";
 constexpr std::string_view kPoints = "give a list of [x, y] in m, at least 2";
 constexpr std::string_view kFrom = "give the first particle as [x, y] in m";
-
-/// In m. Shorter bars have no direction: the solver's squared lengths come near the smallest number.
-constexpr double kShortestBar = 1e-12;
 
 double distance_m(sim::Vec2 a, sim::Vec2 b) {
     return std::hypot(b.x - a.x, b.y - a.y);
@@ -98,21 +96,35 @@ void read_hang(const TableReader& hang, std::int64_t particles, sim::RopeDef& de
     check_last_point(hang, def);
 }
 
+/// Fails at a bar between points `a` and `b`, `stride` links apart, that has no length.
+[[noreturn]] void fail_short_bar(const Value& points, std::size_t a, std::size_t b, std::size_t stride,
+                                 int reach) {
+    const auto [first, last] = std::minmax(a, b);
+    const Value place = points.at(last);
+    if (stride > 1) {
+        place.fail(
+            fmt::format("points {} and {} coincide, and solver.reach = {} ties them by a bar, "
+                        "which has no direction; move one, or give a reach below {}",
+                        first, last, reach, stride));
+    }
+    if (b < a) {
+        place.fail(
+            fmt::format("points {} and {} coincide; leave this one out, as closed = true ties the "
+                        "last point to the first",
+                        first, last));
+    }
+    place.fail(fmt::format("points {} and {} coincide, and a link without length has no direction; move one",
+                           first, last));
+}
+
 void refuse_short_bars(const Value& points, const sim::RopeDef& def, int reach) {
     const std::size_t count = def.points_m.size();
-    const std::size_t longest = std::min(static_cast<std::size_t>(reach), count - 1);
+    const std::size_t longest = std::min(static_cast<std::size_t>(reach), def.closed ? count / 2 : count - 1);
     for (std::size_t k = 1; k <= longest; ++k) {
-        for (std::size_t a = 0; a + k < count; ++a) {
-            const std::size_t b = a + k;
-            if (distance_m(def.points_m[a], def.points_m[b]) >= kShortestBar) continue;
-            if (k == 1) {
-                points.at(b).fail(fmt::format(
-                    "points {} and {} coincide, and a link without length has no direction; move one", a, b));
-            }
-            points.at(b).fail(
-                fmt::format("points {} and {} coincide, and solver.reach = {} ties them by a bar, "
-                            "which has no direction; move one, or give a reach below {}",
-                            a, b, reach, k));
+        for (std::size_t a = 0; a < (def.closed ? count : count - k); ++a) {
+            const std::size_t b = (a + k) % count;
+            if (distance_m(def.points_m[a], def.points_m[b]) < kShortestBar)
+                fail_short_bar(points, a, b, k, reach);
         }
     }
 }
@@ -135,8 +147,6 @@ void require_one_shape(const TableReader& rope) {
     rope.fail(fmt::format("the rope has {} shapes ({}); keep one of them", given.size(), joined(given)));
 }
 
-}  // namespace
-
 std::int64_t read_particle_count(const TableReader& rope) {
     require_one_shape(rope);
     if (rope.has("line")) {
@@ -155,6 +165,26 @@ std::int64_t read_particle_count(const TableReader& rope) {
     const std::size_t count = points.size(kPoints);
     if (count < 2) points.fail(fmt::format("{} points are no rope; {}", count, kPoints));
     return static_cast<std::int64_t>(count);
+}
+
+bool is_closed(const TableReader& rope, std::int64_t particles) {
+    const auto closed = rope.find("closed");
+    if (!closed || !closed->boolean("give true or false")) return false;
+    if (!rope.has("points")) {
+        closed->fail(
+            "the closing link of a straight rope would lie on its others; give points, or remove it");
+    }
+    if (particles < 3) closed->fail("2 points close to no ring; give at least 3, or remove it");
+    return true;
+}
+
+}  // namespace
+
+BodySize read_rope_size(const TableReader& rope, int reach) {
+    const std::int64_t particles = read_particle_count(rope);
+    const std::uint64_t bars = sim::bar_count(static_cast<std::uint64_t>(particles),
+                                              static_cast<std::uint64_t>(reach), is_closed(rope, particles));
+    return {particles, static_cast<std::int64_t>(bars)};
 }
 
 void read_shape(const TableReader& rope, std::int64_t particles, int reach, sim::RopeDef& def) {

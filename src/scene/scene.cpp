@@ -28,13 +28,21 @@ Scene parse_scene(std::string_view toml, const std::string& source_name,
     scene.style = read_style(sections.style);
     scene.camera = read_camera(sections.camera);
 
-    const std::vector<std::int64_t> particles = count_particles(sections, scene.solver);
-    check_work(sections, scene, particles);
-    for (std::size_t i = 0; i < particles.size(); ++i) {
-        scene.ropes.push_back(read_rope(sections.ropes[i], particles[i], scene.solver.reach));
-        scene.rope_styles.push_back(read_rope_style(sections.ropes[i]));
+    const SceneSize size = count_bodies(sections, scene.solver);
+    check_work(sections, scene, size.bars);
+    for (std::size_t i = 0; i < sections.ropes.size(); ++i) {
+        scene.ropes.push_back(read_rope(sections.ropes[i], size.rope_particles[i], scene.solver.reach));
+        scene.body_styles.push_back(read_body_style(sections.ropes[i]));
+    }
+    for (const TableReader& net : sections.nets) {
+        scene.nets.push_back(read_net(net));
+        scene.body_styles.push_back(read_body_style(net));
     }
     return scene;
+}
+
+sim::System system_of(const Scene& scene) {
+    return sim::build_system(scene.ropes, scene.nets, scene.solver.reach);
 }
 
 }  // namespace corda::scene

@@ -7,6 +7,7 @@
 
 #include "corda/media/video_writer.hpp"
 #include "corda/sim/defs.hpp"
+#include "corda/sim/system.hpp"
 #include "corda/view/defs.hpp"
 
 namespace corda::scene {
@@ -16,7 +17,8 @@ struct Scene {
     std::string name;  ///< the file's name without folder and ending
     sim::WorldDef world;
     std::vector<sim::RopeDef> ropes;
-    std::vector<view::RopeStyleDef> rope_styles;  ///< one a rope
+    std::vector<sim::NetDef> nets;
+    std::vector<view::BodyStyleDef> body_styles;  ///< one a body: ropes, then nets
     sim::SolverDef solver;
     view::StyleDef style;
     view::CameraDef camera;
@@ -34,6 +36,9 @@ using Setting = std::string;
 /// The same for TOML text; `source_name` stands in the messages in place of the path.
 [[nodiscard]] Scene parse_scene(std::string_view toml, const std::string& source_name,
                                 const std::vector<Setting>& settings = {});
+
+/// The particles and bars of a scene at t = 0: its ropes, then its nets.
+[[nodiscard]] sim::System system_of(const Scene& scene);
 
 /// What a scene may ask for at most. Checked before any memory is taken.
 struct Limits {

@@ -24,23 +24,25 @@ void check_schema(const Source& source, const toml::table& document) {
     }
 }
 
-std::vector<TableReader> read_ropes(const Source& source, const toml::table& document) {
-    constexpr std::string_view kRemedy = "give one or more [[rope]]";
-    const toml::node* ropes = document.get("rope");
-    if (ropes == nullptr) source.fail(document.source(), "rope", fmt::format("missing; {}", kRemedy));
-    const toml::array* list = ropes->as_array();
+/// The tables of [[rope]] or [[net]]; none where the file has no such key.
+std::vector<TableReader> read_bodies(const Source& source, const toml::table& document,
+                                     std::string_view section) {
+    const toml::node* bodies = document.get(section);
+    if (bodies == nullptr) return {};
+    const std::string remedy = fmt::format("give one or more [[{}]]", section);
+    const toml::array* list = bodies->as_array();
     if (list == nullptr) {
-        source.fail(ropes->source(), "rope", fmt::format("{}, not a list; {}", described(*ropes), kRemedy));
+        source.fail(bodies->source(), section, fmt::format("{}, not a list; {}", described(*bodies), remedy));
     }
-    if (list->empty()) source.fail(ropes->source(), "rope", fmt::format("the list is empty; {}", kRemedy));
+    if (list->empty()) source.fail(bodies->source(), section, fmt::format("the list is empty; {}", remedy));
     std::vector<TableReader> readers;
     for (std::size_t i = 0; i < list->size(); ++i) {
-        const toml::node& rope = *list->get(i);
-        const std::string path = fmt::format("rope[{}]", i);
-        if (!rope.is_table()) {
-            source.fail(rope.source(), path, fmt::format("{}, not a table; {}", described(rope), kRemedy));
+        const toml::node& body = *list->get(i);
+        const std::string path = fmt::format("{}[{}]", section, i);
+        if (!body.is_table()) {
+            source.fail(body.source(), path, fmt::format("{}, not a table; {}", described(body), remedy));
         }
-        readers.emplace_back(source, *rope.as_table(), "rope", path);
+        readers.emplace_back(source, *body.as_table(), section, path);
     }
     return readers;
 }
@@ -50,9 +52,14 @@ std::vector<TableReader> read_ropes(const Source& source, const toml::table& doc
 Sections read_sections(const Source& source, const toml::table& document) {
     check_schema(source, document);
     const TableReader root(source, document, "", "");
-    return {root.table("world", "write [world]"),   root.table("solver", "write [solver]"),
-            root.table("video", "write [video]"),   root.table("style", "write [style]"),
-            root.table("camera", "write [camera]"), read_ropes(source, document)};
+    Sections sections{root.table("world", "write [world]"),   root.table("solver", "write [solver]"),
+                      root.table("video", "write [video]"),   root.table("style", "write [style]"),
+                      root.table("camera", "write [camera]"), read_bodies(source, document, "rope"),
+                      read_bodies(source, document, "net")};
+    if (sections.ropes.empty() && sections.nets.empty()) {
+        source.fail(document.source(), "rope", "missing; give one or more [[rope]] or [[net]]");
+    }
+    return sections;
 }
 
 }  // namespace corda::scene

@@ -69,8 +69,8 @@ view::CameraDef read_camera(const TableReader& camera) {
     return def;
 }
 
-view::RopeStyleDef read_rope_style(const TableReader& rope) {
-    view::RopeStyleDef def;
+view::BodyStyleDef read_body_style(const TableReader& rope) {
+    view::BodyStyleDef def;
     if (const auto color = rope.find("color")) def.color = color->color();
     rope.read_number("width_px", def.width_px, kWidthPx, kWidthRemedy);
     return def;

@@ -10,6 +10,11 @@
 
 namespace corda::scene {
 
+bool Value::boolean(std::string_view remedy) const {
+    if (!node_->is_boolean()) fail_type("true or false", remedy);
+    return node_->as_boolean()->get();
+}
+
 double Value::number(const Range& range, std::string_view remedy) const {
     if (!is_number()) fail_type("a number", remedy);
     const double value = node_->is_integer() ? static_cast<double>(node_->as_integer()->get())

@@ -42,6 +42,7 @@ class Value {
     [[nodiscard]] bool is_integer() const { return node_->is_integer(); }
     [[nodiscard]] bool is_text() const { return node_->is_string(); }
 
+    [[nodiscard]] bool boolean(std::string_view remedy) const;
     [[nodiscard]] double number(const Range& range, std::string_view remedy) const;
     [[nodiscard]] std::int64_t integer(std::int64_t low, std::int64_t high, std::string_view remedy) const;
     [[nodiscard]] std::string_view text(std::string_view remedy) const;

@@ -101,6 +101,7 @@ void append(const NetDef& net, System& system) {
         ++body.bar_count;
     }
     body.is_chain = false;
+    body.is_net = true;
     system.bodies.push_back(body);
 }
 

@@ -17,6 +17,7 @@ struct Body {
     std::size_t bar_count = 0;   ///< all of them
     std::size_t link_count = 0;  ///< real ones; they come first
     bool is_chain = true;        ///< link k joins particle k to particle k + 1 and there are no others
+    bool is_net = false;         ///< made from a NetDef
     MaterialDef material;
 };
 

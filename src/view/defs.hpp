@@ -11,13 +11,13 @@ namespace corda::view {
 /// Which particles get a marker.
 enum class Markers { kNone, kPinned, kAll };
 
-/// Which bars are drawn over the rope.
+/// Which bars are drawn apart: real ones over the ropes and nets, imaginary ones behind them.
 enum class Bars { kNone, kReal, kAll };
 
 /// How a scene looks. Widths are in pixels of the output; those not given grow with its height.
 struct StyleDef {
     Color background{0x12, 0x16, 0x1f, 255};  ///< opaque
-    /// Colours of the ropes in turn; a rope of its own colour (RopeStyleDef) does not use one up.
+    /// Colours of the ropes and nets in turn; one of its own colour (BodyStyleDef) does not use one up.
     std::vector<Color> palette{{0xe8, 0xc0, 0x7d, 255}, {0x6f, 0xb7, 0xe9, 255}, {0xe5, 0x8f, 0x8f, 255},
                                {0x8f, 0xd1, 0x9e, 255}, {0xc3, 0xa6, 0xe8, 255}, {0xf0, 0xe3, 0x9a, 255}};
     std::optional<double> rope_width_px;  ///< 0.1 .. 1000; default height / 216, at least 1.5
@@ -31,10 +31,10 @@ struct StyleDef {
     Color imaginary_bar_color{0x54, 0xd6, 0xc2, 0xb0};
 };
 
-/// What a single rope overrides of the style.
-struct RopeStyleDef {
+/// What a single rope or net overrides of the style.
+struct BodyStyleDef {
     std::optional<Color> color;
-    std::optional<double> width_px;  ///< 0.1 .. 1000
+    std::optional<double> width_px;  ///< 0.1 .. 1000; default rope_width_px, half of it for a net
 };
 
 /// Where the camera looks. Without `center_m` and `height_m` it fits the whole motion.

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kHeightPerRopeWidth = 216.0;
 constexpr double kThinnestRopePx = 1.5;
+constexpr double kNetWidthPerRopeWidth = 0.5;  // a cloth's cells must stay open
 constexpr double kHeightPerPinnedRim = 150.0;  // how far a marker stands out beside the rope
 constexpr double kHeightPerFreeRim = 400.0;
 constexpr double kBarWidthPerRopeWidth = 0.25;
@@ -20,14 +21,14 @@ constexpr double kThinnestBarPx = 1.0;
 }  // namespace
 
 SceneView::SceneView(const sim::System& system, const StyleDef& style,
-                     const std::vector<RopeStyleDef>& rope_styles, int width, int height)
+                     const std::vector<BodyStyleDef>& body_styles, int width, int height)
     : system_(&system),
       background_(style.background),
       width_(width),
       height_(height),
       rope_width_px_(style.rope_width_px.value_or(std::max(kThinnestRopePx, height / kHeightPerRopeWidth))) {
     if (style.bars == Bars::kAll) add_bars(style, false);
-    add_ropes(style, rope_styles);
+    add_bodies(style, body_styles);
     if (style.bars != Bars::kNone) add_bars(style, true);
     if (style.markers == Markers::kAll) add_markers(style, false);
     if (style.markers != Markers::kNone) add_markers(style, true);
@@ -35,7 +36,7 @@ SceneView::SceneView(const sim::System& system, const StyleDef& style,
     if (layers_.size() > kMaxLayers) {
         throw Error(ExitCode::kInvalidScene,
                     "the scene needs " + std::to_string(layers_.size()) + " layers of colour, the limit is " +
-                        std::to_string(kMaxLayers) + "; give more ropes the same colour");
+                        std::to_string(kMaxLayers) + "; give more ropes or nets the same colour");
     }
     for (const ItemLayer& layer : layers_) {
         for (const Item& item : layer.items) clearance_px_ = std::max(clearance_px_, item.radius_px);
@@ -49,19 +50,19 @@ SceneView::ItemLayer& SceneView::layer_of(Color color, std::size_t first_layer) 
     return layers_.emplace_back(ItemLayer{color, {}});
 }
 
-void SceneView::add_ropes(const StyleDef& style, const std::vector<RopeStyleDef>& rope_styles) {
+void SceneView::add_bodies(const StyleDef& style, const std::vector<BodyStyleDef>& body_styles) {
     const std::size_t first_layer = layers_.size();
     std::size_t next_color = 0;
-    for (std::size_t r = 0; r < system_->bodies.size(); ++r) {
-        const RopeStyleDef& own = rope_styles[r];
+    for (std::size_t i = 0; i < system_->bodies.size(); ++i) {
+        const sim::Body& body = system_->bodies[i];
+        const BodyStyleDef& own = body_styles[i];
         const Color color = own.color ? *own.color : style.palette[next_color++ % style.palette.size()];
-        const double radius_px = 0.5 * own.width_px.value_or(rope_width_px_);
-        rope_radius_px_.push_back(radius_px);
-        const sim::Body& rope = system_->bodies[r];
+        const double default_width_px = (body.is_net ? kNetWidthPerRopeWidth : 1.0) * rope_width_px_;
+        const double radius_px = 0.5 * own.width_px.value_or(default_width_px);
+        body_radius_px_.push_back(radius_px);
         ItemLayer& layer = layer_of(color, first_layer);
-        for (std::size_t i = 0; i + 1 < rope.particle_count; ++i) {
-            layer.items.push_back({rope.first_particle + i, rope.first_particle + i + 1, radius_px});
-        }
+        for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k)
+            layer.items.push_back({system_->bars[k].a, system_->bars[k].b, radius_px});
     }
 }
 
@@ -78,10 +79,10 @@ void SceneView::add_bars(const StyleDef& style, bool real) {
 void SceneView::add_markers(const StyleDef& style, bool pinned) {
     const double rim_px = height_ / (pinned ? kHeightPerPinnedRim : kHeightPerFreeRim);
     ItemLayer layer{pinned ? style.pinned_color : style.free_color, {}};
-    for (std::size_t r = 0; r < system_->bodies.size(); ++r) {
-        const sim::Body& rope = system_->bodies[r];
-        const double radius_px = style.marker_radius_px.value_or(rope_radius_px_[r] + rim_px);
-        for (std::size_t i = rope.first_particle; i < rope.first_particle + rope.particle_count; ++i) {
+    for (std::size_t b = 0; b < system_->bodies.size(); ++b) {
+        const sim::Body& body = system_->bodies[b];
+        const double radius_px = style.marker_radius_px.value_or(body_radius_px_[b] + rim_px);
+        for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
             if (system_->is_pinned(i) == pinned) layer.items.push_back({i, i, radius_px});
         }
     }

@@ -13,13 +13,13 @@ namespace corda::view {
 
 /// Turns states into draw lists. What is drawn, and in which layer, is settled once; where, anew each frame.
 ///
-/// From back to front: imaginary bars, ropes (one layer a colour), real bars, free particles, pinned
-/// particles.
+/// From back to front: imaginary bars, the links of ropes and nets (one layer a colour), real bars, free
+/// particles, pinned particles.
 class SceneView {
   public:
-    /// `rope_styles` has one entry a rope of `system`, which must outlive this. Throws corda::Error
+    /// `body_styles` has one entry a body of `system`, which must outlive this. Throws corda::Error
     /// (kInvalidScene) where the scene needs more than kMaxLayers layers.
-    SceneView(const sim::System& system, const StyleDef& style, const std::vector<RopeStyleDef>& rope_styles,
+    SceneView(const sim::System& system, const StyleDef& style, const std::vector<BodyStyleDef>& body_styles,
               int width, int height);
 
     /// Pixels around a particle's centre that the widest thing drawn on it reaches.
@@ -41,7 +41,7 @@ class SceneView {
     };
 
     void add_bars(const StyleDef& style, bool real);
-    void add_ropes(const StyleDef& style, const std::vector<RopeStyleDef>& rope_styles);
+    void add_bodies(const StyleDef& style, const std::vector<BodyStyleDef>& body_styles);
     void add_markers(const StyleDef& style, bool pinned);
     ItemLayer& layer_of(Color color, std::size_t first_layer);
 
@@ -50,7 +50,7 @@ class SceneView {
     int width_;
     int height_;
     double rope_width_px_;
-    std::vector<double> rope_radius_px_;  // one a rope
+    std::vector<double> body_radius_px_;  // one a body
     double clearance_px_ = 0.0;
     std::vector<ItemLayer> layers_;
 };

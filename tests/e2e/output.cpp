@@ -111,6 +111,38 @@ TEST_F(Output, AutoReportsItsBoundAndPlanSaysWhy) {
     EXPECT_THAT(run_corda({"plan", scene_}).out, HasSubstr("because the scene asks for relaxation"));
 }
 
+TEST_F(Output, PlanSaysWhatBodiesAreMadeOf) {
+    const std::string scene = folder_.write("bodies.toml", R"(schema = 1
+[[rope]]
+points = [[0, 0], [1, 0], [1, 1]]
+closed = true
+compliance = 0.25
+bending = 2
+[[rope]]
+line = { particles = 3, step = [0, -1] }
+string = true
+[[net]]
+grid = { columns = 3, rows = 2, spacing = 1 }
+compliance = 0.5
+[solver]
+method = "rope"
+)");
+    const auto result = run_corda({"plan", scene});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("bodies: 1 net: 12 particles, 16 bars (12 links)\n"));
+    for (const char* term :
+         {"no drag: energy is lost only where a string comes taut", "links that do not stretch",
+          "links that stretch by 0.25 .. 0.5 of their length a newton",
+          "strings: links that pull and never push", "bending stiffness of 2 N m2", "closed ropes: 1",
+          "nets: 1, of 7 bars and 4 imaginary ones"}) {
+        EXPECT_THAT(result.out, HasSubstr(std::string("modelled: ") + term + "\n"));
+    }
+    const auto plain = run_corda({"plan", scene_});
+    EXPECT_THAT(plain.out, HasSubstr("modelled: no drag: energy is kept\n"));
+    EXPECT_THAT(plain.out, Not(HasSubstr("strings")));
+    EXPECT_THAT(plain.out, Not(HasSubstr("nets")));
+}
+
 TEST_F(Output, SimulateNeedsNoOpenGl) {
     EXPECT_EQ(
         run_corda({"simulate", scene_}, "CORDA_BACKEND=device:63 __EGL_VENDOR_LIBRARY_FILENAMES=/dev/null")

@@ -13,7 +13,7 @@
 namespace corda::scene {
 namespace {
 
-constexpr std::array<std::string_view, 3> kScenes{
+constexpr std::array<std::string_view, 5> kScenes{
     R"(schema = 1
 [world]
 gravity = 9.81
@@ -70,9 +70,50 @@ codec = "libx264"
 preset = "medium"
 crf = 18
 threads = 2
+)",
+    R"(schema = 1
+[[net]]
+grid = { columns = 4, rows = 3, from = [0.0, 1.5], spacing = [0.1, 0.2], diagonals = true }
+mass = 0.02
+velocity = [-6.0, 5.0]
+pinned = [[0, 0], [-1, 0], 5]
+compliance = 1e-3
+string = true
+width_px = 1.5
+[[net]]
+points = [[0, 0], [1, 0], [1, 1], [0.5, 2.5]]
+bars = [[0, 1], [1, 2], [-1, 0]]
+mass = [1, 2, 3, 4]
+pinned = [0, -1]
+color = "#ffffff80"
+[[net]]
+grid = { columns = 2, rows = 2, spacing = 1, diagonals = false }
+[solver]
+method = "relaxation"
+)",
+    R"(schema = 1
+[[rope]]
+points = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+closed = true
+bending = 0.25
+compliance = 1e-4
+link_length = [1.0, 1.5, 0.5, 2]
+[[rope]]
+line = { particles = 3, step = [0, -1] }
+string = true
+link_length = 1.25
+[[rope]]
+hang = { links = 2, length = 1 }
+closed = false
+string = false
+bending = 1e3
+[solver]
+method = "rope"
+order = 6
+step = 1e-3
 )"};
 
-constexpr std::array<std::string_view, 36> kTokens{"9223372036854775807",
+constexpr std::array<std::string_view, 39> kTokens{"9223372036854775807",
                                                    "-9223372036854775808",
                                                    "1e308",
                                                    "-1e308",
@@ -105,6 +146,9 @@ constexpr std::array<std::string_view, 36> kTokens{"9223372036854775807",
                                                    "1979-05-27T07:32:00Z",
                                                    "[rope]",
                                                    "[[rope]]\n",
+                                                   "[[net]]\n",
+                                                   "false",
+                                                   "[0, 1], ",
                                                    "a.b.c",
                                                    "\xff\xfe",
                                                    "\xf0\x9f\x98\x80"};
@@ -183,8 +227,10 @@ TEST(SceneMutations, GiveASceneOrAnError) {
 
 TEST(SceneMutations, OfSettingsGiveASceneOrAnError) {
     constexpr std::uint32_t kRuns = 3000;
-    constexpr std::array<std::string_view, 6> kKeys{"rope[0].mass", "world",       "video.size[1]",
-                                                    "rope[1].line", "solver.step", "a.b[0].c"};
+    constexpr std::array<std::string_view, 11> kKeys{
+        "rope[0].mass",     "world",          "video.size[1]",      "rope[1].line",
+        "solver.step",      "a.b[0].c",       "net[0].grid.rows",   "net[1].bars",
+        "net[0].pinned[1]", "rope[0].string", "rope[0].link_length"};
     for (std::uint32_t seed = 0; seed < kRuns; ++seed) {
         std::mt19937 random(seed);
         std::string setting(kKeys[random() % kKeys.size()]);

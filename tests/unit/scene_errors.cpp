@@ -191,6 +191,162 @@ TEST(SceneErrors, Particles) {
     });
 }
 
+TEST(SceneErrors, ClosedRopes) {
+    expect_errors({
+        {square_with("closed = 1"),
+         "swing.toml:4:10: rope[0].closed: ", "1 is an integer, not true or false; give true or false"},
+        {rope_with("closed = true"), "swing.toml:4:10: rope[0].closed: ",
+         "the closing link of a straight rope would lie on its others; give points, or remove it"},
+        {"schema = 1\n[[rope]]\nhang = { links = 3, length = 1 }\nclosed = true",
+         "swing.toml:4:10: rope[0].closed: ", "give points"},
+        {"schema = 1\n[[rope]]\npoints = [[0, 0], [1, 0]]\nclosed = true",
+         "swing.toml:4:10: rope[0].closed: ", "2 points close to no ring; give at least 3"},
+        {"schema = 1\n[[rope]]\npoints = [[0, 0], [1, 0], [1, 1], [0, 0]]\nclosed = true",
+         "swing.toml:3:35: rope[0].points[3]: ",
+         "points 0 and 3 coincide; leave this one out, as closed = true ties the last point to the first"},
+        {"schema = 1\n[[rope]]\npoints = [[0, 0], [1, 0], [2, 0], [2, 1], [0, 0], [-1, 1]]\nclosed = "
+         "true\n[solver]\nmethod = \"relaxation\"",
+         "swing.toml:3:43: rope[0].points[4]: ",
+         "points 0 and 4 coincide, and solver.reach = 7 ties them by a bar, which has no direction; move "
+         "one, or give a reach below 2"},
+    });
+}
+
+TEST(SceneErrors, Materials) {
+    expect_errors({
+        {rope_with("compliance = -1"), "swing.toml:4:14: rope[0].compliance: ", "-1 is not >= 0"},
+        {rope_with("compliance = 2e6"), "swing.toml:4:14: rope[0].compliance: ", "is not <= 1000000; give"},
+        {rope_with("compliance = true"),
+         "swing.toml:4:14: rope[0].compliance: ", "true is a boolean, not a number"},
+        {rope_with("string = \"yes\""),
+         "swing.toml:4:10: rope[0].string: ", "\"yes\" is a string, not true or false"},
+        {rope_with("bending = -1"), "swing.toml:4:11: rope[0].bending: ", "-1 is not >= 0"},
+        {rope_with("bending = 1e13"),
+         "swing.toml:4:11: rope[0].bending: ", "give a bending stiffness in N m2"},
+        {rope_with("string = true\nbending = 1"), "swing.toml:5:11: rope[0].bending: ",
+         "a string hangs slack, and so has no bending stiffness; remove bending or string"},
+        {square_with("closed = true\nstring = true"), "swing.toml:5:10: rope[0].string: ",
+         "a closed rope can only hang slack where it stretches; give a compliance, or remove string"},
+        {rope_with("strng = true"), "swing.toml:4:1: rope[0].strng: ", "did you mean \"string\"?"},
+    });
+}
+
+TEST(SceneErrors, LinkLengths) {
+    expect_errors({
+        {rope_with("link_length = 2"), "swing.toml:4:15: rope[0].link_length: ",
+         "links that neither stretch nor hang slack are as long as their particles are apart at the start; "
+         "give compliance or string = true, or remove it"},
+        {rope_with("string = true\nlink_length = 0.5"), "swing.toml:5:15: rope[0].link_length: ",
+         "0.5 m are less than the 1 m between particles 0 and 1, which a string that does not stretch "
+         "cannot span; give at least that, or a compliance"},
+        {rope_with("string = true\nlink_length = [2, 0.5]"),
+         "swing.toml:5:19: rope[0].link_length[1]: ", "between particles 1 and 2"},
+        {rope_with("string = true\nlink_length = [2]"),
+         "swing.toml:5:15: rope[0].link_length: ", "1 values for 2 links"},
+        {square_with("closed = true\ncompliance = 1\nlink_length = [1, 1, 1]"),
+         "swing.toml:6:15: rope[0].link_length: ", "3 values for 4 links"},
+        {rope_with("compliance = 1\nlink_length = 0"),
+         "swing.toml:5:15: rope[0].link_length: ", "0 is not >= 1e-12; give a length of a link in m"},
+        {rope_with("compliance = 1\nlink_length = [1, \"2\"]"),
+         "swing.toml:5:19: rope[0].link_length[1]: ", "\"2\" is a string, not a number"},
+    });
+}
+
+TEST(SceneErrors, Nets) {
+    const std::string net = "schema = 1\n[[net]]\n";
+    expect_errors({
+        {"schema = 1\nnet = []\n", "swing.toml:2:7: net: ", "the list is empty; give one or more [[net]]"},
+        {"schema = 1\nnet = [1]\n", "swing.toml:2:8: net[0]: ", "1 is an integer, not a table"},
+        {"schema = 1\n[net]\nmass = 1\n", "swing.toml:2:1: net: ", "this is a table, not a list"},
+        {with("nets = 1"), "swing.toml:3:1: nets: ", "did you mean \"net\"?"},
+        {net, "swing.toml:2:1: net[0]: ", "the net has no shape; give grid, or points and bars"},
+        {grid_with("points = [[0, 0], [1, 1]]"),
+         "swing.toml:2:1: net[0]: ", "2 shapes (grid, points); keep one of them"},
+        {grid_with("payload = 1"),
+         "swing.toml:4:1: net[0].payload: ", "unknown key \"payload\"; it is a key of rope"},
+        {rope_with("grid = 1"), "swing.toml:4:1: rope[0].grid: ", "it is a key of net"},
+        {grid_with("mass = [1, 2]"), "swing.toml:4:8: net[0].mass: ", "2 values for 6 particles"},
+        {grid_with("velocity = [[1, 2]]"), "swing.toml:4:12: net[0].velocity: ", "1 values for 6 particles"},
+        {grid_with("string = true"), "swing.toml:4:10: net[0].string: ",
+         "a net can only hang slack where it stretches; give a compliance, or remove string"},
+        {grid_with("compliance = -1"), "swing.toml:4:14: net[0].compliance: ", "-1 is not >= 0"},
+        {grid_with("width_px = 0"), "swing.toml:4:12: net[0].width_px: ", "0 is not >= 0.1"},
+    });
+}
+
+TEST(SceneErrors, Grids) {
+    const auto grid = [](const std::string& keys) {
+        return "schema = 1\n[[net]]\ngrid = { " + keys + " }\n";
+    };
+    expect_errors({
+        {"schema = 1\n[[net]]\ngrid = 3",
+         "swing.toml:3:8: net[0].grid: ", "3 is an integer, not a table; give grid = { columns"},
+        {grid("rows = 2, spacing = 1"), "swing.toml:3:8: net[0].grid.columns: ", "missing; give the number"},
+        {grid("columns = 2, spacing = 1"), "swing.toml:3:8: net[0].grid.rows: ", "missing; give the number"},
+        {grid("columns = 2, rows = 2"),
+         "swing.toml:3:8: net[0].grid.spacing: ", "missing; give a distance in m, or [dx, dy]"},
+        {grid("columns = 0, rows = 2, spacing = 1"),
+         "swing.toml:3:20: net[0].grid.columns: ", "0 is not >= 1"},
+        {grid("columns = 2, rows = 1.5, spacing = 1"),
+         "swing.toml:3:30: net[0].grid.rows: ", "1.5 is a number with a fraction, not an integer"},
+        {grid("columns = 1, rows = 1, spacing = 1"),
+         "swing.toml:3:8: net[0].grid: ", "1 particle is no net; give more columns or rows"},
+        {grid("columns = 2, rows = 2, spacing = 0"),
+         "swing.toml:3:43: net[0].grid.spacing: ", "0 is not >= 1e-12; give a distance in m"},
+        {grid("columns = 2, rows = 2, spacing = [1, -1]"),
+         "swing.toml:3:47: net[0].grid.spacing[1]: ", "-1 is not >= 1e-12"},
+        {grid("columns = 2, rows = 2, spacing = [1]"),
+         "swing.toml:3:43: net[0].grid.spacing: ", "a list of 1, not a pair"},
+        {grid("columns = 2, rows = 2, spacing = 1, diagonals = 1"),
+         "swing.toml:3:58: net[0].grid.diagonals: ", "1 is an integer, not true or false"},
+        {grid("columns = 2, rows = 2, spacing = 1, from = [0, 2e9]"),
+         "swing.toml:3:57: net[0].grid.from[1]: ", "2000000000 is not <= 1000000000"},
+        {grid("columns = 3, rows = 2, spacing = 6e8"),
+         "swing.toml:3:8: net[0].grid: ", "beyond the limit of 1e+09 m; make the grid smaller"},
+        {grid("column = 3, rows = 2, spacing = 1"),
+         "swing.toml:3:10: net[0].grid.column: ", "did you mean \"columns\"?"},
+        {grid_with("bars = [[0, 1]]"), "swing.toml:4:8: net[0].bars: ",
+         "a grid has bars of its own; remove them, or give points in place of the grid"},
+        {grid_with("pinned = [6]"), "swing.toml:4:11: net[0].pinned[0]: ",
+         "6 is out of range; the net has particles 0 .. 5, or -1 .. -6 from its end"},
+        {grid_with("pinned = [[3, 0]]"), "swing.toml:4:12: net[0].pinned[0][0]: ",
+         "3 is out of range; the grid has columns 0 .. 2, or -1 .. -3 from its end"},
+        {grid_with("pinned = [[0, -3]]"), "swing.toml:4:15: net[0].pinned[0][1]: ",
+         "-3 is out of range; the grid has rows 0 .. 1, or -1 .. -2 from its end"},
+        {grid_with("pinned = [[1]]"),
+         "swing.toml:4:11: net[0].pinned[0]: ", "a list of 1, not [column, row]"},
+        {grid_with("pinned = [[2, 0], [-1, 0]]"),
+         "swing.toml:4:19: net[0].pinned[1]: ", "particle 2 is given twice; remove one"},
+        {grid_with("pinned = 3"), "swing.toml:4:10: net[0].pinned: ", "3 is an integer, not a list"},
+    });
+}
+
+TEST(SceneErrors, Graphs) {
+    const std::string net = "schema = 1\n[[net]]\n";
+    expect_errors({
+        {net + "points = [[0, 0], [1, 0]]", "swing.toml:2:1: net[0].bars: ", "missing; give bars = [[0, 1]"},
+        {net + "points = [[0, 0]]\nbars = [[0, 1]]",
+         "swing.toml:3:10: net[0].points: ", "1 points are no net"},
+        {graph_with("[]"), "swing.toml:4:8: net[0].bars: ", "the list is empty; give bars = [[0, 1]"},
+        {graph_with("[[0, 1, 2]]"), "swing.toml:4:9: net[0].bars[0]: ", "a list of 3, not a pair"},
+        {graph_with("[1]"), "swing.toml:4:9: net[0].bars[0]: ", "1 is an integer, not a list"},
+        {graph_with("[[0, 0.5]]"), "swing.toml:4:13: net[0].bars[0][1]: ", "not an integer"},
+        {graph_with("[[0, 1], [1, 4]]"), "swing.toml:4:21: net[0].bars[1][1]: ",
+         "4 is out of range; the net has particles 0 .. 3, or -1 .. -4 from its end"},
+        {graph_with("[[0, 1], [3, -1]]"),
+         "swing.toml:4:17: net[0].bars[1]: ", "a bar from particle 3 to itself; join two different ones"},
+        {graph_with("[[0, 1], [1, 2], [0, 1]]"),
+         "swing.toml:4:25: net[0].bars[2]: ", "particles 0 and 1 are joined already, by bars[0]; remove one"},
+        {graph_with("[[2, 1], [0, 3], [1, 2]]"),
+         "swing.toml:4:25: net[0].bars[2]: ", "particles 1 and 2 are joined already, by bars[0]"},
+        {net + "points = [[0, 0], [1, 0], [0, 0]]\nbars = [[0, 1], [0, 2]]",
+         "swing.toml:4:17: net[0].bars[1]: ", "particles 0 and 2 coincide"},
+        {graph_with("[[0, 1]]", "pinned = [[0, 0]]"),
+         "swing.toml:5:11: net[0].pinned[0]: ", "this is a list of 2, not an integer"},
+        {graph_with("[[0, 1]]", "pinned = [4]"), "swing.toml:5:11: net[0].pinned[0]: ", "4 is out of range"},
+    });
+}
+
 TEST(SceneErrors, Solver) {
     const auto solver = [](const std::string& keys) { return with("[solver]\n" + keys); };
     const auto method = [&](const std::string& name, const std::string& keys) {

@@ -44,6 +44,45 @@ TEST(SceneLimits, Bars) {
                  "swing.toml:2:1: rope[0]: ", "bars");
 }
 
+TEST(SceneLimits, ParticlesOfNets) {
+    const auto grid = [](const std::string& columns, const std::string& rows) {
+        return "[[net]]\ngrid = { columns = " + columns + ", rows = " + rows +
+               ", spacing = 0.001, diagonals = false }\n";
+    };
+    expect_limit("schema = 1\n" + grid("1000001", "1"),
+                 "swing.toml:3:20: net[0].grid.columns: ", "1000001 is over the limit of 1000000");
+    expect_limit("schema = 1\n" + grid("1000000", "1000000"),
+                 "swing.toml:2:1: net[0]: ", "1000000000000 particles, over the limit of 1000000");
+    expect_limit("schema = 1\nsolver.method = \"relaxation\"\n" + grid("1000", "600") +
+                     "[[rope]]\nline = { particles = 600000, step = [0, -0.001] }\n",
+                 "swing.toml:3:1: net[0]: ",
+                 "the ropes and nets up to this one have 1200000 particles, over the limit of 1000000");
+}
+
+TEST(SceneLimits, BarsOfNetsCountWithTheRopes) {
+    // A rope of 950000 particles with bars up to reach 21 has 19949769 of them, a grid of 200 x 200 158802.
+    expect_limit(
+        "schema = 1\n[[net]]\ngrid = { columns = 200, rows = 200, spacing = 0.001 }\n[[rope]]\n"
+        "line = { particles = 950000, step = [0, -0.001] }\n[solver]\nmethod = \"relaxation\"\n"
+        "reach = 21\n",
+        "swing.toml:2:1: net[0]: ", "20108571 bars, over the limit of 20000000; give fewer");
+}
+
+TEST(SceneLimits, BarUpdatesOfNets) {
+    expect_limit(
+        "schema = 1\n[[net]]\ngrid = { columns = 1000, rows = 1000, spacing = 0.001 }\n[solver]\n"
+        "method = \"relaxation\"\nsweeps = 1000000\n",
+        "swing.toml:6:10: solver.sweeps: ",
+        "3994002 bars, 1000000 sweeps and 600 steps are 2.3964e+15 bar updates");
+}
+
+TEST(SceneLimits, ASceneOfNetsAloneFailsAtTheFirst) {
+    expect_limit(
+        "schema = 1\n[[net]]\ngrid = { columns = 1000, rows = 1000, spacing = 0.001 }\n"
+        "[[net]]\ngrid = { columns = 2, rows = 1, spacing = 1 }\n",
+        "swing.toml:4:1: net[1]: ", "1000002 particles, over the limit");
+}
+
 TEST(SceneLimits, AFullRopeFits) {
     EXPECT_EQ(parse_scene(line_of("1000000"), "a").ropes[0].points_m.size(), 1'000'000U);
 }

@@ -23,13 +23,13 @@ TEST(SceneReader, MinimalFileHasAllDefaults) {
     EXPECT_EQ(scene.world.duration_s, 10.0);
     EXPECT_EQ(scene.world.drag_1_s, 0.0);
     ASSERT_EQ(scene.ropes.size(), 1U);
-    ASSERT_EQ(scene.rope_styles.size(), 1U);
+    ASSERT_EQ(scene.body_styles.size(), 1U);
     EXPECT_THAT(scene.ropes[0].mass_kg, ElementsAre(1.0, 1.0));
     EXPECT_THAT(scene.ropes[0].velocity_m_s, ElementsAre(Vec2{}, Vec2{}));
     EXPECT_THAT(scene.ropes[0].pinned, ElementsAre(0U));
     EXPECT_EQ(scene.ropes[0].payload_kg, 0.0);
-    EXPECT_FALSE(scene.rope_styles[0].color);
-    EXPECT_FALSE(scene.rope_styles[0].width_px);
+    EXPECT_FALSE(scene.body_styles[0].color);
+    EXPECT_FALSE(scene.body_styles[0].width_px);
     EXPECT_EQ(scene.solver.method, sim::Method::kAuto);
     EXPECT_EQ(scene.solver.tolerance_px, 0.1);
     EXPECT_FALSE(scene.solver.step_s);

@@ -111,8 +111,72 @@ TEST(SceneRope, PinnedCountsFromEitherEnd) {
 TEST(SceneRope, PayloadColourAndWidth) {
     const Scene scene = parse_scene(rope_with("payload = 3\ncolor = \"#10203040\"\nwidth_px = 0.1"), "a");
     EXPECT_EQ(scene.ropes[0].payload_kg, 3.0);
-    EXPECT_EQ(scene.rope_styles[0].color, (Color{0x10, 0x20, 0x30, 0x40}));
-    EXPECT_EQ(scene.rope_styles[0].width_px, 0.1);
+    EXPECT_EQ(scene.body_styles[0].color, (Color{0x10, 0x20, 0x30, 0x40}));
+    EXPECT_EQ(scene.body_styles[0].width_px, 0.1);
+}
+
+TEST(SceneRope, IsPlainUnlessTheFileSaysOtherwise) {
+    const auto rope = rope_of(square_with(""));
+    EXPECT_FALSE(rope.closed);
+    EXPECT_THAT(rope.rest_m, IsEmpty());
+    EXPECT_EQ(rope.material.compliance_1_n, 0.0);
+    EXPECT_FALSE(rope.material.is_string);
+    EXPECT_EQ(rope.bending_n_m2, 0.0);
+    const auto same = rope_of(square_with("closed = false\ncompliance = 0\nstring = false\nbending = 0\n"));
+    EXPECT_FALSE(same.closed);
+    EXPECT_FALSE(same.material.is_string);
+}
+
+TEST(SceneRope, ClosedHasOneLinkMore) {
+    const Scene scene = parse_scene(square_with("closed = true\nbending = 0.5"), "a");
+    EXPECT_TRUE(scene.ropes[0].closed);
+    EXPECT_EQ(scene.ropes[0].bending_n_m2, 0.5);
+    const sim::System system = system_of(scene);
+    ASSERT_EQ(system.bars.size(), 4U);
+    EXPECT_EQ(system.bars[3].a, 3U);
+    EXPECT_EQ(system.bars[3].b, 0U);
+    EXPECT_EQ(system.bends.size(), 4U);
+}
+
+TEST(SceneRope, ClosedHasEachBarOnceUpToItsReach) {
+    // Six points: 6 bars of reach 1 and 2, 3 of reach 3 that join opposite ones.
+    const std::string points =
+        "points = [[2, 0], [1, 1.7], [-1, 1.7], [-2, 0], [-1, -1.7], [1, -1.7]]\nclosed = true\n";
+    for (const auto& [reach, bars] : {std::pair{1, 6}, {2, 12}, {3, 15}, {4, 15}, {7, 15}}) {
+        const Scene scene =
+            parse_scene("schema = 1\n[[rope]]\n" + points +
+                            "[solver]\nmethod = \"relaxation\"\nreach = " + std::to_string(reach) + "\n",
+                        "a");
+        EXPECT_EQ(system_of(scene).bars.size(), static_cast<std::size_t>(bars)) << "reach " << reach;
+    }
+}
+
+TEST(SceneRope, IsOfItsMaterial) {
+    const auto rubber = rope_of(rope_with("compliance = 1e-3"));
+    EXPECT_EQ(rubber.material.compliance_1_n, 1e-3);
+    EXPECT_FALSE(rubber.material.is_string);
+    EXPECT_TRUE(rope_of(rope_with("string = true")).material.is_string);
+    const auto bungee = rope_of(square_with("closed = true\nstring = true\ncompliance = 1e6"));
+    EXPECT_TRUE(bungee.material.is_string);
+    EXPECT_EQ(bungee.material.compliance_1_n, 1e6);
+    EXPECT_EQ(rope_of(rope_with("bending = 2.5\ncompliance = 0.1")).bending_n_m2, 2.5);
+}
+
+TEST(SceneRope, LinkLengthsAreOneForAllOrAList) {
+    EXPECT_THAT(rope_of(rope_with("compliance = 0.1\nlink_length = 0.5")).rest_m, ElementsAre(0.5, 0.5));
+    EXPECT_THAT(rope_of(rope_with("compliance = 0.1\nlink_length = [0.5, 2]")).rest_m, ElementsAre(0.5, 2.0));
+    EXPECT_THAT(rope_of(square_with("closed = true\ncompliance = 0.1\nlink_length = [1, 2, 3, 4]")).rest_m,
+                ElementsAre(1.0, 2.0, 3.0, 4.0));
+    EXPECT_THAT(rope_of(rope_with("string = true\nlink_length = [1, 1.5]")).rest_m, ElementsAre(1.0, 1.5));
+}
+
+TEST(SceneRope, AStringIsNoShorterThanWhatItSpans) {
+    // The distance of the second link is sqrt(2): ten digits of it are short by 2e-11 of it.
+    const std::string rope =
+        "schema = 1\n[[rope]]\npoints = [[0, 0], [1, 0], [2, 1]]\nstring = true\nlink_length = ";
+    EXPECT_THAT(rope_of(rope + "[1, 1.414213562]").rest_m, ElementsAre(1.0, std::sqrt(2.0)));
+    EXPECT_THAT(rope_of(rope + "[0.9999999995, 1.5]").rest_m, ElementsAre(1.0, 1.5));
+    EXPECT_NE(error_of(rope + "[0.999999998, 1.5]").code, ExitCode::kOk);
 }
 
 TEST(SceneRope, SeveralStayInTheirOrder) {
@@ -121,7 +185,7 @@ TEST(SceneRope, SeveralStayInTheirOrder) {
     ASSERT_EQ(scene.ropes.size(), 2U);
     EXPECT_THAT(scene.ropes[0].mass_kg, ElementsAre(2.0, 2.0, 2.0));
     EXPECT_THAT(scene.ropes[1].mass_kg, ElementsAre(3.0, 3.0));
-    EXPECT_EQ(scene.rope_styles.size(), 2U);
+    EXPECT_EQ(scene.body_styles.size(), 2U);
 }
 
 }  // namespace

@@ -34,4 +34,20 @@ inline std::string rope_with(const std::string& keys) {
     return "schema = 1\n[[rope]]\nline = { particles = 3, step = [0, -1] }\n" + keys;
 }
 
+/// A scene of one rope of four points at the corners of a unit square, with more keys, from line 4 on.
+inline std::string square_with(const std::string& keys) {
+    return "schema = 1\n[[rope]]\npoints = [[0, 0], [1, 0], [1, 1], [0, 1]]\n" + keys;
+}
+
+/// A scene of one net of 3 columns and 2 rows with more keys, from line 4 on.
+inline std::string grid_with(const std::string& keys) {
+    return "schema = 1\n[[net]]\ngrid = { columns = 3, rows = 2, spacing = 0.5 }\n" + keys;
+}
+
+/// A scene of one net of the bars that are given, between four points at the corners of a unit square; more
+/// keys from line 5 on.
+inline std::string graph_with(const std::string& bars, const std::string& keys = "") {
+    return "schema = 1\n[[net]]\npoints = [[0, 0], [1, 0], [1, 1], [0, 1]]\nbars = " + bars + "\n" + keys;
+}
+
 }  // namespace corda::scene

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <set>
+#include <utility>
 
 #include "support/ropes.hpp"
 
@@ -68,6 +71,85 @@ TEST(System, SharesItsArraysAmongRopes) {
     EXPECT_EQ(system.vx_m_s[5], 0.0);  // a pinned particle has no velocity
     EXPECT_EQ(system.vy_m_s[6], 6.0);
     EXPECT_EQ(system.inverse_mass_1_kg[6], 1.0 / 6.0);
+}
+
+TEST(BarCount, OfAClosedRopeHasEachBarOnce) {
+    EXPECT_EQ(bar_count(3, 1, true), 3U);
+    EXPECT_EQ(bar_count(3, 7, true), 3U);  // a triangle has no more
+    EXPECT_EQ(bar_count(4, 2, true), 6U);  // a square and its diagonals
+    EXPECT_EQ(bar_count(5, 2, true), 10U);
+    EXPECT_EQ(bar_count(6, 3, true), 15U);
+    EXPECT_EQ(bar_count(100, 7, true), 700U);
+}
+
+TEST(System, OfAClosedRopeHasTheBarsThatBarCountPromises) {
+    for (const int particles : {3, 4, 5, 6, 7, 20}) {
+        for (const int reach : {1, 2, 3, 10}) {
+            RopeDef rope = test::report_rope(particles);
+            rope.closed = true;
+            const System system = build_system({&rope, 1}, reach);
+            EXPECT_EQ(system.bars.size(), bar_count(particles, reach, true))
+                << particles << " particles, reach " << reach;
+            EXPECT_EQ(system.link_count(), static_cast<std::size_t>(particles));
+            EXPECT_FALSE(system.bodies[0].is_chain);
+            std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+            for (const Bar& bar : system.bars) pairs.insert(std::minmax(bar.a, bar.b));
+            EXPECT_EQ(pairs.size(), system.bars.size());
+        }
+    }
+}
+
+TEST(System, OfARopeThatBendsHasACornerAtEveryInnerParticle) {
+    RopeDef rope = test::report_rope(4);
+    rope.points_m = {{0.0, 0.0}, {1.0, 0.0}, {1.0, -3.0}, {-4.0, -3.0}};
+    rope.bending_n_m2 = 6.0;
+    const System open = build_system({&rope, 1}, 1);
+    ASSERT_EQ(open.bends.size(), 2U);
+    EXPECT_EQ(open.bends[0].b, 1U);
+    EXPECT_EQ(open.bends[0].stiffness_n_m, 3.0);  // E I over the mean of 1 m and 3 m
+    EXPECT_EQ(open.bends[1].stiffness_n_m, 1.5);
+    rope.closed = true;
+    const System closed = build_system({&rope, 1}, 1);
+    ASSERT_EQ(closed.bends.size(), 4U);
+    EXPECT_EQ(closed.bends[3].a, 3U);
+    EXPECT_EQ(closed.bends[3].b, 0U);
+    EXPECT_EQ(closed.bends[3].c, 1U);
+    EXPECT_EQ(closed.bends[3].stiffness_n_m, 2.0);  // between 5 m and 1 m
+}
+
+TEST(System, PutsNetsAfterTheRopes) {
+    const RopeDef rope = test::straight_rope(2, 2.0, 0.0);
+    NetDef net;
+    net.origin_m = {10.0, 1.0};
+    net.points_m = {{0.0, 0.0}, {3.0, 0.0}, {3.0, -4.0}};
+    net.mass_kg = {1.0, 2.0, 4.0};
+    net.velocity_m_s = {{1.0, 1.0}, {2.0, 2.0}, {3.0, 3.0}};
+    net.bars = {{0, 1}, {1, 2}, {0, 2, false}};
+    net.pinned = {1};
+    net.material.compliance_1_n = 0.5;
+    const System system = build_system({&rope, 1}, {&net, 1}, 1);
+    ASSERT_EQ(system.bodies.size(), 2U);
+    const Body& body = system.bodies[1];
+    EXPECT_TRUE(body.is_net);
+    EXPECT_FALSE(body.is_chain);
+    EXPECT_FALSE(system.bodies[0].is_net);
+    EXPECT_TRUE(system.bodies[0].is_chain);
+    EXPECT_EQ(body.first_particle, 3U);
+    EXPECT_EQ(body.first_bar, 2U);
+    EXPECT_EQ(body.bar_count, 3U);
+    EXPECT_EQ(body.link_count, 2U);
+    EXPECT_EQ(body.material.compliance_1_n, 0.5);
+    EXPECT_EQ(system.link_count(), 4U);
+    EXPECT_EQ(system.x_m[3], 10.0);
+    EXPECT_EQ(system.y_m[5], -3.0);
+    EXPECT_EQ(system.bars[4].a, 3U);
+    EXPECT_EQ(system.bars[4].b, 5U);
+    EXPECT_EQ(system.bars[4].rest_m, 5.0);
+    EXPECT_NE(system.bars[4].reach, 1U);  // imaginary
+    EXPECT_TRUE(system.is_pinned(4));
+    EXPECT_EQ(system.vx_m_s[4], 0.0);
+    EXPECT_EQ(system.vx_m_s[5], 3.0);
+    EXPECT_EQ(build_system({}, {&net, 1}, 1).origin_m, net.origin_m);
 }
 
 TEST(Method, NamesAreReadBack) {

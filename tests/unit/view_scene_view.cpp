@@ -16,9 +16,9 @@ struct Drawn {
 };
 
 Drawn draw(const std::vector<sim::RopeDef>& ropes, const StyleDef& style,
-           std::vector<RopeStyleDef> styles = {}) {
-    const sim::System system = sim::build_system(ropes, 3);
-    styles.resize(ropes.size());
+           std::vector<BodyStyleDef> styles = {}, const std::vector<sim::NetDef>& nets = {}) {
+    const sim::System system = sim::build_system(ropes, nets, 3);
+    styles.resize(ropes.size() + nets.size());
     const SceneView view(system, style, styles, 200, 100);
     const sim::State state{0.0, system.x_m, system.y_m};
     MotionBounds bounds;
@@ -51,7 +51,7 @@ TEST(SceneView, RopesOfOneColourShareALayer) {
     const std::vector<sim::RopeDef> ropes(4, test::straight_rope(2, 1.0, 30.0));
     EXPECT_EQ(draw(ropes, style).list.layers.size(), 2U);
     // A rope of its own colour uses none of the palette up.
-    std::vector<RopeStyleDef> styles(4);
+    std::vector<BodyStyleDef> styles(4);
     styles[0].color = Color{9, 9, 9, 255};
     const Drawn drawn = draw(ropes, style, styles);
     ASSERT_EQ(drawn.list.layers.size(), 3U);
@@ -74,6 +74,63 @@ TEST(SceneView, BarsAndMarkersHaveLayersOfTheirOwn) {
     EXPECT_EQ(drawn.list.layers[4].color, style.pinned_color);
 }
 
+/// A unit square of four particles with one imaginary bar across it.
+sim::NetDef square_net() {
+    sim::NetDef net;
+    net.points_m = {{0.0, 0.0}, {1.0, 0.0}, {1.0, -1.0}, {0.0, -1.0}};
+    net.mass_kg.assign(4, 1.0);
+    net.velocity_m_s.assign(4, {});
+    net.bars = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {0, 2, false}};
+    net.pinned = {0, 1};
+    return net;
+}
+
+TEST(SceneView, ANetIsItsRealBarsHalfAsWideAsARope) {
+    const Drawn drawn = draw({}, plain(), {}, {square_net()});
+    ASSERT_EQ(drawn.list.layers.size(), 1U);
+    ASSERT_EQ(drawn.list.layers[0].capsule_count, 4U);
+    // Two sides across, two down: all of them, and of one length.
+    for (const Capsule& capsule : drawn.list.capsules) {
+        EXPECT_EQ(capsule.radius, 1.0F);
+        EXPECT_NEAR(capsule.length, drawn.list.capsules[0].length, 2e-3);  // ends are rounded to 1/1024
+    }
+    std::vector<BodyStyleDef> own(1);
+    own[0].width_px = 7.0;
+    EXPECT_EQ(draw({}, plain(), own, {square_net()}).list.capsules[0].radius, 3.5F);
+}
+
+TEST(SceneView, NetsTakeThePaletteAfterTheRopes) {
+    const StyleDef style = plain();
+    const Drawn drawn = draw({test::straight_rope(3, 1.0, 30.0)}, style, {}, {square_net()});
+    ASSERT_EQ(drawn.list.layers.size(), 2U);
+    EXPECT_EQ(drawn.list.layers[0].color, style.palette[0]);
+    EXPECT_EQ(drawn.list.layers[0].capsule_count, 3U);
+    EXPECT_EQ(drawn.list.layers[1].color, style.palette[1]);
+    EXPECT_EQ(drawn.list.layers[1].capsule_count, 4U);
+}
+
+TEST(SceneView, ANetHasItsBarsAndMarkersInTheCommonLayers) {
+    StyleDef style = plain();
+    style.markers = Markers::kAll;
+    style.bars = Bars::kAll;
+    const Drawn drawn = draw({}, style, {}, {square_net()});
+    ASSERT_EQ(drawn.list.layers.size(), 5U);
+    EXPECT_EQ(drawn.list.layers[0].color, style.imaginary_bar_color);
+    EXPECT_EQ(drawn.list.layers[0].capsule_count, 1U);
+    EXPECT_EQ(drawn.list.layers[2].color, style.real_bar_color);
+    EXPECT_EQ(drawn.list.layers[2].capsule_count, 4U);
+    EXPECT_EQ(drawn.list.layers[3].capsule_count, 2U);
+    EXPECT_EQ(drawn.list.layers[4].capsule_count, 2U);
+}
+
+TEST(SceneView, AClosedRopeHasItsLastLink) {
+    std::vector<sim::RopeDef> ropes(1, test::straight_rope(2, 1.0, 30.0));
+    ropes[0].points_m[2].x += 1.0;
+    EXPECT_EQ(draw(ropes, plain()).list.capsules.size(), 2U);
+    ropes[0].closed = true;
+    EXPECT_EQ(draw(ropes, plain()).list.capsules.size(), 3U);
+}
+
 TEST(SceneView, TheRopesStayInsideThePicture) {
     const Drawn drawn = draw({test::straight_rope(5, 1.0, 30.0)}, plain());
     EXPECT_GT(drawn.list.bounds.x0, 0);
@@ -84,7 +141,7 @@ TEST(SceneView, TheRopesStayInsideThePicture) {
 
 TEST(SceneView, RefusesMoreColoursThanLayers) {
     const std::vector<sim::RopeDef> ropes(kMaxLayers + 1, test::straight_rope(1, 1.0, 0.0));
-    std::vector<RopeStyleDef> styles(ropes.size());
+    std::vector<BodyStyleDef> styles(ropes.size());
     for (std::size_t i = 0; i < styles.size(); ++i)
         styles[i].color = Color{static_cast<std::uint8_t>(i), 0, 0, 255};
     EXPECT_THROW(draw(ropes, plain(), styles), Error);
