@@ -22,22 +22,23 @@ constexpr double kStraightPivot = 1e-12;
 
 }  // namespace
 
-bool ChainConstraints::suits(const System& system) {
-    for (std::size_t k = 0; k < system.bars.size(); ++k) {
-        const Bar& bar = system.bars[k];
-        if (bar.b != bar.a + 1 || (k > 0 && bar.a <= system.bars[k - 1].a)) return false;
+bool ChainConstraints::suits(std::span<const Bar> bars) {
+    for (std::size_t k = 0; k < bars.size(); ++k) {
+        const Bar& bar = bars[k];
+        if (bar.b != bar.a + 1 || (k > 0 && bar.a <= bars[k - 1].a)) return false;
     }
     return true;
 }
 
 ChainConstraints::ChainConstraints(const System& system) {
-    assert(suits(system));
+    const std::vector<Bar> bars = rigid_bars(system);
+    assert(suits(bars));
     inverse_mass_1_kg_ = system.inverse_mass_1_kg;
     std::size_t longest = 0;
     for (std::size_t i = 0; i < system.particle_count(); ++i) {
         if (system.is_pinned(i)) pinned_.push_back(static_cast<std::uint32_t>(i));
     }
-    for (const Bar& bar : system.bars) {
+    for (const Bar& bar : bars) {
         if (system.is_pinned(bar.a) && system.is_pinned(bar.b)) continue;
         const bool goes_on = !links_.empty() && links_.back().b == bar.a && !system.is_pinned(bar.a);
         if (!goes_on) chains_.push_back({bar.a, links_.size(), 0});

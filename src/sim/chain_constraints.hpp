@@ -15,10 +15,12 @@ namespace corda::sim {
 /// further evaluation: exactly | span du |^2, du being the change of the bar's relative velocity.
 class ChainConstraints final : public ConstraintSolver {
   public:
-    /// Whether all bars of the system join particle i to particle i + 1, in ascending order.
-    [[nodiscard]] static bool suits(const System& system);
+    /// Whether all of these bars join particle i to particle i + 1, in ascending order; also where there are
+    /// none.
+    [[nodiscard]] static bool suits(std::span<const Bar> bars);
 
-    /// Requires suits(system). Throws corda::Error for a chain that is pinned at both ends and straight.
+    /// Requires that its rigid bars suit. Throws corda::Error for a chain that is pinned at both ends and
+    /// straight.
     explicit ChainConstraints(const System& system);
 
     [[nodiscard]] bool move(const Stage& stage, Motion& motion, std::span<double> impulse) override;

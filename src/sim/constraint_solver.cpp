@@ -39,7 +39,7 @@ void ConstraintSolver::drift(double span_s, Motion& motion) {
 }
 
 std::unique_ptr<ConstraintSolver> make_constraint_solver(const System& system) {
-    if (ChainConstraints::suits(system)) return std::make_unique<ChainConstraints>(system);
+    if (ChainConstraints::suits(rigid_bars(system))) return std::make_unique<ChainConstraints>(system);
     return std::make_unique<GraphConstraints>(system);
 }
 

@@ -37,7 +37,7 @@ inline void add_unrounded(double& sum, double& rest, double change) {
     sum = next;
 }
 
-/// A bar with at least one free end.
+/// A rigid bar with at least one free end.
 struct Link {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
@@ -55,9 +55,9 @@ struct Stage {
     static constexpr double kSmallestTurnCosine = 0.5;
 };
 
-/// What keeps bars at their lengths: the linear algebra of the `rope` method. An impulse of a bar is given
-/// per length, N s / m: bar k, from a to b with the vector d, changes the velocity of a by impulse w_a d and
-/// that of b by -impulse w_b d; positive pulls. One implementation for chains, one for any graph.
+/// What keeps rigid bars at their lengths: the linear algebra of the `rope` method. An impulse of a bar is
+/// given per length, N s / m: bar k, from a to b with the vector d, changes the velocity of a by impulse w_a
+/// d and that of b by -impulse w_b d; positive pulls. One implementation for chains, one for any graph.
 class ConstraintSolver {
   public:
     ConstraintSolver() = default;
@@ -95,8 +95,9 @@ class ConstraintSolver {
     std::vector<std::uint32_t> pinned_;
 };
 
-/// The solver that suits the bars of a system: along chains where every bar joins a particle to the next one,
-/// else for a graph. Throws corda::Error where the lengths do not determine the motion.
+/// The solver that suits the rigid bars of a system: along chains where every bar joins a particle to the
+/// next one, or there is none; else for a graph. Throws corda::Error where the lengths do not determine the
+/// motion.
 [[nodiscard]] std::unique_ptr<ConstraintSolver> make_constraint_solver(const System& system);
 
 }  // namespace corda::sim

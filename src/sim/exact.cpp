@@ -3,15 +3,23 @@
 #include <algorithm>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "corda/core/error.hpp"
 #include "corda/sim/chain_dynamics.hpp"
+#include "corda/sim/elastic_dynamics.hpp"
+#include "corda/sim/terms.hpp"
 
 namespace corda::sim {
 namespace {
 
-void refuse_imaginary_bars(const System& system) {
-    for (const Bar& bar : system.bars) {
+bool is_rigid(const Body& body) {
+    return body.material.compliance_1_n == 0.0;
+}
+
+void refuse_imaginary_bars(const System& system, const Body& body) {
+    for (std::size_t k = body.first_bar; k < body.first_bar + body.bar_count; ++k) {
+        const Bar& bar = system.bars[k];
         if (bar.reach == 1) continue;
         throw Error(ExitCode::kInvalidScene,
                     "method exact moves links between neighbours only, and this scene has bars of reach " +
@@ -20,21 +28,42 @@ void refuse_imaginary_bars(const System& system) {
     }
 }
 
-void refuse_rigid_graphs(const System& system) {
-    for (const Body& body : system.bodies) {
-        if (body.is_chain) continue;
-        throw Error(ExitCode::kInvalidScene,
-                    "method exact moves chains of rigid links; a closed rope or a net of rigid bars needs "
-                    "method = \"rope\", or compliance");
+void refuse_rigid_graph(const Body& body) {
+    if (body.is_chain) return;
+    throw Error(ExitCode::kInvalidScene,
+                "method exact moves chains of rigid links; a closed rope or a net of rigid bars needs method "
+                "rope: set method = \"rope\", or let the bars stretch by a compliance");
+}
+
+/// The part that moves a body apart from all others; null for a chain of rigid links, which move together.
+std::unique_ptr<ExactPart> part_of_its_own(const System& system, const Body& body, const WorldDef& world,
+                                           const SolverDef& def) {
+    if (kTermsCompiledIn && !is_rigid(body)) {
+        return std::make_unique<OdePart>(std::make_unique<ElasticDynamics>(system, body, world),
+                                         def.tolerance, world.drag_1_s == 0.0);
     }
+    refuse_rigid_graph(body);
+    refuse_imaginary_bars(system, body);
+    if (body.material.is_string) {
+        throw Error(ExitCode::kInvalidScene,
+                    "method exact does not move strings of rigid links; let them stretch by a compliance");
+    }
+    return nullptr;
 }
 
 }  // namespace
 
 Exact::Exact(const System& system, const WorldDef& world, const SolverDef& def, double /*frame_interval_s*/) {
-    refuse_imaginary_bars(system);
-    refuse_rigid_graphs(system);
-    parts_.push_back(std::make_unique<OdePart>(std::make_unique<ChainDynamics>(system, system.bodies, world),
+    std::vector<Body> chains;
+    for (const Body& body : system.bodies) {
+        if (auto part = part_of_its_own(system, body, world, def)) {
+            parts_.push_back(std::move(part));
+        } else {
+            chains.push_back(body);
+        }
+    }
+    if (chains.empty()) return;
+    parts_.push_back(std::make_unique<OdePart>(std::make_unique<ChainDynamics>(system, chains, world),
                                                def.tolerance, world.drag_1_s == 0.0));
 }
 

@@ -24,7 +24,7 @@ GraphConstraints::GraphConstraints(const System& system) {
     for (std::size_t i = 0; i < system.particle_count(); ++i) {
         if (system.is_pinned(i)) pinned_.push_back(static_cast<std::uint32_t>(i));
     }
-    for (const Bar& bar : system.bars) {
+    for (const Bar& bar : rigid_bars(system)) {
         if (!system.is_pinned(bar.a) || !system.is_pinned(bar.b))
             links_.push_back({bar.a, bar.b, bar.rest_m});
     }

@@ -48,6 +48,16 @@ double decay_over(double x) {
     return sum;
 }
 
+void refuse_rigid_strings(const System& system) {
+    for (const Body& body : system.bodies) {
+        if (!body.material.is_string || body.material.compliance_1_n > 0.0) continue;
+        throw Error(
+            ExitCode::kInvalidScene,
+            "solver \"rope\" takes steps of its own and would miss the moments at which a rigid string "
+            "comes taut; use method exact, or let the string stretch by a compliance");
+    }
+}
+
 double power_of_half(int exponent) {
     return 1.0 / static_cast<double>(std::uint64_t{1} << exponent);
 }
@@ -57,6 +67,7 @@ double power_of_half(int exponent) {
 Rattle::Rattle(const System& system, const WorldDef& world, const SolverDef& def, double frame_interval_s)
     : composition_(composition(def.order)),
       constraints_(make_constraint_solver(system)),
+      forces_(system, 0, system.particle_count()),
       gravity_m_s2_(world.gravity_m_s2),
       drag_1_s_(world.drag_1_s),
       mass_kg_(system.mass_kg),
@@ -64,7 +75,12 @@ Rattle::Rattle(const System& system, const WorldDef& world, const SolverDef& def
       impulse_(constraints_->links().size(), 0.0),
       tension_over_length_n_m_(impulse_.size(), 0.0),
       pin_force_n_(mass_kg_.size()) {
+    refuse_rigid_strings(system);
     grid_.motion = Motion::start_of(system);
+    if (is_elastic()) {
+        force_x_n_.assign(mass_kg_.size(), 0.0);
+        force_y_n_.assign(mass_kg_.size(), 0.0);
+    }
     history_.rates.assign(kHistory * composition_.stages.size() * impulse_.size(), 0.0);
     if (!complete(grid_) || !find_tensions()) {
         throw Error(
@@ -74,11 +90,13 @@ Rattle::Rattle(const System& system, const WorldDef& world, const SolverDef& def
     }
     grid_.motion = output_;
     grid_.rate = tension_over_length_n_m_;
-    grid_.frequency_1_s = std::sqrt(constraints_->square_frequency(grid_.rate));
+    const double elastic_square = is_elastic() ? find_forces(output_) : 0.0;
+    grid_.frequency_1_s = std::sqrt(constraints_->square_frequency(grid_.rate) + elastic_square);
     if (def.step_s) {
         step_s_ = *def.step_s;
     } else {
-        const double stable_s = kGuardShare * composition_.stable_omega_h / expected_frequency();
+        const double stable_s =
+            kGuardShare * composition_.stable_omega_h / expected_frequency(elastic_square);
         step_s_ = frame_interval_s / std::max(1.0, std::ceil(frame_interval_s / stable_s));
     }
     assert(step_s_ > 0.0);
@@ -93,14 +111,15 @@ Rattle::Rattle(const System& system, const WorldDef& world, const SolverDef& def
     }
 }
 
-double Rattle::expected_frequency() const {
+double Rattle::expected_frequency(double elastic_square) const {
     std::vector<double> rate = constraints_->carried_mass(mass_kg_);
     const double gravity = length(gravity_m_s2_.x, gravity_m_s2_.y);
     for (std::size_t k = 0; k < rate.size(); ++k) {
         rate[k] = std::max(kLoadFactor * gravity * rate[k] / constraints_->links()[k].rest_m,
                            2.0 * std::abs(grid_.rate[k]));
     }
-    return std::sqrt(constraints_->square_frequency(rate));
+    return std::sqrt(constraints_->square_frequency(rate) +
+                     std::max(elastic_square, forces_.common_square_frequency()));
 }
 
 Status Rattle::advance_to(double time_s, State& state) {
@@ -158,19 +177,42 @@ bool Rattle::take_part(double part_s, Trajectory& trajectory, History* history) 
         const double decay = decay_over(0.5 * drag_1_s_ * (trajectory.last_span_s + span_s));
         const double kick_s = 0.5 * (decay * trajectory.last_span_s + span_s);
         guess(i, kick_s, trajectory, history);
-        const Stage stage{span_s, decay, kick_s * gravity_m_s2_};
+        Stage stage{span_s, decay, kick_s * gravity_m_s2_};
+        const double elastic_square = is_elastic() ? push(kick_s, stage, trajectory.motion) : 0.0;
         if (!constraints_->move(stage, trajectory.motion, impulse_)) return false;
         trajectory.last_span_s = span_s;
         if (std::abs(kick_s) < kShortKick * std::abs(span_s)) continue;
         for (std::size_t k = 0; k < impulse_.size(); ++k) trajectory.rate[k] = impulse_[k] / kick_s;
         if (history != nullptr)
             std::copy(trajectory.rate.begin(), trajectory.rate.end(), rates(*history, i, 0));
-        trajectory.frequency_1_s = std::sqrt(constraints_->square_frequency(trajectory.rate));
+        trajectory.frequency_1_s =
+            std::sqrt(constraints_->square_frequency(trajectory.rate) + elastic_square);
         // Not "greater": a frequency that is no number must fail.
         if (!(trajectory.frequency_1_s * part_s <= kGuardShare * composition_.stable_omega_h)) return false;
     }
     if (history != nullptr) history->count = std::min(history->count + 1, kHistory);
     return true;
+}
+
+double Rattle::find_forces(const Motion& motion) {
+    std::fill(force_x_n_.begin(), force_x_n_.end(), 0.0);
+    std::fill(force_y_n_.begin(), force_y_n_.end(), 0.0);
+    return forces_.add_forces(motion.x_m.data(), motion.y_m.data(), force_x_n_.data(), force_y_n_.data());
+}
+
+double Rattle::push(double kick_s, Stage& stage, Motion& motion) {
+    const double square_frequency = find_forces(motion);
+    const double lost = stage.decay - 1.0;
+    for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
+        const double weighted_s = kick_s * inverse_mass_1_kg_[i];
+        const double change_x = lost * motion.vx_m_s[i] + stage.push_m_s.x + weighted_s * force_x_n_[i];
+        const double change_y = lost * motion.vy_m_s[i] + stage.push_m_s.y + weighted_s * force_y_n_[i];
+        add_unrounded(motion.vx_m_s[i], motion.vx_rest_m_s[i], change_x);
+        add_unrounded(motion.vy_m_s[i], motion.vy_rest_m_s[i], change_y);
+    }
+    stage.decay = 1.0;
+    stage.push_m_s = {};
+    return square_frequency;
 }
 
 double* Rattle::rates(History& history, std::size_t stage, int age) const {
@@ -201,6 +243,13 @@ bool Rattle::complete(const Trajectory& trajectory) {
     output_ = trajectory.motion;
     const double half_s = 0.5 * trajectory.last_span_s;
     const double decay = decay_over(drag_1_s_ * half_s);
+    if (is_elastic()) {
+        find_forces(output_);
+        for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
+            output_.vx_m_s[i] += half_s * inverse_mass_1_kg_[i] * force_x_n_[i];
+            output_.vy_m_s[i] += half_s * inverse_mass_1_kg_[i] * force_y_n_[i];
+        }
+    }
     for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
         if (inverse_mass_1_kg_[i] == 0.0) continue;
         output_.vx_m_s[i] = decay * (output_.vx_m_s[i] + half_s * gravity_m_s2_.x);
@@ -243,6 +292,16 @@ bool Rattle::find_tensions() const {
         tension_over_length_n_m_[k] =
             ux * ux + uy * uy + falls * (dx * gravity_m_s2_.x + dy * gravity_m_s2_.y);
     }
+    if (is_elastic()) {
+        for (std::size_t k = 0; k < links.size(); ++k) {
+            const auto [a, b, rest_m] = links[k];
+            const double wa = inverse_mass_1_kg_[a];
+            const double wb = inverse_mass_1_kg_[b];
+            tension_over_length_n_m_[k] +=
+                (output_.x_m[b] - output_.x_m[a]) * (wb * force_x_n_[b] - wa * force_x_n_[a]) +
+                (output_.y_m[b] - output_.y_m[a]) * (wb * force_y_n_[b] - wa * force_y_n_[a]);
+        }
+    }
     return constraints_->solve(output_, tension_over_length_n_m_);
 }
 
@@ -258,6 +317,12 @@ std::optional<Loads> Rattle::loads() const {
         loads.largest_tension_n = std::max(loads.largest_tension_n, length(pull.x, pull.y));
         pin_force_n_[a] = pin_force_n_[a] + pull;
         pin_force_n_[b] = pin_force_n_[b] - pull;
+    }
+    if (is_elastic()) {
+        loads.largest_tension_n = std::max(loads.largest_tension_n,
+                                           forces_.largest_tension_n(output_.x_m.data(), output_.y_m.data()));
+        for (std::size_t i = 0; i < mass_kg_.size(); ++i)
+            pin_force_n_[i] = pin_force_n_[i] + Vec2{force_x_n_[i], force_y_n_[i]};
     }
     for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
         if (inverse_mass_1_kg_[i] == 0.0)
@@ -275,6 +340,7 @@ double Rattle::energy_j() const {
         energy_j += mass_kg_[i] * (0.5 * (vx * vx + vy * vy) - gravity_m_s2_.x * output_.x_m[i] -
                                    gravity_m_s2_.y * output_.y_m[i]);
     }
+    if (is_elastic()) energy_j += forces_.energy_j(output_.x_m.data(), output_.y_m.data());
     return energy_j;
 }
 

@@ -113,6 +113,16 @@ std::size_t System::link_count() const {
     return count;
 }
 
+std::vector<Bar> rigid_bars(const System& system) {
+    std::vector<Bar> rigid;
+    for (const Body& body : system.bodies) {
+        if (body.material.compliance_1_n > 0.0) continue;
+        const auto first = system.bars.begin() + static_cast<std::ptrdiff_t>(body.first_bar);
+        rigid.insert(rigid.end(), first, first + static_cast<std::ptrdiff_t>(body.bar_count));
+    }
+    return rigid;
+}
+
 std::uint64_t bar_count(std::uint64_t particles, std::uint64_t reach, bool closed) {
     if (particles == 0) return 0;
     if (closed) {

@@ -61,6 +61,9 @@ struct System {
     [[nodiscard]] bool is_pinned(std::size_t particle) const { return inverse_mass_1_kg[particle] == 0.0; }
 };
 
+/// The bars that keep their lengths, in the system's order: those of bodies without compliance.
+[[nodiscard]] std::vector<Bar> rigid_bars(const System& system);
+
 /// Number of bars of a rope of `particles` with bars to the next 1..`reach`: the sum of (particles - k),
 /// which for reach 7 is 7 n - 28. A closed rope has `particles` of each reach, and half as many of the one
 /// that joins opposite particles.

@@ -61,7 +61,8 @@ const std::map<std::string, std::uint64_t> kHashes{
     {"two_pins as it is", 0x1f94bb8b89a86d5eU},    {"two_pins by auto", 0x786172126e213b3U},
     {"two_pins by exact", 0x3ded21e70b2d9d97U},    {"two_pins by rope", 0x8f2ca1460c15c3f0U},
     {"cloth as it is", 0xc9eb6e5dda7a5613U},       {"ring as it is", 0x73f99ed37165c481U},
-    {"ring by rope", 0xa2e11984a11384c2U},
+    {"ring by rope", 0xa2e11984a11384c2U},         {"ring by auto", 0xa2e11984a11384c2U},
+    {"cloth by auto", 0x7571b2a949eb8f0U},
 };
 
 /// What a method refuses, with the reason in the message.

@@ -163,7 +163,11 @@ System net(std::uint32_t columns, std::uint32_t rows, bool diagonals) {
             if (diagonals && c + 1 < columns && r + 1 < rows) join(i, i + columns + 1);
         }
     }
-    system.bodies.push_back({0, system.x_m.size(), 0, system.bars.size(), system.bars.size(), false, {}});
+    Body body;
+    body.particle_count = system.x_m.size();
+    body.bar_count = body.link_count = system.bars.size();
+    body.is_chain = false;
+    system.bodies.push_back(body);
     return system;
 }
 

@@ -1,0 +1,175 @@
+#include "corda/sim/elastic_forces.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "corda/sim/distance.hpp"
+#include "corda/sim/vec2.hpp"
+
+namespace corda::sim {
+namespace {
+
+/// A bar shorter than this share of its length counts as this long in the bound on the frequency, which would
+/// grow without limit where its ends pass each other: a jerk, which no step resolves.
+constexpr double kShortest = 0.01;
+
+/// |cos| + |sin| of 0.2 radians, rounded up.
+constexpr double kCommonBend = 1.2;
+
+/// A bar as it lies: its length, the inverse of that and the unit vector; all 0 where it has no direction.
+struct Along {
+    double length_m;
+    double inverse_1_m;
+    double x;
+    double y;
+};
+
+Along along(const double* x_m, const double* y_m, std::uint32_t from, std::uint32_t to) {
+    const double dx = x_m[to] - x_m[from];
+    const double dy = y_m[to] - y_m[from];
+    const double distance_m = length(dx, dy);
+    const double inverse = distance_m > 0.0 ? 1.0 / distance_m : 0.0;
+    return {distance_m, inverse, dx * inverse, dy * inverse};
+}
+
+}  // namespace
+
+ElasticForces::ElasticForces(const System& system, std::size_t first_particle, std::size_t particle_count)
+    : first_particle_(first_particle) {
+    for (const Body& body : system.bodies) {
+        const bool inside = body.first_particle >= first_particle &&
+                            body.first_particle + body.particle_count <= first_particle + particle_count;
+        if (inside && body.material.compliance_1_n > 0.0) add_springs(system, body);
+    }
+    add_joints(system, particle_count);
+    bound_frequencies(system.inverse_mass_1_kg.data() + first_particle, particle_count);
+}
+
+void ElasticForces::add_springs(const System& system, const Body& body) {
+    const double least_m = body.material.is_string ? 0.0 : -std::numeric_limits<double>::infinity();
+    for (std::size_t k = body.first_bar; k < body.first_bar + body.bar_count; ++k) {
+        const Bar& bar = system.bars[k];
+        if (system.is_pinned(bar.a) && system.is_pinned(bar.b)) continue;
+        assert(bar.rest_m > 0.0);
+        springs_.push_back({static_cast<std::uint32_t>(bar.a - first_particle_),
+                            static_cast<std::uint32_t>(bar.b - first_particle_), bar.rest_m,
+                            1.0 / (body.material.compliance_1_n * bar.rest_m), least_m});
+    }
+}
+
+void ElasticForces::add_joints(const System& system, std::size_t particle_count) {
+    const double* const x_m = system.x_m.data();
+    const double* const y_m = system.y_m.data();
+    for (const Bend& bend : system.bends) {
+        if (bend.a < first_particle_ || bend.a >= first_particle_ + particle_count) continue;
+        if (system.is_pinned(bend.a) && system.is_pinned(bend.b) && system.is_pinned(bend.c)) continue;
+        joints_.push_back({static_cast<std::uint32_t>(bend.a - first_particle_),
+                           static_cast<std::uint32_t>(bend.b - first_particle_),
+                           static_cast<std::uint32_t>(bend.c - first_particle_), bend.stiffness_n_m,
+                           along(x_m, y_m, bend.a, bend.b).length_m,
+                           along(x_m, y_m, bend.b, bend.c).length_m});
+    }
+}
+
+void ElasticForces::bound_frequencies(const double* inverse_mass_1_kg, std::size_t particle_count) {
+    const auto moves = [&](std::uint32_t i) { return inverse_mass_1_kg[i] > 0.0 ? 1.0 : 0.0; };
+    const auto largest = [&](const std::vector<double>& sum_n_m) {
+        double square = 0.0;
+        for (std::size_t i = 0; i < particle_count; ++i)
+            square = std::max(square, inverse_mass_1_kg[i] * sum_n_m[i]);
+        return square;
+    };
+    // Row i of the stiffness matrix: the entry of i itself, and those of other free particles.
+    std::vector<double> sum_n_m(particle_count, 0.0);
+    for (const Spring& spring : springs_) {
+        sum_n_m[spring.a] += spring.stiffness_n_m * (1.0 + moves(spring.b));
+        sum_n_m[spring.b] += spring.stiffness_n_m * (1.0 + moves(spring.a));
+    }
+    spring_square_frequency_ = largest(sum_n_m);
+    std::fill(sum_n_m.begin(), sum_n_m.end(), 0.0);
+    for (const Joint& joint : joints_) {
+        // The angle changes by at most these for a metre's move of a, b, c.
+        const double a_1_m = 1.0 / joint.before_m;
+        const double c_1_m = 1.0 / joint.after_m;
+        const double b_1_m = a_1_m + c_1_m;
+        const double all_n =
+            joint.stiffness_n_m * (moves(joint.a) * a_1_m + moves(joint.b) * b_1_m + moves(joint.c) * c_1_m);
+        sum_n_m[joint.a] += a_1_m * all_n;
+        sum_n_m[joint.b] += b_1_m * all_n;
+        sum_n_m[joint.c] += c_1_m * all_n;
+    }
+    joint_square_frequency_ = largest(sum_n_m);
+}
+
+double ElasticForces::add_forces(const double* x_m, const double* y_m, double* fx_n, double* fy_n) const {
+    // |T| / d over 1 / (C l) is |1 - l / d|: more than 1 only where d < l / 2.
+    double shortest = 0.5;  // d / l
+    for (const Spring& spring : springs_) {
+        const Along bar = along(x_m, y_m, spring.a, spring.b);
+        const double stretch_m = std::max(bar.length_m - spring.rest_m, spring.least_stretch_m);
+        const double tension_n = spring.stiffness_n_m * stretch_m;
+        shortest = std::min(shortest, 1.0 + stretch_m / spring.rest_m);
+        fx_n[spring.a] += tension_n * bar.x;
+        fy_n[spring.a] += tension_n * bar.y;
+        fx_n[spring.b] -= tension_n * bar.x;
+        fy_n[spring.b] -= tension_n * bar.y;
+    }
+    // The second derivatives of k (1 - cos) are k cos times the squares of the angle's first ones and k sin
+    // times its second ones, which are no larger; both grow as lengths squared shrink.
+    double sharpest = 0.0;
+    for (const Joint& joint : joints_) {
+        const Along u = along(x_m, y_m, joint.a, joint.b);
+        const Along v = along(x_m, y_m, joint.b, joint.c);
+        const double sine = u.x * v.y - u.y * v.x;
+        const double cosine = u.x * v.x + u.y * v.y;
+        const double shrink = std::min(
+            std::max(joint.before_m * u.inverse_1_m, joint.after_m * v.inverse_1_m), 1.0 / kShortest);
+        sharpest = std::max(sharpest, (std::abs(cosine) + std::abs(sine)) * (shrink * shrink));
+        const double a_n = joint.stiffness_n_m * sine * u.inverse_1_m;
+        const double c_n = joint.stiffness_n_m * sine * v.inverse_1_m;
+        fx_n[joint.a] += a_n * u.y;
+        fy_n[joint.a] -= a_n * u.x;
+        fx_n[joint.c] += c_n * v.y;
+        fy_n[joint.c] -= c_n * v.x;
+        fx_n[joint.b] -= a_n * u.y + c_n * v.y;
+        fy_n[joint.b] += a_n * u.x + c_n * v.x;
+    }
+    const double push = 1.0 / std::max(shortest, kShortest) - 1.0;
+    return push * spring_square_frequency_ + sharpest * joint_square_frequency_;
+}
+
+double ElasticForces::common_square_frequency() const {
+    return spring_square_frequency_ + kCommonBend * joint_square_frequency_;
+}
+
+double ElasticForces::energy_j(const double* x_m, const double* y_m) const {
+    double energy_j = 0.0;
+    for (const Spring& spring : springs_) {
+        const double stretch_m =
+            std::max(along(x_m, y_m, spring.a, spring.b).length_m - spring.rest_m, spring.least_stretch_m);
+        energy_j += 0.5 * spring.stiffness_n_m * (stretch_m * stretch_m);
+    }
+    for (const Joint& joint : joints_) {
+        const Along u = along(x_m, y_m, joint.a, joint.b);
+        const Along v = along(x_m, y_m, joint.b, joint.c);
+        // 1 - u . v without cancellation.
+        const double dx = v.x - u.x;
+        const double dy = v.y - u.y;
+        energy_j += 0.5 * joint.stiffness_n_m * (dx * dx + dy * dy);
+    }
+    return energy_j;
+}
+
+double ElasticForces::largest_tension_n(const double* x_m, const double* y_m) const {
+    double largest_n = 0.0;
+    for (const Spring& spring : springs_) {
+        const double stretch_m =
+            std::max(along(x_m, y_m, spring.a, spring.b).length_m - spring.rest_m, spring.least_stretch_m);
+        largest_n = std::max(largest_n, spring.stiffness_n_m * std::abs(stretch_m));
+    }
+    return largest_n;
+}
+
+}  // namespace corda::sim

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "corda/sim/system.hpp"
+
+namespace corda::sim {
+
+/// The conservative forces of bars that stretch and of ropes that resist bending, in Cartesian coordinates.
+///
+/// A bar of compliance C and length l at rest, whose ends are d apart, pulls them together by the tension
+/// T = (d / l - 1) / C (Hooke's law, E A = 1 / C), a string by max(0, T); its energy is T^2 C l / 2. With the
+/// unit vectors u from a to b and v from b to c, a bend of stiffness k has the energy k (1 - u . v) and, with
+/// s = u x v and the left normals p of u and q of v, the forces
+///
+///   F_a = -(k s / |ab|) p,   F_c = -(k s / |bc|) q,   F_b = -(F_a + F_c),
+///
+/// in which nothing cancels where the rope is nearly straight. Ends in one place have no direction: a bar of
+/// length 0 exerts no force and bends nothing.
+///
+/// Positions and forces are arrays with one entry a particle from the first one on.
+class ElasticForces {
+  public:
+    /// None.
+    ElasticForces() = default;
+
+    /// Those of the bars of stretching bodies and of all bends that lie among the particles `first_particle`
+    /// .. `first_particle + particle_count - 1` of the system, which are whole bodies. What lies between
+    /// pinned particles alone never moves and is left out.
+    ElasticForces(const System& system, std::size_t first_particle, std::size_t particle_count);
+
+    [[nodiscard]] bool empty() const { return springs_.empty() && joints_.empty(); }
+
+    /// Adds the forces at these positions to `fx_n`, `fy_n`, the pinned particles' too, and returns a bound
+    /// on the square of the largest frequency of small motions about them, 1 / s^2: Gershgorin's, the largest
+    /// over all particles of w times the sum of the stiffnesses that act on it, with
+    /// max(1 / (C l), |T| / d) for a bar.
+    double add_forces(const double* x_m, const double* y_m, double* fx_n, double* fy_n) const;
+
+    /// The same bound for what is common: bars that are not pushed to less than half of their lengths, joints
+    /// of up to 0.2 radians.
+    [[nodiscard]] double common_square_frequency() const;
+
+    [[nodiscard]] double energy_j(const double* x_m, const double* y_m) const;
+
+    /// Largest tension of a bar; one that pushes counts by its size.
+    [[nodiscard]] double largest_tension_n(const double* x_m, const double* y_m) const;
+
+  private:
+    struct Spring {
+        std::uint32_t a = 0;
+        std::uint32_t b = 0;
+        double rest_m = 0.0;
+        double stiffness_n_m = 0.0;    ///< 1 / (C l)
+        double least_stretch_m = 0.0;  ///< d - l counts as at least this: 0 for a string, else without bound
+    };
+    struct Joint {
+        std::uint32_t a = 0;
+        std::uint32_t b = 0;
+        std::uint32_t c = 0;
+        double stiffness_n_m = 0.0;
+        double before_m = 0.0;  ///< |ab| at the start
+        double after_m = 0.0;   ///< |bc| at the start
+    };
+    void add_springs(const System& system, const Body& body);
+    void add_joints(const System& system, std::size_t particle_count);
+    void bound_frequencies(const double* inverse_mass_1_kg, std::size_t particle_count);
+
+    std::size_t first_particle_ = 0;
+    std::vector<Spring> springs_;
+    std::vector<Joint> joints_;
+    /// Gershgorin's bounds for bars of at least half of their lengths, and for straight joints with the
+    /// lengths of the start.
+    double spring_square_frequency_ = 0.0;
+    double joint_square_frequency_ = 0.0;
+};
+
+}  // namespace corda::sim
