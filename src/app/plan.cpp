@@ -114,7 +114,7 @@ std::string why(const scene::Scene& scene, const std::optional<scene::AutoPlan>&
 /// Steps from the start to the end, where they are known before the run: those of the plan's trial, or of a
 /// literal step.
 std::optional<double> expected_steps(const scene::Scene& scene, const std::optional<scene::AutoPlan>& proof) {
-    if (proof && !proof->plan.trials.empty()) {
+    if (proof && proof->plan.error_bound_m) {
         return static_cast<double>(proof->plan.trials.back().steps);
     }
     const bool has_default = scene.solver.method == sim::Method::kRelaxation;

@@ -144,12 +144,18 @@ void put_best_last(std::vector<Trial>& trials) {
     std::rotate(best, best + 1, trials.end());
 }
 
+/// Whether two trials in a row gave up at the same time: then a finer one would too.
+bool give_up_together(const Trial& a, const Trial& b) {
+    return a.diverged && b.diverged && a.reached_s == b.reached_s;
+}
+
 /// Runs the trials one after the other until one gets to the end, and puts the best one last.
 std::vector<Trial> run_until_one_holds(const System& system, const WorldDef& world, const PlanDef& def,
                                        std::vector<Trial> trials) {
     for (std::size_t k = 0; k < trials.size(); ++k) {
         run_trial(system, world, def, trials[k]);
-        if (!trials[k].to_the_end) continue;
+        const bool is_last = trials[k].to_the_end || (k > 0 && give_up_together(trials[k - 1], trials[k]));
+        if (!is_last) continue;
         trials.resize(k + 1);
         break;
     }
@@ -220,12 +226,22 @@ Plan plan_solver(const System& system, const WorldDef& world, const PlanDef& def
     if (scout.method == Method::kRope) {
         adopt_last(run_until_one_holds(system, world, def, graph_trials(system, world, interval_s)), plan);
         plan.reason = "rope keeps the bars of closed ropes and nets at their lengths";
+        const bool holds = !plan.trials.back().diverged;
+        const SolverDef relaxation = relaxation_solver(interval_s);
+        if (holds || !refusal(system, world, relaxation, interval_s).empty()) return plan;
+        plan.solver = relaxation;
+        plan.error_bound_m = std::nullopt;
+        plan.horizon_s = std::nullopt;
+        plan.reason =
+            "bars of a closed rope or a net come to lie in line on their way, where their tensions are not "
+            "determined and rope ends; relaxation runs it, without a bound of the error";
         return plan;
     }
     plan.solver = scout;
     plan.reason =
-        "the bars of a net depend on each other, so that no method can tell its true motion; relaxation "
-        "runs it, without a bound of the error";
+        "the bars depend on each other (diagonals, or a row straight between pins), so that no method can "
+        "tell "
+        "the true motion; relaxation runs it, without a bound of the error";
     return plan;
 }
 

@@ -31,7 +31,9 @@ struct Plan {
 /// - Nets and closed ropes of rigid bars: orders of `rope` and halved steps, cheapest first, each checked by
 /// order 8
 ///   at half its step.
-/// - Bars whose lengths depend on each other (a net with diagonals): `relaxation`, and no bound.
+/// - Bars whose lengths depend on each other (a net with diagonals), at the start or on the way:
+/// `relaxation`,
+///   and no bound.
 ///
 /// The bound is kBoundPerDifference times the largest difference of the two runs. Everything is decided by
 /// counts and positions, never by a clock: the same scene gives the same plan. Throws corda::Error

@@ -53,8 +53,9 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
     State checked{0.0, turned_system.x_m, turned_system.y_m};
     for (std::int64_t k = 0; k <= def.last_frame; ++k) {
         const double time_s = def.frames.time_s(k);
-        if (run->advance_to(time_s, state) == Status::kDiverged) return;
-        if (check->advance_to(time_s, checked) == Status::kDiverged) return;
+        trial.diverged = run->advance_to(time_s, state) == Status::kDiverged ||
+                         check->advance_to(time_s, checked) == Status::kDiverged;
+        if (trial.diverged) return;
         const double difference_m = largest_distance_m(state, checked);
         if (kBoundPerDifference * difference_m > def.tolerance_m) return;
         trial.largest_difference_m = std::max(trial.largest_difference_m, difference_m);

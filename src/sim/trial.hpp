@@ -23,6 +23,7 @@ struct Trial {
     double largest_difference_m = 0.0;  ///< up to `reached_s`
     double reached_s = 0.0;             ///< the last frame time up to which it was within the tolerance
     bool to_the_end = false;
+    bool diverged = false;  ///< one of the two runs gave up after `reached_s`
 };
 
 /// The true error may be larger than the difference to a tighter run by that run's own error. Normally 1.01

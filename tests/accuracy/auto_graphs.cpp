@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "corda/core/error.hpp"
+#include "corda/scene/auto_plan.hpp"
 #include "corda/sim/planner.hpp"
 #include "corda/sim/simulation.hpp"
 #include "support/nets.hpp"
@@ -76,6 +77,19 @@ TEST(AutoGraph, BarsThatDependOnEachOtherGetRelaxationWithoutABound) {
     EXPECT_EQ(plan.solver.method, Method::kRelaxation);
     EXPECT_FALSE(plan.error_bound_m.has_value());
     EXPECT_NE(plan.reason.find("depend on each other"), std::string::npos);
+}
+
+TEST(AutoGraph, ANetWhoseBarsComeToLieInLineGetsRelaxationWithoutABound) {
+    // A square grid let go by one corner collapses into a line at 0.27 s.
+    scene::Scene scene = scene::parse_scene(
+        "schema = 1\n[world]\nduration = 0.5\n[[net]]\n"
+        "grid = { columns = 6, rows = 6, spacing = 0.1, diagonals = false }\npinned = [[0, 0]]\n",
+        "net.toml");
+    const auto proof = scene::settle_method(scene);
+    ASSERT_TRUE(proof.has_value());
+    EXPECT_EQ(scene.solver.method, Method::kRelaxation);
+    EXPECT_FALSE(proof->error_bound_px().has_value());
+    EXPECT_NE(proof->plan.reason.find("in line on their way"), std::string::npos) << proof->plan.reason;
 }
 
 TEST(AutoGraph, RopeTakesTheSameSystemOnlyWithoutTheDiagonals) {
