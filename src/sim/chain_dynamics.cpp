@@ -153,16 +153,17 @@ void ChainDynamics::add_chain(const System& system, const Body& body, std::size_
     }
     chain.rate_1_s =
         std::max(std::sqrt(length_of(gravity_m_s2_) / chain.length_m), fastest_m_s / chain.length_m);
-    if (chain.starts_pinned && chain.ends_pinned &&
-        chain.length_m - length_of(chain.span_m) <= kTaut * chain.length_m) {
-        throw Error(ExitCode::kInvalidScene,
-                    "method exact cannot work out the tensions of a rope that is taut between two pins "
-                    "(particles " +
-                        std::to_string(from) + " and " + std::to_string(to) + ", " +
-                        std::to_string(chain.length_m) +
-                        " m apart); move the pins closer together or pin the particles between them too");
-    }
+    if (chain.starts_pinned && chain.ends_pinned) refuse_taut(chain.length_m, chain.span_m, from, to);
     chains_.push_back(chain);
+}
+
+void ChainDynamics::refuse_taut(double length_m, Vec2 span_m, std::size_t from, std::size_t to) {
+    if (length_m - length_of(span_m) > kTaut * length_m) return;
+    throw Error(ExitCode::kInvalidScene,
+                "method exact cannot work out the tensions of a rope that is taut between two pins "
+                "(particles " +
+                    std::to_string(from) + " and " + std::to_string(to) + ", " + std::to_string(length_m) +
+                    " m apart); move the pins closer together or pin the particles between them too");
 }
 
 void ChainDynamics::set_rates() {

@@ -59,6 +59,10 @@ class ChainDynamics final : public Dynamics {
     /// for a rope that leaves no room to move between two pins.
     ChainDynamics(const System& system, std::span<const Body> bodies, const WorldDef& world);
 
+    /// Throws corda::Error where a chain between two pins, particles `from` and `to` and `span_m` apart, is
+    /// too short to move.
+    static void refuse_taut(double length_m, Vec2 span_m, std::size_t from, std::size_t to);
+
     /// Velocities that would change the length of a link are taken out by the impulses that rigid links would
     /// exert.
     [[nodiscard]] const std::vector<double>& initial_state() const override { return initial_state_; }

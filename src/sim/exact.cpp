@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "corda/core/error.hpp"
 #include "corda/sim/chain_dynamics.hpp"
+#include "corda/sim/string_part.hpp"
+#include "corda/sim/terms.hpp"
 
 namespace corda::sim {
 namespace {
@@ -20,11 +23,39 @@ void refuse_imaginary_bars(const System& system) {
     }
 }
 
+/// The part that moves a string of rigid links.
+std::unique_ptr<ExactPart> string_part(const System& system, const Body& body, const WorldDef& world,
+                                       const SolverDef& def) {
+    if (!body.is_chain) {
+        throw Error(
+            ExitCode::kInvalidScene,
+            "method exact moves a string of rigid links only where it is an open chain; open it, or let "
+            "it stretch by a compliance");
+    }
+    return std::make_unique<StringPart>(system, body, world, def.tolerance);
+}
+
+/// The part that moves a body apart from all others; null for a chain of rigid links, which move together.
+std::unique_ptr<ExactPart> part_of_its_own(const System& system, const Body& body, const WorldDef& world,
+                                           const SolverDef& def) {
+    if (kTermsCompiledIn && body.material.is_string) return string_part(system, body, world, def);
+    return nullptr;
+}
+
 }  // namespace
 
 Exact::Exact(const System& system, const WorldDef& world, const SolverDef& def, double /*frame_interval_s*/) {
     refuse_imaginary_bars(system);
-    parts_.push_back(std::make_unique<OdePart>(std::make_unique<ChainDynamics>(system, system.bodies, world),
+    std::vector<Body> chains;
+    for (const Body& body : system.bodies) {
+        if (auto part = part_of_its_own(system, body, world, def)) {
+            parts_.push_back(std::move(part));
+        } else {
+            chains.push_back(body);
+        }
+    }
+    if (chains.empty()) return;
+    parts_.push_back(std::make_unique<OdePart>(std::make_unique<ChainDynamics>(system, chains, world),
                                                def.tolerance, world.drag_1_s == 0.0));
 }
 
