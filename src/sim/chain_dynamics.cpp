@@ -28,15 +28,6 @@ constexpr double kSmallFraction = 0x1p-300;
 /// open about the share by which a step missed, 1e-4 at the largest tolerance.
 constexpr int kClosingSteps = 4;
 
-double dot(Vec2 a, Vec2 b) {
-    return a.x * b.x + a.y * b.y;
-}
-
-/// A right angle to the left of it.
-Vec2 left_of(Vec2 a) {
-    return {-a.y, a.x};
-}
-
 double length_of(Vec2 a) {
     return length(a.x, a.y);
 }
@@ -69,11 +60,16 @@ struct ClosingMatrix {
 }  // namespace
 
 ChainDynamics::ChainDynamics(const System& system, std::span<const Body> bodies, const WorldDef& world)
-    : gravity_m_s2_(world.gravity_m_s2), drag_1_s_(world.drag_1_s), mass_kg_(system.mass_kg) {
+    : gravity_m_s2_(world.gravity_m_s2),
+      drag_1_s_(world.drag_1_s),
+      mass_kg_(system.mass_kg),
+      links_(system.particle_count()) {
     for (const Body& body : bodies) {
         assert(body.is_chain);
         add_body(system, body);
     }
+    if constexpr (kTermsCompiledIn) bending_ = ChainBending(system, links_, length_m_);
+    set_rates();
     const std::size_t links = length_m_.size();
     for (std::vector<double>* array : {&cosine_, &sine_, &along_, &pivot_, &weight_, &tension_n_}) {
         array->assign(links, 0.0);
@@ -146,8 +142,9 @@ void ChainDynamics::add_chain(const System& system, const Body& body, std::size_
     double fastest_m_s = length_of(at(system.vx_m_s, system.vy_m_s, from));
     for (std::size_t i = 0; i < chain.link_count; ++i) {
         const std::size_t particle = chain.particle(i);
-        const std::size_t bar = (chain.runs_backwards ? particle : particle - 1) - body.first_particle;
-        length_m_.push_back(system.bars[body.first_bar + bar].rest_m);
+        const std::size_t before = chain.runs_backwards ? particle : particle - 1;
+        links_[before] = {length_m_.size(), chain.runs_backwards, true};
+        length_m_.push_back(system.bars[body.first_bar + before - body.first_particle].rest_m);
         inverse_length_1_m_.push_back(1.0 / length_m_.back());
         inverse_mass_1_kg_.push_back(system.inverse_mass_1_kg[particle]);
         chain.length_m += length_m_.back();
@@ -156,17 +153,34 @@ void ChainDynamics::add_chain(const System& system, const Body& body, std::size_
     }
     chain.rate_1_s =
         std::max(std::sqrt(length_of(gravity_m_s2_) / chain.length_m), fastest_m_s / chain.length_m);
-    if (chain.rate_1_s == 0.0) chain.rate_1_s = 1.0;
-    if (chain.starts_pinned && chain.ends_pinned &&
-        chain.length_m - length_of(chain.span_m) <= kTaut * chain.length_m) {
-        throw Error(ExitCode::kInvalidScene,
-                    "method exact cannot work out the tensions of a rope that is taut between two pins "
-                    "(particles " +
-                        std::to_string(from) + " and " + std::to_string(to) + ", " +
-                        std::to_string(chain.length_m) +
-                        " m apart); move the pins closer together or pin the particles between them too");
-    }
+    if (chain.starts_pinned && chain.ends_pinned) refuse_taut(chain.length_m, chain.span_m, from, to);
     chains_.push_back(chain);
+}
+
+void ChainDynamics::refuse_taut(double length_m, Vec2 span_m, std::size_t from, std::size_t to) {
+    if (length_m - length_of(span_m) > kTaut * length_m) return;
+    throw Error(ExitCode::kInvalidScene,
+                "method exact cannot work out the tensions of a rope that is taut between two pins "
+                "(particles " +
+                    std::to_string(from) + " and " + std::to_string(to) + ", " + std::to_string(length_m) +
+                    " m apart); move the pins closer together or pin the particles between them too");
+}
+
+void ChainDynamics::set_rates() {
+    for (Chain& chain : chains_) {
+        if (bends()) {
+            double rigidity_n_m2 = 0.0;
+            double mass_kg = chain.starts_pinned ? 0.0 : mass_kg_[chain.first_particle];
+            for (std::size_t i = 0; i < chain.link_count; ++i) {
+                rigidity_n_m2 = std::max(rigidity_n_m2, bending_.rigidity_n_m2(chain.first_link + i));
+                mass_kg += mass_kg_[chain.particle(i)];
+            }
+            // Of a bar's slowest vibration, but for a factor of 3.5 (clamped) to 22 (free).
+            const double volume_m3 = chain.length_m * chain.length_m * chain.length_m;
+            chain.rate_1_s = std::max(chain.rate_1_s, std::sqrt(rigidity_n_m2 / (mass_kg * volume_m3)));
+        }
+        if (chain.rate_1_s == 0.0) chain.rate_1_s = 1.0;
+    }
 }
 
 void ChainDynamics::add_initial_velocities(const System& system, const Chain& chain, double* y) {
@@ -215,10 +229,21 @@ double ChainDynamics::largest_rate_1_s() const {
     return largest > 0.0 ? largest : 1.0;
 }
 
+template <bool kBends>
 void ChainDynamics::find_tensions(const Chain& chain, const double* y) {
     measure_turns(chain, y);
     measure_loads(chain, y);
+    if constexpr (kBends) add_bending_along(chain);
     solve_tensions(chain);
+}
+
+void ChainDynamics::find_all_tensions(const double* y) {
+    if (bends()) {
+        bending_.find_couples(y);
+        for (const Chain& chain : chains_) find_tensions<true>(chain, y);
+    } else {
+        for (const Chain& chain : chains_) find_tensions<false>(chain, y);
+    }
 }
 
 void ChainDynamics::measure_turns(const Chain& chain, const double* y) {
@@ -289,7 +314,47 @@ double ChainDynamics::pull_across(const Chain& chain, std::size_t link) const {
     return after - before;
 }
 
+void ChainDynamics::add_bending_along(const Chain& chain) {
+    const double* const couple = bending_.couple_n().data() + chain.first_link;
+    const double* const sine = sine_.data() + chain.first_link;
+    double* const along = along_.data() + chain.first_link;
+    for (std::size_t i = 0; i + 1 < chain.link_count; ++i) {
+        along[i] += sine[i] * couple[i + 1];
+        along[i + 1] -= sine[i] * couple[i];
+    }
+}
+
+void ChainDynamics::add_bending_across(const Chain& chain, const double* y, double* slope) const {
+    const std::size_t links = link_count();
+    const std::size_t first = chain.first_link;
+    const double* const couple = bending_.couple_n().data();
+    double* const slope_rate = slope + 2 * links;
+    for (std::size_t i = first; i < first + chain.link_count; ++i) {
+        const bool is_first = i == first;
+        const bool is_last = i + 1 == first + chain.link_count;
+        const double near_1_kg = is_first ? chain.inverse_mass_1_kg : inverse_mass_1_kg_[i - 1];
+        const double before = is_first ? 0.0 : cosine_[i - 1] * couple[i - 1];
+        const double after = is_last ? 0.0 : cosine_[i] * couple[i + 1];
+        slope_rate[i] +=
+            ((near_1_kg + inverse_mass_1_kg_[i]) * couple[i] - after - before) * inverse_length_1_m_[i];
+    }
+    if (chain.starts_pinned) return;
+    const Vec2 kick = (chain.inverse_mass_1_kg * couple[first]) * left_of({y[first], y[links + first]});
+    slope[chain.first_extra + 2] -= kick.x;
+    slope[chain.first_extra + 3] -= kick.y;
+}
+
 void ChainDynamics::derivative(const double* y, double* slope) {
+    if (bends()) {
+        bending_.find_couples(y);
+        evaluate<true>(y, slope);
+    } else {
+        evaluate<false>(y, slope);
+    }
+}
+
+template <bool kBends>
+void ChainDynamics::evaluate(const double* y, double* slope) {
     const std::size_t links = link_count();
     const double* const c = y;
     const double* const s = y + links;
@@ -302,7 +367,7 @@ void ChainDynamics::derivative(const double* y, double* slope) {
         slope_s[i] = rate[i] * c[i];
     }
     for (const Chain& chain : chains_) {
-        find_tensions(chain, y);
+        find_tensions<kBends>(chain, y);
         const std::size_t first = chain.first_link;
         const std::size_t last = first + chain.link_count - 1;
         const auto turn = [&](std::size_t i, double across) {
@@ -330,6 +395,7 @@ void ChainDynamics::derivative(const double* y, double* slope) {
         if (chain.ends_pinned) {
             slope_rate[last] -= dot(gravity_m_s2_, left_of({c[last], s[last]})) * inverse_length_1_m_[last];
         }
+        if constexpr (kBends) add_bending_across(chain, y, slope);
     }
 }
 
@@ -376,86 +442,6 @@ void ChainDynamics::close(const Chain& chain, double* y) const {
     for (std::size_t i = chain.first_link; i < end; ++i) {
         y[2 * links + i] += dot(left_of(direction(i)), multiplier);
     }
-}
-
-void ChainDynamics::positions(const double* y, State& state) const {
-    const std::size_t links = link_count();
-    for (const Pin& pin : pins_) {
-        state.x_m[pin.particle] = pin.position_m.x;
-        state.y_m[pin.particle] = pin.position_m.y;
-    }
-    for (const Chain& chain : chains_) {
-        Vec2 moved;
-        if (!chain.starts_pinned) {
-            moved = {y[chain.first_extra], y[chain.first_extra + 1]};
-            state.x_m[chain.first_particle] = chain.start_m.x + moved.x;
-            state.y_m[chain.first_particle] = chain.start_m.y + moved.y;
-        }
-        const std::size_t moving = chain.ends_pinned ? chain.link_count - 1 : chain.link_count;
-        for (std::size_t i = 0; i < moving; ++i) {
-            const std::size_t link = chain.first_link + i;
-            moved = moved + length_m_[link] * Vec2{y[link], y[links + link]};
-            state.x_m[chain.particle(i)] = chain.start_m.x + moved.x;
-            state.y_m[chain.particle(i)] = chain.start_m.y + moved.y;
-        }
-    }
-}
-
-double ChainDynamics::energy_j(const double* y) const {
-    const std::size_t links = link_count();
-    double energy_j = 0.0;
-    for (const Chain& chain : chains_) {
-        Vec2 moved;
-        Vec2 velocity;
-        const auto add = [&](std::size_t particle) {
-            energy_j += mass_kg_[particle] * (0.5 * dot(velocity, velocity) - dot(gravity_m_s2_, moved));
-        };
-        if (!chain.starts_pinned) {
-            const double* const extra = y + chain.first_extra;
-            moved = {extra[0], extra[1]};
-            velocity = {extra[2], extra[3]};
-            add(chain.first_particle);
-        }
-        for (std::size_t i = 0; i < chain.link_count; ++i) {
-            const std::size_t link = chain.first_link + i;
-            const Vec2 direction{y[link], y[links + link]};
-            moved = moved + length_m_[link] * direction;
-            velocity = velocity + (length_m_[link] * y[2 * links + link]) * left_of(direction);
-            add(chain.particle(i));
-        }
-    }
-    return energy_offset_j_ + energy_j;
-}
-
-void ChainDynamics::tensions(const double* y, std::vector<double>& tension_n) {
-    for (const Chain& chain : chains_) {
-        find_tensions(chain, y);
-    }
-    tension_n = tension_n_;
-}
-
-Loads ChainDynamics::loads(const double* y) {
-    const std::size_t links = link_count();
-    Loads loads;
-    for (Pin& pin : pins_) pin.force_n = {};
-    for (const Chain& chain : chains_) {
-        find_tensions(chain, y);
-        const std::size_t first = chain.first_link;
-        const std::size_t last = first + chain.link_count - 1;
-        for (std::size_t i = first; i <= last; ++i) {
-            loads.largest_tension_n = std::max(loads.largest_tension_n, std::abs(tension_n_[i]));
-        }
-        if (chain.starts_pinned) {
-            Vec2& force = pins_[chain.start_pin].force_n;
-            force = force + tension_n_[first] * Vec2{y[first], y[links + first]};
-        }
-        if (chain.ends_pinned) {
-            Vec2& force = pins_[chain.end_pin].force_n;
-            force = force - tension_n_[last] * Vec2{y[last], y[links + last]};
-        }
-    }
-    for (const Pin& pin : pins_) loads.pin_force_n = std::max(loads.pin_force_n, length_of(pin.force_n));
-    return loads;
 }
 
 }  // namespace corda::sim

@@ -4,8 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "corda/sim/chain_bending.hpp"
 #include "corda/sim/dynamics.hpp"
 #include "corda/sim/system.hpp"
+#include "corda/sim/terms.hpp"
 
 namespace corda::sim {
 
@@ -42,11 +44,24 @@ namespace corda::sim {
 ///
 /// nothing but positive numbers are added: no digit is lost however unequal the masses are, and the only
 /// divisions, by W_{i-1} Q_i + P_i, do not wait for each other.
+///
+/// A rope that resists bending puts a couple on every link, q_i p_i at its far particle and -q_i p_i at its
+/// near one (ChainBending says how large it is). With p_{i+1} . u_i = -S_i and p_{i+1} . p_i = C_i, the right
+/// sides of the two equations gain
+///
+///   along u_i:  W_i S_i q_{i+1} - W_{i-1} S_{i-1} q_{i-1},
+///   along p_i:  (W_{i-1} + W_i) q_i - W_i C_i q_{i+1} - W_{i-1} C_{i-1} q_{i-1},
+///
+/// and the energy the sum over all bends of k (1 - cos(angle)).
 class ChainDynamics final : public Dynamics {
   public:
-    /// Of `bodies`, chains of the system; the others are left alone. Throws corda::Error for a rope that
-    /// leaves no room to move between two pins.
+    /// Of `bodies`, chains of the system or parts of chains; the others are left alone. Throws corda::Error
+    /// for a rope that leaves no room to move between two pins.
     ChainDynamics(const System& system, std::span<const Body> bodies, const WorldDef& world);
+
+    /// Throws corda::Error where a chain between two pins, particles `from` and `to` and `span_m` apart, is
+    /// too short to move.
+    static void refuse_taut(double length_m, Vec2 span_m, std::size_t from, std::size_t to);
 
     /// Velocities that would change the length of a link are taken out by the impulses that rigid links would
     /// exert.
@@ -66,6 +81,10 @@ class ChainDynamics final : public Dynamics {
     void settle(double* y) override;
 
     void positions(const double* y, State& state) const override;
+
+    /// Writes the velocities of the particles that positions() writes, in m/s.
+    void velocities(const double* y, std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) const;
+
     [[nodiscard]] double energy_j(const double* y) const override;
     [[nodiscard]] double energy_scale_j() const override { return energy_scale_j_; }
     [[nodiscard]] Loads loads(const double* y) override;
@@ -74,6 +93,9 @@ class ChainDynamics final : public Dynamics {
     void tensions(const double* y, std::vector<double>& tension_n);
 
     [[nodiscard]] std::size_t link_count() const { return length_m_.size(); }
+
+    /// The link between a particle of the system and the next one.
+    [[nodiscard]] const ChainLink& link(std::size_t particle) const { return links_[particle]; }
 
   private:
     /// A chain between two pins, a pin and a free end, or two free ends.
@@ -106,11 +128,21 @@ class ChainDynamics final : public Dynamics {
     void add_body(const System& system, const Body& body);
     void add_chain(const System& system, const Body& body, std::size_t from, std::size_t to);
     void add_initial_velocities(const System& system, const Chain& chain, double* y);
+    void set_rates();
+    /// With couples of bending that have been found, or without any: the branch stands outside of all loops.
+    template <bool kBends>
+    void evaluate(const double* y, double* slope);
+    template <bool kBends>
     void find_tensions(const Chain& chain, const double* y);
+    void find_all_tensions(const double* y);
+    [[nodiscard]] bool bends() const { return kTermsCompiledIn && !bending_.empty(); }
     void measure_turns(const Chain& chain, const double* y);
     void measure_loads(const Chain& chain, const double* y);
     void solve_tensions(const Chain& chain);
     [[nodiscard]] double pull_across(const Chain& chain, std::size_t link) const;
+    void add_bending_along(const Chain& chain);
+    void add_bending_across(const Chain& chain, const double* y, double* slope) const;
+    void add_clamp_forces();
     void close(const Chain& chain, double* y) const;
 
     Vec2 gravity_m_s2_;
@@ -118,6 +150,8 @@ class ChainDynamics final : public Dynamics {
     std::vector<double> mass_kg_;  ///< a particle; 0 where pinned
     std::vector<Pin> pins_;
     std::vector<Chain> chains_;
+    ChainBending bending_;
+    std::vector<ChainLink> links_;  ///< one a particle of the system
     std::vector<double> initial_state_;
     std::size_t extra_count_ = 0;
     double energy_scale_j_ = 0.0;

@@ -65,12 +65,19 @@ class Dop853 {
     /// Steps until time_s() >= `time_s`.
     Status advance_to(double time_s);
 
+    /// Takes one step.
+    Status step();
+
     /// Writes the solution at `time_s`, within the last step taken (or at 0 before the first), to `y`. The
     /// first call in a step costs three evaluations of f. Not settled.
     void interpolate(double time_s, double* y);
 
     /// End of the last step taken.
     [[nodiscard]] double time_s() const { return time_s_; }
+    /// Its start; 0 before the first.
+    [[nodiscard]] double old_time_s() const { return old_time_s_; }
+    /// Length of the step that is tried next.
+    [[nodiscard]] double next_step_s() const { return next_step_s_; }
     [[nodiscard]] std::size_t size() const { return y_.size(); }
     [[nodiscard]] std::uint64_t accepted_steps() const { return accepted_; }
     [[nodiscard]] std::uint64_t rejected_steps() const { return rejected_; }
@@ -78,7 +85,6 @@ class Dop853 {
   private:
     static constexpr std::size_t kSlots = 12;
 
-    Status step();
     void accept(double step_s);
     void evaluate_stages(double step_s);
     void prepare_interpolation();

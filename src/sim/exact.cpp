@@ -8,6 +8,7 @@
 #include "corda/core/error.hpp"
 #include "corda/sim/chain_dynamics.hpp"
 #include "corda/sim/elastic_dynamics.hpp"
+#include "corda/sim/string_part.hpp"
 #include "corda/sim/terms.hpp"
 
 namespace corda::sim {
@@ -35,6 +36,18 @@ void refuse_rigid_graph(const Body& body) {
                 "rope: set method = \"rope\", or let the bars stretch by a compliance");
 }
 
+/// The part that moves a string of rigid links.
+std::unique_ptr<ExactPart> string_part(const System& system, const Body& body, const WorldDef& world,
+                                       const SolverDef& def) {
+    if (!body.is_chain) {
+        throw Error(
+            ExitCode::kInvalidScene,
+            "method exact moves a string of rigid links only where it is an open chain; open it, or let "
+            "it stretch by a compliance");
+    }
+    return std::make_unique<StringPart>(system, body, world, def.tolerance);
+}
+
 /// The part that moves a body apart from all others; null for a chain of rigid links, which move together.
 std::unique_ptr<ExactPart> part_of_its_own(const System& system, const Body& body, const WorldDef& world,
                                            const SolverDef& def) {
@@ -42,12 +55,9 @@ std::unique_ptr<ExactPart> part_of_its_own(const System& system, const Body& bod
         return std::make_unique<OdePart>(std::make_unique<ElasticDynamics>(system, body, world),
                                          def.tolerance, world.drag_1_s == 0.0);
     }
-    refuse_rigid_graph(body);
+    if (!body.material.is_string) refuse_rigid_graph(body);
     refuse_imaginary_bars(system, body);
-    if (body.material.is_string) {
-        throw Error(ExitCode::kInvalidScene,
-                    "method exact does not move strings of rigid links; let them stretch by a compliance");
-    }
+    if (kTermsCompiledIn && body.material.is_string) return string_part(system, body, world, def);
     return nullptr;
 }
 

@@ -13,15 +13,16 @@ namespace corda::sim {
 /// An adaptive Runge-Kutta method of order 8 with interpolation (Dop853). Ropes of rigid links move in the
 /// directions of these (ChainDynamics), so that they keep their lengths whatever the error; bodies whose bars
 /// stretch in the positions of their particles (ElasticDynamics), each by its own steps, which are about as
-/// long as its fastest vibration is slow. The error of the positions, relative to the rope's length, is about
-/// `SolverDef::tolerance` after some seconds; it goes on growing, in proportion to the time squared where a
-/// rope swings and exponentially where its motion is chaotic.
+/// long as its fastest vibration is slow; strings of rigid links from event to event (StringPart). The error
+/// of the positions, relative to the rope's length, is about `SolverDef::tolerance` after some seconds; it
+/// goes on growing, in proportion to the time squared where a rope swings and exponentially where its motion
+/// is chaotic.
 ///
 /// A rope that stands exactly upright stays: nothing pushes it off.
 class Exact final : public Solver {
   public:
-    /// Throws corda::Error where rigid bars join particles that are not neighbours or are no chain, where
-    /// rigid links may hang slack, and for a rigid rope that is taut between two pins. `frame_interval_s` has
+    /// Throws corda::Error where rigid bars join particles that are not neighbours or are no chain, and for a
+    /// rigid rope that is taut between two pins. `frame_interval_s` has
     /// no effect: steps follow the motion alone.
     Exact(const System& system, const WorldDef& world, const SolverDef& def, double frame_interval_s);
 

@@ -204,7 +204,7 @@ TEST(Refusals, NameTheReasonAndTheRemedy) {
     string.material.is_string = true;
     const System strings = build_system({&string, 1}, 1);
     EXPECT_NE(refusal(strings, test::rope_solver(4)).find("method exact"), std::string::npos);
-    EXPECT_NE(refusal(strings, test::exact_solver()).find("string"), std::string::npos);
+    EXPECT_EQ(refusal(strings, test::exact_solver()), "");
 
     RopeDef ring = test::straight_rope(3, 1.0, 30.0);
     ring.points_m = {{0.0, 0.0}, {1.0, 0.0}, {1.0, -1.0}, {0.0, -1.0}};
