@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <utility>
 
 #include "corda/core/error.hpp"
 #include "corda/sim/distance.hpp"
@@ -27,46 +26,73 @@ void refuse_materials(const System& system) {
         "string and bending, or use method exact");
 }
 
-}  // namespace
+/// Bodies that follow one another are scheduled as one until they have this many particles: short ropes side
+/// by side fill the lanes that one would leave empty. Long ones fill them alone, and 256 particles and their
+/// bars fit into a level 2 cache.
+constexpr std::size_t kParticlesTogether = 256;
 
-Relaxation::Relaxation(const System& system, const WorldDef& world, const SolverDef& def,
-                       double default_step_s)
-    : step_s_(def.step_s.value_or(default_step_s)),
-      sweeps_(def.sweeps),
-      x_m_(system.x_m),
-      y_m_(system.y_m),
-      unrelaxed_x_m_(x_m_),
-      unrelaxed_y_m_(y_m_),
-      mass_kg_(system.mass_kg) {
-    assert(step_s_ > 0.0 && sweeps_ >= 1);
-    refuse_materials(system);
-    keep_ = (1.0 - def.delta) * std::exp(-world.drag_1_s * step_s_);
-    const std::size_t count = system.particle_count();
-    for (std::size_t i = 0; i < count; ++i) {
-        const Vec2 weight = mass_kg_[i] * world.gravity_m_s2;
-        const Vec2 force = system.is_pinned(i) ? Vec2{} : def.force_n.value_or(weight);
-        force_x_n_.push_back(force.x);
-        force_y_n_.push_back(force.y);
-        push_x_m_.push_back(step_s_ * step_s_ / mass_kg_[i] * force.x);
-        push_y_m_.push_back(step_s_ * step_s_ / mass_kg_[i] * force.y);
-        move_x_m_.push_back(step_s_ * system.vx_m_s[i]);
-        move_y_m_.push_back(step_s_ * system.vy_m_s[i]);
-    }
-    last_move_x_m_ = move_x_m_;
-    last_move_y_m_ = move_y_m_;
-    for (const Bar& bar : system.bars) {
+/// The bars of the system that can move a particle.
+std::vector<RelaxationBar> movable_bars(const System& system, std::size_t first, std::size_t count) {
+    std::vector<RelaxationBar> bars;
+    bars.reserve(count);
+    for (std::size_t k = first; k < first + count; ++k) {
+        const Bar& bar = system.bars[k];
         const bool a_is_pinned = system.is_pinned(bar.a);
         const bool b_is_pinned = system.is_pinned(bar.b);
         if (a_is_pinned && b_is_pinned) continue;
         const double share_a = a_is_pinned ? 0.0 : (b_is_pinned ? 1.0 : 0.5);
-        constraints_.push_back({bar.a, bar.b, bar.rest_m, share_a, 1.0 - share_a});
+        bars.push_back({bar.a, bar.b, bar.rest_m, share_a, 1.0 - share_a});
+    }
+    return bars;
+}
+
+std::vector<RelaxationSchedule> schedule_bodies(const System& system) {
+    std::vector<RelaxationSchedule> schedules;
+    for (std::size_t i = 0; i < system.bodies.size();) {
+        Body together = system.bodies[i];
+        for (++i; i < system.bodies.size() && together.particle_count < kParticlesTogether; ++i) {
+            together.particle_count += system.bodies[i].particle_count;
+            together.bar_count += system.bodies[i].bar_count;
+        }
+        schedules.push_back(schedule_bars(movable_bars(system, together.first_bar, together.bar_count),
+                                          static_cast<std::uint32_t>(together.first_particle),
+                                          static_cast<std::uint32_t>(together.particle_count)));
+    }
+    return schedules;
+}
+
+}  // namespace
+
+Relaxation::Relaxation(const System& system, const WorldDef& world, const SolverDef& def,
+                       double default_step_s, RelaxationKernel kernel)
+    : step_s_(def.step_s.value_or(default_step_s)),
+      sweeps_(static_cast<std::uint64_t>(def.sweeps)),
+      kernel_(kernel),
+      mass_kg_(system.mass_kg) {
+    assert(step_s_ > 0.0 && def.sweeps >= 1);
+    refuse_materials(system);
+    motion_.keep = (1.0 - def.delta) * std::exp(-world.drag_1_s * step_s_);
+    for (std::size_t i = 0; i < system.particle_count(); ++i) {
+        const Vec2 weight = mass_kg_[i] * world.gravity_m_s2;
+        const Vec2 force = system.is_pinned(i) ? Vec2{} : def.force_n.value_or(weight);
+        const double push_m_n = step_s_ * step_s_ / mass_kg_[i];
+        force_n_.insert(force_n_.end(), {force.x, force.y});
+        motion_.push_m.insert(motion_.push_m.end(), {push_m_n * force.x, push_m_n * force.y});
+        motion_.position_m.insert(motion_.position_m.end(), {system.x_m[i], system.y_m[i]});
+        motion_.move_m.insert(motion_.move_m.end(), {step_s_ * system.vx_m_s[i], step_s_ * system.vy_m_s[i]});
+    }
+    motion_.unrelaxed_m = motion_.position_m;
+    motion_.last_move_m = motion_.move_m;
+    if (kernel_ == RelaxationKernel::kScalar) {
+        bars_ = movable_bars(system, 0, system.bars.size());
+    } else {
+        schedules_ = schedule_bodies(system);
     }
     for (const Body& body : system.bodies) {
         double force_n = 0.0;
         double length_m = 0.0;
-        for (std::size_t i = 0; i < body.particle_count; ++i) {
-            force_n += length(force_x_n_[body.first_particle + i], force_y_n_[body.first_particle + i]);
-        }
+        for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i)
+            force_n += length(force_n_[2 * i], force_n_[2 * i + 1]);
         for (std::size_t i = 0; i < body.link_count; ++i) length_m += system.bars[body.first_bar + i].rest_m;
         energy_scale_j_ += force_n * length_m;
     }
@@ -78,70 +104,48 @@ Status Relaxation::advance_to(double time_s, State& state) {
     const bool on_grid = std::abs(steps - nearest) <= kGridTolerance * std::max(1.0, nearest);
     const auto target = static_cast<std::uint64_t>(on_grid ? nearest : std::ceil(steps));
     assert(step_ <= target);
-    while (step_ < target) step();
+    if (step_ < target) advance(target - step_);
     state.time_s = time_s;
     if (on_grid) {
-        state.x_m = x_m_;
-        state.y_m = y_m_;
+        for (std::size_t i = 0; i < state.x_m.size(); ++i) {
+            state.x_m[i] = motion_.position_m[2 * i];
+            state.y_m[i] = motion_.position_m[2 * i + 1];
+        }
     } else {
         interpolate(steps - std::floor(steps), state);
     }
     return Status::kOk;
 }
 
-void Relaxation::step() {
-    const std::size_t count = x_m_.size();
+void Relaxation::advance(std::uint64_t steps) {
+    const std::size_t size = motion_.position_m.size();
     // The first step is Euler's: its move, h v(0), is there from the start.
-    if (step_ > 0) {
-        std::swap(last_move_x_m_, move_x_m_);
-        std::swap(last_move_y_m_, move_y_m_);
-        for (std::size_t i = 0; i < count; ++i) {
-            move_x_m_[i] = keep_ * last_move_x_m_[i] + push_x_m_[i];
-            move_y_m_[i] = keep_ * last_move_y_m_[i] + push_y_m_[i];
-        }
+    const bool starts_updated = step_ == 0;
+    if (starts_updated) {
+        for (std::size_t k = 0; k < size; ++k) motion_.position_m[k] += motion_.move_m[k];
+        motion_.unrelaxed_m = motion_.position_m;
     }
-    for (std::size_t i = 0; i < count; ++i) {
-        x_m_[i] += move_x_m_[i];
-        y_m_[i] += move_y_m_[i];
-        unrelaxed_x_m_[i] = x_m_[i];
-        unrelaxed_y_m_[i] = y_m_[i];
+    const RelaxationPasses passes{steps * sweeps_, sweeps_, starts_updated};
+    if (kernel_ == RelaxationKernel::kScalar) run_passes(bars_, passes, motion_);
+    for (const RelaxationSchedule& schedule : schedules_) run_passes(schedule, passes, kernel_, motion_);
+    // The move takes up what the bars moved, which the next update does in other steps and finds done here.
+    for (std::size_t k = 0; k < size; ++k) {
+        motion_.move_m[k] += motion_.position_m[k] - motion_.unrelaxed_m[k];
+        motion_.unrelaxed_m[k] = motion_.position_m[k];
     }
-    for (int sweep = 0; sweep < sweeps_; ++sweep) relax();
-    for (std::size_t i = 0; i < count; ++i) {
-        move_x_m_[i] += x_m_[i] - unrelaxed_x_m_[i];
-        move_y_m_[i] += y_m_[i] - unrelaxed_y_m_[i];
-    }
-    ++step_;
-}
-
-void Relaxation::relax() {
-    double* const x = x_m_.data();
-    double* const y = y_m_.data();
-    for (const Constraint& bar : constraints_) {
-        const double dx = x[bar.b] - x[bar.a];
-        const double dy = y[bar.b] - y[bar.a];
-        const double distance = length(dx, dy);
-        // Two particles in one place have no direction to be pushed along; other bars part them.
-        if (distance == 0.0) continue;
-        const double adjust = distance - bar.rest_m;
-        const double move_x = dx / distance * adjust;
-        const double move_y = dy / distance * adjust;
-        x[bar.a] += bar.share_a * move_x;
-        y[bar.a] += bar.share_a * move_y;
-        x[bar.b] -= bar.share_b * move_x;
-        y[bar.b] -= bar.share_b * move_y;
-    }
+    step_ += steps;
 }
 
 void Relaxation::interpolate(double fraction, State& state) const {
     // Newton's form through the states at step_ - 2, step_ - 1 and step_; a straight line in the first step.
     const double second = step_ >= 2 ? 0.5 * fraction * (fraction - 1.0) : 0.0;
-    const auto at = [&](double current, double move, double last_move) {
-        return current - (1.0 - fraction) * move + second * (move - last_move);
+    const auto at = [&](std::size_t k) {
+        const double move = motion_.move_m[k];
+        return motion_.position_m[k] - (1.0 - fraction) * move + second * (move - motion_.last_move_m[k]);
     };
-    for (std::size_t i = 0; i < x_m_.size(); ++i) {
-        state.x_m[i] = at(x_m_[i], move_x_m_[i], last_move_x_m_[i]);
-        state.y_m[i] = at(y_m_[i], move_y_m_[i], last_move_y_m_[i]);
+    for (std::size_t i = 0; i < state.x_m.size(); ++i) {
+        state.x_m[i] = at(2 * i);
+        state.y_m[i] = at(2 * i + 1);
     }
 }
 
@@ -150,12 +154,14 @@ double Relaxation::energy_j() const {
     // start.
     const double back = step_ == 0 ? 0.0 : 0.5;
     double energy_j = 0.0;
-    for (std::size_t i = 0; i < x_m_.size(); ++i) {
-        const double vx = move_x_m_[i] / step_s_;
-        const double vy = move_y_m_[i] / step_s_;
+    for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
+        const double move_x = motion_.move_m[2 * i];
+        const double move_y = motion_.move_m[2 * i + 1];
+        const double vx = move_x / step_s_;
+        const double vy = move_y / step_s_;
         energy_j += 0.5 * mass_kg_[i] * (vx * vx + vy * vy);
-        energy_j -= force_x_n_[i] * (x_m_[i] - back * move_x_m_[i]);
-        energy_j -= force_y_n_[i] * (y_m_[i] - back * move_y_m_[i]);
+        energy_j -= force_n_[2 * i] * (motion_.position_m[2 * i] - back * move_x);
+        energy_j -= force_n_[2 * i + 1] * (motion_.position_m[2 * i + 1] - back * move_y);
     }
     return energy_j;
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "corda/sim/relaxation_kernels.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::sim {
@@ -26,46 +27,31 @@ namespace corda::sim {
 /// Times that are no multiple of the step are read off the parabola through the three nearest states.
 class Relaxation final : public Solver {
   public:
-    Relaxation(const System& system, const WorldDef& world, const SolverDef& def, double default_step_s);
+    /// `kernel` has to be one of relaxation_kernels(); which one it is changes the time taken and no bit.
+    Relaxation(const System& system, const WorldDef& world, const SolverDef& def, double default_step_s,
+               RelaxationKernel kernel = relaxation_kernels().back());
 
     Status advance_to(double time_s, State& state) override;
     [[nodiscard]] double energy_j() const override;
     [[nodiscard]] double energy_scale_j() const override;
-    [[nodiscard]] bool conserves_energy() const override { return keep_ == 1.0; }
+    [[nodiscard]] bool conserves_energy() const override { return motion_.keep == 1.0; }
     [[nodiscard]] std::uint64_t steps() const override { return step_; }
 
   private:
-    struct Constraint {
-        std::uint32_t a;
-        std::uint32_t b;
-        double rest_m;
-        double share_a;  ///< of the adjustment: 0, 1/2 or 1
-        double share_b;
-    };
-    void step();
-    void relax();  ///< one pass over all bars
+    void advance(std::uint64_t steps);
     void interpolate(double fraction, State& state) const;
 
     double step_s_;
-    double keep_;  ///< share of the velocity kept a step, (1 - delta) exp(-c h)
-    int sweeps_;
-    std::uint64_t step_ = 0;  ///< x and y are the positions at step_ * step_s_
-    // The last moves and those before, and the positions before the bars' moves, are of the same shape as x
-    // and y.
-    std::vector<double> x_m_;
-    std::vector<double> y_m_;
-    std::vector<double> move_x_m_;  ///< x at step_ less x at step_ - 1; before the first step, h v(0)
-    std::vector<double> move_y_m_;
-    std::vector<double> last_move_x_m_;
-    std::vector<double> last_move_y_m_;
-    std::vector<double> unrelaxed_x_m_;
-    std::vector<double> unrelaxed_y_m_;
+    std::uint64_t sweeps_;
+    RelaxationKernel kernel_;
+    std::uint64_t step_ = 0;
+    /// The positions at step_ * step_s_, and the last move, which is x there less x a step before; before the
+    /// first step, h v(0).
+    RelaxationMotion motion_;
     std::vector<double> mass_kg_;
-    std::vector<double> force_x_n_;  ///< 0 for a pinned particle
-    std::vector<double> force_y_n_;
-    std::vector<double> push_x_m_;  ///< (h^2 / m) f
-    std::vector<double> push_y_m_;
-    std::vector<Constraint> constraints_;
+    std::vector<double> force_n_;                ///< x and y of each particle in turn; 0 for a pinned one
+    std::vector<RelaxationBar> bars_;            ///< what kScalar goes by
+    std::vector<RelaxationSchedule> schedules_;  ///< what the others go by: some bodies each
     double energy_scale_j_ = 0.0;
 };
 

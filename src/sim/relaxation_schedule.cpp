@@ -1,0 +1,154 @@
+#include "corda/sim/relaxation_schedule.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <map>
+#include <numeric>
+
+namespace corda::sim {
+namespace {
+
+constexpr std::size_t kLanes = RelaxationPacket::kLanes;
+using Lanes = std::array<std::uint32_t, kLanes>;  ///< indices of bars
+
+/// 0, 1, ... in an order in which key[i] does not fall; equal keys keep theirs.
+std::vector<std::uint32_t> sorted_by(const std::vector<std::uint32_t>& key) {
+    std::vector<std::uint32_t> place(key.empty() ? 1 : *std::max_element(key.begin(), key.end()) + 2U, 0);
+    for (const std::uint32_t k : key) ++place[k + 1U];
+    std::partial_sum(place.begin(), place.end(), place.begin());
+    std::vector<std::uint32_t> order(key.size());
+    for (std::uint32_t i = 0; i < key.size(); ++i) order[place[key[i]]++] = i;
+    return order;
+}
+
+/// Bars in packets.
+class Packing {
+  public:
+    Packing(std::span<const RelaxationBar> bars, std::uint32_t first_particle, std::uint32_t particle_count)
+        : bars_(bars), first_particle_(first_particle), end_of_last_(particle_count, 0) {
+        const std::vector<std::uint32_t> level = level_of_bars();
+        if (!level.empty()) levels_ = *std::max_element(level.begin(), level.end()) + std::size_t{1};
+        for (const std::uint32_t bar : sorted_by(level)) place(bar);
+    }
+
+    [[nodiscard]] std::size_t size() const { return lanes_.size(); }
+    [[nodiscard]] std::size_t levels() const { return levels_; }
+    [[nodiscard]] RelaxationPacket packet(std::size_t k) const {
+        RelaxationPacket packet;
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            const RelaxationBar& bar = bars_[lanes_[k][lane]];
+            packet.rest_m[lane] = bar.rest_m;
+            packet.a[lane] = 2U * bar.a;
+            packet.b[lane] = 2U * bar.b;
+        }
+        return packet;
+    }
+    [[nodiscard]] PacketShares shares(std::size_t k) const {
+        PacketShares shares;
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            const RelaxationBar& bar = bars_[lanes_[k][lane]];
+            const std::size_t at = PacketShares::kPlaceOfLane[lane];
+            shares.a[at] = shares.a[at + 1] = bar.share_a;
+            shares.b[at] = shares.b[at + 1] = bar.share_b;
+        }
+        return shares;
+    }
+    /// The number of packets up to and with the last one that holds each particle.
+    [[nodiscard]] const std::vector<std::uint32_t>& end_of_last() const { return end_of_last_; }
+    /// The first packet that holds each particle; 0 for one without a bar.
+    [[nodiscard]] std::vector<std::uint32_t> first() const {
+        std::vector<std::uint32_t> first(end_of_last_.size(), 0);
+        for (std::size_t k = lanes_.size(); k-- > 0;) {
+            for (const std::uint32_t bar : lanes_[k]) {
+                first[bars_[bar].a - first_particle_] = static_cast<std::uint32_t>(k);
+                first[bars_[bar].b - first_particle_] = static_cast<std::uint32_t>(k);
+            }
+        }
+        return first;
+    }
+
+  private:
+    [[nodiscard]] std::vector<std::uint32_t> level_of_bars() const {
+        std::vector<std::uint32_t> next(end_of_last_.size(), 0);
+        std::vector<std::uint32_t> level;
+        level.reserve(bars_.size());
+        for (const RelaxationBar& bar : bars_) {
+            std::uint32_t& of_a = next[bar.a - first_particle_];
+            std::uint32_t& of_b = next[bar.b - first_particle_];
+            level.push_back(std::max(of_a, of_b));
+            of_a = of_b = level.back() + 1U;
+        }
+        return level;
+    }
+
+    /// The first packet from `k` on that has room. Paths are halved on the way, so that a long row of full
+    /// packets is walked once.
+    std::uint32_t with_room(std::uint32_t k) {
+        while (next_[k] != k) {
+            next_[k] = next_[next_[k]];
+            k = next_[k];
+        }
+        return k;
+    }
+
+    void place(std::uint32_t bar) {
+        std::uint32_t& of_a = end_of_last_[bars_[bar].a - first_particle_];
+        std::uint32_t& of_b = end_of_last_[bars_[bar].b - first_particle_];
+        const std::uint32_t k = with_room(std::max(of_a, of_b));
+        if (k == lanes_.size()) {
+            lanes_.push_back({bar, bar, bar, bar});
+            filled_.push_back(0);
+            next_.push_back(k + 1U);
+        }
+        // A repeated bar fills the lanes left over.
+        const std::size_t lane = filled_[k]++;
+        if (lane == 1) lanes_[k] = {lanes_[k][0], bar, lanes_[k][0], bar};
+        if (lane == 2) lanes_[k][3] = bar;
+        lanes_[k][lane] = bar;
+        if (filled_[k] == kLanes) next_[k] = k + 1U;
+        of_a = of_b = k + 1U;
+    }
+
+    std::span<const RelaxationBar> bars_;
+    std::uint32_t first_particle_;
+    std::size_t levels_ = 0;
+    std::vector<std::uint32_t> end_of_last_;
+    std::vector<Lanes> lanes_;
+    std::vector<std::uint8_t> filled_;       ///< lanes in use, a packet
+    std::vector<std::uint32_t> next_ = {0};  ///< packet k where it has room, else one behind it
+};
+
+}  // namespace
+
+RelaxationSchedule schedule_bars(std::span<const RelaxationBar> bars, std::uint32_t first_particle,
+                                 std::uint32_t particle_count) {
+    assert(first_particle + particle_count <= 1U << 31U);  // twice an index has to fit
+    const Packing packing(bars, first_particle, particle_count);
+    RelaxationSchedule schedule;
+    std::map<PacketShares, std::uint32_t> index_of;
+    schedule.packets.reserve(packing.size());
+    for (std::size_t k = 0; k < packing.size(); ++k) {
+        schedule.packets.push_back(packing.packet(k));
+        const PacketShares shares = packing.shares(k);
+        const auto [found, is_new] =
+            index_of.emplace(shares, static_cast<std::uint32_t>(schedule.shares.size()));
+        if (is_new) schedule.shares.push_back(shares);
+        schedule.share_index.push_back(found->second);
+    }
+    schedule.levels = packing.levels();
+    const std::vector<std::uint32_t> first = packing.first();
+    schedule.updates = sorted_by(first);
+    schedule.update_begin.assign(packing.size() + 1, particle_count);
+    for (std::uint32_t j = particle_count, k = static_cast<std::uint32_t>(packing.size()); k-- > 0;) {
+        while (j > 0 && first[schedule.updates[j - 1U]] >= k) --j;
+        schedule.update_begin[k] = j;
+    }
+    for (std::uint32_t i = 0; i < particle_count; ++i) {
+        const std::uint32_t end = packing.end_of_last()[i];
+        if (end > first[i]) schedule.lag = std::max<std::size_t>(schedule.lag, end - first[i]);
+    }
+    for (std::uint32_t& particle : schedule.updates) particle += first_particle;
+    return schedule;
+}
+
+}  // namespace corda::sim
