@@ -5,7 +5,7 @@
 #include <string>
 
 #include "corda/core/error.hpp"
-#include "corda/sim/chain_dynamics.hpp"
+#include "corda/sim/chain_part.hpp"
 
 namespace corda::sim {
 namespace {
@@ -24,8 +24,15 @@ void refuse_imaginary_bars(const System& system) {
 
 Exact::Exact(const System& system, const WorldDef& world, const SolverDef& def, double /*frame_interval_s*/) {
     refuse_imaginary_bars(system);
-    parts_.push_back(std::make_unique<OdePart>(std::make_unique<ChainDynamics>(system, system.bodies, world),
-                                               def.tolerance, world.drag_1_s == 0.0));
+    if (!system.bends.empty()) {
+        parts_.push_back(
+            std::make_unique<OdePart>(std::make_unique<ChainDynamics>(system, system.bodies, world),
+                                      def.tolerance, world.drag_1_s == 0.0));
+        return;
+    }
+    for (const Body& body : system.bodies) {
+        parts_.push_back(std::make_unique<ChainPart>(system, body, world, def.tolerance));
+    }
 }
 
 Status Exact::advance_to(double time_s, State& state) {
