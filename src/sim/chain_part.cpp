@@ -28,11 +28,6 @@ struct Accuracy {
 constexpr Accuracy kAccuracies[] = {
     {0.3, 4, 0.01}, {1e-2, 8, 0.0025}, {1e-5, 12, 0.0025}, {1e-12, 16, 0.0025}, {0.0, 20, 0.0025}};
 
-/// With more links than this the series leave the processor's own cache, and the time that it takes to fetch
-/// them, which grows with the square of the order, calls for fewer terms.
-constexpr std::size_t kManyLinks = 3000;
-constexpr std::size_t kLargestOrderOfMany = 8;
-
 /// Lower than a rounding error of the rates, as it counts for the last term alone.
 constexpr double kSmallestTerm = 1e-18;
 
@@ -48,11 +43,9 @@ ChainPart::ChainPart(const System& system, const Body& body, const WorldDef& wor
         const Accuracy& accuracy =
             *std::find_if(std::begin(kAccuracies), std::end(kAccuracies),
                           [&](const Accuracy& row) { return tolerance >= row.least_tolerance; });
-        const bool has_many = chain.link_count > kManyLinks;
-        const std::size_t order = has_many ? std::min(accuracy.order, kLargestOrderOfMany) : accuracy.order;
         StepControl control = step_control(chain.rate_1_s, tolerance);
         control.tolerance = std::max(accuracy.share * tolerance, kSmallestTerm);
-        movers_.push_back({chain, ChainSeries(dynamics_, chain, order), control});
+        movers_.push_back({chain, ChainSeries(dynamics_, chain, accuracy.order), control});
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 #include <string>
 
 #include "corda/core/error.hpp"
@@ -9,6 +10,11 @@
 
 namespace corda::sim {
 namespace {
+
+/// The series of a longer rope do not fit into a processor's own cache, and fetching them costs more than the
+/// longer steps save: at 1000 links they take half the time of Dop853, at 3000 the same, at 100 000 1.6 times
+/// as much.
+constexpr std::size_t kMostLinksOfSeries = 2000;
 
 void refuse_imaginary_bars(const System& system) {
     for (const Bar& bar : system.bars) {
@@ -24,14 +30,14 @@ void refuse_imaginary_bars(const System& system) {
 
 Exact::Exact(const System& system, const WorldDef& world, const SolverDef& def, double /*frame_interval_s*/) {
     refuse_imaginary_bars(system);
-    if (!system.bends.empty()) {
-        parts_.push_back(
-            std::make_unique<OdePart>(std::make_unique<ChainDynamics>(system, system.bodies, world),
-                                      def.tolerance, world.drag_1_s == 0.0));
-        return;
-    }
     for (const Body& body : system.bodies) {
-        parts_.push_back(std::make_unique<ChainPart>(system, body, world, def.tolerance));
+        if (system.bends.empty() && body.link_count <= kMostLinksOfSeries) {
+            parts_.push_back(std::make_unique<ChainPart>(system, body, world, def.tolerance));
+        } else {
+            parts_.push_back(std::make_unique<OdePart>(
+                std::make_unique<ChainDynamics>(system, std::span<const Body>(&body, 1), world),
+                def.tolerance, world.drag_1_s == 0.0));
+        }
     }
 }
 

@@ -11,10 +11,10 @@
 namespace corda::sim {
 
 /// Ropes of rigid links in the directions of their links (ChainDynamics), by Taylor series in time
-/// (ChainPart), or, where they resist bending, by an adaptive Runge-Kutta method of order 8 with
-/// interpolation (Dop853). Links keep their lengths whatever the error. That of the positions, relative to
-/// the rope's length, is about `SolverDef::tolerance` after some seconds; it goes on growing, in proportion
-/// to the time squared where a rope swings and exponentially where its motion is chaotic.
+/// (ChainPart), or, where they are very long or resist bending, by an adaptive Runge-Kutta method of order 8
+/// with interpolation (Dop853). Links keep their lengths whatever the error. That of the positions, relative
+/// to the rope's length, is about `SolverDef::tolerance` after some seconds; it goes on growing, in
+/// proportion to the time squared where a rope swings and exponentially where its motion is chaotic.
 ///
 /// A rope that stands exactly upright stays: nothing pushes it off.
 class Exact final : public Solver {

@@ -287,5 +287,16 @@ TEST(ReportRopeR11, StaysOnTheReference) {
     EXPECT_EQ(rows, 4);
 }
 
+TEST(ReportRopeR11, IsCloserThanTheToleranceAtEveryOrderOfTheSeries) {
+    constexpr Vec2 kTip{3.798605351207355, -39.0037520751634};  // at 10 s
+    for (const double tolerance : {1.0, 0.1, 1e-3, 1e-6}) {
+        test::ExactRun run(test::report_rope(40), tolerance, WorldDef{{0.0, -9.8}, 10.0, 0.0});
+        ASSERT_TRUE(run.advance_to(10.0));
+        const double error = run.tip_error_m(kTip.x, kTip.y) / 39.2;
+        std::printf("R11 at %g: %.1e of the length\n", tolerance, error);
+        EXPECT_LT(error, 1e-3 * tolerance);  // measured 8.9e-7, 2.1e-9, 4.0e-10, 4.8e-12
+    }
+}
+
 }  // namespace
 }  // namespace corda::sim
