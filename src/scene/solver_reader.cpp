@@ -64,7 +64,7 @@ sim::SolverDef read_solver(const TableReader& solver) {
     sim::SolverDef def;
     def.method = read_method(solver);
     solver.read_number("tolerance_px", def.tolerance_px, kPositive, "give a tolerance in pixels");
-    solver.read_number("tolerance", def.tolerance, {.low = 1e-15, .high = 1e-2},
+    solver.read_number("tolerance", def.tolerance, {.low = 1e-15, .high = 1.0},
                        "give a tolerance relative to the rope's length");
     read_order(solver, def.order);
     solver.read_number("step", def.step_s, {.low = 1e-9}, "give a step in s");

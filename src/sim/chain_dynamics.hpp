@@ -55,6 +55,28 @@ namespace corda::sim {
 /// and the energy the sum over all bends of k (1 - cos(angle)).
 class ChainDynamics final : public Dynamics {
   public:
+    /// A chain between two pins, a pin and a free end, or two free ends.
+    struct Chain {
+        std::size_t first_link = 0;
+        std::size_t link_count = 0;
+        std::size_t first_particle = 0;  ///< the one that link 0 starts at
+        bool runs_backwards = false;     ///< towards lower indices of particles
+        bool starts_pinned = true;
+        bool ends_pinned = false;
+        std::size_t start_pin = 0;       ///< among pins_, where the start is pinned
+        std::size_t end_pin = 0;         ///< where the end is
+        std::size_t first_extra = 0;     ///< of x, y, vx, vy in a state, where the start is not pinned
+        Vec2 start_m;                    ///< of the first particle
+        Vec2 span_m;                     ///< from the first particle to the last at t = 0
+        double inverse_mass_1_kg = 0.0;  ///< of the first particle
+        double length_m = 0.0;
+        double rate_1_s = 0.0;  ///< how fast it moves by about its own length
+        /// The particle at the far end of a link counted from the chain's first.
+        [[nodiscard]] std::size_t particle(std::size_t link) const {
+            return runs_backwards ? first_particle - link - 1 : first_particle + link + 1;
+        }
+    };
+
     /// Of `bodies`, chains of the system or parts of chains; the others are left alone. Throws corda::Error
     /// for a rope that leaves no room to move between two pins.
     ChainDynamics(const System& system, std::span<const Body> bodies, const WorldDef& world);
@@ -92,33 +114,21 @@ class ChainDynamics final : public Dynamics {
     /// Writes the tension of every link in the state's order; positive pulls.
     void tensions(const double* y, std::vector<double>& tension_n);
 
+    /// Turns the links of a chain between two pins, and their rates, by the least that closes it.
+    void close(const Chain& chain, double* y) const;
+
     [[nodiscard]] std::size_t link_count() const { return length_m_.size(); }
+    [[nodiscard]] const std::vector<Chain>& chains() const { return chains_; }
+    [[nodiscard]] Vec2 gravity_m_s2() const { return gravity_m_s2_; }
+    [[nodiscard]] double drag_1_s() const { return drag_1_s_; }
+    [[nodiscard]] double length_m(std::size_t link) const { return length_m_[link]; }
+    /// Of the particle at the link's far end; 0 where pinned.
+    [[nodiscard]] double inverse_mass_1_kg(std::size_t link) const { return inverse_mass_1_kg_[link]; }
 
     /// The link between a particle of the system and the next one.
     [[nodiscard]] const ChainLink& link(std::size_t particle) const { return links_[particle]; }
 
   private:
-    /// A chain between two pins, a pin and a free end, or two free ends.
-    struct Chain {
-        std::size_t first_link = 0;
-        std::size_t link_count = 0;
-        std::size_t first_particle = 0;  ///< the one that link 0 starts at
-        bool runs_backwards = false;     ///< towards lower indices of particles
-        bool starts_pinned = true;
-        bool ends_pinned = false;
-        std::size_t start_pin = 0;       ///< among pins_, where the start is pinned
-        std::size_t end_pin = 0;         ///< where the end is
-        std::size_t first_extra = 0;     ///< of x, y, vx, vy in a state, where the start is not pinned
-        Vec2 start_m;                    ///< of the first particle
-        Vec2 span_m;                     ///< from the first particle to the last at t = 0
-        double inverse_mass_1_kg = 0.0;  ///< of the first particle
-        double length_m = 0.0;
-        double rate_1_s = 0.0;  ///< how fast it moves by about its own length
-        /// The particle at the far end of a link counted from the chain's first.
-        [[nodiscard]] std::size_t particle(std::size_t link) const {
-            return runs_backwards ? first_particle - link - 1 : first_particle + link + 1;
-        }
-    };
     struct Pin {
         std::size_t particle = 0;
         Vec2 position_m;
@@ -143,7 +153,6 @@ class ChainDynamics final : public Dynamics {
     void add_bending_along(const Chain& chain);
     void add_bending_across(const Chain& chain, const double* y, double* slope) const;
     void add_clamp_forces();
-    void close(const Chain& chain, double* y) const;
 
     Vec2 gravity_m_s2_;
     double drag_1_s_;

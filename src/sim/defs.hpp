@@ -77,8 +77,7 @@ enum class Method { kAuto, kRelaxation, kRope, kExact };
 struct SolverDef {
     Method method = Method::kAuto;
     double tolerance_px = 0.1;  ///< auto: bound of the displayed position error; > 0
-    double tolerance =
-        1e-9;  ///< exact: error after some seconds, relative to the rope's length; 1e-15 .. 1e-2
+    double tolerance = 1e-9;  ///< exact: error after some seconds, relative to the rope's length; 1e-15 .. 1
     std::optional<double> step_s;  ///< relaxation, rope: > 0; default one frame (relaxation), chosen (rope)
     int order = 4;                 ///< rope: order of the composition, 2, 4, 6 or 8
     int reach = 7;                 ///< relaxation: bars to the next 1..reach particles; >= 1

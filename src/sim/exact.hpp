@@ -10,13 +10,14 @@
 
 namespace corda::sim {
 
-/// An adaptive Runge-Kutta method of order 8 with interpolation (Dop853). Ropes of rigid links move in the
-/// directions of these (ChainDynamics), so that they keep their lengths whatever the error; bodies whose bars
-/// stretch in the positions of their particles (ElasticDynamics), each by its own steps, which are about as
-/// long as its fastest vibration is slow; strings of rigid links from event to event (StringPart). The error
-/// of the positions, relative to the rope's length, is about `SolverDef::tolerance` after some seconds; it
-/// goes on growing, in proportion to the time squared where a rope swings and exponentially where its motion
-/// is chaotic.
+/// Every body moves by itself, at its own pace. Ropes of rigid links in the directions of these
+/// (ChainDynamics), so that they keep their lengths whatever the error: by Taylor series in time (ChainPart)
+/// or, where they are very long or resist bending, by an adaptive Runge-Kutta method of order 8 with
+/// interpolation (Dop853). Bodies whose bars stretch move in the positions of their particles
+/// (ElasticDynamics), by steps about as long as their fastest vibration is slow; strings of rigid links from
+/// event to event (StringPart). The error of the positions, relative to the rope's length, is about
+/// `SolverDef::tolerance` after some seconds; it goes on growing, in proportion to the time squared where a
+/// rope swings and exponentially where its motion is chaotic.
 ///
 /// A rope that stands exactly upright stays: nothing pushes it off.
 class Exact final : public Solver {

@@ -23,7 +23,7 @@ constexpr double kSmallestTolerance = 1e-15;
 }  // namespace
 
 StepControl step_control(double rate_1_s, double tolerance) {
-    assert(tolerance >= kSmallestTolerance && tolerance <= 1e-2);
+    assert(tolerance >= kSmallestTolerance && tolerance <= 1.0);
     return {std::max(kShareOfAStep * tolerance, kSmallestTolerance), kFirstStep / rate_1_s,
             kLargestStep / rate_1_s, kSmallestStep / rate_1_s};
 }

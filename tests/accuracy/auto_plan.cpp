@@ -23,14 +23,14 @@ TEST_P(AutoBound, IsTrueUnderTheHorizon) {
     const FrameRate frames(Rational{60, 1});
     const PlanDef def{tolerance * chain.length_m, frames, frames.last_frame_within(chain.time_s)};
     const Plan plan = plan_solver(system, WorldDef{}, def);
-    EXPECT_LE(plan.error_bound_m, def.tolerance_m);
+    EXPECT_LE(plan.error_bound_m.value(), def.tolerance_m);
     if (plan.horizon_s) return;  // nothing is claimed at the row's time
     Simulation run(system, WorldDef{}, plan.solver, frames.interval_s());
     ASSERT_EQ(run.advance_to(chain.time_s), Status::kOk);
     const double error_m =
         std::hypot(run.state().x_m.back() - chain.tip_m.x, run.state().y_m.back() - chain.tip_m.y);
     // Measured: the error is 0.01 .. 0.4 of the bound.
-    EXPECT_LE(error_m, plan.error_bound_m + 1e-13 * chain.length_m);
+    EXPECT_LE(error_m, plan.error_bound_m.value() + 1e-13 * chain.length_m);
 }
 
 INSTANTIATE_TEST_SUITE_P(R5, AutoBound,
@@ -104,7 +104,7 @@ TEST(AutoBound, IsTrueForTheSourceReportsStart) {
             numbers >> expected.x >> expected.y;
             const double error_m =
                 std::hypot(run.state().x_m[i] - expected.x, run.state().y_m[i] - expected.y);
-            EXPECT_LE(error_m, plan.error_bound_m) << "particle " << i << " at " << time_s << " s";
+            EXPECT_LE(error_m, plan.error_bound_m.value()) << "particle " << i << " at " << time_s << " s";
         }
         ++rows;
     }

@@ -335,15 +335,17 @@ TEST(Mirrored, MovesTheSame) {
     EXPECT_LT(apart_m, 1e-12);  // measured 3.1e-15
 }
 
-TEST(Bending, OfNothingHasTheBitsOfARopeWithout) {
+TEST(Bending, OfNextToNothingMovesLikeARopeWithout) {
+    // Two integrators: with bends it is Dop853, without a Taylor series.
     RopeDef rope = bent_rope(12);
     rope.bending_n_m2 = 0.0;
     test::ExactRun without(rope);
     rope.bending_n_m2 = 1e-300;
     test::ExactRun with(rope);
     ASSERT_TRUE(without.advance_to(1.0) && with.advance_to(1.0));
-    EXPECT_EQ(without.state.x_m, with.state.x_m);
-    EXPECT_EQ(without.state.y_m, with.state.y_m);
+    const double apart_m = distance_m(without.state, with.state.x_m, with.state.y_m);
+    std::printf("next to no bending: %.1e m apart\n", apart_m);
+    EXPECT_LT(apart_m, 1e-9);  // measured 3.8e-11
 }
 
 }  // namespace

@@ -120,7 +120,9 @@ TEST(SnapR9, HappensWhereDragLetsItFallTo) {
     EXPECT_LT(std::abs(kept), 1e-10);      // measured 1.2e-12
 }
 
-TEST(TautPendulum, HasTheBitsOfARigidOne) {
+TEST(TautPendulum, MovesLikeARigidOne) {
+    // Two integrators: the string's is Dop853, the rigid rope's a Taylor series.
+    double apart_m = 0.0;
     for (const int links : {1, 5}) {
         RopeDef rope = test::straight_rope(links, 1.0, 40.0);
         test::ExactRun rigid(rope);
@@ -128,14 +130,18 @@ TEST(TautPendulum, HasTheBitsOfARigidOne) {
         test::ExactRun string(rope);
         for (const double time_s : {0.1, 1.0, 4.0}) {
             ASSERT_TRUE(rigid.advance_to(time_s) && string.advance_to(time_s));
-            EXPECT_EQ(rigid.state.x_m, string.state.x_m);
-            EXPECT_EQ(rigid.state.y_m, string.state.y_m);
+            for (std::size_t i = 0; i < rope.points_m.size(); ++i) {
+                apart_m = std::max(apart_m, length(rigid.state.x_m[i] - string.state.x_m[i],
+                                                   rigid.state.y_m[i] - string.state.y_m[i]));
+            }
         }
         EXPECT_TRUE(rigid.solver.conserves_energy());
         EXPECT_FALSE(string.solver.conserves_energy());
-        EXPECT_NEAR(rigid.solver.loads()->largest_tension_n, string.solver.loads()->largest_tension_n, 1e-12);
-        EXPECT_NEAR(rigid.solver.energy_j(), string.solver.energy_j(), 1e-13);
+        EXPECT_NEAR(rigid.solver.loads()->largest_tension_n, string.solver.loads()->largest_tension_n, 1e-8);
+        EXPECT_NEAR(rigid.solver.energy_j(), string.solver.energy_j(), 1e-9);
     }
+    std::printf("taut: %.1e m apart\n", apart_m);
+    EXPECT_LT(apart_m, 1e-9);  // measured 2.6e-11
 }
 
 TEST(Circle, IsLeftWhereTheTensionVanishesAndMetAgainAtThreeTimesTheAngle) {

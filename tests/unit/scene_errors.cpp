@@ -366,7 +366,7 @@ TEST(SceneErrors, Solver) {
         {method("relaxation", "force = 3"),
          "swing.toml:5:9: solver.force: ", "3 is an integer, not a pair of numbers"},
         {solver("tolerance_px = 0"), "swing.toml:4:16: solver.tolerance_px: ", "0 is not > 0"},
-        {method("exact", "tolerance = 0.02"), "swing.toml:5:13: solver.tolerance: ", "0.02 is not <= 0.01"},
+        {method("exact", "tolerance = 1.5"), "swing.toml:5:13: solver.tolerance: ", "1.5 is not <= 1"},
         {method("rope", "order = 3"),
          "swing.toml:5:9: solver.order: ", "3 is not even; give an order of 2, 4, 6 or 8"},
         {method("rope", "order = 10"), "swing.toml:5:9: solver.order: ", "10 is over the limit of 8"},

@@ -1,0 +1,118 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "corda/sim/chain_dynamics.hpp"
+
+namespace corda::sim {
+
+/// The highest order of a ChainSeries.
+inline constexpr std::size_t kLargestSeriesOrder = 32;
+
+/// Links that a ChainSeries works on together.
+inline constexpr std::size_t kSeriesLanes = 4;
+
+/// Coefficients of a power series in time.
+using Series = std::array<double, kLargestSeriesOrder + 1>;
+
+/// What a ChainSeries works with. Links are kept in blocks of kSeriesLanes; what is left of the last block is
+/// zero. A joint has the index of the link before it. Arrays of one entry a link have some room at both ends.
+struct SeriesArrays {
+    /// Series that a block has a row of coefficients for.
+    enum Row : std::size_t {
+        kCosine,       ///< W C of a joint
+        kSine,         ///< W S
+        kTension,      ///< T of the link before it
+        kNextTension,  ///< of the link after it
+        kRate,         ///< w of a link
+        kTurn,         ///< w of the link after a joint less w of the one before
+        kRows
+    };
+    struct alignas(kSeriesLanes * sizeof(double)) Lanes {
+        std::array<double, kSeriesLanes> lane{};
+    };
+
+    std::size_t order = 0;  ///< of the rates
+    std::size_t links = 0;
+    std::size_t blocks = 0;
+    std::size_t meeting = 0;  ///< the link at which the eliminations from both ends meet; first of a block
+    double drag_1_s = 0.0;
+    double first_inverse_mass_1_kg = 0.0;  ///< of the particle at the chain's start
+    Vec2 start_pull_m_s2;                  ///< gravity where the start is pinned
+    Vec2 end_pull_m_s2;                    ///< where the end is
+    Vec2 fall_m_s2;                        ///< where the start is not
+    double unit_s = 1.0;                   ///< coefficient k is of (t / unit_s)^k
+
+    // Directions of the first and the last link; velocity and place of the first particle where not pinned.
+    Series first_c, first_s, last_c, last_s, vx, vy, x, y;
+
+    std::vector<Lanes> rows;  ///< kRows series of order + 1 coefficients a block
+    std::vector<Lanes> flat;  ///< holds the arrays from here on
+    double* length_m = nullptr;
+    double* inverse_length_1_m = nullptr;
+    double* inverse_mass_1_kg = nullptr;  ///< of the particle at a link's far end
+    double* c = nullptr;                  ///< at t = 0, as s and rate
+    double* s = nullptr;
+    double* rate = nullptr;
+    double* inverse_pivot = nullptr;
+    double* weight = nullptr;       ///< of a joint: the share of a link's row, or tension, in its neighbour's
+    double* load = nullptr;         ///< right-hand sides of the tensions
+    double* load_before = nullptr;  ///< part of a load that comes from the joint before
+    double* across_before = nullptr;  ///< pull across a link from the joint before
+    double* across_after = nullptr;   ///< from the joint after
+    double* tension = nullptr;
+    double* scratch = nullptr;
+
+    [[nodiscard]] double* row(std::size_t block, Row which, std::size_t k) {
+        return rows[(block * kRows + which) * (order + 1) + k].lane.data();
+    }
+};
+
+/// The motion of one chain of a ChainDynamics as a power series in time.
+///
+/// Products of series are sums of products of their coefficients, so the equations of ChainDynamics give the
+/// coefficients one after the other. With v_i = w_{i+1} - w_i, at the joints of two links,
+///
+///   C_i' = -v_i S_i,   S_i' = v_i C_i,
+///
+/// and the tensions' coefficient k obeys the tridiagonal system of C_i(0), whatever k is: it is factorised
+/// once. No direction but those of the links next to a pin enters. The elimination runs from both ends to the
+/// middle, so two sums that have to wait for their last term run side by side. An order costs about 3
+/// products and sums a link and order below it.
+///
+/// Source: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer
+/// 1993, I.8 (recursive computation of coefficients); A. Jorba, M. Zou, A software package for the numerical
+/// integration of ODEs by means of high-order Taylor methods, Experimental Mathematics 14 (2005) 99-117
+/// (steps from the last coefficients).
+///
+/// The same bits come out on every CPU: with wider registers the same operations are done on more links at a
+/// time.
+class ChainSeries {
+  public:
+    /// `order`: of the rates' series, 4 .. kLargestSeriesOrder. `chain` is one of `dynamics`.
+    ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Chain& chain, std::size_t order);
+
+    /// Expands the motion that goes on from the chain's part of the state `y`. `unit_s`: about the time that
+    /// the series is wanted for, so that no coefficient leaves the range of numbers; > 0.
+    void expand(const double* y, double unit_s);
+
+    /// The time from there at which the last terms reach `tolerance` of a rate, 1/s, and the chain's own rate
+    /// together; infinite where they are zero, 0 where a coefficient is not finite.
+    [[nodiscard]] double reach_s(double tolerance);
+
+    /// Writes the chain's part of the state at `time_s` after the one that was expanded to `y`.
+    void evaluate(double time_s, double* y);
+
+  private:
+    std::size_t first_link_;
+    std::size_t link_stride_;  ///< links of all chains: between c, s and w in a state
+    std::size_t first_extra_;
+    bool starts_pinned_;
+    double rate_1_s_;
+    double length_m_;
+    SeriesArrays arrays_;
+};
+
+}  // namespace corda::sim
