@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "corda/study/measure.hpp"
@@ -19,11 +20,17 @@ struct StudyDef {
     std::vector<std::string> chapters;  ///< names out of chapter_names(); empty: all that apply
 };
 
+/// Key of the column that says why a run failed: a row with a text in it is shown as failed by every writer.
+inline constexpr std::string_view kFailureKey = "failure";
+
 /// Hears how far a study is: `done` of `of` runs, `what` in words. What it throws ends the study.
 using Progress = std::function<void(int done, int of, const std::string& what)>;
 
 /// The names by which chapters are asked for, in the order of a report: [a-z0-9_]+.
 [[nodiscard]] std::vector<std::string> chapter_names();
+
+/// How the runs of a study are timed.
+[[nodiscard]] Timing study_timing(bool quick);
 
 /// Runs a study: title and chapters of its report; `setting` is left empty (setting.hpp fills it). Throws
 /// corda::Error: kUsage for an unknown chapter, kInvalidScene for a problem that no method can run.
