@@ -18,7 +18,7 @@ inline constexpr const char* kPageStyle = R"css(
 }
 * { box-sizing: border-box; }
 body {
-  margin: 0 auto; padding: 2.5rem 1.5rem 5rem; max-width: 66rem; background: var(--page); color: var(--ink);
+  margin: 0 auto; padding: 2.5rem 1.5rem 5rem; max-width: 70rem; background: var(--page); color: var(--ink);
   font: 1.0625rem/1.6 system-ui, "Segoe UI", "Helvetica Neue", Arial, sans-serif;
 }
 h1 { font-size: 2.1rem; line-height: 1.2; letter-spacing: -0.015em; margin: 0 0 1.5rem; text-wrap: balance; }
@@ -32,17 +32,18 @@ nav ol { margin: 0; padding-left: 1.4rem; }
 .scroll { overflow-x: auto; margin: 2rem 0 0.5rem; }
 table { border-collapse: collapse; font-size: 0.9375rem; line-height: 1.4; font-variant-numeric: tabular-nums; }
 caption { text-align: left; font-weight: 600; padding: 0 0 0.6rem; white-space: nowrap; }
-th, td { padding: 0.35rem 0.9rem; text-align: left; vertical-align: top; }
+th, td { padding: 0.35rem 0.7rem; text-align: left; vertical-align: top; }
 th:first-child, td:first-child { padding-left: 0.6rem; }
-thead th { font-weight: 600; color: var(--soft); border-bottom: 2px solid var(--line); vertical-align: bottom; }
+thead th, thead .number { font-weight: 600; color: var(--soft); border-bottom: 2px solid var(--line); vertical-align: bottom; white-space: normal; }
 tbody tr { border-bottom: 1px solid var(--line); }
 tbody tr:nth-child(even) { background: var(--band); }
-.number { text-align: right; white-space: nowrap; }
-td.text { min-width: 7rem; max-width: 26rem; }
+.number { text-align: right; }
+td { white-space: nowrap; }
+td.long { white-space: normal; min-width: 18rem; }
 .missing { color: var(--soft); text-align: center; }
 tbody tr.failed { background: var(--bad-band); color: var(--bad); }
-tr.failed .number { text-decoration: line-through; }
 .note { color: var(--soft); font-size: 0.9375rem; }
+table.setting td { white-space: normal; }
 table.setting th { font-weight: 500; color: var(--soft); white-space: nowrap; }
 figure { margin: 2rem 0; padding: 0.5rem; border: 1px solid var(--line); border-radius: 8px; }
 figure svg { display: block; width: 100%; height: auto; }

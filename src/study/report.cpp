@@ -69,6 +69,14 @@ bool is_numeric(const Table& table, std::size_t column) {
            !holds([](const Cell& cell) { return std::holds_alternative<std::string>(cell); });
 }
 
+bool is_for_people(const Table& table, std::size_t column) {
+    if (table.columns[column].key != kFailureKey) return true;
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        if (is_failed(table, row)) return true;
+    }
+    return false;
+}
+
 std::string short_number(double value) {
     if (std::isnan(value)) return "NaN";
     if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";

@@ -8,6 +8,9 @@
 namespace corda::study {
 namespace {
 
+/// A cell with more bytes is broken into lines.
+constexpr std::size_t kLongText = 40;
+
 /// Plain text as text or attribute value of HTML and XML.
 std::string escaped(std::string_view text) {
     std::string result;
@@ -49,7 +52,8 @@ std::string cell_html(const Cell& cell) {
         return fmt::format("<td class=\"number\" title=\"{:.17g}\">{}</td>", *number, number_html(*number));
     }
     if (const auto* text = std::get_if<std::string>(&cell); text != nullptr && !text->empty()) {
-        return fmt::format("<td class=\"text\">{}</td>", escaped(*text));
+        return fmt::format("<td class=\"{}\">{}</td>", text->size() > kLongText ? "long" : "text",
+                           escaped(*text));
     }
     return "<td class=\"missing\">–</td>";
 }
@@ -59,13 +63,16 @@ std::string table_html(const Table& table) {
                                    table.id, escaped(table.title));
     text += "<thead><tr>";
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        if (!is_for_people(table, i)) continue;
         text += fmt::format("<th scope=\"col\"{}>{}</th>", is_numeric(table, i) ? " class=\"number\"" : "",
                             escaped(table.columns[i].title));
     }
     text += "</tr></thead>\n<tbody>\n";
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
         text += is_failed(table, r) ? "<tr class=\"failed\">" : "<tr>";
-        for (const Cell& cell : table.rows[r]) text += cell_html(cell);
+        for (std::size_t i = 0; i < table.columns.size(); ++i) {
+            if (is_for_people(table, i)) text += cell_html(table.rows[r][i]);
+        }
         text += "</tr>\n";
     }
     text += "</tbody>\n</table>\n</div>\n";

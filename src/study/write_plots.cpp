@@ -17,7 +17,7 @@ constexpr const char* kHint = "Corda draws plots with it; install it with: apt-g
 /// black, which a light or a dark page swallows), and shapes that stay apart without any colour.
 constexpr std::array<const char*, 8> kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                              "#e69f00", "#56b4e9", "#7a5fd0", "#8c6d31"};
-constexpr std::array<int, 10> kPointTypes{7, 5, 9, 13, 11, 6, 4, 8, 12, 10};
+constexpr std::array<int, 5> kPointTypes{7, 5, 9, 13, 11};  // filled: open ones are thin in an SVG
 constexpr std::array<int, 3> kDashTypes{1, 2, 4};
 
 /// A text as gnuplot takes it literally: in single quotes, where nothing but the quote itself has a meaning.
@@ -46,7 +46,8 @@ bool has_points(const Plot& plot, const Series& series) {
 }
 
 std::string axis(char name, const std::string& title, bool is_log) {
-    std::string text = fmt::format("set {}label {} noenhanced\n", name, literal(title));
+    std::string text = fmt::format("set {}label {} noenhanced{}\n", name, literal(title),
+                                   name == 'x' ? " offset 0,0.4" : "");
     if (is_log) text += fmt::format("set logscale {}\nset format {} '10^{{%L}}'\n", name, name);
     return text;
 }
@@ -68,7 +69,7 @@ std::string plot_item(const Plot& plot, std::size_t index) {
     const bool is_drawn = has_points(plot, series);
     const std::string source = is_drawn ? fmt::format("$s{}", index) : "keyentry";
     return fmt::format(
-        "{} with linespoints linewidth 2.5 pointsize 1.4 linecolor rgb '{}' pointtype {} "
+        "{} with linespoints linewidth 2.5 linecolor rgb '{}' pointtype {} "
         "dashtype {} title {}",
         source, kColors[index % kColors.size()], kPointTypes[index % kPointTypes.size()],
         kDashTypes[index / kColors.size() % kDashTypes.size()],
@@ -77,10 +78,13 @@ std::string plot_item(const Plot& plot, std::size_t index) {
 
 std::string terminal(const Plot& plot, PlotFormat format) {
     if (format == PlotFormat::kPng) {
-        return "set terminal pngcairo size 1200,800 enhanced font 'sans,16' background rgb 'white'\n";
+        return "set terminal pngcairo size 1200,800 enhanced font 'sans,16' background rgb 'white'\n"
+               "set pointsize 1.5\n";
     }
-    return fmt::format("set terminal svg size 1200,800 dynamic enhanced font 'sans-serif,21' name '{}'\n",
-                       plot.id);
+    return fmt::format(
+        "set terminal svg size 1200,800 dynamic enhanced font 'sans-serif,20' name '{}'\n"
+        "set pointsize 0.9\n",
+        plot.id);
 }
 
 /// The end of gnuplot's own words, where the reason stands.
@@ -100,7 +104,7 @@ std::string gnuplot_script(const Plot& plot, PlotFormat format) {
     text +=
         "set grid xtics ytics linetype 1 linewidth 0.6 linecolor rgb '#b0b0b0'\n"
         "set border linewidth 1.2\n"
-        "set key below center maxrows 4 noenhanced samplen 3 spacing 1.15\n";
+        "set key below center maxrows 4 Left reverse noenhanced samplen 3 spacing 1.15\n";
     bool is_empty = true;
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
         if (!has_points(plot, plot.series[i])) continue;

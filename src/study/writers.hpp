@@ -20,8 +20,8 @@ namespace corda::study {
 /// JSON has not (infinite, NaN), is null.
 [[nodiscard]] std::string json_text(const Report& report);
 
-/// The whole report as GitHub-flavoured Markdown with aligned tables and short_number; a failed row has its
-/// cells struck through. Plots are linked as `<id>.svg`.
+/// The whole report as GitHub-flavoured Markdown with aligned tables and short_number; a failed row says so
+/// in its column of failures. Plots are linked as `<id>.svg`.
 [[nodiscard]] std::string markdown_text(const Report& report);
 
 /// Gives the SVG of a plot.
@@ -60,6 +60,9 @@ void check_report(const Report& report);
 
 /// Whether all cells of a column that are there are numbers, and one is.
 [[nodiscard]] bool is_numeric(const Table& table, std::size_t column);
+
+/// Whether readers are shown a column: one of failures only where there are some.
+[[nodiscard]] bool is_for_people(const Table& table, std::size_t column);
 
 /// A number for people: three significant digits, "1.23e-5"; a whole number below a million in full.
 [[nodiscard]] std::string short_number(double value);

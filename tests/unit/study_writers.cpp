@@ -151,14 +151,23 @@ TEST(StudyWriters, MarkdownAlignsItsColumns) {
               "A note.\n");
 }
 
-TEST(StudyWriters, MarkdownEscapesAndStrikesFailures) {
+TEST(StudyWriters, MarkdownEscapesAndNamesFailures) {
     const std::string text = markdown_text(small_report());
     EXPECT_THAT(text, HasSubstr("Plain a\\_b, \"q\" \\<b\\>\\&amp; \\| \\*x\\* 'y' \\`touch pwned\\`"));
     EXPECT_THAT(text, HasSubstr("\n2\\. No list\n"));
     EXPECT_THAT(text, HasSubstr("-O3 \\| -g"));
-    EXPECT_THAT(text, HasSubstr("~~12345~~ | it diverged"));
-    EXPECT_THAT(text, Not(HasSubstr("~~exact")));
+    EXPECT_THAT(text, HasSubstr(" 12345 | **failed:** it diverged |"));
+    EXPECT_THAT(text, HasSubstr("| 0.333 |                         |"));
     EXPECT_THAT(text, HasSubstr("](error.svg)"));
+}
+
+TEST(StudyWriters, ColumnOfFailuresIsShownWhereThereAreSome) {
+    Table table = small_table();
+    EXPECT_THAT(markdown_text({"R", {}, {{"C", {}, {table}, {}}}}), HasSubstr("| Failure"));
+    table.rows.pop_back();
+    EXPECT_THAT(markdown_text({"R", {}, {{"C", {}, {table}, {}}}}), Not(HasSubstr("Failure")));
+    EXPECT_THAT(html_text({"R", {}, {{"C", {}, {table}, {}}}}, {}), Not(HasSubstr("Failure")));
+    EXPECT_THAT(csv_text(table), HasSubstr(",failure\n"));  // whoever reads files finds every key
 }
 
 TEST(StudyWriters, ScriptsQuoteEveryText) {
