@@ -107,7 +107,8 @@ class Watch {
     void operator()(int done, int of, const std::string& now) {
         if (interruption() != ExitCode::kOk) throw Error(interruption(), "interrupted; nothing was written");
         if (!progress_) progress_ = std::make_unique<Progress>(console_, what_, of);
-        if (!console_.draws_bar()) console_.detail(fmt::format("{} {} of {}: {}", what_, done + 1, of, now));
+        if (!console_.draws_bar())
+            console_.detail(fmt::format("{} {} of {}: {}", what_, std::min(done + 1, of), of, now));
         progress_->update(done);
     }
 

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
+#include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -31,9 +33,9 @@ pinned = [0]
 [video]
 fps = 60
 )";
+constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr double kReferenceTolerance = 1e-13;
 constexpr int kReferenceStepsPerFrame = 64;
-constexpr double kSpeedTolerance = 1e-6;  // of the solver under the presets: some 1e-4 pixels
 constexpr std::array<const char*, 6> kPresets{"ultrafast", "superfast", "veryfast", "fast", "medium", "slow"};
 
 /// A folder for trial videos, removed with all in it.
@@ -66,17 +68,23 @@ struct Setting {
     sim::SolverDef solver;
 };
 
-sim::SolverDef rope(int order, double step_s) {
+/// The links alone: bars of a longer reach would be another system.
+sim::SolverDef chain_solver(sim::Method method) {
     sim::SolverDef solver;
-    solver.method = sim::Method::kRope;
+    solver.method = method;
+    solver.reach = 1;
+    return solver;
+}
+
+sim::SolverDef rope(int order, double step_s) {
+    sim::SolverDef solver = chain_solver(sim::Method::kRope);
     solver.order = order;
     solver.step_s = step_s;
     return solver;
 }
 
 sim::SolverDef exact(double tolerance) {
-    sim::SolverDef solver;
-    solver.method = sim::Method::kExact;
+    sim::SolverDef solver = chain_solver(sim::Method::kExact);
     solver.tolerance = tolerance;
     return solver;
 }
@@ -104,16 +112,23 @@ std::vector<Setting> list_settings(double frame_s) {
     for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10}) {
         settings.push_back({"exact", exact(tolerance)});
     }
-    settings.push_back({"auto, 0.1 px", sim::SolverDef{}});
+    settings.push_back({"auto, 0.1 px", chain_solver(sim::Method::kAuto)});
     return settings;
 }
 
-/// What a whole render took, in seconds.
+/// What a whole render took, in seconds. Starts as longer than any.
 struct RenderTime {
-    double simulate_s = 0.0;  ///< planning, the camera's rehearsal and the stepping
-    double draw_s = 0.0;
-    double encode_s = 0.0;  ///< to a finished and verified file
-    [[nodiscard]] double whole_s() const { return simulate_s + draw_s + encode_s; }
+    double simulate_s = kForever;  ///< planning, the camera's rehearsal and the stepping
+    double draw_s = kForever;
+    double encode_s = kForever;  ///< to a finished and verified file
+    double whole_s = kForever;
+
+    void keep_shortest(const RenderTime& other) {
+        simulate_s = std::min(simulate_s, other.simulate_s);
+        draw_s = std::min(draw_s, other.draw_s);
+        encode_s = std::min(encode_s, other.encode_s);
+        whole_s = std::min(whole_s, other.whole_s);
+    }
 };
 
 RenderTime render_once(scene::Scene scene, const std::string& path) {
@@ -141,6 +156,7 @@ RenderTime render_once(scene::Scene scene, const std::string& path) {
     }
     writer.finish();
     time.encode_s += lap();
+    time.whole_s = time.simulate_s + time.draw_s + time.encode_s;
     return time;
 }
 
@@ -148,8 +164,7 @@ RenderTime render_once(scene::Scene scene, const std::string& path) {
 class PictureStudy {
   public:
     PictureStudy(const PictureStudyDef& def, const study::Progress& progress)
-        : def_(def),
-          progress_(progress),
+        : progress_(progress),
           scene_(def.scene ? *def.scene : scene::parse_scene(kSwing, "the swing")),
           repeats_(def.quick ? 1 : 5) {
         scene_.video.width_px = def.quick ? 640 : 1280;
@@ -158,7 +173,7 @@ class PictureStudy {
         frames_ = std::min<std::int64_t>(def.quick ? 30 : 120, fps.frame_count(scene_.world.duration_s));
         scene_.world.duration_s = fps.time_s(frames_);
         settings_ = list_settings(fps.interval_s());
-        pieces_ = static_cast<int>(1 + settings_.size() + kPresets.size());
+        pieces_ = 1 + repeats_ * static_cast<int>(settings_.size() + kPresets.size());
     }
 
     study::Chapter run() {
@@ -219,46 +234,102 @@ class PictureStudy {
             pixels_per_metre_, describe(truth_), describe(check), error_px(positions(check))));
     }
 
-    [[nodiscard]] RenderTime best_time(const scene::Scene& scene) const {
-        RenderTime best = render_once(scene, folder_.video());
-        for (int repeat = 1; repeat < repeats_; ++repeat) {
-            const RenderTime time = render_once(scene, folder_.video());
-            if (time.whole_s() < best.whole_s()) best = time;
-        }
-        return best;
+    /// Solver, steps a frame and tolerance of a setting.
+    [[nodiscard]] std::vector<study::Cell> named(const std::string& series,
+                                                 const sim::SolverDef& solver) const {
+        std::vector<study::Cell> cells{series, {}, {}};
+        if (solver.method == sim::Method::kExact) cells[2] = solver.tolerance;
+        if (solver.step_s) cells[1] = std::round(scene_.video.fps.interval_s() / *solver.step_s);
+        return cells;
     }
 
-    [[nodiscard]] std::vector<study::Cell> solver_row(const Setting& setting, study::Plot& plot) const {
-        std::vector<study::Cell> row{setting.series};
+    /// The row of a setting up to its error; whole, with the reason, where it fails.
+    [[nodiscard]] std::vector<study::Cell> error_row(const Setting& setting) const {
+        std::vector<study::Cell> row = named(setting.series, setting.solver);
         try {
             scene::Scene settled = with(setting.solver);
-            (void)scene::settle_method(settled);
-            row.emplace_back(describe(settled.solver));
-            const double error = error_px(positions(settled.solver));
-            const RenderTime time = best_time(with(setting.solver));
-            row.insert(row.end(), {error, 1e3 * time.whole_s(), 1e3 * time.simulate_s, 1e3 * time.draw_s,
-                                   1e3 * time.encode_s, static_cast<double>(frames_) / time.whole_s(), ""});
-            if (plot.series.empty() || plot.series.back().name != setting.series) {
-                plot.series.push_back({setting.series, {}});
+            if (scene::settle_method(settled)) {
+                row = named(fmt::format("{}: {}", setting.series, sim::method_name(settled.solver.method)),
+                            settled.solver);
             }
-            plot.series.back().points.emplace_back(1e3 * time.whole_s(), error);
+            row.emplace_back(error_px(positions(settled.solver)));
         } catch (const Error& error) {
             const bool is_outcome =
                 error.code() == ExitCode::kDiverged || error.code() == ExitCode::kInvalidScene;
             if (!is_outcome) throw;
-            if (row.size() == 1) row.emplace_back(describe(setting.solver));
-            row.resize(8);
+            row.resize(kFailureColumn);
             row.emplace_back(error.what());
         }
         return row;
+    }
+
+    /// Renders all scenes in turn, as often as there are repeats, so that what else the machine does meets
+    /// all of them alike; calls `after_first` once a scene.
+    std::vector<RenderTime> time_renders(const std::vector<scene::Scene>& scenes,
+                                         const std::function<void(std::size_t)>& after_first) {
+        std::vector<RenderTime> times(scenes.size());
+        for (int repeat = 0; repeat < repeats_; ++repeat) {
+            for (std::size_t i = 0; i < scenes.size(); ++i) {
+                report(fmt::format("render {} of {}", i + 1, scenes.size()));
+                times[i].keep_shortest(render_once(scenes[i], folder_.video()));
+                if (repeat == 0 && after_first) after_first(i);
+            }
+        }
+        return times;
+    }
+
+    [[nodiscard]] std::vector<std::vector<study::Cell>> solver_rows() {
+        std::vector<std::vector<study::Cell>> rows;
+        std::vector<scene::Scene> scenes;
+        std::vector<std::size_t> row_of;
+        for (const Setting& setting : settings_) {
+            rows.push_back(error_row(setting));
+            if (rows.back().size() > kFailureColumn) continue;
+            row_of.push_back(rows.size() - 1);
+            scenes.push_back(with(setting.solver));
+        }
+        const std::vector<RenderTime> times = time_renders(scenes, {});
+        for (std::size_t i = 0; i < times.size(); ++i) {
+            const RenderTime& time = times[i];
+            auto& row = rows[row_of[i]];
+            row.insert(row.end(), {1e3 * time.whole_s, 1e3 * time.simulate_s, 1e3 * time.draw_s,
+                                   1e3 * time.encode_s, static_cast<double>(frames_) / time.whole_s, ""});
+        }
+        return rows;
+    }
+
+    /// Puts the figures of a row that has some into a plot of errors against the times in `column`.
+    static void add_point(const std::string& series, const std::vector<study::Cell>& row, std::size_t column,
+                          study::Plot& plot) {
+        if (!std::holds_alternative<double>(row[kErrorColumn])) return;
+        if (plot.series.empty() || plot.series.back().name != series) plot.series.push_back({series, {}});
+        plot.series.back().points.emplace_back(std::get<double>(row[column]),
+                                               std::get<double>(row[kErrorColumn]));
+    }
+
+    [[nodiscard]] static std::string simulating_share(const study::Table& table) {
+        double least = kForever;
+        double most = 0.0;
+        for (const auto& row : table.rows) {
+            if (!std::holds_alternative<double>(row[kWholeColumn])) continue;
+            const double share = std::get<double>(row[kSimulateColumn]) / std::get<double>(row[kWholeColumn]);
+            least = std::min(least, share);
+            most = std::max(most, share);
+        }
+        if (most == 0.0) return "No solver ran the scene.";
+        return fmt::format(
+            "Simulating is {:.2g} % to {:.2g} % of the whole render; the rest is drawing and "
+            "encoding.",
+            100.0 * least, 100.0 * most);
     }
 
     void compare_solvers() {
         study::Table table;
         table.id = "picture_solvers";
         table.title = "The whole render by solver";
-        table.columns = {{"series", "Setting"},
-                         {"solver", "Solver"},
+        table.columns = {{"solver", "Solver"},
+                         {"steps_per_frame", "Steps a frame, at least"},
+                         {"tolerance", "Tolerance"},
                          {"error_px", "Largest displayed error / px"},
                          {"whole_ms", "Whole render / ms"},
                          {"simulate_ms", "Simulating / ms"},
@@ -267,23 +338,34 @@ class PictureStudy {
                          {"frames_per_s", "Frames / s"},
                          {std::string(study::kFailureKey), "Failed because"}};
         table.note = fmt::format(
-            "The fastest of {} renders each. Simulating holds the plan of auto and the camera's rehearsal of "
+            "The shortest of {} renders each, column by column. Simulating holds the plan of auto and the "
+            "camera's rehearsal of "
             "the motion; encoding holds the finished file's check by decoding it; starting OpenGL is in "
             "none.",
             repeats_);
-        study::Plot plot{"picture_solvers",
-                         "Displayed error against the time of the whole render",
-                         "Whole render / ms",
-                         "Largest displayed error / px",
-                         true,
-                         true,
-                         {}};
-        for (const Setting& setting : settings_) {
-            report(setting.series);
-            table.rows.push_back(solver_row(setting, plot));
+        study::Plot whole{"picture_error_whole",
+                          "Displayed error against the time of the whole render",
+                          "Whole render / ms",
+                          "Largest displayed error / px",
+                          true,
+                          true,
+                          {}};
+        study::Plot simulating{"picture_error_simulating",
+                               "Displayed error against the time of simulating",
+                               "Simulating / ms",
+                               "Largest displayed error / px",
+                               true,
+                               true,
+                               {}};
+        table.rows = solver_rows();
+        chapter_.paragraphs.push_back(simulating_share(table));
+        for (std::size_t i = 0; i < settings_.size(); ++i) {
+            add_point(settings_[i].series, table.rows[i], kWholeColumn, whole);
+            add_point(settings_[i].series, table.rows[i], kSimulateColumn, simulating);
         }
         chapter_.tables.push_back(std::move(table));
-        chapter_.plots.push_back(std::move(plot));
+        chapter_.plots.push_back(std::move(simulating));
+        chapter_.plots.push_back(std::move(whole));
     }
 
     /// Luma figures of the video at folder_.video() against the frames it was made of, drawn again.
@@ -316,13 +398,9 @@ class PictureStudy {
         study::Table table;
         table.id = "picture_presets";
         table.title = "x264's presets on the same frames";
-        table.columns = {{"preset", "Preset"},
-                         {"psnr_db", "Luma PSNR / dB"},
-                         {"ssim", "Luma SSIM"},
-                         {"loss", "1 - SSIM"},
-                         {"bytes", "Bytes"},
-                         {"frames_per_s", "Frames / s"},
-                         {"encode_ms", "Encoding / ms"}};
+        table.columns = {
+            {"preset", "Preset"}, {"psnr_db", "Luma PSNR / dB"},  {"one_minus_ssim", "1 - luma SSIM"},
+            {"bytes", "Bytes"},   {"frames_per_s", "Frames / s"}, {"encode_ms", "Encoding / ms"}};
         table.note = fmt::format(
             "CRF {}, {} threads. Frames a second of encoding to a finished and checked file, without "
             "simulating "
@@ -332,32 +410,37 @@ class PictureStudy {
             scene_.video.encoder.crf, scene_.video.encoder.threads);
         study::Plot size{
             "picture_preset_bytes", "x264: size against speed", "Frames / s", "Bytes", true, true, {}};
-        study::Plot loss{"picture_preset_loss",
-                         "x264: loss against speed",
-                         "Frames / s",
-                         "1 - SSIM (luma)",
-                         true,
-                         true,
-                         {}};
+        study::Plot loss{
+            "picture_preset_loss", "x264: loss against speed", "Frames / s", "1 - luma SSIM", true, true, {}};
+        std::vector<scene::Scene> scenes;
         for (const char* preset : kPresets) {
-            report(fmt::format("x264 {}", preset));
-            scene::Scene scene = with(def_.scene ? truth_ : exact(kSpeedTolerance));
-            scene.video.encoder.preset = preset;
-            const double encode_s = best_time(scene).encode_s;
-            const auto bytes = static_cast<double>(fs::file_size(folder_.video()));
-            const double speed = static_cast<double>(frames_) / encode_s;
-            const Quality found = quality(scene);
+            scenes.push_back(with(truth_));
+            scenes.back().video.encoder.preset = preset;
+        }
+        std::vector<Quality> found(scenes.size());
+        std::vector<double> bytes(scenes.size());
+        const auto times = time_renders(scenes, [&](std::size_t i) {
+            found[i] = quality(scenes[i]);
+            bytes[i] = static_cast<double>(fs::file_size(folder_.video()));
+        });
+        for (std::size_t i = 0; i < scenes.size(); ++i) {
+            const double loss_of_one = 1.0 - found[i].ssim;
+            const double speed = static_cast<double>(frames_) / times[i].encode_s;
             table.rows.push_back(
-                {preset, found.psnr_db, found.ssim, 1.0 - found.ssim, bytes, speed, 1e3 * encode_s});
-            size.series.push_back({preset, {{speed, bytes}}});
-            loss.series.push_back({preset, {{speed, 1.0 - found.ssim}}});
+                {kPresets[i], found[i].psnr_db, loss_of_one, bytes[i], speed, 1e3 * times[i].encode_s});
+            size.series.push_back({kPresets[i], {{speed, bytes[i]}}});
+            loss.series.push_back({kPresets[i], {{speed, loss_of_one}}});
         }
         chapter_.tables.push_back(std::move(table));
         chapter_.plots.push_back(std::move(size));
         chapter_.plots.push_back(std::move(loss));
     }
 
-    const PictureStudyDef& def_;
+    static constexpr std::size_t kErrorColumn = 3;
+    static constexpr std::size_t kWholeColumn = 4;
+    static constexpr std::size_t kSimulateColumn = 5;
+    static constexpr std::size_t kFailureColumn = 9;
+
     const study::Progress& progress_;
     scene::Scene scene_;
     int repeats_;

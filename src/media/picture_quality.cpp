@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kPeak = 255.0;
 constexpr int kWindow = 8;
+constexpr std::int64_t kWindowSamples = 64;
 constexpr int kStride = 4;
 constexpr double kC1 = (0.01 * kPeak) * (0.01 * kPeak);
 constexpr double kC2 = (0.03 * kPeak) * (0.03 * kPeak);
@@ -22,8 +23,8 @@ double window_ssim(const std::uint8_t* a, const std::uint8_t* b, int row_bytes) 
     std::int64_t sum_ab = 0;
     for (int y = 0; y < kWindow; ++y) {
         for (int x = 0; x < kWindow; ++x) {
-            const int value_a = a[y * row_bytes + x];
-            const int value_b = b[y * row_bytes + x];
+            const std::int64_t value_a = a[y * row_bytes + x];
+            const std::int64_t value_b = b[y * row_bytes + x];
             sum_a += value_a;
             sum_b += value_b;
             sum_aa += value_a * value_a;
@@ -31,11 +32,11 @@ double window_ssim(const std::uint8_t* a, const std::uint8_t* b, int row_bytes) 
             sum_ab += value_a * value_b;
         }
     }
-    constexpr double kCount = kWindow * kWindow;
+    constexpr auto kCount = static_cast<double>(kWindowSamples);
     const double mean_a = static_cast<double>(sum_a) / kCount;
     const double mean_b = static_cast<double>(sum_b) / kCount;
     const auto covariance = [](std::int64_t products, std::int64_t u, std::int64_t v) {
-        return static_cast<double>(kWindow * kWindow * products - u * v) / (kCount * (kCount - 1.0));
+        return static_cast<double>(kWindowSamples * products - u * v) / (kCount * (kCount - 1.0));
     };
     const double luminance = (2.0 * mean_a * mean_b + kC1) / (mean_a * mean_a + mean_b * mean_b + kC1);
     const double structure = (2.0 * covariance(sum_ab, sum_a, sum_b) + kC2) /
@@ -50,7 +51,7 @@ double luma_mean_square(const Yuv420Image& a, const Yuv420Image& b) {
     const std::int64_t count = std::int64_t{a.width()} * a.height();
     std::int64_t sum = 0;
     for (std::int64_t i = 0; i < count; ++i) {
-        const int difference = int{a.plane(0)[i]} - int{b.plane(0)[i]};
+        const std::int64_t difference = std::int64_t{a.plane(0)[i]} - b.plane(0)[i];
         sum += difference * difference;
     }
     return static_cast<double>(sum) / static_cast<double>(count);

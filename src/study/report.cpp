@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <set>
 #include <string_view>
 
@@ -14,6 +15,8 @@
 namespace corda::study {
 namespace {
 
+// Between these, exponents are harder to read than zeros.
+constexpr double kSmallestRounded = 1e3;
 constexpr double kLargestInFull = 1e6;
 
 void check_name(const std::string& name, const char* kind, std::set<std::string>& seen) {
@@ -80,8 +83,11 @@ bool is_for_people(const Table& table, std::size_t column) {
 std::string short_number(double value) {
     if (std::isnan(value)) return "NaN";
     if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";
-    if (value == std::round(value) && std::abs(value) < kLargestInFull) {
-        return fmt::format("{:.0f}", value + 0.0);  // + 0.0: -0 becomes 0
+    const std::string three_digits = fmt::format("{:.2e}", value);
+    const bool is_whole = value == std::round(value);
+    const double shown = is_whole ? value : std::strtod(three_digits.c_str(), nullptr);
+    if (std::abs(shown) < kLargestInFull && (is_whole || std::abs(shown) >= kSmallestRounded)) {
+        return fmt::format("{:.0f}", shown + 0.0);  // + 0.0: -0 becomes 0
     }
     std::string text = fmt::format("{:.3g}", value);
     // "1.23e-05" is a computer's way to write 1.23e-5.

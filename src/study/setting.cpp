@@ -35,7 +35,7 @@ std::string processor_name(const std::string& cpuinfo) {
             const std::size_t end = std::min(cpuinfo.find('\n', at), cpuinfo.size());
             const std::size_t colon = cpuinfo.find(':', at);
             if (colon >= end || trimmed(cpuinfo.substr(at, colon - at)) != key) continue;
-            const std::string name = trimmed(cpuinfo.substr(colon + 1, end - colon - 1));
+            std::string name = trimmed(cpuinfo.substr(colon + 1, end - colon - 1));
             if (!name.empty()) return name;
         }
     }

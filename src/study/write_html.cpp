@@ -40,7 +40,7 @@ std::string escaped(std::string_view text) {
 
 /// "1.23e-5" as 1.23 · 10 to the -5.
 std::string number_html(double value) {
-    const std::string text = short_number(value);
+    std::string text = short_number(value);
     const std::size_t e = text.find('e');
     if (e == std::string::npos) return text;
     const bool is_negative = text[e + 1] == '-';

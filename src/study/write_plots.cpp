@@ -79,11 +79,11 @@ std::string plot_item(const Plot& plot, std::size_t index) {
 std::string terminal(const Plot& plot, PlotFormat format) {
     if (format == PlotFormat::kPng) {
         return "set terminal pngcairo size 1200,800 enhanced font 'sans,16' background rgb 'white'\n"
-               "set pointsize 1.5\n";
+               "set pointsize 1.5\nset key font ',14'\n";
     }
     return fmt::format(
         "set terminal svg size 1200,800 dynamic enhanced font 'sans-serif,20' name '{}'\n"
-        "set pointsize 0.9\n",
+        "set pointsize 0.9\nset key font ',17'\n",
         plot.id);
 }
 

@@ -64,7 +64,8 @@ void check_report(const Report& report);
 /// Whether readers are shown a column: one of failures only where there are some.
 [[nodiscard]] bool is_for_people(const Table& table, std::size_t column);
 
-/// A number for people: three significant digits, "1.23e-5"; a whole number below a million in full.
+/// A number for people: three significant digits, "1.23e-5" or "1230"; a whole number below a million in
+/// full.
 [[nodiscard]] std::string short_number(double value);
 
 }  // namespace corda::study

@@ -18,7 +18,6 @@ namespace corda::study {
 namespace {
 
 using nlohmann::json;
-using test::quoted;
 using test::run_shell;
 using testing::AllOf;
 using testing::ElementsAre;
@@ -106,7 +105,10 @@ TEST(StudyWriters, NumbersForPeopleHaveThreeDigits) {
     EXPECT_EQ(short_number(-1.23456e-105), "-1.23e-105");
     EXPECT_EQ(short_number(2.5e12), "2.5e+12");
     EXPECT_EQ(short_number(123456.0), "123456");
-    EXPECT_EQ(short_number(1234.5), "1.23e+3");
+    EXPECT_EQ(short_number(1234.5), "1230");
+    EXPECT_EQ(short_number(999.7), "1000");
+    EXPECT_EQ(short_number(-99950.5), "-100000");
+    EXPECT_EQ(short_number(999600.5), "1e+6");
     EXPECT_EQ(short_number(1e6), "1e+6");
     EXPECT_EQ(short_number(-0.0), "0");
     EXPECT_EQ(short_number(kInfinity), "∞");
@@ -199,7 +201,7 @@ TEST(StudyWriters, PlotsArePicturesOfTheRightSize) {
         EXPECT_EQ(image.width(), 1200) << plot.id;
         EXPECT_EQ(image.height(), 800) << plot.id;
         const std::string svg = folder.write(plot.id + ".svg", draw_plot(plot, PlotFormat::kSvg));
-        const auto result = run_shell("xmllint --noout --nonet " + quoted(svg));
+        const auto result = run_shell("xmllint --noout --nonet " + test::quoted(svg));
         EXPECT_EQ(result.exit_code, 0) << result.err;
         EXPECT_THAT(test::read_file(svg), HasSubstr("viewBox=\"0 0 1200 800\"")) << plot.id;
     }
@@ -247,7 +249,7 @@ TEST(StudyWriters, PageIsWellFormedAndNeedsNothingBesideIt) {
     const std::string page =
         html_text(small_report(), [](const Plot& plot) { return draw_plot(plot, PlotFormat::kSvg); });
     const std::string path = folder.write("report.html", page);
-    const auto result = run_shell("xmllint --noout --nonet --dropdtd " + quoted(path));
+    const auto result = run_shell("xmllint --noout --nonet --dropdtd " + test::quoted(path));
     EXPECT_EQ(result.exit_code, 0) << result.err;
     for (const char* forbidden :
          {"<script", "<link", "<img", "<iframe", "src=", "url(", "@import", "onload"}) {
@@ -257,7 +259,8 @@ TEST(StudyWriters, PageIsWellFormedAndNeedsNothingBesideIt) {
     for (std::size_t at = page.find("http"); at != std::string::npos; at = page.find("http", at + 1)) {
         EXPECT_THAT(page.substr(at, 24), testing::StartsWith("http://www.w3.org/"));
     }
-    const auto twice = run_shell("grep -oE '\\bid=.[A-Za-z0-9_-]+' " + quoted(path) + " | sort | uniq -d");
+    const auto twice =
+        run_shell("grep -oE '\\bid=.[A-Za-z0-9_-]+' " + test::quoted(path) + " | sort | uniq -d");
     EXPECT_EQ(twice.out, "");  // ids are unique over all plots
 }
 
@@ -288,7 +291,7 @@ TEST(StudyWriters, ReportWritesEveryFileWhole) {
     for (const std::string& path : paths) EXPECT_GT(std::filesystem::file_size(path), 0U) << path;
     EXPECT_EQ(test::read_file(out + "/speed.csv"), csv_text(small_table()));
     EXPECT_EQ(test::read_file(out + "/report.json"), json_text(small_report()));
-    const auto parts = run_shell("ls " + quoted(out) + " | grep part");
+    const auto parts = run_shell("ls " + test::quoted(out) + " | grep part");
     EXPECT_EQ(parts.out, "");
     EXPECT_EQ(code_of([&] { write_report(small_report(), paths[0]); }), ExitCode::kIo);  // a file, no folder
 }
