@@ -26,13 +26,16 @@ void add_compare(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);
 void add_doctor(CLI::App& app, Action& action);
 void add_plan(CLI::App& app, Action& action);
+void add_study(CLI::App& app, Action& action);
 
 /// A scene file and what the command line puts in the place of its values.
 struct SceneOptions {
     std::string path;
     std::vector<std::string> settings;
 
-    void add_to(CLI::App& command);
+    /// Whether a command can do without a scene.
+    enum class Need { kRequired, kOptional };
+    void add_to(CLI::App& command, Need need = Need::kRequired);
     /// Makes `--name VALUE` stand for `--set key=VALUE`.
     void add_shortcut(CLI::App& command, const std::string& name, const std::string& key,
                       const std::string& help);

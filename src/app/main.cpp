@@ -42,6 +42,7 @@ int run(int argc, char** argv) {
     add_verify(app, action);
     add_doctor(app, action);
     add_plan(app, action);
+    add_study(app, action);
     add_console_flags(app, console_def);
     try {
         app.parse(argc, argv);

@@ -22,8 +22,8 @@ std::string size_setting(const std::string& text) {
 
 }  // namespace
 
-void SceneOptions::add_to(CLI::App& command) {
-    command.add_option("SCENE", path, "scene file (TOML)")->required();
+void SceneOptions::add_to(CLI::App& command, Need need) {
+    command.add_option("SCENE", path, "scene file (TOML)")->required(need == Need::kRequired);
     // One value a flag: a value may have commas and brackets of its own.
     command
         .add_option("--set", settings, "put VALUE in the place of a key of the scene, e.g. rope[0].mass=2")

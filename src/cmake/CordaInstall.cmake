@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 
 get_property(libraries GLOBAL PROPERTY CORDA_LIBRARIES)
 install(TARGETS ${libraries} EXPORT corda_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-foreach(module core sim view gl render media golden scene)
+foreach(module core sim study view gl render media golden scene)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/${module}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/corda/${module}
         FILES_MATCHING PATTERN "*.hpp")
 endforeach()

@@ -21,6 +21,7 @@ packages=(
     libtomlplusplus-dev     # scene files, with line and column of every value
     nlohmann-json3-dev      # the --json output
     libfmt-dev              # formatted text
+    gnuplot-nox             # the plots of corda study, at run time
 )
 if [[ "${1:-build}" == test ]]; then
     packages+=(

@@ -5,6 +5,7 @@
 #include "corda/core/error.hpp"
 #include "corda/media/color_patch.hpp"
 #include "corda/media/libav_handles.hpp"
+#include "corda/media/open_mp4.hpp"
 
 namespace corda::media {
 namespace {
@@ -37,47 +38,30 @@ class Decoding {
         receive(nullptr);
         // libav guesses the duration of a last frame; that it is one step follows from the track's stored
         // duration.
-        if (video_.frames == 1) video_.step = std::max<std::int64_t>(stream_->duration, 0);
+        if (video_.frames == 1) video_.step = std::max<std::int64_t>(file_.stream->duration, 0);
         video_.end = last_pts_ + video_.step;
         describe();
     }
 
   private:
-    bool refuse(int status, const char* what) {
-        video_.open_reason = std::string(what) + ": " + libav_text(status);
-        if (!log_.text().empty()) video_.open_reason += " (" + log_.text() + ")";
-        return false;
-    }
-
     bool open(const std::string& path) {
-        AVFormatContext* format = nullptr;
-        // Named, not probed: libav would take a text file for a video of ANSI art, or follow a playlist.
-        const AVInputFormat* mov = av_find_input_format("mov");
-        int status = avformat_open_input(&format, file_url(path).c_str(), mov, nullptr);
-        if (status < 0) return refuse(status, "the file does not open");
-        format_.reset(format);
-        const AVCodec* codec = nullptr;
-        const int index = av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, &codec, 0);
-        if (index < 0) return refuse(index, "there is no video track that can be decoded");
-        stream_ = format->streams[index];
-        context_ = check_allocated(CodecContext(avcodec_alloc_context3(codec)), "a decoder");
-        status = avcodec_parameters_to_context(context_.get(), stream_->codecpar);
-        if (status < 0) return refuse(status, "the codec parameters are broken");
-        context_->thread_count = 2;
-        context_->pkt_timebase = stream_->time_base;
-        context_->err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_EXPLODE;
-        status = avcodec_open2(context_.get(), codec, nullptr);
-        if (status < 0) return refuse(status, "the decoder does not open");
+        try {
+            file_ = open_mp4(path);
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::kIo) throw;
+            video_.open_reason = error.what();
+            return false;
+        }
         frame_ = check_allocated(Frame(av_frame_alloc()), "a frame");
         packet_ = check_allocated(Packet(av_packet_alloc()), "a packet");
-        const AVCodecParameters& parameters = *stream_->codecpar;
+        const AVCodecParameters& parameters = *file_.stream->codecpar;
         video_.container_tags = named(av_color_range_name(parameters.color_range)) + " " +
                                 named(av_color_space_name(parameters.color_space)) + " " +
                                 named(av_color_primaries_name(parameters.color_primaries)) + " " +
                                 named(av_color_transfer_name(parameters.color_trc));
-        const AVDictionaryEntry* comment = av_dict_get(format->metadata, "comment", nullptr, 0);
+        const AVDictionaryEntry* comment = av_dict_get(file_.format->metadata, "comment", nullptr, 0);
         if (comment != nullptr) video_.comment = comment->value;
-        video_.tick = {stream_->time_base.num, stream_->time_base.den};
+        video_.tick = {file_.stream->time_base.num, file_.stream->time_base.den};
         return true;
     }
 
@@ -88,12 +72,12 @@ class Decoding {
 
     bool read_packet() {
         log_.clear();
-        const int status = av_read_frame(format_.get(), packet_.get());
+        const int status = av_read_frame(file_.format.get(), packet_.get());
         if (status < 0) {
             if (status != AVERROR_EOF) note_bad(status);
             return false;
         }
-        if (packet_->stream_index == stream_->index) {
+        if (packet_->stream_index == file_.stream->index) {
             if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) note_bad(AVERROR_INVALIDDATA);
             receive(packet_.get());
         }
@@ -103,10 +87,10 @@ class Decoding {
 
     /// Sends a packet (none: the end) and takes every frame that is ready.
     void receive(const AVPacket* packet) {
-        int status = avcodec_send_packet(context_.get(), packet);
+        int status = avcodec_send_packet(file_.context.get(), packet);
         if (status < 0) note_bad(status);
         for (;;) {
-            status = avcodec_receive_frame(context_.get(), frame_.get());
+            status = avcodec_receive_frame(file_.context.get(), frame_.get());
             if (status == AVERROR(EAGAIN) || status == AVERROR_EOF) return;
             if (status < 0) {
                 note_bad(status);
@@ -129,7 +113,7 @@ class Decoding {
             video_.first_pts = pts;
             measure_patches();
             // Only the first frame's pixels are looked at; the others need to decode, not to be smooth.
-            context_->skip_loop_filter = AVDISCARD_ALL;
+            file_.context->skip_loop_filter = AVDISCARD_ALL;
         } else {
             if (video_.frames == 1) video_.step = pts - last_pts_;
             if (pts - last_pts_ != video_.step && video_.uneven_at < 0) video_.uneven_at = video_.frames;
@@ -165,9 +149,9 @@ class Decoding {
     }
 
     void describe() {
-        video_.codec = avcodec_get_name(context_->codec_id);
-        video_.profile = named(avcodec_profile_name(context_->codec_id, context_->profile));
-        video_.container_duration_us = format_->duration == AV_NOPTS_VALUE ? 0 : format_->duration;
+        video_.codec = avcodec_get_name(file_.context->codec_id);
+        video_.profile = named(avcodec_profile_name(file_.context->codec_id, file_.context->profile));
+        video_.container_duration_us = file_.format->duration == AV_NOPTS_VALUE ? 0 : file_.format->duration;
     }
 
     static constexpr std::int64_t kMostBadFrames = 1000;
@@ -175,9 +159,7 @@ class Decoding {
     DecodedVideo& video_;
     std::vector<ColorPatch> (*patches_of_)(const std::string&);
     LogCapture log_;
-    InputFormat format_;
-    const AVStream* stream_ = nullptr;
-    CodecContext context_;
+    OpenMp4 file_;
     Frame frame_;
     Packet packet_;
     std::int64_t last_pts_ = 0;

@@ -1,0 +1,81 @@
+#include "corda/media/picture_quality.hpp"
+
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace corda::media {
+namespace {
+
+constexpr double kPeak = 255.0;
+constexpr int kWindow = 8;
+constexpr std::int64_t kWindowSamples = 64;
+constexpr int kStride = 4;
+constexpr double kC1 = (0.01 * kPeak) * (0.01 * kPeak);
+constexpr double kC2 = (0.03 * kPeak) * (0.03 * kPeak);
+
+double window_ssim(const std::uint8_t* a, const std::uint8_t* b, int row_bytes) {
+    std::int64_t sum_a = 0;
+    std::int64_t sum_b = 0;
+    std::int64_t sum_aa = 0;
+    std::int64_t sum_bb = 0;
+    std::int64_t sum_ab = 0;
+    for (int y = 0; y < kWindow; ++y) {
+        for (int x = 0; x < kWindow; ++x) {
+            const std::int64_t value_a = a[y * row_bytes + x];
+            const std::int64_t value_b = b[y * row_bytes + x];
+            sum_a += value_a;
+            sum_b += value_b;
+            sum_aa += value_a * value_a;
+            sum_bb += value_b * value_b;
+            sum_ab += value_a * value_b;
+        }
+    }
+    constexpr auto kCount = static_cast<double>(kWindowSamples);
+    const double mean_a = static_cast<double>(sum_a) / kCount;
+    const double mean_b = static_cast<double>(sum_b) / kCount;
+    const auto covariance = [](std::int64_t products, std::int64_t u, std::int64_t v) {
+        return static_cast<double>(kWindowSamples * products - u * v) / (kCount * (kCount - 1.0));
+    };
+    const double luminance = (2.0 * mean_a * mean_b + kC1) / (mean_a * mean_a + mean_b * mean_b + kC1);
+    const double structure = (2.0 * covariance(sum_ab, sum_a, sum_b) + kC2) /
+                             (covariance(sum_aa, sum_a, sum_a) + covariance(sum_bb, sum_b, sum_b) + kC2);
+    return luminance * structure;
+}
+
+}  // namespace
+
+double luma_mean_square(const Yuv420Image& a, const Yuv420Image& b) {
+    assert(a.width() == b.width() && a.height() == b.height());
+    const std::int64_t count = std::int64_t{a.width()} * a.height();
+    std::int64_t sum = 0;
+    for (std::int64_t i = 0; i < count; ++i) {
+        const std::int64_t difference = std::int64_t{a.plane(0)[i]} - b.plane(0)[i];
+        sum += difference * difference;
+    }
+    return static_cast<double>(sum) / static_cast<double>(count);
+}
+
+double psnr_db(double mean_square) {
+    if (mean_square == 0.0) return std::numeric_limits<double>::infinity();
+    return 10.0 * std::log10(kPeak * kPeak / mean_square);
+}
+
+double luma_ssim(const Yuv420Image& a, const Yuv420Image& b) {
+    assert(a.width() == b.width() && a.height() == b.height());
+    assert(a.width() >= kWindow && a.height() >= kWindow);
+    const int width = a.width();
+    double sum = 0.0;
+    std::int64_t windows = 0;
+    for (int y = 0; y + kWindow <= a.height(); y += kStride) {
+        for (int x = 0; x + kWindow <= width; x += kStride) {
+            const std::ptrdiff_t at = std::ptrdiff_t{y} * width + x;
+            sum += window_ssim(a.plane(0) + at, b.plane(0) + at, width);
+            ++windows;
+        }
+    }
+    return sum / static_cast<double>(windows);
+}
+
+}  // namespace corda::media

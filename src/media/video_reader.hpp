@@ -1,0 +1,28 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "corda/media/yuv420.hpp"
+
+namespace corda::media {
+
+/// Reads the pictures of an MP4 video one after the other, as a player shows them.
+class VideoReader {
+  public:
+    /// Throws corda::Error (kIo) where the file is no video that can be decoded.
+    explicit VideoReader(const std::string& path);
+    VideoReader(const VideoReader&) = delete;
+    VideoReader& operator=(const VideoReader&) = delete;
+    ~VideoReader();
+
+    /// Puts the next picture into `picture`, which gets the video's size; false after the last one. Throws
+    /// corda::Error (kIo) for a picture that does not decode cleanly or is not yuv420p with even sides.
+    [[nodiscard]] bool read(Yuv420Image& picture);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace corda::media

@@ -1,0 +1,62 @@
+#pragma once
+
+namespace corda::study {
+
+/// The style sheet of the page, in it. Light and dark follow the reader's system; the plots take part through
+/// the two greys that gnuplot writes.
+inline constexpr const char* kPageStyle = R"css(
+:root {
+  color-scheme: light dark;
+  --ink: #1c2026; --soft: #5b6470; --line: #dde1e6; --page: #ffffff; --band: #f5f7f9;
+  --accent: #0b5fa5; --bad: #b3261e; --bad-band: #fdf0ee; --grid: #d5d9de;
+}
+@media (prefers-color-scheme: dark) {
+  :root {
+    --ink: #e4e7eb; --soft: #9aa4b0; --line: #333a43; --page: #14171b; --band: #1c2126;
+    --accent: #6cb6ff; --bad: #ff8f85; --bad-band: #33201f; --grid: #39414a;
+  }
+}
+* { box-sizing: border-box; }
+body {
+  margin: 0 auto; padding: 2.5rem 1.5rem 5rem; max-width: 70rem; background: var(--page); color: var(--ink);
+  font: 1.0625rem/1.6 system-ui, "Segoe UI", "Helvetica Neue", Arial, sans-serif;
+}
+h1 { font-size: 2.1rem; line-height: 1.2; letter-spacing: -0.015em; margin: 0 0 1.5rem; text-wrap: balance; }
+h2 { font-size: 1.5rem; line-height: 1.25; margin: 4rem 0 1rem; padding-top: 1.5rem; border-top: 1px solid var(--line); }
+h2 a { color: inherit; text-decoration: none; }
+h2 a:hover::after { content: " #"; color: var(--soft); }
+p { margin: 0 0 1rem; max-width: 44rem; }
+a { color: var(--accent); }
+nav { margin: 0 0 2rem; }
+nav ol { margin: 0; padding-left: 1.4rem; }
+.scroll { overflow-x: auto; margin: 2rem 0 0.5rem; }
+table { border-collapse: collapse; font-size: 0.9375rem; line-height: 1.4; font-variant-numeric: tabular-nums; }
+caption { text-align: left; font-weight: 600; padding: 0 0 0.6rem; white-space: nowrap; }
+th, td { padding: 0.35rem 0.7rem; text-align: left; vertical-align: top; }
+th:first-child, td:first-child { padding-left: 0.6rem; }
+thead th, thead .number { font-weight: 600; color: var(--soft); border-bottom: 2px solid var(--line); vertical-align: bottom; white-space: normal; }
+tbody tr { border-bottom: 1px solid var(--line); }
+tbody tr:nth-child(even) { background: var(--band); }
+.number { text-align: right; }
+td { white-space: nowrap; }
+td.long { white-space: normal; min-width: 18rem; }
+.missing { color: var(--soft); text-align: center; }
+tbody tr.failed { background: var(--bad-band); color: var(--bad); }
+.note { color: var(--soft); font-size: 0.9375rem; }
+table.setting td { white-space: normal; }
+table.setting th { font-weight: 500; color: var(--soft); white-space: nowrap; }
+figure { margin: 2rem 0; padding: 0.5rem; border: 1px solid var(--line); border-radius: 8px; }
+figure svg { display: block; width: 100%; height: auto; }
+sup { line-height: 0; font-size: 0.75em; }
+svg [stroke="black"] { stroke: var(--ink); }
+svg [fill="black"] { fill: var(--ink); }
+svg .gridline { stroke: var(--grid); }
+@media print {
+  body { max-width: none; padding: 0; font-size: 10pt; }
+  nav { display: none; }
+  figure, tr { break-inside: avoid; }
+  h2 { break-after: avoid; }
+}
+)css";
+
+}  // namespace corda::study

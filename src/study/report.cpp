@@ -1,0 +1,99 @@
+#include "corda/study/report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <set>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "corda/core/error.hpp"
+#include "corda/study/study.hpp"
+#include "corda/study/writers.hpp"
+
+namespace corda::study {
+namespace {
+
+// Between these, exponents are harder to read than zeros.
+constexpr double kSmallestRounded = 1e3;
+constexpr double kLargestInFull = 1e6;
+
+void check_name(const std::string& name, const char* kind, std::set<std::string>& seen) {
+    const bool is_plain =
+        !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
+    if (!is_plain) {
+        throw Error(ExitCode::kInternal, fmt::format("a report's {} '{}' is not [a-z0-9_]+", kind, name));
+    }
+    if (!seen.insert(name).second) {
+        throw Error(ExitCode::kInternal, fmt::format("a report has the {} '{}' twice", kind, name));
+    }
+}
+
+void check_table(const Table& table) {
+    std::set<std::string> keys;
+    for (const Column& column : table.columns) check_name(column.key, "column key", keys);
+    for (const auto& row : table.rows) {
+        if (row.size() == table.columns.size()) continue;
+        throw Error(ExitCode::kInternal, fmt::format("a row of table '{}' has {} cells for {} columns",
+                                                     table.id, row.size(), table.columns.size()));
+    }
+}
+
+}  // namespace
+
+void check_report(const Report& report) {
+    std::set<std::string> tables;
+    std::set<std::string> plots;
+    for (const Chapter& chapter : report.chapters) {
+        for (const Table& table : chapter.tables) {
+            check_name(table.id, "table id", tables);
+            check_table(table);
+        }
+        for (const Plot& plot : chapter.plots) check_name(plot.id, "plot id", plots);
+    }
+}
+
+bool is_failed(const Table& table, std::size_t row) {
+    for (std::size_t column = 0; column < table.columns.size(); ++column) {
+        if (table.columns[column].key != kFailureKey) continue;
+        const auto* reason = std::get_if<std::string>(&table.rows[row][column]);
+        return reason != nullptr && !reason->empty();
+    }
+    return false;
+}
+
+bool is_numeric(const Table& table, std::size_t column) {
+    const auto holds = [&table, column](auto predicate) {
+        return std::any_of(table.rows.begin(), table.rows.end(),
+                           [&](const auto& row) { return predicate(row[column]); });
+    };
+    return holds([](const Cell& cell) { return std::holds_alternative<double>(cell); }) &&
+           !holds([](const Cell& cell) { return std::holds_alternative<std::string>(cell); });
+}
+
+bool is_for_people(const Table& table, std::size_t column) {
+    if (table.columns[column].key != kFailureKey) return true;
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        if (is_failed(table, row)) return true;
+    }
+    return false;
+}
+
+std::string short_number(double value) {
+    if (std::isnan(value)) return "NaN";
+    if (std::isinf(value)) return value > 0.0 ? "∞" : "−∞";
+    const std::string three_digits = fmt::format("{:.2e}", value);
+    const bool is_whole = value == std::round(value);
+    const double shown = is_whole ? value : std::strtod(three_digits.c_str(), nullptr);
+    if (std::abs(shown) < kLargestInFull && (is_whole || std::abs(shown) >= kSmallestRounded)) {
+        return fmt::format("{:.0f}", shown + 0.0);  // + 0.0: -0 becomes 0
+    }
+    std::string text = fmt::format("{:.3g}", value);
+    // "1.23e-05" is a computer's way to write 1.23e-5.
+    const std::size_t digits = text.find('e') + 2;
+    if (digits >= 2 && digits + 1 < text.size() && text[digits] == '0') text.erase(digits, 1);
+    return text;
+}
+
+}  // namespace corda::study

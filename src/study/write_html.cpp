@@ -1,0 +1,165 @@
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "corda/study/page_style.hpp"
+#include "corda/study/writers.hpp"
+
+namespace corda::study {
+namespace {
+
+/// A cell with more bytes is broken into lines.
+constexpr std::size_t kLongText = 40;
+
+/// Plain text as text or attribute value of HTML and XML.
+std::string escaped(std::string_view text) {
+    std::string result;
+    for (const char c : text) {
+        switch (c) {
+            case '&':
+                result += "&amp;";
+                break;
+            case '<':
+                result += "&lt;";
+                break;
+            case '>':
+                result += "&gt;";
+                break;
+            case '"':
+                result += "&quot;";
+                break;
+            case '\'':
+                result += "&#39;";
+                break;
+            default:
+                result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;  // XML has no controls
+        }
+    }
+    return result;
+}
+
+/// "1.23e-5" as 1.23 · 10 to the -5.
+std::string number_html(double value) {
+    std::string text = short_number(value);
+    const std::size_t e = text.find('e');
+    if (e == std::string::npos) return text;
+    const bool is_negative = text[e + 1] == '-';
+    return fmt::format("{}·10<sup>{}{}</sup>", text.substr(0, e), is_negative ? "−" : "", text.substr(e + 2));
+}
+
+std::string cell_html(const Cell& cell) {
+    if (const auto* number = std::get_if<double>(&cell)) {
+        return fmt::format("<td class=\"number\" title=\"{:.17g}\">{}</td>", *number, number_html(*number));
+    }
+    if (const auto* text = std::get_if<std::string>(&cell); text != nullptr && !text->empty()) {
+        return fmt::format("<td class=\"{}\">{}</td>", text->size() > kLongText ? "long" : "text",
+                           escaped(*text));
+    }
+    return "<td class=\"missing\">–</td>";
+}
+
+std::string table_html(const Table& table) {
+    std::string text = fmt::format("<div class=\"scroll\">\n<table id=\"table-{}\">\n<caption>{}</caption>\n",
+                                   table.id, escaped(table.title));
+    text += "<thead><tr>";
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        if (!is_for_people(table, i)) continue;
+        text += fmt::format("<th scope=\"col\"{}>{}</th>", is_numeric(table, i) ? " class=\"number\"" : "",
+                            escaped(table.columns[i].title));
+    }
+    text += "</tr></thead>\n<tbody>\n";
+    for (std::size_t r = 0; r < table.rows.size(); ++r) {
+        text += is_failed(table, r) ? "<tr class=\"failed\">" : "<tr>";
+        for (std::size_t i = 0; i < table.columns.size(); ++i) {
+            if (is_for_people(table, i)) text += cell_html(table.rows[r][i]);
+        }
+        text += "</tr>\n";
+    }
+    text += "</tbody>\n</table>\n</div>\n";
+    if (!table.note.empty()) text += fmt::format("<p class=\"note\">{}</p>\n", escaped(table.note));
+    return text;
+}
+
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+        text.replace(at, from.size(), to);
+    }
+}
+
+void remove_element(std::string& text, std::string_view start, std::string_view end) {
+    const std::size_t first = text.find(start);
+    if (first == std::string::npos) return;
+    const std::size_t last = text.find(end, first);
+    if (last != std::string::npos) text.erase(first, last + end.size() - first);
+}
+
+/// An SVG file of gnuplot as an element of the page: without what belongs to a file, named for those who
+/// cannot see it, and with ids that no other plot has.
+std::string svg_element(std::string svg, const Plot& plot) {
+    svg.erase(0, std::min(svg.find("<svg"), svg.size()));
+    remove_element(svg, "<title>", "</title>");
+    remove_element(svg, "<desc>", "</desc>");
+    for (const std::string_view id : {"gpDot", "gpPt", "textbox", "greybox"}) {
+        replace_all(svg, fmt::format("id='{}", id), fmt::format("id='{}_{}", plot.id, id));
+        replace_all(svg, fmt::format("'#{}", id), fmt::format("'#{}_{}", plot.id, id));
+    }
+    replace_all(svg, "id=\"gnuplot_canvas\"", fmt::format("id=\"{}_canvas\"", plot.id));
+    if (svg.rfind("<svg", 0) == 0) {
+        svg.insert(4, fmt::format(" role=\"img\" aria-label=\"{}\"", escaped(plot.title)));
+    }
+    return svg;
+}
+
+std::string setting_html(const Report& report) {
+    if (report.setting.empty()) return {};
+    std::string text =
+        "<div class=\"scroll\">\n<table class=\"setting\" "
+        "id=\"setting\">\n<caption>Setting</caption>\n<tbody>\n";
+    for (const auto& [name, value] : report.setting) {
+        text += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escaped(name), escaped(value));
+    }
+    return text + "</tbody>\n</table>\n</div>\n";
+}
+
+std::string contents_html(const Report& report) {
+    if (report.chapters.empty()) return {};
+    std::string text = "<nav aria-label=\"Chapters\">\n<ol>\n";
+    for (std::size_t i = 0; i < report.chapters.size(); ++i) {
+        text += fmt::format("<li><a href=\"#chapter-{}\">{}</a></li>\n", i + 1,
+                            escaped(report.chapters[i].title));
+    }
+    return text + "</ol>\n</nav>\n";
+}
+
+std::string chapter_html(const Chapter& chapter, std::size_t number, const SvgOf& svg_of) {
+    std::string text =
+        fmt::format("<section id=\"chapter-{0}\">\n<h2><a href=\"#chapter-{0}\">{0}. {1}</a></h2>\n", number,
+                    escaped(chapter.title));
+    for (const std::string& paragraph : chapter.paragraphs) {
+        text += fmt::format("<p>{}</p>\n", escaped(paragraph));
+    }
+    for (const Plot& plot : chapter.plots) {
+        text +=
+            fmt::format("<figure id=\"plot-{}\">\n{}</figure>\n", plot.id, svg_element(svg_of(plot), plot));
+    }
+    for (const Table& table : chapter.tables) text += table_html(table);
+    return text + "</section>\n";
+}
+
+}  // namespace
+
+std::string html_text(const Report& report, const SvgOf& svg_of) {
+    std::string text = fmt::format(
+        "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n"
+        "<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width, "
+        "initial-scale=1\"/>\n"
+        "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
+        escaped(report.title), kPageStyle);
+    text += contents_html(report) + setting_html(report);
+    for (std::size_t i = 0; i < report.chapters.size(); ++i) {
+        text += chapter_html(report.chapters[i], i + 1, svg_of);
+    }
+    return text + "</body>\n</html>\n";
+}
+
+}  // namespace corda::study

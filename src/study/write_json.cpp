@@ -1,0 +1,63 @@
+#include <nlohmann/json.hpp>
+
+#include "corda/study/writers.hpp"
+
+namespace corda::study {
+namespace {
+
+// Keeps the order in which a reader wants the keys.
+using Json = nlohmann::ordered_json;
+
+Json to_json(const Cell& cell) {
+    if (const auto* number = std::get_if<double>(&cell)) return *number;
+    if (const auto* text = std::get_if<std::string>(&cell)) return *text;
+    return nullptr;
+}
+
+Json to_json(const Table& table) {
+    Json columns = Json::array();
+    for (const Column& column : table.columns)
+        columns.push_back({{"key", column.key}, {"title", column.title}});
+    Json rows = Json::array();
+    for (const auto& row : table.rows) {
+        Json object = Json::object();
+        for (std::size_t i = 0; i < row.size(); ++i) object[table.columns[i].key] = to_json(row[i]);
+        rows.push_back(std::move(object));
+    }
+    return {
+        {"id", table.id}, {"title", table.title}, {"note", table.note}, {"columns", columns}, {"rows", rows}};
+}
+
+Json to_json(const Plot& plot) {
+    Json series = Json::array();
+    for (const Series& one : plot.series) {
+        Json points = Json::array();
+        for (const auto& [x, y] : one.points) points.push_back(Json::array({x, y}));
+        series.push_back({{"name", one.name}, {"points", points}});
+    }
+    return {{"id", plot.id},           {"title", plot.title}, {"x_title", plot.x_title},
+            {"y_title", plot.y_title}, {"log_x", plot.log_x}, {"log_y", plot.log_y},
+            {"series", series}};
+}
+
+Json to_json(const Chapter& chapter) {
+    Json tables = Json::array();
+    for (const Table& table : chapter.tables) tables.push_back(to_json(table));
+    Json plots = Json::array();
+    for (const Plot& plot : chapter.plots) plots.push_back(to_json(plot));
+    return {
+        {"title", chapter.title}, {"paragraphs", chapter.paragraphs}, {"tables", tables}, {"plots", plots}};
+}
+
+}  // namespace
+
+std::string json_text(const Report& report) {
+    Json setting = Json::array();
+    for (const auto& [name, value] : report.setting) setting.push_back({{"name", name}, {"value", value}});
+    Json chapters = Json::array();
+    for (const Chapter& chapter : report.chapters) chapters.push_back(to_json(chapter));
+    const Json json = {{"schema", 1}, {"title", report.title}, {"setting", setting}, {"chapters", chapters}};
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace corda::study

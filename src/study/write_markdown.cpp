@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "corda/study/study.hpp"
+#include "corda/study/writers.hpp"
+
+namespace corda::study {
+namespace {
+
+/// Plain text as Markdown inside a line: every character itself.
+std::string escaped(std::string_view text) {
+    constexpr std::string_view kSpecial = "\\`*_[]<>|~$&";
+    std::string result;
+    for (const char c : text) {
+        if (kSpecial.find(c) != std::string_view::npos) result += '\\';
+        result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    }
+    return result;
+}
+
+/// The same for text that starts a line, where "#", "-" or "1." would make it a heading or a list.
+std::string paragraph_text(std::string_view text) {
+    std::string result = escaped(text);
+    const std::size_t mark = std::min(result.find_first_not_of("0123456789"), result.size());
+    constexpr std::string_view kBlockStarts = "#+-=";
+    constexpr std::string_view kListMarks = ".)";
+    const std::string_view special = mark == 0 ? kBlockStarts : kListMarks;
+    if (mark < result.size() && special.find(result[mark]) != std::string_view::npos) {
+        result.insert(mark, 1, '\\');
+    }
+    return result + "\n\n";
+}
+
+/// Characters as code points: near enough to columns of a fixed-width font for what stands in a report.
+std::size_t width(std::string_view text) {
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+std::string cell_text(const Cell& cell) {
+    if (const auto* number = std::get_if<double>(&cell)) return short_number(*number);
+    if (const auto* text = std::get_if<std::string>(&cell)) return escaped(*text);
+    return {};
+}
+
+/// The cells of a table as text, the titles first.
+std::vector<std::vector<std::string>> cell_texts(const Table& table, const std::vector<std::size_t>& shown) {
+    std::vector<std::vector<std::string>> rows(1);
+    for (const std::size_t i : shown) rows[0].push_back(escaped(table.columns[i].title));
+    for (std::size_t r = 0; r < table.rows.size(); ++r) {
+        auto& cells = rows.emplace_back();
+        for (const std::size_t i : shown) {
+            cells.push_back(cell_text(table.rows[r][i]));
+            if (table.columns[i].key == kFailureKey && is_failed(table, r)) {
+                cells.back().insert(0, "**failed:** ");
+            }
+        }
+    }
+    return rows;
+}
+
+void add_padded(const std::string& cell, std::size_t to, bool right, std::string& text) {
+    const std::string padding(to - width(cell), ' ');
+    text += "| " + (right ? padding + cell : cell + padding) + " ";
+}
+
+void add_table(const Table& table, std::string& text) {
+    text += fmt::format("**{}**\n\n", escaped(table.title));
+    std::vector<std::size_t> shown;
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+        if (is_for_people(table, i)) shown.push_back(i);
+    }
+    const auto rows = cell_texts(table, shown);
+    std::vector<std::size_t> widths(shown.size(), 3);
+    for (const auto& row : rows) {
+        for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
+    }
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+        for (std::size_t i = 0; i < shown.size(); ++i) {
+            add_padded(rows[r][i], widths[i], is_numeric(table, shown[i]), text);
+        }
+        text += "|\n";
+        if (r > 0) continue;
+        for (std::size_t i = 0; i < shown.size(); ++i) {
+            text += "|" + std::string(widths[i] + 1, '-') + (is_numeric(table, shown[i]) ? ":" : "-");
+        }
+        text += "|\n";
+    }
+    text += '\n';
+    if (!table.note.empty()) text += paragraph_text(table.note);
+}
+
+Table setting_table(const Report& report) {
+    Table table{"setting", "Setting", {{"name", "What"}, {"value", "Value"}}, {}, ""};
+    for (const auto& [name, value] : report.setting) table.rows.push_back({name, value});
+    return table;
+}
+
+}  // namespace
+
+std::string markdown_text(const Report& report) {
+    std::string text = fmt::format("# {}\n\n", escaped(report.title));
+    if (!report.setting.empty()) add_table(setting_table(report), text);
+    for (const Chapter& chapter : report.chapters) {
+        text += fmt::format("## {}\n\n", escaped(chapter.title));
+        for (const std::string& paragraph : chapter.paragraphs) text += paragraph_text(paragraph);
+        for (const Plot& plot : chapter.plots) {
+            text += fmt::format("![{}]({}.svg)\n\n", escaped(plot.title), plot.id);
+        }
+        for (const Table& table : chapter.tables) add_table(table, text);
+    }
+    text.pop_back();  // one line end at the end
+    return text;
+}
+
+}  // namespace corda::study

@@ -1,0 +1,139 @@
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "corda/core/error.hpp"
+#include "corda/study/child.hpp"
+#include "corda/study/writers.hpp"
+
+namespace corda::study {
+namespace {
+
+constexpr const char* kHint = "Corda draws plots with it; install it with: apt-get install gnuplot-nox";
+
+/// Colours that stay apart for colour-blind readers (after Okabe and Ito 2008, without their yellow and
+/// black, which a light or a dark page swallows), and shapes that stay apart without any colour.
+constexpr std::array<const char*, 8> kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                             "#e69f00", "#56b4e9", "#7a5fd0", "#8c6d31"};
+constexpr std::array<int, 5> kPointTypes{7, 5, 9, 13, 11};  // filled: open ones are thin in an SVG
+constexpr std::array<int, 3> kDashTypes{1, 2, 4};
+
+/// A text as gnuplot takes it literally: in single quotes, where nothing but the quote itself has a meaning.
+std::string literal(std::string_view text) {
+    std::string result = "'";
+    for (const char c : text) {
+        if (c == '\'') result += '\'';
+        result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+    }
+    return result + "'";
+}
+
+bool can_stand(double value, bool log_axis) {
+    return std::isfinite(value) && (!log_axis || value > 0.0);
+}
+
+bool can_stand(const Plot& plot, const std::pair<double, double>& point) {
+    return can_stand(point.first, plot.log_x) && can_stand(point.second, plot.log_y);
+}
+
+bool has_points(const Plot& plot, const Series& series) {
+    for (const auto& point : series.points) {
+        if (can_stand(plot, point)) return true;
+    }
+    return false;
+}
+
+std::string axis(char name, const std::string& title, bool is_log) {
+    std::string text = fmt::format("set {}label {} noenhanced{}\n", name, literal(title),
+                                   name == 'x' ? " offset 0,0.4" : "");
+    if (is_log) text += fmt::format("set logscale {}\nset format {} '10^{{%L}}'\n", name, name);
+    return text;
+}
+
+std::string data_block(const Plot& plot, std::size_t index) {
+    std::string text = fmt::format("$s{} << END\n", index);
+    for (const auto& point : plot.series[index].points) {
+        if (can_stand(plot, point)) {
+            text += fmt::format("{:.17g} {:.17g}\n", point.first, point.second);
+        } else {
+            text += "NaN NaN\n";
+        }
+    }
+    return text + "END\n";
+}
+
+std::string plot_item(const Plot& plot, std::size_t index) {
+    const Series& series = plot.series[index];
+    const bool is_drawn = has_points(plot, series);
+    const std::string source = is_drawn ? fmt::format("$s{}", index) : "keyentry";
+    return fmt::format(
+        "{} with linespoints linewidth 2.5 linecolor rgb '{}' pointtype {} "
+        "dashtype {} title {}",
+        source, kColors[index % kColors.size()], kPointTypes[index % kPointTypes.size()],
+        kDashTypes[index / kColors.size() % kDashTypes.size()],
+        literal(is_drawn ? series.name : series.name + " (nothing to draw)"));
+}
+
+std::string terminal(const Plot& plot, PlotFormat format) {
+    if (format == PlotFormat::kPng) {
+        return "set terminal pngcairo size 1200,800 enhanced font 'sans,16' background rgb 'white'\n"
+               "set pointsize 1.5\nset key font ',14'\n";
+    }
+    return fmt::format(
+        "set terminal svg size 1200,800 dynamic enhanced font 'sans-serif,20' name '{}'\n"
+        "set pointsize 0.9\nset key font ',17'\n",
+        plot.id);
+}
+
+/// The end of gnuplot's own words, where the reason stands.
+std::string last_words(const std::string& text) {
+    constexpr std::size_t kMost = 400;
+    std::string words = text.substr(text.size() > kMost ? text.size() - kMost : 0);
+    while (!words.empty() && (words.back() == '\n' || words.back() == ' ')) words.pop_back();
+    return words.empty() ? "it said nothing" : words;
+}
+
+}  // namespace
+
+std::string gnuplot_script(const Plot& plot, PlotFormat format) {
+    std::string text = "set encoding utf8\n" + terminal(plot, format);
+    text += fmt::format("set title {} noenhanced\n", literal(plot.title));
+    text += axis('x', plot.x_title, plot.log_x) + axis('y', plot.y_title, plot.log_y);
+    text +=
+        "set grid xtics ytics linetype 1 linewidth 0.6 linecolor rgb '#b0b0b0'\n"
+        "set border linewidth 1.2\n"
+        "set key below center maxrows 4 Left reverse noenhanced samplen 3 spacing 1.15\n";
+    bool is_empty = true;
+    for (std::size_t i = 0; i < plot.series.size(); ++i) {
+        if (!has_points(plot, plot.series[i])) continue;
+        is_empty = false;
+        text += data_block(plot, i);
+    }
+    // gnuplot refuses a plot without a single point; one outside the ranges draws the axes alone.
+    text += is_empty ? "set xrange [1:10]\nset yrange [1:10]\nplot NaN notitle" : "plot ";
+    for (std::size_t i = 0; i < plot.series.size(); ++i) {
+        text += (i > 0 || is_empty ? ", \\\n" : "") + plot_item(plot, i);
+    }
+    return text + "\n";
+}
+
+std::string draw_plot(const Plot& plot, PlotFormat format) {
+    // -d: nobody's .gnuplot has a say.
+    const ChildResult child = run_child({"gnuplot", "-d"}, gnuplot_script(plot, format), kHint);
+    if (child.exit_code != 0 || child.out.empty()) {
+        throw Error(ExitCode::kIo, fmt::format("gnuplot cannot draw '{}' (status {}): {}", plot.id,
+                                               child.exit_code, last_words(child.err)));
+    }
+    return child.out;
+}
+
+void check_gnuplot() {
+    const ChildResult child = run_child({"gnuplot", "--version"}, "", kHint);
+    if (child.exit_code == 0) return;
+    throw Error(ExitCode::kIo, fmt::format("gnuplot does not run (status {}): {}; {}", child.exit_code,
+                                           last_words(child.err), kHint));
+}
+
+}  // namespace corda::study

@@ -1,0 +1,151 @@
+// corda study from the command line: what it writes, what it refuses, and that it can be stopped.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include <nlohmann/json.hpp>
+
+#include "support/command.hpp"
+
+namespace corda {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using test::run_corda;
+using test::run_shell;
+using testing::HasSubstr;
+
+class Study : public testing::Test {
+  protected:
+    test::ScratchFolder folder_;
+    std::string out_ = folder_.file("report");
+};
+
+/// Every file that a report of `json` promises stands in `folder`, and nothing else.
+void expect_files_of(const json& report, const std::string& folder) {
+    std::size_t expected = 3;
+    for (const json& chapter : report["chapters"]) {
+        EXPECT_FALSE(chapter["title"].get<std::string>().empty());
+        for (const json& table : chapter["tables"]) {
+            EXPECT_TRUE(fs::exists(folder + "/" + table["id"].get<std::string>() + ".csv"));
+            EXPECT_FALSE(table["rows"].empty()) << table["id"];
+            ++expected;
+        }
+        for (const json& plot : chapter["plots"]) {
+            for (const char* ending : {".png", ".svg"})
+                EXPECT_TRUE(fs::exists(folder + "/" + plot["id"].get<std::string>() + ending));
+            expected += 2;
+        }
+    }
+    const auto begin = fs::directory_iterator(folder);
+    EXPECT_EQ(static_cast<std::size_t>(std::distance(begin, fs::directory_iterator{})), expected);
+}
+
+TEST_F(Study, QuickWritesAWholeReport) {
+    const auto result = run_corda({"study", "-o", out_, "--quick", "--json"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const json answer = json::parse(result.out);
+    EXPECT_EQ(answer["schema"], 1);
+    EXPECT_EQ(answer["folder"], out_);
+    EXPECT_EQ(answer["files"][0], out_ + "/report.html");
+    for (const json& file : answer["files"]) EXPECT_GT(fs::file_size(file.get<std::string>()), 0U) << file;
+    const json report = json::parse(test::read_file(out_ + "/report.json"));
+    EXPECT_EQ(report["schema"], 1);
+    EXPECT_GE(report["setting"].size(), 7U);
+    EXPECT_GE(report["chapters"].size(), 2U);
+    expect_files_of(report, out_);
+    const auto lint = run_shell("xmllint --noout --nonet --dropdtd " + test::quoted(out_ + "/report.html"));
+    EXPECT_EQ(lint.exit_code, 0) << lint.err;
+    const auto svgs = run_shell("xmllint --noout --nonet " + test::quoted(out_) + "/*.svg");
+    EXPECT_EQ(svgs.exit_code, 0) << svgs.err;
+}
+
+TEST_F(Study, PicturesOfTheSwingShowWhatTheyCost) {
+    const auto result = run_corda({"study", "-o", out_, "--quick", "--chapter", "picture"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr(out_ + "/report.html\n"));
+    const json report = json::parse(test::read_file(out_ + "/report.json"));
+    ASSERT_EQ(report["chapters"].size(), 1U);
+    const json& chapter = report["chapters"][0];
+    const json& solvers = chapter["tables"][0]["rows"];
+    ASSERT_EQ(solvers.size(), 17U);
+    for (const json& row : solvers) {
+        EXPECT_EQ(row["failure"], "") << row;
+        EXPECT_GT(row["whole_ms"], 0.0) << row;
+        EXPECT_LT(row["simulate_ms"], row["whole_ms"]) << row;
+    }
+    // Half a second of the swing at 7.6 pixels a metre; errors are the same on every machine.
+    EXPECT_GT(solvers[0]["error_px"], 0.1);     // the report's relaxation: measured 0.251
+    EXPECT_LT(solvers[15]["error_px"], 1e-11);  // exact at 1e-10: measured 2.4e-13
+    EXPECT_LT(solvers[16]["error_px"], 0.1);    // auto keeps its word: measured 1.0e-6
+    const json& presets = chapter["tables"][1]["rows"];
+    ASSERT_EQ(presets.size(), 6U);
+    for (const json& row : presets) {
+        EXPECT_GT(row["psnr_db"], 50.0) << row;         // measured 60.6 .. 69.8
+        EXPECT_LT(row["one_minus_ssim"], 2e-4) << row;  // measured 6.0e-6 .. 4.7e-5
+    }
+    EXPECT_GT(presets[0]["bytes"], presets[5]["bytes"]);  // ultrafast 18702, slow 4160
+    expect_files_of(report, out_);
+}
+
+TEST_F(Study, TakesAScene) {
+    const std::string scene = folder_.write("My rope-1.toml", R"(schema = 1
+[world]
+duration = 0.2
+[[rope]]
+hang = { links = 5, length = 1.0, angle_deg = 30.0 }
+)");
+    const auto result = run_corda({"study", scene, "-o", out_, "--quick", "--set", "video.fps=30"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const json report = json::parse(test::read_file(out_ + "/report.json"));
+    EXPECT_THAT(report["title"].get<std::string>(), HasSubstr("My rope-1"));
+    EXPECT_THAT(report["chapters"].back()["paragraphs"][0].get<std::string>(),
+                testing::StartsWith("6 frames of 640x360 at 30 a second"));
+    expect_files_of(report, out_);
+}
+
+TEST_F(Study, RefusesBeforeItMeasures) {
+    EXPECT_EQ(run_corda({"study", "--quick"}).exit_code, 2);
+    EXPECT_EQ(run_corda({"study", "-o", out_, "--chapter", "no_such_chapter"}).exit_code, 2);
+    EXPECT_EQ(run_corda({"study", "-o", out_, "--set", "video.fps=30"}).exit_code, 2);
+    EXPECT_EQ(run_corda({"study", folder_.file("missing.toml"), "-o", out_}).exit_code, 6);
+    EXPECT_FALSE(fs::exists(out_));
+    const std::string file = folder_.write("file", "text");
+    const auto taken = run_corda({"study", "-o", file, "--quick"});
+    EXPECT_EQ(taken.exit_code, 6);
+    EXPECT_THAT(taken.err, HasSubstr("is no folder"));
+    const auto full = run_corda({"study", "-o", folder_.path(), "--quick"});
+    EXPECT_EQ(full.exit_code, 6);
+    EXPECT_THAT(full.err, HasSubstr("is not empty; give --force"));
+    EXPECT_THAT(folder_.files(), testing::ElementsAre("file"));
+}
+
+TEST_F(Study, ForceKeepsOtherFiles) {
+    const std::string file = folder_.write("file", "text");
+    const auto result =
+        run_corda({"study", "-o", folder_.path(), "--quick", "--force", "--chapter", "picture", "-q"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    EXPECT_EQ(test::read_file(file), "text");
+    EXPECT_TRUE(fs::exists(folder_.file("report.html")));
+}
+
+TEST_F(Study, MissingGnuplotIsSaidAtOnce) {
+    const auto result = run_corda({"study", "-o", out_, "--quick"}, "PATH=" + test::quoted(folder_.path()));
+    EXPECT_EQ(result.exit_code, 6);
+    EXPECT_THAT(result.err, HasSubstr("apt-get install gnuplot-nox"));
+}
+
+TEST_F(Study, StopsAtASignalAndWritesNothing) {
+    const auto result =
+        run_shell("timeout -s INT 1 " + test::quoted(CORDA_PROGRAM) + " study -o " + test::quoted(out_));
+    EXPECT_EQ(result.exit_code, 124) << result.err;  // timeout's own: the signal was sent
+    EXPECT_THAT(result.err, HasSubstr("interrupted; nothing was written"));
+    EXPECT_TRUE(fs::is_empty(out_));
+}
+
+}  // namespace
+}  // namespace corda
