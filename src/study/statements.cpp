@@ -106,17 +106,21 @@ std::string mass_statement(std::span<const SwingRow> rows, double difference_und
         const SwingRow* const row = find(rows, mass_kg, kReportReach, 1);
         if (row != nullptr) strains.push_back(row->figures.strain);
     }
-    const bool falls = std::is_sorted(strains.rbegin(), strains.rend(), std::less_equal<>());
+    const bool falls =
+        std::adjacent_find(strains.begin(), strains.end(), std::less_equal<>()) == strains.end();
     const std::string trend =
         falls ? "less and less, as the report found" : "not less and less, against the report's finding";
-    const bool is_force = difference_under_gravity < 1e-9;
-    const std::string cause =
-        is_force ? fmt::format(
-                       "The reason is the force that is the same for every mass: under gravity, which grows "
-                       "with mass, two masses move alike to {:.1e} L, and mass has no effect at all.",
-                       difference_under_gravity)
-                 : fmt::format("Under gravity, too, mass matters: two masses part by {:.1e} L.",
-                               difference_under_gravity);
+    const std::string apart = difference_under_gravity == 0.0
+                                  ? "exactly alike"
+                                  : fmt::format("alike to {:.1e} L", difference_under_gravity);
+    const std::string no_effect = fmt::format(
+        "The reason is the force that is the same for every mass: under gravity, which grows with mass, two "
+        "masses "
+        "move {}, and mass has no effect at all.",
+        apart);
+    const std::string effect = fmt::format("Under gravity, too, mass matters: two masses part by {:.1e} L.",
+                                           difference_under_gravity);
+    const std::string& cause = difference_under_gravity < 1e-9 ? no_effect : effect;
     return fmt::format(
         "More mass makes the rope stiffer: at masses of {} kg the links stretch by {:.2g}, {}. {}",
         fmt::join(masses_of(rows), ", "), fmt::join(strains, ", "), trend, cause);

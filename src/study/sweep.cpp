@@ -55,12 +55,16 @@ double forecast_s(const Problem& problem, const sim::SolverDef& solver, double s
            (sim::step_cost_ns(system, solver) + kUpdateCost * static_cast<double>(system.particle_count()));
 }
 
+std::size_t bars_of(const Problem& problem, int reach) {
+    return sim::build_system(problem.ropes, problem.nets, reach).bars.size();
+}
+
 void add_relaxation(const Problem& problem, bool is_quick, std::vector<SweepRun>& runs) {
     const double longest_s = is_quick ? kLongestQuickRun : kLongestRun;
     const double longest_step_s =
         problem.frame_interval_s / std::ceil(problem.frame_interval_s * kFewestSteps - 1e-9);
     for (const int reach : {1, 7}) {
-        if (reach > 1 && problem.ropes.empty()) continue;
+        if (reach > 1 && bars_of(problem, reach) == bars_of(problem, 1)) continue;
         for (const int sweeps : {1, 4, 16, 64}) {
             const std::string label = fmt::format("relaxation, reach {}, sweeps {}", reach, sweeps);
             for (int halving = 0; halving <= kMostHalvings; halving += is_quick ? 2 : 1) {
