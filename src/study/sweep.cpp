@@ -422,8 +422,8 @@ ChapterWork speed_work(const StudyDef& def) {
             fmt::format("Every run hands out the positions of all particles at every frame. Its time is that "
                         "of the stepping "
                         "alone, without set-up: the least of {} repeats of at least {:g} ms each "
-                        "(CLOCK_MONOTONIC). No method "
-                        "is held against a run of its own.",
+                        "(CLOCK_MONOTONIC). What a method "
+                        "is held against is another one, wherever another one can run the problem.",
                         timing.repeats, 1e3 * timing.shortest_s));
         for (const auto& sweep : sweeps) add_sweep(*sweep, chapter);
         if (!orders->results.empty()) chapter.tables.push_back(orders_table(*orders));
