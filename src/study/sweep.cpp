@@ -149,15 +149,29 @@ Table runs_table(const Sweep& sweep) {
     return table;
 }
 
-/// Of one series, errors over parameters as long as they fall and rounding is far.
+double slope_between(std::pair<double, double> a, std::pair<double, double> b) {
+    return std::log(a.second / b.second) / std::log(a.first / b.first);
+}
+
+/// Of one series, errors over parameters as long as they fall and rounding is far. Where they fall much less
+/// steeply than just before, rounding has its share in them; under error control they fall unevenly anyhow.
 std::vector<std::pair<double, double>> falling_points(const Sweep& sweep, const std::string& label) {
+    constexpr double kStillAsSteep = 0.6;
     const double floor = 30.0 * std::max(1e-15, sweep.subject.subject.disagreement.value_or(0.0));
     std::vector<std::pair<double, double>> points;
     for (const Measurement& run : sweep.results) {
         if (run.label != label || !run.failure.empty() || !(run.rms_error < 0.1)) continue;
+        const std::pair<double, double> point{run.parameter, run.rms_error};
+        const std::size_t count = points.size();
         if (run.rms_error < floor) break;
-        if (!points.empty() && run.rms_error > 0.9 * points.back().second) break;
-        points.emplace_back(run.parameter, run.rms_error);
+        if (count > 0 && run.rms_error > 0.9 * points.back().second) break;
+        const bool is_even = run.solver.method != sim::Method::kExact;
+        if (is_even && count > 1 &&
+            slope_between(points[count - 1], point) <
+                kStillAsSteep * slope_between(points[count - 2], points[count - 1])) {
+            break;
+        }
+        points.push_back(point);
     }
     return points;
 }
