@@ -1,0 +1,36 @@
+#pragma once
+
+#include "corda/sim/vec2.hpp"
+
+namespace corda::study {
+
+/// The mathematical pendulum let go at rest, theta'' = -omega0^2 sin theta, in closed form:
+///
+///   sin(theta / 2) = k cd(omega0 t, k),   k = sin(theta(0) / 2),   T = 4 K(k) / omega0,
+///
+/// cd = cn / dn being Jacobi's, worked out by Gauss's arithmetic-geometric mean in long double (Abramowitz
+/// and Stegun, 16.4 and 17.6). Good to some 1e-16 for thousands of seconds.
+class Pendulum {
+  public:
+    /// `omega0_1_s` > 0; `angle_rad` from straight down, in 0 .. pi, below pi.
+    Pendulum(long double omega0_1_s, long double angle_rad);
+
+    [[nodiscard]] double period_s() const { return static_cast<double>(period_s_); }
+
+    /// The unit vector from the pin to the bob; towards +x at the start.
+    [[nodiscard]] sim::Vec2 direction(long double time_s) const;
+
+  private:
+    static constexpr int kMeans = 8;  ///< halvings of the digits' distance: enough for 1 - k = 1e-12
+    long double omega0_1_s_;
+    long double modulus_;
+    long double period_s_;
+    long double mean_[kMeans + 1]{};      ///< a_n of the mean
+    long double half_gap_[kMeans + 1]{};  ///< c_n
+};
+
+/// Small-oscillation rate of a straight rigid rod of `particles` equal masses, spaced `spacing_m` from the
+/// pin on: omega0^2 = g sum r / sum r^2 (R3).
+[[nodiscard]] long double rod_omega0_1_s(int particles, double spacing_m, double gravity_m_s2);
+
+}  // namespace corda::study
