@@ -64,12 +64,10 @@ void prepare_folder(const std::string& path, bool force) {
 
 double longest_rope_m(const scene::Scene& scene) {
     double longest_m = 0.0;
-    for (const sim::RopeDef& rope : scene.ropes) {
+    const sim::System system = scene::system_of(scene);
+    for (const sim::Body& body : system.bodies) {
         double length_m = 0.0;
-        for (std::size_t i = 1; i < rope.points_m.size(); ++i) {
-            length_m += std::hypot(rope.points_m[i].x - rope.points_m[i - 1].x,
-                                   rope.points_m[i].y - rope.points_m[i - 1].y);
-        }
+        for (std::size_t k = 0; k < body.link_count; ++k) length_m += system.bars[body.first_bar + k].rest_m;
         longest_m = std::max(longest_m, length_m);
     }
     return longest_m;
@@ -92,6 +90,7 @@ study::Problem problem_of(const scene::Scene& scene) {
     problem.id = id_of(scene.name);
     problem.title = scene.name;
     problem.ropes = scene.ropes;
+    problem.nets = scene.nets;
     problem.world = scene.world;
     problem.frame_interval_s = scene.video.fps.interval_s();
     problem.last_frame = scene.video.fps.last_frame_within(scene.world.duration_s);

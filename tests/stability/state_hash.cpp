@@ -62,12 +62,14 @@ const std::map<std::string, std::uint64_t> kHashes{
     {"two_pins by exact", 0x1cdeaeda70860245U},    {"two_pins by rope", 0x8f2ca1460c15c3f0U},
     {"cloth as it is", 0xc9eb6e5dda7a5613U},       {"ring as it is", 0x73f99ed37165c481U},
     {"ring by rope", 0xa2e11984a11384c2U},         {"ring by auto", 0xa2e11984a11384c2U},
-    {"cloth by auto", 0x7571b2a949eb8f0U},
+    {"cloth by auto", 0x7571b2a949eb8f0U},         {"materials as it is", 0xc78990f99729f951U},
+    {"materials by auto", 0xc78990f99729f951U},    {"materials by exact", 0x111e64a02e420996U},
 };
 
 /// What a method refuses, with the reason in the message.
 const std::map<std::string, std::string> kRefused{
     {"cloth by rope", "the lengths of the bars depend on each other"},  // its diagonals
+    {"materials by rope", "use method exact"},                          // its string
 };
 
 /// The methods that a scene is run by besides its own: all of them where its bodies are chains.
