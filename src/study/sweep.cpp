@@ -104,7 +104,7 @@ void add_rope(const Problem& problem, bool is_quick, std::vector<SweepRun>& runs
 
 void add_exact(const Problem& problem, bool is_quick, std::vector<SweepRun>& runs) {
     const bool is_refused = !refusal(problem, exact_solver(1e-9)).empty();
-    for (int digits = is_quick ? 3 : 2; digits <= 13; digits += is_quick ? 2 : 1) {
+    for (int digits = is_quick ? 1 : 0; digits <= 13; digits += is_quick ? 2 : 1) {
         const double tolerance = std::stod(fmt::format("1e-{}", digits));
         runs.push_back({exact_solver(tolerance), "exact", tolerance});
         if (is_refused) break;
