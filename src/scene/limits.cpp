@@ -6,6 +6,9 @@
 #include <cmath>
 #include <initializer_list>
 #include <span>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace corda::scene {
 namespace {
@@ -84,6 +87,35 @@ void add_size(const TableReader& body, const BodySize& size, std::string_view fe
     }
 }
 
+/// What an explicit method of high order bears.
+constexpr double kFrequencyTimesStep = 5.0;
+
+/// A bound on the frequencies with which a body stretches and bends: the square is at most twice the largest
+/// sum over a particle of stiffness over mass; a bend acts on its particles like four springs of stiffness k
+/// / length^2.
+double largest_frequency_1_s(const sim::System& system, const sim::Body& body) {
+    std::vector<double> stiffness_n_m(system.particle_count(), 0.0);
+    if (body.material.compliance_1_n > 0.0) {
+        for (std::size_t k = body.first_bar; k < body.first_bar + body.bar_count; ++k) {
+            const sim::Bar& bar = system.bars[k];
+            stiffness_n_m[bar.a] += 1.0 / (body.material.compliance_1_n * bar.rest_m);
+            stiffness_n_m[bar.b] += 1.0 / (body.material.compliance_1_n * bar.rest_m);
+        }
+    }
+    const std::size_t end = body.first_particle + body.particle_count;
+    for (const sim::Bend& bend : system.bends) {
+        if (bend.b < body.first_particle || bend.b >= end) continue;
+        const double rest_m =
+            std::hypot(system.x_m[bend.b] - system.x_m[bend.a], system.y_m[bend.b] - system.y_m[bend.a]);
+        for (const std::uint32_t i : {bend.a, bend.b, bend.c})
+            stiffness_n_m[i] += 4.0 * bend.stiffness_n_m / (rest_m * rest_m);
+    }
+    double largest = 0.0;
+    for (std::size_t i = body.first_particle; i < end; ++i)
+        largest = std::max(largest, stiffness_n_m[i] * system.inverse_mass_1_kg[i]);
+    return std::sqrt(2.0 * largest);
+}
+
 }  // namespace
 
 SceneSize count_bodies(const Sections& sections, const sim::SolverDef& solver) {
@@ -103,6 +135,28 @@ void check_work(const Sections& sections, const Scene& scene, std::int64_t bars)
     check_frames(sections, scene);
     check_steps(sections, scene);
     check_bar_updates(sections, scene, bars);
+}
+
+void check_stiffness(const Sections& sections, const Scene& scene) {
+    const sim::System system = system_of(scene);
+    for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+        const double steps =
+            scene.world.duration_s * largest_frequency_1_s(system, system.bodies[i]) / kFrequencyTimesStep;
+        const double updates = steps * static_cast<double>(system.bodies[i].particle_count);
+        if (updates <= Limits::kElasticUpdates) continue;
+        const bool is_rope = i < sections.ropes.size();
+        const TableReader& body = is_rope ? sections.ropes[i] : sections.nets[i - sections.ropes.size()];
+        const std::string problem = fmt::format(
+            "vibrates so fast that {:g} s take some {:g} steps, {:g} particle updates, over the limit of "
+            "{:g}; "
+            "give more compliance, less bending, heavier particles or a shorter duration",
+            scene.world.duration_s, steps, updates, Limits::kElasticUpdates);
+        for (const char* key : {"compliance", "bending"}) {
+            if (!is_rope && key == std::string_view("bending")) continue;
+            if (const auto value = body.find(key)) value->fail(problem);
+        }
+        body.fail(problem);
+    }
 }
 
 }  // namespace corda::scene

@@ -21,4 +21,8 @@ struct SceneSize {
 /// or bar updates for that many bars.
 void check_work(const Sections& sections, const Scene& scene, std::int64_t bars);
 
+/// Throws kInvalidScene where what stretches or bends vibrates so fast that following it to the end takes too
+/// many steps. For a scene whose bodies have been read.
+void check_stiffness(const Sections& sections, const Scene& scene);
+
 }  // namespace corda::scene

@@ -38,6 +38,7 @@ Scene parse_scene(std::string_view toml, const std::string& source_name,
         scene.nets.push_back(read_net(net));
         scene.body_styles.push_back(read_body_style(net));
     }
+    check_stiffness(sections, scene);
     return scene;
 }
 

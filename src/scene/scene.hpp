@@ -49,7 +49,8 @@ struct Limits {
     static constexpr std::int64_t kFramePixels = std::int64_t{1} << 26;
     static constexpr std::int64_t kFrames = 10'000'000;
     static constexpr std::int64_t kSteps = 1'000'000'000;
-    static constexpr double kBarUpdates = 1e13;  // about a day
+    static constexpr double kBarUpdates = 1e13;      // about a day
+    static constexpr double kElasticUpdates = 1e11;  // some four hours
     static constexpr double kCoordinateMetres = 1e9;
 };
 

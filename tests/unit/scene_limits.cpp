@@ -123,5 +123,22 @@ TEST(SceneLimits, FileSize) {
     expect_limit(large, "swing.toml: ", "over the limit of 16777216 bytes");
 }
 
+TEST(Limits, OfHowFastABodyMayVibrate) {
+    const std::string rope = "schema = 1\n[[rope]]\nhang = { links = 10, length = 1.0, angle_deg = 60.0 }\n";
+    EXPECT_NO_THROW(parse_scene(rope + "compliance = 1e-9\n", "a"));
+    EXPECT_NO_THROW(parse_scene(rope + "bending = 100.0\n", "a"));
+    for (const char* stiff :
+         {"compliance = 1e-300\n", "compliance = 1e-22\n", "bending = 1e12\nmass = 1e-12\n"}) {
+        try {
+            static_cast<void>(parse_scene(rope + stiff, "a.toml"));
+            ADD_FAILURE() << stiff;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ExitCode::kInvalidScene);
+            EXPECT_THAT(error.what(), testing::HasSubstr("a.toml:4:"));
+            EXPECT_THAT(error.what(), testing::HasSubstr("vibrates so fast"));
+        }
+    }
+}
+
 }  // namespace
 }  // namespace corda::scene
