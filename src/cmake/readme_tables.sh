@@ -10,7 +10,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 table() {
     awk -v title="**$1**" '
         $0 == title { found = 1; print; print ""; next }
-        found && /^\|/ { rows = 1; gsub(/ +/, " "); gsub(/-+/, "---"); print; next }
+        found && /^\|/ { rows = 1; gsub(/ +/, " "); if ($0 ~ /^\|[-:|]+$/) gsub(/-+/, "---"); print; next }
         found && rows { exit }' "$study/report.md"
 }
 
