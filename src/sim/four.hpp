@@ -13,9 +13,6 @@ inline constexpr std::size_t kFour = 4;
 
 using Four [[gnu::vector_size(kFour * sizeof(double))]] = double;
 using FourBits [[gnu::vector_size(kFour * sizeof(double))]] = long long;
-/// A vector may alias its components.
-using AnyFour [[gnu::vector_size(kFour * sizeof(double)), gnu::aligned(sizeof(double))]] = double;
-
 // References, as the way in which such a type is passed by value depends on the CPU.
 CORDA_INLINE const Four& four(const double* x) {
     return *reinterpret_cast<const Four*>(x);
@@ -23,11 +20,9 @@ CORDA_INLINE const Four& four(const double* x) {
 CORDA_INLINE Four& four(double* x) {
     return *reinterpret_cast<Four*>(x);
 }
-CORDA_INLINE const AnyFour& any_four(const double* x) {
-    return *reinterpret_cast<const AnyFour*>(x);
-}
-CORDA_INLINE AnyFour& any_four(double* x) {
-    return *reinterpret_cast<AnyFour*>(x);
+/// Reads four numbers that need not stand at a multiple of a register's size.
+CORDA_INLINE void read_any_four(const double* x, Four& four) {
+    __builtin_memcpy(&four, x, sizeof four);
 }
 
 /// Cosine and sine of angles that are not too large (1e5), good to the last digit, from -, + and * alone.

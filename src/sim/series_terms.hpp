@@ -23,8 +23,10 @@ CORDA_INLINE void start_series(SeriesArrays& a) {
         const std::size_t i = kLanes * b;
         const Four& c = four(a.c + i);
         const Four& s = four(a.s + i);
-        const AnyFour& next_c = any_four(a.c + i + 1);
-        const AnyFour& next_s = any_four(a.s + i + 1);
+        Four next_c;
+        read_any_four(a.c + i + 1, next_c);
+        Four next_s;
+        read_any_four(a.s + i + 1, next_s);
         const Four& inverse_mass = four(a.inverse_mass_1_kg + i);
         const Four sine = inverse_mass * (c * next_s - s * next_c);
         four(a.row(b, Row::kCosine, 0)) = inverse_mass * (c * next_c + s * next_s);
@@ -228,7 +230,8 @@ CORDA_INLINE void turn_links(SeriesArrays& a, std::size_t k, double share) {
     for (std::size_t b = 0; b < a.blocks; ++b) {
         const std::size_t i = kLanes * b;
         const Four& tension = four(a.tension + i);
-        const AnyFour& next_tension = any_four(a.tension + i + 1);
+        Four next_tension;
+        read_any_four(a.tension + i + 1, next_tension);
         const Four& sine = four(a.row(b, Row::kSine, 0));
         any_four(a.across_before + i + 1) += sine * tension;
         four(a.row(b, Row::kTension, k)) = tension;
