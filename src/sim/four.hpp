@@ -20,9 +20,16 @@ CORDA_INLINE const Four& four(const double* x) {
 CORDA_INLINE Four& four(double* x) {
     return *reinterpret_cast<Four*>(x);
 }
-/// Reads four numbers that need not stand at a multiple of a register's size.
-CORDA_INLINE void read_any_four(const double* x, Four& four) {
-    __builtin_memcpy(&four, x, sizeof four);
+/// Four numbers that need not stand at a multiple of a register's size. A struct: a reference to a vector
+/// type of less alignment loses that in clang++.
+struct [[gnu::packed, gnu::may_alias]] AnyFour {
+    Four value;
+};
+CORDA_INLINE const AnyFour& any_four(const double* x) {
+    return *reinterpret_cast<const AnyFour*>(x);
+}
+CORDA_INLINE AnyFour& any_four(double* x) {
+    return *reinterpret_cast<AnyFour*>(x);
 }
 
 /// Cosine and sine of angles that are not too large (1e5), good to the last digit, from -, + and * alone.

@@ -23,17 +23,15 @@ CORDA_INLINE void start_series(SeriesArrays& a) {
         const std::size_t i = kLanes * b;
         const Four& c = four(a.c + i);
         const Four& s = four(a.s + i);
-        Four next_c;
-        read_any_four(a.c + i + 1, next_c);
-        Four next_s;
-        read_any_four(a.s + i + 1, next_s);
+        const Four next_c = any_four(a.c + i + 1).value;
+        const Four next_s = any_four(a.s + i + 1).value;
         const Four& inverse_mass = four(a.inverse_mass_1_kg + i);
         const Four sine = inverse_mass * (c * next_s - s * next_c);
         four(a.row(b, Row::kCosine, 0)) = inverse_mass * (c * next_c + s * next_s);
         four(a.row(b, Row::kSine, 0)) = sine;
         four(a.scratch + i) = sine * sine;
         four(a.row(b, Row::kRate, 0)) = four(a.rate + i);
-        four(a.row(b, Row::kTurn, 0)) = any_four(a.rate + i + 1) - four(a.rate + i);
+        four(a.row(b, Row::kTurn, 0)) = any_four(a.rate + i + 1).value - four(a.rate + i);
     }
 }
 
@@ -88,7 +86,7 @@ CORDA_INLINE void factorise(SeriesArrays& a) {
         const std::size_t i = kLanes * b;
         const bool is_low = i < a.meeting;
         four(a.weight + i) =
-            four(a.row(b, Row::kCosine, 0)) * any_four(a.inverse_pivot + i + (is_low ? 0 : 1));
+            four(a.row(b, Row::kCosine, 0)) * any_four(a.inverse_pivot + i + (is_low ? 0 : 1)).value;
     }
 }
 
@@ -119,9 +117,9 @@ CORDA_INLINE void known_terms(SeriesArrays& a, std::size_t b, std::size_t k) {
     square += square;
     if (rate == last_rate) square += four(rate) * four(rate);
     const std::size_t i = kLanes * b;
-    any_four(a.load_before + i + 1) = load_next;
+    any_four(a.load_before + i + 1).value = load_next;
     four(a.load + i) = four(a.length_m + i) * square + load;
-    any_four(a.across_before + i + 1) = across_next;
+    any_four(a.across_before + i + 1).value = across_next;
     four(a.across_after + i) = across;
 }
 
@@ -230,10 +228,9 @@ CORDA_INLINE void turn_links(SeriesArrays& a, std::size_t k, double share) {
     for (std::size_t b = 0; b < a.blocks; ++b) {
         const std::size_t i = kLanes * b;
         const Four& tension = four(a.tension + i);
-        Four next_tension;
-        read_any_four(a.tension + i + 1, next_tension);
+        const Four next_tension = any_four(a.tension + i + 1).value;
         const Four& sine = four(a.row(b, Row::kSine, 0));
-        any_four(a.across_before + i + 1) += sine * tension;
+        any_four(a.across_before + i + 1).value += sine * tension;
         four(a.row(b, Row::kTension, k)) = tension;
         four(a.row(b, Row::kNextTension, k)) = next_tension;
         const Four across = four(a.across_after + i) + sine * next_tension - four(a.across_before + i);
@@ -248,7 +245,7 @@ CORDA_INLINE void turn_links(SeriesArrays& a, std::size_t k, double share) {
     for (std::size_t b = 0; b < a.blocks; ++b) {
         const std::size_t i = kLanes * b;
         four(a.row(b, Row::kRate, k + 1)) = four(next_rate + i);
-        four(a.row(b, Row::kTurn, k + 1)) = any_four(next_rate + i + 1) - four(next_rate + i);
+        four(a.row(b, Row::kTurn, k + 1)) = any_four(next_rate + i + 1).value - four(next_rate + i);
     }
 }
 
