@@ -1,14 +1,36 @@
 #include "interrupt.hpp"
 
+#include <atomic>
 #include <csignal>
+#include <cstdint>
+#include <ctime>
 
 namespace corda::app {
 namespace {
 
-volatile std::sig_atomic_t asked_to_stop_by = 0;
+/// timeout(1) signals its child and then their whole process group, which is to count once.
+constexpr std::int64_t kSameWishNs = 100'000'000;
+
+std::atomic<int> asked_to_stop_by{0};
+std::atomic<std::int64_t> asked_at_ns{0};
+static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
+              "a signal handler may use nothing else");
+
+std::int64_t now_ns() {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
 
 void ask_to_stop(int signal) {
-    asked_to_stop_by = signal;
+    const std::int64_t at_ns = now_ns();
+    std::int64_t first_ns = 0;
+    if (asked_at_ns.compare_exchange_strong(first_ns, at_ns)) {
+        asked_to_stop_by = signal;
+    } else if (at_ns - first_ns > kSameWishNs) {
+        std::signal(signal, SIG_DFL);
+        std::raise(signal);
+    }
 }
 
 }  // namespace
@@ -17,8 +39,7 @@ void install_signal_handlers() {
     for (const int signal : {SIGINT, SIGTERM}) {
         struct sigaction action = {};
         action.sa_handler = ask_to_stop;
-        action.sa_flags =
-            static_cast<int>(SA_RESETHAND | SA_RESTART);  // the second signal has its default effect
+        action.sa_flags = SA_RESTART;
         sigemptyset(&action.sa_mask);
         sigaction(signal, &action, nullptr);
     }

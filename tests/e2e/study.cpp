@@ -140,6 +140,7 @@ TEST_F(Study, MissingGnuplotIsSaidAtOnce) {
 }
 
 TEST_F(Study, StopsAtASignalAndWritesNothing) {
+    // timeout(1) signals its child twice, directly and with its process group.
     const auto result =
         run_shell("timeout -s INT 1 " + test::quoted(CORDA_PROGRAM) + " study -o " + test::quoted(out_));
     EXPECT_EQ(result.exit_code, 124) << result.err;  // timeout's own: the signal was sent
