@@ -6,6 +6,7 @@
 
 #include "corda/core/error.hpp"
 #include "corda/sim/distance.hpp"
+#include "corda/sim/flush_denormals.hpp"
 
 namespace corda::sim {
 namespace {
@@ -99,6 +100,7 @@ Relaxation::Relaxation(const System& system, const WorldDef& world, const Solver
 }
 
 Status Relaxation::advance_to(double time_s, State& state) {
+    const FlushDenormals flush;
     const double steps = time_s / step_s_;
     const double nearest = std::round(steps);
     const bool on_grid = std::abs(steps - nearest) <= kGridTolerance * std::max(1.0, nearest);

@@ -7,6 +7,7 @@
 
 #include "corda/sim/distance.hpp"
 #include "corda/sim/exact.hpp"
+#include "corda/sim/flush_denormals.hpp"
 #include "corda/sim/rattle.hpp"
 #include "corda/sim/relaxation.hpp"
 
@@ -76,6 +77,7 @@ Status Simulation::advance_to(double time_s) {
 }
 
 void Simulation::observe() {
+    const FlushDenormals flush;
     figures_.strain = max_strain(system_, state_);
     largest_.strain = std::max(largest_.strain, figures_.strain);
     if (conserves_energy_ && energy_scale_j_ > 0.0) {
