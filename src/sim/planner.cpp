@@ -113,7 +113,7 @@ std::vector<Trial> cheaper_rope_trials(const System& system, const WorldDef& wor
     return trials;
 }
 
-/// Trials of `rope` for a graph; each checked by order 8 at half its step.
+/// Trials of `rope` for a graph; each checked by the next order, or 8 again, at half its step.
 std::vector<Trial> graph_trials(const System& system, const WorldDef& world, double frame_interval_s) {
     std::vector<Trial> trials;
     for (const Rung& rung : kGraphLadder) {
@@ -121,7 +121,7 @@ std::vector<Trial> graph_trials(const System& system, const WorldDef& world, dou
         const double step_s = stable_s / static_cast<double>(1 << rung.halvings);
         Trial& trial = trials.emplace_back();
         trial.solver = rope_solver(rung.order, step_s);
-        trial.check = rope_solver(8, 0.5 * step_s);
+        trial.check = rope_solver(std::min(rung.order + 2, kOrders.back()), 0.5 * step_s);
     }
     return trials;
 }
