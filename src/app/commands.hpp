@@ -54,6 +54,10 @@ struct GlOptions {
     [[nodiscard]] gl::ContextDef def() const;
 };
 
+/// Shows how far a run is that comes before the one asked for, once that takes more than a second, and ends
+/// it by a corda::Error where a signal asks for that. `console` has to outlive it.
+[[nodiscard]] sim::FrameWatch preparation(const Console& console, const std::string& what);
+
 /// Settles method auto and says what it became and how far it can be trusted.
 [[nodiscard]] std::optional<scene::AutoPlan> settle_method(const Console& console, scene::Scene& scene);
 

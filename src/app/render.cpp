@@ -137,7 +137,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     media::check_video_def(scene.video);
     check_output(options.output, options.scene.path, options.force);
     const auto proof = settle_method(console, scene);
-    scene::Player player(scene);
+    scene::Player player(scene, preparation(console, "fit the camera"));
     console.info(fmt::format("{}: {}, method {}; {} frames of {}x{} at {} a second", scene.name,
                              scene::describe(player.run().simulation().system()),
                              sim::method_name(scene.solver.method), range.count(), scene.video.width_px,

@@ -1,8 +1,12 @@
+#include <memory>
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "corda/core/error.hpp"
+#include "interrupt.hpp"
 
 namespace corda::app {
 
@@ -22,9 +26,20 @@ std::string describe(const sim::SolverDef& solver) {
     return name;
 }
 
+sim::FrameWatch preparation(const Console& console, const std::string& what) {
+    constexpr double kSilentSeconds = 1.0;
+    const double start_s = now_s();
+    return [&console, what, start_s, progress = std::shared_ptr<Progress>()](
+               std::int64_t frame, std::int64_t last_frame) mutable {
+        if (interruption() != ExitCode::kOk) throw Error(interruption(), "interrupted; nothing was written");
+        if (frame == 0 || !progress) progress = std::make_shared<Progress>(console, what, last_frame);
+        if (now_s() - start_s > kSilentSeconds) progress->update(frame);
+    };
+}
+
 std::optional<scene::AutoPlan> settle_method(const Console& console, scene::Scene& scene) {
     const double tolerance_px = scene.solver.tolerance_px;
-    auto proof = scene::settle_method(scene);
+    auto proof = scene::settle_method(scene, preparation(console, "plan"));
     if (!proof) return proof;
     const sim::Plan& plan = proof->plan;
     if (!plan.error_bound_m) {

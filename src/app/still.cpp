@@ -99,14 +99,22 @@ ExitCode still(const Console& console, const StillOptions& options) {
     const gl::ContextDef context_def = options.gl.def();
     set_paths(options, shots);
     const auto proof = settle_method(console, scene);
-    scene::Player player(scene);
+    scene::Player player(scene, preparation(console, "fit the camera"));
     console.detail(fmt::format("{}: {}", scene.name, scene::describe(player.run().simulation().system())));
     nlohmann::json outputs = nlohmann::json::array();
     if (!options.dry_run) {
         const gl::Context context(context_def);
         report_gl(console, context);
         render::FrameRenderer renderer(scene.video.width_px, scene.video.height_px);
+        const sim::FrameWatch watch = preparation(console, "simulate");
+        const FrameRate& fps = scene.video.fps;
+        std::int64_t frame = 0;
         for (const Shot& shot : shots) {
+            // Frame by frame, so that a signal is seen on the way.
+            for (; fps.time_s(frame) < shot.time_s; ++frame) {
+                watch(frame, scene::frame_count(scene));
+                player.at(fps.time_s(frame));
+            }
             renderer.render(player.at(shot.time_s));
             media::write_png(shot.path, renderer.image(),
                              describe_shot(shot, scene, options.pixels_per_inch));

@@ -21,7 +21,7 @@ struct AutoPlan {
 
 /// Settles a scene's method: where it is `auto`, puts the cheapest method that keeps the displayed error
 /// below solver.tolerance_px into `scene.solver` and returns the proof; otherwise does nothing and returns
-/// nothing. Throws corda::Error (kInvalidScene, kDiverged).
-[[nodiscard]] std::optional<AutoPlan> settle_method(Scene& scene);
+/// nothing. Throws corda::Error (kInvalidScene, kDiverged), and what `watch` throws.
+[[nodiscard]] std::optional<AutoPlan> settle_method(Scene& scene, const sim::FrameWatch& watch = {});
 
 }  // namespace corda::scene

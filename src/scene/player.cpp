@@ -10,12 +10,14 @@
 namespace corda::scene {
 namespace {
 
-view::Camera fit_camera(const Scene& scene, const sim::System& system, double clearance_px) {
+view::Camera fit_camera(const Scene& scene, const sim::System& system, double clearance_px,
+                        const sim::FrameWatch& watch) {
     view::MotionBounds bounds;
     if (view::Camera::needs_motion(scene.camera)) {
         Run rehearsal(scene, sim::Figured::kNo);
         const std::int64_t last = scene.video.fps.last_frame_within(scene.world.duration_s);
         for (std::int64_t k = 0; k <= last; ++k) {
+            if (watch) watch(k, last);
             if (rehearsal.go(scene.video.fps.time_s(k)) == sim::Status::kDiverged) break;
             bounds.include(rehearsal.simulation().state());
         }
@@ -49,11 +51,11 @@ const sim::State& Run::at(double time_s) {
     return simulation_.state();
 }
 
-Player::Player(const Scene& scene)
+Player::Player(const Scene& scene, const sim::FrameWatch& watch)
     : run_(scene),
       view_(run_.simulation().system(), scene.style, scene.body_styles, scene.video.width_px,
             scene.video.height_px),
-      camera_(fit_camera(scene, run_.simulation().system(), view_.clearance_px())) {}
+      camera_(fit_camera(scene, run_.simulation().system(), view_.clearance_px(), watch)) {}
 
 const view::DrawList& Player::at(double time_s) {
     view_.draw(run_.at(time_s), camera_, list_);

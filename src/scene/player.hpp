@@ -4,6 +4,7 @@
 #include <string>
 
 #include "corda/scene/scene.hpp"
+#include "corda/sim/frame_watch.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/view/scene_view.hpp"
 
@@ -33,8 +34,9 @@ class Run {
 /// whichever others are drawn.
 class Player {
   public:
-    /// Throws corda::Error (kInvalidScene). A motion that diverges is shown as far as it goes.
-    explicit Player(const Scene& scene);
+    /// `watch`: of the run that a camera is fitted to, where it follows the motion. Throws corda::Error
+    /// (kInvalidScene), and what `watch` throws. A motion that diverges is shown as far as it goes.
+    explicit Player(const Scene& scene, const sim::FrameWatch& watch = {});
 
     /// The frame at `time_s`, not before the last one. Throws corda::Error (kDiverged).
     const view::DrawList& at(double time_s);

@@ -24,16 +24,13 @@ struct Plan {
 /// Finds the cheapest method whose positions stay within `def.tolerance_m`, and proves it by a second,
 /// tighter run in step with the first.
 ///
-/// - Chains and bodies that stretch: the loosest tolerance of `exact` that does, checked by a hundred times
-/// tighter
-///   run; then any order of `rope` that by step_cost_ns() is cheaper, checked by that same tight run of the
-///   other formulation.
+/// - Chains and bodies that stretch: the loosest tolerance of `exact` that does, checked by a run a hundred
+///   times tighter; then any order of `rope` that by step_cost_ns() is cheaper, checked by that same tight
+///   run of the other formulation.
 /// - Nets and closed ropes of rigid bars: orders of `rope` and halved steps, cheapest first, each checked by
-/// order 8
-///   at half its step.
+///   the next order (8 by itself) at half its step.
 /// - Bars whose lengths depend on each other (a net with diagonals), at the start or on the way:
-/// `relaxation`,
-///   and no bound.
+///   `relaxation`, and no bound.
 ///
 /// The bound is kBoundPerDifference times the largest difference of the two runs. Everything is decided by
 /// counts and positions, never by a clock: the same scene gives the same plan. Throws corda::Error

@@ -52,6 +52,7 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
     State state{0.0, system.x_m, system.y_m};
     State checked{0.0, turned_system.x_m, turned_system.y_m};
     for (std::int64_t k = 0; k <= def.last_frame; ++k) {
+        if (def.watch) def.watch(k, def.last_frame);
         const double time_s = def.frames.time_s(k);
         trial.diverged = run->advance_to(time_s, state) == Status::kDiverged ||
                          check->advance_to(time_s, checked) == Status::kDiverged;

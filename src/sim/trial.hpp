@@ -4,6 +4,7 @@
 #include <string>
 
 #include "corda/core/rational.hpp"
+#include "corda/sim/frame_watch.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::sim {
@@ -13,6 +14,7 @@ struct PlanDef {
     double tolerance_m = 0.0;  ///< > 0; of the position of any particle
     FrameRate frames;
     std::int64_t last_frame = 0;
+    FrameWatch watch = {};  ///< of every trial
 };
 
 /// A method that was tried, and how far it stayed from a tighter run.

@@ -196,5 +196,17 @@ TEST_F(ExitCodes, OneHundredFortyThreeWhenTerminated) {
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.mp4.part", "scene.toml"}));
 }
 
+TEST_F(ExitCodes, OneHundredFortyThreeWhenTerminatedWhilePlanning) {
+    const std::string net = folder_.write(
+        "net.toml",
+        "schema = 1\n[[net]]\ngrid = { columns = 80, rows = 60, spacing = 0.1, diagonals = false }\n"
+        "pinned = [[0, 0]]\n");
+    const auto result = run_shell("timeout --preserve-status -s TERM 1 " + test::quoted(CORDA_PROGRAM) +
+                                  " render " + net + " -o " + video_);
+    EXPECT_EQ(result.exit_code, 143) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("interrupted; nothing was written"));
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"net.toml", "scene.toml"}));
+}
+
 }  // namespace
 }  // namespace corda
