@@ -75,11 +75,28 @@ Status ChainPart::advance_to(double time_s, State& state) {
             if (step(mover) == Status::kDiverged) return Status::kDiverged;
         }
         if (mover.steps == 0) continue;  // output_ is the start
-        mover.series.evaluate(time_s - mover.start_s, output_.data());
-        if (mover.chain.ends_pinned) dynamics_.close(mover.chain, output_.data());
+        // Rates are wanted with the places where those have to be closed, and otherwise only on request.
+        if (mover.chain.ends_pinned) {
+            mover.series.evaluate(time_s - mover.start_s, output_.data());
+            dynamics_.close(mover.chain, output_.data());
+        } else {
+            mover.series.evaluate_places(time_s - mover.start_s, output_.data());
+        }
     }
+    output_s_ = time_s;
+    output_is_complete_ = false;
     dynamics_.positions(output_.data(), state);
     return Status::kOk;
+}
+
+const double* ChainPart::output() const {
+    if (output_is_complete_) return output_.data();
+    for (Mover& mover : movers_) {
+        if (mover.steps > 0 && !mover.chain.ends_pinned)
+            mover.series.evaluate(output_s_ - mover.start_s, output_.data());
+    }
+    output_is_complete_ = true;
+    return output_.data();
 }
 
 std::uint64_t ChainPart::steps() const {

@@ -20,10 +20,10 @@ class ChainPart final : public ExactPart {
     ChainPart(const System& system, const Body& body, const WorldDef& world, double tolerance);
 
     Status advance_to(double time_s, State& state) override;
-    [[nodiscard]] double energy_j() const override { return dynamics_.energy_j(output_.data()); }
+    [[nodiscard]] double energy_j() const override { return dynamics_.energy_j(output()); }
     [[nodiscard]] double energy_scale_j() const override { return dynamics_.energy_scale_j(); }
     [[nodiscard]] bool conserves_energy() const override { return conserves_energy_; }
-    [[nodiscard]] Loads loads() const override { return dynamics_.loads(output_.data()); }
+    [[nodiscard]] Loads loads() const override { return dynamics_.loads(output()); }
     [[nodiscard]] std::uint64_t steps() const override;
     [[nodiscard]] std::uint64_t rejected_steps() const override { return 0; }
 
@@ -38,12 +38,16 @@ class ChainPart final : public ExactPart {
     };
 
     Status step(Mover& mover);
+    /// The whole state at the last time asked for.
+    [[nodiscard]] const double* output() const;
 
     mutable ChainDynamics dynamics_;  ///< its work space changes with every question
     bool conserves_energy_;
-    std::vector<double> state_;   ///< of each chain at the end of its last step
-    std::vector<double> output_;  ///< at the last time asked for
-    std::vector<Mover> movers_;
+    std::vector<double> state_;               ///< of each chain at the end of its last step
+    mutable std::vector<double> output_;      ///< at the last time asked for
+    mutable bool output_is_complete_ = true;  ///< else rates and velocities are of an earlier time
+    double output_s_ = 0.0;
+    mutable std::vector<Mover> movers_;
 };
 
 }  // namespace corda::sim

@@ -31,43 +31,91 @@ using series::kLanes;
 /// Numbers of a flat array before the first link's.
 constexpr std::size_t kRoom = 2 * kLanes;
 
-/// As in ChainDynamics: far below all that can be seen, and set to zero before it gets denormal.
-constexpr double kNegligible = 1e-60;
-
 /// The last coefficients that a step follows from. Where a motion is even or odd in time, or both in two
 /// directions at right angles, all but every fourth are zero.
 constexpr std::size_t kLastTerms = 4;
 
 using series::Row;
 
-/// Directions and rates at the time `t` in units, to load, load_before and scratch.
-CORDA_INLINE void evaluate_series(SeriesArrays& a, double t) {
-    Series power;
-    Series integral;
-    power[0] = 1.0;
-    for (std::size_t k = 0; k <= a.order; ++k) {
-        if (k > 0) power[k] = power[k - 1] * t;
-        integral[k] = a.unit_s * t * power[k] / static_cast<double>(k + 1);
+/// Writes four numbers of links from link i on, as far as there are links.
+CORDA_INLINE void write_links(const SeriesArrays& a, std::size_t i, const Four& x, double* to) {
+    if (i + kLanes <= a.links) {
+        any_four(to + i).value = x;
+        return;
     }
+    // One by one: a loop over lanes would go through memory.
+    static_assert(kLanes == 4);
+    to[i] = x[0];
+    if (i + 1 < a.links) to[i + 1] = x[1];
+    if (i + 2 < a.links) to[i + 2] = x[2];
+}
+
+/// The polynomial of the rates of a block with these weights for its coefficients.
+CORDA_INLINE void sum_rates(SeriesArrays& a, std::size_t b, const Series& weight, Four& sum) {
+    const double* coefficient = a.row(b, Row::kRate, a.order);
+    sum = Four{};
+    for (std::size_t k = a.order + 1; k-- > 0; coefficient -= kLanes) sum += weight[k] * four(coefficient);
+}
+
+/// Writes the angles that links turn by in a time `t` in units to load; whether all are small.
+CORDA_INLINE bool find_angles(SeriesArrays& a, double t) {
+    Series weight;
+    double power = 1.0;
+    for (std::size_t k = 0; k <= a.order; ++k) {
+        weight[k] = a.unit_s * t * power / static_cast<double>(k + 1);
+        power *= t;
+    }
+    Four largest{};
     for (std::size_t b = 0; b < a.blocks; ++b) {
-        const std::size_t i = kLanes * b;
-        const double* coefficient = a.row(b, Row::kRate, a.order);
-        Four angle{};
-        Four rate{};
-        for (std::size_t k = a.order + 1; k-- > 0; coefficient -= kLanes) {
-            angle += integral[k] * four(coefficient);
-            rate += power[k] * four(coefficient);
-        }
+        Four angle;
+        sum_rates(a, b, weight, angle);
+        four(a.load + kLanes * b) = angle;
+        const Four size = angle > -angle ? angle : -angle;
+        largest = size <= largest ? largest : size;  // keeps what is not a number
+    }
+    bool is_small = true;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) is_small = is_small && largest[lane] < kSmallAngle;
+    return is_small;
+}
+
+/// Turns the links by the angles in load, and writes their directions.
+template <bool kSmall>
+CORDA_INLINE void turn(SeriesArrays& a, double* to_c, double* to_s) {
+    for (std::size_t i = 0; i < kLanes * a.blocks; i += kLanes) {
         Four turn_c;
         Four turn_s;
-        cosine_sine(angle, turn_c, turn_s);
+        if constexpr (kSmall) {
+            cosine_sine_of_small(four(a.load + i), turn_c, turn_s);
+        } else {
+            cosine_sine(four(a.load + i), turn_c, turn_s);
+        }
         const Four c = four(a.c + i) * turn_c - four(a.s + i) * turn_s;
         const Four s = four(a.s + i) * turn_c + four(a.c + i) * turn_s;
         // The inverse of a length that differs from 1 by rounding.
         const Four shrink = 1.5 - 0.5 * (c * c + s * s);
-        four(a.load + i) = c * shrink;
-        four(a.load_before + i) = s * shrink;
-        four(a.scratch + i) = rate;
+        write_links(a, i, c * shrink, to_c);
+        write_links(a, i, s * shrink, to_s);
+    }
+}
+
+/// Directions at the time `t` in units.
+CORDA_INLINE void evaluate_directions(SeriesArrays& a, double t, double* c, double* s) {
+    if (find_angles(a, t)) {
+        turn<true>(a, c, s);
+    } else {
+        turn<false>(a, c, s);
+    }
+}
+
+/// Rates at the time `t` in units.
+CORDA_INLINE void evaluate_rates(SeriesArrays& a, double t, double* rate) {
+    Series power;
+    power[0] = 1.0;
+    for (std::size_t k = 1; k <= a.order; ++k) power[k] = power[k - 1] * t;
+    for (std::size_t b = 0; b < a.blocks; ++b) {
+        Four sum;
+        sum_rates(a, b, power, sum);
+        write_links(a, kLanes * b, sum, rate);
     }
 }
 
@@ -96,17 +144,23 @@ CORDA_INLINE void measure_last_terms(SeriesArrays& a, double rate_1_s, LastTerms
     }
 }
 
-CORDA_WIDE void expand_wide(SeriesArrays& a) {
-    series::expand(a);
+CORDA_WIDE void expand_wide(SeriesArrays& a, const double* c, const double* s, const double* rate) {
+    series::expand(a, c, s, rate);
 }
-void expand_narrow(SeriesArrays& a) {
-    series::expand(a);
+void expand_narrow(SeriesArrays& a, const double* c, const double* s, const double* rate) {
+    series::expand(a, c, s, rate);
 }
-CORDA_WIDE void evaluate_wide(SeriesArrays& a, double t) {
-    evaluate_series(a, t);
+CORDA_WIDE void evaluate_directions_wide(SeriesArrays& a, double t, double* c, double* s) {
+    evaluate_directions(a, t, c, s);
 }
-void evaluate_narrow(SeriesArrays& a, double t) {
-    evaluate_series(a, t);
+void evaluate_directions_narrow(SeriesArrays& a, double t, double* c, double* s) {
+    evaluate_directions(a, t, c, s);
+}
+CORDA_WIDE void evaluate_rates_wide(SeriesArrays& a, double t, double* rate) {
+    evaluate_rates(a, t, rate);
+}
+void evaluate_rates_narrow(SeriesArrays& a, double t, double* rate) {
+    evaluate_rates(a, t, rate);
 }
 CORDA_WIDE void measure_last_terms_wide(SeriesArrays& a, double rate_1_s, LastTerms& result) {
     measure_last_terms(a, rate_1_s, result);
@@ -155,8 +209,7 @@ ChainSeries::ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Cha
                                &a.inverse_pivot,
                                &a.weight,
                                &a.load,
-                               &a.load_before,
-                               &a.across_before,
+                               &a.across_next,
                                &a.across_after,
                                &a.tension,
                                &a.scratch};
@@ -174,12 +227,6 @@ void ChainSeries::expand(const double* y, double unit_s) {
     const double* const c = y + first_link_;
     const double* const s = c + link_stride_;
     const double* const rate = s + link_stride_;
-    const auto keep = [](double value) { return std::abs(value) < kNegligible ? 0.0 : value; };
-    for (std::size_t i = 0; i < arrays_.links; ++i) {
-        arrays_.c[i] = keep(c[i]);
-        arrays_.s[i] = keep(s[i]);
-        arrays_.rate[i] = keep(rate[i]);
-    }
     if (!starts_pinned_) {
         arrays_.x[0] = y[first_extra_];
         arrays_.y[0] = y[first_extra_ + 1];
@@ -189,9 +236,9 @@ void ChainSeries::expand(const double* y, double unit_s) {
     arrays_.unit_s = unit_s;
     static const bool is_wide = has_wide_registers();
     if (is_wide) {
-        expand_wide(arrays_);
+        expand_wide(arrays_, c, s, rate);
     } else {
-        expand_narrow(arrays_);
+        expand_narrow(arrays_, c, s, rate);
     }
 }
 
@@ -219,29 +266,39 @@ double ChainSeries::reach_s(double tolerance) {
     return a.unit_s * rough_exp2(shortest + rough_log2(tolerance) / static_cast<double>(a.order));
 }
 
-void ChainSeries::evaluate(double time_s, double* y) {
+void ChainSeries::evaluate_places(double time_s, double* y) {
     static const bool is_wide = has_wide_registers();
-    SeriesArrays& a = arrays_;
-    const double t = time_s / a.unit_s;
-    if (is_wide) {
-        evaluate_wide(a, t);
-    } else {
-        evaluate_narrow(a, t);
-    }
+    const double t = time_s / arrays_.unit_s;
     double* const c = y + first_link_;
-    std::copy_n(a.load, a.links, c);
-    std::copy_n(a.load_before, a.links, c + link_stride_);
-    std::copy_n(a.scratch, a.links, c + 2 * link_stride_);
+    if (is_wide) {
+        evaluate_directions_wide(arrays_, t, c, c + link_stride_);
+    } else {
+        evaluate_directions_narrow(arrays_, t, c, c + link_stride_);
+    }
     if (starts_pinned_) return;
-    const auto sum = [&](const Series& series) {
-        double value = 0.0;
-        for (std::size_t k = a.order + 1; k-- > 0;) value = value * t + series[k];
-        return value;
-    };
-    y[first_extra_] = sum(a.x);
-    y[first_extra_ + 1] = sum(a.y);
-    y[first_extra_ + 2] = sum(a.vx);
-    y[first_extra_ + 3] = sum(a.vy);
+    y[first_extra_] = sum(arrays_.x, t);
+    y[first_extra_ + 1] = sum(arrays_.y, t);
+}
+
+void ChainSeries::evaluate(double time_s, double* y) {
+    evaluate_places(time_s, y);
+    static const bool is_wide = has_wide_registers();
+    const double t = time_s / arrays_.unit_s;
+    double* const rate = y + first_link_ + 2 * link_stride_;
+    if (is_wide) {
+        evaluate_rates_wide(arrays_, t, rate);
+    } else {
+        evaluate_rates_narrow(arrays_, t, rate);
+    }
+    if (starts_pinned_) return;
+    y[first_extra_ + 2] = sum(arrays_.vx, t);
+    y[first_extra_ + 3] = sum(arrays_.vy, t);
+}
+
+double ChainSeries::sum(const Series& series, double t) const {
+    double value = 0.0;
+    for (std::size_t k = arrays_.order + 1; k-- > 0;) value = value * t + series[k];
+    return value;
 }
 
 }  // namespace corda::sim

@@ -59,9 +59,8 @@ struct SeriesArrays {
     double* inverse_pivot = nullptr;
     double* weight = nullptr;       ///< of a joint: the share of a link's row, or tension, in its neighbour's
     double* load = nullptr;         ///< right-hand sides of the tensions
-    double* load_before = nullptr;  ///< part of a load that comes from the joint before
-    double* across_before = nullptr;  ///< pull across a link from the joint before
-    double* across_after = nullptr;   ///< from the joint after
+    double* across_next = nullptr;  ///< pull across the next link from a link's joint
+    double* across_after = nullptr;  ///< and across the link itself
     double* tension = nullptr;
     double* scratch = nullptr;
 
@@ -105,7 +104,13 @@ class ChainSeries {
     /// Writes the chain's part of the state at `time_s` after the one that was expanded to `y`.
     void evaluate(double time_s, double* y);
 
+    /// The same without the rates and velocities, which positions do not need.
+    void evaluate_places(double time_s, double* y);
+
   private:
+    /// The value of a series at `t` in units.
+    [[nodiscard]] double sum(const Series& series, double t) const;
+
     std::size_t first_link_;
     std::size_t link_stride_;  ///< links of all chains: between c, s and w in a state
     std::size_t first_extra_;

@@ -32,6 +32,37 @@ CORDA_INLINE AnyFour& any_four(double* x) {
     return *reinterpret_cast<AnyFour*>(x);
 }
 
+/// The last of `before` and the first three of `here`. By registers: a load that spans two stores just made
+/// would have to wait until both are in the cache.
+CORDA_INLINE void shift_up(const Four& before, const Four& here, Four& result) {
+    result = __builtin_shufflevector(before, here, 3, 4, 5, 6);
+}
+/// The last three of `here` and the first of `after`.
+CORDA_INLINE void shift_down(const Four& here, const Four& after, Four& result) {
+    result = __builtin_shufflevector(here, after, 1, 2, 3, 4);
+}
+
+/// cosine_sine() of angles of less than this goes by the polynomials alone.
+inline constexpr double kSmallAngle = 0.78;
+
+/// Cosine and sine of angles below kSmallAngle, the same bits as cosine_sine().
+CORDA_INLINE void cosine_sine_of_small(const Four& x, Four& cosine, Four& sine) {
+    const Four z = x * x;
+    sine = x + x * z *
+                   (-1.66666666666666324348e-01 +
+                    z * (8.33333333332248946124e-03 +
+                         z * (-1.98412698298579493134e-04 +
+                              z * (2.75573137070700676789e-06 +
+                                   z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)))));
+    cosine = 1.0 - 0.5 * z +
+             z * z *
+                 (4.16666666666666019037e-02 +
+                  z * (-1.38888888888741095749e-03 +
+                       z * (2.48015872894767294178e-05 +
+                            z * (-2.75573143513906633035e-07 +
+                                 z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
+}
+
 /// Cosine and sine of angles that are not too large (1e5), good to the last digit, from -, + and * alone.
 /// Source: the polynomials of fdlibm (Sun Microsystems 1993), k_cos.c and k_sin.c, after a whole number of
 /// right angles is taken off in two parts.
@@ -41,21 +72,9 @@ CORDA_INLINE void cosine_sine(const Four& angle, Four& cosine, Four& sine) {
     const FourBits quarter = reinterpret_cast<FourBits>(turns);
     const Four whole = turns - kRounds;
     const Four x = (angle - whole * 1.57079632673412561417e+00) - whole * 6.07710050650619224932e-11;
-    const Four z = x * x;
-    const Four s =
-        x + x * z *
-                (-1.66666666666666324348e-01 +
-                 z * (8.33333333332248946124e-03 +
-                      z * (-1.98412698298579493134e-04 +
-                           z * (2.75573137070700676789e-06 +
-                                z * (-2.50507602534068634195e-08 + z * 1.58969099521155010221e-10)))));
-    const Four c = 1.0 - 0.5 * z +
-                   z * z *
-                       (4.16666666666666019037e-02 +
-                        z * (-1.38888888888741095749e-03 +
-                             z * (2.48015872894767294178e-05 +
-                                  z * (-2.75573143513906633035e-07 +
-                                       z * (2.08757232129817482790e-09 + z * -1.13596475577881948265e-11)))));
+    Four c;
+    Four s;
+    cosine_sine_of_small(x, c, s);
     const FourBits c_bits = reinterpret_cast<FourBits>(c);
     const FourBits s_bits = reinterpret_cast<FourBits>(s);
     const FourBits odd = -(quarter & 1);  // all bits, or none

@@ -17,21 +17,43 @@ inline constexpr double kSmallFraction = 0x1p-300;
 
 using Row = SeriesArrays::Row;
 
+/// As in ChainDynamics: far below all that can be seen, and set to zero before it gets denormal.
+inline constexpr double kNegligible = 1e-60;
+
+/// Reads a number a link: of `links` links, zero beyond.
+CORDA_INLINE void read_links(const SeriesArrays& a, const double* from, double* to) {
+    for (std::size_t i = 0; i < a.links; i += kLanes) {
+        Four x{};
+        if (i + kLanes <= a.links) {
+            x = any_four(from + i).value;
+        } else {
+            for (std::size_t lane = 0; i + lane < a.links; ++lane) x[lane] = from[i + lane];
+        }
+        const Four size = x > -x ? x : -x;
+        four(to + i) = size < kNegligible ? Four{} : x;
+    }
+}
+
 /// Directions, rates and turns at t = 0.
 CORDA_INLINE void start_series(SeriesArrays& a) {
     for (std::size_t b = 0; b < a.blocks; ++b) {
         const std::size_t i = kLanes * b;
         const Four& c = four(a.c + i);
         const Four& s = four(a.s + i);
-        const Four next_c = any_four(a.c + i + 1).value;
-        const Four next_s = any_four(a.s + i + 1).value;
+        const Four& rate = four(a.rate + i);
+        Four next_c;
+        Four next_s;
+        Four next_rate;
+        shift_down(c, four(a.c + i + kLanes), next_c);
+        shift_down(s, four(a.s + i + kLanes), next_s);
+        shift_down(rate, four(a.rate + i + kLanes), next_rate);
         const Four& inverse_mass = four(a.inverse_mass_1_kg + i);
         const Four sine = inverse_mass * (c * next_s - s * next_c);
         four(a.row(b, Row::kCosine, 0)) = inverse_mass * (c * next_c + s * next_s);
         four(a.row(b, Row::kSine, 0)) = sine;
         four(a.scratch + i) = sine * sine;
-        four(a.row(b, Row::kRate, 0)) = four(a.rate + i);
-        four(a.row(b, Row::kTurn, 0)) = any_four(a.rate + i + 1).value - four(a.rate + i);
+        four(a.row(b, Row::kRate, 0)) = rate;
+        four(a.row(b, Row::kTurn, 0)) = next_rate - rate;
     }
 }
 
@@ -84,14 +106,26 @@ CORDA_INLINE void factorise(SeriesArrays& a) {
     }
     for (std::size_t b = 0; b < a.blocks; ++b) {
         const std::size_t i = kLanes * b;
-        const bool is_low = i < a.meeting;
-        four(a.weight + i) =
-            four(a.row(b, Row::kCosine, 0)) * any_four(a.inverse_pivot + i + (is_low ? 0 : 1)).value;
+        Four pivot = four(a.inverse_pivot + i);
+        if (i >= a.meeting) shift_down(pivot, four(a.inverse_pivot + i + kLanes), pivot);
+        four(a.weight + i) = four(a.row(b, Row::kCosine, 0)) * pivot;
     }
 }
 
-/// Terms of coefficient k of a block's loads and pulls across that do not need the tensions' coefficient k.
-CORDA_INLINE void known_terms(SeriesArrays& a, std::size_t b, std::size_t k) {
+/// What is known of coefficient k of a block without the tensions' coefficient k.
+struct Known {
+    Four load{};       ///< right-hand sides of the tensions, less what the joint before each link adds
+    Four load_next{};  ///< what its own joint adds to that of the next link
+    /// Adds what the joints before add; `lower` is of the block below.
+    CORDA_INLINE void complete(const Four& lower_load_next) {
+        Four before;
+        shift_up(lower_load_next, load_next, before);
+        load += before;
+    }
+};
+
+/// Writes the pulls across links that are known to across_next and across_after.
+CORDA_INLINE void find_known(SeriesArrays& a, std::size_t b, std::size_t k, Known& known) {
     const double* cosine = a.row(b, Row::kCosine, 0);
     const double* sine = a.row(b, Row::kSine, 0);
     const double* tension = a.row(b, Row::kTension, k);
@@ -117,9 +151,9 @@ CORDA_INLINE void known_terms(SeriesArrays& a, std::size_t b, std::size_t k) {
     square += square;
     if (rate == last_rate) square += four(rate) * four(rate);
     const std::size_t i = kLanes * b;
-    any_four(a.load_before + i + 1).value = load_next;
-    four(a.load + i) = four(a.length_m + i) * square + load;
-    any_four(a.across_before + i + 1).value = across_next;
+    known.load_next = load_next;
+    known.load = four(a.length_m + i) * square + load;
+    four(a.across_next + i) = across_next;
     four(a.across_after + i) = across;
 }
 
@@ -141,24 +175,31 @@ CORDA_INLINE void turn_joints(SeriesArrays& a, std::size_t b, std::size_t k, dou
     four(a.row(b, Row::kSine, k + 1)) = share * to_sine;
 }
 
-/// A block's elimination towards lower links, to its link `to`; `last` is the load of the link above.
-CORDA_INLINE void eliminate_down(SeriesArrays& a, std::size_t b, std::size_t to, double& last) {
+/// A block's elimination towards lower links, to its link `to`, from its loads; `last` is the load of the
+/// link above.
+CORDA_INLINE void eliminate_down(SeriesArrays& a, std::size_t b, std::size_t to, const Four& load,
+                                 double& last) {
     const std::size_t first = kLanes * b;
-    four(a.load + first) += four(a.load_before + first);
     for (std::size_t lane = kLanes; lane-- > to;) {
-        last = a.load[first + lane] + a.weight[first + lane] * last;
+        last = load[lane] + a.weight[first + lane] * last;
         a.load[first + lane] = last;
     }
 }
 
 /// The same towards higher links, from a block below the meeting.
-CORDA_INLINE void eliminate_up(SeriesArrays& a, std::size_t b, double& last) {
-    const std::size_t first = kLanes * b;
-    four(a.load + first) += four(a.load_before + first);
-    for (std::size_t i = first; i < first + kLanes; ++i) {
-        last = a.load[i] + (a.weight + i)[-1] * last;
-        a.load[i] = last;
+CORDA_INLINE void eliminate_up(SeriesArrays& a, std::size_t b, const Four& load, double& last) {
+    const double* const weight = a.weight + kLanes * b;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        last = load[lane] + (weight + lane)[-1] * last;
+        a.load[kLanes * b + lane] = last;
     }
+}
+
+/// A number in the lane of a chain's last link, for lanes of its block that are all zero.
+CORDA_INLINE void in_last_lane(const SeriesArrays& a, double x, Four& result) {
+    constexpr Four kLane{0.0, 1.0, 2.0, 3.0};
+    const Four is_last = Four{} + static_cast<double>((a.links - 1) % kLanes);
+    result = kLane == is_last ? Four{} + x : Four{};
 }
 
 /// Coefficient k of all loads, eliminated from both ends; what both leave for the meeting's tension.
@@ -166,87 +207,129 @@ CORDA_INLINE double eliminate(SeriesArrays& a, std::size_t k) {
     const std::size_t half = a.meeting / kLanes;
     double down = 0.0;
     double up = 0.0;
-    a.load_before[0] = a.start_pull_m_s2.x * a.first_c[k] + a.start_pull_m_s2.y * a.first_s[k];
+    Four lower_next{};  // load_next of the block that eliminate_up has come to, or the pull of a pin
+    lower_next[kLanes - 1] = a.start_pull_m_s2.x * a.first_c[k] + a.start_pull_m_s2.y * a.first_s[k];
+    Known upper;
     for (std::size_t d = 0; d < a.blocks - half; ++d) {
         const std::size_t high = a.blocks - 1 - d;
-        known_terms(a, high, k);
+        Known known;
+        find_known(a, high, k, known);
         if (d == 0) {
-            a.load[a.links - 1] -= a.end_pull_m_s2.x * a.last_c[k] + a.end_pull_m_s2.y * a.last_s[k];
+            Four end_pull;
+            in_last_lane(a, a.end_pull_m_s2.x * a.last_c[k] + a.end_pull_m_s2.y * a.last_s[k], end_pull);
+            known.load -= end_pull;
         } else {
-            eliminate_down(a, high + 1, 0, down);
+            upper.complete(known.load_next);
+            eliminate_down(a, high + 1, 0, upper.load, down);
         }
+        upper = known;
         if (d < half) {
-            known_terms(a, d, k);
-            eliminate_up(a, d, up);
+            find_known(a, d, k, known);
+            known.complete(lower_next);
+            lower_next = known.load_next;
+            eliminate_up(a, d, known.load, up);
         }
     }
-    eliminate_down(a, half, 1, down);
-    return a.load[a.meeting] + a.weight[a.meeting] * down +
-           (half > 0 ? (a.weight + a.meeting)[-1] * up : 0.0);
+    upper.complete(lower_next);
+    eliminate_down(a, half, 1, upper.load, down);
+    return upper.load[0] + a.weight[a.meeting] * down + (half > 0 ? (a.weight + a.meeting)[-1] * up : 0.0);
 }
 
-/// Coefficient k of the tensions of a block from its link `from` on; `last` is that of the link below.
-CORDA_INLINE void substitute_up(SeriesArrays& a, std::size_t b, std::size_t from, double& last) {
+/// Coefficient k of the tensions of a block, upwards; `last` is that of the link below.
+CORDA_INLINE void substitute_up(SeriesArrays& a, std::size_t b, double& last) {
     const std::size_t first = kLanes * b;
-    for (std::size_t i = first + from; i < first + kLanes; ++i) {
+    Four tension;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const std::size_t i = first + lane;
         last = a.inverse_pivot[i] * a.load[i] + (a.weight + i)[-1] * last;
-        a.tension[i] = last;
+        tension[lane] = last;
     }
+    four(a.tension + first) = tension;
 }
 
-/// The same of a block below the meeting, from its last link.
+/// Of the meeting's block, whose first link's tension is `last`.
+CORDA_INLINE void substitute_from_meeting(SeriesArrays& a, double& last) {
+    Four tension;
+    tension[0] = last;
+    for (std::size_t lane = 1; lane < kLanes; ++lane) {
+        const std::size_t i = a.meeting + lane;
+        last = a.inverse_pivot[i] * a.load[i] + (a.weight + i)[-1] * last;
+        tension[lane] = last;
+    }
+    four(a.tension + a.meeting) = tension;
+}
+
+/// The same downwards, of a block below the meeting, from its last link.
 CORDA_INLINE void substitute_down(SeriesArrays& a, std::size_t b, double& last) {
     const std::size_t first = kLanes * b;
-    for (std::size_t i = first + kLanes; i-- > first;) {
+    Four tension;
+    for (std::size_t lane = kLanes; lane-- > 0;) {
+        const std::size_t i = first + lane;
         last = a.inverse_pivot[i] * a.load[i] + a.weight[i] * last;
-        a.tension[i] = last;
+        tension[lane] = last;
     }
+    four(a.tension + first) = tension;
 }
 
 /// The tensions' coefficient from the meeting outwards, and the joints' turning, which needs none of it,
-/// while they wait.
+/// while they wait. The highest order has no use for the next of the joints.
 CORDA_INLINE void substitute(SeriesArrays& a, std::size_t k, double share, double at_meeting) {
     const std::size_t half = a.meeting / kLanes;
+    const bool goes_on = k + 1 < a.order;
     double up = a.inverse_pivot[a.meeting] * at_meeting;
     double down = up;
-    a.tension[a.meeting] = up;
-    substitute_up(a, half, 1, up);
-    turn_joints(a, half, k, share);
+    substitute_from_meeting(a, up);
+    if (goes_on) turn_joints(a, half, k, share);
     for (std::size_t d = 1; d <= half; ++d) {
         if (half + d < a.blocks) {
-            substitute_up(a, half + d, 0, up);
-            turn_joints(a, half + d, k, share);
+            substitute_up(a, half + d, up);
+            if (goes_on) turn_joints(a, half + d, k, share);
         }
         substitute_down(a, half - d, down);
-        turn_joints(a, half - d, k, share);
+        if (goes_on) turn_joints(a, half - d, k, share);
     }
 }
 
 /// Coefficient k of the tensions and k + 1 of the rates, from the pulls across.
 CORDA_INLINE void turn_links(SeriesArrays& a, std::size_t k, double share) {
-    double* const next_rate = a.scratch;
+    const std::size_t last = a.links - 1;
+    Four first_pull{};
+    first_pull[0] = share * a.inverse_length_1_m[0] *
+                    (a.start_pull_m_s2.y * a.first_c[k] - a.start_pull_m_s2.x * a.first_s[k]);
+    Four last_pull;
+    in_last_lane(a,
+                 share * a.inverse_length_1_m[last] *
+                     (a.end_pull_m_s2.y * a.last_c[k] - a.end_pull_m_s2.x * a.last_s[k]),
+                 last_pull);
+    Four across_before{};  // of the block before
+    Four rate_before{};
     for (std::size_t b = 0; b < a.blocks; ++b) {
         const std::size_t i = kLanes * b;
         const Four& tension = four(a.tension + i);
-        const Four next_tension = any_four(a.tension + i + 1).value;
         const Four& sine = four(a.row(b, Row::kSine, 0));
-        any_four(a.across_before + i + 1).value += sine * tension;
+        Four next_tension;
+        shift_down(tension, four(a.tension + i + kLanes), next_tension);
         four(a.row(b, Row::kTension, k)) = tension;
         four(a.row(b, Row::kNextTension, k)) = next_tension;
-        const Four across = four(a.across_after + i) + sine * next_tension - four(a.across_before + i);
-        four(next_rate + i) =
+        const Four across_next = four(a.across_next + i) + sine * tension;
+        Four before;
+        shift_up(across_before, across_next, before);
+        across_before = across_next;
+        const Four across = four(a.across_after + i) + sine * next_tension - before;
+        Four rate =
             share * (across * four(a.inverse_length_1_m + i) - a.drag_1_s * four(a.row(b, Row::kRate, k)));
+        if (b == 0) rate += first_pull;
+        if (b + 1 == a.blocks) rate -= last_pull;
+        four(a.row(b, Row::kRate, k + 1)) = rate;
+        if (b > 0) {
+            shift_down(rate_before, rate, before);
+            four(a.row(b - 1, Row::kTurn, k + 1)) = before - rate_before;
+        }
+        rate_before = rate;
     }
-    const std::size_t last = a.links - 1;
-    next_rate[0] += share * a.inverse_length_1_m[0] *
-                    (a.start_pull_m_s2.y * a.first_c[k] - a.start_pull_m_s2.x * a.first_s[k]);
-    next_rate[last] -= share * a.inverse_length_1_m[last] *
-                       (a.end_pull_m_s2.y * a.last_c[k] - a.end_pull_m_s2.x * a.last_s[k]);
-    for (std::size_t b = 0; b < a.blocks; ++b) {
-        const std::size_t i = kLanes * b;
-        four(a.row(b, Row::kRate, k + 1)) = four(next_rate + i);
-        four(a.row(b, Row::kTurn, k + 1)) = any_four(next_rate + i + 1).value - four(next_rate + i);
-    }
+    Four after;
+    shift_down(rate_before, Four{}, after);
+    four(a.row(a.blocks - 1, Row::kTurn, k + 1)) = after - rate_before;
 }
 
 /// Coefficient k + 1 of the direction of a link.
@@ -278,8 +361,11 @@ CORDA_INLINE void move_start(SeriesArrays& a, std::size_t k, double share) {
     a.y[k + 1] = share * a.vy[k];
 }
 
-/// All coefficients, from the directions and rates at t = 0.
-CORDA_INLINE void expand(SeriesArrays& a) {
+/// All coefficients, from the directions c, s and the rates of the links at t = 0.
+CORDA_INLINE void expand(SeriesArrays& a, const double* c, const double* s, const double* rate) {
+    read_links(a, c, a.c);
+    read_links(a, s, a.s);
+    read_links(a, rate, a.rate);
     start_series(a);
     factorise(a);
     const std::size_t last = a.links - 1;
@@ -291,8 +377,10 @@ CORDA_INLINE void expand(SeriesArrays& a) {
         const double share = a.unit_s / static_cast<double>(k + 1);
         substitute(a, k, share, eliminate(a, k));
         turn_links(a, k, share);
-        turn_direction(a, 0, k, share, a.first_c, a.first_s);
-        turn_direction(a, last, k, share, a.last_c, a.last_s);
+        if (k + 1 < a.order) {
+            turn_direction(a, 0, k, share, a.first_c, a.first_s);
+            turn_direction(a, last, k, share, a.last_c, a.last_s);
+        }
         if (a.first_inverse_mass_1_kg > 0.0) move_start(a, k, share);
     }
 }
