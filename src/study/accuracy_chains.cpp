@@ -73,8 +73,8 @@ void add_r4(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
           Row{50, 1, 297.71217239}, Row{10, 10, 3.3130928700043}, Row{10, 100, 3.1568078379578},
           Row{10, 1000, 3.1346641280336}}) {
         const Mode mode = mode_of(row.links, row.omega_1_s, row.tip_mass_kg);
-        for (const Method& method : {Method{"exact, 1e-13", exact_solver(1e-13)},
-                                     Method{"rope, order 8", rope_solver(8, 1.0 / 4000.0)}}) {
+        for (const Method& method : {Method{"exact, 1e-13", sim::exact_solver(1e-13)},
+                                     Method{"rope, order 8", sim::rope_solver(8, 1.0 / 4000.0)}}) {
             AccuracyRow named;
             named.reference = "R4";
             named.title = fmt::format("N = {}, tip mass {:g} kg, omega {:.6g} / s", row.links,
@@ -107,11 +107,13 @@ void add_r5(const StudyDef& def, std::vector<AccuracyRow>& rows) {
         if (row.tip_mass_kg != 1.0) named.title += fmt::format(", tip mass {:g} kg", row.tip_mass_kg);
         named.quantity = row.tip_mass_kg > 1.0 ? "tip / L, heavy tip" : "tip / L";
         add_auto_row(named, problem, 1e-6, study_timing(def.quick), rows);
-        add_problem_rows(named, problem, exact_solver(1e-9), "exact, 1e-9", study_timing(def.quick), rows);
-        add_problem_rows(named, problem, exact_solver(1e-13), "exact, 1e-13", study_timing(def.quick), rows);
-        const double step_s = row.tip_mass_kg > 1.0 ? 1.0 / 7680.0 : 1.0 / 1920.0;
-        add_problem_rows(named, problem, rope_solver(8, step_s), "rope, order 8", study_timing(def.quick),
+        add_problem_rows(named, problem, sim::exact_solver(1e-9), "exact, 1e-9", study_timing(def.quick),
                          rows);
+        add_problem_rows(named, problem, sim::exact_solver(1e-13), "exact, 1e-13", study_timing(def.quick),
+                         rows);
+        const double step_s = row.tip_mass_kg > 1.0 ? 1.0 / 7680.0 : 1.0 / 1920.0;
+        add_problem_rows(named, problem, sim::rope_solver(8, step_s), "rope, order 8",
+                         study_timing(def.quick), rows);
     }
 }
 
@@ -125,7 +127,7 @@ void add_r6(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
          {Row{10, 2.0510510143091193, -0.50594593157108448}, Row{20, 4.107878988926029, -0.50344663434019265},
           Row{40, 8.2186678030027642, -0.50283577286535318}}) {
         for (const Method& method :
-             {Method{"exact, 1e-9", exact_solver(1e-9)}, Method{"rope, order 4", rope_solver(4)}}) {
+             {Method{"exact, 1e-9", sim::exact_solver(1e-9)}, Method{"rope, order 4", sim::rope_solver(4)}}) {
             AccuracyRow named;
             named.reference = "R6";
             named.title = fmt::format("N = {}", row.links);
@@ -162,8 +164,8 @@ void add_r7(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
     };
     for (const Row& row : {Row{21, {.2261503, .3137222, .3707585}}, Row{41, {.2242086, .3088361, .3646133}},
                            Row{81, {.2226169, .3062475, .3606003}}}) {
-        for (const Method& method : {Method{"exact, 1e-9", exact_solver(1e-9)},
-                                     Method{"rope, order 8", rope_solver(8, 1.0 / 4000.0)}}) {
+        for (const Method& method : {Method{"exact, 1e-9", sim::exact_solver(1e-9)},
+                                     Method{"rope, order 8", sim::rope_solver(8, 1.0 / 4000.0)}}) {
             AccuracyRow named;
             named.reference = "R7";
             named.title = fmt::format("{} links", row.links);
@@ -199,11 +201,11 @@ void add_r8(const StudyDef& def, std::vector<AccuracyRow>& rows) {
     named.title = "N = 10, 3 / s, 10 s";
     named.quantity = "position / L";
     add_auto_row(named, problem, 1e-6, study_timing(def.quick), rows);
-    add_problem_rows(named, problem, exact_solver(1e-9), "exact, 1e-9", study_timing(def.quick), rows);
-    add_problem_rows(named, problem, rope_solver(8), "rope, order 8", study_timing(def.quick), rows);
+    add_problem_rows(named, problem, sim::exact_solver(1e-9), "exact, 1e-9", study_timing(def.quick), rows);
+    add_problem_rows(named, problem, sim::rope_solver(8), "rope, order 8", study_timing(def.quick), rows);
     named.quantity = "largest tension, relative";
     for (const Method& method :
-         {Method{"exact, 1e-9", exact_solver(1e-9)}, Method{"rope, order 8", rope_solver(8)}}) {
+         {Method{"exact, 1e-9", sim::exact_solver(1e-9)}, Method{"rope, order 8", sim::rope_solver(8)}}) {
         named.method = method.name;
         add_row(
             named,
@@ -239,12 +241,12 @@ void add_r11(const StudyDef& def, std::vector<AccuracyRow>& rows) {
     named.title = "40 particles, tip at 1, 2, 5 and 10 s";
     named.quantity = "tip / L";
     add_auto_row(named, problem, 1e-6, study_timing(def.quick), rows);
-    add_problem_rows(named, problem, exact_solver(1e-9), "exact, 1e-9", study_timing(def.quick), rows);
-    add_problem_rows(named, problem, exact_solver(1e-13), "exact, 1e-13", study_timing(def.quick), rows);
-    add_problem_rows(named, problem, rope_solver(8, 1.0 / 600.0), "rope, order 8", study_timing(def.quick),
-                     rows);
-    add_problem_rows(named, problem, relaxation_solver(1.0 / 960.0, 1, 16), "relaxation, 16 sweeps, 1/960 s",
+    add_problem_rows(named, problem, sim::exact_solver(1e-9), "exact, 1e-9", study_timing(def.quick), rows);
+    add_problem_rows(named, problem, sim::exact_solver(1e-13), "exact, 1e-13", study_timing(def.quick), rows);
+    add_problem_rows(named, problem, sim::rope_solver(8, 1.0 / 600.0), "rope, order 8",
                      study_timing(def.quick), rows);
+    add_problem_rows(named, problem, sim::relaxation_solver(1.0 / 960.0, 1, 16),
+                     "relaxation, 16 sweeps, 1/960 s", study_timing(def.quick), rows);
 }
 
 }  // namespace

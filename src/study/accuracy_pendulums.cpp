@@ -21,10 +21,10 @@ void add_r1(const StudyDef& def, std::vector<AccuracyRow>& rows) {
     const Problem problem = a01_pendulum().subject.problem;
     const AccuracyRow named{"R1", "2000 s", "position / L", {}, {}, {}, {}, {}, {}};
     add_auto_row(named, problem, 1e-6, study_timing(def.quick), rows);
-    add_problem_rows(named, problem, exact_solver(1e-9), "exact, 1e-9", study_timing(def.quick), rows);
-    add_problem_rows(named, problem, exact_solver(1e-13), "exact, 1e-13", study_timing(def.quick), rows);
-    add_problem_rows(named, problem, rope_solver(8, 1.0 / 100.0), "rope, order 8", study_timing(def.quick),
-                     rows);
+    add_problem_rows(named, problem, sim::exact_solver(1e-9), "exact, 1e-9", study_timing(def.quick), rows);
+    add_problem_rows(named, problem, sim::exact_solver(1e-13), "exact, 1e-13", study_timing(def.quick), rows);
+    add_problem_rows(named, problem, sim::rope_solver(8, 1.0 / 100.0), "rope, order 8",
+                     study_timing(def.quick), rows);
 }
 
 struct Method {
@@ -33,7 +33,7 @@ struct Method {
 };
 
 std::array<Method, 2> tight_methods() {
-    return {{{"exact, 1e-13", exact_solver(1e-13)}, {"rope, order 8", rope_solver(8)}}};
+    return {{{"exact, 1e-13", sim::exact_solver(1e-13)}, {"rope, order 8", sim::rope_solver(8)}}};
 }
 
 /// A relative error of a time at which the tip passes under the pin at a speed: from where it is then.
@@ -89,7 +89,7 @@ void add_r2(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
 
 /// When relaxation with all of its bars converged gets to the vertical, in s.
 double quarter_period_s(int links, double step_s, AccuracyRow& row) {
-    const sim::SolverDef solver = relaxation_solver(step_s, 7, 1000);
+    const sim::SolverDef solver = sim::relaxation_solver(step_s, 7, 1000);
     Probe probe(straight_rope(links, 1.0, 90.0), sim::WorldDef{}, solver);
     double before_m = 1.0;
     for (int k = 1; k * step_s < 1.0; ++k) {
@@ -147,7 +147,7 @@ void add_r10(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
             [&](AccuracyRow& filled) {
                 sim::RopeDef pair = rope_through({{0.0, 0.0}, {1.0, 0.0}});
                 pair.pinned = {};
-                sim::SolverDef solver = relaxation_solver(kStepSeconds, 1, 1);
+                sim::SolverDef solver = sim::relaxation_solver(kStepSeconds, 1, 1);
                 solver.delta = delta;
                 solver.force_n = sim::Vec2{0.0, kForceNewtons};
                 Probe probe(pair, sim::WorldDef{}, solver);

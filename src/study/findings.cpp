@@ -177,12 +177,12 @@ void add_settling(const Shared& findings, bool is_quick, std::vector<Job>& jobs)
                                         {0.005, 1.0 / 60.0},
                                         {0.02, 1.0 / 60.0}}) {
         jobs.push_back({fmt::format("settling, delta {:g}", delta), [=, delta = delta, step_s = step_s] {
-                            sim::SolverDef method = relaxation_solver(step_s, 7, 1);
+                            sim::SolverDef method = sim::relaxation_solver(step_s, 7, 1);
                             method.delta = delta;
                             const double drag_1_s = -std::log1p(-delta) / step_s;
                             findings->settling.push_back(
                                 {delta, step_s, drag_1_s, settling_time_s(method, 0.0, findings->watched_s),
-                                 settling_time_s(exact_solver(1e-8), drag_1_s, findings->watched_s)});
+                                 settling_time_s(sim::exact_solver(1e-8), drag_1_s, findings->watched_s)});
                         }});
     }
 }

@@ -79,7 +79,7 @@ Problem falling_pair(double wrong_by_m) {
 
 TEST(Measure, GivesErrorsAgainstAClosedForm) {
     const Measurement right =
-        measure(falling_pair(0.0), exact_solver(1e-10), "exact", 1e-10, Timing{2, 0.001});
+        measure(falling_pair(0.0), sim::exact_solver(1e-10), "exact", 1e-10, Timing{2, 0.001});
     EXPECT_EQ(right.failure, "");
     EXPECT_LT(right.largest_error, 1e-14);  // measured 2e-15
     EXPECT_GT(right.steps, 0U);
@@ -89,7 +89,7 @@ TEST(Measure, GivesErrorsAgainstAClosedForm) {
     EXPECT_LT(*right.energy_error, 1e-13);
 
     // One particle of two, 0.3 m of 2 m, at one frame of ten.
-    const Measurement wrong = measure(falling_pair(0.3), exact_solver(1e-10), "exact", 1e-10, kNoTiming);
+    const Measurement wrong = measure(falling_pair(0.3), sim::exact_solver(1e-10), "exact", 1e-10, kNoTiming);
     EXPECT_NEAR(wrong.largest_error, 0.15, 1e-13);
     EXPECT_NEAR(wrong.rms_error, 0.15 / std::sqrt(2.0), 1e-13);
 }
@@ -97,7 +97,7 @@ TEST(Measure, GivesErrorsAgainstAClosedForm) {
 TEST(Measure, SeesTheErrorOfTheEulerStart) {
     // Relaxation is late by g h t / 2: with h = 0.1 s after 1 s, 0.4905 m of 2 m, of both particles alike.
     const Measurement run =
-        measure(falling_pair(0.0), relaxation_solver(0.1, 1, 1), "relaxation", 0.1, kNoTiming);
+        measure(falling_pair(0.0), sim::relaxation_solver(0.1, 1, 1), "relaxation", 0.1, kNoTiming);
     EXPECT_NEAR(run.largest_error, 0.4905 / 2.0, 1e-13);
     EXPECT_NEAR(run.rms_error, 0.4905 / 2.0, 1e-13);
     EXPECT_EQ(run.steps, 10U);
@@ -111,20 +111,22 @@ TEST(Measure, LeavesOutWhatTheTruthDoesNotKnow) {
         state.y_m[1] = std::numeric_limits<double>::quiet_NaN();
         return true;
     };
-    EXPECT_LT(measure(problem, exact_solver(1e-10), "exact", 0.0, kNoTiming).largest_error, 1e-14);
+    EXPECT_LT(measure(problem, sim::exact_solver(1e-10), "exact", 0.0, kNoTiming).largest_error, 1e-14);
     problem.reference = [all](std::int64_t k, sim::State& state) { return k != 4 && all(k, state); };
-    EXPECT_LT(measure(problem, exact_solver(1e-10), "exact", 0.0, kNoTiming).largest_error, 1e-14);
+    EXPECT_LT(measure(problem, sim::exact_solver(1e-10), "exact", 0.0, kNoTiming).largest_error, 1e-14);
     problem.reference = nullptr;
-    EXPECT_TRUE(std::isnan(measure(problem, exact_solver(1e-10), "exact", 0.0, kNoTiming).largest_error));
+    EXPECT_TRUE(
+        std::isnan(measure(problem, sim::exact_solver(1e-10), "exact", 0.0, kNoTiming).largest_error));
 }
 
 TEST(Measure, ShowsARefusalAndADivergenceAsFailures) {
     Problem problem = released_chain().subject.problem;
-    sim::SolverDef with_bars = exact_solver(1e-9);
+    sim::SolverDef with_bars = sim::exact_solver(1e-9);
     with_bars.reach = 7;
     EXPECT_THAT(measure(problem, with_bars, "exact", 0.0, kNoTiming).failure, HasSubstr("reach"));
     problem.ropes[0].velocity_m_s.back() = {1e300, 0.0};
-    EXPECT_THAT(measure(problem, exact_solver(1e-9), "exact", 0.0, kNoTiming).failure, HasSubstr("diverged"));
+    EXPECT_THAT(measure(problem, sim::exact_solver(1e-9), "exact", 0.0, kNoTiming).failure,
+                HasSubstr("diverged"));
 }
 
 TEST(Slope, IsTheExponentOfAPowerLaw) {
