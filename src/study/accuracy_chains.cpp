@@ -61,17 +61,7 @@ Mode mode_of(int links, double omega_1_s, double tip_mass_kg) {
 }
 
 void add_r4(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
-    struct Row {
-        int links;
-        double tip_mass_kg;
-        double omega_1_s;
-    };
-    for (const Row& row :
-         {Row{5, 1, 3.5955018679142}, Row{10, 1, 3.6766206576178}, Row{10, 1, 8.4592843258908},
-          Row{10, 1, 54.177674155542}, Row{20, 1, 3.7202051499303}, Row{20, 1, 8.5446639308937},
-          Row{20, 1, 114.245746189}, Row{50, 1, 3.7474350221806}, Row{50, 1, 8.6027948917509},
-          Row{50, 1, 297.71217239}, Row{10, 10, 3.3130928700043}, Row{10, 100, 3.1568078379578},
-          Row{10, 1000, 3.1346641280336}}) {
+    for (const SmallOscillation& row : kSmallOscillations) {
         const Mode mode = mode_of(row.links, row.omega_1_s, row.tip_mass_kg);
         for (const Method& method : {Method{"exact, 1e-13", sim::exact_solver(1e-13)},
                                      Method{"rope, order 8", sim::rope_solver(8, 1.0 / 4000.0)}}) {
@@ -118,14 +108,7 @@ void add_r5(const StudyDef& def, std::vector<AccuracyRow>& rows) {
 }
 
 void add_r6(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
-    struct Row {
-        int links;
-        double tension;  ///< horizontal, over the weight of a particle
-        double lowest_m;
-    };
-    for (const Row& row :
-         {Row{10, 2.0510510143091193, -0.50594593157108448}, Row{20, 4.107878988926029, -0.50344663434019265},
-          Row{40, 8.2186678030027642, -0.50283577286535318}}) {
+    for (const HangingChain& row : kHangingChains) {
         for (const Method& method :
              {Method{"exact, 1e-9", sim::exact_solver(1e-9)}, Method{"rope, order 4", sim::rope_solver(4)}}) {
             AccuracyRow named;
@@ -147,8 +130,8 @@ void add_r6(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
                     const double tension = std::sqrt(std::max(0.0, pull * pull - half_weight * half_weight));
                     const auto& y_m = probe.state().y_m;
                     const double lowest_m = *std::min_element(y_m.begin(), y_m.end());
-                    filled.error =
-                        std::max(std::abs(tension / row.tension - 1.0), std::abs(lowest_m - row.lowest_m));
+                    filled.error = std::max(std::abs(tension / row.tension_over_weight - 1.0),
+                                            std::abs(lowest_m - row.lowest_m));
                     filled.wall_ms = 1e3 * probe.wall_s();
                     filled.ms_per_simulated_s = filled.wall_ms / kSettledSeconds;
                 },
@@ -158,12 +141,7 @@ void add_r6(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
 }
 
 void add_r7(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
-    struct Row {
-        int links;
-        std::array<double, 3> times_s;  ///< at which the tip has fallen .25, .5, .75 m
-    };
-    for (const Row& row : {Row{21, {.2261503, .3137222, .3707585}}, Row{41, {.2242086, .3088361, .3646133}},
-                           Row{81, {.2226169, .3062475, .3606003}}}) {
+    for (const FoldedChain& row : kFoldedChains) {
         for (const Method& method : {Method{"exact, 1e-9", sim::exact_solver(1e-9)},
                                      Method{"rope, order 8", sim::rope_solver(8, 1.0 / 4000.0)}}) {
             AccuracyRow named;

@@ -58,15 +58,7 @@ void add_passage(const AccuracyRow& named, const sim::RopeDef& rope, double time
 }
 
 void add_r2(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
-    struct Row {
-        double angle_deg;
-        double ratio;  ///< T / T0
-    };
-    constexpr double kPeriod0Seconds = 2.006066680710647;
-    for (const Row& row :
-         {Row{10, 1.0019071881432166}, Row{45, 1.0399733431968039}, Row{90, 1.1803405990160962},
-          Row{120, 1.3728805006183502}, Row{150, 1.762203729503756}, Row{170, 2.4393627196738841},
-          Row{179, 3.9010651603890857}, Row{179.9, 5.3668671090259463}, Row{179.99, 6.832737338014762}}) {
+    for (const SwingPeriod& row : kSwingPeriods) {
         const double speed_m_s =
             std::sqrt(2.0 * kGravity * (1.0 - std::cos(row.angle_deg * std::numbers::pi / 180.0)));
         AccuracyRow named;
@@ -74,17 +66,16 @@ void add_r2(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
         named.title = fmt::format("{:g} deg", row.angle_deg);
         named.quantity = row.angle_deg > 175 ? "period, relative, near the top" : "period, relative";
         // A quarter of a period after the start and a whole one after that.
-        add_passage(named, straight_rope(1, 1.0, row.angle_deg), 1.25 * row.ratio * kPeriod0Seconds,
+        add_passage(named, straight_rope(1, 1.0, row.angle_deg), 1.25 * row.ratio * kSmallSwingSeconds,
                     speed_m_s, rows);
     }
-    constexpr double kTurnSeconds = 1.0578477230355216;
     sim::RopeDef rope = straight_rope(1, 1.0, 0.0);
     rope.velocity_m_s[1] = {std::sqrt(6.0 * kGravity), 0.0};
     AccuracyRow named;
     named.reference = "R2";
     named.title = "circulating";
     named.quantity = "period, relative";
-    add_passage(named, rope, 3.0 * kTurnSeconds, std::sqrt(6.0 * kGravity), rows);
+    add_passage(named, rope, 3.0 * kFullTurnSeconds, std::sqrt(6.0 * kGravity), rows);
 }
 
 /// When relaxation with all of its bars converged gets to the vertical, in s.
@@ -103,12 +94,7 @@ double quarter_period_s(int links, double step_s, AccuracyRow& row) {
 }
 
 void add_r3(const StudyDef& def, std::vector<AccuracyRow>& rows) {
-    struct Row {
-        int links;
-        double period_s;
-    };
-    for (const Row& rod : {Row{2, 2.161534078824117}, Row{5, 2.027698701742412}, Row{10, 1.981078706687632},
-                           Row{20, 1.957352357296146}, Row{50, 1.942977482042899}}) {
+    for (const RodPeriod& rod : kRodPeriods) {
         if (def.quick && rod.links > 10) continue;
         AccuracyRow row;
         row.reference = "R3";

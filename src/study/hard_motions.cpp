@@ -135,8 +135,9 @@ void add_throws_and_masses(std::vector<HardCase>& cases) {
 }
 
 Outcome nearly_inverted(const sim::SolverDef& solver) {
-    constexpr double kQuarterSeconds = 0.25 * 6.832737338014762 * 2.006066680710647;  // R2, 179.99 deg
-    constexpr double kAngle = 179.99;
+    constexpr double kAngle = kSwingPeriods.back().angle_deg;
+    static_assert(kAngle == 179.99);
+    constexpr double kQuarterSeconds = 0.25 * kSwingPeriods.back().ratio * kSmallSwingSeconds;
     const double speed_m_s = std::sqrt(2.0 * 9.81 * (1.0 - std::cos(kAngle * std::numbers::pi / 180.0)));
     Probe probe(straight_rope(1, 1.0, kAngle), sim::WorldDef{}, solver);
     probe.go(kQuarterSeconds);

@@ -99,7 +99,7 @@ void add_sizes(std::vector<HardCase>& cases) {
 }
 
 Outcome long_step(double step_s) {
-    constexpr sim::Vec2 kTip{0.53700529500088304879, -0.81916411877801124437};  // R5, N = 20, 45 deg, 2 s
+    constexpr sim::Vec2 kTip = released_tip_m(20, 45.0, 2.0);
     Probe probe(straight_rope(20, 1.0, 45.0), sim::WorldDef{}, sim::rope_solver(8, step_s));
     probe.go(2.0);
     const double error_m = std::hypot(probe.tip_m().x - kTip.x, probe.tip_m().y - kTip.y);

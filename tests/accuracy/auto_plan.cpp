@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "corda/sim/planner.hpp"
-#include "support/released_chains.hpp"
+#include "corda/study/ropes.hpp"
+#include "support/reference_files.hpp"
+#include "support/ropes.hpp"
 
 namespace corda::sim {
 namespace {
@@ -17,8 +17,8 @@ class AutoBound : public testing::TestWithParam<std::tuple<std::size_t, double>>
 
 TEST_P(AutoBound, IsTrueUnderTheHorizon) {
     const auto [row, tolerance] = GetParam();
-    const test::ReleasedChain& chain = test::kReleasedChains[row];
-    const RopeDef rope = chain.rope();
+    const study::ReleasedChain& chain = study::kReleasedChains[row];
+    const RopeDef rope = study::released_rope(chain);
     const System system = build_system({&rope, 1}, 1);
     const FrameRate frames(Rational{60, 1});
     const PlanDef def{tolerance * chain.length_m, frames, frames.last_frame_within(chain.time_s)};
@@ -40,8 +40,8 @@ INSTANTIATE_TEST_SUITE_P(R5, AutoBound,
 TEST(AutoPlan, FindsNoHorizonWithinTheRegularRowsOfR5) {
     // At a thousandth of the length every row of R5 can be predicted but for one: N = 10 at 90 degrees is
     // chaotic past 2 s.
-    for (const test::ReleasedChain& chain : test::kReleasedChains) {
-        const RopeDef rope = chain.rope();
+    for (const study::ReleasedChain& chain : study::kReleasedChains) {
+        const RopeDef rope = study::released_rope(chain);
         const System system = build_system({&rope, 1}, 1);
         const FrameRate frames(Rational{60, 1});
         const PlanDef def{1e-3 * chain.length_m, frames, frames.last_frame_within(chain.time_s)};
@@ -83,8 +83,6 @@ TEST(AutoPlan, IsTheSameOnEveryRun) {
 
 TEST(AutoBound, IsTrueForTheSourceReportsStart) {
     // R11: all 40 particles at 1, 2, 5 and 10 s.
-    std::ifstream file(CORDA_TEST_DATA "/swing40.txt");
-    ASSERT_TRUE(file.is_open());
     const RopeDef rope = test::report_rope(40);
     const System system = build_system({&rope, 1}, 1);
     const WorldDef world{{0.0, -9.8}, 10.0, 0.0};
@@ -92,23 +90,15 @@ TEST(AutoBound, IsTrueForTheSourceReportsStart) {
     const Plan plan = plan_solver(system, world, {1e-3, frames, 600});
     ASSERT_FALSE(plan.horizon_s.has_value());
     Simulation run(system, world, plan.solver, frames.interval_s());
-    int rows = 0;
-    for (std::string line; std::getline(file, line);) {
-        if (line.empty() || line.front() == '#') continue;
-        std::istringstream numbers(line);
-        double time_s = 0.0;
-        numbers >> time_s;
-        ASSERT_EQ(run.advance_to(time_s), Status::kOk);
-        for (std::size_t i = 0; i < 40; ++i) {
-            Vec2 expected;
-            numbers >> expected.x >> expected.y;
-            const double error_m =
-                std::hypot(run.state().x_m[i] - expected.x, run.state().y_m[i] - expected.y);
-            EXPECT_LE(error_m, plan.error_bound_m.value()) << "particle " << i << " at " << time_s << " s";
+    for (const test::ReportFrame& frame : test::read_report_swing()) {
+        ASSERT_EQ(run.advance_to(frame.time_s), Status::kOk);
+        for (std::size_t i = 0; i < frame.points_m.size(); ++i) {
+            const double error_m = std::hypot(run.state().x_m[i] - frame.points_m[i].x,
+                                              run.state().y_m[i] - frame.points_m[i].y);
+            EXPECT_LE(error_m, plan.error_bound_m.value())
+                << "particle " << i << " at " << frame.time_s << " s";
         }
-        ++rows;
     }
-    EXPECT_EQ(rows, 4);
 }
 
 }  // namespace

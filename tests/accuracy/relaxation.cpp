@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "corda/study/references.hpp"
 #include "support/ropes.hpp"
 
 namespace corda::sim {
@@ -78,7 +79,9 @@ double quarter_period_s(double step_s, int sweeps) {
 }
 
 TEST(RigidRodR3, ConvergedSevenNeighbourBarsAreARod) {
-    constexpr double kQuarterPeriodSeconds = 1.981078706687632 / 4.0;
+    constexpr study::RodPeriod kRod = study::kRodPeriods[2];
+    static_assert(kRod.links == 10);
+    constexpr double kQuarterPeriodSeconds = kRod.period_s / 4.0;
     const double coarse = std::abs(quarter_period_s(1.0 / 500.0, 1000) - kQuarterPeriodSeconds);
     const double middle = std::abs(quarter_period_s(1.0 / 1000.0, 1000) - kQuarterPeriodSeconds);
     const double fine = std::abs(quarter_period_s(1.0 / 2000.0, 1000) - kQuarterPeriodSeconds);

@@ -3,42 +3,20 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <vector>
 
+#include "corda/study/ropes.hpp"
 #include "support/rattle_run.hpp"
 
 namespace corda::sim {
 namespace {
 
-/// `links` links of 1.5 m in all between two pins 1 m apart, as a V.
-RopeDef slack_between_pins(int links) {
-    RopeDef rope;
-    const double depth_m = std::sqrt(0.75 * 0.75 - 0.5 * 0.5);
-    for (int i = 0; i <= links; ++i) {
-        const double along = static_cast<double>(i) / links;
-        rope.points_m.push_back({along, -depth_m * (1.0 - std::abs(2.0 * along - 1.0))});
-    }
-    rope.mass_kg.assign(rope.points_m.size(), 1.0);
-    rope.velocity_m_s.assign(rope.points_m.size(), {});
-    rope.pinned = {0, static_cast<std::uint32_t>(links)};
-    return rope;
-}
-
 TEST(HangingBetweenPinsR6, SettlesToTheReferenceShape) {
-    struct Row {
-        int links;
-        double tension_over_weight;
-        double lowest_m;
-    };
-    const std::array<Row, 3> rows{{{10, 2.0510510143091193, -0.50594593157108448},
-                                   {20, 4.107878988926029, -0.50344663434019265},
-                                   {40, 8.2186678030027642, -0.50283577286535318}}};
-    for (const Row& row : rows) {
+    for (const study::HangingChain& row : study::kHangingChains) {
         WorldDef world;
         world.drag_1_s = 8.0;
-        test::RattleRun run(slack_between_pins(row.links), world, 4);
+        test::RattleRun run(study::slack_rope(row.links), world, 4);
         ASSERT_TRUE(run.go(15.0));
         const double lowest_m = *std::min_element(run.state().y_m.begin(), run.state().y_m.end());
         const double force_n = run.solver().loads()->pin_force_n;
@@ -68,21 +46,8 @@ double fall_time_s(const RopeDef& rope, double depth_m, double from_s) {
 }
 
 TEST(FallingFoldedChainR7, TheTipFallsInTheReferenceTimes) {
-    struct Row {
-        int links;
-        std::array<double, 3> times_s;
-    };
-    const std::array<Row, 3> rows{{{21, {.2261503, .3137222, .3707585}},
-                                   {41, {.2242086, .3088361, .3646133}},
-                                   {81, {.2226169, .3062475, .3606003}}}};
-    for (const Row& row : rows) {
-        const int down = row.links / 2;
-        const double a = 1.0 / row.links;
-        RopeDef rope;
-        for (int i = 0; i <= down; ++i) rope.points_m.push_back({0.0, -i * a});
-        for (int i = down; i >= 0; --i) rope.points_m.push_back({a, -i * a});
-        rope.mass_kg.assign(rope.points_m.size(), 1.0);
-        rope.velocity_m_s.assign(rope.points_m.size(), {});
+    for (const study::FoldedChain& row : study::kFoldedChains) {
+        const RopeDef rope = study::folded_rope(row.links);
         for (std::size_t k = 0; k < 3; ++k) {
             const double time_s =
                 fall_time_s(rope, 0.25 * (1.0 + static_cast<double>(k)), row.times_s[k] - 0.1);
