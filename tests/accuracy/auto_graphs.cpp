@@ -9,8 +9,8 @@
 #include "corda/scene/auto_plan.hpp"
 #include "corda/sim/planner.hpp"
 #include "corda/sim/simulation.hpp"
+#include "corda/study/ropes.hpp"
 #include "support/nets.hpp"
-#include "support/ropes.hpp"
 
 namespace corda::sim {
 namespace {
@@ -66,7 +66,7 @@ TEST(AutoGraph, BoundIsTrueForANet) {
 }
 
 TEST(AutoGraph, ANetBesideARopeIsSolvedWithIt) {
-    const RopeDef rope = test::straight_rope(5, 1.0, 30.0);
+    const RopeDef rope = study::straight_rope(5, 1.0, 30.0);
     const NetDef net = test::leaning_net(3, 3, 0.3);
     expect_true_bound(build_system({&rope, 1}, {&net, 1}, 1), 1e-3, 30);
 }

@@ -6,9 +6,10 @@
 #include <cmath>
 
 #include "corda/sim/planner.hpp"
+#include "corda/sim/simulation.hpp"
+#include "corda/study/references.hpp"
 #include "corda/study/ropes.hpp"
 #include "support/reference_files.hpp"
-#include "support/ropes.hpp"
 
 namespace corda::sim {
 namespace {
@@ -51,7 +52,7 @@ TEST(AutoPlan, FindsNoHorizonWithinTheRegularRowsOfR5) {
 }
 
 TEST(AutoPlan, SaysWhereAChaoticMotionCanNoLongerBePredicted) {
-    const RopeDef rope = test::straight_rope(10, 1.0, 90.0);
+    const RopeDef rope = study::straight_rope(10, 1.0, 90.0);
     const System system = build_system({&rope, 1}, 1);
     const FrameRate frames(Rational{60, 1});
     const Plan plan = plan_solver(system, WorldDef{}, {1e-4, frames, 600});
@@ -61,7 +62,7 @@ TEST(AutoPlan, SaysWhereAChaoticMotionCanNoLongerBePredicted) {
 }
 
 TEST(AutoPlan, TakesALooserMethodForALooserTolerance) {
-    const RopeDef rope = test::straight_rope(20, 1.0, 45.0);
+    const RopeDef rope = study::straight_rope(20, 1.0, 45.0);
     const System system = build_system({&rope, 1}, 1);
     const FrameRate frames(Rational{60, 1});
     const Plan loose = plan_solver(system, WorldDef{}, {1e-3, frames, 120});
@@ -71,7 +72,7 @@ TEST(AutoPlan, TakesALooserMethodForALooserTolerance) {
 }
 
 TEST(AutoPlan, IsTheSameOnEveryRun) {
-    const RopeDef rope = test::straight_rope(10, 1.0, 90.0);
+    const RopeDef rope = study::straight_rope(10, 1.0, 90.0);
     const System system = build_system({&rope, 1}, 1);
     const FrameRate frames(Rational{60, 1});
     const Plan a = plan_solver(system, WorldDef{}, {1e-4, frames, 300});
@@ -83,7 +84,7 @@ TEST(AutoPlan, IsTheSameOnEveryRun) {
 
 TEST(AutoBound, IsTrueForTheSourceReportsStart) {
     // R11: all 40 particles at 1, 2, 5 and 10 s.
-    const RopeDef rope = test::report_rope(40);
+    const RopeDef rope = study::report_rope(40);
     const System system = build_system({&rope, 1}, 1);
     const WorldDef world{{0.0, -9.8}, 10.0, 0.0};
     const FrameRate frames(Rational{60, 1});

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "corda/study/ropes.hpp"
 #include "support/solver_run.hpp"
 
 namespace corda::sim {
@@ -53,7 +54,7 @@ struct Cantilever {
     [[nodiscard]] double mass_kg(int i) const { return link_m() * (i == links ? 0.5 : 1.0); }
 
     [[nodiscard]] RopeDef rope() const {
-        RopeDef rope = test::straight_rope(links + 1, 1.0, 90.0);
+        RopeDef rope = study::straight_rope(links + 1, 1.0, 90.0);
         for (int i = 0; i <= links + 1; ++i) {
             rope.points_m[static_cast<std::size_t>(i)] = {(i - 1) * link_m(), 0.0};
             if (i > 1) rope.mass_kg[static_cast<std::size_t>(i)] = mass_kg(i - 1);
@@ -200,7 +201,7 @@ struct FreeBeam {
 
     /// Bent by `amplitude_m` at most, without stretching a link.
     [[nodiscard]] RopeDef rope(const std::vector<double>& shape, double amplitude_m) const {
-        RopeDef rope = test::straight_rope(links, 1.0, 90.0);
+        RopeDef rope = study::straight_rope(links, 1.0, 90.0);
         double x_m = 0.0;
         for (std::size_t i = 0; i < count(); ++i) {
             if (i > 0) {
@@ -254,7 +255,7 @@ TEST(FreeBeam, SwingsWithTheFrequencyOfItsFirstMode) {
 }
 
 RopeDef bending_rope(double compliance_1_n) {
-    RopeDef rope = test::straight_rope(10, 1.0, 60.0);
+    RopeDef rope = study::straight_rope(10, 1.0, 60.0);
     rope.bending_n_m2 = 1.0;
     rope.material.compliance_1_n = compliance_1_n;
     return rope;

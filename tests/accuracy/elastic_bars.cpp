@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "corda/study/references.hpp"
+#include "corda/study/ropes.hpp"
 #include "support/solver_run.hpp"
 
 namespace corda::sim {
@@ -35,7 +36,7 @@ struct HeavyRope {
         return y_m;
     }
     static RopeDef rope(bool stretched) {
-        RopeDef rope = test::straight_rope(kLinks, 1.0, 0.0);
+        RopeDef rope = study::straight_rope(kLinks, 1.0, 0.0);
         rope.payload_kg = kPayload;
         rope.material.compliance_1_n = kCompliance;
         rope.rest_m.assign(kLinks, kLink);
@@ -94,7 +95,7 @@ struct HangingMass {
     static constexpr double kCompliance = 0.01;
 
     static RopeDef rope() {
-        RopeDef rope = test::straight_rope(1, kRest, 0.0);
+        RopeDef rope = study::straight_rope(1, kRest, 0.0);
         rope.mass_kg[1] = kMass;
         rope.material.compliance_1_n = kCompliance;
         return rope;
@@ -160,7 +161,7 @@ TEST(MassOnASpring, ConvergesWithItsOrderInRope) {
 }
 
 RopeDef swinging_rope() {
-    RopeDef rope = test::straight_rope(10, 1.0, 45.0);
+    RopeDef rope = study::straight_rope(10, 1.0, 45.0);
     rope.material.compliance_1_n = 1e-4;
     return rope;
 }
@@ -235,8 +236,7 @@ TEST(StiffRope, ApproachesTheRigidOneInProportionToItsCompliance) {
     // under the slow tensions.
     const Vec2 rigid = study::released_tip_m(2, 90.0, 1.0);
     const auto tip = [&](double compliance_1_n, const SolverDef& def) {
-        RopeDef rope = test::straight_rope(2, 2.0, 90.0);
-        for (std::size_t i = 0; i < 3; ++i) rope.points_m[i] = {static_cast<double>(i), 0.0};
+        RopeDef rope = study::straight_rope(2, 2.0, 90.0);
         rope.material.compliance_1_n = compliance_1_n;
         test::SolverRun run(rope, WorldDef{}, def);
         EXPECT_TRUE(run.go(1.0));
@@ -269,7 +269,7 @@ struct Bungee {
     static constexpr double kThrow = 5.0;
 
     static RopeDef rope() {
-        RopeDef rope = test::straight_rope(1, 1.0, 0.0);
+        RopeDef rope = study::straight_rope(1, 1.0, 0.0);
         rope.material = {kCompliance, true};
         rope.rest_m = {1.0};
         rope.points_m[1] = {0.0, -1.0 - kGravity * kCompliance};

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "corda/study/ropes.hpp"
 #include "support/exact_run.hpp"
 
 namespace corda::sim {
@@ -37,10 +38,7 @@ std::array<double, Count> integrate(
 }
 
 RopeDef rope_of(const std::vector<Vec2>& points_m, double bending_n_m2) {
-    RopeDef rope;
-    rope.points_m = points_m;
-    rope.mass_kg.assign(points_m.size(), 1.0);
-    rope.velocity_m_s.assign(points_m.size(), {});
+    RopeDef rope = study::rope_through(points_m);
     rope.bending_n_m2 = bending_n_m2;
     return rope;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "corda/sim/chain_dynamics.hpp"
+#include "corda/study/references.hpp"
 #include "corda/study/ropes.hpp"
 #include "support/exact_run.hpp"
 #include "support/reference_files.hpp"
@@ -126,7 +127,7 @@ std::vector<Vec2> start_accelerations(ChainDynamics& dynamics) {
 
 TEST(HorizontalRelease, FallsFreelyAtFirst) {
     for (const int links : {2, 10, 50}) {
-        const RopeDef rope = test::horizontal_rope(links, 1.0);
+        const RopeDef rope = study::straight_rope(links, 1.0, 90.0);
         const System system = build_system({&rope, 1}, 1);
         ChainDynamics dynamics(system, system.bodies, WorldDef{});
         std::vector<double> tension_n;
@@ -142,7 +143,7 @@ TEST(HorizontalRelease, FallsFreelyAtFirst) {
 }
 
 TEST(FreeRope, FallsWithoutAnErrorOfTheStart) {
-    RopeDef rope = test::straight_rope(5, 1.0, 30.0);
+    RopeDef rope = study::straight_rope(5, 1.0, 30.0);
     rope.pinned = {};
     test::ExactRun run(rope);
     for (const double time_s : {1.0 / 60.0, 0.1, 1.0, 3.0}) {
@@ -190,8 +191,7 @@ TEST(FoldedR7, FallsFasterThanFreely) {
 TEST(SpinningR8, StaysARigidRotation) {
     constexpr int kLinks = 10;
     constexpr double kRate = 3.0;
-    RopeDef rope = test::horizontal_rope(kLinks, 1.0);
-    for (std::size_t i = 0; i <= kLinks; ++i) rope.velocity_m_s[i] = {0.0, kRate * rope.points_m[i].x};
+    const RopeDef rope = study::spinning_rope(kLinks, 1.0, kRate);
     const WorldDef world{{0.0, 0.0}, 10.0, 0.0};
     test::ExactRun run(rope, 1e-10, world);
     double largest_m = 0.0;
@@ -217,7 +217,7 @@ TEST(SpinningR8, StaysARigidRotation) {
 }
 
 TEST(ReportRopeR11, StaysOnTheReference) {
-    test::ExactRun run(test::report_rope(40), 1e-9, WorldDef{{0.0, -9.8}, 10.0, 0.0});
+    test::ExactRun run(study::report_rope(40), 1e-9, WorldDef{{0.0, -9.8}, 10.0, 0.0});
     for (const test::ReportFrame& frame : test::read_report_swing()) {
         ASSERT_TRUE(run.advance_to(frame.time_s));
         double largest_m = 0.0;
@@ -234,7 +234,7 @@ TEST(ReportRopeR11, IsCloserThanTheToleranceAtEveryOrderOfTheSeries) {
     constexpr study::PublishedTip kEnd = study::kReportTips.back();
     static_assert(kEnd.time_s == 10.0);
     for (const double tolerance : {1.0, 0.1, 1e-3, 1e-6}) {
-        test::ExactRun run(test::report_rope(40), tolerance, WorldDef{{0.0, -9.8}, 10.0, 0.0});
+        test::ExactRun run(study::report_rope(40), tolerance, WorldDef{{0.0, -9.8}, 10.0, 0.0});
         ASSERT_TRUE(run.advance_to(10.0));
         const double error = run.tip_error_m(kEnd.tip_m.x, kEnd.tip_m.y) / 39.2;
         std::printf("R11 at %g: %.1e of the length\n", tolerance, error);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "corda/study/references.hpp"
+#include "corda/study/ropes.hpp"
 #include "support/exact_run.hpp"
 #include "support/reference_files.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 
 double a01_error_m(double tolerance) {
     const std::vector<Vec2> reference = test::read_a01();
-    test::ExactRun run(test::horizontal_rope(1, 1.0), tolerance);
+    test::ExactRun run(study::straight_rope(1, 1.0, 90.0), tolerance);
     double largest = 0.0;
     for (std::size_t k = 0; k < reference.size(); ++k) {
         EXPECT_TRUE(run.advance_to(0.5 * static_cast<double>(k + 1)));
@@ -31,7 +32,7 @@ TEST(PendulumR1, StaysOnTheReferenceFor2000Seconds) {
 }
 
 TEST(PendulumR1, LargestTensionIsThreeWeights) {
-    test::ExactRun run(test::horizontal_rope(1, 1.0), 1e-12);
+    test::ExactRun run(study::straight_rope(1, 1.0, 90.0), 1e-12);
     ASSERT_TRUE(run.advance_to(study::kA01PeriodSeconds / 4.0));
     const Loads loads = run.solver.loads().value();
     EXPECT_NEAR(loads.largest_tension_n, 29.43, 1e-11);
@@ -56,7 +57,7 @@ TEST(PeriodR2, AtLargeAnglesIsTheEllipticIntegral) {
         const study::SwingPeriod& row = study::kSwingPeriods[k];
         // A quarter of a period after the start and a whole one after that.
         const double expected_s = 1.25 * row.ratio * study::kSmallSwingSeconds;
-        const double time_s = crossing_s(test::straight_rope(1, 1.0, row.angle_deg), expected_s);
+        const double time_s = crossing_s(study::straight_rope(1, 1.0, row.angle_deg), expected_s);
         const double error = time_s / expected_s - 1.0;
         std::printf("R2 %g deg: relative error of the period %.2e\n", row.angle_deg, error);
         // measured 1e-15 up to 170 deg, 1.3e-13 at 179, 9e-12 at 179.9, 4e-10 at 179.99
@@ -65,7 +66,7 @@ TEST(PeriodR2, AtLargeAnglesIsTheEllipticIntegral) {
 }
 
 TEST(PeriodR2, OfAFullTurnIsTheEllipticIntegral) {
-    RopeDef rope = test::straight_rope(1, 1.0, 0.0);
+    RopeDef rope = study::straight_rope(1, 1.0, 0.0);
     rope.velocity_m_s[1] = {std::sqrt(6.0 * 9.81), 0.0};
     constexpr double kExpectedSeconds = 3.0 * study::kFullTurnSeconds;
     const double error = crossing_s(rope, kExpectedSeconds) / kExpectedSeconds - 1.0;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "corda/sim/string_part.hpp"
+#include "corda/study/ropes.hpp"
 #include "support/exact_run.hpp"
 
 namespace corda::sim {
@@ -17,10 +18,7 @@ namespace {
 constexpr double kGravity = 9.81;
 
 RopeDef string_of(std::vector<Vec2> points_m, std::vector<double> rest_m) {
-    RopeDef rope;
-    rope.mass_kg.assign(points_m.size(), 1.0);
-    rope.velocity_m_s.assign(points_m.size(), {});
-    rope.points_m = std::move(points_m);
+    RopeDef rope = study::rope_through(std::move(points_m));
     rope.rest_m = std::move(rest_m);
     rope.material.is_string = true;
     return rope;
@@ -124,7 +122,7 @@ TEST(TautPendulum, MovesLikeARigidOne) {
     // Two integrators: the string's is Dop853, the rigid rope's a Taylor series.
     double apart_m = 0.0;
     for (const int links : {1, 5}) {
-        RopeDef rope = test::straight_rope(links, 1.0, 40.0);
+        RopeDef rope = study::straight_rope(links, 1.0, 40.0);
         test::ExactRun rigid(rope);
         rope.material.is_string = true;
         test::ExactRun string(rope);

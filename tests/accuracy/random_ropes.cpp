@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "support/ropes.hpp"
+#include "corda/sim/simulation.hpp"
 
 namespace corda::sim {
 namespace {

@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "corda/study/references.hpp"
-#include "support/ropes.hpp"
+#include "corda/study/ropes.hpp"
+#include "support/simulate.hpp"
 
 namespace corda::sim {
 namespace {
@@ -67,7 +68,7 @@ double quarter_period_s(double step_s, int sweeps) {
     SolverDef solver = test::relaxation();
     solver.step_s = step_s;
     solver.sweeps = sweeps;
-    Simulation run = test::simulate(test::straight_rope(10, 1.0, 90.0), WorldDef{}, solver);
+    Simulation run = test::simulate(study::straight_rope(10, 1.0, 90.0), WorldDef{}, solver);
     double before_x_m = 1.0;
     for (int k = 1; k <= static_cast<int>(1.0 / step_s); ++k) {
         EXPECT_EQ(run.advance_to(k * step_s), Status::kOk);

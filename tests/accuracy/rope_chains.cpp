@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "corda/study/references.hpp"
 #include "corda/study/ropes.hpp"
 #include "support/rattle_run.hpp"
 #include "support/reference_files.hpp"
@@ -32,7 +33,7 @@ TEST(SwingingChainsR5, TipsAreWhereTheReferenceHasThem) {
 }
 
 TEST(ReportRopeR11, StaysOnTheReference) {
-    test::RattleRun run(test::report_rope(40), WorldDef{{0.0, -9.8}, 10.0, 0.0}, 8, 1.0 / 600.0);
+    test::RattleRun run(study::report_rope(40), WorldDef{{0.0, -9.8}, 10.0, 0.0}, 8, 1.0 / 600.0);
     double largest_m = 0.0;
     for (const test::ReportFrame& frame : test::read_report_swing()) {
         ASSERT_TRUE(run.go(frame.time_s));
@@ -46,7 +47,7 @@ TEST(ReportRopeR11, StaysOnTheReference) {
 
 /// The tip's error after 1 s, N = 20.
 double error_m(int order, double steps_per_second, double angle_deg = 45.0) {
-    test::RattleRun run(test::straight_rope(20, 1.0, angle_deg), WorldDef{}, order, 1.0 / steps_per_second);
+    test::RattleRun run(study::straight_rope(20, 1.0, angle_deg), WorldDef{}, order, 1.0 / steps_per_second);
     EXPECT_TRUE(run.go(1.0));
     // A step that is divided would show a slope of its own.
     EXPECT_EQ(run.solver().parts(), run.solver().steps()) << order << " " << steps_per_second;

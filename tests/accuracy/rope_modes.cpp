@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "corda/study/references.hpp"
+#include "corda/study/ropes.hpp"
 #include "support/rattle_run.hpp"
 
 namespace corda::sim {
@@ -29,7 +30,7 @@ RopeDef displaced(int links, double omega_1_s, double amplitude_m) {
     double largest = 0.0;
     for (int k = 0; k < links; ++k) largest = std::max(largest, std::abs(shape[static_cast<std::size_t>(k)]));
     for (double& u : shape) u /= largest;
-    RopeDef rope = test::straight_rope(links, 1.0, 0.0);
+    RopeDef rope = study::straight_rope(links, 1.0, 0.0);
     for (int i = 1; i <= links; ++i)
         rope.points_m[static_cast<std::size_t>(i)] = {
             amplitude_m * shape[static_cast<std::size_t>(links - i)], -i * a};
@@ -113,7 +114,7 @@ TEST(SmallOscillationsR4, ATipMassSlowsTheFirstModeToTheReference) {
     for (const auto& [links, mass_kg, omega_1_s] : study::kSmallOscillations) {
         if (mass_kg == 1.0) continue;
         const double link_m = 1.0 / links;
-        RopeDef rope = test::straight_rope(links, 1.0, 0.0);
+        RopeDef rope = study::straight_rope(links, 1.0, 0.0);
         rope.mass_kg.back() = mass_kg;
         double u = 1.0;        // of the particle at hand
         double below_n = 0.0;  // tension over g below it

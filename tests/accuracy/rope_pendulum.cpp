@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "corda/study/references.hpp"
+#include "corda/study/ropes.hpp"
 #include "support/rattle_run.hpp"
 #include "support/reference_files.hpp"
 
@@ -13,9 +14,7 @@ namespace corda::sim {
 namespace {
 
 TEST(BenchmarkA01R1, TwoThousandSecondsStayWithinTenMicrometres) {
-    RopeDef rope = test::straight_rope(1, 1.0, 90.0);
-    rope.points_m[1] = {1.0, 0.0};
-    test::RattleRun run(rope, WorldDef{}, 8, 1.0 / 50.0);
+    test::RattleRun run(study::straight_rope(1, 1.0, 90.0), WorldDef{}, 8, 1.0 / 50.0);
     double largest_m = 0.0;
     double largest_tension_n = 0.0;
     int points = 0;
@@ -33,9 +32,7 @@ TEST(BenchmarkA01R1, TwoThousandSecondsStayWithinTenMicrometres) {
 }
 
 TEST(BenchmarkA01R1, TensionAtTheBottomIsThreeTimesTheWeight) {
-    RopeDef rope = test::straight_rope(1, 1.0, 90.0);
-    rope.points_m[1] = {1.0, 0.0};
-    test::RattleRun run(rope, WorldDef{}, 8, 1.0 / 200.0);
+    test::RattleRun run(study::straight_rope(1, 1.0, 90.0), WorldDef{}, 8, 1.0 / 200.0);
     ASSERT_TRUE(run.go(study::kA01PeriodSeconds / 4.0));
     EXPECT_NEAR(run.solver().loads()->largest_tension_n, 29.43, 1e-11);
     EXPECT_NEAR(run.solver().loads()->pin_force_n, 29.43, 1e-11);
@@ -47,7 +44,7 @@ TEST(LargeAnglesR2, AQuarterPeriodEndsUnderThePin) {
                                                                       1e-12, 1e-11, 1e-10, 1e-9};
     for (std::size_t k = 0; k < study::kSwingPeriods.size(); ++k) {
         const study::SwingPeriod& row = study::kSwingPeriods[k];
-        test::RattleRun run(test::straight_rope(1, 1.0, row.angle_deg), WorldDef{}, 8, 1.0 / 500.0);
+        test::RattleRun run(study::straight_rope(1, 1.0, row.angle_deg), WorldDef{}, 8, 1.0 / 500.0);
         ASSERT_TRUE(run.go(0.25 * row.ratio * study::kSmallSwingSeconds));
         std::printf("%g deg: x = %.1e\n", row.angle_deg, run.tip_x());
         EXPECT_NEAR(run.tip_x(), 0.0, kBounds[k]) << row.angle_deg;
@@ -56,7 +53,7 @@ TEST(LargeAnglesR2, AQuarterPeriodEndsUnderThePin) {
 }
 
 TEST(LargeAnglesR2, CirculatingReturnsAfterItsPeriod) {
-    RopeDef rope = test::straight_rope(1, 1.0, 0.0);
+    RopeDef rope = study::straight_rope(1, 1.0, 0.0);
     rope.velocity_m_s[1] = {std::sqrt(6.0 * 9.81), 0.0};
     test::RattleRun run(rope, WorldDef{}, 8, 1.0 / 500.0);
     ASSERT_TRUE(run.go(study::kFullTurnSeconds));

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "corda/study/references.hpp"
 #include "corda/study/ropes.hpp"
 #include "support/rattle_run.hpp"
 
@@ -61,14 +62,9 @@ TEST(FallingFoldedChainR7, TheTipFallsInTheReferenceTimes) {
 TEST(SpinningChainR8, StaysARigidRotation) {
     constexpr int kLinks = 10;
     constexpr double kOmega = 7.0;
-    RopeDef rope = test::straight_rope(kLinks, 1.0, 90.0);
-    for (std::size_t i = 0; i <= kLinks; ++i) {
-        rope.points_m[i] = {0.1 * static_cast<double>(i), 0.0};
-        rope.velocity_m_s[i] = {0.0, kOmega * rope.points_m[i].x};
-    }
     WorldDef world;
     world.gravity_m_s2 = {};
-    test::RattleRun run(rope, world, 8, 1.0 / 500.0);
+    test::RattleRun run(study::spinning_rope(kLinks, 1.0, kOmega), world, 8, 1.0 / 500.0);
     // T_i = m omega^2 a sum of j from i to N; the first is largest.
     EXPECT_NEAR(run.solver().loads()->largest_tension_n, kOmega * kOmega * 0.1 * 55.0, 1e-11);
     ASSERT_TRUE(run.go(10.0, 100));
@@ -85,7 +81,7 @@ TEST(SpinningChainR8, StaysARigidRotation) {
 
 TEST(FreeFall, IsExactFromTheFirstStepOn) {
     for (const int order : {2, 4, 6, 8}) {
-        RopeDef rope = test::straight_rope(8, 1.0, 30.0);
+        RopeDef rope = study::straight_rope(8, 1.0, 30.0);
         rope.pinned = {};
         test::RattleRun run(rope, WorldDef{}, order, 0.01);
         for (const double time_s : {0.01, 0.5, 1.0, 1.2345}) {
@@ -100,9 +96,7 @@ TEST(FreeFall, IsExactFromTheFirstStepOn) {
 }
 
 TEST(HorizontalRelease, StartsAsFreeFallWithoutTension) {
-    RopeDef rope = test::straight_rope(20, 1.0, 90.0);
-    for (Vec2& point : rope.points_m) point.y = 0.0;
-    test::RattleRun run(rope, WorldDef{}, 4, 1.0 / 1000.0);
+    test::RattleRun run(study::straight_rope(20, 1.0, 90.0), WorldDef{}, 4, 1.0 / 1000.0);
     ASSERT_TRUE(run.go(0.0));
     EXPECT_LT(run.solver().loads()->largest_tension_n, 1e-13);
     // x = x0 + a t^2 / 2 + terms of t^6 and up in x, of t^4 in y.

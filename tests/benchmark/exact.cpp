@@ -4,6 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include "corda/sim/chain_dynamics.hpp"
+#include "corda/study/ropes.hpp"
 #include "support/exact_run.hpp"
 
 namespace corda::sim {
@@ -16,7 +17,7 @@ void count_particles(benchmark::State& bench, double times) {
 }
 
 void exact_step(benchmark::State& bench) {
-    test::ExactRun run(test::straight_rope(static_cast<int>(bench.range(0)), 1.0, 45.0));
+    test::ExactRun run(study::straight_rope(static_cast<int>(bench.range(0)), 1.0, 45.0));
     double time_s = 0.0;
     const double interval_s = 1.0 / static_cast<double>(bench.range(0));
     for (auto _ : bench) {
@@ -28,7 +29,7 @@ void exact_step(benchmark::State& bench) {
 }
 
 void exact_derivative(benchmark::State& bench) {
-    const RopeDef rope = test::straight_rope(static_cast<int>(bench.range(0)), 1.0, 45.0);
+    const RopeDef rope = study::straight_rope(static_cast<int>(bench.range(0)), 1.0, 45.0);
     const System system = build_system({&rope, 1}, 1);
     ChainDynamics dynamics(system, system.bodies, WorldDef{});
     std::vector<double> slope(dynamics.initial_state().size());

@@ -5,14 +5,14 @@
 #include <cmath>
 
 #include "corda/sim/rattle.hpp"
-#include "support/ropes.hpp"
+#include "corda/study/ropes.hpp"
 
 namespace corda::sim {
 namespace {
 
 void rope_step(benchmark::State& bench) {
     const int links = static_cast<int>(bench.range(0));
-    const RopeDef rope = test::straight_rope(links, 1.0, 45.0);
+    const RopeDef rope = study::straight_rope(links, 1.0, 45.0);
     const System system = build_system({&rope, 1}, 1);
     SolverDef def;
     def.order = static_cast<int>(bench.range(1));

@@ -6,8 +6,9 @@
 #include <cmath>
 
 #include "corda/sim/planner.hpp"
+#include "corda/sim/simulation.hpp"
+#include "corda/study/ropes.hpp"
 #include "support/command.hpp"
-#include "support/ropes.hpp"
 
 namespace corda::sim {
 namespace {
@@ -24,7 +25,7 @@ SolverDef solver_of(Method method) {
 class EveryMethod : public testing::TestWithParam<Method> {};
 
 TEST_P(EveryMethod, AgreesAtCommonTimesOfAllFrameRates) {
-    const RopeDef rope = test::straight_rope(20, 1.0, 45.0);
+    const RopeDef rope = study::straight_rope(20, 1.0, 45.0);
     constexpr double kToleranceM = 1e-13;
     const auto run_at = [&](int rate) {
         return Simulation(build_system({&rope, 1}, 1), WorldDef{}, solver_of(GetParam()), 1.0 / rate);
@@ -49,7 +50,7 @@ TEST_P(EveryMethod, AgreesAtCommonTimesOfAllFrameRates) {
 }
 
 TEST_P(EveryMethod, HasTheSameBitsWithThePinFarAway) {
-    RopeDef rope = test::straight_rope(10, 1.0, 70.0);
+    RopeDef rope = study::straight_rope(10, 1.0, 70.0);
     const auto start = [&] {
         return Simulation(build_system({&rope, 1}, 1), WorldDef{}, solver_of(GetParam()), 1.0 / 60.0);
     };
@@ -87,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(All, EveryMethod,
                          [](const auto& param) { return std::string(method_name(param.param)); });
 
 TEST(Auto, AgreesAtCommonTimesOfAllFrameRatesWithinItsTolerance) {
-    const RopeDef rope = test::straight_rope(20, 1.0, 45.0);
+    const RopeDef rope = study::straight_rope(20, 1.0, 45.0);
     const System system = build_system({&rope, 1}, 1);
     constexpr double kToleranceM = 1e-5;
     std::vector<State> ends;

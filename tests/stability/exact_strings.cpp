@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "corda/sim/string_part.hpp"
+#include "corda/study/ropes.hpp"
 #include "support/exact_run.hpp"
 
 namespace corda::sim {
@@ -63,7 +64,7 @@ class WatchedString {
 
 /// Links of length 1 / `links` at rest, at nine tenths of that at the start.
 RopeDef slack_rope(int links) {
-    RopeDef rope = test::horizontal_rope(links, 0.9);
+    RopeDef rope = study::straight_rope(links, 0.9, 90.0);
     rope.rest_m.assign(static_cast<std::size_t>(links), 1.0 / links);
     rope.material.is_string = true;
     return rope;
@@ -141,7 +142,7 @@ TEST(Symmetric, StaysSo) {
 }
 
 TEST(FreeFall, OfARopeThatNothingPullsIsNoEvent) {
-    RopeDef rope = test::horizontal_rope(10, 1.0);
+    RopeDef rope = study::straight_rope(10, 1.0, 90.0);
     rope.material.is_string = true;
     rope.pinned = {};
     for (Vec2& velocity : rope.velocity_m_s) velocity = {3.0, 5.0};

@@ -7,16 +7,8 @@
 
 #include "corda/sim/distance.hpp"
 #include "corda/sim/exact.hpp"
-#include "support/ropes.hpp"
 
 namespace corda::test {
-
-/// As straight_rope, at exactly 90 degrees: a horizontal line without the rounding of a cosine.
-inline sim::RopeDef horizontal_rope(int links, double length_m) {
-    sim::RopeDef rope = straight_rope(links, length_m, 90.0);
-    for (int i = 0; i <= links; ++i) rope.points_m[static_cast<std::size_t>(i)] = {i * length_m / links, 0.0};
-    return rope;
-}
 
 /// One rope under the method `exact`, driven without a Simulation.
 class ExactRun {

@@ -3,21 +3,22 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <utility>
+#include <vector>
 
-#include "corda/sim/system.hpp"
+#include "corda/study/ropes.hpp"
 
 namespace corda::test {
 
 /// A closed rope of `particles` unit masses on a circle of radius 1 m whose top is at the origin, at rest;
 /// the top one pinned.
 inline sim::RopeDef ring(int particles) {
-    sim::RopeDef rope;
+    std::vector<sim::Vec2> points_m;
     for (int i = 0; i < particles; ++i) {
         const double angle = 2.0 * std::numbers::pi * i / particles;
-        rope.points_m.push_back({std::sin(angle), std::cos(angle) - 1.0});
+        points_m.push_back({std::sin(angle), std::cos(angle) - 1.0});
     }
-    rope.mass_kg.assign(rope.points_m.size(), 1.0);
-    rope.velocity_m_s.assign(rope.points_m.size(), {});
+    sim::RopeDef rope = study::rope_through(std::move(points_m));
     rope.closed = true;
     return rope;
 }

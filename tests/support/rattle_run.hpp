@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "corda/sim/rattle.hpp"
-#include "support/ropes.hpp"
 
 namespace corda::test {
 

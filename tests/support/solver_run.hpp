@@ -10,7 +10,6 @@
 
 #include "corda/sim/distance.hpp"
 #include "corda/sim/simulation.hpp"
-#include "support/ropes.hpp"
 
 namespace corda::test {
 

@@ -11,6 +11,7 @@
 
 #include "corda/core/error.hpp"
 #include "corda/sim/elastic_forces.hpp"
+#include "corda/study/ropes.hpp"
 #include "support/solver_run.hpp"
 
 namespace corda::sim {
@@ -135,7 +136,7 @@ TEST(ElasticForces, BoundTheLargestFrequency) {
 
 TEST(ElasticForces, BoundThatOfAStraightRopeClosely) {
     for (const bool bends : {false, true}) {
-        RopeDef rope = test::straight_rope(20, 2.0, 90.0);
+        RopeDef rope = study::straight_rope(20, 2.0, 90.0);
         rope.material.compliance_1_n = bends ? 1e9 : 1e-3;
         rope.bending_n_m2 = bends ? 5.0 : 0.0;
         const System system = build_system({&rope, 1}, 1);
@@ -149,7 +150,7 @@ TEST(ElasticForces, BoundThatOfAStraightRopeClosely) {
 }
 
 TEST(ElasticForces, OfOneMassOnASpringBoundItsFrequencyExactly) {
-    RopeDef rope = test::straight_rope(1, 0.5, 0.0);
+    RopeDef rope = study::straight_rope(1, 0.5, 0.0);
     rope.mass_kg[1] = 4.0;
     rope.material.compliance_1_n = 0.01;
     const System system = build_system({&rope, 1}, 1);
@@ -173,7 +174,7 @@ TEST(ElasticForces, OfEndsInOnePlaceAreFinite) {
 }
 
 TEST(ElasticForces, OfASlackStringAreNone) {
-    RopeDef rope = test::straight_rope(3, 1.0, 30.0);
+    RopeDef rope = study::straight_rope(3, 1.0, 30.0);
     rope.rest_m = {0.4, 0.3, 0.5};
     rope.material = {1e-3, true};
     const System system = build_system({&rope, 1}, 1);
@@ -200,13 +201,13 @@ std::string refusal(const System& system, const SolverDef& def) {
 }
 
 TEST(Refusals, NameTheReasonAndTheRemedy) {
-    RopeDef string = test::straight_rope(3, 1.0, 30.0);
+    RopeDef string = study::straight_rope(3, 1.0, 30.0);
     string.material.is_string = true;
     const System strings = build_system({&string, 1}, 1);
     EXPECT_NE(refusal(strings, test::rope_solver(4)).find("method exact"), std::string::npos);
     EXPECT_EQ(refusal(strings, test::exact_solver()), "");
 
-    RopeDef ring = test::straight_rope(3, 1.0, 30.0);
+    RopeDef ring = study::straight_rope(3, 1.0, 30.0);
     ring.points_m = {{0.0, 0.0}, {1.0, 0.0}, {1.0, -1.0}, {0.0, -1.0}};
     ring.closed = true;
     const System rings = build_system({&ring, 1}, 1);
@@ -244,8 +245,8 @@ TEST(ElasticRing, FallsFreelyAndReturnsToRound) {
 }
 
 TEST(SeveralBodies, ARigidRopeMovesAsIfItWereAlone) {
-    const RopeDef rigid = test::straight_rope(6, 1.0, 70.0);
-    RopeDef elastic = test::straight_rope(8, 1.0, 40.0);
+    const RopeDef rigid = study::straight_rope(6, 1.0, 70.0);
+    RopeDef elastic = study::straight_rope(8, 1.0, 40.0);
     elastic.origin_m = {2.0, 0.0};
     elastic.material.compliance_1_n = 1e-3;
     elastic.bending_n_m2 = 0.1;
@@ -273,7 +274,7 @@ TEST(SeveralBodies, ARigidRopeMovesAsIfItWereAlone) {
 }
 
 TEST(ElasticRope, GivesTheSameBitsWhateverTimesAreAskedFor) {
-    RopeDef rope = test::straight_rope(8, 1.0, 60.0);
+    RopeDef rope = study::straight_rope(8, 1.0, 60.0);
     rope.material.compliance_1_n = 1e-3;
     rope.bending_n_m2 = 0.1;
     WorldDef world;
@@ -292,12 +293,12 @@ TEST(ElasticRope, GivesTheSameBitsWhateverTimesAreAskedFor) {
 }
 
 TEST(ElasticRope, WithEveryParticlePinnedStays) {
-    RopeDef rope = test::straight_rope(2, 1.0, 77.0);
+    RopeDef rope = study::straight_rope(2, 1.0, 77.0);
     rope.origin_m = {0.1, 0.2};
     rope.pinned = {0, 1, 2};
     rope.material.compliance_1_n = 1e-3;
     rope.bending_n_m2 = 1.0;
-    const RopeDef first = test::straight_rope(1, 1.0, 10.0);
+    const RopeDef first = study::straight_rope(1, 1.0, 10.0);
     const std::array<RopeDef, 2> ropes{first, rope};
     for (const SolverDef& def : {test::exact_solver(), test::rope_solver(4)}) {
         test::SolverRun run(build_system(ropes, 1), WorldDef{}, def);
@@ -310,8 +311,7 @@ TEST(ElasticRope, WithEveryParticlePinnedStays) {
 }
 
 TEST(ElasticRope, ThatStartsStraightBetweenPinsSags) {
-    RopeDef rope = test::straight_rope(10, 1.0, 90.0);
-    for (Vec2& point : rope.points_m) point.y = 0.0;
+    RopeDef rope = study::straight_rope(10, 1.0, 90.0);
     rope.pinned = {0, 10};
     rope.material.compliance_1_n = 1e-3;
     for (const SolverDef& def : {test::exact_solver(1e-11), test::rope_solver(8)}) {

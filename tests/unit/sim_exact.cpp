@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "corda/core/error.hpp"
+#include "corda/study/ropes.hpp"
 #include "support/exact_run.hpp"
 
 namespace corda::sim {
@@ -21,12 +23,12 @@ std::string refusal(const RopeDef& rope, int reach) {
 }
 
 TEST(ExactRefuses, BarsBetweenParticlesThatAreNotNeighbours) {
-    const std::string reason = refusal(test::straight_rope(10, 1.0, 45.0), 7);
+    const std::string reason = refusal(study::straight_rope(10, 1.0, 45.0), 7);
     EXPECT_NE(reason.find("reach"), std::string::npos) << reason;
 }
 
 TEST(ExactRefuses, ARopeTautBetweenTwoPins) {
-    RopeDef rope = test::straight_rope(10, 1.0, 90.0);
+    RopeDef rope = study::straight_rope(10, 1.0, 90.0);
     rope.pinned = {0, 10};
     const std::string reason = refusal(rope, 1);
     EXPECT_NE(reason.find("taut"), std::string::npos) << reason;
@@ -35,7 +37,7 @@ TEST(ExactRefuses, ARopeTautBetweenTwoPins) {
 }
 
 TEST(Exact, LeavesARopeWithEveryParticlePinnedAlone) {
-    RopeDef rope = test::straight_rope(2, 1.0, 90.0);
+    RopeDef rope = study::straight_rope(2, 1.0, 90.0);
     rope.pinned = {0, 1, 2};
     test::ExactRun run(rope);
     ASSERT_TRUE(run.advance_to(5.0));
@@ -44,7 +46,7 @@ TEST(Exact, LeavesARopeWithEveryParticlePinnedAlone) {
 }
 
 TEST(Exact, MovesBothSidesOfAPinInTheMiddleAlike) {
-    RopeDef rope = test::horizontal_rope(6, 2.0);
+    RopeDef rope = study::straight_rope(6, 2.0, 90.0);
     for (Vec2& point : rope.points_m) point.x -= 1.0;
     rope.pinned = {3};
     test::ExactRun run(rope);
@@ -55,7 +57,7 @@ TEST(Exact, MovesBothSidesOfAPinInTheMiddleAlike) {
     }
     EXPECT_EQ(run.state.x_m[3], 0.0);
     // The same as half of the rope alone; the pin holds both, whose sideways pulls cancel.
-    test::ExactRun half(test::horizontal_rope(3, 1.0));
+    test::ExactRun half(study::straight_rope(3, 1.0, 90.0));
     ASSERT_TRUE(half.advance_to(0.7));
     EXPECT_NEAR(run.state.x_m[6], half.state.x_m[3], 1e-12);
     EXPECT_NEAR(run.state.y_m[6], half.state.y_m[3], 1e-12);
@@ -65,7 +67,7 @@ TEST(Exact, MovesBothSidesOfAPinInTheMiddleAlike) {
 }
 
 TEST(Exact, MovesARopePinnedAtItsLastParticleAsItsMirrorImage) {
-    RopeDef rope = test::horizontal_rope(5, 1.0);
+    RopeDef rope = study::straight_rope(5, 1.0, 90.0);
     test::ExactRun forwards(rope);
     std::reverse(rope.points_m.begin(), rope.points_m.end());
     rope.pinned = {5};
@@ -78,7 +80,7 @@ TEST(Exact, MovesARopePinnedAtItsLastParticleAsItsMirrorImage) {
 }
 
 TEST(Exact, KeepsTwoRopesApart) {
-    const RopeDef ropes[] = {test::straight_rope(3, 1.0, 60.0), test::straight_rope(8, 2.0, 20.0)};
+    const RopeDef ropes[] = {study::straight_rope(3, 1.0, 60.0), study::straight_rope(8, 2.0, 20.0)};
     const System system = build_system(ropes, 1);
     Exact both(system, WorldDef{}, SolverDef{}, 1.0 / 60.0);
     State state{0.0, system.x_m, system.y_m};
@@ -91,7 +93,7 @@ TEST(Exact, KeepsTwoRopesApart) {
 }
 
 TEST(Exact, ThrownFreeRopeKeepsMomentum) {
-    RopeDef rope = test::straight_rope(5, 1.0, 30.0);
+    RopeDef rope = study::straight_rope(5, 1.0, 30.0);
     rope.pinned = {};
     rope.mass_kg = {1.0, 2.0, 3.0, 1.0, 5.0, 1.0};
     rope.velocity_m_s[5] = {2.0, 3.0};  // would stretch the rope: impulses share it out
@@ -109,7 +111,7 @@ TEST(Exact, ThrownFreeRopeKeepsMomentum) {
 
 TEST(Exact, DragIsExact) {
     // A free particle pair side by side falls as one: v = (g / c) (1 - exp(-c t)).
-    RopeDef rope = test::horizontal_rope(1, 1.0);
+    RopeDef rope = study::straight_rope(1, 1.0, 90.0);
     rope.pinned = {};
     const double drag_1_s = 0.7;
     test::ExactRun run(rope, 1e-12, WorldDef{{0.0, -9.81}, 10.0, drag_1_s});
@@ -120,7 +122,7 @@ TEST(Exact, DragIsExact) {
 }
 
 TEST(Exact, HangingRopeCarriesItsWeight) {
-    RopeDef rope = test::straight_rope(4, 1.0, 0.0);
+    RopeDef rope = study::straight_rope(4, 1.0, 0.0);
     rope.payload_kg = 6.0;
     test::ExactRun run(rope);
     ASSERT_TRUE(run.advance_to(1.0));
@@ -131,18 +133,17 @@ TEST(Exact, HangingRopeCarriesItsWeight) {
 }
 
 TEST(Exact, WithoutGravityAndMotionStays) {
-    RopeDef rope = test::straight_rope(4, 1.0, 77.0);
+    RopeDef rope = study::straight_rope(4, 1.0, 77.0);
     test::ExactRun run(rope, 1e-9, WorldDef{{0.0, 0.0}, 10.0, 0.0});
     ASSERT_TRUE(run.advance_to(10.0));
     EXPECT_LT(run.tip_error_m(rope.points_m.back().x, rope.points_m.back().y), 1e-15);
 }
 
 TEST(Exact, ClosedBetweenTwoPinsKeepsEnergyAndEnds) {
-    RopeDef rope;
-    for (int i = 0; i <= 10; ++i) rope.points_m.push_back({0.1 * i, i % 2 ? -0.05 : 0.05});
-    rope.points_m.front().y = rope.points_m.back().y = 0.0;
-    rope.mass_kg.assign(11, 1.0);
-    rope.velocity_m_s.assign(11, {});
+    std::vector<Vec2> points_m;
+    for (int i = 0; i <= 10; ++i) points_m.push_back({0.1 * i, i % 2 ? -0.05 : 0.05});
+    points_m.front().y = points_m.back().y = 0.0;
+    RopeDef rope = study::rope_through(std::move(points_m));
     rope.pinned = {0, 10};
     test::ExactRun run(rope);
     for (int k = 1; k <= 300; ++k) {

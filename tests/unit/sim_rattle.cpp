@@ -13,6 +13,7 @@
 #include "corda/core/error.hpp"
 #include "corda/sim/composition.hpp"
 #include "corda/sim/tridiagonal.hpp"
+#include "corda/study/ropes.hpp"
 #include "support/rattle_run.hpp"
 
 namespace corda::sim {
@@ -84,7 +85,7 @@ TEST(Grid, GivesTheSameBitsWhateverTimesAreAskedFor) {
     for (const double drag_1_s : {0.0, 0.3}) {
         WorldDef world;
         world.drag_1_s = drag_1_s;
-        const RopeDef rope = test::straight_rope(20, 1.0, 80.0);
+        const RopeDef rope = study::straight_rope(20, 1.0, 80.0);
         test::RattleRun direct(rope, world, 4, 1.0 / 240.0);
         test::RattleRun often(rope, world, 4, 1.0 / 240.0);
         ASSERT_TRUE(direct.go(1.51));
@@ -100,19 +101,19 @@ TEST(Grid, GivesTheSameBitsWhateverTimesAreAskedFor) {
 }
 
 TEST(Grid, TimesBetweenItsPointsAreAsGoodAsThePoints) {
-    test::RattleRun fine(test::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 640.0);
-    test::RattleRun coarse(test::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 333.0);
+    test::RattleRun fine(study::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 640.0);
+    test::RattleRun coarse(study::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 333.0);
     ASSERT_TRUE(fine.go(1.0));
     ASSERT_TRUE(coarse.go(1.0 - 0.4 / 333.0));
     ASSERT_TRUE(coarse.go(1.0));
     EXPECT_LT(coarse.tip_distance(fine.tip_x(), fine.tip_y()), 1e-12);
-    test::RattleRun between(test::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 330.7);
+    test::RattleRun between(study::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 330.7);
     ASSERT_TRUE(between.go(1.0));
     EXPECT_LT(between.tip_distance(fine.tip_x(), fine.tip_y()), 1e-12);
 }
 
 TEST(Step, IsAWholeShareOfTheFrameWhereNoneIsGiven) {
-    test::RattleRun run(test::straight_rope(20, 1.0, 45.0), WorldDef{}, 4);
+    test::RattleRun run(study::straight_rope(20, 1.0, 45.0), WorldDef{}, 4);
     const double parts = 1.0 / 60.0 / run.solver().step_s();
     EXPECT_DOUBLE_EQ(parts, std::round(parts));
     EXPECT_GT(parts, 1.0);
@@ -121,7 +122,7 @@ TEST(Step, IsAWholeShareOfTheFrameWhereNoneIsGiven) {
 }
 
 TEST(Drag, SlowsAFreeFallExactlyAndKeepsTheOrder) {
-    RopeDef rope = test::straight_rope(4, 1.0, 20.0);
+    RopeDef rope = study::straight_rope(4, 1.0, 20.0);
     rope.pinned = {};
     WorldDef world;
     world.drag_1_s = 1.5;
@@ -172,7 +173,7 @@ System net(std::uint32_t columns, std::uint32_t rows, bool diagonals) {
 }
 
 TEST(Graph, AChainSaysTheSameAsAChain) {
-    const RopeDef rope = test::straight_rope(10, 1.0, 60.0);
+    const RopeDef rope = study::straight_rope(10, 1.0, 60.0);
     const System chain = build_system({&rope, 1}, 1);
     System shuffled = chain;
     std::swap(shuffled.bars[2], shuffled.bars[7]);
@@ -216,7 +217,7 @@ TEST(Graph, ANetSwingsWithItsLengthsAndItsEnergy) {
 TEST(Graph, RedundantBarsAreRefused) {
     const SolverDef def;
     EXPECT_THROW(Rattle(net(5, 5, true), WorldDef{}, def, 1.0 / 60.0), Error);
-    const RopeDef rope = test::straight_rope(20, 1.0, 45.0);
+    const RopeDef rope = study::straight_rope(20, 1.0, 45.0);
     const System seven_neighbours = build_system({&rope, 1}, 7);
     EXPECT_THROW(Rattle(seven_neighbours, WorldDef{}, def, 1.0 / 60.0), Error);
 }

@@ -8,6 +8,7 @@
 #include "corda/core/error.hpp"
 #include "corda/sim/string_contacts.hpp"
 #include "corda/sim/tension_lcp.hpp"
+#include "corda/study/ropes.hpp"
 #include "support/exact_run.hpp"
 
 namespace corda::sim {
@@ -100,10 +101,7 @@ TEST(TensionLcp, SaysSoWhereNumbersAreNone) {
 }
 
 RopeDef string_of(std::vector<Vec2> points_m, std::vector<double> rest_m) {
-    RopeDef rope;
-    rope.mass_kg.assign(points_m.size(), 1.0);
-    rope.velocity_m_s.assign(points_m.size(), {});
-    rope.points_m = std::move(points_m);
+    RopeDef rope = study::rope_through(std::move(points_m));
     rope.rest_m = std::move(rest_m);
     rope.material.is_string = true;
     return rope;
@@ -149,7 +147,7 @@ std::string refusal(const RopeDef& rope) {
 }
 
 TEST(ExactRefusesAString, ThatResistsBending) {
-    RopeDef rope = test::straight_rope(3, 1.0, 45.0);
+    RopeDef rope = study::straight_rope(3, 1.0, 45.0);
     rope.material.is_string = true;
     EXPECT_EQ(refusal(rope), "");
     rope.bending_n_m2 = 1.0;
@@ -195,7 +193,7 @@ TEST(SlackString, CarriesNothingAndFallsFreely) {
 
 TEST(StringAndRope, InOneSceneMoveApart) {
     RopeDef string = string_of({{0.0, 0.0}, {0.6, 0.0}}, {1.0});
-    RopeDef rope = test::straight_rope(5, 1.0, 50.0);
+    RopeDef rope = study::straight_rope(5, 1.0, 50.0);
     rope.origin_m = {3.0, 0.0};
     const RopeDef ropes[] = {string, rope};
     const System system = build_system(ropes, 1);
@@ -217,7 +215,7 @@ TEST(PinnedLinks, OfAStringStay) {
     rope.pinned = {0, 1};
     test::ExactRun run(rope);
     ASSERT_TRUE(run.advance_to(1.0));
-    test::ExactRun pendulum(test::horizontal_rope(1, 0.5));
+    test::ExactRun pendulum(study::straight_rope(1, 0.5, 90.0));
     ASSERT_TRUE(pendulum.advance_to(1.0));
     EXPECT_NEAR(run.state.x_m[2], 0.5 + pendulum.state.x_m[1], 1e-12);
     EXPECT_NEAR(run.state.y_m[2], pendulum.state.y_m[1], 1e-12);
