@@ -18,11 +18,7 @@ namespace {
 const FrameRate kFrames(Rational{60, 1});
 
 SolverDef fine_rope(double step_s) {
-    SolverDef solver;
-    solver.method = Method::kRope;
-    solver.order = 8;
-    solver.step_s = step_s;
-    return solver;
+    return rope_solver(8, step_s);
 }
 
 /// Largest distance between two runs at the frame times, in m.

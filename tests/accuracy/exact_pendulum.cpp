@@ -8,8 +8,9 @@
 
 #include "corda/study/references.hpp"
 #include "corda/study/ropes.hpp"
-#include "support/exact_run.hpp"
 #include "support/reference_files.hpp"
+#include "support/root.hpp"
+#include "support/solver_run.hpp"
 
 namespace corda::sim {
 namespace {
@@ -19,8 +20,8 @@ double a01_error_m(double tolerance) {
     test::ExactRun run(study::straight_rope(1, 1.0, 90.0), tolerance);
     double largest = 0.0;
     for (std::size_t k = 0; k < reference.size(); ++k) {
-        EXPECT_TRUE(run.advance_to(0.5 * static_cast<double>(k + 1)));
-        largest = std::max(largest, run.tip_error_m(reference[k].x, reference[k].y));
+        EXPECT_TRUE(run.go(0.5 * static_cast<double>(k + 1)));
+        largest = std::max(largest, run.tip_error_m(reference[k]));
     }
     return largest;
 }
@@ -33,8 +34,8 @@ TEST(PendulumR1, StaysOnTheReferenceFor2000Seconds) {
 
 TEST(PendulumR1, LargestTensionIsThreeWeights) {
     test::ExactRun run(study::straight_rope(1, 1.0, 90.0), 1e-12);
-    ASSERT_TRUE(run.advance_to(study::kA01PeriodSeconds / 4.0));
-    const Loads loads = run.solver.loads().value();
+    ASSERT_TRUE(run.go(study::kA01PeriodSeconds / 4.0));
+    const Loads loads = run.solver().loads().value();
     EXPECT_NEAR(loads.largest_tension_n, 29.43, 1e-11);
     EXPECT_NEAR(loads.pin_force_n, 29.43, 1e-11);
 }
@@ -43,8 +44,8 @@ TEST(PendulumR1, LargestTensionIsThreeWeights) {
 double crossing_s(const RopeDef& rope, double near_s) {
     const auto x_m = [&](double time_s) {
         test::ExactRun run(rope, 1e-13);
-        EXPECT_TRUE(run.advance_to(time_s));
-        return run.state.x_m.back();
+        EXPECT_TRUE(run.go(time_s));
+        return run.state().x_m.back();
     };
     return test::root(x_m, near_s * (1.0 - 1e-3), near_s * (1.0 + 1e-3));
 }

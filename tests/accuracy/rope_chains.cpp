@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "corda/study/references.hpp"
 #include "corda/study/ropes.hpp"
-#include "support/rattle_run.hpp"
 #include "support/reference_files.hpp"
+#include "support/slope.hpp"
+#include "support/solver_run.hpp"
 
 namespace corda::sim {
 namespace {
@@ -23,7 +25,7 @@ TEST(SwingingChainsR5, TipsAreWhereTheReferenceHasThem) {
         // The last row magnifies errors by a million: 1.4e-7 with h = 1/1000.
         test::RattleRun run(study::released_rope(row), WorldDef{}, 8, is_heavy ? 1.0 / 8000.0 : 1.0 / 2000.0);
         ASSERT_TRUE(run.go(row.time_s));
-        const double error_m = run.tip_distance(row.tip_m.x, row.tip_m.y);
+        const double error_m = run.tip_error_m(row.tip_m);
         std::printf("N=%d L=%g angle=%g tip=%g t=%g: error %.1e, parts/steps %g\n", row.links, row.length_m,
                     row.angle_deg, row.tip_mass_kg, row.time_s, error_m,
                     static_cast<double>(run.solver().parts()) / static_cast<double>(run.solver().steps()));
@@ -53,25 +55,15 @@ double error_m(int order, double steps_per_second, double angle_deg = 45.0) {
     EXPECT_EQ(run.solver().parts(), run.solver().steps()) << order << " " << steps_per_second;
     const Vec2 tip_m =
         angle_deg == 90.0 ? study::released_tip_m(20, 90.0, 1.0) : study::released_tip_m(20, 45.0, 1.0);
-    return run.tip_distance(tip_m.x, tip_m.y);
+    return run.tip_error_m(tip_m);
 }
 
-/// Slope of log(error) over log(h) by least squares.
+/// The order that the errors show.
 double slope(int order, const std::vector<double>& steps_per_second, double angle_deg = 45.0) {
-    double sx = 0.0;
-    double sy = 0.0;
-    double sxx = 0.0;
-    double sxy = 0.0;
-    for (const double rate : steps_per_second) {
-        const double x = -std::log(rate);
-        const double y = std::log(error_m(order, rate, angle_deg));
-        sx += x;
-        sy += y;
-        sxx += x * x;
-        sxy += x * y;
-    }
-    const auto n = static_cast<double>(steps_per_second.size());
-    return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+    std::vector<std::pair<double, double>> errors_m;  // over the step
+    for (const double rate : steps_per_second)
+        errors_m.emplace_back(1.0 / rate, error_m(order, rate, angle_deg));
+    return test::slope(errors_m);
 }
 
 TEST(Order, IsTheSlopeOfTheError) {

@@ -10,7 +10,7 @@
 
 #include "corda/study/references.hpp"
 #include "corda/study/ropes.hpp"
-#include "support/rattle_run.hpp"
+#include "support/solver_run.hpp"
 
 namespace corda::sim {
 namespace {

@@ -14,12 +14,8 @@ namespace corda::sim {
 namespace {
 
 SolverDef solver_of(Method method) {
-    SolverDef solver;
-    solver.method = method;
-    solver.reach = 1;
-    if (method == Method::kRelaxation) solver.step_s = 1.0 / 960.0;
-    if (method == Method::kRope) solver.order = 8;
-    return solver;
+    if (method == Method::kRelaxation) return relaxation_solver(1.0 / 960.0, 1, 1);
+    return method == Method::kRope ? rope_solver(8) : exact_solver(1e-9);
 }
 
 class EveryMethod : public testing::TestWithParam<Method> {};

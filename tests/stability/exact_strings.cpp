@@ -11,7 +11,7 @@
 
 #include "corda/sim/string_part.hpp"
 #include "corda/study/ropes.hpp"
-#include "support/exact_run.hpp"
+#include "support/solver_run.hpp"
 
 namespace corda::sim {
 namespace {

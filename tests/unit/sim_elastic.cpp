@@ -12,6 +12,7 @@
 #include "corda/core/error.hpp"
 #include "corda/sim/elastic_forces.hpp"
 #include "corda/study/ropes.hpp"
+#include "support/nets.hpp"
 #include "support/solver_run.hpp"
 
 namespace corda::sim {
@@ -204,22 +205,22 @@ TEST(Refusals, NameTheReasonAndTheRemedy) {
     RopeDef string = study::straight_rope(3, 1.0, 30.0);
     string.material.is_string = true;
     const System strings = build_system({&string, 1}, 1);
-    EXPECT_NE(refusal(strings, test::rope_solver(4)).find("method exact"), std::string::npos);
-    EXPECT_EQ(refusal(strings, test::exact_solver()), "");
+    EXPECT_NE(refusal(strings, rope_solver(4)).find("method exact"), std::string::npos);
+    EXPECT_EQ(refusal(strings, exact_solver(1e-9)), "");
 
     RopeDef ring = study::straight_rope(3, 1.0, 30.0);
     ring.points_m = {{0.0, 0.0}, {1.0, 0.0}, {1.0, -1.0}, {0.0, -1.0}};
     ring.closed = true;
     const System rings = build_system({&ring, 1}, 1);
-    EXPECT_NE(refusal(rings, test::exact_solver()).find("method = \"rope\""), std::string::npos);
-    EXPECT_EQ(refusal(rings, test::rope_solver(4)), "");
+    EXPECT_NE(refusal(rings, exact_solver(1e-9)).find("method = \"rope\""), std::string::npos);
+    EXPECT_EQ(refusal(rings, rope_solver(4)), "");
 
     NetDef net = test::cloth(3, 3, 0.1);
-    EXPECT_NE(refusal(build_system({}, {&net, 1}, 1), test::exact_solver()).find("compliance"),
+    EXPECT_NE(refusal(build_system({}, {&net, 1}, 1), exact_solver(1e-9)).find("compliance"),
               std::string::npos);
     net.material.compliance_1_n = 1e-3;
-    EXPECT_EQ(refusal(build_system({}, {&net, 1}, 1), test::exact_solver()), "");
-    EXPECT_EQ(refusal(build_system({}, {&net, 1}, 1), test::rope_solver(4)), "");
+    EXPECT_EQ(refusal(build_system({}, {&net, 1}, 1), exact_solver(1e-9)), "");
+    EXPECT_EQ(refusal(build_system({}, {&net, 1}, 1), rope_solver(4)), "");
 }
 
 TEST(ElasticRing, FallsFreelyAndReturnsToRound) {
@@ -231,7 +232,7 @@ TEST(ElasticRing, FallsFreelyAndReturnsToRound) {
         mass_kg += ring.mass_kg[i];
         start_m += ring.mass_kg[i] * ring.y_m[i];
     }
-    for (const SolverDef& def : {test::exact_solver(), test::rope_solver(4)}) {
+    for (const SolverDef& def : {exact_solver(1e-9), rope_solver(4)}) {
         test::SolverRun run(ring, WorldDef{}, def);
         ASSERT_TRUE(run.go(1.0, 20));
         double end_m = 0.0;
@@ -251,7 +252,7 @@ TEST(SeveralBodies, ARigidRopeMovesAsIfItWereAlone) {
     elastic.material.compliance_1_n = 1e-3;
     elastic.bending_n_m2 = 0.1;
     const std::array<RopeDef, 2> both{elastic, rigid};
-    for (const SolverDef& def : {test::exact_solver(), test::rope_solver(6, 1e-3)}) {
+    for (const SolverDef& def : {exact_solver(1e-9), rope_solver(6, 1e-3)}) {
         test::SolverRun together(build_system(both, 1), WorldDef{}, def);
         test::SolverRun alone(rigid, WorldDef{}, def);
         RopeDef moved = elastic;
@@ -279,7 +280,7 @@ TEST(ElasticRope, GivesTheSameBitsWhateverTimesAreAskedFor) {
     rope.bending_n_m2 = 0.1;
     WorldDef world;
     world.drag_1_s = 0.2;
-    for (const SolverDef& def : {test::exact_solver(), test::rope_solver(4)}) {
+    for (const SolverDef& def : {exact_solver(1e-9), rope_solver(4)}) {
         test::SolverRun direct(rope, world, def);
         test::SolverRun often(rope, world, def);
         ASSERT_TRUE(direct.go(0.777));
@@ -300,7 +301,7 @@ TEST(ElasticRope, WithEveryParticlePinnedStays) {
     rope.bending_n_m2 = 1.0;
     const RopeDef first = study::straight_rope(1, 1.0, 10.0);
     const std::array<RopeDef, 2> ropes{first, rope};
-    for (const SolverDef& def : {test::exact_solver(), test::rope_solver(4)}) {
+    for (const SolverDef& def : {exact_solver(1e-9), rope_solver(4)}) {
         test::SolverRun run(build_system(ropes, 1), WorldDef{}, def);
         ASSERT_TRUE(run.go(0.3));
         for (std::size_t i = 2; i < 5; ++i) {
@@ -314,7 +315,7 @@ TEST(ElasticRope, ThatStartsStraightBetweenPinsSags) {
     RopeDef rope = study::straight_rope(10, 1.0, 90.0);
     rope.pinned = {0, 10};
     rope.material.compliance_1_n = 1e-3;
-    for (const SolverDef& def : {test::exact_solver(1e-11), test::rope_solver(8)}) {
+    for (const SolverDef& def : {exact_solver(1e-11), rope_solver(8)}) {
         test::SolverRun run(rope, WorldDef{}, def);
         ASSERT_TRUE(run.go(0.2, 10));
         EXPECT_LT(run.state().y_m[5], -0.05);

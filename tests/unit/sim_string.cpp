@@ -9,7 +9,7 @@
 #include "corda/sim/string_contacts.hpp"
 #include "corda/sim/tension_lcp.hpp"
 #include "corda/study/ropes.hpp"
-#include "support/exact_run.hpp"
+#include "support/solver_run.hpp"
 
 namespace corda::sim {
 namespace {
@@ -177,18 +177,18 @@ TEST(ExactRefusesAString, ThatIsClosed) {
 TEST(SlackString, CarriesNothingAndFallsFreely) {
     RopeDef rope = string_of({{5.0, 1.0}, {5.1, 1.0}, {5.2, 1.0}}, {1.0, 1.0});
     test::ExactRun run(rope);
-    ASSERT_TRUE(run.advance_to(0.3));
-    EXPECT_EQ(run.solver.loads()->largest_tension_n, 0.0);
-    EXPECT_EQ(run.solver.loads()->pin_force_n, 0.0);
-    EXPECT_EQ(run.state.x_m[0], 5.0);
-    EXPECT_EQ(run.state.y_m[0], 1.0);
+    ASSERT_TRUE(run.go(0.3));
+    EXPECT_EQ(run.solver().loads()->largest_tension_n, 0.0);
+    EXPECT_EQ(run.solver().loads()->pin_force_n, 0.0);
+    EXPECT_EQ(run.state().x_m[0], 5.0);
+    EXPECT_EQ(run.state().y_m[0], 1.0);
     for (const std::size_t i : {1U, 2U}) {
-        EXPECT_NEAR(run.state.x_m[i], rope.points_m[i].x, 1e-15);
-        EXPECT_NEAR(run.state.y_m[i], 1.0 - 0.5 * 9.81 * 0.09, 1e-14);
+        EXPECT_NEAR(run.state().x_m[i], rope.points_m[i].x, 1e-15);
+        EXPECT_NEAR(run.state().y_m[i], 1.0 - 0.5 * 9.81 * 0.09, 1e-14);
     }
-    EXPECT_FALSE(run.solver.conserves_energy());
-    EXPECT_NEAR(run.solver.energy_j(), 9.81 * 2.0, 1e-13);
-    EXPECT_NEAR(run.solver.energy_scale_j(), 9.81 * 2.0 * 2.0, 1e-13);
+    EXPECT_FALSE(run.solver().conserves_energy());
+    EXPECT_NEAR(run.solver().energy_j(), 9.81 * 2.0, 1e-13);
+    EXPECT_NEAR(run.solver().energy_scale_j(), 9.81 * 2.0 * 2.0, 1e-13);
 }
 
 TEST(StringAndRope, InOneSceneMoveApart) {
@@ -203,26 +203,26 @@ TEST(StringAndRope, InOneSceneMoveApart) {
     test::ExactRun string_alone(string);
     rope.origin_m = {};
     test::ExactRun rope_alone(rope);
-    ASSERT_TRUE(string_alone.advance_to(1.0) && rope_alone.advance_to(1.0));
-    EXPECT_EQ(state.x_m[1], string_alone.state.x_m[1]);
-    EXPECT_EQ(state.y_m[1], string_alone.state.y_m[1]);
-    EXPECT_NEAR(state.x_m.back() - 3.0, rope_alone.state.x_m.back(), 1e-14);
-    EXPECT_NEAR(both.energy_j(), string_alone.solver.energy_j() + rope_alone.solver.energy_j(), 1e-12);
+    ASSERT_TRUE(string_alone.go(1.0) && rope_alone.go(1.0));
+    EXPECT_EQ(state.x_m[1], string_alone.state().x_m[1]);
+    EXPECT_EQ(state.y_m[1], string_alone.state().y_m[1]);
+    EXPECT_NEAR(state.x_m.back() - 3.0, rope_alone.state().x_m.back(), 1e-14);
+    EXPECT_NEAR(both.energy_j(), string_alone.solver().energy_j() + rope_alone.solver().energy_j(), 1e-12);
 }
 
 TEST(PinnedLinks, OfAStringStay) {
     RopeDef rope = string_of({{0.0, 0.0}, {0.5, 0.0}, {1.0, 0.0}}, {1.0, 0.5});
     rope.pinned = {0, 1};
     test::ExactRun run(rope);
-    ASSERT_TRUE(run.advance_to(1.0));
+    ASSERT_TRUE(run.go(1.0));
     test::ExactRun pendulum(study::straight_rope(1, 0.5, 90.0));
-    ASSERT_TRUE(pendulum.advance_to(1.0));
-    EXPECT_NEAR(run.state.x_m[2], 0.5 + pendulum.state.x_m[1], 1e-12);
-    EXPECT_NEAR(run.state.y_m[2], pendulum.state.y_m[1], 1e-12);
+    ASSERT_TRUE(pendulum.go(1.0));
+    EXPECT_NEAR(run.state().x_m[2], 0.5 + pendulum.state().x_m[1], 1e-12);
+    EXPECT_NEAR(run.state().y_m[2], pendulum.state().y_m[1], 1e-12);
     rope.pinned = {0, 1, 2};
     test::ExactRun fixed(rope);
-    ASSERT_TRUE(fixed.advance_to(5.0));
-    EXPECT_EQ(fixed.state.x_m, fixed.system.x_m);
+    ASSERT_TRUE(fixed.go(5.0));
+    EXPECT_EQ(fixed.state().x_m, fixed.system().x_m);
 }
 
 }  // namespace
