@@ -292,11 +292,7 @@ TEST(BendingRope, ConvergesWithItsOrder) {
 TEST(BendingRope, ThatStretchesMovesAlikeInExactAndInRope) {
     test::SolverRun exact(bending_rope(1e-4), WorldDef{}, exact_solver(1e-12));
     test::SolverRun rope(bending_rope(1e-4), WorldDef{}, rope_solver(8));
-    double largest_m = 0.0;
-    for (int k = 1; k <= 20; ++k) {
-        ASSERT_TRUE(exact.go(0.1 * k) && rope.go(0.1 * k));
-        largest_m = std::max(largest_m, exact.distance_m(rope.state()));
-    }
+    const double largest_m = test::largest_distance_m(exact, rope, 20);
     std::printf("exact and rope part by %.1e m\n", largest_m);
     EXPECT_GT(exact.moved_m(), 0.5);
     EXPECT_LT(largest_m, 1e-10);  // measured: 1.3e-11

@@ -176,11 +176,7 @@ NetDef swinging_cloth() {
 TEST(ElasticRope, MovesAlikeInExactAndInRope) {
     test::SolverRun exact(swinging_rope(), WorldDef{}, exact_solver(1e-12));
     test::SolverRun rope(swinging_rope(), WorldDef{}, rope_solver(8));
-    double largest_m = 0.0;
-    for (int k = 1; k <= 20; ++k) {
-        ASSERT_TRUE(exact.go(0.1 * k) && rope.go(0.1 * k));
-        largest_m = std::max(largest_m, exact.distance_m(rope.state()));
-    }
+    const double largest_m = test::largest_distance_m(exact, rope, 20);
     std::printf("rope: exact and rope part by %.1e m\n", largest_m);
     EXPECT_GT(exact.moved_m(), 0.5);
     EXPECT_LT(largest_m, 1e-10);  // measured: 1.4e-11
@@ -193,11 +189,7 @@ TEST(ElasticRope, MovesAlikeInExactAndInRope) {
 TEST(ElasticCloth, MovesAlikeInExactAndInRope) {
     test::SolverRun exact(swinging_cloth(), WorldDef{}, exact_solver(1e-12));
     test::SolverRun rope(swinging_cloth(), WorldDef{}, rope_solver(8));
-    double largest_m = 0.0;
-    for (int k = 1; k <= 10; ++k) {
-        ASSERT_TRUE(exact.go(0.1 * k) && rope.go(0.1 * k));
-        largest_m = std::max(largest_m, exact.distance_m(rope.state()));
-    }
+    const double largest_m = test::largest_distance_m(exact, rope, 10);
     std::printf("cloth: exact and rope part by %.1e m, moved %.2f m\n", largest_m, exact.moved_m());
     EXPECT_GT(exact.moved_m(), 0.5);
     EXPECT_LT(largest_m, 1e-11);  // measured: 7.2e-13

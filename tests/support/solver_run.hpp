@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <type_traits>
@@ -108,6 +109,19 @@ class SolverRun {
     double largest_move_m_ = 0.0;
     double largest_strain_ = 0.0;
 };
+
+/// Largest distance of a particle between two runs of the same bodies at `looks` times, a tenth of a second
+/// apart; not a number where one of them gives up.
+template <class A, class B>
+double largest_distance_m(SolverRun<A>& one, SolverRun<B>& other, int looks) {
+    double largest_m = 0.0;
+    for (int k = 1; k <= looks; ++k) {
+        if (!one.go(0.1 * k) || !other.go(0.1 * k)) return std::numeric_limits<double>::quiet_NaN();
+        const double apart_m = one.distance_m(other.state());
+        if (!(apart_m <= largest_m)) largest_m = apart_m;
+    }
+    return largest_m;
+}
 
 /// One rope by the method `rope`.
 class RattleRun : public SolverRun<sim::Rattle> {
