@@ -13,10 +13,6 @@
 namespace corda::study {
 namespace {
 
-Cell cell(const std::optional<double>& value) {
-    return value ? Cell(*value) : Cell();
-}
-
 Table rows_table(const std::vector<AccuracyRow>& rows) {
     Table table{"reference_numbers", "Every reference number", {}, {}, {}};
     table.columns = {{"reference", "reference"},
@@ -31,8 +27,8 @@ Table rows_table(const std::vector<AccuracyRow>& rows) {
     for (const AccuracyRow& row : rows) {
         const bool failed = !row.failure.empty();
         table.rows.push_back({row.reference, row.title, row.quantity, row.method,
-                              failed ? Cell() : Cell(row.error), cell(row.bound),
-                              failed ? Cell() : Cell(row.wall_ms), cell(row.ms_per_simulated_s),
+                              failed ? Cell() : Cell(row.error), cell_of(row.bound),
+                              failed ? Cell() : Cell(row.wall_ms), cell_of(row.ms_per_simulated_s),
                               failed ? Cell(row.failure) : Cell()});
     }
     return table;
@@ -67,7 +63,7 @@ Table short_table(const std::vector<AccuracyCase>& cases, const std::vector<Accu
             const std::string name = fmt::format("{} {} ({})", source.reference, source.title, row.quantity);
             const bool failed = !row.failure.empty();
             table.rows.push_back({name, row.method, failed ? Cell() : Cell(row.error),
-                                  failed ? Cell() : cell(row.ms_per_simulated_s),
+                                  failed ? Cell() : cell_of(row.ms_per_simulated_s),
                                   failed ? Cell(row.failure) : Cell()});
         }
     }
@@ -90,6 +86,14 @@ std::string bounds_paragraph(const std::vector<AccuracyRow>& rows) {
 
 }  // namespace
 
+AccuracyRow named_row(std::string reference, std::string title, std::string quantity) {
+    AccuracyRow row;
+    row.reference = std::move(reference);
+    row.title = std::move(title);
+    row.quantity = std::move(quantity);
+    return row;
+}
+
 void add_row(AccuracyRow row, const std::function<void(AccuracyRow&)>& figures,
              std::vector<AccuracyRow>& rows) {
     try {
@@ -98,6 +102,22 @@ void add_row(AccuracyRow row, const std::function<void(AccuracyRow&)>& figures,
         row.failure = error.what();
     }
     rows.push_back(std::move(row));
+}
+
+void add_probe_rows(const AccuracyRow& named, const sim::RopeDef& rope, const sim::WorldDef& world,
+                    std::span<const NamedMethod> methods, double simulated_s,
+                    const std::function<double(Probe&)>& error_of, std::vector<AccuracyRow>& rows) {
+    for (const NamedMethod& method : methods) {
+        AccuracyRow row = named;
+        row.method = method.name;
+        const auto figures = [&](AccuracyRow& filled) {
+            Probe probe(rope, world, method.solver);
+            filled.error = error_of(probe);
+            filled.wall_ms = 1e3 * probe.wall_s();
+            filled.ms_per_simulated_s = filled.wall_ms / simulated_s;
+        };
+        add_row(std::move(row), figures, rows);
+    }
 }
 
 void add_problem_rows(const AccuracyRow& named, const Problem& problem, const sim::SolverDef& solver,

@@ -35,10 +35,6 @@ struct Findings {
     double difference_under_gravity = 0.0;
 };
 
-Cell cell(const std::optional<double>& value) {
-    return value ? Cell(*value) : Cell();
-}
-
 double bars_of(const SwingDef& def) {
     return static_cast<double>(
         sim::bar_count(static_cast<std::uint64_t>(def.particles), static_cast<std::uint64_t>(def.reach)));
@@ -102,7 +98,8 @@ Table settling_table(const Findings& findings) {
                      {"relaxation_settles_s", "relaxation, 7 n bars [s]"},
                      {"rope_settles_s", "true rope with that drag [s]"}};
     for (const Settling& row : findings.settling) {
-        table.rows.push_back({row.delta, row.step_s, row.drag_1_s, cell(row.relaxation_s), cell(row.rope_s)});
+        table.rows.push_back(
+            {row.delta, row.step_s, row.drag_1_s, cell_of(row.relaxation_s), cell_of(row.rope_s)});
     }
     table.note = fmt::format(
         "Until no particle is farther than a hundredth of the length from the vertical again; empty where "

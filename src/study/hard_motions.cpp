@@ -178,13 +178,11 @@ void add_inverted(std::vector<HardCase>& cases) {
 
 }  // namespace
 
-std::vector<HardCase> hard_motions() {
-    std::vector<HardCase> cases;
+void add_hard_motions(std::vector<HardCase>& cases) {
     add_payloads(cases);
     add_releases(cases);
     add_throws_and_masses(cases);
     add_inverted(cases);
-    return cases;
 }
 
 }  // namespace corda::study

@@ -269,13 +269,11 @@ void add_long_runs(std::vector<HardCase>& cases) {
 
 }  // namespace
 
-std::vector<HardCase> hard_sizes() {
-    std::vector<HardCase> cases;
+void add_hard_sizes(std::vector<HardCase>& cases) {
     add_sizes(cases);
     add_steps_and_inputs(cases);
     add_bits(cases);
     add_long_runs(cases);
-    return cases;
 }
 
 }  // namespace corda::study

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "corda/study/pendulum.hpp"
 #include "corda/study/references.hpp"
 #include "corda/study/ropes.hpp"
 #include "support/simulate.hpp"
@@ -31,18 +32,11 @@ double fall_m(double mass_kg, double step_s, int n, double delta, double force_n
     return run.state().y_m[1];
 }
 
-/// R10: x_n - x_0 = (h^2 f / (m delta)) [n - (1 - (1 - delta)^n) / delta], in long double.
-double r10_m(double mass_kg, double step_s, int n, double delta, double force_n) {
-    const long double d = delta;
-    const long double h = step_s;
-    return static_cast<double>(h * h * force_n / (mass_kg * d) * (n - (1.0L - std::pow(1.0L - d, n)) / d));
-}
-
 TEST(FreeFallR10, WithDampingIsTheClosedForm) {
     for (const double delta : {0.001, 0.01, 0.1}) {
         for (const double mass_kg : {0.1, 1.0, 10.0}) {
             for (const int n : {1, 2, 60, 600}) {
-                const double expected = r10_m(mass_kg, 1.0 / 60.0, n, delta, -9.8);
+                const double expected = study::damped_fall_m(mass_kg, 1.0 / 60.0, n, delta, -9.8);
                 // measured: relative error at most 6e-14
                 EXPECT_NEAR(fall_m(mass_kg, 1.0 / 60.0, n, delta, -9.8), expected,
                             1e-12 * std::max(1.0, std::abs(expected)))
