@@ -84,6 +84,35 @@ std::string bounds_paragraph(const std::vector<AccuracyRow>& rows) {
                        claims, true_ones);
 }
 
+void add_problem_row(const AccuracyRow& named, const Problem& problem, const NamedMethod& method,
+                     const Timing& timing, std::vector<AccuracyRow>& rows) {
+    AccuracyRow row = named;
+    row.method = method.name;
+    const Measurement run = measure(problem, method.solver, method.name, 0.0, timing);
+    row.error = run.largest_error;
+    row.failure = run.failure;
+    row.ms_per_simulated_s = run.ms_per_simulated_s;
+    row.wall_ms = run.ms_per_simulated_s * static_cast<double>(problem.last_frame) * problem.frame_interval_s;
+    rows.push_back(std::move(row));
+}
+
+void add_auto_row(const AccuracyRow& named, const Problem& problem, const Timing& timing,
+                  std::vector<AccuracyRow>& rows) {
+    constexpr double kTolerance = 1e-6;  // of the length
+    const sim::System system = sim::build_system(problem.ropes, problem.nets, 1);
+    const FrameRate frames(Rational{std::lround(1.0 / problem.frame_interval_s), 1});
+    const sim::Plan plan =
+        sim::plan_solver(system, problem.world, {kTolerance * problem.length_m, frames, problem.last_frame});
+    add_problem_row(named, problem, {"auto", plan.solver}, timing, rows);
+    AccuracyRow& row = rows.back();
+    row.title += fmt::format(" (auto took {})", sim::method_name(plan.solver.method));
+    if (plan.horizon_s) {
+        row.failure = fmt::format("auto claims nothing after {:.3g} s", *plan.horizon_s);
+    } else if (plan.error_bound_m) {
+        row.bound = *plan.error_bound_m / problem.length_m;
+    }
+}
+
 }  // namespace
 
 AccuracyRow named_row(std::string reference, std::string title, std::string quantity) {
@@ -120,32 +149,10 @@ void add_probe_rows(const AccuracyRow& named, const sim::RopeDef& rope, const si
     }
 }
 
-void add_problem_rows(const AccuracyRow& named, const Problem& problem, const sim::SolverDef& solver,
-                      const std::string& method, const Timing& timing, std::vector<AccuracyRow>& rows) {
-    AccuracyRow row = named;
-    row.method = method;
-    const Measurement run = measure(problem, solver, method, 0.0, timing);
-    row.error = run.largest_error;
-    row.failure = run.failure;
-    row.ms_per_simulated_s = run.ms_per_simulated_s;
-    row.wall_ms = run.ms_per_simulated_s * static_cast<double>(problem.last_frame) * problem.frame_interval_s;
-    rows.push_back(std::move(row));
-}
-
-void add_auto_row(const AccuracyRow& named, const Problem& problem, double auto_tolerance,
-                  const Timing& timing, std::vector<AccuracyRow>& rows) {
-    const sim::System system = sim::build_system(problem.ropes, problem.nets, 1);
-    const FrameRate frames(Rational{std::lround(1.0 / problem.frame_interval_s), 1});
-    const sim::Plan plan = sim::plan_solver(system, problem.world,
-                                            {auto_tolerance * problem.length_m, frames, problem.last_frame});
-    add_problem_rows(named, problem, plan.solver, "auto", timing, rows);
-    AccuracyRow& row = rows.back();
-    row.title += fmt::format(" (auto took {})", sim::method_name(plan.solver.method));
-    if (plan.horizon_s) {
-        row.failure = fmt::format("auto claims nothing after {:.3g} s", *plan.horizon_s);
-    } else if (plan.error_bound_m) {
-        row.bound = *plan.error_bound_m / problem.length_m;
-    }
+void add_problem_rows(const AccuracyRow& named, const Problem& problem, std::span<const NamedMethod> methods,
+                      const Timing& timing, std::vector<AccuracyRow>& rows) {
+    add_auto_row(named, problem, timing, rows);
+    for (const NamedMethod& method : methods) add_problem_row(named, problem, method, timing, rows);
 }
 
 ChapterWork accuracy_work(const StudyDef& def) {

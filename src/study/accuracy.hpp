@@ -40,18 +40,16 @@ struct AccuracyCase {
 /// R4 to R8 and R11: chains.
 [[nodiscard]] std::vector<AccuracyCase> chain_cases();
 
-/// Rows of a problem with a reference by the solver given, and by auto, which has to keep within
-/// `auto_tolerance` of its length and claims a bound.
-void add_problem_rows(const AccuracyRow& named, const Problem& problem, const sim::SolverDef& solver,
-                      const std::string& method, const Timing& timing, std::vector<AccuracyRow>& rows);
-void add_auto_row(const AccuracyRow& named, const Problem& problem, double auto_tolerance,
-                  const Timing& timing, std::vector<AccuracyRow>& rows);
-
 /// A method under the name that its rows have.
 struct NamedMethod {
     const char* name = "";
     sim::SolverDef solver;
 };
+
+/// Rows of a problem with a reference by auto, which has to keep within 1e-6 of its length and claims a
+/// bound, and by each method.
+void add_problem_rows(const AccuracyRow& named, const Problem& problem, std::span<const NamedMethod> methods,
+                      const Timing& timing, std::vector<AccuracyRow>& rows);
 
 /// A row of each method: `error_of` runs one rope, the way that the reference asks for, and returns the
 /// error. `simulated_s` is how far it runs it. Writes down why where corda::Error is thrown.

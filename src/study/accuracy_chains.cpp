@@ -78,14 +78,11 @@ void add_r5(const StudyDef& def, std::vector<AccuracyRow>& rows) {
             named_row("R5", fmt::format("N = {}, {:g} deg, {:g} s", row.links, row.angle_deg, row.time_s),
                       row.tip_mass_kg > 1.0 ? "tip / L, heavy tip" : "tip / L");
         if (row.tip_mass_kg != 1.0) named.title += fmt::format(", tip mass {:g} kg", row.tip_mass_kg);
-        add_auto_row(named, problem, 1e-6, study_timing(def.quick), rows);
-        add_problem_rows(named, problem, sim::exact_solver(1e-9), "exact, 1e-9", study_timing(def.quick),
-                         rows);
-        add_problem_rows(named, problem, sim::exact_solver(1e-13), "exact, 1e-13", study_timing(def.quick),
-                         rows);
         const double step_s = row.tip_mass_kg > 1.0 ? 1.0 / 7680.0 : 1.0 / 1920.0;
-        add_problem_rows(named, problem, sim::rope_solver(8, step_s), "rope, order 8",
-                         study_timing(def.quick), rows);
+        const std::array<NamedMethod, 3> methods{{{"exact, 1e-9", sim::exact_solver(1e-9)},
+                                                  {"exact, 1e-13", sim::exact_solver(1e-13)},
+                                                  {"rope, order 8", sim::rope_solver(8, step_s)}}};
+        add_problem_rows(named, problem, methods, study_timing(def.quick), rows);
     }
 }
 
@@ -141,12 +138,10 @@ void add_r7(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
 void add_r8(const StudyDef& def, std::vector<AccuracyRow>& rows) {
     const Problem problem = spinning_chain().subject.problem;
     AccuracyRow named = named_row("R8", "N = 10, 3 / s, 10 s", "position / L");
-    add_auto_row(named, problem, 1e-6, study_timing(def.quick), rows);
-    add_problem_rows(named, problem, sim::exact_solver(1e-9), "exact, 1e-9", study_timing(def.quick), rows);
-    add_problem_rows(named, problem, sim::rope_solver(8), "rope, order 8", study_timing(def.quick), rows);
-    named.quantity = "largest tension, relative";
     const std::array<NamedMethod, 2> methods{
         {{"exact, 1e-9", sim::exact_solver(1e-9)}, {"rope, order 8", sim::rope_solver(8)}}};
+    add_problem_rows(named, problem, methods, study_timing(def.quick), rows);
+    named.quantity = "largest tension, relative";
     const auto error_of = [](Probe& probe) {
         constexpr double kTension = 3.0 * 3.0 * 0.1 * 55.0;  // m omega^2 a (1 + ... + 10)
         probe.go_by_frames(10.0);
@@ -170,13 +165,12 @@ void add_r11(const StudyDef& def, std::vector<AccuracyRow>& rows) {
         return false;
     };
     const AccuracyRow named = named_row("R11", "40 particles, tip at 1, 2, 5 and 10 s", "tip / L");
-    add_auto_row(named, problem, 1e-6, study_timing(def.quick), rows);
-    add_problem_rows(named, problem, sim::exact_solver(1e-9), "exact, 1e-9", study_timing(def.quick), rows);
-    add_problem_rows(named, problem, sim::exact_solver(1e-13), "exact, 1e-13", study_timing(def.quick), rows);
-    add_problem_rows(named, problem, sim::rope_solver(8, 1.0 / 600.0), "rope, order 8",
-                     study_timing(def.quick), rows);
-    add_problem_rows(named, problem, sim::relaxation_solver(1.0 / 960.0, 1, 16),
-                     "relaxation, 16 sweeps, 1/960 s", study_timing(def.quick), rows);
+    const std::array<NamedMethod, 4> methods{
+        {{"exact, 1e-9", sim::exact_solver(1e-9)},
+         {"exact, 1e-13", sim::exact_solver(1e-13)},
+         {"rope, order 8", sim::rope_solver(8, 1.0 / 600.0)},
+         {"relaxation, 16 sweeps, 1/960 s", sim::relaxation_solver(1.0 / 960.0, 1, 16)}}};
+    add_problem_rows(named, problem, methods, study_timing(def.quick), rows);
 }
 
 }  // namespace

@@ -20,11 +20,10 @@ constexpr double kGravity = 9.81;
 void add_r1(const StudyDef& def, std::vector<AccuracyRow>& rows) {
     const Problem problem = a01_pendulum().subject.problem;
     const AccuracyRow named = named_row("R1", "2000 s", "position / L");
-    add_auto_row(named, problem, 1e-6, study_timing(def.quick), rows);
-    add_problem_rows(named, problem, sim::exact_solver(1e-9), "exact, 1e-9", study_timing(def.quick), rows);
-    add_problem_rows(named, problem, sim::exact_solver(1e-13), "exact, 1e-13", study_timing(def.quick), rows);
-    add_problem_rows(named, problem, sim::rope_solver(8, 1.0 / 100.0), "rope, order 8",
-                     study_timing(def.quick), rows);
+    const std::array<NamedMethod, 3> methods{{{"exact, 1e-9", sim::exact_solver(1e-9)},
+                                              {"exact, 1e-13", sim::exact_solver(1e-13)},
+                                              {"rope, order 8", sim::rope_solver(8, 1.0 / 100.0)}}};
+    add_problem_rows(named, problem, methods, study_timing(def.quick), rows);
 }
 
 /// A relative error of a time at which the tip passes under the pin at a speed: from where it is then.
