@@ -68,51 +68,25 @@ struct Setting {
     sim::SolverDef solver;
 };
 
-/// The links alone: bars of a longer reach would be another system.
-sim::SolverDef chain_solver(sim::Method method) {
-    sim::SolverDef solver;
-    solver.method = method;
-    solver.reach = 1;
-    return solver;
-}
-
-sim::SolverDef rope(int order, double step_s) {
-    sim::SolverDef solver = chain_solver(sim::Method::kRope);
-    solver.order = order;
-    solver.step_s = step_s;
-    return solver;
-}
-
-sim::SolverDef exact(double tolerance) {
-    sim::SolverDef solver = chain_solver(sim::Method::kExact);
-    solver.tolerance = tolerance;
-    return solver;
-}
-
-sim::SolverDef relaxation(int reach, int sweeps, double step_s) {
-    sim::SolverDef solver;
-    solver.method = sim::Method::kRelaxation;
-    solver.reach = reach;
-    solver.sweeps = sweeps;
-    solver.step_s = step_s;
-    return solver;
-}
-
 std::vector<Setting> list_settings(double frame_s) {
     std::vector<Setting> settings;
-    settings.push_back({"relaxation, reach 7", relaxation(7, 1, frame_s)});
+    settings.push_back({"relaxation, reach 7", sim::relaxation_solver(frame_s, 7, 1)});
     for (const int steps : {2, 8}) {
-        settings.push_back({"relaxation, reach 1, 40 sweeps", relaxation(1, 40, frame_s / steps)});
+        settings.push_back(
+            {"relaxation, reach 1, 40 sweeps", sim::relaxation_solver(frame_s / steps, 1, 40)});
     }
     for (const int order : {2, 4}) {
         for (const int steps : {2, 4, 8, 16}) {
-            settings.push_back({fmt::format("rope, order {}", order), rope(order, frame_s / steps)});
+            settings.push_back(
+                {fmt::format("rope, order {}", order), sim::rope_solver(order, frame_s / steps)});
         }
     }
     for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10}) {
-        settings.push_back({"exact", exact(tolerance)});
+        settings.push_back({"exact", sim::exact_solver(tolerance)});
     }
-    settings.push_back({"auto, 0.1 px", chain_solver(sim::Method::kAuto)});
+    sim::SolverDef automatic;
+    automatic.reach = 1;  // the links alone: bars of a longer reach would be another system
+    settings.push_back({"auto, 0.1 px", automatic});
     return settings;
 }
 
@@ -218,15 +192,15 @@ class PictureStudy {
     /// Takes `exact` as the truth, or `rope` where exact cannot run the scene, and checks it by rope.
     void find_reference() {
         const double frame_s = scene_.video.fps.interval_s();
-        truth_ = exact(kReferenceTolerance);
+        truth_ = sim::exact_solver(kReferenceTolerance);
         try {
             reference_ = positions(truth_);
         } catch (const Error&) {
-            truth_ = rope(8, frame_s / kReferenceStepsPerFrame);
+            truth_ = sim::rope_solver(8, frame_s / kReferenceStepsPerFrame);
             reference_ = positions(truth_);
         }
         pixels_per_metre_ = scene::Player(with(truth_)).camera().pixels_per_metre();
-        const sim::SolverDef check = rope(8, frame_s / (2 * kReferenceStepsPerFrame));
+        const sim::SolverDef check = sim::rope_solver(8, frame_s / (2 * kReferenceStepsPerFrame));
         chapter_.paragraphs.push_back(fmt::format(
             "{} frames of {}x{} at {} a second, {:.4g} pixels per metre. The truth is {}; {}, another "
             "formulation, differs from it by at most {:.2g} px.",

@@ -30,20 +30,14 @@ bool ChainConstraints::suits(std::span<const Bar> bars) {
     return true;
 }
 
-ChainConstraints::ChainConstraints(const System& system) {
-    const std::vector<Bar> bars = rigid_bars(system);
-    assert(suits(bars));
-    inverse_mass_1_kg_ = system.inverse_mass_1_kg;
+ChainConstraints::ChainConstraints(const System& system) : ConstraintSolver(system) {
+    assert(suits(rigid_bars(system)));
     std::size_t longest = 0;
-    for (std::size_t i = 0; i < system.particle_count(); ++i) {
-        if (system.is_pinned(i)) pinned_.push_back(static_cast<std::uint32_t>(i));
-    }
-    for (const Bar& bar : bars) {
-        if (system.is_pinned(bar.a) && system.is_pinned(bar.b)) continue;
-        const bool goes_on = !links_.empty() && links_.back().b == bar.a && !system.is_pinned(bar.a);
-        if (!goes_on) chains_.push_back({bar.a, links_.size(), 0});
-        links_.push_back({bar.a, bar.b, bar.rest_m});
-        square_m2_.push_back(bar.rest_m * bar.rest_m);
+    for (std::size_t k = 0; k < links_.size(); ++k) {
+        const Link& link = links_[k];
+        const bool goes_on = k > 0 && links_[k - 1].b == link.a && !system.is_pinned(link.a);
+        if (!goes_on) chains_.push_back({link.a, k, 0});
+        square_m2_.push_back(link.rest_m * link.rest_m);
         longest = std::max(longest, ++chains_.back().count);
     }
     for (std::vector<double>* scratch : {&dx_m_, &dy_m_, &lower_, &diagonal_, &upper_, &right_})

@@ -10,6 +10,16 @@ Motion Motion::start_of(const System& system) {
     return {system.x_m, system.y_m, system.vx_m_s, system.vy_m_s, none, none, none, none};
 }
 
+ConstraintSolver::ConstraintSolver(const System& system) : inverse_mass_1_kg_(system.inverse_mass_1_kg) {
+    for (std::size_t i = 0; i < system.particle_count(); ++i) {
+        if (system.is_pinned(i)) pinned_.push_back(static_cast<std::uint32_t>(i));
+    }
+    for (const Bar& bar : rigid_bars(system)) {
+        if (!system.is_pinned(bar.a) || !system.is_pinned(bar.b))
+            links_.push_back({bar.a, bar.b, bar.rest_m});
+    }
+}
+
 void ConstraintSolver::kick(const Stage& stage, Motion& motion) const {
     double* __restrict const vx = motion.vx_m_s.data();
     double* __restrict const vy = motion.vy_m_s.data();

@@ -60,7 +60,6 @@ struct Stage {
 /// d and that of b by -impulse w_b d; positive pulls. One implementation for chains, one for any graph.
 class ConstraintSolver {
   public:
-    ConstraintSolver() = default;
     ConstraintSolver(const ConstraintSolver&) = delete;
     ConstraintSolver& operator=(const ConstraintSolver&) = delete;
     virtual ~ConstraintSolver() = default;
@@ -86,6 +85,9 @@ class ConstraintSolver {
     [[nodiscard]] std::span<const Link> links() const { return links_; }
 
   protected:
+    /// Keeps the rigid bars of a system that have a free end.
+    explicit ConstraintSolver(const System& system);
+
     /// The first and the last part of a stage: the kick of all free particles, and the way.
     void kick(const Stage& stage, Motion& motion) const;
     static void drift(double span_s, Motion& motion);

@@ -86,6 +86,15 @@ struct SolverDef {
     std::optional<Vec2> force_n;   ///< relaxation: force on every particle in place of gravity
 };
 
+/// `exact` at a tolerance, on the links alone.
+[[nodiscard]] SolverDef exact_solver(double tolerance);
+
+/// `rope` of an order, on the links alone, at a step in seconds or the one that it chooses.
+[[nodiscard]] SolverDef rope_solver(int order, std::optional<double> step_s = std::nullopt);
+
+/// `relaxation` at a step in seconds, with weights in place of the report's constant force.
+[[nodiscard]] SolverDef relaxation_solver(double step_s, int reach, int sweeps);
+
 /// The name a scene file uses for a method.
 [[nodiscard]] std::string_view method_name(Method method);
 

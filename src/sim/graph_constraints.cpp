@@ -19,15 +19,7 @@ constexpr double kRedundantPivot = 1e-12;
 
 }  // namespace
 
-GraphConstraints::GraphConstraints(const System& system) {
-    inverse_mass_1_kg_ = system.inverse_mass_1_kg;
-    for (std::size_t i = 0; i < system.particle_count(); ++i) {
-        if (system.is_pinned(i)) pinned_.push_back(static_cast<std::uint32_t>(i));
-    }
-    for (const Bar& bar : rigid_bars(system)) {
-        if (!system.is_pinned(bar.a) || !system.is_pinned(bar.b))
-            links_.push_back({bar.a, bar.b, bar.rest_m});
-    }
+GraphConstraints::GraphConstraints(const System& system) : ConstraintSolver(system) {
     dx_m_.assign(links_.size(), 0.0);
     dy_m_.assign(links_.size(), 0.0);
     load_.assign(system.particle_count(), 0.0);

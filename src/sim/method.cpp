@@ -16,6 +16,32 @@ constexpr std::array<std::pair<Method, std::string_view>, 4> kMethods{{
 
 }  // namespace
 
+SolverDef exact_solver(double tolerance) {
+    SolverDef solver;
+    solver.method = Method::kExact;
+    solver.reach = 1;
+    solver.tolerance = tolerance;
+    return solver;
+}
+
+SolverDef rope_solver(int order, std::optional<double> step_s) {
+    SolverDef solver;
+    solver.method = Method::kRope;
+    solver.reach = 1;
+    solver.order = order;
+    solver.step_s = step_s;
+    return solver;
+}
+
+SolverDef relaxation_solver(double step_s, int reach, int sweeps) {
+    SolverDef solver;
+    solver.method = Method::kRelaxation;
+    solver.step_s = step_s;
+    solver.reach = reach;
+    solver.sweeps = sweeps;
+    return solver;
+}
+
 std::string_view method_name(Method method) {
     const auto* found = std::find_if(kMethods.begin(), kMethods.end(),
                                      [method](const auto& row) { return row.first == method; });

@@ -53,33 +53,11 @@ bool is_chains(const System& system) {
                        [](const Body& body) { return body.is_chain && body.material.compliance_1_n == 0.0; });
 }
 
-SolverDef exact_solver(double tolerance) {
-    SolverDef solver;
-    solver.method = Method::kExact;
-    solver.reach = 1;
-    solver.tolerance = tolerance;
-    return solver;
-}
-
-SolverDef rope_solver(int order, std::optional<double> step_s = std::nullopt) {
-    SolverDef solver;
-    solver.method = Method::kRope;
-    solver.reach = 1;
-    solver.order = order;
-    solver.step_s = step_s;
-    return solver;
-}
-
 /// As many sweeps as keep a cloth of some thirty rows from sagging like rubber.
-SolverDef relaxation_solver(double frame_interval_s) {
+SolverDef fallback_solver(double frame_interval_s) {
     constexpr int kSweeps = 8;
     constexpr double kStepsAFrame = 4.0;
-    SolverDef solver;
-    solver.method = Method::kRelaxation;
-    solver.reach = 1;
-    solver.sweeps = kSweeps;
-    solver.step_s = frame_interval_s / kStepsAFrame;
-    return solver;
+    return relaxation_solver(frame_interval_s / kStepsAFrame, 1, kSweeps);
 }
 
 /// Trials of `exact`, each a hundred times tighter than the last.
@@ -213,7 +191,7 @@ SolverDef scouting_solver(const System& system, const WorldDef& world, double fr
     if (is_chains(system)) throw Error(ExitCode::kInvalidScene, exact_refusal);
     const std::string rope_refusal = refusal(system, world, rope_solver(4), frame_interval_s);
     if (rope_refusal.empty()) return rope_solver(4);
-    const SolverDef relaxation = relaxation_solver(frame_interval_s);
+    const SolverDef relaxation = fallback_solver(frame_interval_s);
     if (refusal(system, world, relaxation, frame_interval_s).empty()) return relaxation;
     throw Error(ExitCode::kInvalidScene, rope_refusal);
 }
@@ -227,7 +205,7 @@ Plan plan_solver(const System& system, const WorldDef& world, const PlanDef& def
         adopt_last(run_until_one_holds(system, world, def, graph_trials(system, world, interval_s)), plan);
         plan.reason = "rope keeps the bars of closed ropes and nets at their lengths";
         const bool holds = !plan.trials.back().diverged;
-        const SolverDef relaxation = relaxation_solver(interval_s);
+        const SolverDef relaxation = fallback_solver(interval_s);
         if (holds || !refusal(system, world, relaxation, interval_s).empty()) return plan;
         plan.solver = relaxation;
         plan.error_bound_m = std::nullopt;

@@ -13,10 +13,6 @@
 namespace corda::study {
 namespace {
 
-Cell cell(const std::optional<double>& value) {
-    return value ? Cell(*value) : Cell();
-}
-
 Table rows_table(const std::vector<AccuracyRow>& rows) {
     Table table{"reference_numbers", "Every reference number", {}, {}, {}};
     table.columns = {{"reference", "reference"},
@@ -31,8 +27,8 @@ Table rows_table(const std::vector<AccuracyRow>& rows) {
     for (const AccuracyRow& row : rows) {
         const bool failed = !row.failure.empty();
         table.rows.push_back({row.reference, row.title, row.quantity, row.method,
-                              failed ? Cell() : Cell(row.error), cell(row.bound),
-                              failed ? Cell() : Cell(row.wall_ms), cell(row.ms_per_simulated_s),
+                              failed ? Cell() : Cell(row.error), cell_of(row.bound),
+                              failed ? Cell() : Cell(row.wall_ms), cell_of(row.ms_per_simulated_s),
                               failed ? Cell(row.failure) : Cell()});
     }
     return table;
@@ -67,7 +63,7 @@ Table short_table(const std::vector<AccuracyCase>& cases, const std::vector<Accu
             const std::string name = fmt::format("{} {} ({})", source.reference, source.title, row.quantity);
             const bool failed = !row.failure.empty();
             table.rows.push_back({name, row.method, failed ? Cell() : Cell(row.error),
-                                  failed ? Cell() : cell(row.ms_per_simulated_s),
+                                  failed ? Cell() : cell_of(row.ms_per_simulated_s),
                                   failed ? Cell(row.failure) : Cell()});
         }
     }
@@ -88,7 +84,44 @@ std::string bounds_paragraph(const std::vector<AccuracyRow>& rows) {
                        claims, true_ones);
 }
 
+void add_problem_row(const AccuracyRow& named, const Problem& problem, const NamedMethod& method,
+                     const Timing& timing, std::vector<AccuracyRow>& rows) {
+    AccuracyRow row = named;
+    row.method = method.name;
+    const Measurement run = measure(problem, method.solver, method.name, 0.0, timing);
+    row.error = run.largest_error;
+    row.failure = run.failure;
+    row.ms_per_simulated_s = run.ms_per_simulated_s;
+    row.wall_ms = run.ms_per_simulated_s * static_cast<double>(problem.last_frame) * problem.frame_interval_s;
+    rows.push_back(std::move(row));
+}
+
+void add_auto_row(const AccuracyRow& named, const Problem& problem, const Timing& timing,
+                  std::vector<AccuracyRow>& rows) {
+    constexpr double kTolerance = 1e-6;  // of the length
+    const sim::System system = sim::build_system(problem.ropes, problem.nets, 1);
+    const FrameRate frames(Rational{std::lround(1.0 / problem.frame_interval_s), 1});
+    const sim::Plan plan =
+        sim::plan_solver(system, problem.world, {kTolerance * problem.length_m, frames, problem.last_frame});
+    add_problem_row(named, problem, {"auto", plan.solver}, timing, rows);
+    AccuracyRow& row = rows.back();
+    row.title += fmt::format(" (auto took {})", sim::method_name(plan.solver.method));
+    if (plan.horizon_s) {
+        row.failure = fmt::format("auto claims nothing after {:.3g} s", *plan.horizon_s);
+    } else if (plan.error_bound_m) {
+        row.bound = *plan.error_bound_m / problem.length_m;
+    }
+}
+
 }  // namespace
+
+AccuracyRow named_row(std::string reference, std::string title, std::string quantity) {
+    AccuracyRow row;
+    row.reference = std::move(reference);
+    row.title = std::move(title);
+    row.quantity = std::move(quantity);
+    return row;
+}
 
 void add_row(AccuracyRow row, const std::function<void(AccuracyRow&)>& figures,
              std::vector<AccuracyRow>& rows) {
@@ -100,32 +133,26 @@ void add_row(AccuracyRow row, const std::function<void(AccuracyRow&)>& figures,
     rows.push_back(std::move(row));
 }
 
-void add_problem_rows(const AccuracyRow& named, const Problem& problem, const sim::SolverDef& solver,
-                      const std::string& method, const Timing& timing, std::vector<AccuracyRow>& rows) {
-    AccuracyRow row = named;
-    row.method = method;
-    const Measurement run = measure(problem, solver, method, 0.0, timing);
-    row.error = run.largest_error;
-    row.failure = run.failure;
-    row.ms_per_simulated_s = run.ms_per_simulated_s;
-    row.wall_ms = run.ms_per_simulated_s * static_cast<double>(problem.last_frame) * problem.frame_interval_s;
-    rows.push_back(std::move(row));
+void add_probe_rows(const AccuracyRow& named, const sim::RopeDef& rope, const sim::WorldDef& world,
+                    std::span<const NamedMethod> methods, double simulated_s,
+                    const std::function<double(Probe&)>& error_of, std::vector<AccuracyRow>& rows) {
+    for (const NamedMethod& method : methods) {
+        AccuracyRow row = named;
+        row.method = method.name;
+        const auto figures = [&](AccuracyRow& filled) {
+            Probe probe(rope, world, method.solver);
+            filled.error = error_of(probe);
+            filled.wall_ms = 1e3 * probe.wall_s();
+            filled.ms_per_simulated_s = filled.wall_ms / simulated_s;
+        };
+        add_row(std::move(row), figures, rows);
+    }
 }
 
-void add_auto_row(const AccuracyRow& named, const Problem& problem, double auto_tolerance,
-                  const Timing& timing, std::vector<AccuracyRow>& rows) {
-    const sim::System system = sim::build_system(problem.ropes, problem.nets, 1);
-    const FrameRate frames(Rational{std::lround(1.0 / problem.frame_interval_s), 1});
-    const sim::Plan plan = sim::plan_solver(system, problem.world,
-                                            {auto_tolerance * problem.length_m, frames, problem.last_frame});
-    add_problem_rows(named, problem, plan.solver, "auto", timing, rows);
-    AccuracyRow& row = rows.back();
-    row.title += fmt::format(" (auto took {})", sim::method_name(plan.solver.method));
-    if (plan.horizon_s) {
-        row.failure = fmt::format("auto claims nothing after {:.3g} s", *plan.horizon_s);
-    } else if (plan.error_bound_m) {
-        row.bound = *plan.error_bound_m / problem.length_m;
-    }
+void add_problem_rows(const AccuracyRow& named, const Problem& problem, std::span<const NamedMethod> methods,
+                      const Timing& timing, std::vector<AccuracyRow>& rows) {
+    add_auto_row(named, problem, timing, rows);
+    for (const NamedMethod& method : methods) add_problem_row(named, problem, method, timing, rows);
 }
 
 ChapterWork accuracy_work(const StudyDef& def) {

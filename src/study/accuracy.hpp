@@ -2,9 +2,11 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "corda/study/probe.hpp"
 #include "corda/study/study.hpp"
 #include "corda/study/work.hpp"
 
@@ -23,6 +25,9 @@ struct AccuracyRow {
     std::string failure;  ///< empty where there is a figure
 };
 
+/// A row that no method has filled yet.
+[[nodiscard]] AccuracyRow named_row(std::string reference, std::string title, std::string quantity);
+
 /// The rows of one reference.
 struct AccuracyCase {
     std::string reference;
@@ -35,12 +40,22 @@ struct AccuracyCase {
 /// R4 to R8 and R11: chains.
 [[nodiscard]] std::vector<AccuracyCase> chain_cases();
 
-/// Rows of a problem with a reference by the solver given, and by auto, which has to keep within
-/// `auto_tolerance` of its length and claims a bound.
-void add_problem_rows(const AccuracyRow& named, const Problem& problem, const sim::SolverDef& solver,
-                      const std::string& method, const Timing& timing, std::vector<AccuracyRow>& rows);
-void add_auto_row(const AccuracyRow& named, const Problem& problem, double auto_tolerance,
-                  const Timing& timing, std::vector<AccuracyRow>& rows);
+/// A method under the name that its rows have.
+struct NamedMethod {
+    const char* name = "";
+    sim::SolverDef solver;
+};
+
+/// Rows of a problem with a reference by auto, which has to keep within 1e-6 of its length and claims a
+/// bound, and by each method.
+void add_problem_rows(const AccuracyRow& named, const Problem& problem, std::span<const NamedMethod> methods,
+                      const Timing& timing, std::vector<AccuracyRow>& rows);
+
+/// A row of each method: `error_of` runs one rope, the way that the reference asks for, and returns the
+/// error. `simulated_s` is how far it runs it. Writes down why where corda::Error is thrown.
+void add_probe_rows(const AccuracyRow& named, const sim::RopeDef& rope, const sim::WorldDef& world,
+                    std::span<const NamedMethod> methods, double simulated_s,
+                    const std::function<double(Probe&)>& error_of, std::vector<AccuracyRow>& rows);
 
 /// Runs `figures`, which fills the row's error and times; writes down why where it throws corda::Error.
 void add_row(AccuracyRow row, const std::function<void(AccuracyRow&)>& figures,

@@ -7,11 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <span>
 
 #include "corda/sim/distance.hpp"
 #include "corda/study/accuracy.hpp"
-#include "corda/study/probe.hpp"
 #include "corda/study/problems.hpp"
 #include "corda/study/ropes.hpp"
 #include "corda/study/sweep.hpp"
@@ -20,11 +18,6 @@ namespace corda::study {
 namespace {
 
 constexpr double kGravity = 9.81;
-
-struct Method {
-    const char* name = "";
-    sim::SolverDef solver;
-};
 
 /// A small oscillation of a hanging chain of 1 m, and the particle that it moves most.
 struct Mode {
@@ -61,164 +54,101 @@ Mode mode_of(int links, double omega_1_s, double tip_mass_kg) {
 }
 
 void add_r4(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
-    struct Row {
-        int links;
-        double tip_mass_kg;
-        double omega_1_s;
-    };
-    for (const Row& row :
-         {Row{5, 1, 3.5955018679142}, Row{10, 1, 3.6766206576178}, Row{10, 1, 8.4592843258908},
-          Row{10, 1, 54.177674155542}, Row{20, 1, 3.7202051499303}, Row{20, 1, 8.5446639308937},
-          Row{20, 1, 114.245746189}, Row{50, 1, 3.7474350221806}, Row{50, 1, 8.6027948917509},
-          Row{50, 1, 297.71217239}, Row{10, 10, 3.3130928700043}, Row{10, 100, 3.1568078379578},
-          Row{10, 1000, 3.1346641280336}}) {
+    const std::array<NamedMethod, 2> methods{
+        {{"exact, 1e-13", sim::exact_solver(1e-13)}, {"rope, order 8", sim::rope_solver(8, 1.0 / 4000.0)}}};
+    for (const SmallOscillation& row : kSmallOscillations) {
         const Mode mode = mode_of(row.links, row.omega_1_s, row.tip_mass_kg);
-        for (const Method& method : {Method{"exact, 1e-13", exact_solver(1e-13)},
-                                     Method{"rope, order 8", rope_solver(8, 1.0 / 4000.0)}}) {
-            AccuracyRow named;
-            named.reference = "R4";
-            named.title = fmt::format("N = {}, tip mass {:g} kg, omega {:.6g} / s", row.links,
-                                      row.tip_mass_kg, row.omega_1_s);
-            named.quantity = "frequency, relative";
-            named.method = method.name;
-            add_row(
-                named,
-                [&](AccuracyRow& filled) {
-                    // After a quarter of its period a mode is at zero.
-                    const double time_s = 0.5 * std::numbers::pi / row.omega_1_s;
-                    Probe probe(mode.rope, sim::WorldDef{}, method.solver);
-                    probe.go(time_s);
-                    filled.error = std::abs(probe.state().x_m[mode.widest]) / mode.amplitude_m /
-                                   (0.5 * std::numbers::pi);
-                    filled.wall_ms = 1e3 * probe.wall_s();
-                    filled.ms_per_simulated_s = filled.wall_ms / time_s;
-                },
-                rows);
-        }
+        const std::string title = fmt::format("N = {}, tip mass {:g} kg, omega {:.6g} / s", row.links,
+                                              row.tip_mass_kg, row.omega_1_s);
+        const AccuracyRow named = named_row("R4", title, "frequency, relative");
+        // After a quarter of its period a mode is at zero.
+        const double time_s = 0.5 * std::numbers::pi / row.omega_1_s;
+        const auto error_of = [&](Probe& probe) {
+            probe.go(time_s);
+            return std::abs(probe.state().x_m[mode.widest]) / mode.amplitude_m / (0.5 * std::numbers::pi);
+        };
+        add_probe_rows(named, mode.rope, sim::WorldDef{}, methods, time_s, error_of, rows);
     }
 }
 
 void add_r5(const StudyDef& def, std::vector<AccuracyRow>& rows) {
     for (const ReleasedChain& row : kReleasedChains) {
         const Problem problem = released_problem(row);
-        AccuracyRow named;
-        named.reference = "R5";
-        named.title = fmt::format("N = {}, {:g} deg, {:g} s", row.links, row.angle_deg, row.time_s);
+        AccuracyRow named =
+            named_row("R5", fmt::format("N = {}, {:g} deg, {:g} s", row.links, row.angle_deg, row.time_s),
+                      row.tip_mass_kg > 1.0 ? "tip / L, heavy tip" : "tip / L");
         if (row.tip_mass_kg != 1.0) named.title += fmt::format(", tip mass {:g} kg", row.tip_mass_kg);
-        named.quantity = row.tip_mass_kg > 1.0 ? "tip / L, heavy tip" : "tip / L";
-        add_auto_row(named, problem, 1e-6, study_timing(def.quick), rows);
-        add_problem_rows(named, problem, exact_solver(1e-9), "exact, 1e-9", study_timing(def.quick), rows);
-        add_problem_rows(named, problem, exact_solver(1e-13), "exact, 1e-13", study_timing(def.quick), rows);
         const double step_s = row.tip_mass_kg > 1.0 ? 1.0 / 7680.0 : 1.0 / 1920.0;
-        add_problem_rows(named, problem, rope_solver(8, step_s), "rope, order 8", study_timing(def.quick),
-                         rows);
+        const std::array<NamedMethod, 3> methods{{{"exact, 1e-9", sim::exact_solver(1e-9)},
+                                                  {"exact, 1e-13", sim::exact_solver(1e-13)},
+                                                  {"rope, order 8", sim::rope_solver(8, step_s)}}};
+        add_problem_rows(named, problem, methods, study_timing(def.quick), rows);
     }
 }
 
 void add_r6(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
-    struct Row {
-        int links;
-        double tension;  ///< horizontal, over the weight of a particle
-        double lowest_m;
-    };
-    for (const Row& row :
-         {Row{10, 2.0510510143091193, -0.50594593157108448}, Row{20, 4.107878988926029, -0.50344663434019265},
-          Row{40, 8.2186678030027642, -0.50283577286535318}}) {
-        for (const Method& method :
-             {Method{"exact, 1e-9", exact_solver(1e-9)}, Method{"rope, order 4", rope_solver(4)}}) {
-            AccuracyRow named;
-            named.reference = "R6";
-            named.title = fmt::format("N = {}", row.links);
-            named.quantity = "tension relative, lowest point / span";
-            named.method = method.name;
-            add_row(
-                named,
-                [&](AccuracyRow& filled) {
-                    constexpr double kDragSettles = 8.0;
-                    constexpr double kSettledSeconds = 20.0;
-                    Probe probe(slack_rope(row.links),
-                                sim::WorldDef{{0.0, -kGravity}, kSettledSeconds, kDragSettles},
-                                method.solver);
-                    probe.go(kSettledSeconds);
-                    const double pull = probe.figures().loads.value_or(sim::Loads{}).pin_force_n / kGravity;
-                    const double half_weight = 0.5 * (row.links - 1);
-                    const double tension = std::sqrt(std::max(0.0, pull * pull - half_weight * half_weight));
-                    const auto& y_m = probe.state().y_m;
-                    const double lowest_m = *std::min_element(y_m.begin(), y_m.end());
-                    filled.error =
-                        std::max(std::abs(tension / row.tension - 1.0), std::abs(lowest_m - row.lowest_m));
-                    filled.wall_ms = 1e3 * probe.wall_s();
-                    filled.ms_per_simulated_s = filled.wall_ms / kSettledSeconds;
-                },
-                rows);
-        }
+    constexpr double kDragSettles = 8.0;
+    constexpr double kSettledSeconds = 20.0;
+    const sim::WorldDef world{{0.0, -kGravity}, kSettledSeconds, kDragSettles};
+    const std::array<NamedMethod, 2> methods{
+        {{"exact, 1e-9", sim::exact_solver(1e-9)}, {"rope, order 4", sim::rope_solver(4)}}};
+    for (const HangingChain& row : kHangingChains) {
+        const AccuracyRow named =
+            named_row("R6", fmt::format("N = {}", row.links), "tension relative, lowest point / span");
+        const auto error_of = [&](Probe& probe) {
+            probe.go(kSettledSeconds);
+            const double pull = probe.figures().loads.value_or(sim::Loads{}).pin_force_n / kGravity;
+            const double half_weight = 0.5 * (row.links - 1);
+            const double tension = std::sqrt(std::max(0.0, pull * pull - half_weight * half_weight));
+            const auto& y_m = probe.state().y_m;
+            const double lowest_m = *std::min_element(y_m.begin(), y_m.end());
+            return std::max(std::abs(tension / row.tension_over_weight - 1.0),
+                            std::abs(lowest_m - row.lowest_m));
+        };
+        add_probe_rows(named, slack_rope(row.links), world, methods, kSettledSeconds, error_of, rows);
     }
 }
 
 void add_r7(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
-    struct Row {
-        int links;
-        std::array<double, 3> times_s;  ///< at which the tip has fallen .25, .5, .75 m
-    };
-    for (const Row& row : {Row{21, {.2261503, .3137222, .3707585}}, Row{41, {.2242086, .3088361, .3646133}},
-                           Row{81, {.2226169, .3062475, .3606003}}}) {
-        for (const Method& method : {Method{"exact, 1e-9", exact_solver(1e-9)},
-                                     Method{"rope, order 8", rope_solver(8, 1.0 / 4000.0)}}) {
-            AccuracyRow named;
-            named.reference = "R7";
-            named.title = fmt::format("{} links", row.links);
-            named.quantity = "times of the fall, relative";
-            named.method = method.name;
-            add_row(
-                named,
-                [&](AccuracyRow& filled) {
-                    constexpr double kNear = 1e-4;  // s; the speed is that of the tip around the time
-                    Probe probe(folded_rope(row.links), sim::WorldDef{}, method.solver);
-                    for (std::size_t k = 0; k < 3; ++k) {
-                        const double time_s = row.times_s[k];
-                        probe.go(time_s - kNear);
-                        const double before_m = probe.tip_m().y;
-                        probe.go(time_s);
-                        const double there_m = probe.tip_m().y + 0.25 * static_cast<double>(k + 1);
-                        probe.go(time_s + kNear);
-                        const double speed_m_s = (probe.tip_m().y - before_m) / (2.0 * kNear);
-                        filled.error = std::max(filled.error, std::abs(there_m / speed_m_s) / time_s);
-                    }
-                    filled.wall_ms = 1e3 * probe.wall_s();
-                    filled.ms_per_simulated_s = filled.wall_ms / row.times_s[2];
-                },
-                rows);
-        }
+    const std::array<NamedMethod, 2> methods{
+        {{"exact, 1e-9", sim::exact_solver(1e-9)}, {"rope, order 8", sim::rope_solver(8, 1.0 / 4000.0)}}};
+    for (const FoldedChain& row : kFoldedChains) {
+        const AccuracyRow named =
+            named_row("R7", fmt::format("{} links", row.links), "times of the fall, relative");
+        const auto error_of = [&](Probe& probe) {
+            constexpr double kNear = 1e-4;  // s; the speed is that of the tip around the time
+            double largest = 0.0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double time_s = row.times_s[k];
+                probe.go(time_s - kNear);
+                const double before_m = probe.tip_m().y;
+                probe.go(time_s);
+                const double there_m = probe.tip_m().y + 0.25 * static_cast<double>(k + 1);
+                probe.go(time_s + kNear);
+                const double speed_m_s = (probe.tip_m().y - before_m) / (2.0 * kNear);
+                largest = std::max(largest, std::abs(there_m / speed_m_s) / time_s);
+            }
+            return largest;
+        };
+        add_probe_rows(named, folded_rope(row.links), sim::WorldDef{}, methods, row.times_s[2], error_of,
+                       rows);
     }
 }
 
 void add_r8(const StudyDef& def, std::vector<AccuracyRow>& rows) {
     const Problem problem = spinning_chain().subject.problem;
-    AccuracyRow named;
-    named.reference = "R8";
-    named.title = "N = 10, 3 / s, 10 s";
-    named.quantity = "position / L";
-    add_auto_row(named, problem, 1e-6, study_timing(def.quick), rows);
-    add_problem_rows(named, problem, exact_solver(1e-9), "exact, 1e-9", study_timing(def.quick), rows);
-    add_problem_rows(named, problem, rope_solver(8), "rope, order 8", study_timing(def.quick), rows);
+    AccuracyRow named = named_row("R8", "N = 10, 3 / s, 10 s", "position / L");
+    const std::array<NamedMethod, 2> methods{
+        {{"exact, 1e-9", sim::exact_solver(1e-9)}, {"rope, order 8", sim::rope_solver(8)}}};
+    add_problem_rows(named, problem, methods, study_timing(def.quick), rows);
     named.quantity = "largest tension, relative";
-    for (const Method& method :
-         {Method{"exact, 1e-9", exact_solver(1e-9)}, Method{"rope, order 8", rope_solver(8)}}) {
-        named.method = method.name;
-        add_row(
-            named,
-            [&](AccuracyRow& filled) {
-                constexpr double kTension = 3.0 * 3.0 * 0.1 * 55.0;  // m omega^2 a (1 + ... + 10)
-                Probe probe(problem.ropes.front(), problem.world, method.solver);
-                probe.go_by_frames(10.0);
-                const double tension_n =
-                    probe.diagnostics().largest.loads.value_or(sim::Loads{}).largest_tension_n;
-                filled.error = std::abs(tension_n / kTension - 1.0);
-                filled.wall_ms = 1e3 * probe.wall_s();
-                filled.ms_per_simulated_s = filled.wall_ms / 10.0;
-            },
-            rows);
-    }
+    const auto error_of = [](Probe& probe) {
+        constexpr double kTension = 3.0 * 3.0 * 0.1 * 55.0;  // m omega^2 a (1 + ... + 10)
+        probe.go_by_frames(10.0);
+        const double tension_n = probe.diagnostics().largest.loads.value_or(sim::Loads{}).largest_tension_n;
+        return std::abs(tension_n / kTension - 1.0);
+    };
+    add_probe_rows(named, problem.ropes.front(), problem.world, methods, 10.0, error_of, rows);
 }
 
 void add_r11(const StudyDef& def, std::vector<AccuracyRow>& rows) {
@@ -234,17 +164,13 @@ void add_r11(const StudyDef& def, std::vector<AccuracyRow>& rows) {
         }
         return false;
     };
-    AccuracyRow named;
-    named.reference = "R11";
-    named.title = "40 particles, tip at 1, 2, 5 and 10 s";
-    named.quantity = "tip / L";
-    add_auto_row(named, problem, 1e-6, study_timing(def.quick), rows);
-    add_problem_rows(named, problem, exact_solver(1e-9), "exact, 1e-9", study_timing(def.quick), rows);
-    add_problem_rows(named, problem, exact_solver(1e-13), "exact, 1e-13", study_timing(def.quick), rows);
-    add_problem_rows(named, problem, rope_solver(8, 1.0 / 600.0), "rope, order 8", study_timing(def.quick),
-                     rows);
-    add_problem_rows(named, problem, relaxation_solver(1.0 / 960.0, 1, 16), "relaxation, 16 sweeps, 1/960 s",
-                     study_timing(def.quick), rows);
+    const AccuracyRow named = named_row("R11", "40 particles, tip at 1, 2, 5 and 10 s", "tip / L");
+    const std::array<NamedMethod, 4> methods{
+        {{"exact, 1e-9", sim::exact_solver(1e-9)},
+         {"exact, 1e-13", sim::exact_solver(1e-13)},
+         {"rope, order 8", sim::rope_solver(8, 1.0 / 600.0)},
+         {"relaxation, 16 sweeps, 1/960 s", sim::relaxation_solver(1.0 / 960.0, 1, 16)}}};
+    add_problem_rows(named, problem, methods, study_timing(def.quick), rows);
 }
 
 }  // namespace

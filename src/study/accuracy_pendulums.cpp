@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "corda/study/accuracy.hpp"
-#include "corda/study/probe.hpp"
+#include "corda/study/pendulum.hpp"
 #include "corda/study/problems.hpp"
 #include "corda/study/ropes.hpp"
 #include "corda/study/sweep.hpp"
@@ -19,77 +19,46 @@ constexpr double kGravity = 9.81;
 
 void add_r1(const StudyDef& def, std::vector<AccuracyRow>& rows) {
     const Problem problem = a01_pendulum().subject.problem;
-    const AccuracyRow named{"R1", "2000 s", "position / L", {}, {}, {}, {}, {}, {}};
-    add_auto_row(named, problem, 1e-6, study_timing(def.quick), rows);
-    add_problem_rows(named, problem, exact_solver(1e-9), "exact, 1e-9", study_timing(def.quick), rows);
-    add_problem_rows(named, problem, exact_solver(1e-13), "exact, 1e-13", study_timing(def.quick), rows);
-    add_problem_rows(named, problem, rope_solver(8, 1.0 / 100.0), "rope, order 8", study_timing(def.quick),
-                     rows);
-}
-
-struct Method {
-    const char* name = "";
-    sim::SolverDef solver;
-};
-
-std::array<Method, 2> tight_methods() {
-    return {{{"exact, 1e-13", exact_solver(1e-13)}, {"rope, order 8", rope_solver(8)}}};
+    const AccuracyRow named = named_row("R1", "2000 s", "position / L");
+    const std::array<NamedMethod, 3> methods{{{"exact, 1e-9", sim::exact_solver(1e-9)},
+                                              {"exact, 1e-13", sim::exact_solver(1e-13)},
+                                              {"rope, order 8", sim::rope_solver(8, 1.0 / 100.0)}}};
+    add_problem_rows(named, problem, methods, study_timing(def.quick), rows);
 }
 
 /// A relative error of a time at which the tip passes under the pin at a speed: from where it is then.
 void add_passage(const AccuracyRow& named, const sim::RopeDef& rope, double time_s, double speed_m_s,
                  std::vector<AccuracyRow>& rows) {
-    for (const Method& method : tight_methods()) {
-        AccuracyRow row = named;
-        row.method = method.name;
-        sim::SolverDef solver = method.solver;
-        if (solver.method == sim::Method::kRope) solver.step_s = time_s / std::ceil(400.0 * time_s);
-        add_row(
-            row,
-            [&](AccuracyRow& filled) {
-                Probe probe(rope, sim::WorldDef{}, solver);
-                probe.go(time_s);
-                filled.error = std::abs(probe.tip_m().x) / (speed_m_s * time_s);
-                filled.wall_ms = 1e3 * probe.wall_s();
-                filled.ms_per_simulated_s = filled.wall_ms / time_s;
-            },
-            rows);
-    }
+    const std::array<NamedMethod, 2> methods{
+        {{"exact, 1e-13", sim::exact_solver(1e-13)},
+         {"rope, order 8", sim::rope_solver(8, time_s / std::ceil(400.0 * time_s))}}};
+    const auto error_of = [&](Probe& probe) {
+        probe.go(time_s);
+        return std::abs(probe.tip_m().x) / (speed_m_s * time_s);
+    };
+    add_probe_rows(named, rope, sim::WorldDef{}, methods, time_s, error_of, rows);
 }
 
 void add_r2(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
-    struct Row {
-        double angle_deg;
-        double ratio;  ///< T / T0
-    };
-    constexpr double kPeriod0Seconds = 2.006066680710647;
-    for (const Row& row :
-         {Row{10, 1.0019071881432166}, Row{45, 1.0399733431968039}, Row{90, 1.1803405990160962},
-          Row{120, 1.3728805006183502}, Row{150, 1.762203729503756}, Row{170, 2.4393627196738841},
-          Row{179, 3.9010651603890857}, Row{179.9, 5.3668671090259463}, Row{179.99, 6.832737338014762}}) {
+    for (const SwingPeriod& row : kSwingPeriods) {
         const double speed_m_s =
             std::sqrt(2.0 * kGravity * (1.0 - std::cos(row.angle_deg * std::numbers::pi / 180.0)));
-        AccuracyRow named;
-        named.reference = "R2";
-        named.title = fmt::format("{:g} deg", row.angle_deg);
-        named.quantity = row.angle_deg > 175 ? "period, relative, near the top" : "period, relative";
+        const AccuracyRow named =
+            named_row("R2", fmt::format("{:g} deg", row.angle_deg),
+                      row.angle_deg > 175 ? "period, relative, near the top" : "period, relative");
         // A quarter of a period after the start and a whole one after that.
-        add_passage(named, straight_rope(1, 1.0, row.angle_deg), 1.25 * row.ratio * kPeriod0Seconds,
+        add_passage(named, straight_rope(1, 1.0, row.angle_deg), 1.25 * row.ratio * kSmallSwingSeconds,
                     speed_m_s, rows);
     }
-    constexpr double kTurnSeconds = 1.0578477230355216;
     sim::RopeDef rope = straight_rope(1, 1.0, 0.0);
     rope.velocity_m_s[1] = {std::sqrt(6.0 * kGravity), 0.0};
-    AccuracyRow named;
-    named.reference = "R2";
-    named.title = "circulating";
-    named.quantity = "period, relative";
-    add_passage(named, rope, 3.0 * kTurnSeconds, std::sqrt(6.0 * kGravity), rows);
+    const AccuracyRow named = named_row("R2", "circulating", "period, relative");
+    add_passage(named, rope, 3.0 * kFullTurnSeconds, std::sqrt(6.0 * kGravity), rows);
 }
 
 /// When relaxation with all of its bars converged gets to the vertical, in s.
 double quarter_period_s(int links, double step_s, AccuracyRow& row) {
-    const sim::SolverDef solver = relaxation_solver(step_s, 7, 1000);
+    const sim::SolverDef solver = sim::relaxation_solver(step_s, 7, 1000);
     Probe probe(straight_rope(links, 1.0, 90.0), sim::WorldDef{}, solver);
     double before_m = 1.0;
     for (int k = 1; k * step_s < 1.0; ++k) {
@@ -103,17 +72,10 @@ double quarter_period_s(int links, double step_s, AccuracyRow& row) {
 }
 
 void add_r3(const StudyDef& def, std::vector<AccuracyRow>& rows) {
-    struct Row {
-        int links;
-        double period_s;
-    };
-    for (const Row& rod : {Row{2, 2.161534078824117}, Row{5, 2.027698701742412}, Row{10, 1.981078706687632},
-                           Row{20, 1.957352357296146}, Row{50, 1.942977482042899}}) {
+    for (const RodPeriod& rod : kRodPeriods) {
         if (def.quick && rod.links > 10) continue;
-        AccuracyRow row;
-        row.reference = "R3";
-        row.title = fmt::format("{} masses from the horizontal, step 1/2000 s", rod.links);
-        row.quantity = "period, relative";
+        AccuracyRow row = named_row(
+            "R3", fmt::format("{} masses from the horizontal, step 1/2000 s", rod.links), "period, relative");
         row.method = "relaxation, 7 n bars, 1000 sweeps";
         add_row(
             row,
@@ -126,42 +88,29 @@ void add_r3(const StudyDef& def, std::vector<AccuracyRow>& rows) {
     }
 }
 
-/// x_n - x_0 = (h^2 f / (m delta)) [n - (1 - (1 - delta)^n) / delta].
-double damped_fall_m(double mass_kg, double step_s, int n, double delta, double force_n) {
-    const long double d = delta;
-    const long double h = step_s;
-    return static_cast<double>(h * h * force_n / (mass_kg * d) * (n - (1.0L - std::pow(1.0L - d, n)) / d));
-}
-
 void add_r10(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
     constexpr double kStepSeconds = 1.0 / 60.0;
     constexpr double kForceNewtons = -9.8;
     for (const double delta : {0.001, 0.01, 0.1}) {
-        AccuracyRow row;
-        row.reference = "R10";
-        row.title = fmt::format("delta {:g}, 10 s", delta);
-        row.quantity = "fall, relative";
-        row.method = "relaxation";
-        add_row(
-            row,
-            [&](AccuracyRow& filled) {
-                sim::RopeDef pair = rope_through({{0.0, 0.0}, {1.0, 0.0}});
-                pair.pinned = {};
-                sim::SolverDef solver = relaxation_solver(kStepSeconds, 1, 1);
-                solver.delta = delta;
-                solver.force_n = sim::Vec2{0.0, kForceNewtons};
-                Probe probe(pair, sim::WorldDef{}, solver);
-                for (int n = 1; n <= 600; ++n) {
-                    probe.go(n * kStepSeconds);
-                    // The first step is Euler's and does not fall.
-                    if (n == 1) continue;
-                    const double fall_m = damped_fall_m(1.0, kStepSeconds, n, delta, kForceNewtons);
-                    filled.error = std::max(filled.error, std::abs(probe.tip_m().y / fall_m - 1.0));
-                }
-                filled.wall_ms = 1e3 * probe.wall_s();
-                filled.ms_per_simulated_s = filled.wall_ms / 10.0;
-            },
-            rows);
+        const AccuracyRow row = named_row("R10", fmt::format("delta {:g}, 10 s", delta), "fall, relative");
+        sim::RopeDef pair = rope_through({{0.0, 0.0}, {1.0, 0.0}});
+        pair.pinned = {};
+        sim::SolverDef solver = sim::relaxation_solver(kStepSeconds, 1, 1);
+        solver.delta = delta;
+        solver.force_n = sim::Vec2{0.0, kForceNewtons};
+        const auto error_of = [&](Probe& probe) {
+            double largest = 0.0;
+            for (int n = 1; n <= 600; ++n) {
+                probe.go(n * kStepSeconds);
+                // The first step is Euler's and does not fall.
+                if (n == 1) continue;
+                const double fall_m = damped_fall_m(1.0, kStepSeconds, n, delta, kForceNewtons);
+                largest = std::max(largest, std::abs(probe.tip_m().y / fall_m - 1.0));
+            }
+            return largest;
+        };
+        const std::array<NamedMethod, 1> methods{{{"relaxation", solver}}};
+        add_probe_rows(row, pair, sim::WorldDef{}, methods, 10.0, error_of, rows);
     }
 }
 

@@ -35,10 +35,6 @@ struct Findings {
     double difference_under_gravity = 0.0;
 };
 
-Cell cell(const std::optional<double>& value) {
-    return value ? Cell(*value) : Cell();
-}
-
 double bars_of(const SwingDef& def) {
     return static_cast<double>(
         sim::bar_count(static_cast<std::uint64_t>(def.particles), static_cast<std::uint64_t>(def.reach)));
@@ -102,7 +98,8 @@ Table settling_table(const Findings& findings) {
                      {"relaxation_settles_s", "relaxation, 7 n bars [s]"},
                      {"rope_settles_s", "true rope with that drag [s]"}};
     for (const Settling& row : findings.settling) {
-        table.rows.push_back({row.delta, row.step_s, row.drag_1_s, cell(row.relaxation_s), cell(row.rope_s)});
+        table.rows.push_back(
+            {row.delta, row.step_s, row.drag_1_s, cell_of(row.relaxation_s), cell_of(row.rope_s)});
     }
     table.note = fmt::format(
         "Until no particle is farther than a hundredth of the length from the vertical again; empty where "
@@ -177,12 +174,12 @@ void add_settling(const Shared& findings, bool is_quick, std::vector<Job>& jobs)
                                         {0.005, 1.0 / 60.0},
                                         {0.02, 1.0 / 60.0}}) {
         jobs.push_back({fmt::format("settling, delta {:g}", delta), [=, delta = delta, step_s = step_s] {
-                            sim::SolverDef method = relaxation_solver(step_s, 7, 1);
+                            sim::SolverDef method = sim::relaxation_solver(step_s, 7, 1);
                             method.delta = delta;
                             const double drag_1_s = -std::log1p(-delta) / step_s;
                             findings->settling.push_back(
                                 {delta, step_s, drag_1_s, settling_time_s(method, 0.0, findings->watched_s),
-                                 settling_time_s(exact_solver(1e-8), drag_1_s, findings->watched_s)});
+                                 settling_time_s(sim::exact_solver(1e-8), drag_1_s, findings->watched_s)});
                         }});
     }
 }

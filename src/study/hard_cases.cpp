@@ -65,8 +65,8 @@ Chapter chapter_of(const Cases& shared) {
 
 ChapterWork hard_cases_work(const StudyDef& def) {
     const auto shared = std::make_shared<Cases>();
-    shared->cases = hard_motions();
-    for (HardCase& hard : hard_sizes()) shared->cases.push_back(std::move(hard));
+    add_hard_motions(shared->cases);
+    add_hard_sizes(shared->cases);
     ChapterWork work;
     for (std::size_t k = 0; k < shared->cases.size(); ++k) {
         work.jobs.push_back(

@@ -26,9 +26,9 @@ struct HardCase {
 };
 
 /// Motions: payloads, releases, throws, inverted and folded ropes, unequal links and masses.
-[[nodiscard]] std::vector<HardCase> hard_motions();
+void add_hard_motions(std::vector<HardCase>& cases);
 /// Sizes, steps and inputs: long ropes, long runs, steps of any size, refusals, frame rates, repeated runs.
-[[nodiscard]] std::vector<HardCase> hard_sizes();
+void add_hard_sizes(std::vector<HardCase>& cases);
 
 /// The chapter "Hard cases".
 [[nodiscard]] ChapterWork hard_cases_work(const StudyDef& def);

@@ -34,12 +34,12 @@ void add_payloads(std::vector<HardCase>& cases) {
                     fmt::format("payload {:.0e} kg, {:g} deg, N = {}, 10 s", payload_kg, angle_deg, links);
                 // A light rope under a heavy load moves some 1e4 times a second.
                 const bool is_stiff = payload_kg > 1e5;
-                cases.push_back({name, "exact", "strain < 1e-9, energy error < 1e-6", is_stiff, [rope] {
-                                     return watch(rope, exact_solver(1e-7), kDurationSeconds, 1e-9, 1e-6);
-                                 }});
+                cases.push_back(
+                    {name, "exact", "strain < 1e-9, energy error < 1e-6", is_stiff,
+                     [rope] { return watch(rope, sim::exact_solver(1e-7), kDurationSeconds, 1e-9, 1e-6); }});
                 cases.push_back(
                     {name, "rope, order 6", "strain < 1e-9, energy error < 1e-3", is_stiff,
-                     [rope] { return watch(rope, rope_solver(6), kDurationSeconds, 1e-9, 1e-3); }});
+                     [rope] { return watch(rope, sim::rope_solver(6), kDurationSeconds, 1e-9, 1e-3); }});
             }
         }
     }
@@ -56,15 +56,15 @@ sim::RopeDef unequal_rope(double angle_deg) {
 void add_releases(std::vector<HardCase>& cases) {
     cases.push_back(
         {"undamped from the horizontal, N = 50, 60 s", "exact, 1e-9", "energy error < 1e-6", true,
-         [] { return watch(straight_rope(50, 1.0, 90.0), exact_solver(1e-9), 60.0, 1e-9, 1e-6); }});
+         [] { return watch(straight_rope(50, 1.0, 90.0), sim::exact_solver(1e-9), 60.0, 1e-9, 1e-6); }});
     for (const double angle_deg : {45.0, 90.0}) {
         const std::string name = fmt::format("links 1:100, {:g} deg, 10 s", angle_deg);
         constexpr const char* kBoth = "strain < 1e-12, energy error < 1e-8";
         const sim::RopeDef rope = unequal_rope(angle_deg);
         cases.push_back({name, "exact", kBoth, false,
-                         [rope] { return watch(rope, exact_solver(1e-9), 10.0, 1e-12, 1e-8); }});
+                         [rope] { return watch(rope, sim::exact_solver(1e-9), 10.0, 1e-12, 1e-8); }});
         cases.push_back({name, "rope, order 8", kBoth, true,
-                         [rope] { return watch(rope, rope_solver(8), 10.0, 1e-12, 1e-8); }});
+                         [rope] { return watch(rope, sim::rope_solver(8), 10.0, 1e-12, 1e-8); }});
     }
 }
 
@@ -113,29 +113,31 @@ Outcome mixed_masses(const sim::SolverDef& solver) {
 void add_throws_and_masses(std::vector<HardCase>& cases) {
     constexpr const char* kRelative = "relative energy error < 1e-6";
     cases.push_back({"tip thrown at 100 m/s, 2 s", "exact", kRelative, false,
-                     [] { return throw_tip(exact_solver(1e-9)); }});
+                     [] { return throw_tip(sim::exact_solver(1e-9)); }});
     cases.push_back({"tip thrown at 100 m/s, 2 s", "rope, order 8", kRelative, true,
-                     [] { return throw_tip(rope_solver(8)); }});
+                     [] { return throw_tip(sim::rope_solver(8)); }});
     for (const double mass_kg : {1e-6, 1e6}) {
         const std::string name = fmt::format("all masses {:.0e} kg", mass_kg);
         constexpr const char* kWorks = "works: as 1 kg";
         cases.push_back(
-            {name, "exact", kWorks, false, [=] { return same_masses(exact_solver(1e-9), mass_kg); }});
-        cases.push_back(
-            {name, "rope, order 4", kWorks, false, [=] { return same_masses(rope_solver(4), mass_kg); }});
+            {name, "exact", kWorks, false, [=] { return same_masses(sim::exact_solver(1e-9), mass_kg); }});
+        cases.push_back({name, "rope, order 4", kWorks, false,
+                         [=] { return same_masses(sim::rope_solver(4), mass_kg); }});
         cases.push_back({name, "relaxation", kWorks, false,
-                         [=] { return same_masses(relaxation_solver(1.0 / 960.0, 1, 4), mass_kg); }});
+                         [=] { return same_masses(sim::relaxation_solver(1.0 / 960.0, 1, 4), mass_kg); }});
     }
     constexpr const char* kInTurn = "masses 1e-6 and 1e6 kg in turn, 0.02 s";
     constexpr const char* kBoth = "strain < 1e-9, energy error < 1e-6";
-    cases.push_back({kInTurn, "exact", kBoth, true, [] { return mixed_masses(exact_solver(1e-6)); }});
-    cases.push_back({kInTurn, "rope, order 8", kBoth, true, [] { return mixed_masses(rope_solver(8)); }});
+    cases.push_back({kInTurn, "exact", kBoth, true, [] { return mixed_masses(sim::exact_solver(1e-6)); }});
+    cases.push_back(
+        {kInTurn, "rope, order 8", kBoth, true, [] { return mixed_masses(sim::rope_solver(8)); }});
     cases.push_back({"mass 0 of a free particle", "all", "refused", false, {}});
 }
 
 Outcome nearly_inverted(const sim::SolverDef& solver) {
-    constexpr double kQuarterSeconds = 0.25 * 6.832737338014762 * 2.006066680710647;  // R2, 179.99 deg
-    constexpr double kAngle = 179.99;
+    constexpr double kAngle = kSwingPeriods.back().angle_deg;
+    static_assert(kAngle == 179.99);
+    constexpr double kQuarterSeconds = 0.25 * kSwingPeriods.back().ratio * kSmallSwingSeconds;
     const double speed_m_s = std::sqrt(2.0 * 9.81 * (1.0 - std::cos(kAngle * std::numbers::pi / 180.0)));
     Probe probe(straight_rope(1, 1.0, kAngle), sim::WorldDef{}, solver);
     probe.go(kQuarterSeconds);
@@ -159,30 +161,28 @@ void add_inverted(std::vector<HardCase>& cases) {
     constexpr const char* kFolded = "folded by 180 deg (R7, N = 21), 1 s";
     constexpr const char* kEnergy = "strain < 1e-9, energy error < 1e-6";
     cases.push_back({kFolded, "exact", kEnergy, false,
-                     [] { return watch(folded_rope(21), exact_solver(1e-9), 1.0, 1e-9, 1e-6); }});
+                     [] { return watch(folded_rope(21), sim::exact_solver(1e-9), 1.0, 1e-9, 1e-6); }});
     cases.push_back({kFolded, "rope, order 8", kEnergy, false,
-                     [] { return watch(folded_rope(21), rope_solver(8), 1.0, 1e-9, 1e-6); }});
+                     [] { return watch(folded_rope(21), sim::rope_solver(8), 1.0, 1e-9, 1e-6); }});
     constexpr const char* kR2 = "R2's period to 1e-6";
     constexpr const char* kName = "pendulum from 179.99 deg";
-    cases.push_back({kName, "exact", kR2, false, [] { return nearly_inverted(exact_solver(1e-13)); }});
-    cases.push_back(
-        {kName, "rope, order 8", kR2, false, [] { return nearly_inverted(rope_solver(8, 1.0 / 480.0)); }});
+    cases.push_back({kName, "exact", kR2, false, [] { return nearly_inverted(sim::exact_solver(1e-13)); }});
+    cases.push_back({kName, "rope, order 8", kR2, false,
+                     [] { return nearly_inverted(sim::rope_solver(8, 1.0 / 480.0)); }});
     constexpr const char* kStays = "stays";
-    cases.push_back(
-        {"exactly inverted, N = 10", "exact", kStays, false, [] { return inverted(exact_solver(1e-9)); }});
+    cases.push_back({"exactly inverted, N = 10", "exact", kStays, false,
+                     [] { return inverted(sim::exact_solver(1e-9)); }});
     cases.push_back({"exactly inverted, N = 10", "rope, order 4", kStays, false,
-                     [] { return inverted(rope_solver(4)); }});
+                     [] { return inverted(sim::rope_solver(4)); }});
 }
 
 }  // namespace
 
-std::vector<HardCase> hard_motions() {
-    std::vector<HardCase> cases;
+void add_hard_motions(std::vector<HardCase>& cases) {
     add_payloads(cases);
     add_releases(cases);
     add_throws_and_masses(cases);
     add_inverted(cases);
-    return cases;
 }
 
 }  // namespace corda::study

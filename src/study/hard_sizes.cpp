@@ -58,14 +58,14 @@ SizeRun run_slices(AnySolver& solver, const sim::System& system, double duration
 SizeRun run_exact(int links, double duration_s) {
     const sim::RopeDef rope = straight_rope(links, 1.0, 45.0);
     const sim::System system = sim::build_system({&rope, 1}, 1);
-    sim::Exact solver(system, sim::WorldDef{}, exact_solver(1e-7), 1.0 / 60.0);
+    sim::Exact solver(system, sim::WorldDef{}, sim::exact_solver(1e-7), 1.0 / 60.0);
     return run_slices(solver, system, duration_s, [&] { return solver.steps() + solver.rejected_steps(); });
 }
 
 SizeRun run_rope(int links, double duration_s) {
     const sim::RopeDef rope = straight_rope(links, 1.0, 45.0);
     const sim::System system = sim::build_system({&rope, 1}, 1);
-    sim::Rattle solver(system, sim::WorldDef{}, rope_solver(2), 1.0 / 60.0);
+    sim::Rattle solver(system, sim::WorldDef{}, sim::rope_solver(2), 1.0 / 60.0);
     return run_slices(solver, system, duration_s, [&] { return solver.parts(); });
 }
 
@@ -99,8 +99,8 @@ void add_sizes(std::vector<HardCase>& cases) {
 }
 
 Outcome long_step(double step_s) {
-    constexpr sim::Vec2 kTip{0.53700529500088304879, -0.81916411877801124437};  // R5, N = 20, 45 deg, 2 s
-    Probe probe(straight_rope(20, 1.0, 45.0), sim::WorldDef{}, rope_solver(8, step_s));
+    constexpr sim::Vec2 kTip = released_tip_m(20, 45.0, 2.0);
+    Probe probe(straight_rope(20, 1.0, 45.0), sim::WorldDef{}, sim::rope_solver(8, step_s));
     probe.go(2.0);
     const double error_m = std::hypot(probe.tip_m().x - kTip.x, probe.tip_m().y - kTip.y);
     return {fmt::format("divided; tip off by {:.1e} m after 2 s", error_m), error_m < 1e-6};
@@ -108,7 +108,7 @@ Outcome long_step(double step_s) {
 
 Outcome short_step() {
     constexpr double kSeconds = 1e-5;
-    Probe probe(straight_rope(20, 1.0, 90.0), sim::WorldDef{}, rope_solver(4, 1e-9));
+    Probe probe(straight_rope(20, 1.0, 90.0), sim::WorldDef{}, sim::rope_solver(4, 1e-9));
     probe.go(kSeconds);
     const double error_m = std::abs(probe.tip_m().y + 0.5 * 9.81 * kSeconds * kSeconds);
     return {fmt::format("{} steps; fall off by {:.1e} m", probe.diagnostics().steps, error_m),
@@ -120,7 +120,7 @@ Outcome zero_length() {
     constexpr double kStepSeconds = 0.5;
     sim::RopeDef rope = rope_through({{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.0}});
     rope.velocity_m_s[1] = {-1.0 / kStepSeconds, 0.0};
-    Probe probe(rope, sim::WorldDef{}, relaxation_solver(kStepSeconds, 2, 1));
+    Probe probe(rope, sim::WorldDef{}, sim::relaxation_solver(kStepSeconds, 2, 1));
     for (int k = 1; k <= 100; ++k) probe.go(k * kStepSeconds);
     const bool is_finite = std::isfinite(probe.tip_m().x) && std::isfinite(probe.tip_m().y);
     return {is_finite ? "goes on, all numbers finite" : "a number that is none", is_finite};
@@ -152,9 +152,9 @@ struct MethodOf {
 };
 
 std::vector<MethodOf> every_method() {
-    return {{"relaxation", relaxation_solver(1.0 / 960.0, 1, 1)},
-            {"rope, order 8", rope_solver(8)},
-            {"exact", exact_solver(1e-9)}};
+    return {{"relaxation", sim::relaxation_solver(1.0 / 960.0, 1, 1)},
+            {"rope, order 8", sim::rope_solver(8)},
+            {"exact", sim::exact_solver(1e-9)}};
 }
 
 /// Largest distance of a particle at common times of runs at 24, 30, 60 and 120 frames a second.
@@ -206,9 +206,9 @@ void add_bits(std::vector<HardCase>& cases) {
             {"two runs", method.name, "the same bytes", false, [solver] { return same_bits(solver, {}); }});
     }
     cases.push_back({"seven-neighbour bars", "rope", "refused with the reason", false,
-                     [] { return refuses(rope_solver(4)); }});
+                     [] { return refuses(sim::rope_solver(4)); }});
     cases.push_back({"seven-neighbour bars", "exact", "refused with the reason", false,
-                     [] { return refuses(exact_solver(1e-9)); }});
+                     [] { return refuses(sim::exact_solver(1e-9)); }});
 }
 
 /// Cost of a step in the last tenth of a run that is damped to rest, over that in the first; the least of
@@ -240,7 +240,7 @@ Outcome damped(const sim::SolverDef& solver, double duration_s, double drag_1_s)
 Outcome many_steps(double steps) {
     constexpr double kStepSeconds = 1e-3;
     constexpr int kLooks = 20'000;
-    Probe probe(straight_rope(1, 1.0, 90.0), sim::WorldDef{}, rope_solver(2, kStepSeconds));
+    Probe probe(straight_rope(1, 1.0, 90.0), sim::WorldDef{}, sim::rope_solver(2, kStepSeconds));
     double early = 0.0;
     for (int k = 1; k <= kLooks; ++k) {
         probe.go(std::round(steps * k / kLooks) * kStepSeconds);
@@ -255,12 +255,12 @@ void add_long_runs(std::vector<HardCase>& cases) {
     constexpr const char* kCost = "a step of the last tenth costs <= 1.2 times one of the first";
     constexpr const char* kDamped = "damped to rest, 1e6 steps, N = 20";
     cases.push_back({kDamped, "relaxation", kCost, true,
-                     [] { return damped(relaxation_solver(1.0 / 500.0, 7, 1), 2000.0, 5.0); }});
+                     [] { return damped(sim::relaxation_solver(1.0 / 500.0, 7, 1), 2000.0, 5.0); }});
     cases.push_back({kDamped, "rope, order 2", kCost, true,
-                     [] { return damped(rope_solver(2, 1.0 / 500.0), 2000.0, 5.0); }});
+                     [] { return damped(sim::rope_solver(2, 1.0 / 500.0), 2000.0, 5.0); }});
     // Steps of exact follow the motion: this is as many at rest.
     cases.push_back({"damped to rest, N = 20", "exact", kCost, true,
-                     [] { return damped(exact_solver(1e-7), 20'000.0, 3.0); }});
+                     [] { return damped(sim::exact_solver(1e-7), 20'000.0, 3.0); }});
     cases.push_back({"1e6 steps, N = 1", "rope, order 2", "energy error bounded, no trend", false,
                      [] { return many_steps(1e6); }});
     cases.push_back({"1e7 steps, N = 1", "rope, order 2", "energy error bounded, no trend", true,
@@ -269,13 +269,11 @@ void add_long_runs(std::vector<HardCase>& cases) {
 
 }  // namespace
 
-std::vector<HardCase> hard_sizes() {
-    std::vector<HardCase> cases;
+void add_hard_sizes(std::vector<HardCase>& cases) {
     add_sizes(cases);
     add_steps_and_inputs(cases);
     add_bits(cases);
     add_long_runs(cases);
-    return cases;
 }
 
 }  // namespace corda::study

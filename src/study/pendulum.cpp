@@ -42,4 +42,11 @@ long double rod_omega0_1_s(int particles, double spacing_m, double gravity_m_s2)
     return std::sqrt(gravity_m_s2 * first / (spacing_m * second));
 }
 
+double damped_fall_m(double mass_kg, double step_s, int steps, double delta, double force_n) {
+    const long double d = delta;
+    const long double h = step_s;
+    return static_cast<double>(h * h * force_n / (mass_kg * d) *
+                               (steps - (1.0L - std::pow(1.0L - d, steps)) / d));
+}
+
 }  // namespace corda::study

@@ -33,4 +33,8 @@ class Pendulum {
 /// pin on: omega0^2 = g sum r / sum r^2 (R3).
 [[nodiscard]] long double rod_omega0_1_s(int particles, double spacing_m, double gravity_m_s2);
 
+/// How far a particle has fallen after `steps` steps of relaxation from rest, in metres, with a share `delta`
+/// of its velocity lost a step, in closed form: (h^2 f / (m delta)) (n - (1 - (1 - delta)^n) / delta) (R10).
+[[nodiscard]] double damped_fall_m(double mass_kg, double step_s, int steps, double delta, double force_n);
+
 }  // namespace corda::study

@@ -93,9 +93,7 @@ BuiltInProblem spinning_chain() {
 }
 
 Problem released_problem(const ReleasedChain& row) {
-    sim::RopeDef rope = straight_rope(row.links, row.length_m, row.angle_deg);
-    rope.mass_kg.back() = row.tip_mass_kg;
-    Problem problem = problem_of(std::move(rope), row.time_s);
+    Problem problem = problem_of(released_rope(row), row.time_s);
     problem.truth = "PHYSICS section 4, R5";
     problem.reference = [row, last = problem.last_frame](std::int64_t k, sim::State& state) {
         if (k != last) return false;

@@ -12,6 +12,11 @@ namespace corda::study {
 /// A cell of a table: a number, a text, or nothing where a figure does not exist.
 using Cell = std::variant<std::monostate, double, std::string>;
 
+/// A number, or nothing.
+[[nodiscard]] inline Cell cell_of(const std::optional<double>& value) {
+    return value ? Cell(*value) : Cell();
+}
+
 /// A column of a table.
 struct Column {
     std::string key;    ///< of CSV and JSON: snake_case with its unit, "error_rms_over_length"

@@ -26,6 +26,12 @@ sim::RopeDef straight_rope(int links, double length_m, double angle_deg) {
     return rope_through(std::move(points_m));
 }
 
+sim::RopeDef released_rope(const ReleasedChain& row) {
+    sim::RopeDef rope = straight_rope(row.links, row.length_m, row.angle_deg);
+    rope.mass_kg.back() = row.tip_mass_kg;
+    return rope;
+}
+
 sim::RopeDef report_rope(int particles) {
     std::vector<sim::Vec2> points_m;
     for (int i = 0; i < particles; ++i) points_m.push_back({0.1 * i, -1.0 * i});

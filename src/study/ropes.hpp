@@ -1,6 +1,7 @@
 #pragma once
 
 #include "corda/sim/system.hpp"
+#include "corda/study/references.hpp"
 
 namespace corda::study {
 
@@ -10,6 +11,9 @@ namespace corda::study {
 /// `links` + 1 particles in a straight line of `length_m` from the origin, at `angle_deg` from straight down
 /// towards +x. Exactly horizontal at 90 degrees and exactly upright at 180.
 [[nodiscard]] sim::RopeDef straight_rope(int links, double length_m, double angle_deg);
+
+/// The rope of a row of R5.
+[[nodiscard]] sim::RopeDef released_rope(const ReleasedChain& row);
 
 /// The source report's start: a line of `particles` with step (0.1, -1) (PHYSICS sections 1 and 4, R11).
 [[nodiscard]] sim::RopeDef report_rope(int particles);

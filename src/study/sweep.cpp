@@ -69,7 +69,7 @@ void add_relaxation(const Problem& problem, bool is_quick, std::vector<SweepRun>
             const std::string label = fmt::format("relaxation, reach {}, sweeps {}", reach, sweeps);
             for (int halving = 0; halving <= kMostHalvings; halving += is_quick ? 2 : 1) {
                 const double step_s = std::ldexp(longest_step_s, -halving);
-                const sim::SolverDef solver = relaxation_solver(step_s, reach, sweeps);
+                const sim::SolverDef solver = sim::relaxation_solver(step_s, reach, sweeps);
                 if (halving > 0 && forecast_s(problem, solver, step_s) > longest_s) break;
                 runs.push_back({solver, label, step_s});
                 if (!refusal(problem, solver).empty()) break;
@@ -79,12 +79,12 @@ void add_relaxation(const Problem& problem, bool is_quick, std::vector<SweepRun>
 }
 
 void add_rope(const Problem& problem, bool is_quick, std::vector<SweepRun>& runs) {
-    const bool is_refused = !refusal(problem, rope_solver(2)).empty();
+    const bool is_refused = !refusal(problem, sim::rope_solver(2)).empty();
     const double longest_s = is_quick ? kLongestQuickRun : kLongestRun;
     for (const int order : {2, 4, 6, 8}) {
         const std::string label = fmt::format("rope, order {}", order);
         if (is_refused) {
-            runs.push_back({rope_solver(order), label, problem.frame_interval_s});
+            runs.push_back({sim::rope_solver(order), label, problem.frame_interval_s});
             continue;
         }
         const double parts = std::round(problem.frame_interval_s / rope_step_s(problem, order));
@@ -93,7 +93,7 @@ void add_rope(const Problem& problem, bool is_quick, std::vector<SweepRun>& runs
         for (int point = 0; point <= kMostHalvings * points_per_halving; ++point) {
             const double finer = std::exp2(static_cast<double>(point) / points_per_halving);
             const double step_s = problem.frame_interval_s / std::round(parts * finer);
-            const sim::SolverDef solver = rope_solver(order, step_s);
+            const sim::SolverDef solver = sim::rope_solver(order, step_s);
             if (point > 0 && forecast_s(problem, solver, step_s) > longest_s) break;
             if (order == 8 && finer > 4.0) break;
             if (order == 6 && finer > 16.0) break;
@@ -103,10 +103,10 @@ void add_rope(const Problem& problem, bool is_quick, std::vector<SweepRun>& runs
 }
 
 void add_exact(const Problem& problem, bool is_quick, std::vector<SweepRun>& runs) {
-    const bool is_refused = !refusal(problem, exact_solver(1e-9)).empty();
+    const bool is_refused = !refusal(problem, sim::exact_solver(1e-9)).empty();
     for (int digits = is_quick ? 1 : 0; digits <= 13; digits += is_quick ? 2 : 1) {
         const double tolerance = std::stod(fmt::format("1e-{}", digits));
-        runs.push_back({exact_solver(tolerance), "exact", tolerance});
+        runs.push_back({sim::exact_solver(tolerance), "exact", tolerance});
         if (is_refused) break;
     }
 }
@@ -319,10 +319,12 @@ Orders orders_of_methods() {
         for (const double rate : rates)
             orders.runs.push_back({problem, {solver(1.0 / rate), label, 1.0 / rate}});
     };
-    const auto rope = [](int order) { return [order](double step_s) { return rope_solver(order, step_s); }; };
+    const auto rope = [](int order) {
+        return [order](double step_s) { return sim::rope_solver(order, step_s); };
+    };
     for (const int sweeps : {1, 64}) {
         add(from_45, fmt::format("relaxation, reach 1, sweeps {}", sweeps), {1000, 2000, 4000, 8000},
-            [sweeps](double step_s) { return relaxation_solver(step_s, 1, sweeps); });
+            [sweeps](double step_s) { return sim::relaxation_solver(step_s, 1, sweeps); });
     }
     // Every step is one that the guard leaves whole. From 45 degrees order 8 is at rounding with all of them.
     add(from_45, "rope, order 2", {500, 1000, 2000, 4000}, rope(2));

@@ -76,7 +76,7 @@ std::vector<sim::State> true_swing(int particles, double mass_kg) {
     const sim::System system = system_of(def);
     sim::WorldDef world;
     world.gravity_m_s2 = {0.0, -kForceNewtons / mass_kg};
-    const auto solver = sim::make_solver(system, world, exact_solver(kTruthTolerance), kStepSeconds);
+    const auto solver = sim::make_solver(system, world, sim::exact_solver(kTruthTolerance), kStepSeconds);
     std::vector<sim::State> frames;
     sim::State state{0.0, system.x_m, system.y_m};
     for (std::int64_t k = 1; k <= frames_of(particles, mass_kg); ++k) {
@@ -90,7 +90,7 @@ SwingFigures watch_swing(const SwingDef& def, const std::vector<sim::State>& tru
     const sim::System system = system_of(def);
     const Pendulum rod = rod_of(def.particles, def.mass_kg);
     const double length_m = sim::length(0.1, 1.0) * (def.particles - 1);
-    sim::SolverDef method = relaxation_solver(kStepSeconds, def.reach, def.sweeps);
+    sim::SolverDef method = sim::relaxation_solver(kStepSeconds, def.reach, def.sweeps);
     method.force_n = sim::Vec2{0.0, -kForceNewtons};
     const auto solver = sim::make_solver(system, sim::WorldDef{}, method, kStepSeconds);
     const double start_j = solver->energy_j();
@@ -124,7 +124,7 @@ double updates_per_second(int particles, double shortest_s) {
     SwingDef def;
     def.particles = particles;
     const sim::System system = system_of(def);
-    sim::SolverDef method = relaxation_solver(kStepSeconds, def.reach, def.sweeps);
+    sim::SolverDef method = sim::relaxation_solver(kStepSeconds, def.reach, def.sweeps);
     method.force_n = sim::Vec2{0.0, -kForceNewtons};
     double best = 0.0;
     for (int attempt = 0; attempt < kTries; ++attempt) {
@@ -147,7 +147,7 @@ double difference_under_gravity(double mass_kg, double other_mass_kg) {
     SwingDef def;
     sim::WorldDef world;
     world.gravity_m_s2 = {0.0, -kForceNewtons};
-    const sim::SolverDef method = relaxation_solver(kStepSeconds, def.reach, def.sweeps);
+    const sim::SolverDef method = sim::relaxation_solver(kStepSeconds, def.reach, def.sweeps);
     def.mass_kg = mass_kg;
     const sim::System system = system_of(def);
     def.mass_kg = other_mass_kg;

@@ -90,12 +90,12 @@ struct TightRun {
 };
 
 TightRun tight_exact(double tolerance) {
-    return {exact_solver(tolerance), fmt::format("method exact at a tolerance of {:.0e}", tolerance)};
+    return {sim::exact_solver(tolerance), fmt::format("method exact at a tolerance of {:.0e}", tolerance)};
 }
 
 TightRun tight_rope(const Problem& problem, double share) {
     const double step_s = share * rope_step_s(problem, 8);
-    return {rope_solver(8, step_s), fmt::format("method rope of order 8 at a step of {:.3g} s", step_s)};
+    return {sim::rope_solver(8, step_s), fmt::format("method rope of order 8 at a step of {:.3g} s", step_s)};
 }
 
 }  // namespace
@@ -110,12 +110,12 @@ Problem facing(const Subject& subject, sim::Method method) {
 
 void find_truth(Subject& subject) {
     Problem& problem = subject.problem;
-    const std::string exact_refusal = refusal(problem, exact_solver(kTightTolerance));
-    const std::string rope_refusal = refusal(problem, rope_solver(8));
+    const std::string exact_refusal = refusal(problem, sim::exact_solver(kTightTolerance));
+    const std::string rope_refusal = refusal(problem, sim::rope_solver(8));
     const bool has_exact = exact_refusal.empty();
     const bool has_rope = rope_refusal.empty();
     if (!has_exact && !has_rope) {
-        sim::SolverDef relaxation = relaxation_solver(problem.frame_interval_s, 1, 1);
+        sim::SolverDef relaxation = sim::relaxation_solver(problem.frame_interval_s, 1, 1);
         if (!refusal(problem, relaxation).empty()) throw Error(ExitCode::kInvalidScene, exact_refusal);
         problem.truth =
             "none: no method can tell how this scene truly moves, so that no error of a position is given";
@@ -140,38 +140,12 @@ void find_truth(Subject& subject) {
 
 double rope_step_s(const Problem& problem, int order) {
     const sim::System system = sim::build_system(problem.ropes, problem.nets, 1);
-    return sim::Rattle(system, problem.world, rope_solver(order), problem.frame_interval_s).step_s();
+    return sim::Rattle(system, problem.world, sim::rope_solver(order), problem.frame_interval_s).step_s();
 }
 
 std::string refusal(const Problem& problem, const sim::SolverDef& solver) {
     const sim::System system = sim::build_system(problem.ropes, problem.nets, solver.reach);
     return sim::refusal(system, problem.world, solver, problem.frame_interval_s);
-}
-
-sim::SolverDef exact_solver(double tolerance) {
-    sim::SolverDef solver;
-    solver.method = sim::Method::kExact;
-    solver.reach = 1;
-    solver.tolerance = tolerance;
-    return solver;
-}
-
-sim::SolverDef rope_solver(int order, std::optional<double> step_s) {
-    sim::SolverDef solver;
-    solver.method = sim::Method::kRope;
-    solver.reach = 1;
-    solver.order = order;
-    solver.step_s = step_s;
-    return solver;
-}
-
-sim::SolverDef relaxation_solver(double step_s, int reach, int sweeps) {
-    sim::SolverDef solver;
-    solver.method = sim::Method::kRelaxation;
-    solver.step_s = step_s;
-    solver.reach = reach;
-    solver.sweeps = sweeps;
-    return solver;
 }
 
 }  // namespace corda::study

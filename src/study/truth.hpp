@@ -39,11 +39,4 @@ void find_truth(Subject& subject);
 /// Why a method cannot run a problem; empty where it can.
 [[nodiscard]] std::string refusal(const Problem& problem, const sim::SolverDef& solver);
 
-/// `exact` at a tolerance.
-[[nodiscard]] sim::SolverDef exact_solver(double tolerance);
-/// `rope` of an order, at a step or the one that it chooses.
-[[nodiscard]] sim::SolverDef rope_solver(int order, std::optional<double> step_s = std::nullopt);
-/// `relaxation` with weights in place of the report's constant force.
-[[nodiscard]] sim::SolverDef relaxation_solver(double step_s, int reach, int sweeps);
-
 }  // namespace corda::study

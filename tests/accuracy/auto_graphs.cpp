@@ -9,8 +9,8 @@
 #include "corda/scene/auto_plan.hpp"
 #include "corda/sim/planner.hpp"
 #include "corda/sim/simulation.hpp"
+#include "corda/study/ropes.hpp"
 #include "support/nets.hpp"
-#include "support/ropes.hpp"
 
 namespace corda::sim {
 namespace {
@@ -18,11 +18,7 @@ namespace {
 const FrameRate kFrames(Rational{60, 1});
 
 SolverDef fine_rope(double step_s) {
-    SolverDef solver;
-    solver.method = Method::kRope;
-    solver.order = 8;
-    solver.step_s = step_s;
-    return solver;
+    return rope_solver(8, step_s);
 }
 
 /// Largest distance between two runs at the frame times, in m.
@@ -66,7 +62,7 @@ TEST(AutoGraph, BoundIsTrueForANet) {
 }
 
 TEST(AutoGraph, ANetBesideARopeIsSolvedWithIt) {
-    const RopeDef rope = test::straight_rope(5, 1.0, 30.0);
+    const RopeDef rope = study::straight_rope(5, 1.0, 30.0);
     const NetDef net = test::leaning_net(3, 3, 0.3);
     expect_true_bound(build_system({&rope, 1}, {&net, 1}, 1), 1e-3, 30);
 }

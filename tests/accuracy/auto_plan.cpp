@@ -4,28 +4,35 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "corda/sim/planner.hpp"
-#include "support/released_chains.hpp"
+#include "corda/sim/simulation.hpp"
+#include "corda/study/references.hpp"
+#include "corda/study/ropes.hpp"
+#include "support/reference_files.hpp"
 
 namespace corda::sim {
 namespace {
+
+const FrameRate kFrames(Rational{60, 1});
+
+/// The plan for one rope, which has to be within `tolerance_m` up to a frame.
+Plan plan_of(const RopeDef& rope, double tolerance_m, std::int64_t last_frame) {
+    return plan_solver(build_system({&rope, 1}, 1), WorldDef{}, {tolerance_m, kFrames, last_frame});
+}
 
 class AutoBound : public testing::TestWithParam<std::tuple<std::size_t, double>> {};
 
 TEST_P(AutoBound, IsTrueUnderTheHorizon) {
     const auto [row, tolerance] = GetParam();
-    const test::ReleasedChain& chain = test::kReleasedChains[row];
-    const RopeDef rope = chain.rope();
+    const study::ReleasedChain& chain = study::kReleasedChains[row];
+    const RopeDef rope = study::released_rope(chain);
     const System system = build_system({&rope, 1}, 1);
-    const FrameRate frames(Rational{60, 1});
-    const PlanDef def{tolerance * chain.length_m, frames, frames.last_frame_within(chain.time_s)};
-    const Plan plan = plan_solver(system, WorldDef{}, def);
-    EXPECT_LE(plan.error_bound_m.value(), def.tolerance_m);
+    const double tolerance_m = tolerance * chain.length_m;
+    const Plan plan = plan_of(rope, tolerance_m, kFrames.last_frame_within(chain.time_s));
+    EXPECT_LE(plan.error_bound_m.value(), tolerance_m);
     if (plan.horizon_s) return;  // nothing is claimed at the row's time
-    Simulation run(system, WorldDef{}, plan.solver, frames.interval_s());
+    Simulation run(system, WorldDef{}, plan.solver, kFrames.interval_s());
     ASSERT_EQ(run.advance_to(chain.time_s), Status::kOk);
     const double error_m =
         std::hypot(run.state().x_m.back() - chain.tip_m.x, run.state().y_m.back() - chain.tip_m.y);
@@ -40,42 +47,34 @@ INSTANTIATE_TEST_SUITE_P(R5, AutoBound,
 TEST(AutoPlan, FindsNoHorizonWithinTheRegularRowsOfR5) {
     // At a thousandth of the length every row of R5 can be predicted but for one: N = 10 at 90 degrees is
     // chaotic past 2 s.
-    for (const test::ReleasedChain& chain : test::kReleasedChains) {
-        const RopeDef rope = chain.rope();
-        const System system = build_system({&rope, 1}, 1);
-        const FrameRate frames(Rational{60, 1});
-        const PlanDef def{1e-3 * chain.length_m, frames, frames.last_frame_within(chain.time_s)};
-        EXPECT_FALSE(plan_solver(system, WorldDef{}, def).horizon_s.has_value())
+    for (const study::ReleasedChain& chain : study::kReleasedChains) {
+        const RopeDef rope = study::released_rope(chain);
+        const std::int64_t last_frame = kFrames.last_frame_within(chain.time_s);
+        EXPECT_FALSE(plan_of(rope, 1e-3 * chain.length_m, last_frame).horizon_s.has_value())
             << chain.links << " links, " << chain.angle_deg << " degrees, " << chain.time_s << " s";
     }
 }
 
 TEST(AutoPlan, SaysWhereAChaoticMotionCanNoLongerBePredicted) {
-    const RopeDef rope = test::straight_rope(10, 1.0, 90.0);
-    const System system = build_system({&rope, 1}, 1);
-    const FrameRate frames(Rational{60, 1});
-    const Plan plan = plan_solver(system, WorldDef{}, {1e-4, frames, 600});
+    const RopeDef rope = study::straight_rope(10, 1.0, 90.0);
+    const Plan plan = plan_of(rope, 1e-4, 600);
     ASSERT_TRUE(plan.horizon_s.has_value());
     EXPECT_GT(*plan.horizon_s, 3.0);  // measured 3.9
     EXPECT_LT(*plan.horizon_s, 5.0);  // PHYSICS: a perturbation grows by 1e15 in 5 s
 }
 
 TEST(AutoPlan, TakesALooserMethodForALooserTolerance) {
-    const RopeDef rope = test::straight_rope(20, 1.0, 45.0);
-    const System system = build_system({&rope, 1}, 1);
-    const FrameRate frames(Rational{60, 1});
-    const Plan loose = plan_solver(system, WorldDef{}, {1e-3, frames, 120});
-    const Plan tight = plan_solver(system, WorldDef{}, {1e-9, frames, 120});
+    const RopeDef rope = study::straight_rope(20, 1.0, 45.0);
+    const Plan loose = plan_of(rope, 1e-3, 120);
+    const Plan tight = plan_of(rope, 1e-9, 120);
     EXPECT_GT(loose.solver.tolerance, tight.solver.tolerance);
     EXPECT_LT(loose.trials.back().steps, tight.trials.back().steps);
 }
 
 TEST(AutoPlan, IsTheSameOnEveryRun) {
-    const RopeDef rope = test::straight_rope(10, 1.0, 90.0);
-    const System system = build_system({&rope, 1}, 1);
-    const FrameRate frames(Rational{60, 1});
-    const Plan a = plan_solver(system, WorldDef{}, {1e-4, frames, 300});
-    const Plan b = plan_solver(system, WorldDef{}, {1e-4, frames, 300});
+    const RopeDef rope = study::straight_rope(10, 1.0, 90.0);
+    const Plan a = plan_of(rope, 1e-4, 300);
+    const Plan b = plan_of(rope, 1e-4, 300);
     EXPECT_EQ(a.solver.tolerance, b.solver.tolerance);
     EXPECT_EQ(a.error_bound_m, b.error_bound_m);
     EXPECT_EQ(a.horizon_s, b.horizon_s);
@@ -83,32 +82,21 @@ TEST(AutoPlan, IsTheSameOnEveryRun) {
 
 TEST(AutoBound, IsTrueForTheSourceReportsStart) {
     // R11: all 40 particles at 1, 2, 5 and 10 s.
-    std::ifstream file(CORDA_TEST_DATA "/swing40.txt");
-    ASSERT_TRUE(file.is_open());
-    const RopeDef rope = test::report_rope(40);
+    const RopeDef rope = study::report_rope(40);
     const System system = build_system({&rope, 1}, 1);
     const WorldDef world{{0.0, -9.8}, 10.0, 0.0};
-    const FrameRate frames(Rational{60, 1});
-    const Plan plan = plan_solver(system, world, {1e-3, frames, 600});
+    const Plan plan = plan_solver(system, world, {1e-3, kFrames, 600});
     ASSERT_FALSE(plan.horizon_s.has_value());
-    Simulation run(system, world, plan.solver, frames.interval_s());
-    int rows = 0;
-    for (std::string line; std::getline(file, line);) {
-        if (line.empty() || line.front() == '#') continue;
-        std::istringstream numbers(line);
-        double time_s = 0.0;
-        numbers >> time_s;
-        ASSERT_EQ(run.advance_to(time_s), Status::kOk);
-        for (std::size_t i = 0; i < 40; ++i) {
-            Vec2 expected;
-            numbers >> expected.x >> expected.y;
-            const double error_m =
-                std::hypot(run.state().x_m[i] - expected.x, run.state().y_m[i] - expected.y);
-            EXPECT_LE(error_m, plan.error_bound_m.value()) << "particle " << i << " at " << time_s << " s";
+    Simulation run(system, world, plan.solver, kFrames.interval_s());
+    for (const test::ReportFrame& frame : test::read_report_swing()) {
+        ASSERT_EQ(run.advance_to(frame.time_s), Status::kOk);
+        for (std::size_t i = 0; i < frame.points_m.size(); ++i) {
+            const double error_m = std::hypot(run.state().x_m[i] - frame.points_m[i].x,
+                                              run.state().y_m[i] - frame.points_m[i].y);
+            EXPECT_LE(error_m, plan.error_bound_m.value())
+                << "particle " << i << " at " << frame.time_s << " s";
         }
-        ++rows;
     }
-    EXPECT_EQ(rows, 4);
 }
 
 }  // namespace

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "corda/study/ropes.hpp"
+#include "support/slope.hpp"
 #include "support/solver_run.hpp"
 
 namespace corda::sim {
@@ -53,7 +55,7 @@ struct Cantilever {
     [[nodiscard]] double mass_kg(int i) const { return link_m() * (i == links ? 0.5 : 1.0); }
 
     [[nodiscard]] RopeDef rope() const {
-        RopeDef rope = test::straight_rope(links + 1, 1.0, 90.0);
+        RopeDef rope = study::straight_rope(links + 1, 1.0, 90.0);
         for (int i = 0; i <= links + 1; ++i) {
             rope.points_m[static_cast<std::size_t>(i)] = {(i - 1) * link_m(), 0.0};
             if (i > 1) rope.mass_kg[static_cast<std::size_t>(i)] = mass_kg(i - 1);
@@ -102,7 +104,7 @@ struct Cantilever {
 Vec2 settled_tip_m(const Cantilever& beam, double drag_1_s, double time_s) {
     WorldDef world;
     world.drag_1_s = drag_1_s;
-    test::SolverRun run(beam.rope(), world, test::rope_solver(4));
+    test::SolverRun run(beam.rope(), world, rope_solver(4));
     EXPECT_TRUE(run.go(time_s));
     return {run.tip_x(), run.tip_y()};
 }
@@ -123,23 +125,22 @@ TEST(Cantilever, RestsWhereItsDiscreteEnergyIsLeast) {
 TEST(Cantilever, SagsByTheTextbooksAmountWhereItIsRefined) {
     constexpr double kBending = 1000.0;
     const double expected_m = -kGravity / (8.0 * kBending);  // w L^4 / (8 EI), w = g per metre, L = 1
-    std::vector<double> links_m;
-    std::vector<double> errors_m;
+    std::vector<std::pair<double, double>> errors_m;         // over the link
     std::vector<double> sags_m;
     for (const int links : {4, 8, 16}) {
         const Cantilever beam{links, kBending};
         sags_m.push_back(settled_tip_m(beam, 150.0, 0.5).y);
-        links_m.push_back(beam.link_m());
-        errors_m.push_back(std::abs(sags_m.back() - expected_m));
+        errors_m.emplace_back(beam.link_m(), std::abs(sags_m.back() - expected_m));
     }
     // The joint at the clamp stands for half a link inside of the wall, which is no part of the beam: an
     // error of first order. Two extrapolations take out it and the next.
     const double once = 2.0 * sags_m[1] - sags_m[0];
     const double again = 2.0 * sags_m[2] - sags_m[1];
     const double extended_m = (4.0 * again - once) / 3.0;
-    const double slope = test::slope(links_m, errors_m);
-    std::printf("sag: off by %.2e .. %.2e of it, slope %.3f, extended %.1e\n", errors_m.front() / -expected_m,
-                errors_m.back() / -expected_m, slope, extended_m / expected_m - 1.0);
+    const double slope = test::slope(errors_m);
+    std::printf("sag: off by %.2e .. %.2e of it, slope %.3f, extended %.1e\n",
+                errors_m.front().second / -expected_m, errors_m.back().second / -expected_m, slope,
+                extended_m / expected_m - 1.0);
     EXPECT_NEAR(slope, 1.0, 0.1);                     // measured: 1.063
     EXPECT_NEAR(extended_m / expected_m, 1.0, 1e-5);  // measured: -1.2e-6, the sag's own nonlinearity
 }
@@ -200,7 +201,7 @@ struct FreeBeam {
 
     /// Bent by `amplitude_m` at most, without stretching a link.
     [[nodiscard]] RopeDef rope(const std::vector<double>& shape, double amplitude_m) const {
-        RopeDef rope = test::straight_rope(links, 1.0, 90.0);
+        RopeDef rope = study::straight_rope(links, 1.0, 90.0);
         double x_m = 0.0;
         for (std::size_t i = 0; i < count(); ++i) {
             if (i > 0) {
@@ -221,7 +222,7 @@ struct FreeBeam {
         WorldDef world;
         world.gravity_m_s2 = {};
         constexpr double kAmplitude = 1e-5;
-        test::SolverRun run(rope(mode.second, kAmplitude), world, test::rope_solver(8));
+        test::SolverRun run(rope(mode.second, kAmplitude), world, rope_solver(8));
         const double quarter_s = 0.5 * std::numbers::pi / mode.first;
         EXPECT_TRUE(run.go(quarter_s));
         double share = 0.0;
@@ -236,25 +237,24 @@ struct FreeBeam {
 };
 
 TEST(FreeBeam, SwingsWithTheFrequencyOfItsFirstMode) {
-    std::vector<double> links_m;
-    std::vector<double> errors;
+    std::vector<std::pair<double, double>> errors;  // over the link
     for (const int links : {8, 16, 32}) {
         const FreeBeam beam{links};
         const auto mode = beam.mode();
         const double omega_1_s = beam.measured_omega_1_s(mode);
-        links_m.push_back(beam.link_m());
-        errors.push_back(std::abs(omega_1_s / beam.continuous_omega_1_s() - 1.0));
+        errors.emplace_back(beam.link_m(), std::abs(omega_1_s / beam.continuous_omega_1_s() - 1.0));
         std::printf("N=%d: off the discrete beam's by %.1e, off the continuous one's by %.2e\n", links,
-                    omega_1_s / mode.first - 1.0, errors.back());
+                    omega_1_s / mode.first - 1.0, errors.back().second);
         EXPECT_NEAR(omega_1_s / mode.first, 1.0, 1e-8);  // measured: -3.8e-10, by the amplitude squared
     }
-    std::printf("slope %.3f\n", test::slope(links_m, errors));
-    EXPECT_NEAR(test::slope(links_m, errors), 2.0, 0.1);  // measured: 1.950
-    EXPECT_LT(errors.back(), 5e-3);                       // measured: 4.0e-3 at N = 32
+    const double slope = test::slope(errors);
+    std::printf("slope %.3f\n", slope);
+    EXPECT_NEAR(slope, 2.0, 0.1);           // measured: 1.950
+    EXPECT_LT(errors.back().second, 5e-3);  // measured: 4.0e-3 at N = 32
 }
 
 RopeDef bending_rope(double compliance_1_n) {
-    RopeDef rope = test::straight_rope(10, 1.0, 60.0);
+    RopeDef rope = study::straight_rope(10, 1.0, 60.0);
     rope.bending_n_m2 = 1.0;
     rope.material.compliance_1_n = compliance_1_n;
     return rope;
@@ -263,7 +263,7 @@ RopeDef bending_rope(double compliance_1_n) {
 TEST(BendingRope, KeepsItsEnergyByTheOrder) {
     double last = 1.0;
     for (const auto& [order, bound] : {std::pair{2, 1e-3}, {4, 1e-7}, {6, 1e-10}, {8, 1e-12}}) {
-        test::SolverRun run(bending_rope(0.0), WorldDef{}, test::rope_solver(order));
+        test::SolverRun run(bending_rope(0.0), WorldDef{}, rope_solver(order));
         ASSERT_TRUE(run.go(10.0, 600));
         std::printf("order %d: energy %.1e\n", order, run.energy_error());
         EXPECT_LT(run.energy_error(), bound);  // measured: 1.4e-5, 2.1e-9, 4.6e-12, 5.4e-15
@@ -274,30 +274,25 @@ TEST(BendingRope, KeepsItsEnergyByTheOrder) {
 
 TEST(BendingRope, ConvergesWithItsOrder) {
     for (const int order : {2, 4, 6}) {
-        test::SolverRun reference(bending_rope(0.0), WorldDef{}, test::rope_solver(8, 1.0 / 4000.0));
+        test::SolverRun reference(bending_rope(0.0), WorldDef{}, rope_solver(8, 1.0 / 4000.0));
         ASSERT_TRUE(reference.go(0.5));
-        std::vector<double> steps_s;
-        std::vector<double> errors_m;
+        std::vector<std::pair<double, double>> errors_m;  // over the step
         for (const double step_s : {1.0 / 400.0, 1.0 / 600.0, 1.0 / 800.0}) {
-            test::SolverRun run(bending_rope(0.0), WorldDef{}, test::rope_solver(order, step_s));
+            test::SolverRun run(bending_rope(0.0), WorldDef{}, rope_solver(order, step_s));
             ASSERT_TRUE(run.go(0.5));
-            steps_s.push_back(step_s);
-            errors_m.push_back(run.distance_m(reference.state()));
+            errors_m.emplace_back(step_s, run.distance_m(reference.state()));
         }
-        std::printf("order %d: %.1e .. %.1e m, slope %.3f\n", order, errors_m.front(), errors_m.back(),
-                    test::slope(steps_s, errors_m));
-        EXPECT_NEAR(test::slope(steps_s, errors_m), order, 0.15);  // measured: 1.988, 3.991, 6.004
+        const double slope = test::slope(errors_m);
+        std::printf("order %d: %.1e .. %.1e m, slope %.3f\n", order, errors_m.front().second,
+                    errors_m.back().second, slope);
+        EXPECT_NEAR(slope, order, 0.15);  // measured: 1.988, 3.991, 6.004
     }
 }
 
 TEST(BendingRope, ThatStretchesMovesAlikeInExactAndInRope) {
-    test::SolverRun exact(bending_rope(1e-4), WorldDef{}, test::exact_solver(1e-12));
-    test::SolverRun rope(bending_rope(1e-4), WorldDef{}, test::rope_solver(8));
-    double largest_m = 0.0;
-    for (int k = 1; k <= 20; ++k) {
-        ASSERT_TRUE(exact.go(0.1 * k) && rope.go(0.1 * k));
-        largest_m = std::max(largest_m, exact.distance_m(rope.state()));
-    }
+    test::SolverRun exact(bending_rope(1e-4), WorldDef{}, exact_solver(1e-12));
+    test::SolverRun rope(bending_rope(1e-4), WorldDef{}, rope_solver(8));
+    const double largest_m = test::largest_distance_m(exact, rope, 20);
     std::printf("exact and rope part by %.1e m\n", largest_m);
     EXPECT_GT(exact.moved_m(), 0.5);
     EXPECT_LT(largest_m, 1e-10);  // measured: 1.3e-11
@@ -305,20 +300,20 @@ TEST(BendingRope, ThatStretchesMovesAlikeInExactAndInRope) {
 }
 
 TEST(BendingRope, OfStiffLinksApproachesTheRigidOne) {
-    test::SolverRun rigid(bending_rope(0.0), WorldDef{}, test::rope_solver(8));
+    test::SolverRun rigid(bending_rope(0.0), WorldDef{}, rope_solver(8));
     ASSERT_TRUE(rigid.go(0.3));
-    std::vector<double> compliances_1_n{1e-5, 1e-6, 1e-7};
-    std::vector<double> errors_m;
-    for (const double compliance_1_n : compliances_1_n) {
-        test::SolverRun run(bending_rope(compliance_1_n), WorldDef{}, test::exact_solver(1e-11));
+    std::vector<std::pair<double, double>> errors_m;  // over the compliance
+    for (const double compliance_1_n : {1e-5, 1e-6, 1e-7}) {
+        test::SolverRun run(bending_rope(compliance_1_n), WorldDef{}, exact_solver(1e-11));
         ASSERT_TRUE(run.go(0.3));
-        errors_m.push_back(run.distance_m(rigid.state()));
+        errors_m.emplace_back(compliance_1_n, run.distance_m(rigid.state()));
     }
-    std::printf("%.1e, %.1e, %.1e m off the rigid one\n", errors_m[0], errors_m[1], errors_m[2]);
+    std::printf("%.1e, %.1e, %.1e m off the rigid one\n", errors_m[0].second, errors_m[1].second,
+                errors_m[2].second);
     // Let go at an angle the links vibrate by as much as they are stretched: in proportion, up to their
     // phase.
-    EXPECT_NEAR(test::slope(compliances_1_n, errors_m), 1.0, 0.2);  // measured: 1.07
-    EXPECT_LT(errors_m.back(), 2e-5);                               // measured: 7.0e-6
+    EXPECT_NEAR(test::slope(errors_m), 1.0, 0.2);  // measured: 1.07
+    EXPECT_LT(errors_m.back().second, 2e-5);       // measured: 7.0e-6
 }
 
 }  // namespace

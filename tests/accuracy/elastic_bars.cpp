@@ -10,6 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "corda/study/references.hpp"
+#include "corda/study/ropes.hpp"
+#include "support/nets.hpp"
+#include "support/slope.hpp"
 #include "support/solver_run.hpp"
 
 namespace corda::sim {
@@ -34,7 +38,7 @@ struct HeavyRope {
         return y_m;
     }
     static RopeDef rope(bool stretched) {
-        RopeDef rope = test::straight_rope(kLinks, 1.0, 0.0);
+        RopeDef rope = study::straight_rope(kLinks, 1.0, 0.0);
         rope.payload_kg = kPayload;
         rope.material.compliance_1_n = kCompliance;
         rope.rest_m.assign(kLinks, kLink);
@@ -54,7 +58,7 @@ struct HeavyRope {
     }
 };
 
-const std::array<SolverDef, 2> kBothMethods{test::exact_solver(), test::rope_solver(4)};
+const std::array<SolverDef, 2> kBothMethods{exact_solver(1e-9), rope_solver(4)};
 
 TEST(HeavyElasticRope, StaysWhereItHangsAtRest) {
     for (const SolverDef& def : kBothMethods) {
@@ -93,7 +97,7 @@ struct HangingMass {
     static constexpr double kCompliance = 0.01;
 
     static RopeDef rope() {
-        RopeDef rope = test::straight_rope(1, kRest, 0.0);
+        RopeDef rope = study::straight_rope(1, kRest, 0.0);
         rope.mass_kg[1] = kMass;
         rope.material.compliance_1_n = kCompliance;
         return rope;
@@ -113,7 +117,7 @@ TEST(MassOnASpring, SwingsWithItsPeriodInExact) {
     for (const auto& [tolerance, drag_1_s] : {std::pair{1e-6, 0.0}, {1e-9, 0.0}, {1e-12, 0.0}, {1e-9, 0.5}}) {
         WorldDef world;
         world.drag_1_s = drag_1_s;
-        test::SolverRun run(HangingMass::rope(), world, test::exact_solver(tolerance));
+        test::SolverRun run(HangingMass::rope(), world, exact_solver(tolerance));
         double largest_m = 0.0;
         for (int k = 1; k <= 40; ++k) {
             // Quarters of the period, where the velocity is largest or none, and a little after.
@@ -136,30 +140,28 @@ TEST(MassOnASpring, ConvergesWithItsOrderInRope) {
          {std::pair{2, 0.0}, {4, 0.0}, {6, 0.0}, {8, 0.0}, {4, 0.5}, {6, 0.5}}) {
         WorldDef world;
         world.drag_1_s = drag_1_s;
-        std::vector<double> steps_s;
-        std::vector<double> errors_m;
+        std::vector<std::pair<double, double>> errors_m;                  // over the step
         const double first = order == 2 ? 0.2 : order == 8 ? 0.55 : 0.4;  // of omega h
         for (int halvings = 0; halvings < 3; ++halvings) {
             const double step_s = first / HangingMass::omega_1_s() * std::pow(0.5, 0.5 * halvings);
-            test::SolverRun run(HangingMass::rope(), world, test::rope_solver(order, step_s));
+            test::SolverRun run(HangingMass::rope(), world, rope_solver(order, step_s));
             double largest_m = 0.0;
             for (int n = 1; n * step_s < 20.0; ++n) {
                 ASSERT_TRUE(run.go(n * step_s));
                 largest_m =
                     std::max(largest_m, std::abs(run.tip_y() - HangingMass::y_m(n * step_s, drag_1_s)));
             }
-            steps_s.push_back(step_s);
-            errors_m.push_back(largest_m);
+            errors_m.emplace_back(step_s, largest_m);
         }
-        const double slope = test::slope(steps_s, errors_m);
-        std::printf("order %d, drag %g: %.2e .. %.2e m, slope %.3f\n", order, drag_1_s, errors_m.front(),
-                    errors_m.back(), slope);
+        const double slope = test::slope(errors_m);
+        std::printf("order %d, drag %g: %.2e .. %.2e m, slope %.3f\n", order, drag_1_s,
+                    errors_m.front().second, errors_m.back().second, slope);
         EXPECT_NEAR(slope, order, 0.15);  // measured: 1.999, 3.985, 6.006, 8.002; 3.969, 5.988
     }
 }
 
 RopeDef swinging_rope() {
-    RopeDef rope = test::straight_rope(10, 1.0, 45.0);
+    RopeDef rope = study::straight_rope(10, 1.0, 45.0);
     rope.material.compliance_1_n = 1e-4;
     return rope;
 }
@@ -172,13 +174,9 @@ NetDef swinging_cloth() {
 }
 
 TEST(ElasticRope, MovesAlikeInExactAndInRope) {
-    test::SolverRun exact(swinging_rope(), WorldDef{}, test::exact_solver(1e-12));
-    test::SolverRun rope(swinging_rope(), WorldDef{}, test::rope_solver(8));
-    double largest_m = 0.0;
-    for (int k = 1; k <= 20; ++k) {
-        ASSERT_TRUE(exact.go(0.1 * k) && rope.go(0.1 * k));
-        largest_m = std::max(largest_m, exact.distance_m(rope.state()));
-    }
+    test::SolverRun exact(swinging_rope(), WorldDef{}, exact_solver(1e-12));
+    test::SolverRun rope(swinging_rope(), WorldDef{}, rope_solver(8));
+    const double largest_m = test::largest_distance_m(exact, rope, 20);
     std::printf("rope: exact and rope part by %.1e m\n", largest_m);
     EXPECT_GT(exact.moved_m(), 0.5);
     EXPECT_LT(largest_m, 1e-10);  // measured: 1.4e-11
@@ -189,13 +187,9 @@ TEST(ElasticRope, MovesAlikeInExactAndInRope) {
 }
 
 TEST(ElasticCloth, MovesAlikeInExactAndInRope) {
-    test::SolverRun exact(swinging_cloth(), WorldDef{}, test::exact_solver(1e-12));
-    test::SolverRun rope(swinging_cloth(), WorldDef{}, test::rope_solver(8));
-    double largest_m = 0.0;
-    for (int k = 1; k <= 10; ++k) {
-        ASSERT_TRUE(exact.go(0.1 * k) && rope.go(0.1 * k));
-        largest_m = std::max(largest_m, exact.distance_m(rope.state()));
-    }
+    test::SolverRun exact(swinging_cloth(), WorldDef{}, exact_solver(1e-12));
+    test::SolverRun rope(swinging_cloth(), WorldDef{}, rope_solver(8));
+    const double largest_m = test::largest_distance_m(exact, rope, 10);
     std::printf("cloth: exact and rope part by %.1e m, moved %.2f m\n", largest_m, exact.moved_m());
     EXPECT_GT(exact.moved_m(), 0.5);
     EXPECT_LT(largest_m, 1e-11);  // measured: 7.2e-13
@@ -209,8 +203,8 @@ TEST(ElasticBodies, KeepTheirEnergy) {
             EXPECT_TRUE(run.go(5.0, 300));
             return run.energy_error();
         };
-        const double exact = error(test::exact_solver());
-        const double rope = error(test::rope_solver(4));
+        const double exact = error(exact_solver(1e-9));
+        const double rope = error(rope_solver(4));
         std::printf("%s: energy of exact %.1e, of rope %.1e\n", is_cloth ? "cloth" : "rope", exact, rope);
         EXPECT_LT(exact, 1e-11);  // measured: 1.8e-13 (rope), 1.9e-14 (cloth)
         EXPECT_LT(rope, 1e-8);    // measured: 1.3e-10, 1.3e-11
@@ -220,7 +214,7 @@ TEST(ElasticBodies, KeepTheirEnergy) {
 TEST(ElasticRope, OfAllOrdersKeepsItsEnergyBetterByTheOrder) {
     double last = 1.0;
     for (const int order : {2, 4, 6, 8}) {
-        test::SolverRun run(swinging_rope(), WorldDef{}, test::rope_solver(order));
+        test::SolverRun run(swinging_rope(), WorldDef{}, rope_solver(order));
         ASSERT_TRUE(run.go(5.0, 300));
         std::printf("order %d: energy %.1e\n", order, run.energy_error());
         EXPECT_LT(run.energy_error(), 0.1 * last);  // measured: 6.6e-7, 1.3e-10, 5.1e-13, 7.0e-15
@@ -232,32 +226,31 @@ TEST(StiffRope, ApproachesTheRigidOneInProportionToItsCompliance) {
     // PHYSICS R5, N = 2, L = 2, 90 degrees, t = 1. Let go at the horizontal the links carry nothing at first,
     // so that their vibrations stay as small as the square of the compliance and what is left is the stretch
     // under the slow tensions.
-    const Vec2 rigid{-1.44481884994347579652, -1.32179446138146455585};
+    const Vec2 rigid = study::released_tip_m(2, 90.0, 1.0);
     const auto tip = [&](double compliance_1_n, const SolverDef& def) {
-        RopeDef rope = test::straight_rope(2, 2.0, 90.0);
-        for (std::size_t i = 0; i < 3; ++i) rope.points_m[i] = {static_cast<double>(i), 0.0};
+        RopeDef rope = study::straight_rope(2, 2.0, 90.0);
         rope.material.compliance_1_n = compliance_1_n;
         test::SolverRun run(rope, WorldDef{}, def);
         EXPECT_TRUE(run.go(1.0));
         return Vec2{run.tip_x(), run.tip_y()} - rigid;
     };
-    for (const SolverDef& def : {test::exact_solver(1e-13), test::rope_solver(8)}) {
-        std::vector<double> compliances_1_n{1e-4, 1e-5, 1e-6};
-        std::vector<double> errors_m;
+    for (const SolverDef& def : {exact_solver(1e-13), rope_solver(8)}) {
+        std::vector<std::pair<double, double>> errors_m;  // over the compliance
         std::vector<Vec2> errors;
-        for (const double compliance_1_n : compliances_1_n) {
+        for (const double compliance_1_n : {1e-4, 1e-5, 1e-6}) {
             errors.push_back(tip(compliance_1_n, def));
-            errors_m.push_back(length(errors.back().x, errors.back().y));
+            errors_m.emplace_back(compliance_1_n, length(errors.back().x, errors.back().y));
         }
         // What is left where the two smallest are extended to no compliance.
         const Vec2 left = (1.0 / 0.9) * errors[2] - (0.1 / 0.9) * errors[1];
         const double left_m = length(left.x, left.y);
-        const double slope = test::slope(compliances_1_n, errors_m);
+        const double slope = test::slope(errors_m);
         std::printf("%s: %.2e, %.2e, %.2e m off the rigid one, slope %.4f, extended %.1e\n",
-                    method_name(def.method).data(), errors_m[0], errors_m[1], errors_m[2], slope, left_m);
-        EXPECT_NEAR(slope, 1.0, 0.01);  // measured: 0.9998
-        EXPECT_LT(errors_m[2], 3e-4);   // measured: 1.56e-4
-        EXPECT_LT(left_m, 1e-6);        // measured: 1.3e-7
+                    method_name(def.method).data(), errors_m[0].second, errors_m[1].second,
+                    errors_m[2].second, slope, left_m);
+        EXPECT_NEAR(slope, 1.0, 0.01);        // measured: 0.9998
+        EXPECT_LT(errors_m[2].second, 3e-4);  // measured: 1.56e-4
+        EXPECT_LT(left_m, 1e-6);              // measured: 1.3e-7
     }
 }
 
@@ -268,7 +261,7 @@ struct Bungee {
     static constexpr double kThrow = 5.0;
 
     static RopeDef rope() {
-        RopeDef rope = test::straight_rope(1, 1.0, 0.0);
+        RopeDef rope = study::straight_rope(1, 1.0, 0.0);
         rope.material = {kCompliance, true};
         rope.rest_m = {1.0};
         rope.points_m[1] = {0.0, -1.0 - kGravity * kCompliance};
@@ -300,8 +293,8 @@ TEST(Bungee, FliesFreeWhileItIsSlack) {
         SolverDef def;
         double bound_m;
     };
-    for (const Case& it : {Case{test::exact_solver(1e-9), 1e-8}, Case{test::exact_solver(1e-12), 1e-11},
-                           Case{test::rope_solver(2, 1e-4), 1e-5}, Case{test::rope_solver(4, 1e-3), 1e-4}}) {
+    for (const Case& it : {Case{exact_solver(1e-9), 1e-8}, Case{exact_solver(1e-12), 1e-11},
+                           Case{rope_solver(2, 1e-4), 1e-5}, Case{rope_solver(4, 1e-3), 1e-4}}) {
         test::SolverRun run(Bungee::rope(), WorldDef{}, it.def);
         const double top_s = Bungee::rise_s() + 0.5 * Bungee::flight_s();
         ASSERT_TRUE(run.go(top_s));

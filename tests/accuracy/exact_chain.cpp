@@ -3,16 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <numbers>
-#include <sstream>
-#include <string>
 #include <vector>
 
 #include "corda/sim/chain_dynamics.hpp"
-#include "support/exact_run.hpp"
-#include "support/released_chains.hpp"
+#include "corda/study/references.hpp"
+#include "corda/study/ropes.hpp"
+#include "support/reference_files.hpp"
+#include "support/root.hpp"
+#include "support/solver_run.hpp"
 
 namespace corda::sim {
 namespace {
@@ -66,37 +65,27 @@ double measured_omega_1_s(const Mode& mode, double expected_1_s) {
     };
     const double half_period_s = std::numbers::pi / expected_1_s;
     test::ExactRun run(mode.rope, 1e-13);
-    double last = part(run.state);
+    double last = part(run.state());
     int zeros = 0;
     int k = 0;
     for (; zeros < kZero && k < 20 * kZero; ++k) {
-        EXPECT_TRUE(run.advance_to((k + 1) * half_period_s / 8.0));
-        const double next = part(run.state);
+        EXPECT_TRUE(run.go((k + 1) * half_period_s / 8.0));
+        const double next = part(run.state());
         if ((next < 0.0) != (last < 0.0)) ++zeros;
         last = next;
     }
     EXPECT_EQ(zeros, kZero);
     const auto part_at = [&](double time_s) {
         test::ExactRun again(mode.rope, 1e-13);
-        EXPECT_TRUE(again.advance_to(time_s));
-        return part(again.state);
+        EXPECT_TRUE(again.go(time_s));
+        return part(again.state());
     };
     const double zero_s = test::root(part_at, (k - 1) * half_period_s / 8.0, k * half_period_s / 8.0);
     return (kZero - 0.5) * std::numbers::pi / zero_s;
 }
 
 TEST(SmallOscillationsR4, HaveTheFrequenciesOfTheLaguerreZeros) {
-    struct Row {
-        int links;
-        double tip_mass_kg;
-        double omega_1_s;
-    };
-    for (const Row& row :
-         {Row{5, 1, 3.5955018679142}, Row{10, 1, 3.6766206576178}, Row{10, 1, 8.4592843258908},
-          Row{10, 1, 54.177674155542}, Row{20, 1, 3.7202051499303}, Row{20, 1, 8.5446639308937},
-          Row{20, 1, 114.245746189}, Row{50, 1, 3.7474350221806}, Row{50, 1, 8.6027948917509},
-          Row{50, 1, 297.71217239}, Row{10, 10, 3.3130928700043}, Row{10, 100, 3.1568078379578},
-          Row{10, 1000, 3.1346641280336}}) {
+    for (const study::SmallOscillation& row : study::kSmallOscillations) {
         const Mode mode = make_mode(row.links, row.omega_1_s, row.tip_mass_kg);
         const double error = measured_omega_1_s(mode, row.omega_1_s) / row.omega_1_s - 1.0;
         std::printf("R4 N=%d tip %g omega %g: %.2e\n", row.links, row.tip_mass_kg, row.omega_1_s, error);
@@ -104,21 +93,14 @@ TEST(SmallOscillationsR4, HaveTheFrequenciesOfTheLaguerreZeros) {
     }
 }
 
-/// An exactly horizontal one where the angle is 90 degrees.
-RopeDef released(const test::ReleasedChain& row) {
-    RopeDef rope = row.rope();
-    if (row.angle_deg == 90) rope.points_m = test::horizontal_rope(row.links, row.length_m).points_m;
-    return rope;
-}
-
 TEST(ReleaseR5, EndsAtTheReference) {
-    for (const test::ReleasedChain& row : test::kReleasedChains) {
+    for (const study::ReleasedChain& row : study::kReleasedChains) {
         std::printf("R5 N=%d L=%g %g deg tip %g t=%g:", row.links, row.length_m, row.angle_deg,
                     row.tip_mass_kg, row.time_s);
         for (const double tolerance : {1e-9, 1e-12}) {
-            test::ExactRun run(released(row), tolerance);
-            ASSERT_TRUE(run.advance_to(row.time_s));
-            const double error_m = run.tip_error_m(row.tip_m.x, row.tip_m.y);
+            test::ExactRun run(study::released_rope(row), tolerance);
+            ASSERT_TRUE(run.go(row.time_s));
+            const double error_m = run.tip_error_m(row.tip_m);
             std::printf("  %.1e at %g", error_m, tolerance);
             EXPECT_LT(error_m, 1e-9);  // measured 2.9e-10 (tip 1000, 5 s), 3.1e-11 at 1e-12
         }
@@ -146,7 +128,7 @@ std::vector<Vec2> start_accelerations(ChainDynamics& dynamics) {
 
 TEST(HorizontalRelease, FallsFreelyAtFirst) {
     for (const int links : {2, 10, 50}) {
-        const RopeDef rope = test::horizontal_rope(links, 1.0);
+        const RopeDef rope = study::straight_rope(links, 1.0, 90.0);
         const System system = build_system({&rope, 1}, 1);
         ChainDynamics dynamics(system, system.bodies, WorldDef{});
         std::vector<double> tension_n;
@@ -162,73 +144,46 @@ TEST(HorizontalRelease, FallsFreelyAtFirst) {
 }
 
 TEST(FreeRope, FallsWithoutAnErrorOfTheStart) {
-    RopeDef rope = test::straight_rope(5, 1.0, 30.0);
+    RopeDef rope = study::straight_rope(5, 1.0, 30.0);
     rope.pinned = {};
     test::ExactRun run(rope);
     for (const double time_s : {1.0 / 60.0, 0.1, 1.0, 3.0}) {
-        ASSERT_TRUE(run.advance_to(time_s));
+        ASSERT_TRUE(run.go(time_s));
         for (std::size_t i = 0; i < rope.points_m.size(); ++i) {
-            EXPECT_NEAR(run.state.x_m[i], rope.points_m[i].x, 1e-15);
-            EXPECT_NEAR(run.state.y_m[i], rope.points_m[i].y - 0.5 * 9.81 * time_s * time_s, 3e-14);
+            EXPECT_NEAR(run.state().x_m[i], rope.points_m[i].x, 1e-15);
+            EXPECT_NEAR(run.state().y_m[i], rope.points_m[i].y - 0.5 * 9.81 * time_s * time_s, 3e-14);
         }
     }
 }
 
 TEST(HangingR6, BetweenTwoPinsComesToRestAsACatenary) {
-    struct Row {
-        int links;
-        double horizontal;  ///< tension over the weight of a particle
-        double lowest_m;
-    };
-    for (const Row& row :
-         {Row{10, 2.0510510143091193, -0.50594593157108448}, Row{20, 4.107878988926029, -0.50344663434019265},
-          Row{40, 8.2186678030027642, -0.50283577286535318}}) {
-        RopeDef rope;
-        for (int i = 0; i <= row.links; ++i) {
-            const double along = 2.0 * std::min(i, row.links - i) / row.links;
-            const double x_m = 2 * i <= row.links ? 0.5 * along : 1.0 - 0.5 * along;
-            rope.points_m.push_back({x_m, -along * std::sqrt(0.75 * 0.75 - 0.25)});
-        }
-        rope.mass_kg.assign(rope.points_m.size(), 1.0);
-        rope.velocity_m_s.assign(rope.points_m.size(), {});
-        rope.pinned = {0, static_cast<std::uint32_t>(row.links)};
-        test::ExactRun run(rope, 1e-12, WorldDef{{0.0, -9.81}, 40.0, 4.0});
-        ASSERT_TRUE(run.advance_to(40.0));
+    for (const study::HangingChain& row : study::kHangingChains) {
+        test::ExactRun run(study::slack_rope(row.links), 1e-12, WorldDef{{0.0, -9.81}, 40.0, 4.0});
+        ASSERT_TRUE(run.go(40.0));
         // Each pin carries half of the weight and the horizontal tension.
-        const double pull = run.solver.loads().value().pin_force_n / 9.81;
+        const double pull = run.solver().loads().value().pin_force_n / 9.81;
         const double half_weight = 0.5 * (row.links - 1);
         const double horizontal = std::sqrt(pull * pull - half_weight * half_weight);
-        const double lowest_m = *std::min_element(run.state.y_m.begin(), run.state.y_m.end());
-        std::printf("R6 N=%d: tension %.1e lowest %.1e\n", row.links, horizontal - row.horizontal,
+        const double lowest_m = *std::min_element(run.state().y_m.begin(), run.state().y_m.end());
+        std::printf("R6 N=%d: tension %.1e lowest %.1e\n", row.links, horizontal - row.tension_over_weight,
                     lowest_m - row.lowest_m);
-        EXPECT_NEAR(horizontal, row.horizontal, 1e-10);  // measured 2e-13
-        EXPECT_NEAR(lowest_m, row.lowest_m, 1e-10);      // measured 3e-16
+        EXPECT_NEAR(horizontal, row.tension_over_weight, 1e-10);  // measured 2e-13
+        EXPECT_NEAR(lowest_m, row.lowest_m, 1e-10);               // measured 3e-16
     }
 }
 
 TEST(FoldedR7, FallsFasterThanFreely) {
-    struct Row {
-        int links;
-        double times_s[3];
-    };
-    for (const Row& row : {Row{21, {.2261503, .3137222, .3707585}}, Row{41, {.2242086, .3088361, .3646133}},
-                           Row{81, {.2226169, .3062475, .3606003}}}) {
-        const double a_m = 1.0 / row.links;
-        const int half = row.links / 2;
-        RopeDef rope;
-        for (int i = 0; i <= half; ++i) rope.points_m.push_back({0.0, -a_m * i});
-        for (int i = half; i >= 0; --i) rope.points_m.push_back({a_m, -a_m * i});
-        rope.mass_kg.assign(rope.points_m.size(), 1.0);
-        rope.velocity_m_s.assign(rope.points_m.size(), {});
-        for (int k = 0; k < 3; ++k) {
+    for (const study::FoldedChain& row : study::kFoldedChains) {
+        const RopeDef rope = study::folded_rope(row.links);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double fallen_m = 0.25 * static_cast<double>(k + 1);
             const auto above_m = [&](double time_s) {
                 test::ExactRun run(rope, 1e-10);
-                EXPECT_TRUE(run.advance_to(time_s));
-                return run.state.y_m.back() + 0.25 * (k + 1);
+                EXPECT_TRUE(run.go(time_s));
+                return run.state().y_m.back() + fallen_m;
             };
             const double time_s = test::root(above_m, row.times_s[k] - 1e-4, row.times_s[k] + 1e-4);
-            std::printf("R7 N=%d fallen %g: error %.1e s\n", row.links, 0.25 * (k + 1),
-                        time_s - row.times_s[k]);
+            std::printf("R7 N=%d fallen %g: error %.1e s\n", row.links, fallen_m, time_s - row.times_s[k]);
             EXPECT_NEAR(time_s, row.times_s[k], 1e-6);  // measured 1.2e-7: digits of the reference
         }
     }
@@ -237,23 +192,23 @@ TEST(FoldedR7, FallsFasterThanFreely) {
 TEST(SpinningR8, StaysARigidRotation) {
     constexpr int kLinks = 10;
     constexpr double kRate = 3.0;
-    RopeDef rope = test::horizontal_rope(kLinks, 1.0);
-    for (std::size_t i = 0; i <= kLinks; ++i) rope.velocity_m_s[i] = {0.0, kRate * rope.points_m[i].x};
+    const RopeDef rope = study::spinning_rope(kLinks, 1.0, kRate);
     const WorldDef world{{0.0, 0.0}, 10.0, 0.0};
     test::ExactRun run(rope, 1e-10, world);
     double largest_m = 0.0;
     for (int k = 1; k <= 100; ++k) {
-        ASSERT_TRUE(run.advance_to(0.1 * k));
+        ASSERT_TRUE(run.go(0.1 * k));
         for (std::size_t i = 0; i <= kLinks; ++i) {
             const double radius_m = rope.points_m[i].x;
-            largest_m = std::max(largest_m, length(run.state.x_m[i] - radius_m * std::cos(kRate * 0.1 * k),
-                                                   run.state.y_m[i] - radius_m * std::sin(kRate * 0.1 * k)));
+            largest_m =
+                std::max(largest_m, length(run.state().x_m[i] - radius_m * std::cos(kRate * 0.1 * k),
+                                           run.state().y_m[i] - radius_m * std::sin(kRate * 0.1 * k)));
         }
     }
     std::printf("R8 after 10 s: %.1e m\n", largest_m);
     EXPECT_LT(largest_m, 1e-11);  // measured 1.3e-14
 
-    ChainDynamics dynamics(run.system, run.system.bodies, world);
+    ChainDynamics dynamics(run.system(), run.system().bodies, world);
     std::vector<double> tension_n;
     dynamics.tensions(dynamics.initial_state().data(), tension_n);
     for (int i = 1; i <= kLinks; ++i) {
@@ -264,35 +219,26 @@ TEST(SpinningR8, StaysARigidRotation) {
 }
 
 TEST(ReportRopeR11, StaysOnTheReference) {
-    std::ifstream file(std::filesystem::path(__FILE__).parent_path() / "data" / "swing40.txt");
-    test::ExactRun run(test::report_rope(40), 1e-9, WorldDef{{0.0, -9.8}, 10.0, 0.0});
-    int rows = 0;
-    for (std::string line; std::getline(file, line);) {
-        if (line.starts_with('#')) continue;
-        std::istringstream numbers(line);
-        double time_s = 0.0;
-        numbers >> time_s;
-        ASSERT_TRUE(run.advance_to(time_s));
+    test::ExactRun run(study::report_rope(40), 1e-9, WorldDef{{0.0, -9.8}, 10.0, 0.0});
+    for (const test::ReportFrame& frame : test::read_report_swing()) {
+        ASSERT_TRUE(run.go(frame.time_s));
         double largest_m = 0.0;
-        for (std::size_t i = 0; i < 40; ++i) {
-            double x_m = 0.0;
-            double y_m = 0.0;
-            numbers >> x_m >> y_m;
-            largest_m = std::max(largest_m, length(run.state.x_m[i] - x_m, run.state.y_m[i] - y_m));
+        for (std::size_t i = 0; i < frame.points_m.size(); ++i) {
+            largest_m = std::max(largest_m, length(run.state().x_m[i] - frame.points_m[i].x,
+                                                   run.state().y_m[i] - frame.points_m[i].y));
         }
-        std::printf("R11 t=%g: %.1e m\n", time_s, largest_m);
+        std::printf("R11 t=%g: %.1e m\n", frame.time_s, largest_m);
         EXPECT_LT(largest_m, 1e-10);  // measured 6.0e-14 (of 39 m)
-        ++rows;
     }
-    EXPECT_EQ(rows, 4);
 }
 
 TEST(ReportRopeR11, IsCloserThanTheToleranceAtEveryOrderOfTheSeries) {
-    constexpr Vec2 kTip{3.798605351207355, -39.0037520751634};  // at 10 s
+    constexpr study::PublishedTip kEnd = study::kReportTips.back();
+    static_assert(kEnd.time_s == 10.0);
     for (const double tolerance : {1.0, 0.1, 1e-3, 1e-6}) {
-        test::ExactRun run(test::report_rope(40), tolerance, WorldDef{{0.0, -9.8}, 10.0, 0.0});
-        ASSERT_TRUE(run.advance_to(10.0));
-        const double error = run.tip_error_m(kTip.x, kTip.y) / 39.2;
+        test::ExactRun run(study::report_rope(40), tolerance, WorldDef{{0.0, -9.8}, 10.0, 0.0});
+        ASSERT_TRUE(run.go(10.0));
+        const double error = run.tip_error_m(kEnd.tip_m) / 39.2;
         std::printf("R11 at %g: %.1e of the length\n", tolerance, error);
         EXPECT_LT(error, 1e-3 * tolerance);  // measured 8.9e-7, 2.1e-9, 4.0e-10, 4.8e-12
     }

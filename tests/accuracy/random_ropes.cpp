@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "support/ropes.hpp"
+#include "corda/sim/simulation.hpp"
 
 namespace corda::sim {
 namespace {
@@ -59,13 +59,7 @@ struct Variant {
 
 /// Both formulations of an inextensible rope.
 std::vector<Variant> variants() {
-    SolverDef exact;
-    exact.method = Method::kExact;
-    SolverDef rope;
-    rope.method = Method::kRope;
-    rope.order = 8;
-    rope.step_s = 1e-3;
-    return {{exact, 1e-9}, {rope, 1e-7}};  // measured 2.1e-11 and 1.3e-8
+    return {{exact_solver(1e-9), 1e-9}, {rope_solver(8, 1e-3), 1e-7}};  // measured 2.1e-11 and 1.3e-8
 }
 
 Simulation start(const RopeDef& rope, const SolverDef& solver, double drag_1_s = 0.0) {

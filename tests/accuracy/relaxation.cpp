@@ -4,7 +4,10 @@
 
 #include <cmath>
 
-#include "support/ropes.hpp"
+#include "corda/study/pendulum.hpp"
+#include "corda/study/references.hpp"
+#include "corda/study/ropes.hpp"
+#include "support/simulate.hpp"
 
 namespace corda::sim {
 namespace {
@@ -29,18 +32,11 @@ double fall_m(double mass_kg, double step_s, int n, double delta, double force_n
     return run.state().y_m[1];
 }
 
-/// R10: x_n - x_0 = (h^2 f / (m delta)) [n - (1 - (1 - delta)^n) / delta], in long double.
-double r10_m(double mass_kg, double step_s, int n, double delta, double force_n) {
-    const long double d = delta;
-    const long double h = step_s;
-    return static_cast<double>(h * h * force_n / (mass_kg * d) * (n - (1.0L - std::pow(1.0L - d, n)) / d));
-}
-
 TEST(FreeFallR10, WithDampingIsTheClosedForm) {
     for (const double delta : {0.001, 0.01, 0.1}) {
         for (const double mass_kg : {0.1, 1.0, 10.0}) {
             for (const int n : {1, 2, 60, 600}) {
-                const double expected = r10_m(mass_kg, 1.0 / 60.0, n, delta, -9.8);
+                const double expected = study::damped_fall_m(mass_kg, 1.0 / 60.0, n, delta, -9.8);
                 // measured: relative error at most 6e-14
                 EXPECT_NEAR(fall_m(mass_kg, 1.0 / 60.0, n, delta, -9.8), expected,
                             1e-12 * std::max(1.0, std::abs(expected)))
@@ -66,7 +62,7 @@ double quarter_period_s(double step_s, int sweeps) {
     SolverDef solver = test::relaxation();
     solver.step_s = step_s;
     solver.sweeps = sweeps;
-    Simulation run = test::simulate(test::straight_rope(10, 1.0, 90.0), WorldDef{}, solver);
+    Simulation run = test::simulate(study::straight_rope(10, 1.0, 90.0), WorldDef{}, solver);
     double before_x_m = 1.0;
     for (int k = 1; k <= static_cast<int>(1.0 / step_s); ++k) {
         EXPECT_EQ(run.advance_to(k * step_s), Status::kOk);
@@ -78,7 +74,9 @@ double quarter_period_s(double step_s, int sweeps) {
 }
 
 TEST(RigidRodR3, ConvergedSevenNeighbourBarsAreARod) {
-    constexpr double kQuarterPeriodSeconds = 1.981078706687632 / 4.0;
+    constexpr study::RodPeriod kRod = study::kRodPeriods[2];
+    static_assert(kRod.links == 10);
+    constexpr double kQuarterPeriodSeconds = kRod.period_s / 4.0;
     const double coarse = std::abs(quarter_period_s(1.0 / 500.0, 1000) - kQuarterPeriodSeconds);
     const double middle = std::abs(quarter_period_s(1.0 / 1000.0, 1000) - kQuarterPeriodSeconds);
     const double fine = std::abs(quarter_period_s(1.0 / 2000.0, 1000) - kQuarterPeriodSeconds);

@@ -3,29 +3,29 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <fstream>
-#include <sstream>
-#include <string>
+#include <utility>
 #include <vector>
 
-#include "support/rattle_run.hpp"
-#include "support/released_chains.hpp"
+#include "corda/study/references.hpp"
+#include "corda/study/ropes.hpp"
+#include "support/reference_files.hpp"
+#include "support/slope.hpp"
+#include "support/solver_run.hpp"
 
 namespace corda::sim {
 namespace {
 
 TEST(SwingingChainsR5, TipsAreWhereTheReferenceHasThem) {
     // Measured with order 8: 0 to 4e-14, the last row 1.3e-10.
-    for (const test::ReleasedChain& row : test::kReleasedChains) {
+    for (const study::ReleasedChain& row : study::kReleasedChains) {
         const bool is_heavy = row.tip_mass_kg > 1.0;
         const bool is_wild = row.links == 10 && row.angle_deg == 90 && row.time_s == 2 && !is_heavy;
         const double bound_m = is_wild ? 1e-7 : 1e-9;
         // The last row magnifies errors by a million: 1.4e-7 with h = 1/1000.
-        test::RattleRun run(row.rope(), WorldDef{}, 8, is_heavy ? 1.0 / 8000.0 : 1.0 / 2000.0);
+        test::RattleRun run(study::released_rope(row), WorldDef{}, 8, is_heavy ? 1.0 / 8000.0 : 1.0 / 2000.0);
         ASSERT_TRUE(run.go(row.time_s));
-        const double error_m = run.tip_distance(row.tip_m.x, row.tip_m.y);
+        const double error_m = run.tip_error_m(row.tip_m);
         std::printf("N=%d L=%g angle=%g tip=%g t=%g: error %.1e, parts/steps %g\n", row.links, row.length_m,
                     row.angle_deg, row.tip_mass_kg, row.time_s, error_m,
                     static_cast<double>(run.solver().parts()) / static_cast<double>(run.solver().steps()));
@@ -35,55 +35,35 @@ TEST(SwingingChainsR5, TipsAreWhereTheReferenceHasThem) {
 }
 
 TEST(ReportRopeR11, StaysOnTheReference) {
-    std::ifstream file(CORDA_TEST_DATA "/swing40.txt");
-    ASSERT_TRUE(file.is_open());
-    test::RattleRun run(test::report_rope(40), WorldDef{{0.0, -9.8}, 10.0, 0.0}, 8, 1.0 / 600.0);
-    int rows = 0;
+    test::RattleRun run(study::report_rope(40), WorldDef{{0.0, -9.8}, 10.0, 0.0}, 8, 1.0 / 600.0);
     double largest_m = 0.0;
-    for (std::string line; std::getline(file, line);) {
-        if (line.empty() || line.front() == '#') continue;
-        std::istringstream numbers(line);
-        double time_s = 0.0;
-        numbers >> time_s;
-        ASSERT_TRUE(run.go(time_s));
-        for (std::size_t i = 0; i < 40; ++i) {
-            Vec2 expected;
-            numbers >> expected.x >> expected.y;
-            largest_m = std::max(
-                largest_m, std::hypot(run.state().x_m[i] - expected.x, run.state().y_m[i] - expected.y));
+    for (const test::ReportFrame& frame : test::read_report_swing()) {
+        ASSERT_TRUE(run.go(frame.time_s));
+        for (std::size_t i = 0; i < frame.points_m.size(); ++i) {
+            largest_m = std::max(largest_m, std::hypot(run.state().x_m[i] - frame.points_m[i].x,
+                                                       run.state().y_m[i] - frame.points_m[i].y));
         }
-        ++rows;
     }
-    EXPECT_EQ(rows, 4);
     EXPECT_LT(largest_m, 1e-12);  // measured 6.5e-14, of 39 m
 }
 
 /// The tip's error after 1 s, N = 20.
 double error_m(int order, double steps_per_second, double angle_deg = 45.0) {
-    test::RattleRun run(test::straight_rope(20, 1.0, angle_deg), WorldDef{}, order, 1.0 / steps_per_second);
+    test::RattleRun run(study::straight_rope(20, 1.0, angle_deg), WorldDef{}, order, 1.0 / steps_per_second);
     EXPECT_TRUE(run.go(1.0));
     // A step that is divided would show a slope of its own.
     EXPECT_EQ(run.solver().parts(), run.solver().steps()) << order << " " << steps_per_second;
-    if (angle_deg == 90.0) return run.tip_distance(-0.90868883153230172068, -0.16339488036472364311);
-    return run.tip_distance(-0.67016053525568878136, -0.73674338218714743406);
+    const Vec2 tip_m =
+        angle_deg == 90.0 ? study::released_tip_m(20, 90.0, 1.0) : study::released_tip_m(20, 45.0, 1.0);
+    return run.tip_error_m(tip_m);
 }
 
-/// Slope of log(error) over log(h) by least squares.
+/// The order that the errors show.
 double slope(int order, const std::vector<double>& steps_per_second, double angle_deg = 45.0) {
-    double sx = 0.0;
-    double sy = 0.0;
-    double sxx = 0.0;
-    double sxy = 0.0;
-    for (const double rate : steps_per_second) {
-        const double x = -std::log(rate);
-        const double y = std::log(error_m(order, rate, angle_deg));
-        sx += x;
-        sy += y;
-        sxx += x * x;
-        sxy += x * y;
-    }
-    const auto n = static_cast<double>(steps_per_second.size());
-    return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+    std::vector<std::pair<double, double>> errors_m;  // over the step
+    for (const double rate : steps_per_second)
+        errors_m.emplace_back(1.0 / rate, error_m(order, rate, angle_deg));
+    return test::slope(errors_m);
 }
 
 TEST(Order, IsTheSlopeOfTheError) {

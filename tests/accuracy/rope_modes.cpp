@@ -2,11 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <vector>
 
-#include "support/rattle_run.hpp"
+#include "corda/study/references.hpp"
+#include "corda/study/ropes.hpp"
+#include "support/solver_run.hpp"
 
 namespace corda::sim {
 namespace {
@@ -26,7 +30,7 @@ RopeDef displaced(int links, double omega_1_s, double amplitude_m) {
     double largest = 0.0;
     for (int k = 0; k < links; ++k) largest = std::max(largest, std::abs(shape[static_cast<std::size_t>(k)]));
     for (double& u : shape) u /= largest;
-    RopeDef rope = test::straight_rope(links, 1.0, 0.0);
+    RopeDef rope = study::straight_rope(links, 1.0, 0.0);
     for (int i = 1; i <= links; ++i)
         rope.points_m[static_cast<std::size_t>(i)] = {
             amplitude_m * shape[static_cast<std::size_t>(links - i)], -i * a};
@@ -42,25 +46,26 @@ std::size_t widest(const RopeDef& rope) {
     return widest;
 }
 
-struct Mode {
-    int links;
-    double omega_1_s;
-    double largest_1_s;
-};
-const std::vector<Mode> kModes{{5, 3.5955018679142, 35.0},
-                               {10, 3.6766206576178, 54.177674155542},
-                               {10, 8.4592843258908, 54.177674155542},
-                               {10, 54.177674155542, 54.177674155542},
-                               {20, 3.7202051499303, 114.245746189},
-                               {20, 8.5446639308937, 114.245746189},
-                               {20, 114.245746189, 114.245746189},
-                               {50, 3.7474350221806, 297.71217239},
-                               {50, 8.6027948917509, 297.71217239},
-                               {50, 297.71217239, 297.71217239}};
+/// The rows of R4 whose masses are all the same.
+std::vector<study::SmallOscillation> modes() {
+    std::vector<study::SmallOscillation> equal;
+    std::copy_if(study::kSmallOscillations.begin(), study::kSmallOscillations.end(),
+                 std::back_inserter(equal), [](const auto& mode) { return mode.tip_mass_kg == 1.0; });
+    return equal;
+}
+
+/// At least the largest frequency of a chain: R4's, which has that of every number of links but 5.
+double largest_1_s(int links) {
+    double largest = links == 5 ? 35.0 : 0.0;
+    for (const study::SmallOscillation& mode : modes()) {
+        if (mode.links == links) largest = std::max(largest, mode.omega_1_s);
+    }
+    return largest;
+}
 
 TEST(SmallOscillationsR4, OrderTwoShiftsEveryFrequencyByVerletsSine) {
-    for (const Mode& mode : kModes) {
-        const double h = 0.3 / mode.largest_1_s;  // what the guard leaves whole
+    for (const study::SmallOscillation& mode : modes()) {
+        const double h = 0.3 / largest_1_s(mode.links);  // what the guard leaves whole
         const RopeDef rope = displaced(mode.links, mode.omega_1_s, 1e-7);
         const std::size_t i = widest(rope);
         test::RattleRun run(rope, WorldDef{}, 2, h);
@@ -90,11 +95,11 @@ TEST(SmallOscillationsR4, OrderTwoShiftsEveryFrequencyByVerletsSine) {
 }
 
 TEST(SmallOscillationsR4, OrderEightReturnsAfterThePeriod) {
-    for (const Mode& mode : kModes) {
+    for (const study::SmallOscillation& mode : modes()) {
         const double amplitude_m = 1e-7;
         const RopeDef rope = displaced(mode.links, mode.omega_1_s, amplitude_m);
         const std::size_t i = widest(rope);
-        test::RattleRun run(rope, WorldDef{}, 8, 0.5 / mode.largest_1_s);
+        test::RattleRun run(rope, WorldDef{}, 8, 0.5 / largest_1_s(mode.links));
         // A quarter period, where the position says most about the frequency.
         ASSERT_TRUE(run.go(0.25 * 2.0 * std::numbers::pi / mode.omega_1_s));
         std::printf("N=%d omega=%g: quarter period off by %.1e of the amplitude\n", mode.links,
@@ -106,21 +111,20 @@ TEST(SmallOscillationsR4, OrderEightReturnsAfterThePeriod) {
 TEST(SmallOscillationsR4, ATipMassSlowsTheFirstModeToTheReference) {
     // The mode of a chain with a payload by the same recurrence: m_k omega^2 u_k = T differences, from the
     // tip.
-    for (const auto& [mass_kg, omega_1_s] :
-         {std::pair{10.0, 3.3130928700043}, {100.0, 3.1568078379578}, {1000.0, 3.1346641280336}}) {
-        constexpr int kLinks = 10;
-        constexpr double kLength = 1.0 / kLinks;
-        RopeDef rope = test::straight_rope(kLinks, 1.0, 0.0);
+    for (const auto& [links, mass_kg, omega_1_s] : study::kSmallOscillations) {
+        if (mass_kg == 1.0) continue;
+        const double link_m = 1.0 / links;
+        RopeDef rope = study::straight_rope(links, 1.0, 0.0);
         rope.mass_kg.back() = mass_kg;
         double u = 1.0;        // of the particle at hand
         double below_n = 0.0;  // tension over g below it
         double pull = 0.0;     // (tension / g) (u_below - u) / a
-        for (std::size_t i = kLinks; i > 0; --i) {
+        for (auto i = static_cast<std::size_t>(links); i > 0; --i) {
             rope.points_m[i].x = 1e-7 * u;
             const double mass = rope.mass_kg[i];
             below_n += mass;
             pull -= mass * omega_1_s * omega_1_s * u / kGravity;
-            u += pull * kLength / below_n;
+            u += pull * link_m / below_n;
         }
         test::RattleRun run(rope, WorldDef{}, 8, 1.0 / 4000.0);
         ASSERT_TRUE(run.go(0.25 * 2.0 * std::numbers::pi / omega_1_s));

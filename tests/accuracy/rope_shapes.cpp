@@ -3,42 +3,21 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <vector>
 
-#include "support/rattle_run.hpp"
+#include "corda/study/references.hpp"
+#include "corda/study/ropes.hpp"
+#include "support/solver_run.hpp"
 
 namespace corda::sim {
 namespace {
 
-/// `links` links of 1.5 m in all between two pins 1 m apart, as a V.
-RopeDef slack_between_pins(int links) {
-    RopeDef rope;
-    const double depth_m = std::sqrt(0.75 * 0.75 - 0.5 * 0.5);
-    for (int i = 0; i <= links; ++i) {
-        const double along = static_cast<double>(i) / links;
-        rope.points_m.push_back({along, -depth_m * (1.0 - std::abs(2.0 * along - 1.0))});
-    }
-    rope.mass_kg.assign(rope.points_m.size(), 1.0);
-    rope.velocity_m_s.assign(rope.points_m.size(), {});
-    rope.pinned = {0, static_cast<std::uint32_t>(links)};
-    return rope;
-}
-
 TEST(HangingBetweenPinsR6, SettlesToTheReferenceShape) {
-    struct Row {
-        int links;
-        double tension_over_weight;
-        double lowest_m;
-    };
-    const std::array<Row, 3> rows{{{10, 2.0510510143091193, -0.50594593157108448},
-                                   {20, 4.107878988926029, -0.50344663434019265},
-                                   {40, 8.2186678030027642, -0.50283577286535318}}};
-    for (const Row& row : rows) {
+    for (const study::HangingChain& row : study::kHangingChains) {
         WorldDef world;
         world.drag_1_s = 8.0;
-        test::RattleRun run(slack_between_pins(row.links), world, 4);
+        test::RattleRun run(study::slack_rope(row.links), world, 4);
         ASSERT_TRUE(run.go(15.0));
         const double lowest_m = *std::min_element(run.state().y_m.begin(), run.state().y_m.end());
         const double force_n = run.solver().loads()->pin_force_n;
@@ -68,21 +47,8 @@ double fall_time_s(const RopeDef& rope, double depth_m, double from_s) {
 }
 
 TEST(FallingFoldedChainR7, TheTipFallsInTheReferenceTimes) {
-    struct Row {
-        int links;
-        std::array<double, 3> times_s;
-    };
-    const std::array<Row, 3> rows{{{21, {.2261503, .3137222, .3707585}},
-                                   {41, {.2242086, .3088361, .3646133}},
-                                   {81, {.2226169, .3062475, .3606003}}}};
-    for (const Row& row : rows) {
-        const int down = row.links / 2;
-        const double a = 1.0 / row.links;
-        RopeDef rope;
-        for (int i = 0; i <= down; ++i) rope.points_m.push_back({0.0, -i * a});
-        for (int i = down; i >= 0; --i) rope.points_m.push_back({a, -i * a});
-        rope.mass_kg.assign(rope.points_m.size(), 1.0);
-        rope.velocity_m_s.assign(rope.points_m.size(), {});
+    for (const study::FoldedChain& row : study::kFoldedChains) {
+        const RopeDef rope = study::folded_rope(row.links);
         for (std::size_t k = 0; k < 3; ++k) {
             const double time_s =
                 fall_time_s(rope, 0.25 * (1.0 + static_cast<double>(k)), row.times_s[k] - 0.1);
@@ -96,14 +62,9 @@ TEST(FallingFoldedChainR7, TheTipFallsInTheReferenceTimes) {
 TEST(SpinningChainR8, StaysARigidRotation) {
     constexpr int kLinks = 10;
     constexpr double kOmega = 7.0;
-    RopeDef rope = test::straight_rope(kLinks, 1.0, 90.0);
-    for (std::size_t i = 0; i <= kLinks; ++i) {
-        rope.points_m[i] = {0.1 * static_cast<double>(i), 0.0};
-        rope.velocity_m_s[i] = {0.0, kOmega * rope.points_m[i].x};
-    }
     WorldDef world;
     world.gravity_m_s2 = {};
-    test::RattleRun run(rope, world, 8, 1.0 / 500.0);
+    test::RattleRun run(study::spinning_rope(kLinks, 1.0, kOmega), world, 8, 1.0 / 500.0);
     // T_i = m omega^2 a sum of j from i to N; the first is largest.
     EXPECT_NEAR(run.solver().loads()->largest_tension_n, kOmega * kOmega * 0.1 * 55.0, 1e-11);
     ASSERT_TRUE(run.go(10.0, 100));
@@ -120,7 +81,7 @@ TEST(SpinningChainR8, StaysARigidRotation) {
 
 TEST(FreeFall, IsExactFromTheFirstStepOn) {
     for (const int order : {2, 4, 6, 8}) {
-        RopeDef rope = test::straight_rope(8, 1.0, 30.0);
+        RopeDef rope = study::straight_rope(8, 1.0, 30.0);
         rope.pinned = {};
         test::RattleRun run(rope, WorldDef{}, order, 0.01);
         for (const double time_s : {0.01, 0.5, 1.0, 1.2345}) {
@@ -135,9 +96,7 @@ TEST(FreeFall, IsExactFromTheFirstStepOn) {
 }
 
 TEST(HorizontalRelease, StartsAsFreeFallWithoutTension) {
-    RopeDef rope = test::straight_rope(20, 1.0, 90.0);
-    for (Vec2& point : rope.points_m) point.y = 0.0;
-    test::RattleRun run(rope, WorldDef{}, 4, 1.0 / 1000.0);
+    test::RattleRun run(study::straight_rope(20, 1.0, 90.0), WorldDef{}, 4, 1.0 / 1000.0);
     ASSERT_TRUE(run.go(0.0));
     EXPECT_LT(run.solver().loads()->largest_tension_n, 1e-13);
     // x = x0 + a t^2 / 2 + terms of t^6 and up in x, of t^4 in y.

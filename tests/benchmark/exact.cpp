@@ -4,7 +4,8 @@
 #include <benchmark/benchmark.h>
 
 #include "corda/sim/chain_dynamics.hpp"
-#include "support/exact_run.hpp"
+#include "corda/sim/exact.hpp"
+#include "corda/study/ropes.hpp"
 
 namespace corda::sim {
 namespace {
@@ -16,19 +17,22 @@ void count_particles(benchmark::State& bench, double times) {
 }
 
 void exact_step(benchmark::State& bench) {
-    test::ExactRun run(test::straight_rope(static_cast<int>(bench.range(0)), 1.0, 45.0));
+    const RopeDef rope = study::straight_rope(static_cast<int>(bench.range(0)), 1.0, 45.0);
+    const System system = build_system({&rope, 1}, 1);
+    Exact solver(system, WorldDef{}, exact_solver(1e-9), 1.0 / 60.0);
+    State state{0.0, system.x_m, system.y_m};
     double time_s = 0.0;
     const double interval_s = 1.0 / static_cast<double>(bench.range(0));
     for (auto _ : bench) {
         time_s += interval_s;
-        if (!run.advance_to(time_s)) bench.SkipWithError("diverged");
+        if (solver.advance_to(time_s, state) != Status::kOk) bench.SkipWithError("diverged");
     }
-    count_particles(bench, static_cast<double>(run.solver.steps() + run.solver.rejected_steps()));
+    count_particles(bench, static_cast<double>(solver.steps() + solver.rejected_steps()));
     bench.counters["simulated_s/s"] = benchmark::Counter(time_s, benchmark::Counter::kIsRate);
 }
 
 void exact_derivative(benchmark::State& bench) {
-    const RopeDef rope = test::straight_rope(static_cast<int>(bench.range(0)), 1.0, 45.0);
+    const RopeDef rope = study::straight_rope(static_cast<int>(bench.range(0)), 1.0, 45.0);
     const System system = build_system({&rope, 1}, 1);
     ChainDynamics dynamics(system, system.bodies, WorldDef{});
     std::vector<double> slope(dynamics.initial_state().size());

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "corda/sim/relaxation.hpp"
-#include "support/ropes.hpp"
+#include "corda/study/ropes.hpp"
 
 namespace corda::sim {
 namespace {
@@ -75,7 +75,7 @@ class TimedRun {
 /// Ranges: particles, reach, ropes, steps that each advance_to takes, 0 for all those of a slice.
 void relaxation_step(benchmark::State& bench) {
     const std::vector<RopeDef> ropes(static_cast<std::size_t>(bench.range(2)),
-                                     test::report_rope(static_cast<int>(bench.range(0))));
+                                     study::report_rope(static_cast<int>(bench.range(0))));
     const System system = build_system(ropes, static_cast<int>(bench.range(1)));
     const auto bars = static_cast<double>(system.bars.size());
     const int steps = std::max(8, static_cast<int>(200'000.0 / bars));

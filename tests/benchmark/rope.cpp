@@ -5,27 +5,24 @@
 #include <cmath>
 
 #include "corda/sim/rattle.hpp"
-#include "support/ropes.hpp"
+#include "corda/study/ropes.hpp"
 
 namespace corda::sim {
 namespace {
 
 void rope_step(benchmark::State& bench) {
     const int links = static_cast<int>(bench.range(0));
-    const RopeDef rope = test::straight_rope(links, 1.0, 45.0);
+    const RopeDef rope = study::straight_rope(links, 1.0, 45.0);
     const System system = build_system({&rope, 1}, 1);
-    SolverDef def;
-    def.order = static_cast<int>(bench.range(1));
     // The step that a scene of order 4 is given: the same share of the shortest period at every size.
-    const SolverDef chosen;
-    def.step_s = Rattle(system, WorldDef{}, chosen, 1.0).step_s();
-    Rattle solver(system, WorldDef{}, def, 1.0 / 60.0);
+    const double step_s = Rattle(system, WorldDef{}, rope_solver(4), 1.0).step_s();
+    Rattle solver(system, WorldDef{}, rope_solver(static_cast<int>(bench.range(1)), step_s), 1.0 / 60.0);
     State state{0.0, system.x_m, system.y_m};
     const int steps = links > 10000 ? 4 : 64;
     int k = 0;
     for (auto _ : bench) {
         k += steps;
-        if (solver.advance_to(k * *def.step_s, state) != Status::kOk) bench.SkipWithError("diverged");
+        if (solver.advance_to(k * step_s, state) != Status::kOk) bench.SkipWithError("diverged");
         benchmark::DoNotOptimize(state.x_m.data());
     }
     const double taken = static_cast<double>(bench.iterations()) * steps;

@@ -6,26 +6,23 @@
 #include <cmath>
 
 #include "corda/sim/planner.hpp"
+#include "corda/sim/simulation.hpp"
+#include "corda/study/ropes.hpp"
 #include "support/command.hpp"
 #include "support/denormal_trap.hpp"
-#include "support/ropes.hpp"
 
 namespace corda::sim {
 namespace {
 
 SolverDef solver_of(Method method) {
-    SolverDef solver;
-    solver.method = method;
-    solver.reach = 1;
-    if (method == Method::kRelaxation) solver.step_s = 1.0 / 960.0;
-    if (method == Method::kRope) solver.order = 8;
-    return solver;
+    if (method == Method::kRelaxation) return relaxation_solver(1.0 / 960.0, 1, 1);
+    return method == Method::kRope ? rope_solver(8) : exact_solver(1e-9);
 }
 
 class EveryMethod : public testing::TestWithParam<Method> {};
 
 TEST_P(EveryMethod, AgreesAtCommonTimesOfAllFrameRates) {
-    const RopeDef rope = test::straight_rope(20, 1.0, 45.0);
+    const RopeDef rope = study::straight_rope(20, 1.0, 45.0);
     constexpr double kToleranceM = 1e-13;
     const auto run_at = [&](int rate) {
         return Simulation(build_system({&rope, 1}, 1), WorldDef{}, solver_of(GetParam()), 1.0 / rate);
@@ -50,7 +47,7 @@ TEST_P(EveryMethod, AgreesAtCommonTimesOfAllFrameRates) {
 }
 
 TEST_P(EveryMethod, HasTheSameBitsWithThePinFarAway) {
-    RopeDef rope = test::straight_rope(10, 1.0, 70.0);
+    RopeDef rope = study::straight_rope(10, 1.0, 70.0);
     const auto start = [&] {
         return Simulation(build_system({&rope, 1}, 1), WorldDef{}, solver_of(GetParam()), 1.0 / 60.0);
     };
@@ -86,7 +83,7 @@ TEST_P(EveryMethod, WritesTheSameBytesFromTwoProcesses) {
 /// Halving its distance to rest again and again, a rope would get to denormal numbers, which slow a step down
 /// a hundred times. What the steps cost is measured by `corda study`, among the hard cases.
 TEST_P(EveryMethod, NeverWorksOnDenormalNumbersOnTheWayToRest) {
-    const RopeDef rope = test::straight_rope(20, 1.0, 45.0);
+    const RopeDef rope = study::straight_rope(20, 1.0, 45.0);
     const WorldDef world{{0.0, -9.81}, 2000.0, 5.0};
     SolverDef solver = solver_of(GetParam());
     solver.step_s = 1.0 / 500.0;  // 1e6 steps; exact has its own
@@ -107,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(All, EveryMethod,
                          [](const auto& param) { return std::string(method_name(param.param)); });
 
 TEST(Auto, AgreesAtCommonTimesOfAllFrameRatesWithinItsTolerance) {
-    const RopeDef rope = test::straight_rope(20, 1.0, 45.0);
+    const RopeDef rope = study::straight_rope(20, 1.0, 45.0);
     const System system = build_system({&rope, 1}, 1);
     constexpr double kToleranceM = 1e-5;
     std::vector<State> ends;

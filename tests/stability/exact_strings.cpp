@@ -9,8 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "corda/sim/distance.hpp"
 #include "corda/sim/string_part.hpp"
-#include "support/exact_run.hpp"
+#include "corda/study/ropes.hpp"
+#include "support/strings.hpp"
 
 namespace corda::sim {
 namespace {
@@ -63,10 +65,8 @@ class WatchedString {
 
 /// Links of length 1 / `links` at rest, at nine tenths of that at the start.
 RopeDef slack_rope(int links) {
-    RopeDef rope = test::horizontal_rope(links, 0.9);
-    rope.rest_m.assign(static_cast<std::size_t>(links), 1.0 / links);
-    rope.material.is_string = true;
-    return rope;
+    return test::string_of(study::straight_rope(links, 0.9, 90.0).points_m,
+                           std::vector<double>(static_cast<std::size_t>(links), 1.0 / links));
 }
 
 void expect_sound(const RopeDef& rope, double duration_s, const WorldDef& world, const char* name) {
@@ -141,7 +141,7 @@ TEST(Symmetric, StaysSo) {
 }
 
 TEST(FreeFall, OfARopeThatNothingPullsIsNoEvent) {
-    RopeDef rope = test::horizontal_rope(10, 1.0);
+    RopeDef rope = study::straight_rope(10, 1.0, 90.0);
     rope.material.is_string = true;
     rope.pinned = {};
     for (Vec2& velocity : rope.velocity_m_s) velocity = {3.0, 5.0};

@@ -3,23 +3,48 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <utility>
+#include <vector>
 
-#include "corda/sim/system.hpp"
+#include "corda/study/ropes.hpp"
 
 namespace corda::test {
 
 /// A closed rope of `particles` unit masses on a circle of radius 1 m whose top is at the origin, at rest;
 /// the top one pinned.
 inline sim::RopeDef ring(int particles) {
-    sim::RopeDef rope;
+    std::vector<sim::Vec2> points_m;
     for (int i = 0; i < particles; ++i) {
         const double angle = 2.0 * std::numbers::pi * i / particles;
-        rope.points_m.push_back({std::sin(angle), std::cos(angle) - 1.0});
+        points_m.push_back({std::sin(angle), std::cos(angle) - 1.0});
     }
-    rope.mass_kg.assign(rope.points_m.size(), 1.0);
-    rope.velocity_m_s.assign(rope.points_m.size(), {});
+    sim::RopeDef rope = study::rope_through(std::move(points_m));
     rope.closed = true;
     return rope;
+}
+
+/// A cloth of columns x rows unit masses `spacing_m` apart that hangs from the two ends of its top row, with
+/// both diagonals in every square as imaginary bars.
+inline sim::NetDef cloth(std::uint32_t columns, std::uint32_t rows, double spacing_m) {
+    sim::NetDef net;
+    const auto at = [&](std::uint32_t row, std::uint32_t column) { return row * columns + column; };
+    for (std::uint32_t r = 0; r < rows; ++r) {
+        for (std::uint32_t c = 0; c < columns; ++c) {
+            net.points_m.push_back({spacing_m * c, -spacing_m * r});
+            if (c + 1 < columns) net.bars.push_back({at(r, c), at(r, c + 1), true});
+            if (r + 1 < rows) net.bars.push_back({at(r, c), at(r + 1, c), true});
+        }
+    }
+    for (std::uint32_t r = 0; r + 1 < rows; ++r) {
+        for (std::uint32_t c = 0; c + 1 < columns; ++c) {
+            net.bars.push_back({at(r, c), at(r + 1, c + 1), false});
+            net.bars.push_back({at(r, c + 1), at(r + 1, c), false});
+        }
+    }
+    net.mass_kg.assign(net.points_m.size(), 1.0);
+    net.velocity_m_s.assign(net.points_m.size(), {});
+    net.pinned = {0, columns - 1};
+    return net;
 }
 
 /// A net of unit masses, particle r * columns + c at spacing * (c + 0.3 r, -r): leaning to the right; bars

@@ -13,7 +13,8 @@
 #include "corda/core/error.hpp"
 #include "corda/sim/composition.hpp"
 #include "corda/sim/tridiagonal.hpp"
-#include "support/rattle_run.hpp"
+#include "corda/study/ropes.hpp"
+#include "support/solver_run.hpp"
 
 namespace corda::sim {
 namespace {
@@ -84,7 +85,7 @@ TEST(Grid, GivesTheSameBitsWhateverTimesAreAskedFor) {
     for (const double drag_1_s : {0.0, 0.3}) {
         WorldDef world;
         world.drag_1_s = drag_1_s;
-        const RopeDef rope = test::straight_rope(20, 1.0, 80.0);
+        const RopeDef rope = study::straight_rope(20, 1.0, 80.0);
         test::RattleRun direct(rope, world, 4, 1.0 / 240.0);
         test::RattleRun often(rope, world, 4, 1.0 / 240.0);
         ASSERT_TRUE(direct.go(1.51));
@@ -100,19 +101,19 @@ TEST(Grid, GivesTheSameBitsWhateverTimesAreAskedFor) {
 }
 
 TEST(Grid, TimesBetweenItsPointsAreAsGoodAsThePoints) {
-    test::RattleRun fine(test::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 640.0);
-    test::RattleRun coarse(test::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 333.0);
+    test::RattleRun fine(study::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 640.0);
+    test::RattleRun coarse(study::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 333.0);
     ASSERT_TRUE(fine.go(1.0));
     ASSERT_TRUE(coarse.go(1.0 - 0.4 / 333.0));
     ASSERT_TRUE(coarse.go(1.0));
-    EXPECT_LT(coarse.tip_distance(fine.tip_x(), fine.tip_y()), 1e-12);
-    test::RattleRun between(test::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 330.7);
+    EXPECT_LT(coarse.tip_error_m({fine.tip_x(), fine.tip_y()}), 1e-12);
+    test::RattleRun between(study::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 330.7);
     ASSERT_TRUE(between.go(1.0));
-    EXPECT_LT(between.tip_distance(fine.tip_x(), fine.tip_y()), 1e-12);
+    EXPECT_LT(between.tip_error_m({fine.tip_x(), fine.tip_y()}), 1e-12);
 }
 
 TEST(Step, IsAWholeShareOfTheFrameWhereNoneIsGiven) {
-    test::RattleRun run(test::straight_rope(20, 1.0, 45.0), WorldDef{}, 4);
+    test::RattleRun run(study::straight_rope(20, 1.0, 45.0), WorldDef{}, 4);
     const double parts = 1.0 / 60.0 / run.solver().step_s();
     EXPECT_DOUBLE_EQ(parts, std::round(parts));
     EXPECT_GT(parts, 1.0);
@@ -121,7 +122,7 @@ TEST(Step, IsAWholeShareOfTheFrameWhereNoneIsGiven) {
 }
 
 TEST(Drag, SlowsAFreeFallExactlyAndKeepsTheOrder) {
-    RopeDef rope = test::straight_rope(4, 1.0, 20.0);
+    RopeDef rope = study::straight_rope(4, 1.0, 20.0);
     rope.pinned = {};
     WorldDef world;
     world.drag_1_s = 1.5;
@@ -172,51 +173,34 @@ System net(std::uint32_t columns, std::uint32_t rows, bool diagonals) {
 }
 
 TEST(Graph, AChainSaysTheSameAsAChain) {
-    const RopeDef rope = test::straight_rope(10, 1.0, 60.0);
+    const RopeDef rope = study::straight_rope(10, 1.0, 60.0);
     const System chain = build_system({&rope, 1}, 1);
     System shuffled = chain;
     std::swap(shuffled.bars[2], shuffled.bars[7]);
-    SolverDef def;
-    def.order = 6;
-    def.step_s = 1.0 / 500.0;
-    Rattle first(chain, WorldDef{}, def, 1.0 / 60.0);
-    Rattle second(shuffled, WorldDef{}, def, 1.0 / 60.0);
-    State a{0.0, chain.x_m, chain.y_m};
-    State b = a;
-    ASSERT_EQ(first.advance_to(1.0, a), Status::kOk);
-    ASSERT_EQ(second.advance_to(1.0, b), Status::kOk);
-    double largest_m = 0.0;
-    for (std::size_t i = 0; i < a.x_m.size(); ++i)
-        largest_m = std::max({largest_m, std::abs(a.x_m[i] - b.x_m[i]), std::abs(a.y_m[i] - b.y_m[i])});
+    const SolverDef def = rope_solver(6, 1.0 / 500.0);
+    test::SolverRun<Rattle> first(chain, WorldDef{}, def);
+    test::SolverRun<Rattle> second(shuffled, WorldDef{}, def);
+    ASSERT_TRUE(first.go(1.0) && second.go(1.0));
+    const double largest_m = first.distance_m(second.state());
     std::printf("graph against chain: %.1e m\n", largest_m);
     EXPECT_LT(largest_m, 1e-11);
 }
 
 TEST(Graph, ANetSwingsWithItsLengthsAndItsEnergy) {
-    const System system = net(8, 6, false);
-    SolverDef def;
-    Rattle solver(system, WorldDef{}, def, 1.0 / 60.0);
-    State state{0.0, system.x_m, system.y_m};
-    const double start_j = solver.energy_j();
-    ASSERT_EQ(solver.advance_to(1.0, state), Status::kOk);
-    double strain = 0.0;
-    for (const Bar& bar : system.bars) {
-        const double dx = state.x_m[bar.b] - state.x_m[bar.a];
-        const double dy = state.y_m[bar.b] - state.y_m[bar.a];
-        strain = std::max(strain, std::abs(std::sqrt(dx * dx + dy * dy) / bar.rest_m - 1.0));
-    }
-    std::printf("net: strain %.1e, energy %.1e, h %.1e, parts %llu / %llu\n", strain,
-                (solver.energy_j() - start_j) / solver.energy_scale_j(), solver.step_s(),
-                static_cast<unsigned long long>(solver.parts()),
-                static_cast<unsigned long long>(solver.steps()));
-    EXPECT_LT(strain, 1e-13);
-    EXPECT_LT(std::abs(solver.energy_j() - start_j) / solver.energy_scale_j(), 1e-6);
+    test::SolverRun<Rattle> run(net(8, 6, false), WorldDef{}, rope_solver(4));
+    ASSERT_TRUE(run.go(1.0));
+    std::printf("net: strain %.1e, energy %.1e, h %.1e, parts %llu / %llu\n", run.strain(),
+                run.energy_error(), run.solver().step_s(),
+                static_cast<unsigned long long>(run.solver().parts()),
+                static_cast<unsigned long long>(run.solver().steps()));
+    EXPECT_LT(run.strain(), 1e-13);
+    EXPECT_LT(run.energy_error(), 1e-6);
 }
 
 TEST(Graph, RedundantBarsAreRefused) {
-    const SolverDef def;
+    const SolverDef def = rope_solver(4);
     EXPECT_THROW(Rattle(net(5, 5, true), WorldDef{}, def, 1.0 / 60.0), Error);
-    const RopeDef rope = test::straight_rope(20, 1.0, 45.0);
+    const RopeDef rope = study::straight_rope(20, 1.0, 45.0);
     const System seven_neighbours = build_system({&rope, 1}, 7);
     EXPECT_THROW(Rattle(seven_neighbours, WorldDef{}, def, 1.0 / 60.0), Error);
 }

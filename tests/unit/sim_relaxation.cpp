@@ -5,17 +5,16 @@
 #include <cmath>
 #include <limits>
 
-#include "support/ropes.hpp"
+#include "corda/study/ropes.hpp"
+#include "support/simulate.hpp"
 
 namespace corda::sim {
 namespace {
 
 /// Two free unit masses without gravity, 2 m apart, the right one moving right at 1 m/s.
 RopeDef moving_pair() {
-    RopeDef rope;
-    rope.points_m = {{0.0, 0.0}, {2.0, 0.0}};
-    rope.mass_kg = {1.0, 1.0};
-    rope.velocity_m_s = {{0.0, 0.0}, {1.0, 0.0}};
+    RopeDef rope = study::rope_through({{0.0, 0.0}, {2.0, 0.0}});
+    rope.velocity_m_s[1] = {1.0, 0.0};
     rope.pinned = {};
     return rope;
 }
@@ -118,8 +117,8 @@ TEST(RelaxationTimes, BetweenTwoStepsLieOnTheParabola) {
 
 TEST(RelaxationTimes, DoNotDependOnTheTimesAskedForOnTheWay) {
     SolverDef solver = with_step(0.003);
-    Simulation straight = test::simulate(test::report_rope(20), WorldDef{}, solver);
-    Simulation stopping = test::simulate(test::report_rope(20), WorldDef{}, solver);
+    Simulation straight = test::simulate(study::report_rope(20), WorldDef{}, solver);
+    Simulation stopping = test::simulate(study::report_rope(20), WorldDef{}, solver);
     ASSERT_EQ(straight.advance_to(2.0), Status::kOk);
     for (int k = 0; k <= 48; ++k) ASSERT_EQ(stopping.advance_to(2.0 * k / 48.0), Status::kOk);
     EXPECT_EQ(straight.state().x_m, stopping.state().x_m);
@@ -127,9 +126,9 @@ TEST(RelaxationTimes, DoNotDependOnTheTimesAskedForOnTheWay) {
 }
 
 TEST(Relaxation, GivesTheSameBitsOnEveryRunAndFarFromTheOrigin) {
-    RopeDef far = test::report_rope(40);
+    RopeDef far = study::report_rope(40);
     far.origin_m = {1e6, 1e6};
-    Simulation a = test::simulate(test::report_rope(40), WorldDef{}, test::relaxation());
+    Simulation a = test::simulate(study::report_rope(40), WorldDef{}, test::relaxation());
     Simulation b = test::simulate(far, WorldDef{}, test::relaxation());
     ASSERT_EQ(a.advance_to(10.0), Status::kOk);
     ASSERT_EQ(b.advance_to(10.0), Status::kOk);
@@ -161,7 +160,7 @@ TEST(Simulation, ReportsDivergenceAndKeepsTheLastGoodState) {
 }
 
 TEST(Simulation, WorksOutNoFiguresInARehearsal) {
-    const RopeDef rope = test::report_rope(10);
+    const RopeDef rope = study::report_rope(10);
     Simulation run(build_system({&rope, 1}, 7), WorldDef{}, with_step(0.01), 1.0 / 60.0, Figured::kNo);
     ASSERT_EQ(run.advance_to(1.0), Status::kOk);
     EXPECT_EQ(run.diagnostics().largest.strain, 0.0);
@@ -170,14 +169,14 @@ TEST(Simulation, WorksOutNoFiguresInARehearsal) {
 
 TEST(Simulation, EnergyErrorIsWithheldWhereDampingTakesEnergy) {
     SolverDef solver = with_step(0.01);
-    Simulation undamped = test::simulate(test::report_rope(10), WorldDef{}, solver);
+    Simulation undamped = test::simulate(study::report_rope(10), WorldDef{}, solver);
     ASSERT_EQ(undamped.advance_to(1.0), Status::kOk);
     ASSERT_TRUE(undamped.diagnostics().largest.energy_error.has_value());
     EXPECT_GT(*undamped.diagnostics().largest.energy_error, 0.0);
     EXPECT_LT(*undamped.diagnostics().largest.energy_error, 1e-3);
     EXPECT_EQ(undamped.diagnostics().steps, 100U);
     solver.delta = 0.01;
-    Simulation damped = test::simulate(test::report_rope(10), WorldDef{}, solver);
+    Simulation damped = test::simulate(study::report_rope(10), WorldDef{}, solver);
     ASSERT_EQ(damped.advance_to(1.0), Status::kOk);
     EXPECT_FALSE(damped.diagnostics().largest.energy_error.has_value());
 }

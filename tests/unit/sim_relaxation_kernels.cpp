@@ -13,7 +13,8 @@
 
 #include "corda/sim/relaxation.hpp"
 #include "corda/sim/relaxation_schedule.hpp"
-#include "support/ropes.hpp"
+#include "corda/study/ropes.hpp"
+#include "support/simulate.hpp"
 
 namespace corda::sim {
 namespace {
@@ -132,7 +133,7 @@ TEST_P(RelaxationKernels, GiveTheBitsOfTheScalarOneOnRandomBodies) {
 
 TEST_P(RelaxationKernels, GiveTheBitsOfTheScalarOneOverManySteps) {
     for (const int particles : {20, 40, 100, 300}) {
-        const RopeDef rope = test::report_rope(particles);
+        const RopeDef rope = study::report_rope(particles);
         const System system = build_system({&rope, 1}, 7);
         KernelRun scalar(system, test::relaxation(), RelaxationKernel::kScalar);
         KernelRun run(system, test::relaxation(), GetParam());
@@ -146,7 +147,7 @@ TEST_P(RelaxationKernels, GiveTheBitsOfTheScalarOneOverManySteps) {
 
 TEST_P(RelaxationKernels, LeaveAFoldedRopeAloneWhereItsBarsHaveNoLength) {
     // Particles in turn in two places, weightless and at rest: bars of even reach have no length, ever.
-    RopeDef rope = test::report_rope(50);
+    RopeDef rope = study::report_rope(50);
     for (std::size_t i = 0; i < rope.points_m.size(); ++i) rope.points_m[i] = {0.0, i % 2 == 0 ? 0.0 : -1.0};
     SolverDef solver = test::relaxation();
     solver.force_n = Vec2{};
@@ -233,7 +234,7 @@ TEST(RelaxationSchedule, KeepsTheOrderForEveryParticleWithPassesAtTheirLag) {
 }
 
 TEST(RelaxationSchedule, FillsItsLanesAndOverlapsThePassesOfALongRope) {
-    const RopeDef rope = test::report_rope(1000);
+    const RopeDef rope = study::report_rope(1000);
     const System system = build_system({&rope, 1}, 7);
     const RelaxationSchedule schedule = schedule_bars(numbered_bars(system), 0, 1000);
     // 6972 bars fill 1743 packets at best; measured 1747.

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "support/ropes.hpp"
+#include "corda/study/ropes.hpp"
 
 namespace corda::sim {
 namespace {
@@ -28,7 +28,7 @@ TEST(BarCount, AReachBeyondTheRopeAddsNothing) {
 TEST(System, HasTheBarsThatBarCountPromises) {
     for (const int particles : {2, 3, 7, 8, 20, 100}) {
         for (const int reach : {1, 2, 7, 10}) {
-            const RopeDef rope = test::report_rope(particles);
+            const RopeDef rope = study::report_rope(particles);
             const System system = build_system({&rope, 1}, reach);
             EXPECT_EQ(system.bars.size(), bar_count(particles, reach))
                 << particles << " particles, reach " << reach;
@@ -38,7 +38,7 @@ TEST(System, HasTheBarsThatBarCountPromises) {
 }
 
 TEST(System, OrdersBarsByReachAndThenAlongTheRope) {
-    const RopeDef rope = test::report_rope(4);
+    const RopeDef rope = study::report_rope(4);
     const System system = build_system({&rope, 1}, 2);
     ASSERT_EQ(system.bars.size(), 5U);
     const std::array<std::array<unsigned, 3>, 5> expected{
@@ -51,8 +51,8 @@ TEST(System, OrdersBarsByReachAndThenAlongTheRope) {
 }
 
 TEST(System, SharesItsArraysAmongRopes) {
-    RopeDef first = test::straight_rope(3, 3.0, 0.0);
-    RopeDef second = test::straight_rope(2, 1.0, 90.0);
+    RopeDef first = study::straight_rope(3, 3.0, 0.0);
+    RopeDef second = study::straight_rope(2, 1.0, 90.0);
     first.origin_m = {10.0, 20.0};
     second.origin_m = {11.0, 20.0};
     second.payload_kg = 5.0;
@@ -85,7 +85,7 @@ TEST(BarCount, OfAClosedRopeHasEachBarOnce) {
 TEST(System, OfAClosedRopeHasTheBarsThatBarCountPromises) {
     for (const int particles : {3, 4, 5, 6, 7, 20}) {
         for (const int reach : {1, 2, 3, 10}) {
-            RopeDef rope = test::report_rope(particles);
+            RopeDef rope = study::report_rope(particles);
             rope.closed = true;
             const System system = build_system({&rope, 1}, reach);
             EXPECT_EQ(system.bars.size(), bar_count(particles, reach, true))
@@ -100,7 +100,7 @@ TEST(System, OfAClosedRopeHasTheBarsThatBarCountPromises) {
 }
 
 TEST(System, OfARopeThatBendsHasACornerAtEveryInnerParticle) {
-    RopeDef rope = test::report_rope(4);
+    RopeDef rope = study::report_rope(4);
     rope.points_m = {{0.0, 0.0}, {1.0, 0.0}, {1.0, -3.0}, {-4.0, -3.0}};
     rope.bending_n_m2 = 6.0;
     const System open = build_system({&rope, 1}, 1);
@@ -118,7 +118,7 @@ TEST(System, OfARopeThatBendsHasACornerAtEveryInnerParticle) {
 }
 
 TEST(System, PutsNetsAfterTheRopes) {
-    const RopeDef rope = test::straight_rope(2, 2.0, 0.0);
+    const RopeDef rope = study::straight_rope(2, 2.0, 0.0);
     NetDef net;
     net.origin_m = {10.0, 1.0};
     net.points_m = {{0.0, 0.0}, {3.0, 0.0}, {3.0, -4.0}};

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "corda/core/error.hpp"
-#include "support/ropes.hpp"
+#include "corda/study/ropes.hpp"
 
 namespace corda::view {
 namespace {
@@ -30,15 +30,18 @@ Drawn draw(const std::vector<sim::RopeDef>& ropes, const StyleDef& style,
     return drawn;
 }
 
-StyleDef plain() {
-    StyleDef style;
-    style.markers = Markers::kNone;
-    style.rope_width_px = 4.0;
-    return style;
+const StyleDef& plain() {
+    static const StyleDef kPlain = [] {
+        StyleDef style;
+        style.markers = Markers::kNone;
+        style.rope_width_px = 4.0;
+        return style;
+    }();
+    return kPlain;
 }
 
 TEST(SceneView, APlainRopeIsOneLayerOfItsLinks) {
-    const Drawn drawn = draw({test::straight_rope(5, 1.0, 30.0)}, plain());
+    const Drawn drawn = draw({study::straight_rope(5, 1.0, 30.0)}, plain());
     ASSERT_EQ(drawn.list.layers.size(), 1U);
     EXPECT_EQ(drawn.list.layers[0].capsule_count, 5U);
     EXPECT_EQ(drawn.list.capsules[0].radius, 2.0F);
@@ -48,7 +51,7 @@ TEST(SceneView, APlainRopeIsOneLayerOfItsLinks) {
 TEST(SceneView, RopesOfOneColourShareALayer) {
     StyleDef style = plain();
     style.palette = {Color{1, 2, 3, 255}, Color{4, 5, 6, 255}};
-    const std::vector<sim::RopeDef> ropes(4, test::straight_rope(2, 1.0, 30.0));
+    const std::vector<sim::RopeDef> ropes(4, study::straight_rope(2, 1.0, 30.0));
     EXPECT_EQ(draw(ropes, style).list.layers.size(), 2U);
     // A rope of its own colour uses none of the palette up.
     std::vector<BodyStyleDef> styles(4);
@@ -63,7 +66,7 @@ TEST(SceneView, BarsAndMarkersHaveLayersOfTheirOwn) {
     StyleDef style = plain();
     style.markers = Markers::kAll;
     style.bars = Bars::kAll;
-    const Drawn drawn = draw({test::straight_rope(5, 1.0, 30.0)}, style);
+    const Drawn drawn = draw({study::straight_rope(5, 1.0, 30.0)}, style);
     ASSERT_EQ(drawn.list.layers.size(), 5U);
     EXPECT_EQ(drawn.list.layers[0].color, style.imaginary_bar_color);
     EXPECT_EQ(drawn.list.layers[0].capsule_count, 4U + 3U);  // reach 2 and 3 among 6 particles
@@ -101,7 +104,7 @@ TEST(SceneView, ANetIsItsRealBarsHalfAsWideAsARope) {
 
 TEST(SceneView, NetsTakeThePaletteAfterTheRopes) {
     const StyleDef style = plain();
-    const Drawn drawn = draw({test::straight_rope(3, 1.0, 30.0)}, style, {}, {square_net()});
+    const Drawn drawn = draw({study::straight_rope(3, 1.0, 30.0)}, style, {}, {square_net()});
     ASSERT_EQ(drawn.list.layers.size(), 2U);
     EXPECT_EQ(drawn.list.layers[0].color, style.palette[0]);
     EXPECT_EQ(drawn.list.layers[0].capsule_count, 3U);
@@ -124,7 +127,7 @@ TEST(SceneView, ANetHasItsBarsAndMarkersInTheCommonLayers) {
 }
 
 TEST(SceneView, AClosedRopeHasItsLastLink) {
-    std::vector<sim::RopeDef> ropes(1, test::straight_rope(2, 1.0, 30.0));
+    std::vector<sim::RopeDef> ropes(1, study::straight_rope(2, 1.0, 30.0));
     ropes[0].points_m[2].x += 1.0;
     EXPECT_EQ(draw(ropes, plain()).list.capsules.size(), 2U);
     ropes[0].closed = true;
@@ -132,7 +135,7 @@ TEST(SceneView, AClosedRopeHasItsLastLink) {
 }
 
 TEST(SceneView, TheRopesStayInsideThePicture) {
-    const Drawn drawn = draw({test::straight_rope(5, 1.0, 30.0)}, plain());
+    const Drawn drawn = draw({study::straight_rope(5, 1.0, 30.0)}, plain());
     EXPECT_GT(drawn.list.bounds.x0, 0);
     EXPECT_GT(drawn.list.bounds.y0, 0);
     EXPECT_LT(drawn.list.bounds.x1, 200);
@@ -140,7 +143,7 @@ TEST(SceneView, TheRopesStayInsideThePicture) {
 }
 
 TEST(SceneView, RefusesMoreColoursThanLayers) {
-    const std::vector<sim::RopeDef> ropes(kMaxLayers + 1, test::straight_rope(1, 1.0, 0.0));
+    const std::vector<sim::RopeDef> ropes(kMaxLayers + 1, study::straight_rope(1, 1.0, 0.0));
     std::vector<BodyStyleDef> styles(ropes.size());
     for (std::size_t i = 0; i < styles.size(); ++i)
         styles[i].color = Color{static_cast<std::uint8_t>(i), 0, 0, 255};

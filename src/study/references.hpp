@@ -1,0 +1,149 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "corda/sim/vec2.hpp"
+
+namespace corda::study {
+
+// Numbers that others have worked out, to more digits than a double holds where nothing else is said: PHYSICS
+// section 4. Masses are 1 kg, lengths 1 m and gravity 9.81 m/s^2 where a table does not say otherwise.
+
+/// R1, IFToMM benchmark A01: the period of a pendulum from the horizontal.
+inline constexpr double kA01PeriodSeconds = 2.3678419475762374;
+
+/// R2: the period of a pendulum in small swings, 2 pi sqrt(L / g).
+inline constexpr double kSmallSwingSeconds = 2.006066680710647;
+
+/// R2: the period of a pendulum that swings up to an angle, from 2 / pi K(sin(angle / 2)).
+struct SwingPeriod {
+    double angle_deg;  ///< from straight down, below 180
+    double ratio;      ///< over kSmallSwingSeconds
+};
+inline constexpr std::array<SwingPeriod, 9> kSwingPeriods{{
+    {10, 1.0019071881432166},
+    {45, 1.0399733431968039},
+    {90, 1.1803405990160962},
+    {120, 1.3728805006183502},
+    {150, 1.762203729503756},
+    {170, 2.4393627196738841},
+    {179, 3.9010651603890857},
+    {179.9, 5.3668671090259463},
+    {179.99, 6.832737338014762},
+}};
+
+/// R2: a full turn of a pendulum that passes the bottom with v^2 = 6 g L.
+inline constexpr double kFullTurnSeconds = 1.0578477230355216;
+
+/// R3: the period of a rigid rod of equal masses from the horizontal, evenly spaced from the pin on.
+struct RodPeriod {
+    int links;  ///< and moving masses
+    double period_s;
+};
+inline constexpr std::array<RodPeriod, 5> kRodPeriods{{
+    {2, 2.161534078824117},
+    {5, 2.027698701742412},
+    {10, 1.981078706687632},
+    {20, 1.957352357296146},
+    {50, 1.942977482042899},
+}};
+
+/// R4: a small oscillation of a hanging chain: omega^2 = (g / a) x, x being a zero of the Laguerre polynomial
+/// L_N where the tip has the mass of the others.
+struct SmallOscillation {
+    int links;
+    double tip_mass_kg;  ///< of the last particle in all
+    double omega_1_s;
+};
+inline constexpr std::array<SmallOscillation, 13> kSmallOscillations{{
+    {5, 1, 3.5955018679142},
+    {10, 1, 3.6766206576178},
+    {10, 1, 8.4592843258908},
+    {10, 1, 54.177674155542},
+    {20, 1, 3.7202051499303},
+    {20, 1, 8.5446639308937},
+    {20, 1, 114.245746189},
+    {50, 1, 3.7474350221806},
+    {50, 1, 8.6027948917509},
+    {50, 1, 297.71217239},
+    {10, 10, 3.3130928700043},
+    {10, 100, 3.1568078379578},
+    {10, 1000, 3.1346641280336},
+}};
+
+/// R5: a straight chain of unit masses released at rest, and where its tip is later.
+struct ReleasedChain {
+    int links;
+    double length_m;
+    double angle_deg;    ///< from straight down towards +x
+    double tip_mass_kg;  ///< of the last particle in all
+    double time_s;
+    sim::Vec2 tip_m;  ///< from the pin
+};
+inline constexpr std::array<ReleasedChain, 15> kReleasedChains{{
+    {2, 2, 90, 1, 1, {-1.44481884994347579652, -1.32179446138146455585}},
+    {2, 2, 90, 1, 5, {-1.55077846947044280041, -1.07591273481265245654}},
+    {2, 2, 90, 1, 10, {-1.04076578324617048611, -1.70734766246932744698}},
+    {2, 2, 179, 1, 5, {0.67314150466155481520, -0.62722634568900508337}},
+    {3, 1, 90, 1, 5, {-0.53194662963776443892, 0.19179241928334740955}},
+    {5, 1, 90, 1, 2, {0.83771529818003690575, -0.16765931615339712151}},
+    {10, 1, 45, 1, 1, {-0.67948993189750683016, -0.72711223860003900537}},
+    {10, 1, 45, 1, 5, {0.39214385389268969475, -0.90225644487398941636}},
+    {10, 1, 90, 1, 1, {-0.91331222940637701239, -0.14965514141883061700}},
+    {10, 1, 90, 1, 2, {0.47978859926682898140, -0.15417531322773500122}},
+    {20, 1, 45, 1, 1, {-0.67016053525568878136, -0.73674338218714743406}},
+    {20, 1, 45, 1, 2, {0.53700529500088304879, -0.81916411877801124437}},
+    {20, 1, 90, 1, 1, {-0.90868883153230172068, -0.16339488036472364311}},
+    {10, 1, 90, 1000, 2, {0.79574428267767040194, -0.60334843538712810990}},
+    {10, 1, 90, 1000, 5, {0.92550693774088658561, -0.34521126487484581376}},
+}};
+
+/// The tip of R5's row of equal masses with these numbers. No such row, no compilation.
+[[nodiscard]] consteval sim::Vec2 released_tip_m(int links, double angle_deg, double time_s) {
+    return std::find_if(kReleasedChains.begin(), kReleasedChains.end(),
+                        [&](const ReleasedChain& row) {
+                            return row.links == links && row.angle_deg == angle_deg && row.time_s == time_s &&
+                                   row.tip_mass_kg == 1.0;
+                        })
+        ->tip_m;
+}
+
+/// R6: a chain of 1.5 m that hangs at rest between two pins 1 m apart.
+struct HangingChain {
+    int links;
+    double tension_over_weight;  ///< horizontal tension over the weight of a particle
+    double lowest_m;             ///< y of the lowest particle, from the pins
+};
+inline constexpr std::array<HangingChain, 3> kHangingChains{{
+    {10, 2.0510510143091193, -0.50594593157108448},
+    {20, 4.107878988926029, -0.50344663434019265},
+    {40, 8.2186678030027642, -0.50283577286535318},
+}};
+
+/// R7: a folded chain, down by half of its links, across by one and up again, one end let go. To 7 digits.
+struct FoldedChain {
+    int links;                      ///< odd
+    std::array<double, 3> times_s;  ///< at which the tip has fallen .25, .5, .75 m
+};
+inline constexpr std::array<FoldedChain, 3> kFoldedChains{{
+    {21, {.2261503, .3137222, .3707585}},
+    {41, {.2242086, .3088361, .3646133}},
+    {81, {.2226169, .3062475, .3606003}},
+}};
+
+/// A position that others have published.
+struct PublishedTip {
+    double time_s;
+    sim::Vec2 tip_m;
+};
+
+/// R11: the last particle of the source report's start, 40 particles, g = 9.8 m/s^2; reference/swing40.txt.
+inline constexpr std::array<PublishedTip, 4> kReportTips{{
+    {1.0, {3.414020640719306, -39.04020640719306}},
+    {2.0, {1.9523468902633656, -39.123468902633476}},
+    {5.0, {-4.628058819323613, -38.870017550078316}},
+    {10.0, {3.798605351207355, -39.0037520751634}},
+}};
+
+}  // namespace corda::study
