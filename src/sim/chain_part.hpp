@@ -9,8 +9,9 @@
 
 namespace corda::sim {
 
-/// A rope of rigid links, by Taylor series in time of as many terms as its tolerance calls for. Each of the
-/// chains that its pins cut it into takes steps of its own.
+/// A rope of rigid links, by Taylor series in time of as many terms as its tolerance calls for, and by the
+/// velocity Verlet method where that is loose and the motion gentle. Each of the chains that its pins cut it
+/// into takes steps of its own.
 ///
 /// Steps follow from the last terms, and the series is the motion at all times within a step. They depend on
 /// the start alone, never on the times that are asked for, so the same bits come out whatever these are.
@@ -35,9 +36,15 @@ class ChainPart final : public ExactPart {
         double start_s = 0.0;  ///< of the step that series holds for
         double end_s = 0.0;
         std::uint64_t steps = 0;
+        // Of velocity Verlet steps, series of order 1.
+        double gentle_rad = 0.0;   ///< more than this, and a series of higher order takes over for good
+        double hanging_1_s = 0.0;  ///< bound on the largest frequency of the chain at rest under its weight
     };
 
     Status step(Mover& mover);
+    /// Expands the motion from the end of the last step, of `last_s`, on. Returns the time up to which the
+    /// series may be followed, in s; 0 where it is not finite.
+    double expand(Mover& mover, double last_s, double unit_s);
     /// The whole state at the last time asked for.
     [[nodiscard]] const double* output() const;
 

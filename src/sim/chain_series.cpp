@@ -9,6 +9,7 @@
 
 #include "corda/sim/four.hpp"
 #include "corda/sim/series_terms.hpp"
+#include "corda/sim/series_verlet.hpp"
 
 namespace corda::sim {
 namespace {
@@ -169,6 +170,19 @@ void measure_last_terms_narrow(SeriesArrays& a, double rate_1_s, LastTerms& resu
     measure_last_terms(a, rate_1_s, result);
 }
 
+CORDA_WIDE double correct_rates_wide(SeriesArrays& a, double last_s) {
+    return series::correct_rates(a, last_s);
+}
+double correct_rates_narrow(SeriesArrays& a, double last_s) {
+    return series::correct_rates(a, last_s);
+}
+CORDA_WIDE double square_frequency_wide(SeriesArrays& a) {
+    return series::square_frequency(a);
+}
+double square_frequency_narrow(SeriesArrays& a) {
+    return series::square_frequency(a);
+}
+
 /// Logarithm to the base 2 of x > 0 and its inverse, to 0.09 and 6 %, from the bits as they are: the same
 /// everywhere.
 double rough_log2(double x) {
@@ -187,7 +201,7 @@ ChainSeries::ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Cha
       starts_pinned_(chain.starts_pinned),
       rate_1_s_(chain.rate_1_s),
       length_m_(chain.length_m) {
-    assert(order >= kLastTerms && order <= kLargestSeriesOrder);
+    assert(order == 1 || (order >= kLastTerms && order <= kLargestSeriesOrder));
     SeriesArrays& a = arrays_;
     a.order = order;
     a.links = chain.link_count;
@@ -212,6 +226,7 @@ ChainSeries::ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Cha
                                &a.across_next,
                                &a.across_after,
                                &a.tension,
+                               &a.last_slope,
                                &a.scratch};
     const std::size_t stride = a.blocks + 2 * kRoom / kLanes;
     a.flat.resize(std::size(arrays) * stride);
@@ -240,6 +255,18 @@ void ChainSeries::expand(const double* y, double unit_s) {
     } else {
         expand_narrow(arrays_, c, s, rate);
     }
+}
+
+double ChainSeries::correct(double last_s) {
+    assert(arrays_.order == 1 && starts_pinned_);
+    static const bool is_wide = has_wide_registers();
+    return is_wide ? correct_rates_wide(arrays_, last_s) : correct_rates_narrow(arrays_, last_s);
+}
+
+double ChainSeries::square_frequency_1_s2() {
+    assert(arrays_.order == 1);
+    static const bool is_wide = has_wide_registers();
+    return is_wide ? square_frequency_wide(arrays_) : square_frequency_narrow(arrays_);
 }
 
 double ChainSeries::reach_s(double tolerance) {
