@@ -17,14 +17,8 @@ namespace {
 // Functions that work on all links are compiled twice: for any x86-64 and for registers of four numbers.
 #if defined(__x86_64__)
 #define CORDA_WIDE [[gnu::target("avx2")]]
-bool has_wide_registers() {
-    return __builtin_cpu_supports("avx2") != 0;
-}
 #else
 #define CORDA_WIDE
-bool has_wide_registers() {
-    return false;
-}
 #endif
 
 using series::kLanes;
@@ -183,6 +177,8 @@ double square_frequency_narrow(SeriesArrays& a) {
     return series::square_frequency(a);
 }
 
+constexpr SeriesKernel kKernels[] = {SeriesKernel::kBaseline, SeriesKernel::kAvx2};
+
 /// Logarithm to the base 2 of x > 0 and its inverse, to 0.09 and 6 %, from the bits as they are: the same
 /// everywhere.
 double rough_log2(double x) {
@@ -194,8 +190,38 @@ double rough_exp2(double x) {
 
 }  // namespace
 
-ChainSeries::ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Chain& chain, std::size_t order)
-    : first_link_(chain.first_link),
+std::span<const SeriesKernel> series_kernels() {
+#if defined(__x86_64__)
+    static const std::size_t count = __builtin_cpu_supports("avx2") ? 2 : 1;
+#else
+    constexpr std::size_t count = 1;
+#endif
+    return {kKernels, count};
+}
+
+struct ChainSeries::Code {
+    decltype(&expand_wide) expand;
+    decltype(&evaluate_directions_wide) evaluate_directions;
+    decltype(&evaluate_rates_wide) evaluate_rates;
+    decltype(&measure_last_terms_wide) measure_last_terms;
+    decltype(&correct_rates_wide) correct_rates;
+    decltype(&square_frequency_wide) square_frequency;
+};
+
+const ChainSeries::Code& ChainSeries::code_of(SeriesKernel kernel) {
+    static constexpr Code kBaseline{expand_narrow,         evaluate_directions_narrow,
+                                    evaluate_rates_narrow, measure_last_terms_narrow,
+                                    correct_rates_narrow,  square_frequency_narrow};
+    static constexpr Code kAvx2{expand_wide,         evaluate_directions_wide,
+                                evaluate_rates_wide, measure_last_terms_wide,
+                                correct_rates_wide,  square_frequency_wide};
+    return kernel == SeriesKernel::kAvx2 ? kAvx2 : kBaseline;
+}
+
+ChainSeries::ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Chain& chain, std::size_t order,
+                         SeriesKernel kernel)
+    : code_(&code_of(kernel)),
+      first_link_(chain.first_link),
       link_stride_(dynamics.link_count()),
       first_extra_(chain.first_extra),
       starts_pinned_(chain.starts_pinned),
@@ -249,35 +275,23 @@ void ChainSeries::expand(const double* y, double unit_s) {
         arrays_.vy[0] = y[first_extra_ + 3];
     }
     arrays_.unit_s = unit_s;
-    static const bool is_wide = has_wide_registers();
-    if (is_wide) {
-        expand_wide(arrays_, c, s, rate);
-    } else {
-        expand_narrow(arrays_, c, s, rate);
-    }
+    code_->expand(arrays_, c, s, rate);
 }
 
 double ChainSeries::correct(double last_s) {
     assert(arrays_.order == 1 && starts_pinned_);
-    static const bool is_wide = has_wide_registers();
-    return is_wide ? correct_rates_wide(arrays_, last_s) : correct_rates_narrow(arrays_, last_s);
+    return code_->correct_rates(arrays_, last_s);
 }
 
 double ChainSeries::square_frequency_1_s2() {
     assert(arrays_.order == 1);
-    static const bool is_wide = has_wide_registers();
-    return is_wide ? square_frequency_wide(arrays_) : square_frequency_narrow(arrays_);
+    return code_->square_frequency(arrays_);
 }
 
 double ChainSeries::reach_s(double tolerance) {
-    static const bool is_wide = has_wide_registers();
     SeriesArrays& a = arrays_;
     LastTerms terms;
-    if (is_wide) {
-        measure_last_terms_wide(a, rate_1_s_, terms);
-    } else {
-        measure_last_terms_narrow(a, rate_1_s_, terms);
-    }
+    code_->measure_last_terms(a, rate_1_s_, terms);
     double shortest = std::numeric_limits<double>::infinity();  // logarithm
     for (std::size_t k = a.order + 1 - kLastTerms; k <= a.order; ++k) {
         double term = terms[k + kLastTerms - a.order - 1];
@@ -294,14 +308,9 @@ double ChainSeries::reach_s(double tolerance) {
 }
 
 void ChainSeries::evaluate_places(double time_s, double* y) {
-    static const bool is_wide = has_wide_registers();
     const double t = time_s / arrays_.unit_s;
     double* const c = y + first_link_;
-    if (is_wide) {
-        evaluate_directions_wide(arrays_, t, c, c + link_stride_);
-    } else {
-        evaluate_directions_narrow(arrays_, t, c, c + link_stride_);
-    }
+    code_->evaluate_directions(arrays_, t, c, c + link_stride_);
     if (starts_pinned_) return;
     y[first_extra_] = sum(arrays_.x, t);
     y[first_extra_ + 1] = sum(arrays_.y, t);
@@ -309,14 +318,9 @@ void ChainSeries::evaluate_places(double time_s, double* y) {
 
 void ChainSeries::evaluate(double time_s, double* y) {
     evaluate_places(time_s, y);
-    static const bool is_wide = has_wide_registers();
     const double t = time_s / arrays_.unit_s;
     double* const rate = y + first_link_ + 2 * link_stride_;
-    if (is_wide) {
-        evaluate_rates_wide(arrays_, t, rate);
-    } else {
-        evaluate_rates_narrow(arrays_, t, rate);
-    }
+    code_->evaluate_rates(arrays_, t, rate);
     if (starts_pinned_) return;
     y[first_extra_ + 2] = sum(arrays_.vx, t);
     y[first_extra_ + 3] = sum(arrays_.vy, t);

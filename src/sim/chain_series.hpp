@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "corda/sim/chain_dynamics.hpp"
@@ -70,6 +71,16 @@ struct SeriesArrays {
     }
 };
 
+/// Code that works on a series. All give the same bits: each does the same correctly rounded operations on
+/// each link in the same order.
+enum class SeriesKernel {
+    kBaseline,  ///< every CPU
+    kAvx2,      ///< four links an instruction
+};
+
+/// The kernels that this CPU can run, the fastest last.
+[[nodiscard]] std::span<const SeriesKernel> series_kernels();
+
 /// The motion of one chain of a ChainDynamics as a power series in time.
 ///
 /// Products of series are sums of products of their coefficients, so the equations of ChainDynamics give the
@@ -91,13 +102,11 @@ struct SeriesArrays {
 /// angles: of order 2 with one solution for the tensions a step, stable to 2 over the largest frequency.
 /// Source: E. Hairer, C. Lubich, G. Wanner, Geometric numerical integration illustrated by the
 /// Stormer-Verlet method, Acta Numerica 12 (2003) 399-450, 1.4.
-///
-/// The same bits come out on every CPU: with wider registers the same operations are done on more links at a
-/// time.
 class ChainSeries {
   public:
     /// `order`: of the rates' series, 1 or 4 .. kLargestSeriesOrder. `chain` is one of `dynamics`.
-    ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Chain& chain, std::size_t order);
+    ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Chain& chain, std::size_t order,
+                SeriesKernel kernel = series_kernels().back());
 
     [[nodiscard]] std::size_t order() const { return arrays_.order; }
 
@@ -125,9 +134,12 @@ class ChainSeries {
     void evaluate_places(double time_s, double* y);
 
   private:
+    struct Code;  ///< a kernel's functions
+    static const Code& code_of(SeriesKernel kernel);
     /// The value of a series at `t` in units.
     [[nodiscard]] double sum(const Series& series, double t) const;
 
+    const Code* code_;
     std::size_t first_link_;
     std::size_t link_stride_;  ///< links of all chains: between c, s and w in a state
     std::size_t first_extra_;
