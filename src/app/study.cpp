@@ -18,6 +18,7 @@
 #include "corda/study/writers.hpp"
 #include "interrupt.hpp"
 #include "output.hpp"
+#include "study_inputs.hpp"
 #include "study_picture.hpp"
 
 namespace corda::app {
@@ -121,6 +122,7 @@ study::Report measure(const Console& console, const StudyOptions& options,
                       const std::optional<scene::Scene>& scene) {
     study::StudyDef def;
     def.quick = options.quick;
+    def.input_cases = input_cases();
     if (scene) def.problem = problem_of(*scene);
     for (const std::string& chapter : options.chapters) {
         if (chapter != kPictureChapter) def.chapters.push_back(chapter);

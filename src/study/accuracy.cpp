@@ -163,6 +163,7 @@ ChapterWork accuracy_work(const StudyDef& def) {
     const auto shared = std::make_shared<Rows>();
     shared->cases = pendulum_cases();
     for (AccuracyCase& source : chain_cases()) shared->cases.push_back(std::move(source));
+    for (AccuracyCase& source : material_cases()) shared->cases.push_back(std::move(source));
     ChapterWork work;
     const auto options = std::make_shared<StudyDef>();
     options->quick = def.quick;

@@ -39,6 +39,8 @@ struct AccuracyCase {
 [[nodiscard]] std::vector<AccuracyCase> pendulum_cases();
 /// R4 to R8 and R11: chains.
 [[nodiscard]] std::vector<AccuracyCase> chain_cases();
+/// R9 and a spring: links that are slack, or stretch.
+[[nodiscard]] std::vector<AccuracyCase> material_cases();
 
 /// A method under the name that its rows have.
 struct NamedMethod {

@@ -62,12 +62,16 @@ std::vector<Cell> swing_row(const SwingRow& row) {
     std::vector<Cell> cells{static_cast<double>(def.particles), def.mass_kg, static_cast<double>(def.sweeps),
                             static_cast<double>(def.reach), bars_of(def)};
     if (!row.figures.failure.empty()) {
-        cells.insert(cells.end(), {{}, {}, {}, {}, row.figures.failure});
+        cells.insert(cells.end(), {{}, {}, {}, {}, {}, row.figures.failure});
         return cells;
     }
     const SwingFigures& figures = row.figures;
-    cells.insert(cells.end(),
-                 {figures.strain, figures.rope_error, figures.rod_error, figures.energy_lost, {}});
+    cells.insert(cells.end(), {figures.strain,
+                               figures.rope_error,
+                               figures.rod_error,
+                               figures.energy_lost,
+                               figures.tip_speed_m_s,
+                               {}});
     return cells;
 }
 
@@ -82,6 +86,7 @@ Table swings_table(std::string id, std::string title, const std::vector<SwingRow
                      {"rope_error_rms_over_length", "RMS error / L, true rope"},
                      {"rod_error_rms_over_length", "RMS error / L, rigid rod"},
                      {"energy_lost_per_swing", "energy lost a swing"},
+                     {"tip_speed_m_s", "largest speed of the tip [m/s]"},
                      {std::string(kFailureKey), "failed because"}};
     for (const SwingRow& row : rows) table.rows.push_back(swing_row(row));
     table.note =
@@ -196,6 +201,7 @@ Chapter chapter_of(const Findings& findings) {
                           best_reach_statement(findings.bars),
                           sweeps_statement(findings.bars),
                           mass_statement(findings.bars, findings.difference_under_gravity),
+                          speed_statement(findings.bars),
                           light_statement(findings.bars),
                           many_particles_statement(findings.sizes),
                           settling_statement(findings.settling, findings.watched_s)};

@@ -131,7 +131,6 @@ void add_throws_and_masses(std::vector<HardCase>& cases) {
     cases.push_back({kInTurn, "exact", kBoth, true, [] { return mixed_masses(sim::exact_solver(1e-6)); }});
     cases.push_back(
         {kInTurn, "rope, order 8", kBoth, true, [] { return mixed_masses(sim::rope_solver(8)); }});
-    cases.push_back({"mass 0 of a free particle", "all", "refused", false, {}});
 }
 
 Outcome nearly_inverted(const sim::SolverDef& solver) {

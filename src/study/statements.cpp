@@ -126,6 +126,26 @@ std::string mass_statement(std::span<const SwingRow> rows, double difference_und
         fmt::join(masses_of(rows), ", "), fmt::join(strains, ", "), trend, cause);
 }
 
+std::string speed_statement(std::span<const SwingRow> rows) {
+    std::vector<double> speeds_m_s;
+    std::vector<double> expected_m_s;  // the same force: as the root of the mass
+    double first_root = 0.0;
+    for (const double mass_kg : masses_of(rows)) {
+        const SwingRow* const row = find(rows, mass_kg, kReportReach, 1);
+        if (row == nullptr) continue;
+        speeds_m_s.push_back(row->figures.tip_speed_m_s);
+        if (first_root == 0.0) first_root = std::sqrt(mass_kg);
+        expected_m_s.push_back(speeds_m_s.front() * first_root / std::sqrt(mass_kg));
+    }
+    const bool falls =
+        std::adjacent_find(speeds_m_s.begin(), speeds_m_s.end(), std::less_equal<>()) == speeds_m_s.end();
+    return fmt::format(
+        "Less mass is {}: at masses of {} kg the tip gets to {:.3g} m/s; the force being the same, speeds in "
+        "proportion to one over the root of the mass would be {:.3g} m/s.",
+        falls ? "livelier, as the report found" : "not livelier, against the report's finding",
+        fmt::join(masses_of(rows), ", "), fmt::join(speeds_m_s, ", "), fmt::join(expected_m_s, ", "));
+}
+
 std::string light_statement(std::span<const SwingRow> rows) {
     const double lightest_kg = *masses_of(rows).begin();
     const SwingRow* const light = find(rows, lightest_kg, kReportReach, 1);

@@ -19,6 +19,9 @@ namespace corda::study {
 /// apart masses are under gravity (difference_under_gravity()).
 [[nodiscard]] std::string mass_statement(std::span<const SwingRow> rows, double difference_under_gravity);
 
+/// "Less mass is livelier": by the largest speed of the tip at reach 7 and one sweep over the masses.
+[[nodiscard]] std::string speed_statement(std::span<const SwingRow> rows);
+
 /// "With a mass below 1 the motion deteriorates": by strain and error of the lightest rows against those of 1
 /// kg, at reach 7 and one sweep.
 [[nodiscard]] std::string light_statement(std::span<const SwingRow> rows);

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "corda/study/hard_case.hpp"
 #include "corda/study/measure.hpp"
 #include "corda/study/report.hpp"
 
@@ -18,6 +19,7 @@ struct StudyDef {
     /// tighter run of another formulation.
     std::optional<Problem> problem;
     std::vector<std::string> chapters;  ///< names out of chapter_names(); empty: all that apply
+    std::vector<HardCase> input_cases;  ///< hard cases of what this library never sees: scene files
 };
 
 /// Key of the column that says why a run failed: a row with a text in it is shown as failed by every writer.

@@ -96,6 +96,7 @@ SwingFigures watch_swing(const SwingDef& def, const std::vector<sim::State>& tru
     const double start_j = solver->energy_j();
     SwingFigures figures;
     sim::State state{0.0, system.x_m, system.y_m};
+    sim::Vec2 last_tip_m{state.x_m.back(), state.y_m.back()};
     for (std::size_t k = 1; k <= truth.size(); ++k) {
         const double time_s = static_cast<double>(k) * kStepSeconds;
         if (solver->advance_to(time_s, state) == sim::Status::kDiverged ||
@@ -103,6 +104,11 @@ SwingFigures watch_swing(const SwingDef& def, const std::vector<sim::State>& tru
             figures.failure = "diverged before " + std::to_string(time_s) + " s";
             return figures;
         }
+        const sim::Vec2 tip_m{state.x_m.back(), state.y_m.back()};
+        const sim::Vec2 moved_m = tip_m - last_tip_m;
+        figures.tip_speed_m_s =
+            std::max(figures.tip_speed_m_s, sim::length(moved_m.x, moved_m.y) / kStepSeconds);
+        last_tip_m = tip_m;
         const sim::State& rope = truth[k - 1];
         const sim::Vec2 along = rod.direction(time_s);
         const auto on_rope = [&](std::size_t i) { return sim::Vec2{rope.x_m[i], rope.y_m[i]}; };

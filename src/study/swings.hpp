@@ -24,7 +24,8 @@ struct SwingFigures {
     double rod_error = 0.0;   ///< the same from the rigid rod (closed form, R3)
     /// Share of the swing's energy above hanging at rest that is lost a period; negative where it is won.
     double energy_lost = 0.0;
-    std::string failure;  ///< empty where the run went through
+    double tip_speed_m_s = 0.0;  ///< largest, from frame to frame
+    std::string failure;         ///< empty where the run went through
 };
 
 /// A row of the study of bars.

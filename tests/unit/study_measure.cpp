@@ -240,7 +240,7 @@ TEST(Sweep, TakesTheCheapestRunThatMeetsTheError) {
 SwingRow row_of(double mass_kg, int reach, double rope_error, double strain, int sweeps = 1) {
     SwingRow row;
     row.def = {40, mass_kg, reach, sweeps};
-    row.figures = {strain, rope_error, 0.01, 0.0, {}};
+    row.figures = {strain, rope_error, 0.01, 0.0, 4.0 / std::sqrt(mass_kg), {}};
     return row;
 }
 
@@ -253,11 +253,16 @@ TEST(Statements, ChooseTheirWordsByTheFigures) {
     EXPECT_THAT(mass_statement(rows, 1e-15), HasSubstr("less and less, as the report found"));
     EXPECT_THAT(mass_statement(rows, 1e-15), HasSubstr("no effect at all"));
     EXPECT_THAT(mass_statement(rows, 0.1), Not(HasSubstr("no effect")));
+    EXPECT_THAT(speed_statement(rows), HasSubstr("livelier, as the report found"));
+    EXPECT_THAT(speed_statement(rows), HasSubstr("12.6, 4, 1.26 m/s; the force"));
+    EXPECT_THAT(speed_statement(rows), HasSubstr("would be 12.6, 4, 1.26 m/s"));
     EXPECT_THAT(light_statement(rows), HasSubstr("the links stretch more, yet"));
 
     // The other way round: few bars are best, and mass makes the rope softer.
     for (SwingRow& row : rows) row.figures.rope_error = row.def.reach;
     for (SwingRow& row : rows) row.figures.strain = row.def.mass_kg;
+    for (SwingRow& row : rows) row.figures.tip_speed_m_s = row.def.mass_kg;
+    EXPECT_THAT(speed_statement(rows), HasSubstr("not livelier, against the report's finding"));
     EXPECT_THAT(best_reach_statement(rows), HasSubstr("reach 1, 1, 1, against the report's finding."));
     EXPECT_THAT(mass_statement(rows, 1e-15), HasSubstr("against the report's finding"));
     EXPECT_THAT(light_statement(rows), HasSubstr("does not deteriorate, against the report's finding"));
