@@ -28,6 +28,12 @@ void write_stdout(std::string_view text) {
         throw Error(ExitCode::kIo, fmt::format("writing to standard output: {}", std::strerror(errno)));
 }
 
+/// What cannot be told must not end the work: a closed or full stderr is let be.
+void write_stderr(const std::string& text) {
+    static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
+    std::fflush(stderr);
+}
+
 bool is_set(const char* variable) {
     const char* value = std::getenv(variable);
     return value != nullptr && *value != '\0';
@@ -51,9 +57,9 @@ Console::Console(const ConsoleDef& def)
 
 void Console::say(std::string_view label, std::string_view color, std::string_view text) const {
     if (uses_color_ && !label.empty()) {
-        fmt::print(stderr, "corda: \x1b[{}m{}\x1b[0m{}\n", color, label, text);
+        write_stderr(fmt::format("corda: \x1b[{}m{}\x1b[0m{}\n", color, label, text));
     } else {
-        fmt::print(stderr, "corda: {}{}\n", label, text);
+        write_stderr(fmt::format("corda: {}{}\n", label, text));
     }
 }
 
@@ -85,7 +91,7 @@ Progress::Progress(const Console& console, std::string_view what, std::int64_t t
     : console_(&console), what_(what), total_(std::max<std::int64_t>(1, total)), start_s_(now_s()) {}
 
 Progress::~Progress() {
-    if (bar_is_drawn_) fmt::print(stderr, "\r\x1b[K");
+    if (bar_is_drawn_) write_stderr("\r\x1b[K");
 }
 
 double Progress::seconds_left(std::int64_t done) const {
@@ -111,9 +117,9 @@ void Progress::update(std::int64_t done) {
 
 void Progress::draw_bar(std::int64_t done) {
     const auto cells = static_cast<int>(kBarCells * done / total_);
-    fmt::print(stderr, "\r\x1b[K{} [{:#<{}}{:.<{}}] {:3} % {}/{}, {} left", what_, "", cells, "",
-               kBarCells - cells, 100 * done / total_, done, total_, duration_text(seconds_left(done)));
-    std::fflush(stderr);
+    write_stderr(fmt::format("\r\x1b[K{} [{:#<{}}{:.<{}}] {:3} % {}/{}, {} left", what_, "", cells, "",
+                             kBarCells - cells, 100 * done / total_, done, total_,
+                             duration_text(seconds_left(done))));
     bar_is_drawn_ = true;
 }
 

@@ -44,6 +44,7 @@ void install_signal_handlers() {
         sigaction(signal, &action, nullptr);
     }
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
 }
 
 ExitCode interruption() {

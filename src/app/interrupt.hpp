@@ -5,7 +5,8 @@
 namespace corda::app {
 
 /// From now on the first SIGINT or SIGTERM only asks the program to stop where nothing is lost; one that
-/// comes more than a tenth of a second later ends it at once. SIGPIPE becomes an ordinary write error.
+/// comes more than a tenth of a second later ends it at once. SIGPIPE and SIGXFSZ become ordinary
+/// write errors.
 void install_signal_handlers();
 
 /// The status to exit with once a signal has asked to stop; kOk before.
