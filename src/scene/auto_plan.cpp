@@ -1,5 +1,6 @@
 #include "corda/scene/auto_plan.hpp"
 
+#include "corda/scene/naming_file.hpp"
 #include "corda/scene/player.hpp"
 
 namespace corda::scene {
@@ -17,10 +18,10 @@ std::optional<AutoPlan> settle_method(Scene& scene, const sim::FrameWatch& watch
     if (scene.solver.method != sim::Method::kAuto) return std::nullopt;
     const sim::System system = system_of(scene);
     AutoPlan result;
-    result.pixels_per_metre = pixels_per_metre(scene, system, watch);
+    result.pixels_per_metre = naming_file(scene, [&] { return pixels_per_metre(scene, system, watch); });
     const sim::PlanDef def{scene.solver.tolerance_px / result.pixels_per_metre, scene.video.fps,
                            scene.video.fps.last_frame_within(scene.world.duration_s), watch};
-    result.plan = sim::plan_solver(system, scene.world, def);
+    result.plan = naming_file(scene, [&] { return sim::plan_solver(system, scene.world, def); });
     scene.solver = result.plan.solver;
     return result;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -156,6 +157,47 @@ void check_stiffness(const Sections& sections, const Scene& scene) {
             if (const auto value = body.find(key)) value->fail(problem);
         }
         body.fail(problem);
+    }
+}
+
+void check_pace(const Sections& sections, const Scene& scene) {
+    if (scene.solver.method == sim::Method::kRelaxation) return;
+    const sim::System system = system_of(scene);
+    const double gravity_m_s2 = std::hypot(scene.world.gravity_m_s2.x, scene.world.gravity_m_s2.y);
+    const double updates_s =
+        scene.video.fps.interval_s() * static_cast<double>(system.particle_count()) / kFrequencyTimesStep;
+    const auto too_fast = [&](double rate_1_s) { return rate_1_s * updates_s > Limits::kFrameUpdates; };
+    const auto problem = [&](std::string_view what, double rate_1_s, std::string_view remedy) {
+        return fmt::format(
+            "{} so fast that a frame takes some {:g} particle updates, over the limit of {:g}; give {}", what,
+            rate_1_s * updates_s, Limits::kFrameUpdates, remedy);
+    };
+    if (too_fast(scene.world.drag_1_s))
+        fail_at(sections, {{&sections.world, "drag"}},
+                problem("slows down", scene.world.drag_1_s, "less drag"));
+    for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+        const sim::Body& body = system.bodies[i];
+        const bool is_rope = i < sections.ropes.size();
+        const TableReader& table = is_rope ? sections.ropes[i] : sections.nets[i - sections.ropes.size()];
+        double shortest_m = std::numeric_limits<double>::infinity();
+        double turn_1_s = 0.0;
+        for (std::size_t k = body.first_bar; k < body.first_bar + body.bar_count; ++k) {
+            const sim::Bar& bar = system.bars[k];
+            shortest_m = std::min(shortest_m, bar.rest_m);
+            turn_1_s = std::max(turn_1_s, std::hypot(system.vx_m_s[bar.b] - system.vx_m_s[bar.a],
+                                                     system.vy_m_s[bar.b] - system.vy_m_s[bar.a]) /
+                                              bar.rest_m);
+        }
+        if (too_fast(turn_1_s)) {
+            const std::string text =
+                problem("turns", turn_1_s, "less speed, longer links or more frames a second");
+            if (const auto value = table.find("velocity")) value->fail(text);
+            table.fail(text);
+        }
+        const double swing_1_s = std::sqrt(gravity_m_s2 / shortest_m);
+        if (too_fast(swing_1_s))
+            fail_at(sections, {{&sections.world, "gravity"}},
+                    problem("swings", swing_1_s, "less gravity or longer links"));
     }
 }
 

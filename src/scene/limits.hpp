@@ -25,4 +25,9 @@ void check_work(const Sections& sections, const Scene& scene, std::int64_t bars)
 /// many steps. For a scene whose bodies have been read.
 void check_stiffness(const Sections& sections, const Scene& scene);
 
+/// Throws kInvalidScene where speed, gravity or drag are such that exact, rope or auto would take more than
+/// Limits::kFrameUpdates for a frame: no signal and no progress in between. For a scene whose bodies have
+/// been read.
+void check_pace(const Sections& sections, const Scene& scene);
+
 }  // namespace corda::scene

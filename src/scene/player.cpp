@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/error.hpp"
+#include "corda/scene/naming_file.hpp"
 
 namespace corda::scene {
 namespace {
@@ -30,7 +31,10 @@ view::Camera fit_camera(const Scene& scene, const sim::System& system, double cl
 }  // namespace
 
 Run::Run(const Scene& scene, sim::Figured figured)
-    : simulation_(system_of(scene), scene.world, scene.solver, scene.video.fps.interval_s(), figured) {}
+    : simulation_(naming_file(scene, [&] {
+          return sim::Simulation(system_of(scene), scene.world, scene.solver, scene.video.fps.interval_s(),
+                                 figured);
+      })) {}
 
 sim::Status Run::go(double time_s) {
     const auto start = std::chrono::steady_clock::now();

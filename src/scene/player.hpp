@@ -13,6 +13,7 @@ namespace corda::scene {
 /// Runs a scene's simulation to exact times and keeps its figures.
 class Run {
   public:
+    /// Throws corda::Error (kInvalidScene) where the method cannot run the scene.
     explicit Run(const Scene& scene, sim::Figured figured = sim::Figured::kYes);
 
     /// Goes on to `time_s`, not before the last time.

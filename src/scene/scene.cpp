@@ -22,6 +22,7 @@ Scene parse_scene(std::string_view toml, const std::string& source_name,
 
     Scene scene;
     scene.name = std::filesystem::path(source_name).stem().string();
+    scene.source = source_name;
     scene.world = read_world(sections.world);
     scene.solver = read_solver(sections.solver);
     scene.video = read_video(sections.video);
@@ -39,6 +40,7 @@ Scene parse_scene(std::string_view toml, const std::string& source_name,
         scene.body_styles.push_back(read_body_style(net));
     }
     check_stiffness(sections, scene);
+    check_pace(sections, scene);
     return scene;
 }
 

@@ -14,7 +14,8 @@ namespace corda::scene {
 
 /// A whole scene file, validated: the Defs of the modules that it speaks to.
 struct Scene {
-    std::string name;  ///< the file's name without folder and ending
+    std::string name;    ///< the file's name without folder and ending
+    std::string source;  ///< the file's path, as messages name it
     sim::WorldDef world;
     std::vector<sim::RopeDef> ropes;
     std::vector<sim::NetDef> nets;
@@ -51,6 +52,7 @@ struct Limits {
     static constexpr std::int64_t kSteps = 1'000'000'000;
     static constexpr double kBarUpdates = 1e13;      // about a day
     static constexpr double kElasticUpdates = 1e11;  // some four hours
+    static constexpr double kFrameUpdates = 1e9;     // some minutes
     static constexpr double kCoordinateMetres = 1e9;
 };
 

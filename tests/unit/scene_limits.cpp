@@ -123,6 +123,31 @@ TEST(SceneLimits, FileSize) {
     expect_limit(large, "swing.toml: ", "over the limit of 16777216 bytes");
 }
 
+TEST(Limits, OfHowFastABodyMayMove) {
+    const std::string world = "schema = 1\n[world]\nduration = 0.2\n";
+    const std::string rope = "[[rope]]\nhang = { links = 10, length = 1.0, angle_deg = 60.0 }\n";
+    const std::string free = rope + "pinned = []\nvelocity = [1e12, 0.0]\n";  // nothing turns
+    EXPECT_NO_THROW(parse_scene(world + "gravity = 1e12\n" + rope, "a"));
+    EXPECT_NO_THROW(parse_scene(world + "drag = 1e6\n" + rope + "velocity = [1e5, 0.0]\n", "a"));
+    EXPECT_NO_THROW(parse_scene(world + free, "a"));
+    const std::string relaxation = "[solver]\nmethod = \"relaxation\"\n";
+    EXPECT_NO_THROW(parse_scene(world + rope + "velocity = [1e12, 0.0]\n" + relaxation, "a"));
+    for (const auto& [text, place] :
+         {std::pair{world + "gravity = 1e20\n" + rope, "a.toml:4:11: world.gravity: "},
+          {world + "drag = 1e15\n" + rope, "a.toml:4:8: world.drag: "},
+          {world + rope + "velocity = [1e12, 0.0]\n", "a.toml:6:12: rope[0].velocity: "}}) {
+        try {
+            static_cast<void>(parse_scene(text, "a.toml"));
+            ADD_FAILURE() << text;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ExitCode::kInvalidScene);
+            EXPECT_THAT(error.what(), testing::StartsWith(place));
+            EXPECT_THAT(error.what(),
+                        testing::HasSubstr("particle updates, over the limit of 1e+09; give less"));
+        }
+    }
+}
+
 TEST(Limits, OfHowFastABodyMayVibrate) {
     const std::string rope = "schema = 1\n[[rope]]\nhang = { links = 10, length = 1.0, angle_deg = 60.0 }\n";
     EXPECT_NO_THROW(parse_scene(rope + "compliance = 1e-9\n", "a"));
