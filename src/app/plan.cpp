@@ -68,6 +68,11 @@ std::string force_term(const scene::Scene& scene) {
 
 std::string drag_term(const scene::Scene& scene, const Materials& materials) {
     if (scene.world.drag_1_s != 0.0) return fmt::format("linear drag of {} 1/s, exact", scene.world.drag_1_s);
+    if (scene.solver.method == sim::Method::kRelaxation) {
+        return scene.solver.delta > 0.0
+                   ? fmt::format("damping: a share of {} of the velocity is lost a step", scene.solver.delta)
+                   : "no drag; the passes lose energy, and print how much";
+    }
     return materials.plastic ? "no drag: energy is lost only where a string comes taut"
                              : "no drag: energy is kept";
 }
@@ -135,6 +140,8 @@ ExitCode plan(const Console& console, const SceneOptions& options) {
     scene::Scene scene = options.load();
     const auto proof = settle_method(console, scene);
     const sim::System system = scene::system_of(scene);
+    // What would refuse to run has no plan.
+    static_cast<void>(scene::Run(scene));
     const std::vector<std::string> terms = list_terms(scene);
     nlohmann::json json = {{"schema", 1},
                            {"method", sim::method_name(scene.solver.method)},

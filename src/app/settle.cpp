@@ -48,11 +48,15 @@ std::optional<scene::AutoPlan> settle_method(const Console& console, scene::Scen
     }
     console.info(fmt::format("auto: {}; displayed error at most {:.2g} px ({:.2g} m), shown by a tighter run",
                              describe(scene.solver), *proof->error_bound_px(), *plan.error_bound_m));
-    if (plan.horizon_s) {
+    if (!plan.horizon_s) return proof;
+    if (plan.diverges) {
         console.warning(fmt::format(
-            "predictability ends at {:.6g} s: from there two runs of the highest precision differ by more "
-            "than "
-            "{:g} px, because the motion is chaotic; what is drawn after it is one possible motion",
+            "the simulation diverges after {:.6g} s; less speed, force or drag may help", *plan.horizon_s));
+    } else {
+        console.warning(fmt::format(
+            "predictability ends at {:.6g} s: from there two runs of the highest precision differ "
+            "by more than {:g} px, because the motion magnifies the least differences; what is "
+            "drawn after it is one possible motion",
             *plan.horizon_s, tolerance_px));
     }
     return proof;

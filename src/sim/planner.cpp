@@ -110,6 +110,7 @@ void adopt_last(std::vector<Trial> trials, Plan& plan) {
     plan.solver = chosen.solver;
     plan.error_bound_m = kBoundPerDifference * chosen.largest_difference_m;
     if (!chosen.to_the_end) plan.horizon_s = chosen.reached_s;
+    plan.diverges = chosen.diverged;
     plan.trials = std::move(trials);
 }
 
@@ -210,6 +211,7 @@ Plan plan_solver(const System& system, const WorldDef& world, const PlanDef& def
         plan.solver = relaxation;
         plan.error_bound_m = std::nullopt;
         plan.horizon_s = std::nullopt;
+        plan.diverges = false;
         plan.reason =
             "bars of a closed rope or a net come to lie in line on their way, where their tensions are not "
             "determined and rope ends; relaxation runs it, without a bound of the error";

@@ -17,6 +17,7 @@ struct Plan {
     /// The time after which no method's positions mean anything: a run and a much tighter one differ by more
     /// than the tolerance. Nothing where the scene ends before.
     std::optional<double> horizon_s;
+    bool diverges = false;      ///< the horizon is where even the best trial gave up
     std::vector<Trial> trials;  ///< all that were tried, the chosen one last
     std::string reason;         ///< in words: why this method
 };
