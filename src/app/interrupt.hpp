@@ -9,6 +9,10 @@ namespace corda::app {
 /// write errors.
 void install_signal_handlers();
 
+/// Gives a closed standard stream a file that takes nothing, so that no file that is opened later gets its
+/// number and what is meant for the stream.
+void keep_standard_streams();
+
 /// The status to exit with once a signal has asked to stop; kOk before.
 [[nodiscard]] ExitCode interruption();
 

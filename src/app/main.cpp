@@ -1,11 +1,17 @@
+#include <algorithm>
 #include <exception>
 #include <new>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "commands.hpp"
 #include "corda/core/error.hpp"
+#include "corda/scene/nearest_key.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -26,6 +32,20 @@ void add_console_flags(CLI::App& app, ConsoleDef& def) {
     }
 }
 
+/// Why the first word is no command; nothing where it is one, or an option.
+std::optional<std::string> unknown_command(const CLI::App& app, int argc, char** argv) {
+    if (argc < 2 || argv[1][0] == '-') return std::nullopt;
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(command->get_name());
+    if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return std::nullopt;
+    const std::vector<std::string_view> candidates(names.begin(), names.end());
+    const auto nearest = scene::nearest_key(argv[1], candidates);
+    return fmt::format("there is no command \"{}\"; {}", argv[1],
+                       nearest ? fmt::format("did you mean {}?", *nearest)
+                               : fmt::format("known are {}", fmt::join(names, ", ")));
+}
+
 int run(int argc, char** argv) {
     CLI::App app{
         "Corda turns a rope scene into a video, a still or a comparable picture on a machine without a "
@@ -44,6 +64,10 @@ int run(int argc, char** argv) {
     add_plan(app, action);
     add_study(app, action);
     add_console_flags(app, console_def);
+    if (const auto word = unknown_command(app, argc, argv)) {
+        Console({}).error(*word);
+        return static_cast<int>(ExitCode::kUsage);
+    }
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -74,6 +98,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     try {
+        corda::app::keep_standard_streams();
         return corda::app::run(argc, argv);
     } catch (...) {
         return static_cast<int>(corda::ExitCode::kInternal);

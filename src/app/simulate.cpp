@@ -85,6 +85,7 @@ std::string cost_text(const scene::Scene& scene, const scene::Run& run) {
     const auto steps = static_cast<double>(run.simulation().diagnostics().steps);
     const double pieces = relaxation ? static_cast<double>(system.bars.size()) * scene.solver.sweeps
                                      : static_cast<double>(system.particle_count());
+    if (steps * pieces == 0.0) return "no steps";
     return fmt::format("{:.0f} steps in {:.3g} s: {:.4g} updates/s, {:.3g} ns a {}", steps, run.wall_s(),
                        steps / run.wall_s(), 1e9 * run.wall_s() / (steps * pieces),
                        relaxation ? "bar" : "particle");

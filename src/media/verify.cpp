@@ -92,12 +92,14 @@ bool check_container(const std::string& path, const Mp4Boxes& boxes, VerifyRepor
         problem(
             report,
             "the index (moov box) is missing: writing was interrupted, or the file was cut; render it again, "
-            "or run `corda recover` on the .part file");
+            "or play the .part file");
         return false;
     }
     report.faststart = boxes.index_first && !boxes.fragmented;
     if (boxes.fragmented) {
-        problem(report, "the file is still in fragments, as a .part file is; run `corda recover` on it");
+        problem(report,
+                "the file is still in fragments, as a .part file is: it plays, but a browser "
+                "cannot seek in it; remedy: ffmpeg -i FILE -c copy -movflags +faststart NEW.mp4");
     } else if (!boxes.index_first) {
         problem(
             report,

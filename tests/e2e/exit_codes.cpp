@@ -62,6 +62,37 @@ TEST_F(ExitCodes, TwoForUsage) {
     EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--set", "nonsense"}).exit_code, 2);
 }
 
+TEST_F(ExitCodes, TwoForAnUnknownCommandNamingTheNearest) {
+    for (const auto& [command, remedy] :
+         {std::pair{"rendr", "did you mean render?"}, {"foo", "known are render, still, simulate"}}) {
+        const auto result = run_corda({command, "--help"});
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_THAT(result.err, HasSubstr("corda: error: there is no command"));
+        EXPECT_THAT(result.err, HasSubstr(remedy));
+    }
+}
+
+TEST_F(ExitCodes, AreTheSameWhereStderrTakesNoMore) {
+    const std::string program = test::quoted(CORDA_PROGRAM);
+    for (const char* const stderr_is : {"2>&-", "2>/dev/full"}) {
+        EXPECT_EQ(run_shell(program + " plan " + folder_.file("none.toml") + " " + stderr_is).exit_code, 6);
+        EXPECT_EQ(
+            run_shell(program + " render -v --force " + scene_ + " -o " + video_ + " " + stderr_is).exit_code,
+            0);
+    }
+}
+
+TEST_F(ExitCodes, ThreeFromPlanToo) {
+    const std::string taut = folder_.write("taut.toml",
+                                           "schema = 1\n[[rope]]\npoints = [[0, 0], [1, 0], [2, 0]]\n"
+                                           "pinned = [0, 2]\n");
+    for (const char* const method : {"auto", "rope", "exact"}) {
+        const auto result = run_corda({"plan", taut, "--set", std::string("solver.method=") + method});
+        EXPECT_EQ(result.exit_code, 3) << method;
+        EXPECT_THAT(result.err, HasSubstr("taut.toml: ")) << method;
+    }
+}
+
 TEST_F(ExitCodes, TwoForAnOddVideoSizeNamingTheEvenOnes) {
     const auto result = run_corda({"render", scene_, "-o", video_, "--size", "65x64"});
     EXPECT_EQ(result.exit_code, 2);

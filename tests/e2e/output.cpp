@@ -111,6 +111,30 @@ TEST_F(Output, AutoReportsItsBoundAndPlanSaysWhy) {
     EXPECT_THAT(run_corda({"plan", scene_}).out, HasSubstr("because the scene asks for relaxation"));
 }
 
+TEST_F(Output, SaysOfADivergenceThatItIsOne) {
+    // A rigid grid that folds into a line, which only relaxation could go on with, beside an elastic rope.
+    const std::string folding = folder_.write("folding.toml", R"(schema = 1
+[world]
+duration = 0.5
+[[net]]
+grid = { columns = 4, rows = 4, spacing = 0.1, diagonals = false }
+pinned = [[0, 0]]
+[[rope]]
+hang = { links = 2, length = 1.0, angle_deg = 30.0 }
+compliance = 0.001
+)");
+    const auto result = run_corda({"plan", folding});
+    EXPECT_THAT(result.err, HasSubstr("the simulation diverges after 0.1")) << result.out;
+}
+
+TEST_F(Output, PlanDoesNotPromiseThatRelaxationKeepsEnergy) {
+    const auto plain = run_corda({"plan", scene_, "--set", "solver.method=relaxation"});
+    EXPECT_THAT(plain.out, HasSubstr("modelled: no drag; the passes lose energy"));
+    const auto damped =
+        run_corda({"plan", scene_, "--set", "solver.method=relaxation", "--set", "solver.delta=0.01"});
+    EXPECT_THAT(damped.out, HasSubstr("modelled: damping: a share of 0.01 of the velocity is lost a step"));
+}
+
 TEST_F(Output, PlanSaysWhatBodiesAreMadeOf) {
     const std::string scene = folder_.write("bodies.toml", R"(schema = 1
 [[rope]]
@@ -125,7 +149,7 @@ string = true
 grid = { columns = 3, rows = 2, spacing = 1 }
 compliance = 0.5
 [solver]
-method = "rope"
+method = "exact"
 )");
     const auto result = run_corda({"plan", scene});
     ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -137,7 +161,7 @@ method = "rope"
           "nets: 1, of 7 bars and 4 imaginary ones"}) {
         EXPECT_THAT(result.out, HasSubstr(std::string("modelled: ") + term + "\n"));
     }
-    const auto plain = run_corda({"plan", scene_});
+    const auto plain = run_corda({"plan", scene_, "--set", "solver.method=exact"});
     EXPECT_THAT(plain.out, HasSubstr("modelled: no drag: energy is kept\n"));
     EXPECT_THAT(plain.out, Not(HasSubstr("strings")));
     EXPECT_THAT(plain.out, Not(HasSubstr("nets")));
