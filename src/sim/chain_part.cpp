@@ -13,6 +13,9 @@ namespace {
 /// horizontal release.
 constexpr double kLargestGrowth = 4.0;
 
+/// Of the largest step of step_control(): a series of many terms is good for a pendulum's whole swing.
+constexpr double kLargestStep = 4.0;
+
 /// More steps than this and a run is not coming to an end: a day of computing even for a short rope.
 constexpr std::uint64_t kMaxSteps = 1'000'000'000;
 
@@ -75,6 +78,7 @@ ChainPart::ChainPart(const System& system, const Body& body, const WorldDef& wor
                           [&](const Accuracy& row) { return tolerance >= row.least_tolerance; });
         StepControl control = step_control(chain.rate_1_s, tolerance);
         control.tolerance = std::max(accuracy.share * tolerance, kSmallestTerm);
+        control.largest_s *= kLargestStep;
         const bool has_one_pin = chain.starts_pinned && !chain.ends_pinned;
         if (tolerance < kLeastVerletTolerance || !has_one_pin) {
             movers_.push_back({chain, ChainSeries(dynamics_, chain, accuracy.order), control});
