@@ -45,12 +45,11 @@ sim::Status Run::go(double time_s) {
 
 const sim::State& Run::at(double time_s) {
     if (go(time_s) == sim::Status::kDiverged) {
-        throw Error(
-            ExitCode::kDiverged,
-            fmt::format(
-                "the simulation diverged before t = {:.6g} s (last good state at {:.6g} s); a smaller "
-                "solver.step or less force may help",
-                time_s, simulation_.state().time_s));
+        throw Error(ExitCode::kDiverged,
+                    fmt::format("the simulation diverged before t = {:.6g} s (last good state at {:.6g} s); "
+                                "less speed or force "
+                                "may help, and with rope or relaxation a smaller solver.step",
+                                time_s, simulation_.state().time_s));
     }
     return simulation_.state();
 }
