@@ -33,7 +33,7 @@ struct Plan {
 /// - Bars whose lengths depend on each other (a net with diagonals), at the start or on the way:
 ///   `relaxation`, and no bound.
 ///
-/// The bound is kBoundPerDifference times the largest difference of the two runs. Everything is decided by
+/// The bound is bound_per_difference() times the largest difference of the two runs. Everything is decided by
 /// counts and positions, never by a clock: the same scene gives the same plan. Throws corda::Error
 /// (kInvalidScene) where no method can run the system.
 [[nodiscard]] Plan plan_solver(const System& system, const WorldDef& world, const PlanDef& def);

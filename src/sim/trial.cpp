@@ -42,8 +42,18 @@ double largest_distance_m(const State& state, const State& checked) {
 
 }  // namespace
 
+double bound_per_difference(const System& system) {
+    constexpr double kSmooth = 3.0;
+    constexpr double kWithKinks = 30.0;
+    const bool has_kinks = std::any_of(system.bodies.begin(), system.bodies.end(), [](const Body& body) {
+        return body.material.is_string && body.material.compliance_1_n > 0.0;
+    });
+    return has_kinks ? kWithKinks : kSmooth;
+}
+
 void run_trial(const System& system, const WorldDef& world, const PlanDef& def, Trial& trial) {
     const double interval_s = def.frames.interval_s();
+    const double factor = bound_per_difference(system);
     const System turned_system = turned(system);
     WorldDef turned_world = world;
     turned_world.gravity_m_s2 = turned(world.gravity_m_s2);
@@ -58,10 +68,11 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
                          check->advance_to(time_s, checked) == Status::kDiverged;
         if (trial.diverged) return;
         const double difference_m = largest_distance_m(state, checked);
-        if (kBoundPerDifference * difference_m > def.tolerance_m) return;
+        if (factor * difference_m > def.tolerance_m) return;
         trial.largest_difference_m = std::max(trial.largest_difference_m, difference_m);
         trial.reached_s = time_s;
         trial.steps = run->steps();
+        trial.check_steps = check->steps();
     }
     trial.to_the_end = true;
 }
