@@ -1,4 +1,4 @@
-#include "corda/core/color.hpp"
+#include "corda/core/image.hpp"
 
 #include <array>
 #include <charconv>

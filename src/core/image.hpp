@@ -3,9 +3,39 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
+#pragma GCC visibility push(default)
 namespace corda {
+
+/// An sRGB colour with straight alpha, 0..255 per channel.
+struct Color {
+    std::uint8_t r = 0;
+    std::uint8_t g = 0;
+    std::uint8_t b = 0;
+    std::uint8_t a = 255;
+
+    /// Reads "#rrggbb" or "#rrggbbaa"; std::nullopt for any other text.
+    static std::optional<Color> parse(std::string_view text);
+
+    /// "#rrggbb", or "#rrggbbaa" if it is not opaque.
+    [[nodiscard]] std::string text() const;
+
+    friend bool operator==(const Color&, const Color&) = default;
+};
+
+/// The largest side of a picture that Corda draws, reads or writes, and the most pixels of one that it draws.
+inline constexpr int kLargestSidePx = 16384;
+inline constexpr std::int64_t kMostPicturePx = std::int64_t{1} << 26;
+
+/// Whether Corda draws pictures of this size.
+constexpr bool is_picture_size(std::int64_t width, std::int64_t height) {
+    return width >= 1 && height >= 1 && width <= kLargestSidePx && height <= kLargestSidePx &&
+           width * height <= kMostPicturePx;
+}
 
 /// A half-open rectangle of pixels, x0 <= x < x1 and y0 <= y < y1, row 0 on top.
 struct PixelRect {
@@ -18,7 +48,7 @@ struct PixelRect {
     [[nodiscard]] int width() const { return x1 - x0; }
     [[nodiscard]] int height() const { return y1 - y0; }
 
-    /// The smallest rectangle that holds both; an empty one adds nothing.
+    /// The smallest rectangle that holds both; an empty one is ignored.
     [[nodiscard]] PixelRect united(const PixelRect& other) const {
         if (empty()) return other;
         if (other.empty()) return *this;
@@ -71,3 +101,4 @@ class Image {
 };
 
 }  // namespace corda
+#pragma GCC visibility pop

@@ -7,14 +7,14 @@
 namespace corda {
 namespace {
 
-constexpr std::int64_t kLargestPart = 1'000'000'000;
 constexpr double kFrameTolerance = 1e-9;  // relative to the frame number, at least to one frame
 
 std::optional<std::int64_t> parse_part(std::string_view text) {
     std::int64_t value = 0;
     const char* end = text.data() + text.size();
     const auto [stop, status] = std::from_chars(text.data(), end, value);
-    if (status != std::errc{} || stop != end || value < 0 || value > kLargestPart) return std::nullopt;
+    if (status != std::errc{} || stop != end || value < 0 || value > Rational::kLargestPart)
+        return std::nullopt;
     return value;
 }
 

@@ -5,15 +5,19 @@
 #include <string>
 #include <string_view>
 
+#pragma GCC visibility push(default)
 namespace corda {
 
 /// A fraction of two integers in lowest terms, `den > 0`.
 struct Rational {
+    /// The largest part of one that is read from a text or given as a rate.
+    static constexpr std::int64_t kLargestPart = 1'000'000'000;
+
     std::int64_t num = 0;
     std::int64_t den = 1;
 
-    /// Reads "60" or "30000/1001". Returns nothing for any other text, a zero denominator, or a part over
-    /// 1e9.
+    /// Reads "60" or "30000/1001". Returns std::nullopt for any other text, a zero denominator, or a part
+    /// over kLargestPart.
     static std::optional<Rational> parse(std::string_view text);
 
     /// The fraction in lowest terms. Requires `den != 0`.
@@ -27,9 +31,9 @@ struct Rational {
     friend bool operator==(const Rational&, const Rational&) = default;
 };
 
-/// A constant number of frames a second, and the exact times of those frames.
+/// A constant number of frames per second, and the exact times of those frames.
 ///
-/// Frame k is at exactly k * den / num seconds, from integers: no time is ever accumulated.
+/// Frame k is at exactly k * den / num seconds, computed from integers and never accumulated.
 class FrameRate {
   public:
     FrameRate() = default;
@@ -50,8 +54,8 @@ class FrameRate {
     }
 
     /// Number of images of a video of `duration_s`: the frames that start before its end. A duration within
-    /// 1e-9 of a frame's time counts as that time, so 0.1 s at 30 a second are 3 frames although 0.1 * 30 > 3
-    /// in binary.
+    /// 1e-9 of a frame's time counts as that time, so 0.1 s at 30 per second are 3 frames although 0.1 * 30 >
+    /// 3 in binary.
     [[nodiscard]] std::int64_t frame_count(double duration_s) const;
 
     /// Index of the last frame time that is not after `duration_s` (same 1e-9 rule).
@@ -64,3 +68,4 @@ class FrameRate {
 };
 
 }  // namespace corda
+#pragma GCC visibility pop

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+#pragma GCC visibility push(default)
+namespace corda {
+
+/// The exit statuses of the `corda` program. The numbers are a contract: scripts test for them.
+enum class ExitCode : int {
+    kOk = 0,
+    kInternal = 1,
+    kUsage = 2,
+    kInvalidScene = 3,
+    kNoGl = 4,
+    kEncoder = 5,
+    kIo = 6,
+    kMismatch = 7,
+    kDiverged = 8,
+    kTemporary = 75,
+    kInterrupted = 130,
+    kTerminated = 143,
+};
+
+/// Bad input or a bad environment. The message says what failed, the value, the library's own reason and one
+/// hint; `code` is the exit status of the program. A programmer's error is an assert instead, and a physical
+/// outcome is a returned status.
+class Error : public std::runtime_error {
+  public:
+    Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+
+    [[nodiscard]] ExitCode code() const noexcept { return code_; }
+
+  private:
+    ExitCode code_;
+};
+
+/// Hears how far a piece of work is: `done` of `total` equal parts. Returning false stops the work cleanly.
+/// May be empty.
+using OnProgress = std::function<bool(std::int64_t done, std::int64_t total)>;
+
+/// Tells `on_progress`. Throws corda::Error (kInterrupted) if it asks to stop.
+inline void report_progress(const OnProgress& on_progress, std::int64_t done, std::int64_t total) {
+    if (on_progress && !on_progress(done, total))
+        throw Error(ExitCode::kInterrupted, "stopped by the caller");
+}
+
+/// What writing a file may do to what is there already.
+struct OutputOptions {
+    bool force = false;  ///< replace an existing file, and keep its permissions
+};
+
+}  // namespace corda
+#pragma GCC visibility pop

@@ -1,0 +1,92 @@
+#include "corda/core/file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+
+#include "corda/core/basics.hpp"
+
+namespace corda {
+
+FileHandle open_for_reading(const std::string& path) {
+    FileHandle file(std::fopen(path.c_str(), "rbe"));
+    if (!file) fail_file("read", path, errno);
+    struct stat status {};
+    if (::fstat(::fileno(file.get()), &status) != 0) fail_file("read", path, errno);
+    // A folder opens without complaint and fails only at the first read.
+    if (S_ISDIR(status.st_mode)) fail_file("read", path, EISDIR);
+    return file;
+}
+
+int Descriptor::close() noexcept {
+    if (number_ < 0) return 0;
+    const int status = ::close(std::exchange(number_, -1));
+    // Linux has closed the descriptor even if a signal interrupted the call.
+    return status == 0 || errno == EINTR ? 0 : errno;
+}
+
+Descriptor create_new(const std::string& path, unsigned mode) noexcept {
+    return Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode));
+}
+
+int write_all(int descriptor, std::string_view bytes) noexcept {
+    while (!bytes.empty()) {
+        const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
+        if (count < 0 && errno != EINTR) return errno;
+        if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
+    }
+    return 0;
+}
+
+std::string_view hint_for_errno(int error_number) {
+    switch (error_number) {
+        case ENOSPC:
+        case EDQUOT:
+            return "free some space on that disk, or write to another one";
+        case ENOENT:
+            return "check the path; the folder must exist";
+        case EACCES:
+        case EPERM:
+        case EROFS:
+            return "choose a place you may write to, or change the permissions";
+        case EISDIR:
+            return "give the name of a file, not of a folder";
+        case EFBIG:
+            return "this file system or a ulimit forbids files of that size";
+        default:
+            return "";
+    }
+}
+
+void fail_file(std::string_view action, const std::string& path, int error_number) {
+    const std::string_view hint = hint_for_errno(error_number);
+    std::string message =
+        "cannot " + std::string(action) + " '" + path + "': " + std::generic_category().message(error_number);
+    if (!hint.empty()) message += "; " + std::string(hint);
+    throw Error(ExitCode::kIo, message);
+}
+
+void make_folder(const std::string& path) {
+    std::error_code reason;
+    std::filesystem::create_directories(path, reason);
+    if (reason) fail_file("make the folder", path, reason.value());
+}
+
+void sync_file(const Descriptor& file, const std::string& path) {
+    // Pipes, and folders on some file systems, cannot be synced and say EINVAL.
+    if (::fsync(file.get()) != 0 && errno != EINVAL) fail_file("sync to disk", path, errno);
+}
+
+void sync_folder_of(const std::string& path) {
+    std::string folder = std::filesystem::path(path).parent_path().string();
+    if (folder.empty()) folder = ".";
+    const Descriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!descriptor) fail_file("open for syncing", folder, errno);
+    sync_file(descriptor, folder);
+}
+
+}  // namespace corda

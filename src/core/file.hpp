@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace corda {
+
+struct FileCloser {
+    void operator()(std::FILE* file) const noexcept { std::fclose(file); }
+};
+/// A C file. What is to stay is written by OutputFile, which also checks the close.
+using FileHandle = std::unique_ptr<std::FILE, FileCloser>;
+
+/// Opens a file for reading. Throws corda::Error (kIo), also for a folder.
+[[nodiscard]] FileHandle open_for_reading(const std::string& path);
+
+/// Owns an open file descriptor.
+class Descriptor {
+  public:
+    Descriptor() = default;
+    explicit Descriptor(int number) noexcept : number_(number) {}
+    Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+    Descriptor& operator=(Descriptor&& other) noexcept {
+        std::swap(number_, other.number_);
+        return *this;
+    }
+    ~Descriptor() { static_cast<void>(close()); }
+
+    explicit operator bool() const { return number_ >= 0; }
+    [[nodiscard]] int get() const { return number_; }
+
+    /// Closes the descriptor if it is open. Returns 0 or the errno value of a failure: the last chance to
+    /// learn that written data is lost.
+    [[nodiscard]] int close() noexcept;
+
+  private:
+    int number_ = -1;
+};
+
+/// Creates and opens a file for reading and writing; nothing may stand under its name, not even a link that
+/// leads nowhere. Sets errno if it fails.
+[[nodiscard]] Descriptor create_new(const std::string& path, unsigned mode) noexcept;
+
+/// Writes all of `bytes` to an open descriptor. Returns 0 or an errno value.
+[[nodiscard]] int write_all(int descriptor, std::string_view bytes) noexcept;
+
+/// Throws corda::Error (kIo): "cannot ACTION 'PATH': REASON; HINT", with the reason and the hint for
+/// `error_number`.
+[[noreturn]] void fail_file(std::string_view action, const std::string& path, int error_number);
+
+/// What a user can do about an errno value; empty if its text says it all.
+[[nodiscard]] std::string_view hint_for_errno(int error_number);
+
+/// Makes a folder and its missing parents. Throws corda::Error (kIo).
+void make_folder(const std::string& path);
+
+/// Forces what was written to an open file onto the disk. Throws corda::Error (kIo).
+void sync_file(const Descriptor& file, const std::string& path);
+
+/// Forces the entry of `path` in its folder onto the disk, so that a rename survives a power cut. Throws
+/// corda::Error (kIo).
+void sync_folder_of(const std::string& path);
+
+}  // namespace corda

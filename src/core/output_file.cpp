@@ -1,0 +1,245 @@
+#include "corda/core/output_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <filesystem>
+#include <random>
+#include <system_error>
+#include <utility>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/part_file.hpp"
+
+namespace corda {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kBufferBytes = std::size_t{1} << 16;
+constexpr std::size_t kLongestStem = 230;  // file systems allow 255 bytes; ".12345678.tmp" needs 13
+
+fs::path folder_of(const std::string& path) {
+    const fs::path folder = fs::path(path).parent_path();
+    return folder.empty() ? fs::path(".") : folder;
+}
+
+/// The file that `path` leads to through symbolic links; it may be missing.
+std::string follow_links(std::string path) {
+    constexpr int kMostLinks = 40;  // the kernel's own limit
+    for (int i = 0; i < kMostLinks; ++i) {
+        std::error_code ignored;
+        if (!fs::is_symlink(fs::symlink_status(path, ignored))) return path;
+        path = (fs::path(path).parent_path() / fs::read_symlink(path, ignored)).string();
+    }
+    fail_file("write", path, ELOOP);
+}
+
+[[noreturn]] void fail_exists(const std::string& path) {
+    throw Error(ExitCode::kIo, "'" + path + "' exists; it is replaced only with force (--force)");
+}
+
+/// The status of the file that `path` leads to; none if it is missing.
+std::optional<struct stat> status_of(const std::string& path) {
+    struct stat status {};
+    if (::stat(path.c_str(), &status) == 0) return status;
+    if (errno != ENOENT) fail_file("write", path, errno);
+    return std::nullopt;
+}
+
+bool is_taken(const std::string& path) {
+    std::error_code ignored;
+    return fs::symlink_status(path, ignored).type() != fs::file_type::not_found;
+}
+
+std::string random_text() {
+    std::array<char, 8> text{};
+    const auto [end, status] =
+        std::to_chars(text.data(), text.data() + text.size(), std::random_device{}(), 16);
+    return {text.data(), end};
+}
+
+/// Renames unless `to` exists. Returns 0 or an errno value.
+int rename_if_free(const std::string& from, const std::string& to) {
+    if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
+    if (errno != EINVAL && errno != ENOSYS) return errno;
+    // This file system does not know that call; most know links.
+    if (::link(from.c_str(), to.c_str()) == 0) return ::unlink(from.c_str()) == 0 ? 0 : errno;
+    if (errno != EPERM && errno != EOPNOTSUPP && errno != ENOSYS) return errno;
+    // The shared folders of virtual machines know neither: take the name with an empty file, then replace
+    // that.
+    const Descriptor taken = create_new(to, 0600);
+    if (!taken || std::rename(from.c_str(), to.c_str()) == 0) return taken ? 0 : errno;
+    const int rename_errno = errno;
+    ::unlink(to.c_str());
+    return rename_errno;
+}
+
+}  // namespace
+
+bool is_standard_output(const std::string& path) {
+    return path == "-" || path == "/dev/stdout";
+}
+
+void check_output(const std::string& path, const std::string& input, bool force, OutputKind kind) {
+    if (kind == OutputKind::kStream && is_standard_output(path)) return;
+    if (fs::path(path).filename().empty()) {
+        throw Error(ExitCode::kUsage, "the output '" + path + "' names no file; give it a name");
+    }
+    const std::string given_folder = folder_of(path).string();
+    struct stat folder_status {};
+    if (::stat(given_folder.c_str(), &folder_status) != 0) {
+        if (errno != ENOENT) fail_file("write to the folder", given_folder, errno);
+        throw Error(ExitCode::kIo, "cannot write '" + path + "': the folder '" + given_folder +
+                                       "' does not exist; make it first");
+    }
+    if (!S_ISDIR(folder_status.st_mode)) fail_file("write to the folder", given_folder, ENOTDIR);
+    if (const auto status = status_of(path)) {
+        if (S_ISDIR(status->st_mode)) fail_file("write", path, EISDIR);
+        if (!S_ISREG(status->st_mode)) {
+            if (kind == OutputKind::kStream) return;
+            throw Error(ExitCode::kIo,
+                        "cannot write '" + path +
+                            "': it is a device or a pipe, and this format needs an ordinary file; "
+                            "choose another name");
+        }
+        std::error_code ignored;
+        if (!input.empty() && fs::equivalent(path, input, ignored)) {
+            throw Error(ExitCode::kUsage,
+                        "the output '" + path + "' would replace the input; choose another name");
+        }
+    }
+    if (!force && is_taken(path)) fail_exists(path);
+    const std::string folder = folder_of(force ? follow_links(path) : path).string();
+    if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) {
+        fail_file("write to the folder", folder, errno);
+    }
+}
+
+OutputFile::OutputFile(std::string path, OutputOptions options)
+    : path_(std::move(path)), target_(path_), options_(options) {
+    if (is_standard_output(path_)) {
+        descriptor_ = Descriptor(::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+        if (!descriptor_) fail_file("write", path_, errno);
+        return;
+    }
+    const auto status = status_of(path_);
+    if (status && !S_ISREG(status->st_mode)) {
+        open_directly();
+        return;
+    }
+    if (!options_.force && is_taken(path_)) fail_exists(path_);
+    if (options_.force) find_target();
+    open_temporary();
+}
+
+void OutputFile::find_target() {
+    target_ = follow_links(path_);
+    if (const auto status = status_of(target_))
+        replaced_ = Owner{status->st_mode & 0777U, status->st_uid, status->st_gid};
+}
+
+OutputFile::~OutputFile() {
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void OutputFile::open_directly() {
+    descriptor_ = Descriptor(::open(path_.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC));
+    struct stat status {};
+    if (!descriptor_ || ::fstat(descriptor_.get(), &status) != 0) fail_file("write", path_, errno);
+    // An ordinary file has taken the place of the device since we looked.
+    if (S_ISREG(status.st_mode)) fail_exists(path_);
+}
+
+void OutputFile::open_temporary() {
+    // Nobody may read a new version of a private file before it has the old one's permissions.
+    const mode_t mode = replaced_ ? 0600 : 0666;
+    const fs::path target(target_);
+    const std::string stem =
+        (target.parent_path() / target.filename().string().substr(0, kLongestStem)).string();
+    do {
+        temporary_ = stem + "." + random_text() + ".tmp";
+        descriptor_ = create_new(temporary_, mode);
+    } while (!descriptor_ && errno == EEXIST);
+    if (descriptor_) return;
+    temporary_.clear();
+    fail_file("write", path_, errno);
+}
+
+void OutputFile::write(std::string_view bytes) {
+    if (buffer_.size() + bytes.size() > kBufferBytes) flush();
+    if (bytes.size() < kBufferBytes) {
+        buffer_ += bytes;
+    } else if (const int status = write_all(descriptor_.get(), bytes); status != 0) {
+        fail_file("write", path_, status);
+    }
+}
+
+void OutputFile::flush() {
+    const int status = write_all(descriptor_.get(), buffer_);
+    buffer_.clear();
+    if (status != 0) fail_file("write", path_, status);
+}
+
+void OutputFile::restore_permissions() {
+    const int file = descriptor_.get();
+    unsigned mode = replaced_->mode;
+    constexpr auto kSameUser = static_cast<uid_t>(-1);
+    // Only root may give a file to another user, and others only to a group of theirs.
+    const bool has_group = ::fchown(file, replaced_->user, replaced_->group) == 0 ||
+                           ::fchown(file, kSameUser, replaced_->group) == 0;
+    // The old group's rights are not for the members of the new one.
+    if (!has_group) mode = (mode & 0707U) | (mode & 07U) << 3U;
+    if (::fchmod(file, mode) != 0) fail_file("set the permissions of", path_, errno);
+}
+
+void OutputFile::close() {
+    flush();
+    if (!temporary_.empty()) {
+        if (replaced_) restore_permissions();
+        sync_file(descriptor_, path_);
+    }
+    if (const int status = descriptor_.close(); status != 0) fail_file("close", path_, status);
+}
+
+int OutputFile::rename_to(const std::string& name) const {
+    if (!options_.force) return rename_if_free(temporary_, name);
+    return std::rename(temporary_.c_str(), name.c_str()) == 0 ? 0 : errno;
+}
+
+void OutputFile::commit() {
+    bool is_blocked = false;
+    if (options_.force && !temporary_.empty()) {
+        // It may have changed since the constructor looked.
+        const auto found = status_of(path_);
+        is_blocked = found && !S_ISREG(found->st_mode);
+        if (!is_blocked) find_target();
+    }
+    close();
+    if (temporary_.empty()) return;
+    const int status = is_blocked ? EEXIST : rename_to(target_);
+    if (status == EEXIST) {
+        throw Error(ExitCode::kIo,
+                    "'" + path_ + "' appeared while it was being written and is not replaced" +
+                        (options_.force ? ", because it is no ordinary file" : " without --force") +
+                        "; the new file is '" + keep() + "'");
+    }
+    if (status != 0) fail_file("rename '" + temporary_ + "' to", path_, status);
+    temporary_.clear();
+    sync_folder_of(target_);
+}
+
+std::string OutputFile::keep() {
+    if (descriptor_) close();
+    if (temporary_.empty()) return path_;
+    const std::string part = part_path(target_);
+    const bool is_renamed = rename_to(part) == 0;
+    std::string kept = std::exchange(temporary_, {});
+    return is_renamed ? part : kept;
+}
+
+}  // namespace corda

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/file.hpp"
+
+namespace corda {
+
+/// What the bytes of an output can go to.
+enum class OutputKind {
+    kFile,    ///< an ordinary file, because the writer goes back in it
+    kStream,  ///< also a device, a pipe or standard output
+};
+
+/// Whether `path` names standard output: "-" or "/dev/stdout".
+[[nodiscard]] bool is_standard_output(const std::string& path);
+
+/// Refuses an output that cannot be written, before any work is done. Throws corda::Error: kUsage if `path`
+/// is the file `input` (empty: there is none) or names no file; kIo if `path` exists and `force` is not set,
+/// is a folder, is not of the given kind, or if its folder is missing or cannot be written to.
+void check_output(const std::string& path, const std::string& input, bool force,
+                  OutputKind kind = OutputKind::kFile);
+
+/// A file that gets its name only when it is complete.
+///
+/// The bytes go to a temporary file of unique name in the same folder. `commit` gives it the final name; a
+/// file that already has this name, even one that appeared meanwhile, is replaced only with `force`. Then its
+/// permissions stay, and if the name is a symbolic link, the file it leads to is replaced. A device, a pipe
+/// or standard output is written to directly.
+class OutputFile {
+  public:
+    /// Creates the temporary file. Throws corda::Error (kIo), like all below.
+    explicit OutputFile(std::string path, OutputOptions options = {});
+    OutputFile(const OutputFile&) = delete;
+    OutputFile& operator=(const OutputFile&) = delete;
+    /// Removes the temporary file unless `commit` or `keep` was called.
+    ~OutputFile();
+
+    void write(std::string_view bytes);
+
+    /// Writes out what `write` has buffered, forces it onto the disk, closes, and gives the file its name.
+    /// If the name was taken meanwhile, without `force` by anything, with it by a device or a pipe, the
+    /// complete file is kept as by `keep`, and the message says where.
+    void commit();
+
+    /// Closes an unfinished file and leaves it as "PATH.part", or under its temporary name if that one is
+    /// taken. Returns where it is.
+    std::string keep();
+
+    /// The open file, for libraries that write by themselves. They must not mix with `write`.
+    [[nodiscard]] int descriptor() const { return descriptor_.get(); }
+
+    /// Where the bytes are before `commit`; empty for a device, a pipe or standard output.
+    [[nodiscard]] const std::string& temporary_path() const { return temporary_; }
+
+  private:
+    /// The owner and mode of the file that is to be replaced.
+    struct Owner {
+        unsigned mode;
+        unsigned user;
+        unsigned group;
+    };
+
+    /// Learns what commit() is to replace.
+    void find_target();
+    void open_directly();
+    void open_temporary();
+    void flush();
+    void restore_permissions();
+    void close();
+    [[nodiscard]] int rename_to(const std::string& name) const;
+
+    std::string path_;    // as given
+    std::string target_;  // what is replaced: behind all symbolic links with `force`
+    std::string temporary_;
+    std::string buffer_;
+    OutputOptions options_;
+    std::optional<Owner> replaced_;
+    Descriptor descriptor_;
+};
+
+}  // namespace corda

@@ -1,0 +1,98 @@
+#include "corda/core/part_file.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "corda/core/basics.hpp"
+
+namespace corda {
+namespace {
+
+[[noreturn]] void fail_busy(const std::string& path) {
+    throw Error(ExitCode::kIo,
+                "another render is writing '" + path + "'; wait for its end, or choose another name");
+}
+
+/// Locks an open file by flock(2). False if another process holds the lock and `operation` does not wait for
+/// it, or if the name leads to another file by now.
+bool lock(const Descriptor& file, const std::string& path, int operation) {
+    int status = 0;
+    do status = ::flock(file.get(), operation);
+    while (status != 0 && errno == EINTR);
+    // Every other failure means a file system without locks, where the exclusive creation must do.
+    if (status != 0 && errno == EWOULDBLOCK) return false;
+    struct stat locked {};
+    struct stat named {};
+    return ::fstat(file.get(), &locked) == 0 && ::lstat(path.c_str(), &named) == 0 &&
+           locked.st_dev == named.st_dev && locked.st_ino == named.st_ino;
+}
+
+/// Opens what stands under the name of a part. O_NONBLOCK: a pipe there must not stop us.
+Descriptor open_existing(const std::string& path) {
+    return Descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC));
+}
+
+void remove_old(const std::string& path) {
+    const Descriptor old = open_existing(path);
+    if (!old && errno == ENOENT) return;
+    // ELOOP: a symbolic link, through which no render writes.
+    if (!old && errno != ELOOP) fail_file("replace", path, errno);
+    if (old && !lock(old, path, LOCK_EX | LOCK_NB)) fail_busy(path);
+    if (::unlink(path.c_str()) != 0) fail_file("remove", path, errno);
+}
+
+}  // namespace
+
+PartFile::PartFile(std::string path, Descriptor descriptor)
+    : path_(std::move(path)), descriptor_(std::move(descriptor)) {}
+
+void PartFile::check(const std::string& path, OutputOptions options) {
+    const Descriptor old = open_existing(path);
+    if (!old && errno == ENOENT) return;
+    if (old && !lock(old, path, LOCK_SH | LOCK_NB)) fail_busy(path);
+    if (options.force) return;
+    throw Error(
+        ExitCode::kIo,
+        "'" + path + "' holds an interrupted render; move it away, or start anew with force (--force)");
+}
+
+PartFile PartFile::create(std::string path, OutputOptions options) {
+    if (options.force) remove_old(path);
+    Descriptor file = create_new(path, 0666);
+    if (!file) {
+        const int open_errno = errno;
+        if (open_errno == EEXIST) check(path, {});
+        fail_file("write", path, open_errno);
+    }
+    // Another process can hold a file this new only for the moment it takes to look at it, or to remove it.
+    if (!lock(file, path, LOCK_EX)) fail_busy(path);
+    return {std::move(path), std::move(file)};
+}
+
+PartFile PartFile::open(std::string path) {
+    Descriptor file = open_existing(path);
+    if (!file) fail_file("read", path, errno);
+    if (!lock(file, path, LOCK_EX | LOCK_NB)) fail_busy(path);
+    return {std::move(path), std::move(file)};
+}
+
+bool PartFile::is_empty() const {
+    struct stat status {};
+    return ::fstat(descriptor_.get(), &status) == 0 && status.st_size == 0;
+}
+
+void PartFile::sync() const {
+    sync_file(descriptor_, path_);
+}
+
+void PartFile::remove() noexcept {
+    ::unlink(path_.c_str());
+    static_cast<void>(descriptor_.close());
+}
+
+}  // namespace corda

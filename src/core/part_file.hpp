@@ -1,0 +1,52 @@
+#pragma once
+
+#include <string>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/file.hpp"
+
+namespace corda {
+
+/// The name of what is unfinished of the file `path`.
+[[nodiscard]] inline std::string part_path(const std::string& path) {
+    return path + ".part";
+}
+
+/// The file that holds an unfinished video under a name that can be guessed, so that it is found again after
+/// a crash. It is locked while the object lives: two renders never write to one part.
+///
+/// Whoever removes or replaces a part holds its lock, and a lock counts only while the name still leads to
+/// the locked file. A symbolic link under the name is never followed.
+class PartFile {
+  public:
+    /// Throws corda::Error (kIo) if a part file is in the way: with `force`, only one that another process
+    /// holds.
+    static void check(const std::string& path, OutputOptions options);
+
+    /// Creates the part file, with `force` in place of an old one. Throws as `check`, and if it cannot be
+    /// made.
+    [[nodiscard]] static PartFile create(std::string path, OutputOptions options);
+
+    /// Locks the part file that an earlier run left. Throws corda::Error (kIo).
+    [[nodiscard]] static PartFile open(std::string path);
+
+    [[nodiscard]] const std::string& path() const { return path_; }
+    [[nodiscard]] int descriptor() const { return descriptor_.get(); }
+
+    /// Whether no byte was written yet.
+    [[nodiscard]] bool is_empty() const;
+
+    /// Forces what was written onto the disk. Throws corda::Error (kIo).
+    void sync() const;
+
+    /// Removes the file and releases the lock; never throws, because an old part does no harm.
+    void remove() noexcept;
+
+  private:
+    PartFile(std::string path, Descriptor descriptor);
+
+    std::string path_;
+    Descriptor descriptor_;
+};
+
+}  // namespace corda

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "corda/core/rational.hpp"
+
+namespace corda {
+
+/// The times at which a motion is recorded, in order: the frame times 0 .. last_frame of a rate, and others
+/// between or after them, such as those of stills.
+class Timeline {
+  public:
+    /// `still_times_s` may come in any order and may repeat frame times; every one is finite and >= 0.
+    Timeline(FrameRate fps, std::int64_t last_frame, std::vector<double> still_times_s = {});
+
+    [[nodiscard]] std::size_t size() const { return frame_count_ + still_times_s_.size(); }
+    /// Time `i` in seconds, i < size(); increasing.
+    [[nodiscard]] double time_s(std::size_t i) const;
+    /// Whether time `i` is that of a frame.
+    [[nodiscard]] bool is_frame(std::size_t i) const;
+    /// The index of exactly this time; std::nullopt if the timeline does not have it.
+    [[nodiscard]] std::optional<std::size_t> find(double time_s) const;
+    [[nodiscard]] FrameRate fps() const { return fps_; }
+
+  private:
+    /// Number of frames before `time_s`.
+    [[nodiscard]] std::size_t frames_before(double time_s) const;
+
+    FrameRate fps_;
+    std::size_t frame_count_;
+    std::vector<double> still_times_s_;     ///< increasing; none is a frame time
+    std::vector<std::size_t> still_index_;  ///< their indices
+};
+
+}  // namespace corda
