@@ -1,54 +1,81 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
-#include "corda/sim/vec2.hpp"
+#pragma GCC visibility push(default)
+namespace corda {
 
-namespace corda::sim {
+/// A point or a vector in the plane: x to the right, y up.
+struct Vec2 {
+    double x = 0;
+    double y = 0;
 
-/// What acts on everything in a scene, and for how long.
+    friend bool operator==(const Vec2&, const Vec2&) = default;
+};
+
+inline Vec2 operator+(Vec2 a, Vec2 b) {
+    return {a.x + b.x, a.y + b.y};
+}
+inline Vec2 operator-(Vec2 a, Vec2 b) {
+    return {a.x - b.x, a.y - b.y};
+}
+inline Vec2 operator*(double s, Vec2 v) {
+    return {s * v.x, s * v.y};
+}
+inline double dot(Vec2 a, Vec2 b) {
+    return a.x * b.x + a.y * b.y;
+}
+/// The vector turned left by a right angle.
+inline Vec2 left_of(Vec2 a) {
+    return {-a.y, a.x};
+}
+
+/// What acts on all bodies of a scene, and for how long.
 struct WorldDef {
     Vec2 gravity_m_s2{0.0, -9.81};  ///< acceleration of every free particle; finite
     double duration_s = 10.0;       ///< > 0
-    double drag_1_s = 0.0;          ///< exact linear drag: velocities decay by exp(-drag t); >= 0
+    double drag_1_s = 0.0;          ///< linear drag: velocities decay by exp(-drag t); >= 0
 };
 
-/// What a body's bars are made of. By default they keep their lengths; a term that is not asked for costs
-/// nothing.
+/// What a body's bars are made of. By default they are rigid.
 struct MaterialDef {
-    /// Strain of a bar per newton of tension, 1 / (E A), in 1/N; 0: rigid, else the bars stretch by Hooke's
-    /// law.
+    /// Strain of a bar per newton of tension, 1 / (E A), in 1/N: the bars stretch by Hooke's law; 0: rigid
+    /// bars.
     double compliance_1_n = 0.0;
-    /// Bars pull and never push. Rigid ones that come taut do so plastically: momentum is kept, and the
-    /// relative velocity along the bar is gone (a string). With compliance: no force while shorter than at
-    /// rest (a bungee).
+    /// Bars pull and never push. A rigid one that comes taut does so plastically: momentum is kept, and the
+    /// relative velocity along the bar vanishes (a string). One with compliance exerts no force while it is
+    /// shorter than its rest length (a bungee).
     bool is_string = false;
 };
 
-/// A chain of particles, each tied to the next by a bar of its initial length.
+/// A chain of particles, each joined to the next by a bar.
 struct RopeDef {
-    /// Where `points_m` are measured from, in metres. Kept apart so that a rope far from the origin has the
-    /// same bits as one at the origin.
+    /// The point, in metres, that `points_m` are relative to. Kept apart so that a rope far from (0, 0) has
+    /// the same bits as one there.
     Vec2 origin_m;
-    std::vector<Vec2>
-        points_m;  ///< start of every particle relative to `origin_m`; at least 2, neighbours apart
-    std::vector<double> mass_kg;     ///< one a particle, > 0 (the pinned ones too)
-    std::vector<Vec2> velocity_m_s;  ///< one a particle at t = 0; those of pinned particles are ignored
-    std::vector<std::uint32_t> pinned{
-        0};                   ///< indices of the particles that never move, each < points_m.size()
+    std::vector<Vec2> points_m;   ///< initial positions relative to `origin_m`; at least 2, neighbours apart
+    std::vector<double> mass_kg;  ///< one per particle, > 0 (pinned ones too); empty: 1 kg each
+    std::vector<Vec2> velocity_m_s;  ///< one per particle at t = 0; empty: 0. Ignored for pinned particles
+    /// Indices of the particles that never move, each < points_m.size().
+    std::vector<std::uint32_t> pinned{0};
     double payload_kg = 0.0;  ///< added to the mass of the last particle; >= 0
-    bool closed = false;      ///< the last particle is tied to the first one too; needs at least 3
-    /// Lengths of the links at rest, one a link (the closing one last), > 0; empty: the initial distances.
-    /// Others than these only for a material that stretches, or that may hang slack: at least the distance
-    /// there.
+    /// Each particle is joined to the next 1 .. reach particles; >= 1. Bars of reach 1 are the rope's links.
+    /// Longer ones are imaginary: they stiffen the rope, and only method `relaxation` can move them.
+    int reach = 1;
+    bool closed = false;  ///< the last particle is joined to the first one too; needs at least 3
+    /// Rest lengths, one per link (the closing one last), > 0; empty: the initial distances. Others are for
+    /// materials that stretch, and for strings: there at least the initial distance.
     std::vector<double> rest_m;
     MaterialDef material;
-    /// Bending stiffness E I in N m^2, >= 0: the energy E I / a (1 - cos(angle)) at every inner particle, a
-    /// being the mean of the two links' lengths at rest; 0: perfectly flexible. A link between two pins
-    /// clamps.
+    /// Bending stiffness E I in N m^2, >= 0: every inner particle has the energy E I / a (1 - cos(angle)),
+    /// where a is the mean of the two links' rest lengths; 0: perfectly flexible. A link between two pins
+    /// clamps its neighbours.
     double bending_n_m2 = 0.0;
 };
 
@@ -61,47 +88,52 @@ struct NetBar {
 
 /// Particles and bars in any graph, e.g. a cloth.
 struct NetDef {
-    Vec2 origin_m;                   ///< as of a RopeDef
+    Vec2 origin_m;                   ///< see RopeDef
     std::vector<Vec2> points_m;      ///< relative to `origin_m`; at least 2
-    std::vector<double> mass_kg;     ///< one a particle, > 0
-    std::vector<Vec2> velocity_m_s;  ///< one a particle
+    std::vector<double> mass_kg;     ///< one per particle, > 0; empty: 1 kg each
+    std::vector<Vec2> velocity_m_s;  ///< one per particle; empty: 0
     std::vector<NetBar> bars;        ///< in the order of relaxation, real ones first; a != b, no pair twice
     std::vector<std::uint32_t> pinned;
     MaterialDef material;
 };
 
-/// How a scene is solved. kAuto is settled by a Plan (planner.hpp) before anything runs.
-enum class Method { kAuto, kRelaxation, kRope, kExact };
+/// Method `exact`: adaptive and of high order.
+struct ExactDef {
+    static constexpr std::string_view kName = "exact";
+    static constexpr double kTightestTolerance = 1e-15;
+    static constexpr double kLoosestTolerance = 1e-2;
 
-/// How a scene is solved. A key that does not belong to the chosen method is refused by the scene reader.
-struct SolverDef {
-    Method method = Method::kAuto;
-    double tolerance_px = 0.1;  ///< auto: bound of the displayed position error; > 0
-    double tolerance = 1e-9;  ///< exact: error after some seconds, relative to the rope's length; 1e-15 .. 1
-    std::optional<double> step_s;  ///< relaxation, rope: > 0; default one frame (relaxation), chosen (rope)
-    int order = 4;                 ///< rope: order of the composition, 2, 4, 6 or 8
-    int reach = 7;                 ///< relaxation: bars to the next 1..reach particles; >= 1
-    int sweeps = 1;                ///< relaxation: passes over all bars a step; >= 1
-    double delta = 0.0;            ///< relaxation: share of the velocity lost a step; 0 <= delta < 1
-    std::optional<Vec2> force_n;   ///< relaxation: force on every particle in place of gravity
+    /// Error of the positions after some seconds, relative to the rope's length; kTightestTolerance ..
+    /// kLoosestTolerance.
+    double tolerance = 1e-9;
 };
 
-/// `exact` at a tolerance, on the links alone.
-[[nodiscard]] SolverDef exact_solver(double tolerance);
+/// Method `rattle`: RATTLE at a fixed step, composed to a higher order.
+struct RattleDef {
+    static constexpr std::string_view kName = "rattle";
+    static constexpr std::array<int, 4> kOrders{2, 4, 6, 8};
 
-/// `rope` of an order, on the links alone, at a step in seconds or the one that it chooses.
-[[nodiscard]] SolverDef rope_solver(int order, std::optional<double> step_s = std::nullopt);
+    int order = 4;                      ///< one of kOrders
+    std::optional<double> step_s = {};  ///< > 0; default: a stable step that divides the frame interval
+};
 
-/// `relaxation` at a step in seconds, with weights in place of the report's constant force.
-[[nodiscard]] SolverDef relaxation_solver(double step_s, int reach, int sweeps);
+/// Method `relaxation`, that of the source report.
+struct RelaxationDef {
+    static constexpr std::string_view kName = "relaxation";
+
+    std::optional<double> step_s = {};  ///< > 0; default: the frame interval
+    int sweeps = 1;                     ///< passes over all bars per step; >= 1
+    double delta = 0.0;                 ///< share of the velocity lost per step; 0 <= delta < 1
+    std::optional<Vec2> force_n = {};   ///< force per particle in place of gravity; finite
+};
+
+/// The method that moves a system, with its parameters.
+using MethodDef = std::variant<ExactDef, RattleDef, RelaxationDef>;
 
 /// The name a scene file uses for a method.
-[[nodiscard]] std::string_view method_name(Method method);
+[[nodiscard]] inline std::string_view method_name(const MethodDef& method) {
+    return std::visit([](const auto& def) { return std::decay_t<decltype(def)>::kName; }, method);
+}
 
-/// The method of that name; nothing where none of that name exists.
-[[nodiscard]] std::optional<Method> parse_method(std::string_view name);
-
-/// The names of the methods that exist, e.g. for an error message.
-[[nodiscard]] std::vector<std::string_view> method_names();
-
-}  // namespace corda::sim
+}  // namespace corda
+#pragma GCC visibility pop

@@ -5,20 +5,20 @@
 #include <cmath>
 #include <limits>
 
+#include "corda/sim/defs.hpp"
 #include "corda/sim/distance.hpp"
-#include "corda/sim/vec2.hpp"
 
 namespace corda::sim {
 namespace {
 
-/// A bar shorter than this share of its length counts as this long in the bound on the frequency, which would
-/// grow without limit where its ends pass each other: a jerk, which no step resolves.
+/// A bar shorter than this share of its rest length counts as this long in the bound on the frequency. The
+/// bound would grow without limit when its ends pass each other: a jerk that no step resolves.
 constexpr double kShortest = 0.01;
 
 /// |cos| + |sin| of 0.2 radians, rounded up.
 constexpr double kCommonBend = 1.2;
 
-/// A bar as it lies: its length, the inverse of that and the unit vector; all 0 where it has no direction.
+/// The current length of a bar, its inverse and the unit vector along the bar; all 0 for a bar of length 0.
 struct Along {
     double length_m;
     double inverse_1_m;
@@ -81,7 +81,7 @@ void ElasticForces::bound_frequencies(const double* inverse_mass_1_kg, std::size
             square = std::max(square, inverse_mass_1_kg[i] * sum_n_m[i]);
         return square;
     };
-    // Row i of the stiffness matrix: the entry of i itself, and those of other free particles.
+    // Row i of the stiffness matrix: the entry of i itself, and those of the other free particles.
     std::vector<double> sum_n_m(particle_count, 0.0);
     for (const Spring& spring : springs_) {
         sum_n_m[spring.a] += spring.stiffness_n_m * (1.0 + moves(spring.b));
@@ -90,7 +90,7 @@ void ElasticForces::bound_frequencies(const double* inverse_mass_1_kg, std::size
     spring_square_frequency_ = largest(sum_n_m);
     std::fill(sum_n_m.begin(), sum_n_m.end(), 0.0);
     for (const Joint& joint : joints_) {
-        // The angle changes by at most these for a metre's move of a, b, c.
+        // The angle changes by at most these per metre that a, b or c moves.
         const double a_1_m = 1.0 / joint.before_m;
         const double c_1_m = 1.0 / joint.after_m;
         const double b_1_m = a_1_m + c_1_m;
@@ -104,7 +104,7 @@ void ElasticForces::bound_frequencies(const double* inverse_mass_1_kg, std::size
 }
 
 double ElasticForces::add_forces(const double* x_m, const double* y_m, double* fx_n, double* fy_n) const {
-    // |T| / d over 1 / (C l) is |1 - l / d|: more than 1 only where d < l / 2.
+    // |T| / d over 1 / (C l) is |1 - l / d|: more than 1 only if d < l / 2.
     double shortest = 0.5;  // d / l
     for (const Spring& spring : springs_) {
         const Along bar = along(x_m, y_m, spring.a, spring.b);
@@ -116,8 +116,8 @@ double ElasticForces::add_forces(const double* x_m, const double* y_m, double* f
         fx_n[spring.b] -= tension_n * bar.x;
         fy_n[spring.b] -= tension_n * bar.y;
     }
-    // The second derivatives of k (1 - cos) are k cos times the squares of the angle's first ones and k sin
-    // times its second ones, which are no larger; both grow as lengths squared shrink.
+    // The second derivatives of k (1 - cos) are k cos times the squares of the angle's first derivatives and
+    // k sin times its second ones, which are no larger; both grow with the inverse square of the lengths.
     double sharpest = 0.0;
     for (const Joint& joint : joints_) {
         const Along u = along(x_m, y_m, joint.a, joint.b);

@@ -10,42 +10,39 @@ namespace corda::sim {
 
 /// The conservative forces of bars that stretch and of ropes that resist bending, in Cartesian coordinates.
 ///
-/// A bar of compliance C and length l at rest, whose ends are d apart, pulls them together by the tension
+/// A bar of compliance C and rest length l, whose ends are d apart, pulls them together by the tension
 /// T = (d / l - 1) / C (Hooke's law, E A = 1 / C), a string by max(0, T); its energy is T^2 C l / 2. With the
 /// unit vectors u from a to b and v from b to c, a bend of stiffness k has the energy k (1 - u . v) and, with
 /// s = u x v and the left normals p of u and q of v, the forces
 ///
 ///   F_a = -(k s / |ab|) p,   F_c = -(k s / |bc|) q,   F_b = -(F_a + F_c),
 ///
-/// in which nothing cancels where the rope is nearly straight. Ends in one place have no direction: a bar of
-/// length 0 exerts no force and bends nothing.
+/// in which nothing cancels if the rope is nearly straight. A bar of length 0 has no direction: it exerts no
+/// force and no bend acts at its ends.
 ///
-/// Positions and forces are arrays with one entry a particle from the first one on.
+/// Positions and forces are arrays with one entry per particle, from the first one on.
 class ElasticForces {
   public:
-    /// None.
-    ElasticForces() = default;
-
-    /// Those of the bars of stretching bodies and of all bends that lie among the particles `first_particle`
-    /// .. `first_particle + particle_count - 1` of the system, which are whole bodies. What lies between
-    /// pinned particles alone never moves and is left out.
+    /// Of the bars of stretching bodies and of all bends among the particles `first_particle` ..
+    /// `first_particle + particle_count - 1` of the system, which are whole bodies. Bars and bends that join
+    /// pinned particles alone never move and are left out.
     ElasticForces(const System& system, std::size_t first_particle, std::size_t particle_count);
 
     [[nodiscard]] bool empty() const { return springs_.empty() && joints_.empty(); }
 
-    /// Adds the forces at these positions to `fx_n`, `fy_n`, the pinned particles' too, and returns a bound
-    /// on the square of the largest frequency of small motions about them, 1 / s^2: Gershgorin's, the largest
-    /// over all particles of w times the sum of the stiffnesses that act on it, with
-    /// max(1 / (C l), |T| / d) for a bar.
+    /// Adds the forces at these positions to `fx_n`, `fy_n`, those on pinned particles too. Returns a bound
+    /// on the square of the largest angular frequency of small motions about the positions, 1 / s^2:
+    /// Gershgorin's, the largest over all particles of the inverse mass times the sum of the stiffnesses that
+    /// act on the particle, that of a bar being max(1 / (C l), |T| / d).
     double add_forces(const double* x_m, const double* y_m, double* fx_n, double* fy_n) const;
 
-    /// The same bound for what is common: bars that are not pushed to less than half of their lengths, joints
-    /// of up to 0.2 radians.
+    /// The same bound for usual states: bars no shorter than half of their rest lengths, joints bent by up to
+    /// 0.2 radians.
     [[nodiscard]] double common_square_frequency() const;
 
     [[nodiscard]] double energy_j(const double* x_m, const double* y_m) const;
 
-    /// Largest tension of a bar; one that pushes counts by its size.
+    /// Largest tension of a bar; a bar that pushes counts by the size of its tension.
     [[nodiscard]] double largest_tension_n(const double* x_m, const double* y_m) const;
 
   private:
@@ -54,7 +51,7 @@ class ElasticForces {
         std::uint32_t b = 0;
         double rest_m = 0.0;
         double stiffness_n_m = 0.0;    ///< 1 / (C l)
-        double least_stretch_m = 0.0;  ///< d - l counts as at least this: 0 for a string, else without bound
+        double least_stretch_m = 0.0;  ///< lower bound on d - l: 0 for a string, otherwise none
     };
     struct Joint {
         std::uint32_t a = 0;
@@ -71,8 +68,8 @@ class ElasticForces {
     std::size_t first_particle_ = 0;
     std::vector<Spring> springs_;
     std::vector<Joint> joints_;
-    /// Gershgorin's bounds for bars of at least half of their lengths, and for straight joints with the
-    /// lengths of the start.
+    /// Gershgorin's bounds for bars of at least half of their rest lengths, and for straight joints of the
+    /// initial lengths.
     double spring_square_frequency_ = 0.0;
     double joint_square_frequency_ = 0.0;
 };

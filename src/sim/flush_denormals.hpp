@@ -6,9 +6,9 @@
 
 namespace corda::sim {
 
-/// While one lives, numbers below 2.2e-308 count as 0 on x86 CPUs. A damped rope that comes to rest halves
-/// its distance to it again and again; below that limit every operation would take a hundred times as long.
-/// Other CPUs do not slow down and need nothing.
+/// During its life, numbers below 2.2e-308 (denormal ones) count as 0 on x86 CPUs. A damped rope halves its
+/// distance to equilibrium again and again; with denormal numbers every operation would take a hundred times
+/// as long. Other CPUs do not slow down.
 class FlushDenormals {
   public:
     FlushDenormals(const FlushDenormals&) = delete;

@@ -1,17 +1,21 @@
 #include "corda/sim/simulation.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
+#include <string>
 #include <utility>
+#include "corda/core/basics.hpp"
 
 #include "corda/sim/distance.hpp"
-#include "corda/sim/exact.hpp"
+#include "corda/sim/exact/exact.hpp"
 #include "corda/sim/flush_denormals.hpp"
-#include "corda/sim/rattle.hpp"
-#include "corda/sim/relaxation.hpp"
+#include "corda/sim/rattle/rattle.hpp"
+#include "corda/sim/refusal.hpp"
+#include "corda/sim/relaxation/relaxation.hpp"
+#include "corda/sim/solver.hpp"
+#include "corda/sim/validate.hpp"
 
-namespace corda::sim {
+namespace corda {
 namespace {
 
 /// Farther out than this nothing is meant to go: the run has diverged.
@@ -29,7 +33,7 @@ double max_strain(const System& system, const State& state) {
         for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k) {
             const Bar& bar = system.bars[k];
             const double distance =
-                length(state.x_m[bar.b] - state.x_m[bar.a], state.y_m[bar.b] - state.y_m[bar.a]);
+                sim::length(state.x_m[bar.b] - state.x_m[bar.a], state.y_m[bar.b] - state.y_m[bar.a]);
             const double strain = distance / bar.rest_m - 1.0;
             largest = std::max(largest, body.material.is_string ? strain : std::abs(strain));
         }
@@ -39,45 +43,74 @@ double max_strain(const System& system, const State& state) {
 
 }  // namespace
 
-std::unique_ptr<Solver> make_solver(const System& system, const WorldDef& world, const SolverDef& def,
-                                    double frame_interval_s) {
-    switch (def.method) {
-        case Method::kAuto:
-            break;
-        case Method::kRelaxation:
-            return std::make_unique<Relaxation>(system, world, def, frame_interval_s);
-        case Method::kRope:
-            return std::make_unique<Rattle>(system, world, def, frame_interval_s);
-        case Method::kExact:
-            return std::make_unique<Exact>(system, world, def, frame_interval_s);
+namespace sim {
+namespace {
+
+/// A bar without length has no direction; `relaxation` alone leaves such bars be.
+void refuse_bars_without_length(const System& system) {
+    for (const Bar& bar : system.bars) {
+        if (bar.rest_m > 0.0) continue;
+        throw Refusal(Refusal::Reason::kBarWithoutLength, "particles " + std::to_string(bar.a) + " and " +
+                                                              std::to_string(bar.b) +
+                                                              ", which a bar joins, coincide");
     }
-    assert(false && "make_solver: auto has to be settled by a plan first");
-    return nullptr;
 }
 
-Simulation::Simulation(System system, const WorldDef& world, const SolverDef& solver, double frame_interval_s,
-                       Figured figured)
+}  // namespace
+
+std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces, const MethodDef& method,
+                                    double frame_interval_s) {
+    if (!std::holds_alternative<RelaxationDef>(method)) refuse_bars_without_length(system);
+    struct Maker {
+        const System& system;
+        const Forces& forces;
+        double frame_interval_s;
+        std::unique_ptr<Solver> operator()(const ExactDef& def) const {
+            return std::make_unique<Exact>(system, forces, def);
+        }
+        std::unique_ptr<Solver> operator()(const RattleDef& def) const {
+            return std::make_unique<Rattle>(system, forces, def, frame_interval_s);
+        }
+        std::unique_ptr<Solver> operator()(const RelaxationDef& def) const {
+            return std::make_unique<Relaxation>(system, forces, def, frame_interval_s);
+        }
+    };
+    return std::visit(Maker{system, forces, frame_interval_s}, method);
+}
+
+}  // namespace sim
+
+Simulation::Simulation(System system, const WorldDef& world, const MethodDef& method, double frame_interval_s)
     : system_(std::move(system)),
-      solver_(make_solver(system_, world, solver, frame_interval_s)),
+      solver_((sim::validate(world), sim::validate(method),
+               sim::make_solver(system_, world, method, frame_interval_s))),
       state_{0.0, system_.x_m, system_.y_m},
       next_(state_),
-      figured_(figured),
       conserves_energy_(solver_->conserves_energy()),
       initial_energy_j_(solver_->energy_j()),
       energy_scale_j_(solver_->energy_scale_j()) {
     if (energy_scale_j_ == 0.0) energy_scale_j_ = std::abs(initial_energy_j_);
 }
 
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
 Status Simulation::advance_to(double time_s) {
-    assert(time_s >= state_.time_s);
-    if (solver_->advance_to(time_s, next_) == Status::kDiverged || !is_sound(next_)) return Status::kDiverged;
+    if (!(time_s >= state_.time_s) || std::isinf(time_s)) {
+        throw Error(ExitCode::kUsage, "advance_to(" + std::to_string(time_s) + "): the state is already at " +
+                                          std::to_string(state_.time_s) + " s; make a new Simulation");
+    }
+    if (has_diverged_) return Status::kDiverged;
+    has_diverged_ = solver_->advance_to(time_s, next_) == Status::kDiverged || !is_sound(next_);
+    if (has_diverged_) return Status::kDiverged;
     std::swap(state_, next_);
-    if (figured_ == Figured::kYes) observe();
+    observe();
     return Status::kOk;
 }
 
 void Simulation::observe() {
-    const FlushDenormals flush;
+    const sim::FlushDenormals flush;
     figures_.strain = max_strain(system_, state_);
     largest_.strain = std::max(largest_.strain, figures_.strain);
     if (conserves_energy_ && energy_scale_j_ > 0.0) {
@@ -91,8 +124,12 @@ void Simulation::observe() {
                            std::max(before.largest_tension_n, figures_.loads->largest_tension_n)};
 }
 
+MethodDef Simulation::method() const {
+    return solver_->method();
+}
+
 Diagnostics Simulation::diagnostics() const {
     return {solver_->steps(), largest_};
 }
 
-}  // namespace corda::sim
+}  // namespace corda

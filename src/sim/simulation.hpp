@@ -3,58 +3,68 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
-#include "corda/sim/solver.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::sim {
+class Solver;
+}
+
+#pragma GCC visibility push(default)
+namespace corda {
 
 /// What a state shows of its own quality.
 struct Figures {
-    /// Largest | length / rest length - 1 | of a real bar; one that hangs slack on purpose counts as 0.
+    /// Largest | length / rest length - 1 | of a real bar; a slack link of a string counts as 0.
     double strain = 0.0;
-    /// | E(t) - E(0) | over (total weight * total length), or over E(0) without a force; nothing where
-    /// damping takes energy away on purpose.
+    /// | E(t) - E(0) | over the sum of weight times length of all bodies, or over E(0) without a force.
+    /// std::nullopt if damping takes energy on purpose.
     std::optional<double> energy_error;
-    std::optional<Loads> loads;  ///< nothing where the method does not know them
+    std::optional<Loads> loads;  ///< std::nullopt if the method does not know them
 };
 
-/// What a run has shown of itself: the largest figures over the times that were asked for.
+/// The largest figures of a run over all times that were asked for.
 struct Diagnostics {
     std::uint64_t steps = 0;
     Figures largest;
 };
 
-/// Whether a Simulation works out the figures of every state that it reaches: some 10 ns a particle.
-enum class Figured { kNo, kYes };
-
-/// A scene in motion: particles and bars, a solver, and a check of every state that it hands out.
+/// A scene in motion: particles and bars, their solver, and figures of every state that it reaches.
 class Simulation {
   public:
-    /// `frame_interval_s` is the default step of a method that has no step of its own. Throws corda::Error
-    /// where the method cannot run the system. Figures stay empty with Figured::kNo, e.g. in a rehearsal.
-    Simulation(System system, const WorldDef& world, const SolverDef& solver, double frame_interval_s,
-               Figured figured = Figured::kYes);
+    /// `frame_interval_s`: what a method without a step of its own derives its step from. Throws
+    /// corda::Error (kInvalidScene) if the method cannot run the system, or for a field that is not what its
+    /// declaration says.
+    Simulation(System system, const WorldDef& world, const MethodDef& method,
+               double frame_interval_s = 1.0 / 60.0);
 
-    /// Goes on to `time_s` seconds, which must not be before the state's time. The state is that of exactly
-    /// this time; the same bits come out whatever times were asked for on the way.
+    Simulation(Simulation&&) noexcept;
+    Simulation& operator=(Simulation&&) noexcept;
+    ~Simulation();
+
+    /// Goes on to `time_s` seconds. The state is then that of exactly this time, with the same bits whatever
+    /// times were asked for on the way. If the run diverges, the last good state stays for good. Throws
+    /// corda::Error (kUsage) if `time_s` is before the state's time or not finite.
     Status advance_to(double time_s);
 
     /// Positions relative to `system().origin_m`, at the last time that was reached.
     [[nodiscard]] const State& state() const { return state_; }
     [[nodiscard]] const System& system() const { return system_; }
-    /// Figures of the state alone.
+    /// Of the state alone.
     [[nodiscard]] const Figures& figures() const { return figures_; }
     [[nodiscard]] Diagnostics diagnostics() const;
+    /// The method with every default filled in: given again, it runs with the same bits.
+    [[nodiscard]] MethodDef method() const;
 
   private:
     void observe();
 
     System system_;
-    std::unique_ptr<Solver> solver_;
+    std::unique_ptr<sim::Solver> solver_;
     State state_;
     State next_;  ///< kept for its memory
-    Figured figured_;
+    bool has_diverged_ = false;
     bool conserves_energy_ = true;
     double initial_energy_j_ = 0.0;
     double energy_scale_j_ = 0.0;
@@ -62,4 +72,41 @@ class Simulation {
     Figures largest_;
 };
 
-}  // namespace corda::sim
+/// A method that was tried, and how far its positions differ from those of a tighter run.
+struct Trial {
+    MethodDef method;
+    MethodDef check;  ///< of the tighter run
+    std::uint64_t steps = 0;
+    std::uint64_t check_steps = 0;
+    double largest_difference_m = 0.0;  ///< up to `reached_s`
+    double reached_s = 0.0;             ///< the last frame time up to which it was within the tolerance
+    bool to_the_end = false;            ///< within the tolerance at all frame times
+    bool diverged = false;              ///< one of the two runs diverged after `reached_s`
+};
+
+/// Why a scene is run by its method.
+enum class PlanReason {
+    kNamed,       ///< the scene names the method
+    kExact,       ///< `exact` can move every body
+    kGraph,       ///< rigid bars of closed ropes or nets, for which `rattle` is made
+    kDependent,   ///< the bars depend on each other, so that no method can tell the true motion
+    kCollapsing,  ///< the bars come to depend on each other during the motion
+};
+
+/// The method that runs a scene and, if `auto` chose it, the proof that it is good enough.
+struct Plan {
+    MethodDef method;  ///< with every default filled in: given again, it runs with the same bits
+    /// Bound on the error of any particle's position at any frame time up to the horizon. std::nullopt if no
+    /// method can tell the true motion (its bars depend on each other), or if the scene names the method.
+    std::optional<double> error_bound_m;
+    /// The last frame time at which a run and a much tighter one agree within the tolerance: later positions
+    /// of no method can be trusted. std::nullopt if the scene ends before.
+    std::optional<double> horizon_s;
+    bool diverges = false;      ///< at the horizon even the tightest trial diverges
+    std::vector<Trial> trials;  ///< all that were run, the chosen one last
+    PlanReason reason = PlanReason::kNamed;
+    int simulation_passes = 0;  ///< how often the motion was integrated, checks and failed trials included
+};
+
+}  // namespace corda
+#pragma GCC visibility pop

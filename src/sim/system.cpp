@@ -4,8 +4,9 @@
 #include <cassert>
 
 #include "corda/sim/distance.hpp"
+#include "corda/sim/validate.hpp"
 
-namespace corda::sim {
+namespace corda {
 namespace {
 
 /// What a rope and a net have in common: origin, particles and pins.
@@ -17,9 +18,10 @@ Body append_particles(const BodyDef& def, System& system) {
     for (std::size_t i = 0; i < count; ++i) {
         system.x_m.push_back(offset.x + def.points_m[i].x);
         system.y_m.push_back(offset.y + def.points_m[i].y);
-        system.vx_m_s.push_back(def.velocity_m_s[i].x);
-        system.vy_m_s.push_back(def.velocity_m_s[i].y);
-        system.mass_kg.push_back(def.mass_kg[i]);
+        const Vec2 velocity_m_s = def.velocity_m_s.empty() ? Vec2{} : def.velocity_m_s[i];
+        system.vx_m_s.push_back(velocity_m_s.x);
+        system.vy_m_s.push_back(velocity_m_s.y);
+        system.mass_kg.push_back(def.mass_kg.empty() ? 1.0 : def.mass_kg[i]);
     }
     if constexpr (requires { def.payload_kg; }) system.mass_kg.back() += def.payload_kg;
     for (std::size_t i = first; i < first + count; ++i)
@@ -38,21 +40,22 @@ Body append_particles(const BodyDef& def, System& system) {
     return body;
 }
 
-/// Distance of two particles from the body's own coordinates: where it stands must not change it.
+/// From the body's own coordinates, so that its place in the scene does not change the bits.
 template <class BodyDef>
 double distance_m(const BodyDef& def, std::size_t a, std::size_t b) {
     const Vec2 along = def.points_m[b] - def.points_m[a];
-    return length(along.x, along.y);
+    return sim::length(along.x, along.y);
 }
 
-/// How many bars of a reach a rope has: 0 where it is too short for them.
+/// How many bars of a reach a rope has; 0 if it is too short for them.
 std::size_t bars_of_reach(std::size_t particles, std::size_t reach, bool closed) {
     if (!closed) return particles > reach ? particles - reach : 0;
     if (2 * reach == particles) return reach;
     return 2 * reach < particles ? particles : 0;
 }
 
-void append_bars(const RopeDef& rope, std::size_t reach, Body& body, System& system) {
+void append_bars(const RopeDef& rope, Body& body, System& system) {
+    const auto reach = static_cast<std::size_t>(rope.reach);
     const std::size_t count = rope.points_m.size();
     const auto particle = [&](std::size_t i) {
         return static_cast<std::uint32_t>(body.first_particle + i % count);
@@ -83,9 +86,9 @@ void append_bends(const RopeDef& rope, const Body& body, System& system) {
     }
 }
 
-void append(const RopeDef& rope, std::size_t reach, System& system) {
+void append(const RopeDef& rope, System& system) {
     Body body = append_particles(rope, system);
-    append_bars(rope, reach, body, system);
+    append_bars(rope, body, system);
     append_bends(rope, body, system);
     system.bodies.push_back(body);
 }
@@ -113,6 +116,18 @@ std::size_t System::link_count() const {
     return count;
 }
 
+double links_length_m(const System& system, const Body& body) {
+    double length_m = 0.0;
+    for (std::size_t i = 0; i < body.link_count; ++i) length_m += system.bars[body.first_bar + i].rest_m;
+    return length_m;
+}
+
+double largest_length_m(const System& system) {
+    double longest_m = 0.0;
+    for (const Body& body : system.bodies) longest_m = std::max(longest_m, links_length_m(system, body));
+    return longest_m;
+}
+
 std::vector<Bar> rigid_bars(const System& system) {
     std::vector<Bar> rigid;
     for (const Body& body : system.bodies) {
@@ -133,17 +148,13 @@ std::uint64_t bar_count(std::uint64_t particles, std::uint64_t reach, bool close
     return longest * particles - longest * (longest + 1) / 2;
 }
 
-System build_system(std::span<const RopeDef> ropes, std::span<const NetDef> nets, int reach) {
-    assert(!(ropes.empty() && nets.empty()) && reach >= 1);
+System build_system(std::span<const RopeDef> ropes, std::span<const NetDef> nets) {
+    sim::validate(ropes, nets);
     System system;
     system.origin_m = ropes.empty() ? nets.front().origin_m : ropes.front().origin_m;
-    for (const RopeDef& rope : ropes) append(rope, static_cast<std::size_t>(reach), system);
+    for (const RopeDef& rope : ropes) append(rope, system);
     for (const NetDef& net : nets) append(net, system);
     return system;
 }
 
-System build_system(std::span<const RopeDef> ropes, int reach) {
-    return build_system(ropes, {}, reach);
-}
-
-}  // namespace corda::sim
+}  // namespace corda

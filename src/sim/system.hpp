@@ -7,41 +7,42 @@
 
 #include "corda/sim/defs.hpp"
 
-namespace corda::sim {
+#pragma GCC visibility push(default)
+namespace corda {
 
-/// One body's place among the particles and the bars of a System: a rope or a net.
+/// A rope or a net: its share of the particles and bars of a System.
 struct Body {
     std::size_t first_particle = 0;
     std::size_t particle_count = 0;
     std::size_t first_bar = 0;
-    std::size_t bar_count = 0;   ///< all of them
-    std::size_t link_count = 0;  ///< real ones; they come first
-    bool is_chain = true;        ///< link k joins particle k to particle k + 1 and there are no others
+    std::size_t bar_count = 0;   ///< real and imaginary
+    std::size_t link_count = 0;  ///< real bars; they come first
+    bool is_chain = true;        ///< link k joins particles k and k + 1, and there are no other links
     bool is_net = false;         ///< made from a NetDef
     MaterialDef material;
 };
 
-/// Two particles held at a distance. A bar of reach 1 is real (a link of a rope); a bar of a longer reach is
+/// Two particles held at a distance. A bar of reach 1 is real, a link of a rope; a bar of longer reach is
 /// imaginary: it stiffens the rope or the net and is not part of it.
 struct Bar {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
     std::uint32_t reach = 1;
-    double rest_m = 0.0;  ///< length at rest
+    double rest_m = 0.0;  ///< rest length
 };
 
-/// Three particles of a rope that resists bending, `b` between the others: the energy
-/// stiffness_n_m * (1 - cos(angle)), the angle being that between the bars a-b and b-c, 0 where straight.
+/// Three particles of a rope that resists bending, `b` between the others. Its energy is
+/// stiffness_n_m * (1 - cos(angle)) with the angle between the bars a-b and b-c, 0 if they are straight.
 struct Bend {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
     std::uint32_t c = 0;
-    double stiffness_n_m = 0.0;  ///< E I over the mean of the two bars' lengths at rest
+    double stiffness_n_m = 0.0;  ///< E I over the mean of the two bars' rest lengths
 };
 
-/// All particles and bars of a scene at t = 0, whatever they come from. Arrays have one entry a particle.
+/// All particles and bars of a scene at t = 0. Arrays have one entry per particle.
 ///
-/// Positions are relative to `origin_m`, the first body's own origin: the same scene far from (0, 0) is
+/// Positions are relative to `origin_m`, the first body's own origin, so that a scene far from (0, 0) is
 /// solved with the same bits.
 struct System {
     Vec2 origin_m;
@@ -51,8 +52,8 @@ struct System {
     std::vector<double> vy_m_s;
     std::vector<double> mass_kg;            ///< payload included
     std::vector<double> inverse_mass_1_kg;  ///< 0 means pinned
-    std::vector<Bar>
-        bars;  ///< in the order of relaxation: body by body, all of reach 1, then all of reach 2, ...
+    /// In the order of relaxation: body by body, all bars of reach 1, then all of reach 2, ...
+    std::vector<Bar> bars;
     std::vector<Bend> bends;   ///< empty unless a rope resists bending
     std::vector<Body> bodies;  ///< ropes, then nets
 
@@ -61,19 +62,40 @@ struct System {
     [[nodiscard]] bool is_pinned(std::size_t particle) const { return inverse_mass_1_kg[particle] == 0.0; }
 };
 
-/// The bars that keep their lengths, in the system's order: those of bodies without compliance.
+/// Sum of the rest lengths of a body's links, in m.
+[[nodiscard]] double links_length_m(const System& system, const Body& body);
+
+/// The largest of these sums.
+[[nodiscard]] double largest_length_m(const System& system);
+
+/// The bars of bodies without compliance, in the system's order.
 [[nodiscard]] std::vector<Bar> rigid_bars(const System& system);
 
-/// Number of bars of a rope of `particles` with bars to the next 1..`reach`: the sum of (particles - k),
-/// which for reach 7 is 7 n - 28. A closed rope has `particles` of each reach, and half as many of the one
-/// that joins opposite particles.
+/// Number of bars of a rope of n particles that joins each to the next 1 .. `reach`: the sum of (n - k),
+/// which for reach 7 is 7 n - 28. A closed rope has n bars of each reach, but n / 2 of the reach that joins
+/// opposite particles.
 [[nodiscard]] std::uint64_t bar_count(std::uint64_t particles, std::uint64_t reach, bool closed = false);
 
-/// Puts ropes and nets into one System. Requires what their Defs say of their fields; `reach` >= 1 counts for
-/// ropes alone.
-[[nodiscard]] System build_system(std::span<const RopeDef> ropes, std::span<const NetDef> nets, int reach);
+/// Puts ropes and nets, at least one of them, into one System. Throws corda::Error (kInvalidScene) for a
+/// field that is not what its declaration says.
+[[nodiscard]] System build_system(std::span<const RopeDef> ropes, std::span<const NetDef> nets = {});
 
-/// The same for ropes alone.
-[[nodiscard]] System build_system(std::span<const RopeDef> ropes, int reach);
+/// Positions of all particles at one time, relative to the system's origin.
+struct State {
+    double time_s = 0.0;
+    std::vector<double> x_m;
+    std::vector<double> y_m;
+};
 
-}  // namespace corda::sim
+/// Whether a run can go on. A run that diverged keeps the last good state.
+enum class [[nodiscard]] Status{kOk, kDiverged};
+
+/// What the links carry at one time.
+struct Loads {
+    double pin_force_n = 0.0;  ///< largest force that links exert on a pinned particle
+    /// Largest tension of a link. A link that pushes counts by the size of its tension.
+    double largest_tension_n = 0.0;
+};
+
+}  // namespace corda
+#pragma GCC visibility pop

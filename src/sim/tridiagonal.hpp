@@ -5,16 +5,17 @@
 namespace corda::sim {
 
 /// Solves a tridiagonal system in place, without pivoting, from both ends at once: the two recurrences do not
-/// wait for each other, which halves the time that a chain of divisions takes. Row k is
+/// wait for each other, which halves the time that the chain of divisions takes. Row k is
 ///
-///   lower[k] z[k-1] + diagonal[k] z[k] + upper[k] z[k+1] = right[k],  0 <= k < count, count >= 1,
+///   lower[k] z[k-1] + diagonal[k] z[k] + upper[k] z[k+1] = right[k],  0 <= k < count, count >= 1.
 ///
-/// lower[0] and upper[count-1] are not read. On return `right` holds z; the other arrays are spoilt. A zero
-/// pivot shows as a result that is not finite.
+/// lower[0] and upper[count-1] are not read. On return `right` holds z; the other arrays are overwritten.
+/// With a zero pivot the result is not finite. The matrix need not be symmetric; for the tensions of a chain
+/// see chain_tensions.hpp, which loses no digits to cancellation.
 inline void solve_tridiagonal(std::size_t count, double* lower, double* diagonal, double* upper,
                               double* right) {
-    // Rows 0..middle-1 are eliminated downwards, rows count-1..middle+1 upwards; both meet in `middle`. A
-    // row's right side and its remaining off-diagonal entry are divided by its pivot on the way.
+    // Rows 0..middle-1 are eliminated downwards, rows count-1..middle+1 upwards; they meet in `middle`. On
+    // the way a row's right side and its remaining off-diagonal entry are divided by its pivot.
     const std::size_t middle = count / 2;
     std::size_t i = 0;
     std::size_t j = count - 1;

@@ -1,28 +1,27 @@
 // Method auto on bodies that are no chains: closed ropes and nets. The truth to hold its claims against is
-// the highest order of `rope` at a far smaller step than any that it tries.
+// the highest order of `rattle` at a far smaller step than any that it tries.
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "corda/core/error.hpp"
-#include "corda/scene/auto_plan.hpp"
-#include "corda/sim/planner.hpp"
+#include "corda/pipeline/film.hpp"
+#include "corda/reference/ropes.hpp"
 #include "corda/sim/simulation.hpp"
-#include "corda/study/ropes.hpp"
 #include "support/nets.hpp"
+#include "support/plan_of.hpp"
 
 namespace corda::sim {
 namespace {
 
 const FrameRate kFrames(Rational{60, 1});
 
-SolverDef fine_rope(double step_s) {
-    return rope_solver(8, step_s);
+MethodDef fine_rattle(double step_s) {
+    return RattleDef{8, step_s};
 }
 
 /// Largest distance between two runs at the frame times, in m.
-double largest_error_m(const System& system, const SolverDef& solver, const SolverDef& truth, int frames) {
+double largest_error_m(const System& system, const MethodDef& solver, const MethodDef& truth, int frames) {
     Simulation run(system, WorldDef{}, solver, kFrames.interval_s());
     Simulation reference(system, WorldDef{}, truth, kFrames.interval_s());
     double largest_m = 0.0;
@@ -38,12 +37,13 @@ double largest_error_m(const System& system, const SolverDef& solver, const Solv
 }
 
 void expect_true_bound(const System& system, double tolerance_m, int frames) {
-    const Plan plan = plan_solver(system, WorldDef{}, {tolerance_m, kFrames, frames});
-    EXPECT_EQ(plan.solver.method, Method::kRope);
+    const Plan plan = test::plan_of(system, WorldDef{}, tolerance_m, kFrames, frames);
+    ASSERT_TRUE(std::holds_alternative<RattleDef>(plan.method));
     ASSERT_FALSE(plan.horizon_s.has_value());
     ASSERT_TRUE(plan.error_bound_m.has_value());
     EXPECT_LE(*plan.error_bound_m, tolerance_m);
-    const double error_m = largest_error_m(system, plan.solver, fine_rope(*plan.solver.step_s / 8.0), frames);
+    const double error_m = largest_error_m(
+        system, plan.method, fine_rattle(*std::get<RattleDef>(plan.method).step_s / 8.0), frames);
     // Measured: 0.33 of the bound, three times the difference that was seen.
     EXPECT_LE(error_m, *plan.error_bound_m);
     EXPECT_GT(error_m, 0.0);
@@ -51,54 +51,38 @@ void expect_true_bound(const System& system, double tolerance_m, int frames) {
 
 TEST(AutoGraph, BoundIsTrueForAClosedRope) {
     const RopeDef rope = test::ring(12);
-    const System system = build_system({&rope, 1}, 1);
+    const System system = build_system({&rope, 1});
     for (const double tolerance_m : {1e-2, 1e-4, 1e-7}) expect_true_bound(system, tolerance_m, 60);
 }
 
 TEST(AutoGraph, BoundIsTrueForANet) {
     const NetDef net = test::leaning_net(6, 5, 0.2);
-    const System system = build_system({}, {&net, 1}, 1);
+    const System system = build_system({}, {&net, 1});
     for (const double tolerance_m : {1e-2, 1e-5}) expect_true_bound(system, tolerance_m, 60);
 }
 
 TEST(AutoGraph, ANetBesideARopeIsSolvedWithIt) {
-    const RopeDef rope = study::straight_rope(5, 1.0, 30.0);
+    const RopeDef rope = reference::straight_rope(5, 1.0, 30.0);
     const NetDef net = test::leaning_net(3, 3, 0.3);
-    expect_true_bound(build_system({&rope, 1}, {&net, 1}, 1), 1e-3, 30);
-}
-
-TEST(AutoGraph, BarsThatDependOnEachOtherGetRelaxationWithoutABound) {
-    const NetDef net = test::leaning_net(6, 5, 0.2, true);
-    const Plan plan = plan_solver(build_system({}, {&net, 1}, 1), WorldDef{}, {1e-3, kFrames, 60});
-    EXPECT_EQ(plan.solver.method, Method::kRelaxation);
-    EXPECT_FALSE(plan.error_bound_m.has_value());
-    EXPECT_NE(plan.reason.find("depend on each other"), std::string::npos);
+    expect_true_bound(build_system({&rope, 1}, {&net, 1}), 1e-3, 30);
 }
 
 TEST(AutoGraph, ANetWhoseBarsComeToLieInLineGetsRelaxationWithoutABound) {
     // A square grid let go by one corner collapses into a line at 0.27 s.
-    scene::Scene scene = scene::parse_scene(
-        "schema = 1\n[world]\nduration = 0.5\n[[net]]\n"
-        "grid = { columns = 6, rows = 6, spacing = 0.1, diagonals = false }\npinned = [[0, 0]]\n",
-        "net.toml");
-    const auto proof = scene::settle_method(scene);
-    ASSERT_TRUE(proof.has_value());
-    EXPECT_EQ(scene.solver.method, Method::kRelaxation);
-    EXPECT_FALSE(proof->error_bound_px().has_value());
-    EXPECT_NE(proof->plan.reason.find("in line on their way"), std::string::npos) << proof->plan.reason;
-}
-
-TEST(AutoGraph, RopeTakesTheSameSystemOnlyWithoutTheDiagonals) {
-    const NetDef net = test::leaning_net(6, 5, 0.2, true);
-    const System system = build_system({}, {&net, 1}, 1);
-    EXPECT_THROW(static_cast<void>(make_solver(system, WorldDef{}, fine_rope(1e-3), 1e-2)), Error);
+    const Film film(
+        parse_scene("schema = 1\n[world]\nduration = 0.5\n[[net]]\n"
+                    "grid = { columns = 6, rows = 6, spacing = 0.1, diagonals = false }\npinned = [[0, 0]]\n",
+                    "net.toml"));
+    EXPECT_TRUE(std::holds_alternative<RelaxationDef>(film.plan().method));
+    EXPECT_FALSE(film.error_bound_px().has_value());
+    EXPECT_EQ(film.plan().reason, PlanReason::kCollapsing);
 }
 
 TEST(ClosedRope, KeepsItsLengthsItsEnergyAndItsMirrorImage) {
     const RopeDef rope = test::ring(12);
-    const System system = build_system({&rope, 1}, 1);
+    const System system = build_system({&rope, 1});
     EXPECT_EQ(system.bars.size(), 12U);
-    Simulation run(system, WorldDef{}, fine_rope(1e-3), kFrames.interval_s());
+    Simulation run(system, WorldDef{}, fine_rattle(1e-3), kFrames.interval_s());
     ASSERT_EQ(run.advance_to(1.0), Status::kOk);
     // Before the ring collapses on itself. Measured: strain 4e-16, energy 7e-16, mirror 3e-14.
     EXPECT_LT(run.diagnostics().largest.strain, 1e-14);

@@ -1,6 +1,6 @@
-// Ropes that resist bending, under the method rope (rigid links) and, where they stretch too, exact: the
-// cantilever at rest and the free beam's first vibration, each against an independent solution of the same
-// discrete beam and, refined, against the continuous one.
+// Ropes that resist bending, by rattle (rigid links) and, if they stretch too, by exact: the static
+// cantilever and the free beam's first vibration, each against an independent solution of the same discrete
+// beam and, refined, against the continuous one.
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "corda/study/ropes.hpp"
+#include "corda/reference/ropes.hpp"
 #include "support/slope.hpp"
 #include "support/solver_run.hpp"
 
@@ -55,7 +55,7 @@ struct Cantilever {
     [[nodiscard]] double mass_kg(int i) const { return link_m() * (i == links ? 0.5 : 1.0); }
 
     [[nodiscard]] RopeDef rope() const {
-        RopeDef rope = study::straight_rope(links + 1, 1.0, 90.0);
+        RopeDef rope = reference::straight_rope(links + 1, 1.0, 90.0);
         for (int i = 0; i <= links + 1; ++i) {
             rope.points_m[static_cast<std::size_t>(i)] = {(i - 1) * link_m(), 0.0};
             if (i > 1) rope.mass_kg[static_cast<std::size_t>(i)] = mass_kg(i - 1);
@@ -65,10 +65,10 @@ struct Cantilever {
         return rope;
     }
 
-    /// Where its tip rests, from the links' angles by Newton's method: the energy
+    /// Its tip in equilibrium, from the links' angles by Newton's method: the energy
     /// sum of k (1 - cos(angle_j - angle_(j-1))) + g times the mass beyond link j times a sin(angle_j) is
     /// smallest.
-    [[nodiscard]] Vec2 resting_tip_m() const {
+    [[nodiscard]] Vec2 equilibrium_tip_m() const {
         const auto count = static_cast<std::size_t>(links);
         const double stiffness = bending_n_m2 / link_m();
         std::vector<double> angle(count + 1, 0.0);  // of link j; link 0 is the clamped one
@@ -100,39 +100,39 @@ struct Cantilever {
     }
 };
 
-/// A settled beam under the method rope.
-Vec2 settled_tip_m(const Cantilever& beam, double drag_1_s, double time_s) {
+/// The tip of a beam whose motion has died down, by rattle.
+Vec2 final_tip_m(const Cantilever& beam, double drag_1_s, double time_s) {
     WorldDef world;
     world.drag_1_s = drag_1_s;
-    test::SolverRun run(beam.rope(), world, rope_solver(4));
+    test::SolverRun run(beam.rope(), world, RattleDef{4});
     EXPECT_TRUE(run.go(time_s));
     return {run.tip_x(), run.tip_y()};
 }
 
-TEST(Cantilever, RestsWhereItsDiscreteEnergyIsLeast) {
+TEST(Cantilever, ComesToTheLeastDiscreteEnergy) {
     // Hardly bent, and hanging down; each with a drag that is about critical.
     for (const auto& [bending_n_m2, drag_1_s, time_s] :
          {std::tuple{20.0, 15.0, 6.0}, std::tuple{0.5, 5.0, 14.0}}) {
         const Cantilever beam{8, bending_n_m2};
-        const Vec2 expected_m = beam.resting_tip_m();
-        const Vec2 tip_m = settled_tip_m(beam, drag_1_s, time_s);
+        const Vec2 expected_m = beam.equilibrium_tip_m();
+        const Vec2 tip_m = final_tip_m(beam, drag_1_s, time_s);
         const double error_m = length(tip_m.x - expected_m.x, tip_m.y - expected_m.y);
         std::printf("EI = %g: tip at (%.6f, %.6f), off by %.1e m\n", bending_n_m2, tip_m.x, tip_m.y, error_m);
         EXPECT_LT(error_m, 1e-12);  // measured: 1.9e-16, 4e-15
     }
 }
 
-TEST(Cantilever, SagsByTheTextbooksAmountWhereItIsRefined) {
+TEST(Cantilever, SagsByTheTextbooksAmountIfRefined) {
     constexpr double kBending = 1000.0;
     const double expected_m = -kGravity / (8.0 * kBending);  // w L^4 / (8 EI), w = g per metre, L = 1
     std::vector<std::pair<double, double>> errors_m;         // over the link
     std::vector<double> sags_m;
     for (const int links : {4, 8, 16}) {
         const Cantilever beam{links, kBending};
-        sags_m.push_back(settled_tip_m(beam, 150.0, 0.5).y);
+        sags_m.push_back(final_tip_m(beam, 150.0, 0.5).y);
         errors_m.emplace_back(beam.link_m(), std::abs(sags_m.back() - expected_m));
     }
-    // The joint at the clamp stands for half a link inside of the wall, which is no part of the beam: an
+    // The joint at the clamp stands for half a link inside the wall, which is not part of the beam: an
     // error of first order. Two extrapolations take out it and the next.
     const double once = 2.0 * sags_m[1] - sags_m[0];
     const double again = 2.0 * sags_m[2] - sags_m[1];
@@ -201,7 +201,7 @@ struct FreeBeam {
 
     /// Bent by `amplitude_m` at most, without stretching a link.
     [[nodiscard]] RopeDef rope(const std::vector<double>& shape, double amplitude_m) const {
-        RopeDef rope = study::straight_rope(links, 1.0, 90.0);
+        RopeDef rope = reference::straight_rope(links, 1.0, 90.0);
         double x_m = 0.0;
         for (std::size_t i = 0; i < count(); ++i) {
             if (i > 0) {
@@ -216,13 +216,13 @@ struct FreeBeam {
         return rope;
     }
 
-    /// The frequency that a quarter of a swing under the method rope shows: the share of the mode in the
+    /// The frequency that a quarter of a swing by rattle shows: the share of the mode in the
     /// motion goes through zero there.
     [[nodiscard]] double measured_omega_1_s(const std::pair<double, std::vector<double>>& mode) const {
         WorldDef world;
         world.gravity_m_s2 = {};
         constexpr double kAmplitude = 1e-5;
-        test::SolverRun run(rope(mode.second, kAmplitude), world, rope_solver(8));
+        test::SolverRun run(rope(mode.second, kAmplitude), world, RattleDef{8});
         const double quarter_s = 0.5 * std::numbers::pi / mode.first;
         EXPECT_TRUE(run.go(quarter_s));
         double share = 0.0;
@@ -254,7 +254,7 @@ TEST(FreeBeam, SwingsWithTheFrequencyOfItsFirstMode) {
 }
 
 RopeDef bending_rope(double compliance_1_n) {
-    RopeDef rope = study::straight_rope(10, 1.0, 60.0);
+    RopeDef rope = reference::straight_rope(10, 1.0, 60.0);
     rope.bending_n_m2 = 1.0;
     rope.material.compliance_1_n = compliance_1_n;
     return rope;
@@ -263,7 +263,7 @@ RopeDef bending_rope(double compliance_1_n) {
 TEST(BendingRope, KeepsItsEnergyByTheOrder) {
     double last = 1.0;
     for (const auto& [order, bound] : {std::pair{2, 1e-3}, {4, 1e-7}, {6, 1e-10}, {8, 1e-12}}) {
-        test::SolverRun run(bending_rope(0.0), WorldDef{}, rope_solver(order));
+        test::SolverRun run(bending_rope(0.0), WorldDef{}, RattleDef{order});
         ASSERT_TRUE(run.go(10.0, 600));
         std::printf("order %d: energy %.1e\n", order, run.energy_error());
         EXPECT_LT(run.energy_error(), bound);  // measured: 1.4e-5, 2.1e-9, 4.6e-12, 5.4e-15
@@ -274,11 +274,11 @@ TEST(BendingRope, KeepsItsEnergyByTheOrder) {
 
 TEST(BendingRope, ConvergesWithItsOrder) {
     for (const int order : {2, 4, 6}) {
-        test::SolverRun reference(bending_rope(0.0), WorldDef{}, rope_solver(8, 1.0 / 4000.0));
+        test::SolverRun reference(bending_rope(0.0), WorldDef{}, RattleDef{8, 1.0 / 4000.0});
         ASSERT_TRUE(reference.go(0.5));
         std::vector<std::pair<double, double>> errors_m;  // over the step
         for (const double step_s : {1.0 / 400.0, 1.0 / 600.0, 1.0 / 800.0}) {
-            test::SolverRun run(bending_rope(0.0), WorldDef{}, rope_solver(order, step_s));
+            test::SolverRun run(bending_rope(0.0), WorldDef{}, RattleDef{order, step_s});
             ASSERT_TRUE(run.go(0.5));
             errors_m.emplace_back(step_s, run.distance_m(reference.state()));
         }
@@ -289,22 +289,22 @@ TEST(BendingRope, ConvergesWithItsOrder) {
     }
 }
 
-TEST(BendingRope, ThatStretchesMovesAlikeInExactAndInRope) {
-    test::SolverRun exact(bending_rope(1e-4), WorldDef{}, exact_solver(1e-12));
-    test::SolverRun rope(bending_rope(1e-4), WorldDef{}, rope_solver(8));
-    const double largest_m = test::largest_distance_m(exact, rope, 20);
-    std::printf("exact and rope part by %.1e m\n", largest_m);
+TEST(BendingRope, ThatStretchesMovesAlikeByExactAndRattle) {
+    test::SolverRun exact(bending_rope(1e-4), WorldDef{}, ExactDef{1e-12});
+    test::SolverRun rattle(bending_rope(1e-4), WorldDef{}, RattleDef{8});
+    const double largest_m = test::largest_distance_m(exact, rattle, 20);
+    std::printf("exact and rattle differ by %.1e m\n", largest_m);
     EXPECT_GT(exact.moved_m(), 0.5);
     EXPECT_LT(largest_m, 1e-10);  // measured: 1.3e-11
-    EXPECT_NEAR(exact.solver().loads()->pin_force_n, rope.solver().loads()->pin_force_n, 1e-6);
+    EXPECT_NEAR(exact.solver().loads()->pin_force_n, rattle.solver().loads()->pin_force_n, 1e-6);
 }
 
 TEST(BendingRope, OfStiffLinksApproachesTheRigidOne) {
-    test::SolverRun rigid(bending_rope(0.0), WorldDef{}, rope_solver(8));
+    test::SolverRun rigid(bending_rope(0.0), WorldDef{}, RattleDef{8});
     ASSERT_TRUE(rigid.go(0.3));
     std::vector<std::pair<double, double>> errors_m;  // over the compliance
     for (const double compliance_1_n : {1e-5, 1e-6, 1e-7}) {
-        test::SolverRun run(bending_rope(compliance_1_n), WorldDef{}, exact_solver(1e-11));
+        test::SolverRun run(bending_rope(compliance_1_n), WorldDef{}, ExactDef{1e-11});
         ASSERT_TRUE(run.go(0.3));
         errors_m.emplace_back(compliance_1_n, run.distance_m(rigid.state()));
     }

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "corda/study/ropes.hpp"
+#include "corda/reference/ropes.hpp"
 #include "support/root.hpp"
 #include "support/solver_run.hpp"
 
@@ -39,7 +39,7 @@ std::array<double, Count> integrate(
 }
 
 RopeDef rope_of(const std::vector<Vec2>& points_m, double bending_n_m2) {
-    RopeDef rope = study::rope_through(points_m);
+    RopeDef rope = reference::rope_through(points_m);
     rope.bending_n_m2 = bending_n_m2;
     return rope;
 }
@@ -112,7 +112,7 @@ TEST(PinInTheMiddle, CouplesTheLinksOnBothSides) {
     constexpr double kRight = 0.6;
     constexpr double kBending = 2.0;
     const double corner_n_m = kBending / (0.5 * (kLeft + kRight));
-    // Angles of the directions from the pin; straight where they differ by pi.
+    // Angles of the directions from the pin; straight if they differ by pi.
     const auto slope = [&](const std::array<double, 4>& y) {
         const double torque_n_m = corner_n_m * std::sin(y[0] - y[1]);
         return std::array<double, 4>{y[2], y[3],
@@ -138,8 +138,8 @@ TEST(PinInTheMiddle, CouplesTheLinksOnBothSides) {
     }
 }
 
-/// Angles at rest of `links` links of length 1 in all behind a horizontal clamp, unit masses over `links`
-/// each at their ends: the angle of the last one is shot for such that the clamp is met.
+/// Angles in equilibrium of `links` links of length 1 in all behind a horizontal clamp, unit masses over
+/// `links` each at their ends: the angle of the last one is shot for such that the clamp is met.
 std::vector<double> cantilever_angles(int links, double bending_n_m2) {
     const double a_m = 1.0 / links;
     const double corner_n_m = bending_n_m2 / a_m;
@@ -173,7 +173,7 @@ RopeDef cantilever(const std::vector<double>& angle, double bending_n_m2) {
     return rope;
 }
 
-TEST(Cantilever, StaysWhereItsForcesBalance) {
+TEST(Cantilever, StaysInEquilibrium) {
     constexpr double kBending = 5.0;  // the tip hangs down by 0.24 of the length
     const std::vector<double> angle = cantilever_angles(20, kBending);
     EXPECT_NEAR(angle[0], 0.0, 1e-14);
@@ -332,7 +332,7 @@ TEST(Mirrored, MovesTheSame) {
     EXPECT_LT(apart_m, 1e-12);  // measured 3.1e-15
 }
 
-TEST(Bending, OfNextToNothingMovesLikeARopeWithout) {
+TEST(Bending, ThatIsNegligibleChangesNoMotion) {
     // Two integrators: with bends it is Dop853, without a Taylor series.
     RopeDef rope = bent_rope(12);
     rope.bending_n_m2 = 0.0;

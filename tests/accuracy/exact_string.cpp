@@ -1,5 +1,5 @@
-// The method `exact` with strings of rigid links, which pull and never push, against closed forms: PHYSICS R9
-// and other motions made of parabolas, circles and plastic snaps.
+// Method `exact` with strings of rigid links, which pull and never push, against closed forms: R9
+// (src/sim/README.md) and other motions made of parabolas, circles and plastic snaps.
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "corda/sim/string_part.hpp"
-#include "corda/study/ropes.hpp"
+#include "corda/reference/ropes.hpp"
+#include "corda/sim/exact/string/part.hpp"
 #include "support/root.hpp"
 #include "support/solver_run.hpp"
 #include "support/strings.hpp"
@@ -23,7 +23,7 @@ constexpr double kGravity = 9.81;
 class StringRun {
   public:
     explicit StringRun(const RopeDef& rope, double tolerance = 1e-9, const WorldDef& world = {})
-        : system(build_system({&rope, 1}, 1)),
+        : system(build_system({&rope, 1})),
           part(system, system.bodies[0], world, tolerance),
           state{0.0, system.x_m, system.y_m} {}
 
@@ -65,7 +65,7 @@ TEST(SnapR9, KeepsTheTangentialPart) {
     std::printf("R9: kept %.16g of the kinetic energy\n", kept);
     EXPECT_NEAR(kept, 0.36, 1e-12);  // measured 8.5e-15
 
-    // Highest on the other side, where y is flat: the time need not be exact.
+    // Highest on the other side: y is stationary there, so the time need not be exact.
     const auto height_m = [&](double time_s) {
         StringRun at(rope);
         EXPECT_TRUE(at.advance_to(time_s));
@@ -89,7 +89,7 @@ TEST(SnapR9, KeepsTheTangentialPart) {
     EXPECT_EQ(run.part.events(), 1U);
 }
 
-TEST(SnapR9, HappensWhereDragLetsItFallTo) {
+TEST(SnapR9, HappensAtTheTimeThatDragGives) {
     const RopeDef rope = test::string_of({{0.0, 0.0}, {0.6, 0.0}}, {1.0});
     constexpr double kDrag = 0.8;
     StringRun run(rope, 1e-9, WorldDef{{0.0, -kGravity}, 10.0, kDrag});
@@ -117,7 +117,7 @@ TEST(TautPendulum, MovesLikeARigidOne) {
     // Two integrators: the string's is Dop853, the rigid rope's a Taylor series.
     double apart_m = 0.0;
     for (const int links : {1, 5}) {
-        RopeDef rope = study::straight_rope(links, 1.0, 40.0);
+        RopeDef rope = reference::straight_rope(links, 1.0, 40.0);
         test::ExactRun rigid(rope);
         rope.material.is_string = true;
         test::ExactRun string(rope);
@@ -138,7 +138,7 @@ TEST(TautPendulum, MovesLikeARigidOne) {
     EXPECT_LT(apart_m, 1e-9);  // measured 2.6e-11
 }
 
-TEST(Circle, IsLeftWhereTheTensionVanishesAndMetAgainAtThreeTimesTheAngle) {
+TEST(Circle, IsLeftAtZeroTensionAndMetAgainAtThreeTimesTheAngle) {
     RopeDef rope = test::string_of({{0.0, 0.0}, {0.0, -1.0}}, {});
     rope.velocity_m_s[1] = {2.0 * std::sqrt(kGravity), 0.0};
     const double sine = 2.0 / 3.0;  // ((v0^2 / (g L)) - 2) / 3
@@ -217,7 +217,7 @@ TEST(TwoFreeMasses, KeepMomentumWhenTheirStringSnaps) {
 class MoreauString {
   public:
     MoreauString(const RopeDef& rope, Vec2 gravity_m_s2)
-        : system_(build_system({&rope, 1}, 1)), gravity_(gravity_m_s2) {}
+        : system_(build_system({&rope, 1})), gravity_(gravity_m_s2) {}
 
     void advance(double span_s, int steps) {
         const double h = span_s / steps;

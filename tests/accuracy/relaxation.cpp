@@ -1,12 +1,12 @@
-// The relaxation method against PHYSICS section 4: numbers worked out by others.
+// Method `relaxation` against the reference numbers in section 4 of src/sim/README.md.
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "corda/study/pendulum.hpp"
-#include "corda/study/references.hpp"
-#include "corda/study/ropes.hpp"
+#include "corda/reference/numbers.hpp"
+#include "corda/reference/pendulum.hpp"
+#include "corda/reference/ropes.hpp"
 #include "support/simulate.hpp"
 
 namespace corda::sim {
@@ -23,7 +23,7 @@ RopeDef falling_pair(double mass_kg) {
 }
 
 double fall_m(double mass_kg, double step_s, int n, double delta, double force_n) {
-    SolverDef solver = test::relaxation();
+    RelaxationDef solver;
     solver.step_s = step_s;
     solver.delta = delta;
     solver.force_n = Vec2{0.0, force_n};
@@ -36,7 +36,7 @@ TEST(FreeFallR10, WithDampingIsTheClosedForm) {
     for (const double delta : {0.001, 0.01, 0.1}) {
         for (const double mass_kg : {0.1, 1.0, 10.0}) {
             for (const int n : {1, 2, 60, 600}) {
-                const double expected = study::damped_fall_m(mass_kg, 1.0 / 60.0, n, delta, -9.8);
+                const double expected = reference::damped_fall_m(mass_kg, 1.0 / 60.0, n, delta, -9.8);
                 // measured: relative error at most 6e-14
                 EXPECT_NEAR(fall_m(mass_kg, 1.0 / 60.0, n, delta, -9.8), expected,
                             1e-12 * std::max(1.0, std::abs(expected)))
@@ -59,10 +59,12 @@ TEST(FreeFallR10, WithoutDampingIsLateByHalfAStepsSpeed) {
 /// When a horizontal rod of ten unit masses, length 1 m, gets to the vertical: the time at which its tip
 /// passes under the pin, by bisection between steps.
 double quarter_period_s(double step_s, int sweeps) {
-    SolverDef solver = test::relaxation();
+    RelaxationDef solver;
     solver.step_s = step_s;
     solver.sweeps = sweeps;
-    Simulation run = test::simulate(study::straight_rope(10, 1.0, 90.0), WorldDef{}, solver);
+    RopeDef rope = reference::straight_rope(10, 1.0, 90.0);
+    rope.reach = 7;
+    Simulation run = test::simulate(rope, WorldDef{}, solver);
     double before_x_m = 1.0;
     for (int k = 1; k <= static_cast<int>(1.0 / step_s); ++k) {
         EXPECT_EQ(run.advance_to(k * step_s), Status::kOk);
@@ -74,7 +76,7 @@ double quarter_period_s(double step_s, int sweeps) {
 }
 
 TEST(RigidRodR3, ConvergedSevenNeighbourBarsAreARod) {
-    constexpr study::RodPeriod kRod = study::kRodPeriods[2];
+    constexpr reference::RodPeriod kRod = reference::kRodPeriods[2];
     static_assert(kRod.links == 10);
     constexpr double kQuarterPeriodSeconds = kRod.period_s / 4.0;
     const double coarse = std::abs(quarter_period_s(1.0 / 500.0, 1000) - kQuarterPeriodSeconds);

@@ -6,18 +6,16 @@
 #include <filesystem>
 #include <vector>
 
-#include "corda/gl/context.hpp"
 #include "corda/media/video_writer.hpp"
-#include "corda/render/frame_renderer.hpp"
-#include "corda/scene/player.hpp"
+#include "corda/pipeline/painter.hpp"
 
 namespace corda {
 namespace {
 
-constexpr int kFrames = 150;  // 2.5 s of 60 a second: 1.2 GB of pictures
+constexpr int kFrames = 150;  // 2.5 s at 60 frames per second: 1.2 GB of pictures
 
-scene::Scene load_example() {
-    return scene::load_scene(CORDA_EXAMPLES "/swing.toml");
+Scene load_example() {
+    return load_scene(CORDA_EXAMPLES "/swing.toml");
 }
 
 std::string output_path() {
@@ -29,30 +27,34 @@ void count_frames(benchmark::State& bench) {
         benchmark::Counter(static_cast<double>(bench.iterations() * kFrames), benchmark::Counter::kIsRate);
 }
 
+/// Draws the first frames one after the other.
+template <class Use>
+void draw_frames(Film& film, const Use& use) {
+    FilmPainter painter(film);
+    for (int k = 0; k < kFrames; ++k) {
+        const PixelRect damage = painter.draw(film.time_s(k));
+        use(painter.image(), damage);
+    }
+}
+
 void draw(benchmark::State& bench) {
-    const scene::Scene scene = load_example();
-    const gl::Context context;
-    render::FrameRenderer renderer(scene.video.width_px, scene.video.height_px);
     for (auto _ : bench) {
-        scene::Player player(scene);
-        for (int k = 0; k < kFrames; ++k) renderer.render(player.at(scene.video.fps.time_s(k)));
+        Film film(load_example());
+        draw_frames(film, [](const Image&, const PixelRect&) {});
     }
     count_frames(bench);
 }
 
 void encode(benchmark::State& bench) {
-    const scene::Scene scene = load_example();
-    const gl::Context context;
-    render::FrameRenderer renderer(scene.video.width_px, scene.video.height_px);
-    scene::Player player(scene);
+    Film film(load_example());
     std::vector<Image> frames;
     std::vector<PixelRect> damages;
-    for (int k = 0; k < kFrames; ++k) {
-        damages.push_back(renderer.render(player.at(scene.video.fps.time_s(k))));
-        frames.push_back(renderer.image());
-    }
+    draw_frames(film, [&](const Image& image, const PixelRect& damage) {
+        frames.push_back(image);
+        damages.push_back(damage);
+    });
     for (auto _ : bench) {
-        media::VideoWriter writer(output_path(), scene.video, {});
+        media::VideoWriter writer(output_path(), film.scene().video, {}, {.force = true});
         for (int k = 0; k < kFrames; ++k) writer.write(frames[k], damages[k]);
         writer.finish();
     }
@@ -60,16 +62,10 @@ void encode(benchmark::State& bench) {
 }
 
 void draw_and_encode(benchmark::State& bench) {
-    const scene::Scene scene = load_example();
-    const gl::Context context;
     for (auto _ : bench) {
-        render::FrameRenderer renderer(scene.video.width_px, scene.video.height_px);
-        scene::Player player(scene);
-        media::VideoWriter writer(output_path(), scene.video, {});
-        for (int k = 0; k < kFrames; ++k) {
-            const PixelRect damage = renderer.render(player.at(scene.video.fps.time_s(k)));
-            writer.write(renderer.image(), damage);
-        }
+        Film film(load_example());
+        media::VideoWriter writer(output_path(), film.scene().video, {}, {.force = true});
+        draw_frames(film, [&](const Image& image, const PixelRect& damage) { writer.write(image, damage); });
         writer.finish();
     }
     count_frames(bench);

@@ -1,37 +1,32 @@
-// What PHYSICS section 5 asks of all methods alike: the same positions at every frame rate, the same bits
-// wherever the pin is, the same bytes from two processes.
+// What section 5 of src/sim/README.md asks of all methods alike: the same positions at every frame rate, the
+// same bits wherever the pin is, the same bytes from two processes.
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "corda/sim/planner.hpp"
+#include "corda/reference/ropes.hpp"
 #include "corda/sim/simulation.hpp"
-#include "corda/study/ropes.hpp"
 #include "support/command.hpp"
 #include "support/denormal_trap.hpp"
+#include "support/plan_of.hpp"
 
 namespace corda::sim {
 namespace {
 
-SolverDef solver_of(Method method) {
-    if (method == Method::kRelaxation) return relaxation_solver(1.0 / 960.0, 1, 1);
-    return method == Method::kRope ? rope_solver(8) : exact_solver(1e-9);
-}
-
-class EveryMethod : public testing::TestWithParam<Method> {};
+class EveryMethod : public testing::TestWithParam<MethodDef> {};
 
 TEST_P(EveryMethod, AgreesAtCommonTimesOfAllFrameRates) {
-    const RopeDef rope = study::straight_rope(20, 1.0, 45.0);
+    const RopeDef rope = reference::straight_rope(20, 1.0, 45.0);
     constexpr double kToleranceM = 1e-13;
     const auto run_at = [&](int rate) {
-        return Simulation(build_system({&rope, 1}, 1), WorldDef{}, solver_of(GetParam()), 1.0 / rate);
+        return Simulation(build_system({&rope, 1}), WorldDef{}, GetParam(), 1.0 / rate);
     };
     double largest_m = 0.0;
     for (const int rate : {30, 60, 120}) {
         Simulation first = run_at(24);
         Simulation other = run_at(rate);
-        for (int k = 0; k <= 12; ++k) {  // sixths of a second are frame times of all of them
+        for (int k = 0; k <= 12; ++k) {  // sixths of a second are frame times at every rate
             for (int frame = 1; frame <= rate / 6 && k > 0; ++frame) {
                 ASSERT_EQ(other.advance_to((k - 1) / 6.0 + static_cast<double>(frame) / rate), Status::kOk);
             }
@@ -42,14 +37,14 @@ TEST_P(EveryMethod, AgreesAtCommonTimesOfAllFrameRates) {
             }
         }
     }
-    // Measured: 0 for relaxation, 7e-16 for exact (the times themselves are rounded), 7e-15 for rope.
+    // Measured: 0 for relaxation, 7e-16 for exact (the times themselves are rounded), 7e-15 for rattle.
     EXPECT_LE(largest_m, kToleranceM);
 }
 
 TEST_P(EveryMethod, HasTheSameBitsWithThePinFarAway) {
-    RopeDef rope = study::straight_rope(10, 1.0, 70.0);
+    RopeDef rope = reference::straight_rope(10, 1.0, 70.0);
     const auto start = [&] {
-        return Simulation(build_system({&rope, 1}, 1), WorldDef{}, solver_of(GetParam()), 1.0 / 60.0);
+        return Simulation(build_system({&rope, 1}), WorldDef{}, GetParam(), 1.0 / 60.0);
     };
     Simulation near = start();
     rope.origin_m = {1e6, 1e6};
@@ -80,39 +75,40 @@ TEST_P(EveryMethod, WritesTheSameBytesFromTwoProcesses) {
     EXPECT_TRUE(first == run("b.csv"));
 }
 
-/// Halving its distance to rest again and again, a rope would get to denormal numbers, which slow a step down
-/// a hundred times. What the steps cost is measured by `corda study`, among the hard cases.
-TEST_P(EveryMethod, NeverWorksOnDenormalNumbersOnTheWayToRest) {
-    const RopeDef rope = study::straight_rope(20, 1.0, 45.0);
+/// Halving its distance to equilibrium again and again, a rope would reach denormal numbers, which slow a
+/// step down a hundred times. What the steps cost is measured by `corda study`, among the hard cases.
+TEST_P(EveryMethod, NeverWorksOnDenormalNumbersWhileAMotionDiesDown) {
+    const RopeDef rope = reference::straight_rope(20, 1.0, 45.0);
     const WorldDef world{{0.0, -9.81}, 2000.0, 5.0};
-    SolverDef solver = solver_of(GetParam());
-    solver.step_s = 1.0 / 500.0;  // 1e6 steps; exact has its own
-    solver.order = 2;
-    Simulation run(build_system({&rope, 1}, 1), world, solver, 1.0 / 60.0);
+    MethodDef method = GetParam();
+    constexpr double kStepSeconds = 1.0 / 500.0;  // 1e6 steps; exact has its own
+    if (auto* rattle = std::get_if<RattleDef>(&method)) *rattle = {2, kStepSeconds};
+    if (auto* relaxation = std::get_if<RelaxationDef>(&method)) relaxation->step_s = kStepSeconds;
+    Simulation run(build_system({&rope, 1}), world, method);
     {
         const test::DenormalTrap trap;
         for (int k = 1; k <= 2000; ++k) ASSERT_EQ(run.advance_to(k), Status::kOk);
     }
     // Measured: exactly 0 but for exact, 7e-27, whose steps follow its tolerance.
-    EXPECT_NEAR(run.state().x_m.back(), 0.0, GetParam() == Method::kExact ? 1e-20 : 1e-100);
-    // One sweep a step leaves relaxation 7.5 mm too long.
-    EXPECT_NEAR(run.state().y_m.back(), -1.0, GetParam() == Method::kRelaxation ? 0.01 : 1e-13);
+    EXPECT_NEAR(run.state().x_m.back(), 0.0, std::holds_alternative<ExactDef>(method) ? 1e-20 : 1e-100);
+    // With one sweep per step relaxation is 7.5 mm too long.
+    EXPECT_NEAR(run.state().y_m.back(), -1.0, std::holds_alternative<RelaxationDef>(method) ? 0.01 : 1e-13);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryMethod,
-                         testing::Values(Method::kRelaxation, Method::kRope, Method::kExact),
+                         testing::Values(RelaxationDef{1.0 / 960.0}, RattleDef{8}, ExactDef{1e-9}),
                          [](const auto& param) { return std::string(method_name(param.param)); });
 
 TEST(Auto, AgreesAtCommonTimesOfAllFrameRatesWithinItsTolerance) {
-    const RopeDef rope = study::straight_rope(20, 1.0, 45.0);
-    const System system = build_system({&rope, 1}, 1);
+    const RopeDef rope = reference::straight_rope(20, 1.0, 45.0);
+    const System system = build_system({&rope, 1});
     constexpr double kToleranceM = 1e-5;
     std::vector<State> ends;
     for (const int rate : {24, 30, 60, 120}) {
         const FrameRate frames(Rational{rate, 1});
-        const Plan plan = plan_solver(system, WorldDef{}, {kToleranceM, frames, 2 * rate});
+        const Plan plan = test::plan_of(system, WorldDef{}, kToleranceM, frames, 2 * rate);
         ASSERT_FALSE(plan.horizon_s.has_value());
-        Simulation run(system, WorldDef{}, plan.solver, frames.interval_s());
+        Simulation run(system, WorldDef{}, plan.method, frames.interval_s());
         ASSERT_EQ(run.advance_to(2.0), Status::kOk);
         ends.push_back(run.state());
     }

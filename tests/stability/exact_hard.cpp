@@ -1,4 +1,5 @@
-// The method `exact` in the hard cases of PHYSICS section 5. CORDA_TEST_LONG=1 runs the large ropes in full.
+// Method `exact` in the hard cases of section 5 of src/sim/README.md. CORDA_TEST_LONG=1 runs the large ropes
+// in full.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "corda/study/ropes.hpp"
+#include "corda/reference/ropes.hpp"
 #include "support/denormal_trap.hpp"
 #include "support/solver_run.hpp"
 
@@ -32,7 +33,7 @@ struct Worst {
     double strain = 0.0;
 };
 
-/// The largest errors at 60 frames a second.
+/// The largest errors at 60 frames per second.
 Worst worst_of(test::ExactRun& run, double duration_s, const char* name) {
     const Clock::time_point start = Clock::now();
     const int frames = static_cast<int>(std::lround(duration_s * 60.0));
@@ -53,7 +54,7 @@ TEST(Payload, OfAThousandAndAMillionKeepsEnergyAndLengths) {
     for (const double payload_kg : {1e3, 1e6}) {
         for (const double angle_deg : {45.0, 90.0}) {
             for (const int links : {10, 50}) {
-                RopeDef rope = study::straight_rope(links, 1.0, angle_deg);
+                RopeDef rope = reference::straight_rope(links, 1.0, angle_deg);
                 rope.payload_kg = payload_kg;
                 test::ExactRun run(rope, 1e-7);
                 const std::string name = "payload " + std::to_string(payload_kg) + " " +
@@ -67,22 +68,22 @@ TEST(Payload, OfAThousandAndAMillionKeepsEnergyAndLengths) {
 }
 
 TEST(Release, UndampedFromHorizontalKeepsItsEnergyForAMinute) {
-    test::ExactRun run(study::straight_rope(50, 1.0, 90.0), 1e-9);
+    test::ExactRun run(reference::straight_rope(50, 1.0, 90.0), 1e-9);
     const Worst worst = worst_of(run, 60.0, "90 deg N=50");
     EXPECT_LT(worst.energy, 1e-9);   // measured 2.6e-12
     EXPECT_LT(worst.strain, 1e-12);  // measured 3e-15
 }
 
-/// The cost a link is the same as that of a short rope: `corda study` measures it, among the hard cases. One
-/// that grew with the number of links would not finish here.
+/// The cost per link is that of a short rope: `corda study` measures it, among the hard cases. A cost that
+/// grew with the number of links would not finish here.
 TEST(ManyLinks, Finish) {
     for (const int links : {1000, 100'000}) {
         const bool is_huge = links > 1000;
-        test::ExactRun run(study::straight_rope(links, 1.0, 45.0), 1e-7);
+        test::ExactRun run(reference::straight_rope(links, 1.0, 45.0), 1e-7);
         const Clock::time_point start = Clock::now();
         ASSERT_TRUE(run.go(is_huge ? (is_long() ? 0.1 : 2e-4) : (is_long() ? 5.0 : 0.5)));
         const auto tries = static_cast<double>(run.solver().steps() + run.solver().rejected_steps());
-        std::printf("N=%d: %.1f s of computing, %.0f ns a particle and step\n", links, seconds_since(start),
+        std::printf("N=%d: %.1f s of computing, %.0f ns per particle and step\n", links, seconds_since(start),
                     1e9 * seconds_since(start) / tries / links);
         EXPECT_LT(run.energy_error(), 1e-9);
         EXPECT_LT(run.strain(), 1e-15 * links * links);
@@ -90,7 +91,7 @@ TEST(ManyLinks, Finish) {
 }
 
 TEST(Upright, StaysExactly) {
-    const RopeDef rope = study::straight_rope(10, 1.0, 180.0);
+    const RopeDef rope = reference::straight_rope(10, 1.0, 180.0);
     test::ExactRun run(rope);
     ASSERT_TRUE(run.go(100.0));
     for (std::size_t i = 0; i < rope.points_m.size(); ++i) {
@@ -100,22 +101,22 @@ TEST(Upright, StaysExactly) {
 }
 
 TEST(Upright, AllButAHundredthOfADegreeFallsAndKeepsItsEnergy) {
-    test::ExactRun run(study::straight_rope(10, 1.0, 179.99));
+    test::ExactRun run(reference::straight_rope(10, 1.0, 179.99));
     EXPECT_LT(worst_of(run, 10.0, "179.99 deg").energy, 1e-9);  // measured 1.8e-11
 }
 
 TEST(UnequalLinks, OfOneToAHundred) {
     std::vector<Vec2> points_m{{0.0, 0.0}};
     for (int i = 0; i < 20; ++i) points_m.push_back(points_m.back() + Vec2{i % 2 ? 1.0 : 0.01, 0.0});
-    test::ExactRun run(study::rope_through(std::move(points_m)));
+    test::ExactRun run(reference::rope_through(std::move(points_m)));
     const Worst worst = worst_of(run, 10.0, "links 1:100");
     EXPECT_LT(worst.energy, 1e-8);   // measured 1.1e-12
     EXPECT_LT(worst.strain, 1e-12);  // measured 8e-14
 }
 
-TEST(ThrownTip, AtAHundredMetresASecond) {
+TEST(ThrownTip, AtAHundredMetresPerSecond) {
     for (const Vec2 velocity : {Vec2{100.0, 0.0}, Vec2{0.0, 100.0}, Vec2{60.0, -80.0}}) {
-        RopeDef rope = study::straight_rope(10, 1.0, 0.0);
+        RopeDef rope = reference::straight_rope(10, 1.0, 0.0);
         rope.velocity_m_s.back() = velocity;
         test::ExactRun run(rope);
         const double start_j = run.solver().energy_j();
@@ -130,7 +131,7 @@ TEST(ThrownTip, AtAHundredMetresASecond) {
 }
 
 TEST(Masses, OfAMillionthAndAMillionMoveAlike) {
-    RopeDef rope = study::straight_rope(10, 1.0, 45.0);
+    RopeDef rope = reference::straight_rope(10, 1.0, 45.0);
     test::ExactRun unit(rope);
     ASSERT_TRUE(unit.go(2.0));
     for (const double mass_kg : {1e-6, 1e6}) {
@@ -142,7 +143,7 @@ TEST(Masses, OfAMillionthAndAMillionMoveAlike) {
 }
 
 TEST(Masses, OfAMillionthAndAMillionInTurn) {
-    RopeDef rope = study::straight_rope(6, 1.0, 45.0);
+    RopeDef rope = reference::straight_rope(6, 1.0, 45.0);
     for (std::size_t i = 0; i < rope.mass_kg.size(); ++i) rope.mass_kg[i] = i % 2 ? 1e-6 : 1e6;
     test::ExactRun run(rope, 1e-6);
     const Worst worst = worst_of(run, 0.02, "masses 1e-6 and 1e6 in turn");
@@ -150,7 +151,7 @@ TEST(Masses, OfAMillionthAndAMillionInTurn) {
 }
 
 TEST(FarAway, HasTheSameBits) {
-    RopeDef rope = study::straight_rope(10, 1.0, 70.0);
+    RopeDef rope = reference::straight_rope(10, 1.0, 70.0);
     test::ExactRun near(rope);
     rope.origin_m = {1e6, 1e6};
     test::ExactRun far(rope);
@@ -162,22 +163,22 @@ TEST(FarAway, HasTheSameBits) {
 }
 
 TEST(Bits, AreTheSameWhateverTimesAreAskedFor) {
-    const RopeDef rope = study::straight_rope(20, 1.0, 80.0);
+    const RopeDef rope = reference::straight_rope(20, 1.0, 80.0);
     test::ExactRun one(rope);
     ASSERT_TRUE(one.go(1.5));
-    for (const int frames_a_second : {24, 30, 60, 120}) {
+    for (const int frames_per_second : {24, 30, 60, 120}) {
         test::ExactRun many(rope);
-        for (int k = 0; k <= frames_a_second * 3 / 2; ++k) {
-            ASSERT_TRUE(many.go(static_cast<double>(k) / frames_a_second));
+        for (int k = 0; k <= frames_per_second * 3 / 2; ++k) {
+            ASSERT_TRUE(many.go(static_cast<double>(k) / frames_per_second));
         }
-        EXPECT_EQ(one.state().x_m, many.state().x_m) << frames_a_second;
-        EXPECT_EQ(one.state().y_m, many.state().y_m) << frames_a_second;
+        EXPECT_EQ(one.state().x_m, many.state().x_m) << frames_per_second;
+        EXPECT_EQ(one.state().y_m, many.state().y_m) << frames_per_second;
     }
 }
 
 TEST(Damped, StaysAtRestWithoutDenormalNumbers) {
     const double end_s = is_long() ? 1e5 : 1e4;
-    test::ExactRun run(study::straight_rope(5, 1.0, 45.0), 1e-7, WorldDef{{0.0, -9.81}, 1e5, 3.0});
+    test::ExactRun run(reference::straight_rope(5, 1.0, 45.0), 1e-7, WorldDef{{0.0, -9.81}, 1e5, 3.0});
     {
         const test::DenormalTrap trap;
         for (int k = 1; k <= 100; ++k) ASSERT_TRUE(run.go(0.01 * k * end_s));
@@ -187,11 +188,11 @@ TEST(Damped, StaysAtRestWithoutDenormalNumbers) {
 }
 
 TEST(Impossible, AskedForTimesAndSpeedsEndInAStatus) {
-    RopeDef rope = study::straight_rope(3, 1.0, 0.0);
+    RopeDef rope = reference::straight_rope(3, 1.0, 0.0);
     rope.velocity_m_s.back() = {1e300, 0.0};
     test::ExactRun fast(rope);
     EXPECT_FALSE(fast.go(1.0));
-    test::ExactRun endless(study::straight_rope(3, 1.0, 10.0));
+    test::ExactRun endless(reference::straight_rope(3, 1.0, 10.0));
     EXPECT_FALSE(endless.go(std::numeric_limits<double>::infinity()));
 }
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "corda/reference/ropes.hpp"
 #include "corda/sim/distance.hpp"
-#include "corda/sim/string_part.hpp"
-#include "corda/study/ropes.hpp"
+#include "corda/sim/exact/string/part.hpp"
 #include "support/strings.hpp"
 
 namespace corda::sim {
@@ -21,18 +21,19 @@ namespace {
 class WatchedString {
   public:
     explicit WatchedString(const RopeDef& rope, double tolerance = 1e-9, const WorldDef& world = {})
-        : system_(build_system({&rope, 1}, 1)),
+        : system_(build_system({&rope, 1})),
           part_(system_, system_.bodies[0], world, tolerance),
           state_{0.0, system_.x_m, system_.y_m},
           energy_j_(part_.energy_j()) {
-        scale_j_ = std::max(part_.energy_scale_j(), std::abs(energy_j_));
+        const double scale_j = energy_scale_j(system_, Forces(world).on_particles(system_));
+        scale_j_ = std::max(scale_j, std::abs(energy_j_));
     }
 
-    /// False where it diverges.
-    bool run(double duration_s, int frames_a_second = 60) {
-        const auto frames = static_cast<int>(std::lround(duration_s * frames_a_second));
+    /// False if it diverges.
+    bool run(double duration_s, int frames_per_second = 60) {
+        const auto frames = static_cast<int>(std::lround(duration_s * frames_per_second));
         for (int k = 1; k <= frames; ++k) {
-            if (part_.advance_to(static_cast<double>(k) / frames_a_second, state_) == Status::kDiverged)
+            if (part_.advance_to(static_cast<double>(k) / frames_per_second, state_) == Status::kDiverged)
                 return false;
             for (const Bar& bar : system_.bars) {
                 const double distance_m =
@@ -63,9 +64,9 @@ class WatchedString {
     double rise_ = 0.0;
 };
 
-/// Links of length 1 / `links` at rest, at nine tenths of that at the start.
+/// Links of rest length 1 / `links`, at nine tenths of it at the start.
 RopeDef slack_rope(int links) {
-    return test::string_of(study::straight_rope(links, 0.9, 90.0).points_m,
+    return test::string_of(reference::straight_rope(links, 0.9, 90.0).points_m,
                            std::vector<double>(static_cast<std::size_t>(links), 1.0 / links));
 }
 
@@ -108,7 +109,7 @@ TEST(Dropped, OfManyLinks) {
 }
 
 TEST(Straight, FallsAndSnapsInALine) {
-    // Nothing leaves the vertical, where cosines are exactly 1 and -1.
+    // The motion stays vertical, and cosines are exactly 1 and -1.
     RopeDef rope = slack_rope(10);
     for (std::size_t i = 0; i < rope.points_m.size(); ++i)
         rope.points_m[i] = {0.0, 0.05 * static_cast<double>(i)};
@@ -140,8 +141,8 @@ TEST(Symmetric, StaysSo) {
     }
 }
 
-TEST(FreeFall, OfARopeThatNothingPullsIsNoEvent) {
-    RopeDef rope = study::straight_rope(10, 1.0, 90.0);
+TEST(FreeFall, OfARopeWithoutTensionIsNoEvent) {
+    RopeDef rope = reference::straight_rope(10, 1.0, 90.0);
     rope.material.is_string = true;
     rope.pinned = {};
     for (Vec2& velocity : rope.velocity_m_s) velocity = {3.0, 5.0};
@@ -155,13 +156,13 @@ TEST(Bits, AreTheSameWhateverTimesAreAskedFor) {
     WatchedString one(rope);
     ASSERT_TRUE(one.run(1.5, 2));
     EXPECT_GT(one.part().events(), 10U);
-    for (const int frames_a_second : {24, 60, 1000}) {
+    for (const int frames_per_second : {24, 60, 1000}) {
         WatchedString many(rope);
-        ASSERT_TRUE(many.run(1.5, frames_a_second));
-        EXPECT_EQ(one.state().x_m, many.state().x_m) << frames_a_second;
-        EXPECT_EQ(one.state().y_m, many.state().y_m) << frames_a_second;
-        EXPECT_EQ(one.part().steps(), many.part().steps()) << frames_a_second;
-        EXPECT_EQ(one.part().events(), many.part().events()) << frames_a_second;
+        ASSERT_TRUE(many.run(1.5, frames_per_second));
+        EXPECT_EQ(one.state().x_m, many.state().x_m) << frames_per_second;
+        EXPECT_EQ(one.state().y_m, many.state().y_m) << frames_per_second;
+        EXPECT_EQ(one.part().steps(), many.part().steps()) << frames_per_second;
+        EXPECT_EQ(one.part().events(), many.part().events()) << frames_per_second;
     }
 }
 

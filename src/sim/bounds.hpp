@@ -1,0 +1,33 @@
+#pragma once
+
+#include <algorithm>
+
+#include "corda/sim/defs.hpp"
+#include "corda/sim/system.hpp"
+
+namespace corda {
+
+/// The smallest upright box that contains all positions of a motion, in metres relative to the system's
+/// origin. Empty at first.
+class MotionBounds {
+  public:
+    void include(const State& state) {
+        for (const double x_m : state.x_m) {
+            min_.x = std::min(min_.x, x_m);
+            max_.x = std::max(max_.x, x_m);
+        }
+        for (const double y_m : state.y_m) {
+            min_.y = std::min(min_.y, y_m);
+            max_.y = std::max(max_.y, y_m);
+        }
+    }
+    [[nodiscard]] bool empty() const { return max_.x < min_.x; }
+    [[nodiscard]] Vec2 min_m() const { return min_; }
+    [[nodiscard]] Vec2 max_m() const { return max_; }
+
+  private:
+    Vec2 min_{1e300, 1e300};
+    Vec2 max_{-1e300, -1e300};
+};
+
+}  // namespace corda

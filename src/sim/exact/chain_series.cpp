@@ -1,0 +1,301 @@
+#include "corda/sim/exact/chain_series.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "corda/sim/exact/four.hpp"
+#include "corda/sim/exact/series_terms.hpp"
+
+namespace corda::sim {
+namespace {
+
+// Functions that work on all links are compiled twice: for every x86-64 CPU, and for registers of four
+// numbers.
+#if defined(__x86_64__)
+#define CORDA_WIDE [[gnu::target("avx2")]]
+#else
+#define CORDA_WIDE
+#endif
+
+using series::kLanes;
+
+/// Numbers of a flat array before that of the first link.
+constexpr std::size_t kRoom = 2 * kLanes;
+
+/// Number of last coefficients that the length of a step follows from. If a motion is even or odd in time, or
+/// both in two directions at right angles, only every fourth is not zero.
+constexpr std::size_t kLastTerms = 4;
+
+using series::Row;
+
+/// Writes the numbers of links i .. i + 3, as far as there are links.
+CORDA_INLINE void write_links(const SeriesArrays& a, std::size_t i, const Four& x, double* to) {
+    if (i + kLanes <= a.links) {
+        any_four(to + i).value = x;
+        return;
+    }
+    // One by one: a loop over lanes would go through memory.
+    static_assert(kLanes == 4);
+    to[i] = x[0];
+    if (i + 1 < a.links) to[i + 1] = x[1];
+    if (i + 2 < a.links) to[i + 2] = x[2];
+}
+
+/// The sum of the coefficients of w of a block with these weights.
+CORDA_INLINE void sum_omegas(SeriesArrays& a, std::size_t b, const Series& weight, Four& sum) {
+    const double* coefficient = a.row(b, Row::kOmega, a.order);
+    sum = Four{};
+    for (std::size_t k = a.order + 1; k-- > 0; coefficient -= kLanes) sum += weight[k] * four(coefficient);
+}
+
+/// Writes the angles by which links turn in the time `t`, in units, to load. Returns whether all are small.
+CORDA_INLINE bool find_angles(SeriesArrays& a, double t) {
+    Series weight;
+    double power = 1.0;
+    for (std::size_t k = 0; k <= a.order; ++k) {
+        weight[k] = a.unit_s * t * power / static_cast<double>(k + 1);
+        power *= t;
+    }
+    Four largest{};
+    for (std::size_t b = 0; b < a.blocks; ++b) {
+        Four angle;
+        sum_omegas(a, b, weight, angle);
+        four(a.load + kLanes * b) = angle;
+        const Four size = angle > -angle ? angle : -angle;
+        largest = size <= largest ? largest : size;  // keeps a NaN
+    }
+    bool is_small = true;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) is_small = is_small && largest[lane] < kSmallAngle;
+    return is_small;
+}
+
+/// Turns the links by the angles in load and writes their directions.
+template <bool kSmall>
+CORDA_INLINE void turn(SeriesArrays& a, double* to_c, double* to_s) {
+    for (std::size_t i = 0; i < kLanes * a.blocks; i += kLanes) {
+        Four turn_c;
+        Four turn_s;
+        if constexpr (kSmall) {
+            cosine_sine_of_small(four(a.load + i), turn_c, turn_s);
+        } else {
+            cosine_sine(four(a.load + i), turn_c, turn_s);
+        }
+        const Four c = four(a.c + i) * turn_c - four(a.s + i) * turn_s;
+        const Four s = four(a.s + i) * turn_c + four(a.c + i) * turn_s;
+        // The inverse length, because the length differs from 1 by rounding alone.
+        const Four shrink = 1.5 - 0.5 * (c * c + s * s);
+        write_links(a, i, c * shrink, to_c);
+        write_links(a, i, s * shrink, to_s);
+    }
+}
+
+/// Writes the directions at the time `t` in units.
+CORDA_INLINE void evaluate_directions(SeriesArrays& a, double t, double* c, double* s) {
+    if (find_angles(a, t)) {
+        turn<true>(a, c, s);
+    } else {
+        turn<false>(a, c, s);
+    }
+}
+
+/// Writes the angular velocities at the time `t` in units.
+CORDA_INLINE void evaluate_omegas(SeriesArrays& a, double t, double* omega) {
+    Series power;
+    power[0] = 1.0;
+    for (std::size_t k = 1; k <= a.order; ++k) power[k] = power[k - 1] * t;
+    for (std::size_t b = 0; b < a.blocks; ++b) {
+        Four sum;
+        sum_omegas(a, b, power, sum);
+        write_links(a, kLanes * b, sum, omega);
+    }
+}
+
+/// The largest of all links' coefficients k of w, in size, for k = order - kLastTerms + 1 .. order.
+using LastTerms = std::array<double, kLastTerms>;
+
+/// Measures them in parts of `inverse_timescale_1_s` and the angular velocity together.
+CORDA_INLINE void measure_last_terms(SeriesArrays& a, double inverse_timescale_1_s, LastTerms& result) {
+    Four largest[kLastTerms] = {};
+    for (std::size_t b = 0; b < a.blocks; ++b) {
+        const Four& omega = four(a.row(b, Row::kOmega, 0));
+        const Four unit = 1.0 / (inverse_timescale_1_s + (omega > -omega ? omega : -omega));
+        const double* coefficient = a.row(b, Row::kOmega, a.order + 1 - kLastTerms);
+        for (Four& term : largest) {
+            const Four part = four(coefficient) * unit;
+            const Four size = part > -part ? part : -part;
+            term = size <= term ? term : size;  // keeps a NaN
+            coefficient += kLanes;
+        }
+    }
+    for (std::size_t k = 0; k < kLastTerms; ++k) {
+        result[k] = 0.0;
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            if (!(largest[k][lane] <= result[k])) result[k] = largest[k][lane];
+        }
+    }
+}
+
+CORDA_WIDE void expand_wide(SeriesArrays& a, const double* c, const double* s, const double* omega) {
+    series::expand(a, c, s, omega);
+}
+void expand_narrow(SeriesArrays& a, const double* c, const double* s, const double* omega) {
+    series::expand(a, c, s, omega);
+}
+CORDA_WIDE void evaluate_directions_wide(SeriesArrays& a, double t, double* c, double* s) {
+    evaluate_directions(a, t, c, s);
+}
+void evaluate_directions_narrow(SeriesArrays& a, double t, double* c, double* s) {
+    evaluate_directions(a, t, c, s);
+}
+CORDA_WIDE void evaluate_omegas_wide(SeriesArrays& a, double t, double* omega) {
+    evaluate_omegas(a, t, omega);
+}
+void evaluate_omegas_narrow(SeriesArrays& a, double t, double* omega) {
+    evaluate_omegas(a, t, omega);
+}
+CORDA_WIDE void measure_last_terms_wide(SeriesArrays& a, double inverse_timescale_1_s, LastTerms& result) {
+    measure_last_terms(a, inverse_timescale_1_s, result);
+}
+void measure_last_terms_narrow(SeriesArrays& a, double inverse_timescale_1_s, LastTerms& result) {
+    measure_last_terms(a, inverse_timescale_1_s, result);
+}
+
+constexpr SeriesKernel kKernels[] = {SeriesKernel::kBaseline, SeriesKernel::kAvx2};
+
+/// Logarithm to base 2 of x > 0, to 0.09, and its inverse, to 6 %, from the bits of the numbers: the same on
+/// every machine.
+double rough_log2(double x) {
+    return static_cast<double>(std::bit_cast<std::int64_t>(x)) * 0x1p-52 - 1023.0;
+}
+double rough_exp2(double x) {
+    return std::bit_cast<double>(static_cast<std::int64_t>((x + 1023.0) * 0x1p+52));
+}
+
+}  // namespace
+
+std::span<const SeriesKernel> series_kernels() {
+#if defined(__x86_64__)
+    static const std::size_t count = __builtin_cpu_supports("avx2") ? 2 : 1;
+#else
+    constexpr std::size_t count = 1;
+#endif
+    return {kKernels, count};
+}
+
+struct ChainSeries::Code {
+    decltype(&expand_wide) expand;
+    decltype(&evaluate_directions_wide) evaluate_directions;
+    decltype(&evaluate_omegas_wide) evaluate_omegas;
+    decltype(&measure_last_terms_wide) measure_last_terms;
+};
+
+const ChainSeries::Code& ChainSeries::code_of(SeriesKernel kernel) {
+    static constexpr Code kBaseline{expand_narrow, evaluate_directions_narrow, evaluate_omegas_narrow,
+                                    measure_last_terms_narrow};
+    static constexpr Code kAvx2{expand_wide, evaluate_directions_wide, evaluate_omegas_wide,
+                                measure_last_terms_wide};
+    return kernel == SeriesKernel::kAvx2 ? kAvx2 : kBaseline;
+}
+
+ChainSeries::ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Chain& chain, std::size_t order,
+                         SeriesKernel kernel)
+    : code_(&code_of(kernel)),
+      first_link_(chain.first_link),
+      link_stride_(dynamics.link_count()),
+      first_extra_(chain.first_extra),
+      starts_pinned_(chain.starts_pinned),
+      inverse_timescale_1_s_(chain.inverse_timescale_1_s),
+      length_m_(chain.length_m) {
+    assert(order >= kLastTerms && order <= kLargestSeriesOrder);
+    SeriesArrays& a = arrays_;
+    a.order = order;
+    a.links = chain.link_count;
+    a.blocks = (a.links + kLanes - 1) / kLanes;
+    a.meeting = kLanes * (a.blocks / 2);
+    a.drag_1_s = dynamics.forces().drag_1_s();
+    a.first_inverse_mass_1_kg = chain.inverse_mass_1_kg;
+    const Vec2 uniform_m_s2 = dynamics.forces().uniform_m_s2();
+    if (chain.starts_pinned) a.start_pull_m_s2 = uniform_m_s2;
+    if (chain.ends_pinned) a.end_pull_m_s2 = uniform_m_s2;
+    if (!chain.starts_pinned) a.fall_m_s2 = uniform_m_s2;
+    a.rows.resize(a.blocks * SeriesArrays::kRows * (order + 1));
+    double** const arrays[] = {&a.length_m,
+                               &a.inverse_length_1_m,
+                               &a.inverse_mass_1_kg,
+                               &a.c,
+                               &a.s,
+                               &a.omega,
+                               &a.inverse_pivot,
+                               &a.weight,
+                               &a.load,
+                               &a.across_next,
+                               &a.across_after,
+                               &a.tension,
+                               &a.scratch};
+    const std::size_t stride = a.blocks + 2 * kRoom / kLanes;
+    a.flat.resize(std::size(arrays) * stride);
+    for (std::size_t k = 0; k < std::size(arrays); ++k) *arrays[k] = a.flat[k * stride].lane.data() + kRoom;
+    for (std::size_t i = 0; i < a.links; ++i) {
+        a.length_m[i] = dynamics.length_m(first_link_ + i);
+        a.inverse_length_1_m[i] = 1.0 / a.length_m[i];
+        a.inverse_mass_1_kg[i] = dynamics.inverse_mass_1_kg(first_link_ + i);
+    }
+}
+
+void ChainSeries::expand(const double* y, double unit_s) {
+    const double* const c = y + first_link_;
+    const double* const s = c + link_stride_;
+    const double* const omega = s + link_stride_;
+    if (!starts_pinned_) {
+        arrays_.x[0] = y[first_extra_];
+        arrays_.y[0] = y[first_extra_ + 1];
+        arrays_.vx[0] = y[first_extra_ + 2];
+        arrays_.vy[0] = y[first_extra_ + 3];
+    }
+    arrays_.unit_s = unit_s;
+    code_->expand(arrays_, c, s, omega);
+}
+
+double ChainSeries::longest_step_s(double tolerance) {
+    SeriesArrays& a = arrays_;
+    LastTerms terms;
+    code_->measure_last_terms(a, inverse_timescale_1_s_, terms);
+    double shortest = std::numeric_limits<double>::infinity();  // logarithm
+    for (std::size_t k = a.order + 1 - kLastTerms; k <= a.order; ++k) {
+        double term = terms[k + kLastTerms - a.order - 1];
+        if (!starts_pinned_) {
+            const double unit_m_s =
+                length_m_ * inverse_timescale_1_s_ + std::abs(a.vx[0]) + std::abs(a.vy[0]);
+            const double start = std::max(std::abs(a.vx[k]), std::abs(a.vy[k])) / unit_m_s;
+            if (!(start <= term)) term = start;
+        }
+        if (!std::isfinite(term)) return 0.0;
+        if (term > 0.0) shortest = std::min(shortest, -rough_log2(term) / static_cast<double>(k));
+    }
+    if (!std::isfinite(shortest)) return shortest;
+    return a.unit_s * rough_exp2(shortest + rough_log2(tolerance) / static_cast<double>(a.order));
+}
+
+void ChainSeries::evaluate(double time_s, double* y) {
+    const double t = time_s / arrays_.unit_s;
+    double* const c = y + first_link_;
+    code_->evaluate_directions(arrays_, t, c, c + link_stride_);
+    code_->evaluate_omegas(arrays_, t, c + 2 * link_stride_);
+    if (starts_pinned_) return;
+    y[first_extra_] = sum(arrays_.x, t);
+    y[first_extra_ + 1] = sum(arrays_.y, t);
+    y[first_extra_ + 2] = sum(arrays_.vx, t);
+    y[first_extra_ + 3] = sum(arrays_.vy, t);
+}
+
+double ChainSeries::sum(const Series& series, double t) const {
+    double value = 0.0;
+    for (std::size_t k = arrays_.order + 1; k-- > 0;) value = value * t + series[k];
+    return value;
+}
+
+}  // namespace corda::sim

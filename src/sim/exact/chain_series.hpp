@@ -1,0 +1,136 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "corda/sim/exact/chain_dynamics.hpp"
+
+namespace corda::sim {
+
+/// The highest order of a ChainSeries.
+inline constexpr std::size_t kLargestSeriesOrder = 20;
+
+/// Links of a block, on which a ChainSeries works together.
+inline constexpr std::size_t kSeriesLanes = 4;
+
+/// Coefficients of a power series in time.
+using Series = std::array<double, kLargestSeriesOrder + 1>;
+
+/// The memory of a ChainSeries. Links are kept in blocks of kSeriesLanes; the last block is padded with
+/// zeros. A joint has the index of the link before it. Arrays with one entry per link have some room at both
+/// ends. Layout: section 6 of src/sim/exact/README.md.
+struct SeriesArrays {
+    /// A block has a row of coefficients for each of these series.
+    enum Row : std::size_t {
+        kCosine,       ///< W C of a joint
+        kSine,         ///< W S of a joint
+        kTension,      ///< T of a link
+        kNextTension,  ///< T of the next link
+        kOmega,        ///< angular velocity w of a link
+        kOpening,      ///< w of the next link less w of the link
+        kRows
+    };
+    struct alignas(kSeriesLanes * sizeof(double)) Lanes {
+        std::array<double, kSeriesLanes> lane{};
+    };
+
+    std::size_t order = 0;  ///< of the series of w
+    std::size_t links = 0;
+    std::size_t blocks = 0;
+    std::size_t meeting = 0;  ///< link at which the eliminations from both ends meet; the first of a block
+    double drag_1_s = 0.0;
+    double first_inverse_mass_1_kg = 0.0;  ///< of the particle at the chain's start
+    Vec2 start_pull_m_s2;                  ///< the uniform acceleration if the start is pinned, else 0
+    Vec2 end_pull_m_s2;                    ///< the same if the end is pinned
+    Vec2 fall_m_s2;                        ///< the same if the start is not pinned
+    double unit_s = 1.0;                   ///< unit of time: coefficient k belongs to (t / unit_s)^k
+
+    // Directions of the first and the last link; velocity and position of the first particle if it is not
+    // pinned.
+    Series first_c{}, first_s{}, last_c{}, last_s{}, vx{}, vy{}, x{}, y{};
+
+    std::vector<Lanes> rows;  ///< kRows series of order + 1 coefficients per block
+    std::vector<Lanes> flat;  ///< holds the arrays from here on
+    double* length_m = nullptr;
+    double* inverse_length_1_m = nullptr;
+    double* inverse_mass_1_kg = nullptr;  ///< of the particle at a link's far end
+    double* c = nullptr;                  ///< at t = 0, as are s and omega
+    double* s = nullptr;
+    double* omega = nullptr;
+    double* inverse_pivot = nullptr;
+    double* weight = nullptr;  ///< of a joint: factor by which a link's row or tension enters its neighbour's
+    double* load = nullptr;    ///< right-hand sides of the tensions
+    double* across_next = nullptr;   ///< known part of the pull of a link across the next one
+    double* across_after = nullptr;  ///< known part of the pull of the next link across a link
+    double* tension = nullptr;
+    double* scratch = nullptr;
+
+    [[nodiscard]] double* row(std::size_t block, Row which, std::size_t k) {
+        return rows[(block * kRows + which) * (order + 1) + k].lane.data();
+    }
+};
+
+/// Code that works on a series. Both kernels give the same bits: they do the same correctly rounded
+/// operations on each link in the same order.
+enum class SeriesKernel {
+    kBaseline,  ///< every CPU
+    kAvx2,      ///< four links per instruction
+};
+
+/// The kernels that this CPU can run, the fastest last.
+[[nodiscard]] std::span<const SeriesKernel> series_kernels();
+
+/// The motion of one chain of a ChainDynamics as a power series in time.
+///
+/// The equations of ChainDynamics give the coefficients one after the other, because those of a product are
+/// sums of products of coefficients. Coefficient k of the tensions obeys the tridiagonal system of the joints
+/// at t = 0 whatever k is, so the matrix is factorised once per step, by the recurrence of chain_tensions.hpp
+/// (InverseMassFraction) from both ends. Derivation: sections 3 to 8 of src/sim/exact/README.md.
+///
+/// Source: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer
+/// 1993, I.8 (recursive computation of coefficients); A. Jorba, M. Zou, A software package for the numerical
+/// integration of ODEs by means of high-order Taylor methods, Experimental Mathematics 14 (2005) 99-117
+/// (steps from the last coefficients).
+class ChainSeries {
+  public:
+    /// `order`: of the series of w, 4 .. kLargestSeriesOrder (a ChainPart takes 12 and more). `chain`: one of
+    /// `dynamics`.
+    ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Chain& chain, std::size_t order,
+                SeriesKernel kernel = series_kernels().back());
+    // Pointers lead into the arrays' own memory: it can be moved, but a copy would not be independent.
+    ChainSeries(const ChainSeries&) = delete;
+    ChainSeries& operator=(const ChainSeries&) = delete;
+    ChainSeries(ChainSeries&&) = default;
+    ChainSeries& operator=(ChainSeries&&) = delete;
+    ~ChainSeries() = default;
+
+    /// Expands the motion that starts from the chain's part of the state `y`. `unit_s`: about the time for
+    /// which the series is needed, so that no coefficient leaves the range of double; > 0.
+    void expand(const double* y, double unit_s);
+
+    /// The time after which the last terms exceed `tolerance` of the angular velocity and the inverse of the
+    /// chain's time scale together; infinite if the terms are zero, 0 if a coefficient is not finite.
+    [[nodiscard]] double longest_step_s(double tolerance);
+
+    /// Writes to `y` the chain's part of the state `time_s` after the one that was expanded.
+    void evaluate(double time_s, double* y);
+
+  private:
+    struct Code;  ///< a kernel's functions
+    static const Code& code_of(SeriesKernel kernel);
+    /// The value of a series at the time `t` in units of unit_s.
+    [[nodiscard]] double sum(const Series& series, double t) const;
+
+    const Code* code_;
+    std::size_t first_link_;
+    std::size_t link_stride_;  ///< number of links of all chains: distance of c, s and w in a state
+    std::size_t first_extra_;
+    bool starts_pinned_;
+    double inverse_timescale_1_s_;
+    double length_m_;
+    SeriesArrays arrays_;
+};
+
+}  // namespace corda::sim

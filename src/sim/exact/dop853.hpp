@@ -1,0 +1,116 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "corda/sim/solver.hpp"
+
+namespace corda::sim {
+
+namespace dop853 {
+template <std::size_t Count>
+struct Row;
+}
+
+/// An autonomous system of ordinary differential equations, y' = f(y), for Dop853.
+class Ode {
+  public:
+    Ode() = default;
+    Ode(const Ode&) = delete;
+    Ode& operator=(const Ode&) = delete;
+    virtual ~Ode() = default;
+
+    /// Writes f(y) to `slope`. Both have one entry per component and do not overlap.
+    virtual void derivative(const double* y, double* slope) = 0;
+
+    /// Projects a state that an integrator arrived at onto the invariants that the exact solution keeps (unit
+    /// vectors, the ends of a chain at their pins). Must move it by no more than about the step's own error.
+    virtual void project(double* y) { static_cast<void>(y); }
+};
+
+/// The unit of the error of the components `first` .. `first + count - 1`: tolerance * (absolute + relative *
+/// |y|).
+struct ErrorScale {
+    std::size_t first = 0;
+    std::size_t count = 0;
+    double absolute = 1.0;  ///< > 0, in the component's own unit
+    double relative = 0.0;  ///< >= 0
+};
+
+/// Bounds of the steps of an integrator.
+struct StepControl {
+    double tolerance = 1e-9;    ///< largest error per step, in parts of the ErrorScales; > 0
+    double first_s = 1e-3;      ///< first step to try
+    double largest_s = 1.0;     ///< keeps the interpolation accurate if nothing else limits the steps
+    double smallest_s = 1e-14;  ///< the run has diverged if a step would have to be shorter
+    /// The run has diverged if it would take more steps: a day of computing even for a short rope.
+    static constexpr std::uint64_t kMostSteps = 1'000'000'000;
+};
+
+/// The explicit Runge-Kutta method of order 8 by Dormand and Prince with Hairer's error estimate (orders 5
+/// and 3 together) and interpolation of order 7.
+///
+/// Source: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed.,
+/// Springer 1993, II.5 (the pair), II.6 (the interpolation) and the appendix (DOP853, coefficients to 30
+/// digits). The error of a step is the largest of all components, not their mean: one link that whips must be
+/// noticed among thousands that hang still.
+///
+/// Steps depend on the start alone, never on the times that are asked for, so the same bits come out whatever
+/// these are. Its only operations are +, -, *, / and the square root.
+class Dop853 {
+  public:
+    /// `ode` must outlive it. `start` needs no projection.
+    Dop853(Ode& ode, std::vector<double> start, std::vector<ErrorScale> scales, const StepControl& control);
+
+    /// Steps until time_s() >= `time_s`.
+    Status advance_to(double time_s);
+
+    /// Takes one step.
+    Status step();
+
+    /// Writes the solution at `time_s`, within the last step (or at 0 before the first), to `y`; not
+    /// projected. The first call in a step costs three evaluations of f.
+    void interpolate(double time_s, double* y);
+
+    /// End of the last step.
+    [[nodiscard]] double time_s() const { return time_s_; }
+    /// Its start; 0 before the first.
+    [[nodiscard]] double old_time_s() const { return old_time_s_; }
+    /// Length of the step to try next.
+    [[nodiscard]] double next_step_s() const { return next_step_s_; }
+    [[nodiscard]] std::size_t size() const { return y_.size(); }
+    [[nodiscard]] std::uint64_t accepted_steps() const { return accepted_; }
+    [[nodiscard]] std::uint64_t rejected_steps() const { return rejected_; }
+
+  private:
+    static constexpr std::size_t kSlots = 12;
+
+    void accept(double step_s);
+    void evaluate_stages(double step_s);
+    void prepare_interpolation();
+    /// Largest error of a component in the step from y_ to stage_, in parts of the tolerance; infinite if one
+    /// is not finite.
+    [[nodiscard]] double error(double step_s) const;
+    /// slope_[slot] = f(from + step sum of weights * slopes).
+    template <std::size_t Count>
+    void evaluate(const dop853::Row<Count>& row, double step_s, const std::vector<double>& from,
+                  std::vector<double>& scratch, std::size_t slot);
+
+    Ode& ode_;
+    std::vector<ErrorScale> scales_;
+    StepControl control_;
+    double time_s_ = 0.0;
+    double old_time_s_ = 0.0;
+    double next_step_s_ = 0.0;
+    bool can_interpolate_ = false;  ///< the three stages of the interpolation are known
+    std::uint64_t accepted_ = 0;
+    std::uint64_t rejected_ = 0;
+    std::vector<double> y_;      ///< at time_s_
+    std::vector<double> old_y_;  ///< at old_time_s_
+    std::vector<double> stage_;
+    std::array<std::vector<double>, kSlots> slope_;  ///< f at the stages; see dop853::Slot
+};
+
+}  // namespace corda::sim

@@ -1,0 +1,130 @@
+#include "corda/sim/exact/elastic_dynamics.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "corda/sim/distance.hpp"
+
+namespace corda::sim {
+namespace {
+
+/// Dop853 damps an oscillation of angular frequency omega for all omega h up to 5.9: there the modulus of its
+/// stability function on the imaginary axis is at most 1. Nothing else bounds the steps of a motionless body,
+/// and with longer ones rounding would grow until the error control sees it.
+constexpr double kStableOmegaH = 5.0;
+
+/// The unit of errors of positions: the length of a rope, the diagonal of a net's bounding box.
+double size_of(const System& system, const Body& body) {
+    if (body.is_chain) return links_length_m(system, body);
+    const auto extent = [&](const std::vector<double>& x_m) {
+        const auto first = x_m.begin() + static_cast<std::ptrdiff_t>(body.first_particle);
+        const auto [least, most] =
+            std::minmax_element(first, first + static_cast<std::ptrdiff_t>(body.particle_count));
+        return *most - *least;
+    };
+    return length(extent(system.x_m), extent(system.y_m));
+}
+
+}  // namespace
+
+ElasticDynamics::ElasticDynamics(const System& system, const Body& body, const Forces& forces)
+    : first_particle_(body.first_particle),
+      count_(body.particle_count),
+      origin_m_{system.x_m[body.first_particle], system.y_m[body.first_particle]},
+      forces_(forces),
+      elastic_(system, body.first_particle, body.particle_count),
+      size_m_(size_of(system, body)),
+      force_n_(2 * body.particle_count, 0.0) {
+    assert(body.material.compliance_1_n > 0.0);
+    initial_state_.resize(4 * count_);
+    for (std::size_t i = 0; i < count_; ++i) {
+        const std::size_t particle = first_particle_ + i;
+        mass_kg_.push_back(system.is_pinned(particle) ? 0.0 : system.mass_kg[particle]);
+        inverse_mass_1_kg_.push_back(system.inverse_mass_1_kg[particle]);
+        falls_.push_back(system.is_pinned(particle) ? 0.0 : 1.0);
+        if (system.is_pinned(particle)) pins_.push_back({i, {system.x_m[particle], system.y_m[particle]}});
+        initial_state_[i] = system.x_m[particle] - origin_m_.x;
+        initial_state_[count_ + i] = system.y_m[particle] - origin_m_.y;
+        initial_state_[2 * count_ + i] = system.vx_m_s[particle];
+        initial_state_[3 * count_ + i] = system.vy_m_s[particle];
+    }
+    measure();
+}
+
+void ElasticDynamics::measure() {
+    for (const double mass_kg : mass_kg_) energy_offset_j_ += mass_kg * forces_.potential_j_kg(origin_m_);
+    const double* const y = initial_state_.data();
+    frequency_1_s_ = std::sqrt(elastic_.add_forces(y, y + count_, force_n_.data(), force_n_.data() + count_));
+    double fastest_m_s = 0.0;
+    double acceleration_m_s2 = 0.0;
+    for (std::size_t i = 0; i < count_; ++i) {
+        fastest_m_s = std::max(fastest_m_s, length(y[2 * count_ + i], y[3 * count_ + i]));
+        acceleration_m_s2 =
+            std::max(acceleration_m_s2, inverse_mass_1_kg_[i] * length(force_n_[i], force_n_[count_ + i]));
+    }
+    inverse_timescale_1_s_ = forces_.inverse_timescale_1_s(size_m_, fastest_m_s);
+    if (inverse_timescale_1_s_ == 0.0) inverse_timescale_1_s_ = std::sqrt(acceleration_m_s2 / size_m_);
+    if (inverse_timescale_1_s_ == 0.0) inverse_timescale_1_s_ = 1.0;
+}
+
+std::vector<ErrorScale> ElasticDynamics::error_scales() const {
+    return {{0, 2 * count_, size_m_, 0.0}, {2 * count_, 2 * count_, size_m_ * inverse_timescale_1_s_, 1.0}};
+}
+
+double ElasticDynamics::inverse_timescale_1_s() const {
+    return std::max(inverse_timescale_1_s_, frequency_1_s_ / kStableOmegaH);
+}
+
+void ElasticDynamics::derivative(const double* y, double* slope) {
+    double* __restrict const slope_vx = slope + 2 * count_;
+    double* __restrict const slope_vy = slope + 3 * count_;
+    const double* const vx = y + 2 * count_;
+    const double* const vy = y + 3 * count_;
+    std::copy_n(vx, 2 * count_, slope);
+    std::fill_n(slope_vx, 2 * count_, 0.0);
+    elastic_.add_forces(y, y + count_, slope_vx, slope_vy);
+    const double* const weight = inverse_mass_1_kg_.data();
+    const double* const falls = falls_.data();
+    const Vec2 uniform_m_s2 = forces_.uniform_m_s2();
+    const double drag_1_s = forces_.drag_1_s();
+    for (std::size_t i = 0; i < count_; ++i) {
+        slope_vx[i] = falls[i] * uniform_m_s2.x + weight[i] * slope_vx[i] - drag_1_s * vx[i];
+        slope_vy[i] = falls[i] * uniform_m_s2.y + weight[i] * slope_vy[i] - drag_1_s * vy[i];
+    }
+}
+
+void ElasticDynamics::positions(const double* y, State& state) const {
+    for (std::size_t i = 0; i < count_; ++i) {
+        state.x_m[first_particle_ + i] = origin_m_.x + y[i];
+        state.y_m[first_particle_ + i] = origin_m_.y + y[count_ + i];
+    }
+    for (const Pin& pin : pins_) {
+        state.x_m[first_particle_ + pin.particle] = pin.position_m.x;
+        state.y_m[first_particle_ + pin.particle] = pin.position_m.y;
+    }
+}
+
+double ElasticDynamics::energy_j(const double* y) const {
+    double energy_j = energy_offset_j_ + elastic_.energy_j(y, y + count_);
+    for (std::size_t i = 0; i < count_; ++i) {
+        const double vx = y[2 * count_ + i];
+        const double vy = y[3 * count_ + i];
+        energy_j += mass_kg_[i] * (0.5 * (vx * vx + vy * vy) + forces_.potential_j_kg({y[i], y[count_ + i]}));
+    }
+    return energy_j;
+}
+
+Loads ElasticDynamics::loads(const double* y) {
+    Loads loads;
+    loads.largest_tension_n = elastic_.largest_tension_n(y, y + count_);
+    std::fill(force_n_.begin(), force_n_.end(), 0.0);
+    elastic_.add_forces(y, y + count_, force_n_.data(), force_n_.data() + count_);
+    for (const Pin& pin : pins_) {
+        loads.pin_force_n =
+            std::max(loads.pin_force_n, length(force_n_[pin.particle], force_n_[count_ + pin.particle]));
+    }
+    return loads;
+}
+
+}  // namespace corda::sim

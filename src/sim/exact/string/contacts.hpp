@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "corda/sim/defs.hpp"
+#include "corda/sim/exact/string/tension_lcp.hpp"
+#include "corda/sim/forces/forces.hpp"
+#include "corda/sim/system.hpp"
+
+namespace corda::sim {
+
+/// The links of a string that are at their rest length: the snap when another one gets there, and which of
+/// them stay taut.
+class StringContacts {
+  public:
+    /// `string`: link k joins particles k and k + 1, and there are no other bars.
+    StringContacts(const System& string, const Forces& forces);
+
+    /// Changes the velocities of `string` by the impulses of a plastic snap of all links at their rest length
+    /// whose ends separate: impulses pull and never push, and links that pull have no speed of separation
+    /// afterwards. Of the links without such a speed, those whose tension is positive then stay taut, and the
+    /// others go slack. False if no such solution was found.
+    ///
+    /// `is_taut`, one entry per link: on entry before the snap, on return after it. A slack link takes part
+    /// if it is at its rest length to rounding, or gets there within 1e-11 of the string's time scale: events
+    /// that are simultaneous in a symmetric scene must not depend on their order.
+    ///
+    /// A link that the snap of another one shortens by less than 1e-10 of its length before it comes back
+    /// counts as taut. Two links that lie on each other shorten each other so in turn, ever more slowly; the
+    /// end of this is what impulses along both at once give.
+    [[nodiscard]] bool resolve(System& string, std::vector<std::uint8_t>& is_taut);
+
+    // In the state that was resolved last, smaller tensions and changes of length are rounding.
+    [[nodiscard]] double tension_error_n(std::size_t link) const {
+        return acceleration_error_m_s2_ * largest_mass_kg_[link];
+    }
+    [[nodiscard]] double length_error_m(std::size_t link) const {
+        return kLengthRounding * rest_m_[link] + place_error_m_;
+    }
+
+  private:
+    static constexpr double kLengthRounding = 1e-14;
+
+    void measure(const System& string);
+    void find_present(const System& string, const std::vector<std::uint8_t>& is_taut);
+    void snap(System& string) const;
+    /// Finds the links that stay taut after the snap.
+    [[nodiscard]] bool find_tensions(const System& string);
+    void find_accelerations(const System& string);
+
+    Forces forces_;
+    std::vector<double> rest_m_;
+    double length_m_ = 0.0;                ///< the sum of rest_m_
+    std::vector<double> largest_mass_kg_;  ///< one per link; its tension's rounding comes from it
+
+    // Of the state that is being resolved.
+    double inverse_timescale_1_s_ = 0.0;  ///< see Forces
+    double speed_error_m_s_ = 0.0;
+    double acceleration_error_m_s2_ = 0.0;
+    double place_error_m_ = 0.0;
+    std::vector<Vec2> direction_;     ///< one per link, of those at their rest length
+    std::vector<double> inward_m_s_;  ///< one per link: its speed after the snap; 0 if that is rounding
+    TensionLcp lcp_;
+};
+
+}  // namespace corda::sim

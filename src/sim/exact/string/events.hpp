@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "corda/sim/exact/dop853.hpp"
+#include "corda/sim/exact/string/contacts.hpp"
+#include "corda/sim/exact/string/dynamics.hpp"
+#include "corda/sim/solver.hpp"
+
+namespace corda::sim {
+
+/// Finds the first time in a step at which a link of a string goes slack or comes taut.
+///
+/// Every link has a margin, which is negative until its event: for a taut link minus its tension, for a slack
+/// one of rest length r whose ends are d apart (d^2 - r^2) / (2 r), which is about d - r. Margins are lowered
+/// by their rounding, and to below 0 at the start, so that a link that has just changed sides does not change
+/// back at once.
+///
+/// Margins are sampled at the ends of kParts equal parts of a step. A step is no longer than the time in
+/// which any part of the string moves by its own length, and the solution in it is a polynomial of degree 7,
+/// so over two parts of eight a margin is close to a parabola. If the parabola's top lies between the samples
+/// and near 0, the top is sought. Missed is only a link that exceeds its rest length by far less than the
+/// tolerance and comes back within a part.
+class StringEvents {
+  public:
+    static constexpr std::size_t kParts = 8;
+
+    /// For a string of this many particles.
+    explicit StringEvents(std::size_t particles);
+
+    /// From now on the links of `is_taut` are taut and the others slack. `string`: the state from which
+    /// `dynamics` starts.
+    void start(const System& string, const std::vector<std::uint8_t>& is_taut, const StringContacts& contacts,
+               StringDynamics& dynamics);
+
+    /// The first event in the last step of `integrator`, which integrates `dynamics`: the time, to rounding,
+    /// from which on a margin is not negative. std::nullopt if there is none.
+    [[nodiscard]] std::optional<double> first_in_step(Dop853& integrator, StringDynamics& dynamics);
+
+  private:
+    struct Sample {
+        double time_s = 0.0;
+        double margin = 0.0;
+    };
+    /// What margins are computed from.
+    struct Motion {
+        Dop853& integrator;
+        StringDynamics& dynamics;
+    };
+
+    /// Writes the margin of every link at a time within the step and returns the largest.
+    double measure(const Motion& motion, double time_s, double* margin);
+    /// Projects y_, a state of the dynamics, and computes positions and tensions there.
+    void read(StringDynamics& dynamics);
+    /// Minus the tension, or (d^2 - r^2) / (2 r), of a link at the last read().
+    [[nodiscard]] double raw_margin(std::size_t link) const;
+    /// A time between three negative samples of a link's margin at which the margin is not negative, with the
+    /// largest margin of all links there; std::nullopt if there is none.
+    [[nodiscard]] std::optional<Sample> top(const Motion& motion, std::size_t link, Sample before,
+                                            Sample middle, Sample after);
+    /// The earliest top() of all links within the two parts beside this row.
+    [[nodiscard]] std::optional<Sample> first_top(const Motion& motion, std::size_t middle);
+    /// The time at which the largest margin changes its sign, on the side where it is not negative.
+    [[nodiscard]] double root(const Motion& motion, Sample low, Sample high);
+    [[nodiscard]] double* row(std::size_t part) { return &margin_[part * link_count_]; }
+
+    std::size_t link_count_;
+    std::vector<std::uint8_t> is_taut_;
+    std::vector<double> rest_m_;
+    std::vector<double> threshold_;  ///< subtracted from a margin, in N (taut) or m (slack)
+    bool knows_start_ = false;       ///< the last row is that of the next step's start
+    std::array<double, kParts + 1> time_s_{};
+    std::vector<double> margin_;                ///< [0 .. kParts][link]
+    std::array<double, kParts + 1> largest_{};  ///< largest margin of all links
+    // Scratch.
+    std::vector<double> y_;
+    std::vector<double> link_margin_;
+    std::vector<double> tension_n_;
+    State state_;
+};
+
+}  // namespace corda::sim

@@ -1,0 +1,206 @@
+#include "corda/sim/exact/string/part.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "corda/sim/distance.hpp"
+#include "corda/sim/refusal.hpp"
+
+namespace corda::sim {
+namespace {
+
+/// A link that is shorter than its rest length by more than this share starts slack.
+constexpr double kAtRest = 1e-12;
+
+/// A link that is longer than its rest length by more than this share is an error in the scene; less is
+/// rounding.
+constexpr double kTooLong = 1e-9;
+
+/// More events per link than this within kBurst of the string's time scale never come to an end. A snap that
+/// runs along the string takes some events per link.
+constexpr std::uint64_t kMostEventsALink = 1000;
+constexpr double kBurst = 1e-6;
+
+double distance_m(const System& string, const Bar& link) {
+    return length(string.x_m[link.b] - string.x_m[link.a], string.y_m[link.b] - string.y_m[link.a]);
+}
+
+/// The body as a system of its own, with its first particle at (0, 0).
+System system_of(const System& system, const Body& body) {
+    System string;
+    const std::size_t first = body.first_particle;
+    const std::size_t end = first + body.particle_count;
+    const auto part = [&](const std::vector<double>& of) {
+        return std::vector<double>(of.begin() + static_cast<std::ptrdiff_t>(first),
+                                   of.begin() + static_cast<std::ptrdiff_t>(end));
+    };
+    string.x_m = part(system.x_m);
+    string.y_m = part(system.y_m);
+    string.vx_m_s = part(system.vx_m_s);
+    string.vy_m_s = part(system.vy_m_s);
+    string.mass_kg = part(system.mass_kg);
+    string.inverse_mass_1_kg = part(system.inverse_mass_1_kg);
+    const Vec2 offset{string.x_m[0], string.y_m[0]};
+    for (double& x : string.x_m) x -= offset.x;
+    for (double& y : string.y_m) y -= offset.y;
+    for (std::size_t k = 0; k + 1 < body.particle_count; ++k) {
+        const auto near = static_cast<std::uint32_t>(k);
+        string.bars.push_back({near, near + 1, 1, system.bars[body.first_bar + k].rest_m});
+    }
+    Body whole = body;
+    whole.first_particle = whole.first_bar = 0;
+    string.bodies.push_back(whole);
+    return string;
+}
+
+/// One entry per link. These links count as taut if their tensions do not tell, as those of a rope that falls
+/// straight.
+std::vector<std::uint8_t> links_at_rest_length(const System& string) {
+    std::vector<std::uint8_t> is_taut;
+    for (const Bar& link : string.bars)
+        is_taut.push_back(distance_m(string, link) >= (1.0 - kAtRest) * link.rest_m ? 1 : 0);
+    return is_taut;
+}
+
+void refuse_bends(const System& system, const Body& body) {
+    for (const Bend& bend : system.bends) {
+        if (bend.b < body.first_particle || bend.b >= body.first_particle + body.particle_count) continue;
+        throw Refusal(Refusal::Reason::kRigidBendingString,
+                      "method exact moves a string of rigid links only if it does not resist bending");
+    }
+}
+
+void refuse_long_links(const System& string) {
+    for (std::size_t k = 0; k < string.bars.size(); ++k) {
+        const double now_m = distance_m(string, string.bars[k]);
+        if (now_m <= (1.0 + kTooLong) * string.bars[k].rest_m) continue;
+        throw Refusal(Refusal::Reason::kStretchedString,
+                      "link " + std::to_string(k) + " of a string is longer than its rest length (" +
+                          std::to_string(now_m) + " m for " + std::to_string(string.bars[k].rest_m) +
+                          " m), and rigid links do not stretch");
+    }
+}
+
+/// A string whose rest length is the distance of two of its pins can only be straight between them.
+void refuse_taut(const System& string) {
+    std::optional<std::size_t> last;
+    double rest_m = 0.0;
+    for (std::size_t i = 0; i < string.particle_count(); ++i) {
+        if (string.is_pinned(i)) {
+            if (last && i > *last + 1) {
+                ChainDynamics::refuse_taut(
+                    rest_m, {string.x_m[i] - string.x_m[*last], string.y_m[i] - string.y_m[*last]}, *last, i);
+            }
+            last = i;
+            rest_m = 0.0;
+        }
+        if (i < string.bars.size()) rest_m += string.bars[i].rest_m;
+    }
+}
+
+}  // namespace
+
+StringPart::StringPart(const System& system, const Body& body, const Forces& forces, double tolerance)
+    : forces_(forces),
+      tolerance_(tolerance),
+      offset_m_{system.x_m[body.first_particle], system.y_m[body.first_particle]},
+      first_particle_(body.first_particle),
+      string_(system_of(system, body)),
+      is_taut_(links_at_rest_length(string_)),
+      contacts_(string_, forces),
+      finder_(string_.particle_count()) {
+    assert(body.is_chain && body.material.is_string && body.material.compliance_1_n == 0.0);
+    refuse_bends(system, body);
+    refuse_long_links(string_);
+    refuse_taut(string_);
+    if (!start(0.0)) {
+        throw Refusal(Refusal::Reason::kUndecidedString,
+                      "the start does not determine which links of a string are taut");
+    }
+    output_ = dynamics_->initial_state();
+    local_.x_m = string_.x_m;
+    local_.y_m = string_.y_m;
+}
+
+Status StringPart::advance_to(double time_s, State& state) {
+    if (!std::isfinite(time_s)) return Status::kDiverged;
+    while (known_s_ < time_s) {
+        if (!(event_s_ ? pass_event() : take_step())) return Status::kDiverged;
+    }
+    output_.resize(integrator_->size());
+    integrator_->interpolate(std::clamp(time_s - start_s_, integrator_->old_time_s(), integrator_->time_s()),
+                             output_.data());
+    dynamics_->project(output_.data());
+    dynamics_->positions(output_.data(), local_);
+    for (std::size_t i = 0; i < string_.particle_count(); ++i) {
+        if (string_.is_pinned(i)) continue;
+        state.x_m[first_particle_ + i] = offset_m_.x + local_.x_m[i];
+        state.y_m[first_particle_ + i] = offset_m_.y + local_.y_m[i];
+    }
+    return Status::kOk;
+}
+
+bool StringPart::start(double first_step_s) {
+    if (!contacts_.resolve(string_, is_taut_)) return false;
+    dynamics_ = std::make_unique<StringDynamics>(string_, is_taut_, forces_);
+    StepControl control = step_control(dynamics_->inverse_timescale_1_s(), tolerance_);
+    control.first_s = std::max(control.first_s, first_step_s);
+    integrator_ =
+        std::make_unique<Dop853>(*dynamics_, dynamics_->initial_state(), dynamics_->error_scales(), control);
+    finder_.start(string_, is_taut_, contacts_, *dynamics_);
+    return true;
+}
+
+bool StringPart::take_step() {
+    if (integrator_->step() == Status::kDiverged) return false;
+    event_s_ = finder_.first_in_step(*integrator_, *dynamics_);
+    known_s_ = start_s_ + (event_s_ ? *event_s_ : integrator_->time_s());
+    return true;
+}
+
+bool StringPart::pass_event() {
+    std::vector<double> y(integrator_->size());
+    integrator_->interpolate(*event_s_, y.data());
+    dynamics_->project(y.data());
+    dynamics_->positions(y.data(), local_);
+    dynamics_->velocities(y.data(), string_.vx_m_s, string_.vy_m_s);
+    string_.x_m = local_.x_m;
+    string_.y_m = local_.y_m;
+    start_s_ = known_s_;
+    event_s_.reset();
+    steps_before_ += integrator_->accepted_steps();
+    rejected_before_ += integrator_->rejected_steps();
+    return count_event() && start(integrator_->next_step_s());
+}
+
+bool StringPart::count_event() {
+    ++events_;
+    const double span_s = kBurst / dynamics_->inverse_timescale_1_s();
+    if (start_s_ - burst_s_ > span_s) {
+        burst_s_ = start_s_;
+        burst_ = 0;
+    }
+    return ++burst_ <= kMostEventsALink * string_.bars.size();
+}
+
+double StringPart::energy_j() const {
+    double energy_j = dynamics_->energy_j(output_.data());
+    for (std::size_t i = 0; i < string_.particle_count(); ++i) {
+        if (!string_.is_pinned(i)) energy_j += string_.mass_kg[i] * forces_.potential_j_kg(offset_m_);
+    }
+    return energy_j;
+}
+
+std::uint64_t StringPart::steps() const {
+    return steps_before_ + integrator_->accepted_steps();
+}
+
+std::uint64_t StringPart::rejected_steps() const {
+    return rejected_before_ + integrator_->rejected_steps();
+}
+
+}  // namespace corda::sim

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "corda/sim/exact/dop853.hpp"
+#include "corda/sim/exact/exact_part.hpp"
+#include "corda/sim/exact/string/contacts.hpp"
+#include "corda/sim/exact/string/dynamics.hpp"
+#include "corda/sim/exact/string/events.hpp"
+#include "corda/sim/system.hpp"
+
+namespace corda::sim {
+
+/// A rope whose rigid links pull and never push. A link is taut, at its rest length, or slack and without
+/// force. Between events the taut links move as rigid chains (StringDynamics). A taut link goes slack when
+/// its tension would become negative. A slack link that reaches its rest length snaps: impulses along the
+/// links at their rest length stop their ends from separating (StringContacts). Momentum is kept, energy is
+/// lost.
+///
+/// Each step is searched for events when it is taken, and the integration starts anew at each event. As in
+/// Dop853, nothing depends on the times that are asked for. Memory is allocated at events only.
+class StringPart final : public ExactPart {
+  public:
+    /// `body`: a chain of `system` with is_string and without compliance. Throws corda::Refusal if it resists
+    /// bending, if a link is longer than its rest length, if it is taut between two pins, or if its start
+    /// does not determine which links are taut.
+    StringPart(const System& system, const Body& body, const Forces& forces, double tolerance);
+
+    Status advance_to(double time_s, State& state) override;
+    [[nodiscard]] double energy_j() const override;
+    /// Slack links carry no tension.
+    [[nodiscard]] Loads loads() override { return dynamics_->loads(output_.data()); }
+    [[nodiscard]] std::uint64_t steps() const override;
+    [[nodiscard]] std::uint64_t rejected_steps() const override;
+
+    /// Number of times at which links went slack or snapped.
+    [[nodiscard]] std::uint64_t events() const { return events_; }
+
+  private:
+    /// Finds the taut links of string_ and starts the motion there, with a first step of at least
+    /// `first_step_s` if the tolerance allows. False if the taut links cannot be found.
+    [[nodiscard]] bool start(double first_step_s);
+    [[nodiscard]] bool take_step();
+    [[nodiscard]] bool pass_event();
+    /// Counts an event; false if there are too many in too short a time.
+    [[nodiscard]] bool count_event();
+
+    Forces forces_;
+    double tolerance_;
+    Vec2 offset_m_;                      ///< position of string_ in the system
+    std::size_t first_particle_;         ///< in the system
+    System string_;                      ///< the body alone, relative to its first particle; at start_s_
+    std::vector<std::uint8_t> is_taut_;  ///< one per link, from start_s_ on
+    StringContacts contacts_;
+    StringEvents finder_;
+    std::unique_ptr<StringDynamics> dynamics_;
+    std::unique_ptr<Dop853> integrator_;  ///< its time 0 is start_s_
+    double start_s_ = 0.0;
+    double known_s_ = 0.0;           ///< until then the motion is that of integrator_
+    std::optional<double> event_s_;  ///< if known_s_ is an event: the time of integrator_ there
+    std::vector<double> output_;     ///< state at the last time asked for
+    State local_;                    ///< positions of string_'s particles there; scratch
+    std::uint64_t events_ = 0;
+    std::uint64_t burst_ = 0;  ///< events since burst_s_
+    double burst_s_ = 0.0;
+    std::uint64_t steps_before_ = 0;  ///< of former integrators
+    std::uint64_t rejected_before_ = 0;
+};
+
+}  // namespace corda::sim

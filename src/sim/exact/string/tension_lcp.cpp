@@ -1,0 +1,87 @@
+#include "corda/sim/exact/string/tension_lcp.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+#include <utility>
+
+#include "corda/sim/chain_tensions.hpp"
+
+namespace corda::sim {
+namespace {
+
+/// Exchanges of whole blocks in a row that may fail to leave fewer wrong signs than ever before; Judice and
+/// Pires recommend 10 or fewer.
+constexpr int kPatience = 5;
+
+}  // namespace
+
+TensionLcp::TensionLcp(std::vector<double> inverse_mass_1_kg)
+    : inverse_mass_1_kg_(std::move(inverse_mass_1_kg)) {
+    assert(!inverse_mass_1_kg_.empty());
+    const std::size_t links = inverse_mass_1_kg_.size() - 1;
+    side.assign(links, Side::kAbsent);
+    for (std::vector<double>* array :
+         {&right, &cosine, &sine, &z_error, &cosine_, &sine_, &pivot_, &weight_, &z_, &w_}) {
+        array->assign(links, 0.0);
+    }
+    wrong_.reserve(links);
+}
+
+bool TensionLcp::solve(double w_error) {
+    const std::size_t links = side.size();
+    // Pivoting by single links terminates, but rounding could undo that.
+    const std::size_t most_rounds = 100 + 20 * links;
+    std::size_t fewest = std::numeric_limits<std::size_t>::max();
+    int patience = kPatience;
+    for (std::size_t round = 0; round < most_rounds; ++round) {
+        solve_pulling();
+        wrong_.clear();
+        for (std::size_t k = 0; k < links; ++k) {
+            if (has_wrong_sign(k, w_error)) wrong_.push_back(k);
+        }
+        if (wrong_.empty()) return true;
+        if (wrong_.size() < fewest) {
+            fewest = wrong_.size();
+            patience = kPatience;
+        } else if (patience > 0) {
+            --patience;
+        } else {
+            wrong_.erase(wrong_.begin(), wrong_.end() - 1);
+        }
+        for (const std::size_t k : wrong_) side[k] = side[k] == Side::kPulls ? Side::kFree : Side::kPulls;
+    }
+    return false;
+}
+
+bool TensionLcp::has_wrong_sign(std::size_t link, double w_error) const {
+    if (side[link] == Side::kAbsent) return false;
+    // Negated, so that a NaN counts as wrong.
+    return side[link] == Side::kPulls ? !(z_[link] >= -z_error[link]) : !(w_[link] >= -w_error);
+}
+
+void TensionLcp::solve_pulling() {
+    const std::size_t links = side.size();
+    const std::vector<double>& mass = inverse_mass_1_kg_;
+    std::fill(z_.begin(), z_.end(), 0.0);
+    for (std::size_t k = 0; k < links; ++k) {
+        cosine_[k] = mass[k + 1] * cosine[k];
+        sine_[k] = mass[k + 1] * sine[k];
+    }
+    // Every run of links that pull, from `first` on.
+    for (std::size_t first = 0, end = 0; first < links; first = end + 1) {
+        for (end = first; end < links && side[end] == Side::kPulls;) ++end;
+        if (end == first) continue;
+        solve_tensions({end - first, mass[first], &mass[first + 1], &cosine_[first], &sine_[first]},
+                       &right[first], &pivot_[first], &weight_[first], &z_[first]);
+    }
+    for (std::size_t k = 0; k < links; ++k) {
+        w_[k] = 0.0;
+        if (side[k] != Side::kFree) continue;
+        const double before = k > 0 ? cosine_[k - 1] * z_[k - 1] : 0.0;
+        const double after = k + 1 < links ? cosine_[k] * z_[k + 1] : 0.0;
+        w_[k] = -before - after - right[k];
+    }
+}
+
+}  // namespace corda::sim

@@ -1,0 +1,115 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "corda/sim/elastic_forces.hpp"
+#include "corda/sim/rattle/composition.hpp"
+#include "corda/sim/rattle/constraint_solver.hpp"
+#include "corda/sim/solver.hpp"
+
+namespace corda::sim {
+
+/// Method `rattle`: RATTLE (Andersen 1983; Hairer, Lubich, Wanner, Geometric Numerical Integration, VII.1.4)
+/// composed to order 2, 4, 6 or 8. A stage of span s, which may be negative, is
+///
+///   v <- exp(-c s / 2) v + (s / 2) a(x) - W G(x)' p,    p such that x + s v has rigid bars at their lengths,
+///   x <- x + s v,
+///   v <- exp(-c s / 2) (v + (s / 2) a(x)) - W G(x)' q,  q such that no rigid bar's length changes.
+///
+/// G, W and the impulses p and q are those of ConstraintSolver; positive ones pull. a is the uniform
+/// acceleration (Forces) plus the forces of bars that stretch and ropes that resist bending (ElasticForces)
+/// over the mass; c is the drag, which is split off symmetrically and exact. Without rigid bars this is the
+/// leapfrog. q and the next stage's p lie along the same bars, and p makes up for any q: the solver leaves q
+/// out between stages, merges the half kicks that meet, and computes q only for states that it hands out. The
+/// positions are the same. When a string that stretches comes taut, its force has a kink, and errors are of
+/// order 2 whatever the composition.
+///
+/// Grid point n is at n h, h being the step; `steps()` counts grid steps. A time between two grid points is
+/// reached by one shorter step from the grid point before it, on a copy, so that the trajectory does not
+/// depend on the times that are asked for.
+///
+/// A grid step is taken in 2, 4, 8, ... parts if it is unstable (step times a bound on the largest frequency,
+/// which follows from the tensions and the elastic stiffness), if a bar turns by more than about 60 degrees
+/// in a stage, or if Newton's method does not converge. If 2^24 parts are not enough, the run has diverged.
+class Rattle final : public Solver {
+  public:
+    /// If `def` names no step, `frame_interval_s` is divided by the smallest whole number that makes a stable
+    /// step. Throws corda::Refusal for a rigid rope that is straight between two pins, for rigid bars whose
+    /// lengths depend on each other, and for rigid strings.
+    Rattle(const System& system, const Forces& forces, const RattleDef& def, double frame_interval_s);
+
+    Status advance_to(double time_s, State& state) override;
+    [[nodiscard]] double energy_j() const override;
+    /// From the tensions that keep the second derivatives of the rigid bars' lengths 0.
+    [[nodiscard]] std::optional<Loads> loads() const override;
+    [[nodiscard]] std::uint64_t steps() const override { return step_; }
+
+    [[nodiscard]] MethodDef method() const override { return RattleDef{order_, step_s_}; }
+
+    [[nodiscard]] double step_s() const { return step_s_; }
+    /// Parts of grid steps taken so far: equal to steps() while no step is divided.
+    [[nodiscard]] std::uint64_t parts() const { return parts_; }
+
+  private:
+    /// A trajectory at the end of a stage, before the second half of the stage's kick.
+    struct Trajectory {
+        Motion motion;
+        double last_span_s = 0.0;        ///< of that stage; 0 at the start
+        std::vector<double> multiplier;  ///< of every rigid bar in the last stage: impulse over kick, N / m
+        int level = 0;                   ///< a step is taken in 2^level parts
+        double frequency_1_s = 0.0;  ///< bound on the largest frequency, from `multiplier` and ElasticForces
+    };
+    /// Multipliers of the last parts of a step, from which those of the next part are guessed.
+    struct History {
+        std::vector<double> multipliers;  ///< [age][stage][link]
+        int count = 0;                    ///< known parts in a row of the same span, up to kHistory
+        int newest = 0;
+    };
+    static constexpr int kHistory = 3;
+
+    /// Advances by `span_s` in as many parts as are needed.
+    [[nodiscard]] bool advance(double span_s, Trajectory& trajectory, History* history);
+    [[nodiscard]] bool take_part(double part_s, Trajectory& trajectory, History* history);
+    [[nodiscard]] double* multipliers(History& history, std::size_t stage, int age) const;
+    void guess(std::size_t stage, double kick_s, const Trajectory& trajectory, History* history);
+    [[nodiscard]] bool is_elastic() const { return !elastic_.empty(); }
+    /// Writes the elastic forces at these positions to force_x_n_ and force_y_n_, and returns their bound on
+    /// the square of the largest frequency.
+    double find_forces(const Motion& motion);
+    /// Applies the stage's decay and push together with the elastic forces, and removes them from the stage.
+    /// Returns what find_forces() returns.
+    double push(double kick_s, Stage& stage, Motion& motion);
+    /// Writes a trajectory's state with complete velocities to output_.
+    [[nodiscard]] bool complete(const Trajectory& trajectory);
+    [[nodiscard]] bool find_tensions() const;
+    [[nodiscard]] double expected_frequency(double elastic_square) const;
+
+    int order_;
+    const Composition& composition_;
+    std::unique_ptr<ConstraintSolver> constraints_;
+    Forces forces_;
+    ElasticForces elastic_;
+    double step_s_ = 0.0;
+    std::uint64_t step_ = 0;
+    std::uint64_t parts_ = 0;
+    std::vector<double> mass_kg_;
+    std::vector<double> inverse_mass_1_kg_;
+    Trajectory grid_;        ///< at step_ * step_s_
+    Trajectory between_;     ///< scratch for a time between grid points
+    Trajectory part_start_;  ///< from which a part that fails is repeated
+    History history_;
+    std::vector<double> impulse_;
+    // Forces of the last evaluation, which is that of output_ whenever advance_to() has returned; empty
+    // without elastic forces.
+    std::vector<double> force_x_n_;
+    std::vector<double> force_y_n_;
+    Motion output_;  ///< at the last time asked for, velocities complete
+    // Of output_; scratch of loads().
+    mutable std::vector<double> tension_over_length_n_m_;
+    mutable std::vector<Vec2> pin_force_n_;  ///< one per particle; only those of pinned ones are used
+};
+
+}  // namespace corda::sim

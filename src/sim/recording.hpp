@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "corda/sim/bounds.hpp"
+#include "corda/sim/simulation.hpp"
+
+namespace corda::sim {
+
+/// The states of one run at the times of a timeline, in order, up to a memory budget. Of states beyond the
+/// budget only the bounds and the largest figures are kept.
+class Recording {
+  public:
+    /// `state_count`: of the timeline. `budget_bytes`: the most memory that states may take.
+    Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes);
+
+    /// Forgets all states.
+    void clear();
+    /// Advances a run to the next time and adds its state, unless the run diverges. `clock_s`, if not empty,
+    /// measures the stepping.
+    Status advance(Simulation& run, double time_s, const std::function<double()>& clock_s);
+
+    /// Number of states added.
+    [[nodiscard]] std::size_t size() const { return size_; }
+    /// Whether state `i` was added and is kept.
+    [[nodiscard]] bool holds(std::size_t i) const { return i < figures_.size(); }
+    /// Writes state `i`, which it holds, to `state`.
+    void read(std::size_t i, State& state) const;
+    [[nodiscard]] const Figures& figures(std::size_t i) const { return figures_[i]; }
+
+    /// Of all states added.
+    [[nodiscard]] const MotionBounds& bounds() const { return bounds_; }
+    /// Of the run up to the last state added.
+    [[nodiscard]] const Diagnostics& diagnostics() const { return diagnostics_; }
+
+    /// Seconds of stepping of that run; 0 without a clock.
+    [[nodiscard]] double wall_s() const { return wall_s_; }
+
+  private:
+    std::size_t particle_count_;
+    std::size_t most_states_;
+    std::size_t size_ = 0;
+    std::vector<double> values_;  ///< per state: time, then all x, then all y
+    std::vector<Figures> figures_;
+    MotionBounds bounds_;
+    Diagnostics diagnostics_;
+    double wall_s_ = 0.0;
+};
+
+}  // namespace corda::sim

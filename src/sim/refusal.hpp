@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+
+#include "corda/core/basics.hpp"
+
+namespace corda {
+
+/// What `sim` throws for a definition that is not what its declaration says and for a system that a method
+/// cannot run: an Error of the code kInvalidScene. The message says why in physical terms; pipeline adds the
+/// scene's name and, by `reason()`, which keys of a scene file would help.
+class Refusal : public Error {
+  public:
+    enum class Reason {
+        kDefinition,          ///< a field is not what its declaration says
+        kBarWithoutLength,    ///< all but `relaxation`: a bar whose particles coincide
+        kImaginaryBars,       ///< `exact`: bars of reach > 1
+        kRigidGraph,          ///< `exact`: rigid bars that do not form an open chain
+        kRigidStringGraph,    ///< `exact`: a string of rigid links that does not form an open chain
+        kRigidString,         ///< `rattle`: a string of rigid links
+        kRigidBendingString,  ///< `exact`: a string of rigid links that resists bending
+        kStretchedString,     ///< `exact`: a rigid link of a string longer at the start than its rest length
+        kUndecidedString,     ///< `exact`: the start does not determine which links of a string are taut
+        kTautBetweenPins,     ///< a rigid rope that is straight between two pins
+        kDependentBars,       ///< `rattle`: the lengths of rigid bars depend on each other
+        kMaterial,            ///< `relaxation`: compliance, a string or bending
+    };
+
+    Refusal(Reason reason, const std::string& problem)
+        : Error(ExitCode::kInvalidScene, problem), reason_(reason) {}
+
+    [[nodiscard]] Reason reason() const noexcept { return reason_; }
+
+  private:
+    Reason reason_;
+};
+
+}  // namespace corda

@@ -1,0 +1,185 @@
+#include "corda/sim/relaxation/kernels.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "corda/sim/distance.hpp"
+
+#if defined(__x86_64__)
+#include <emmintrin.h>
+#endif
+
+namespace corda::sim {
+namespace {
+
+/// d <- (1 - delta) d + (h^2 / m) f, current <- current + d, after d has taken up what the bars moved.
+void update(std::size_t k, RelaxationMotion& motion) {
+    motion.last_move_m[k] = motion.move_m[k] + (motion.position_m[k] - motion.unrelaxed_m[k]);
+    motion.move_m[k] = motion.keep * motion.last_move_m[k] + motion.push_m[k];
+    motion.position_m[k] += motion.move_m[k];
+    motion.unrelaxed_m[k] = motion.position_m[k];
+}
+
+/// Moves the particles at `a` and `b` by their shares of the bar's adjustment.
+void relax(double* a, double* b, double rest_m, double share_a, double share_b) {
+    const double dx = b[0] - a[0];
+    const double dy = b[1] - a[1];
+    const double distance = length(dx, dy);
+    // Two particles in one place have no direction to be pushed along; other bars part them.
+    if (distance == 0.0) return;
+    const double adjust = distance - rest_m;
+    const double move_x = dx / distance * adjust;
+    const double move_y = dy / distance * adjust;
+    a[0] += share_a * move_x;
+    a[1] += share_a * move_y;
+    b[0] -= share_b * move_x;
+    b[1] -= share_b * move_y;
+}
+
+#if defined(__x86_64__)
+
+/// Sweeps under way at once. Three hide a bar's latency behind one another if the rope is long enough for so
+/// many; more share what a rope too large for the caches reads from memory.
+constexpr std::size_t kSweepsAtOnce = 6;
+
+/// A sweep under way.
+struct Cursor {
+    std::size_t packet = 0;  ///< the next one
+    bool updates = false;    ///< this sweep is the first of a step
+};
+
+/// What the kernel needs of a schedule and of the motion, at hand.
+struct Pointers {
+    const RelaxationPacket* packets;
+    const std::uint32_t* updates;
+    const std::uint32_t* update_begin;
+    double* position_m;
+    double* move_m;
+    double* unrelaxed_m;
+    double* last_move_m;
+    const double* push_m;
+    double keep;
+};
+
+/// Relaxes the bars of a packet, one of which has no length.
+[[gnu::noinline, gnu::cold]] void relax_one_by_one(const RelaxationPacket& packet, double* position_m) {
+    const std::size_t bars = packet.a[0] == packet.a[1] ? 1 : 2;
+    for (std::size_t lane = 0; lane < bars; ++lane) {
+        relax(position_m + packet.a[lane], position_m + packet.b[lane], packet.rest_m[lane],
+              packet.share_a[lane], packet.share_b[lane]);
+    }
+}
+
+/// Verlet's update of one particle.
+inline void update_particle(const Pointers& p, std::uint32_t particle) {
+    const std::size_t at = std::size_t{2} * particle;
+    __m128d position = _mm_loadu_pd(p.position_m + at);
+    const __m128d last =
+        _mm_add_pd(_mm_loadu_pd(p.move_m + at), _mm_sub_pd(position, _mm_loadu_pd(p.unrelaxed_m + at)));
+    const __m128d move = _mm_add_pd(_mm_mul_pd(_mm_set1_pd(p.keep), last), _mm_loadu_pd(p.push_m + at));
+    position = _mm_add_pd(position, move);
+    _mm_storeu_pd(p.last_move_m + at, last);
+    _mm_storeu_pd(p.move_m + at, move);
+    _mm_storeu_pd(p.unrelaxed_m + at, position);
+    _mm_storeu_pd(p.position_m + at, position);
+}
+
+/// Relaxes the bars of a packet.
+inline void relax_two(const RelaxationPacket& packet, double* position_m) {
+    double* const a0 = position_m + packet.a[0];
+    double* const a1 = position_m + packet.a[1];
+    double* const b0 = position_m + packet.b[0];
+    double* const b1 = position_m + packet.b[1];
+    const __m128d at_a0 = _mm_loadu_pd(a0);
+    const __m128d at_a1 = _mm_loadu_pd(a1);
+    const __m128d at_b0 = _mm_loadu_pd(b0);
+    const __m128d at_b1 = _mm_loadu_pd(b1);
+    const __m128d along0 = _mm_sub_pd(at_b0, at_a0);
+    const __m128d along1 = _mm_sub_pd(at_b1, at_a1);
+    const __m128d square0 = _mm_mul_pd(along0, along0);
+    const __m128d square1 = _mm_mul_pd(along1, along1);
+    const __m128d distance =
+        _mm_sqrt_pd(_mm_add_pd(_mm_unpacklo_pd(square0, square1), _mm_unpackhi_pd(square0, square1)));
+    if (_mm_movemask_pd(_mm_cmpeq_pd(distance, _mm_setzero_pd())) != 0) [[unlikely]]
+        return relax_one_by_one(packet, position_m);
+    const __m128d adjust = _mm_sub_pd(distance, _mm_load_pd(packet.rest_m.data()));
+    const __m128d move0 =
+        _mm_mul_pd(_mm_div_pd(along0, _mm_unpacklo_pd(distance, distance)), _mm_unpacklo_pd(adjust, adjust));
+    const __m128d move1 =
+        _mm_mul_pd(_mm_div_pd(along1, _mm_unpackhi_pd(distance, distance)), _mm_unpackhi_pd(adjust, adjust));
+    _mm_storeu_pd(a0, _mm_add_pd(at_a0, _mm_mul_pd(_mm_set1_pd(packet.share_a[0]), move0)));
+    _mm_storeu_pd(a1, _mm_add_pd(at_a1, _mm_mul_pd(_mm_set1_pd(packet.share_a[1]), move1)));
+    _mm_storeu_pd(b0, _mm_sub_pd(at_b0, _mm_mul_pd(_mm_set1_pd(packet.share_b[0]), move0)));
+    _mm_storeu_pd(b1, _mm_sub_pd(at_b1, _mm_mul_pd(_mm_set1_pd(packet.share_b[1]), move1)));
+}
+
+/// Runs `packets` packets of each sweep under way, one of each in turn.
+void run_together(const Pointers& p, std::span<Cursor> sweeps, std::size_t packets) {
+    for (; packets > 0; --packets) {
+        for (Cursor& sweep : sweeps) {
+            const std::size_t k = sweep.packet++;
+            if (sweep.updates) {
+                for (std::uint32_t j = p.update_begin[k]; j < p.update_begin[k + 1]; ++j)
+                    update_particle(p, p.updates[j]);
+            }
+            relax_two(p.packets[k], p.position_m);
+        }
+    }
+}
+
+/// Runs sweeps of `length` packets, each at least `lag` packets behind the one before.
+void run_staggered(const Pointers& p, const RelaxationSweeps& sweeps, std::size_t length, std::size_t lag) {
+    std::array<Cursor, kSweepsAtOnce> cursors;
+    std::size_t under_way = 0;
+    std::uint64_t begun = 0;
+    const auto may_begin = [&] { return begun < sweeps.count && under_way < cursors.size(); };
+    while (begun < sweeps.count || under_way > 0) {
+        if (may_begin() && (under_way == 0 || cursors[under_way - 1].packet >= lag)) {
+            const bool updates = begun % sweeps.per_step == 0 && !(begun == 0 && sweeps.starts_updated);
+            cursors[under_way++] = {0, updates};
+            ++begun;
+        }
+        // Up to where the next sweep begins or the first one ends.
+        std::size_t packets = length - cursors[0].packet;
+        if (may_begin()) packets = std::min(packets, lag - cursors[under_way - 1].packet);
+        run_together(p, std::span(cursors.data(), under_way), packets);
+        if (cursors[0].packet < length) continue;
+        std::copy(cursors.begin() + 1, cursors.begin() + under_way, cursors.begin());
+        --under_way;
+    }
+}
+
+#endif
+
+}  // namespace
+
+void run_sweeps(std::span<const RelaxationBar> bars, const RelaxationSweeps& sweeps,
+                RelaxationMotion& motion) {
+    double* const position = motion.position_m.data();
+    for (std::uint64_t sweep = 0; sweep < sweeps.count; ++sweep) {
+        if (sweep % sweeps.per_step == 0 && !(sweep == 0 && sweeps.starts_updated)) {
+            for (std::size_t k = 0; k < motion.position_m.size(); ++k) update(k, motion);
+        }
+        for (const RelaxationBar& bar : bars) {
+            relax(position + std::size_t{2} * bar.a, position + std::size_t{2} * bar.b, bar.rest_m,
+                  bar.share_a, bar.share_b);
+        }
+    }
+}
+
+void run_sweeps([[maybe_unused]] const RelaxationSchedule& schedule,
+                [[maybe_unused]] const RelaxationSweeps& sweeps, [[maybe_unused]] RelaxationMotion& motion) {
+#if defined(__x86_64__)
+    const Pointers pointers{schedule.packets.data(),   schedule.updates.data(), schedule.update_begin.data(),
+                            motion.position_m.data(),  motion.move_m.data(),    motion.unrelaxed_m.data(),
+                            motion.last_move_m.data(), motion.push_m.data(),    motion.keep};
+    if (!schedule.packets.empty())
+        return run_staggered(pointers, sweeps, schedule.packets.size(), schedule.lag);
+    for (std::uint64_t sweep = sweeps.starts_updated ? sweeps.per_step : 0; sweep < sweeps.count;
+         sweep += sweeps.per_step) {
+        for (const std::uint32_t particle : schedule.updates) update_particle(pointers, particle);
+    }
+#endif
+}
+
+}  // namespace corda::sim

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "corda/sim/relaxation/schedule.hpp"
+
+namespace corda::sim {
+
+/// What moves in a relaxation: x and y of each particle in turn.
+struct RelaxationMotion {
+    std::vector<double> position_m;
+    std::vector<double> move_m;       ///< Verlet's move in this step, without what the bars add to it
+    std::vector<double> unrelaxed_m;  ///< position_m before the bars' moves of this step
+    std::vector<double> last_move_m;  ///< the whole move of the step before
+    std::vector<double> push_m;       ///< (h^2 / m) f
+    double keep = 1.0;                ///< share of the velocity kept per step
+};
+
+/// Code that relaxes. Both kernels give the same bits: they do the same correctly rounded operations on each
+/// particle in the same order.
+///
+/// kScalar takes the bars one by one in the given order and waits for each: a bar's square root and division
+/// take some 50 cycles, and the next bar of the same reach starts from their result. kSse2 takes packets of
+/// two bars (RelaxationSchedule), and several sweeps at once, each `lag` packets behind the one before, so
+/// that they wait for little but the divider's throughput.
+enum class RelaxationKernel {
+    kScalar,
+    kSse2,  ///< every x86-64 CPU
+};
+
+/// The fastest kernel of this CPU.
+#if defined(__x86_64__)
+inline constexpr RelaxationKernel kFastestRelaxation = RelaxationKernel::kSse2;
+#else
+inline constexpr RelaxationKernel kFastestRelaxation = RelaxationKernel::kScalar;
+#endif
+
+/// Which sweeps to run: `count` of them from the start of a step, `per_step` in each step. Verlet's update of
+/// all particles precedes the first sweep of a step.
+struct RelaxationSweeps {
+    std::uint64_t count = 0;
+    std::uint64_t per_step = 1;
+    bool starts_updated = false;  ///< no update in the first step: the particles have been moved already
+};
+
+/// Sweeps over `bars` in their order and updates all particles, one after the other.
+void run_sweeps(std::span<const RelaxationBar> bars, const RelaxationSweeps& sweeps,
+                RelaxationMotion& motion);
+
+/// The same for the bars and particles of a schedule, by kernel kSse2.
+void run_sweeps(const RelaxationSchedule& schedule, const RelaxationSweeps& sweeps, RelaxationMotion& motion);
+
+}  // namespace corda::sim

@@ -1,0 +1,165 @@
+#include "corda/sim/relaxation/relaxation.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "corda/sim/distance.hpp"
+#include "corda/sim/flush_denormals.hpp"
+#include "corda/sim/refusal.hpp"
+#include "corda/sim/step_grid.hpp"
+
+namespace corda::sim {
+namespace {
+
+void refuse_materials(const System& system) {
+    const bool plain =
+        system.bends.empty() && std::all_of(system.bodies.begin(), system.bodies.end(), [](const Body& body) {
+            return body.material.compliance_1_n == 0.0 && !body.material.is_string;
+        });
+    if (plain) return;
+    throw Refusal(Refusal::Reason::kMaterial, "method relaxation knows no compliance, strings or bending");
+}
+
+/// Successive bodies are scheduled together until they have this many particles: several short ropes fill
+/// lanes that one would leave empty. A long rope fills them alone, and 256 particles and their bars fit into
+/// a level 2 cache.
+constexpr std::size_t kParticlesTogether = 256;
+
+/// The bars among these that can move a particle.
+std::vector<RelaxationBar> movable_bars(const System& system, std::size_t first, std::size_t count) {
+    std::vector<RelaxationBar> bars;
+    bars.reserve(count);
+    for (std::size_t k = first; k < first + count; ++k) {
+        const Bar& bar = system.bars[k];
+        const bool a_is_pinned = system.is_pinned(bar.a);
+        const bool b_is_pinned = system.is_pinned(bar.b);
+        if (a_is_pinned && b_is_pinned) continue;
+        const double share_a = a_is_pinned ? 0.0 : (b_is_pinned ? 1.0 : 0.5);
+        bars.push_back({bar.a, bar.b, bar.rest_m, share_a, 1.0 - share_a});
+    }
+    return bars;
+}
+
+std::vector<RelaxationSchedule> schedule_bodies(const System& system) {
+    std::vector<RelaxationSchedule> schedules;
+    for (std::size_t i = 0; i < system.bodies.size();) {
+        Body together = system.bodies[i];
+        for (++i; i < system.bodies.size() && together.particle_count < kParticlesTogether; ++i) {
+            together.particle_count += system.bodies[i].particle_count;
+            together.bar_count += system.bodies[i].bar_count;
+        }
+        schedules.push_back(schedule_bars(movable_bars(system, together.first_bar, together.bar_count),
+                                          static_cast<std::uint32_t>(together.first_particle),
+                                          static_cast<std::uint32_t>(together.particle_count)));
+    }
+    return schedules;
+}
+
+/// The force on each particle, which a scene may give in place of gravity.
+std::vector<Vec2> forces_on_particles(const System& system, const Forces& forces, const RelaxationDef& def) {
+    std::vector<Vec2> force_n = forces.on_particles(system);
+    if (!def.force_n) return force_n;
+    for (std::size_t i = 0; i < force_n.size(); ++i) force_n[i] = system.is_pinned(i) ? Vec2{} : *def.force_n;
+    return force_n;
+}
+
+}  // namespace
+
+Relaxation::Relaxation(const System& system, const Forces& forces, const RelaxationDef& def,
+                       double default_step_s, RelaxationKernel kernel)
+    : Solver(sim::energy_scale_j(system, forces_on_particles(system, forces, def)),
+             forces.conserve_energy() && def.delta == 0.0),
+      def_(def),
+      step_s_(def.step_s.value_or(default_step_s)),
+      sweeps_(static_cast<std::uint64_t>(def.sweeps)),
+      kernel_(kernel),
+      mass_kg_(system.mass_kg),
+      force_n_(forces_on_particles(system, forces, def)) {
+    assert(step_s_ > 0.0 && def.sweeps >= 1);
+    def_.step_s = step_s_;
+    refuse_materials(system);
+    motion_.keep = (1.0 - def.delta) * forces.decay(step_s_);
+    for (std::size_t i = 0; i < system.particle_count(); ++i) {
+        const Vec2 push_m = (step_s_ * step_s_ / mass_kg_[i]) * force_n_[i];
+        motion_.push_m.insert(motion_.push_m.end(), {push_m.x, push_m.y});
+        motion_.position_m.insert(motion_.position_m.end(), {system.x_m[i], system.y_m[i]});
+        motion_.move_m.insert(motion_.move_m.end(), {step_s_ * system.vx_m_s[i], step_s_ * system.vy_m_s[i]});
+    }
+    motion_.unrelaxed_m = motion_.position_m;
+    motion_.last_move_m = motion_.move_m;
+    if (kernel_ == RelaxationKernel::kScalar) {
+        bars_ = movable_bars(system, 0, system.bars.size());
+    } else {
+        schedules_ = schedule_bodies(system);
+    }
+}
+
+Status Relaxation::advance_to(double time_s, State& state) {
+    const FlushDenormals flush;
+    const GridTime at = locate(time_s, step_s_);
+    const std::uint64_t target = at.is_on_grid ? at.step : at.step + 1;  // interpolation looks back
+    assert(step_ <= target);
+    if (step_ < target) advance(target - step_);
+    state.time_s = time_s;
+    if (at.is_on_grid) {
+        for (std::size_t i = 0; i < state.x_m.size(); ++i) {
+            state.x_m[i] = motion_.position_m[2 * i];
+            state.y_m[i] = motion_.position_m[2 * i + 1];
+        }
+    } else {
+        interpolate(at.fraction, state);
+    }
+    return Status::kOk;
+}
+
+void Relaxation::advance(std::uint64_t steps) {
+    const std::size_t size = motion_.position_m.size();
+    // The first step is Euler's: its move, h v(0), is known from the start.
+    const bool starts_updated = step_ == 0;
+    if (starts_updated) {
+        for (std::size_t k = 0; k < size; ++k) motion_.position_m[k] += motion_.move_m[k];
+        motion_.unrelaxed_m = motion_.position_m;
+    }
+    const RelaxationSweeps sweeps{steps * sweeps_, sweeps_, starts_updated};
+    if (kernel_ == RelaxationKernel::kScalar) run_sweeps(bars_, sweeps, motion_);
+    for (const RelaxationSchedule& schedule : schedules_) run_sweeps(schedule, sweeps, motion_);
+    // The move takes up what the bars moved. Within several steps the next update does this.
+    for (std::size_t k = 0; k < size; ++k) {
+        motion_.move_m[k] += motion_.position_m[k] - motion_.unrelaxed_m[k];
+        motion_.unrelaxed_m[k] = motion_.position_m[k];
+    }
+    step_ += steps;
+}
+
+void Relaxation::interpolate(double fraction, State& state) const {
+    // Newton's form through the states at step_ - 2, step_ - 1 and step_; a straight line in the first step.
+    const double second = step_ >= 2 ? 0.5 * fraction * (fraction - 1.0) : 0.0;
+    const auto at = [&](std::size_t k) {
+        const double move = motion_.move_m[k];
+        return motion_.position_m[k] - (1.0 - fraction) * move + second * (move - motion_.last_move_m[k]);
+    };
+    for (std::size_t i = 0; i < state.x_m.size(); ++i) {
+        state.x_m[i] = at(2 * i);
+        state.y_m[i] = at(2 * i + 1);
+    }
+}
+
+double Relaxation::energy_j() const {
+    // At the middle of the last step, where move / h is the velocity to second order; before the first step,
+    // at t = 0.
+    const double back = step_ == 0 ? 0.0 : 0.5;
+    double energy_j = 0.0;
+    for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
+        const double move_x = motion_.move_m[2 * i];
+        const double move_y = motion_.move_m[2 * i + 1];
+        const double vx = move_x / step_s_;
+        const double vy = move_y / step_s_;
+        energy_j += 0.5 * mass_kg_[i] * (vx * vx + vy * vy);
+        energy_j -= dot(force_n_[i], {motion_.position_m[2 * i] - back * move_x,
+                                      motion_.position_m[2 * i + 1] - back * move_y});
+    }
+    return energy_j;
+}
+
+}  // namespace corda::sim

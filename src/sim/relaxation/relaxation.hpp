@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "corda/sim/relaxation/kernels.hpp"
+#include "corda/sim/solver.hpp"
+
+namespace corda::sim {
+
+/// The source report's method (section 1 of src/sim/README.md): Verlet's update of every free particle, then
+/// sweeps over all bars in the order of System::bars, each of which moves its two particles along its current
+/// direction until it has its rest length.
+///
+///   next = current + (1 - delta) (current - previous) + (h^2 / m) f
+///   adjust = distance - rest length, direction = (p2 - p1) / distance; each of two free particles moves by
+///   adjust / 2 towards the other, a free one beside a pinned one by the whole adjustment.
+///
+/// The update is kept in its summed form: a particle carries its last move d = current - previous, and
+/// d <- (1 - delta) d + (h^2 / m) f, current <- current + d; then d takes up what the bars moved. The numbers
+/// are the same but for rounding, which grows with the number of steps instead of its square (Hairer, Lubich,
+/// Wanner, Geometric Numerical Integration, VIII.5).
+///
+/// The first position is an Euler step, x(h) = x(0) + h v(0), as in the report. The state at n h is therefore
+/// Verlet's after n - 1 updates, and free fall is late by -g h t / 2. A drag c acts as damping too: it
+/// multiplies 1 - delta by exp(-c h).
+///
+/// Times that are no multiple of the step are interpolated by the parabola through the three nearest states.
+class Relaxation final : public Solver {
+  public:
+    /// `default_step_s`: the step if `def` names none. `kernel` changes the time taken, not the bits.
+    Relaxation(const System& system, const Forces& forces, const RelaxationDef& def, double default_step_s,
+               RelaxationKernel kernel = kFastestRelaxation);
+
+    Status advance_to(double time_s, State& state) override;
+    [[nodiscard]] double energy_j() const override;
+    [[nodiscard]] std::uint64_t steps() const override { return step_; }
+    [[nodiscard]] MethodDef method() const override { return def_; }
+
+  private:
+    void advance(std::uint64_t steps);
+    void interpolate(double fraction, State& state) const;
+
+    RelaxationDef def_;  ///< with its step
+    double step_s_;
+    std::uint64_t sweeps_;
+    RelaxationKernel kernel_;
+    std::uint64_t step_ = 0;
+    /// The positions at step_ * step_s_, and the last move: the change of position in the last step, or h
+    /// v(0) before the first one.
+    RelaxationMotion motion_;
+    std::vector<double> mass_kg_;
+    std::vector<Vec2> force_n_;                  ///< 0 for a pinned particle
+    std::vector<RelaxationBar> bars_;            ///< for kScalar
+    std::vector<RelaxationSchedule> schedules_;  ///< for kSse2; of some bodies each
+};
+
+}  // namespace corda::sim

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace corda::sim {
+
+/// A bar as relaxation needs it. At least one of its particles is free.
+struct RelaxationBar {
+    std::uint32_t a = 0;
+    std::uint32_t b = 0;
+    double rest_m = 0.0;
+    double share_a = 0.5;  ///< of the adjustment that particle a takes: 0, 1/2 or 1
+    double share_b = 0.5;
+};
+
+/// Two bars without a common particle, relaxed by one instruction. If there is only one, it stands in both
+/// lanes: computed from the same numbers and stored again, it is still relaxed once.
+struct alignas(64) RelaxationPacket {
+    static constexpr std::size_t kLanes = 2;
+
+    std::array<double, kLanes> rest_m{};
+    std::array<double, kLanes> share_a{};
+    std::array<double, kLanes> share_b{};
+    std::array<std::uint32_t, kLanes> a{};  ///< index of the x of a bar's first particle: 2 * the particle's
+    std::array<std::uint32_t, kLanes> b{};
+};
+
+/// One sweep over the bars of some bodies, in packets for the SIMD kernel (kernels.hpp).
+///
+/// Two bars depend on each other if they share a particle. Each bar goes into the first packet that has room
+/// and comes after the packets of all earlier bars that it depends on. So every particle meets its bars in
+/// the given order, at most one per packet, and because a bar reads and writes its two particles alone, every
+/// number is the one that the given order yields, bit for bit. Along a rope with bars of several reaches the
+/// packets form a wavefront: bar (t, t + 1) of reach 1, and some way behind it one bar of each longer reach.
+///
+/// The same holds from sweep to sweep, and for Verlet's update of a particle, which comes just before the
+/// particle's first packet. A sweep may therefore begin while the one before is under way, as long as it
+/// stays `lag` packets behind.
+struct RelaxationSchedule {
+    std::vector<RelaxationPacket> packets;
+    /// Particles in the order of their first packet; those without a bar come first.
+    std::vector<std::uint32_t> updates;
+    /// Packet k is preceded by the updates[j] with update_begin[k] <= j < update_begin[k + 1].
+    std::vector<std::uint32_t> update_begin;
+    /// Packet k of a sweep comes after packet k + lag - 1 of the sweep before; 1 .. number of packets.
+    std::size_t lag = 1;
+};
+
+/// Schedules `bars`, to be relaxed in this order, of the `particle_count` particles from `first_particle` on;
+/// no bar may join others. Takes time and memory in proportion to the bars and particles.
+[[nodiscard]] RelaxationSchedule schedule_bars(std::span<const RelaxationBar> bars,
+                                               std::uint32_t first_particle, std::uint32_t particle_count);
+
+}  // namespace corda::sim

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "corda/sim/forces/forces.hpp"
+#include "corda/sim/system.hpp"
+
+namespace corda::sim {
+
+// Estimates of the work that a scene takes, from its start alone. They are rough: good enough to tell a scene
+// that takes minutes from one that takes days.
+
+/// Bound on the angular frequency in 1/s of the vibrations of a body whose bars stretch or that resists
+/// bending; 0 for any other body.
+[[nodiscard]] double vibration_frequency_1_s(const System& system, const Body& body);
+
+/// Largest angular velocity of a bar of the body at t = 0, in 1/s.
+[[nodiscard]] double angular_velocity_1_s(const System& system, const Body& body);
+
+/// Angular frequency in 1/s at which the body's shortest bar swings.
+[[nodiscard]] double pendulum_frequency_1_s(const System& system, const Body& body, const Forces& forces);
+
+/// Steps that an explicit method of high order takes in `time_s` for a motion of this angular frequency.
+[[nodiscard]] double expected_steps(double frequency_1_s, double time_s);
+
+}  // namespace corda::sim

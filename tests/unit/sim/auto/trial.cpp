@@ -1,0 +1,100 @@
+#include "corda/sim/auto/trial.hpp"
+
+#include <gtest/gtest.h>
+
+#include "corda/reference/ropes.hpp"
+#include "support/nets.hpp"
+
+namespace corda::sim {
+namespace {
+
+const FrameRate kFrames(Rational{60, 1});
+
+struct Outcome {
+    Trial trial;
+    int passes = 0;
+    std::size_t states = 0;
+};
+
+/// A trial of one second.
+Outcome outcome_of(const RopeDef& rope, const MethodDef& method, const MethodDef& check, double tolerance_m,
+                   bool keeps_going = false, const OnProgress& on_progress = {}) {
+    const System system = build_system({&rope, 1});
+    const auto tolerance = [tolerance_m](const MotionBounds&) { return tolerance_m; };
+    Recording recording(system.particle_count(), 61, 0);
+    Outcome outcome;
+    outcome.trial.method = method;
+    outcome.trial.check = check;
+    run_trial(system, WorldDef{}, {tolerance, Timeline(kFrames, 60), on_progress, {}}, keeps_going,
+              outcome.trial, recording, outcome.passes);
+    outcome.states = recording.size();
+    return outcome;
+}
+
+TEST(Trial, ToTheEndIsAPassOfTheRunAndOneOfItsCheck) {
+    const RopeDef rope = reference::straight_rope(5, 1.0, 60.0);
+    const Outcome outcome = outcome_of(rope, ExactDef{1e-6}, ExactDef{1e-8}, 1e-3);
+    EXPECT_TRUE(outcome.trial.to_the_end);
+    EXPECT_FALSE(outcome.trial.diverged);
+    EXPECT_EQ(outcome.trial.reached_s, 1.0);
+    EXPECT_GT(outcome.trial.largest_difference_m, 0.0);
+    EXPECT_LT(outcome.trial.largest_difference_m, 1e-5);
+    EXPECT_GT(outcome.trial.check_steps, outcome.trial.steps);
+    EXPECT_EQ(outcome.passes, 2);
+    EXPECT_EQ(outcome.states, 61U);
+}
+
+TEST(Trial, EndsWhereTheTwoPartUnlessItsRunIsWhatWillBeDrawn) {
+    const RopeDef rope = reference::straight_rope(5, 1.0, 60.0);
+    const MethodDef coarse = RattleDef{2, 1.0 / 60.0};
+    for (const bool keeps_going : {false, true}) {
+        const Outcome outcome = outcome_of(rope, coarse, ExactDef{1e-12}, 1e-6, keeps_going);
+        EXPECT_FALSE(outcome.trial.to_the_end);
+        EXPECT_LT(outcome.trial.reached_s, 0.5);
+        EXPECT_LE(3.0 * outcome.trial.largest_difference_m, 1e-6);
+        EXPECT_EQ(outcome.states == 61, keeps_going);
+        EXPECT_EQ(outcome.passes, 2);
+    }
+}
+
+TEST(Trial, ThatDivergesAtItsStartIsOnePass) {
+    // Farther apart than positions may be: the run gives up at once, and its check never moves.
+    RopeDef rope = reference::rope_through({{0.0, 0.0}, {1e13, 0.0}});
+    const Outcome outcome = outcome_of(rope, RelaxationDef{}, RelaxationDef{}, 1.0);
+    EXPECT_TRUE(outcome.trial.diverged);
+    EXPECT_FALSE(outcome.trial.to_the_end);
+    EXPECT_EQ(outcome.passes, 1);
+    EXPECT_EQ(outcome.states, 0U);
+}
+
+TEST(Trial, CanBeStopped) {
+    const RopeDef rope = reference::straight_rope(5, 1.0, 60.0);
+    const OnProgress stop = [](std::int64_t done, std::int64_t) { return done < 5; };
+    try {
+        static_cast<void>(outcome_of(rope, ExactDef{1e-6}, ExactDef{1e-8}, 1e-3, false, stop));
+        ADD_FAILURE() << "not stopped";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::kInterrupted);
+    }
+}
+
+TEST(BoundPerDifference, IsLargerForForcesWithKinks) {
+    RopeDef rope = reference::straight_rope(3, 1.0, 60.0);
+    EXPECT_EQ(bound_per_difference(build_system({&rope, 1})), 3.0);
+    rope.material = {1e-3, false};
+    EXPECT_EQ(bound_per_difference(build_system({&rope, 1})), 3.0);
+    rope.material = {1e-3, true};
+    EXPECT_EQ(bound_per_difference(build_system({&rope, 1})), 30.0);
+    rope.material = {0.0, true};
+    EXPECT_EQ(bound_per_difference(build_system({&rope, 1})), 3.0);
+}
+
+TEST(RefusalOfAMethod, HasItsReason) {
+    const RopeDef ring = test::ring(5);
+    const System system = build_system({&ring, 1});
+    EXPECT_EQ(refusal(system, WorldDef{}, ExactDef{}, 0.01).value().reason(), Refusal::Reason::kRigidGraph);
+    EXPECT_FALSE(refusal(system, WorldDef{}, RattleDef{}, 0.01).has_value());
+}
+
+}  // namespace
+}  // namespace corda::sim

@@ -1,0 +1,148 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "corda/reference/ropes.hpp"
+#include "support/refusal_of.hpp"
+#include "support/solver_run.hpp"
+
+namespace corda::sim {
+namespace {
+
+using Reason = Refusal::Reason;
+
+TEST(ExactRefuses, BarsBetweenParticlesThatAreNotNeighbours) {
+    RopeDef rope = reference::straight_rope(10, 1.0, 45.0);
+    rope.reach = 7;
+    EXPECT_EQ(test::refusal_of(build_system({&rope, 1}), ExactDef{}), Reason::kImaginaryBars);
+}
+
+TEST(ExactRefuses, ARopeTautBetweenTwoPins) {
+    RopeDef rope = reference::straight_rope(10, 1.0, 90.0);
+    rope.pinned = {0, 10};
+    EXPECT_EQ(test::refusal_of(build_system({&rope, 1}), ExactDef{}), Reason::kTautBetweenPins);
+    rope.points_m[5].y -= 1e-3;
+    EXPECT_EQ(test::refusal_of(build_system({&rope, 1}), ExactDef{}), std::nullopt);
+}
+
+TEST(Exact, LeavesARopeWithEveryParticlePinnedAlone) {
+    RopeDef rope = reference::straight_rope(2, 1.0, 90.0);
+    rope.pinned = {0, 1, 2};
+    test::ExactRun run(rope);
+    ASSERT_TRUE(run.go(5.0));
+    EXPECT_EQ(run.state().x_m, run.system().x_m);
+    EXPECT_EQ(run.state().y_m, run.system().y_m);
+}
+
+TEST(Exact, MovesBothSidesOfAPinInTheMiddleAlike) {
+    RopeDef rope = reference::straight_rope(6, 2.0, 90.0);
+    for (Vec2& point : rope.points_m) point.x -= 1.0;
+    rope.pinned = {3};
+    test::ExactRun run(rope);
+    ASSERT_TRUE(run.go(0.7));
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_NEAR(run.state().x_m[i], -run.state().x_m[6 - i], 1e-12);
+        EXPECT_NEAR(run.state().y_m[i], run.state().y_m[6 - i], 1e-12);
+    }
+    EXPECT_EQ(run.state().x_m[3], 0.0);
+    // The same as half of the rope alone; the pin holds both, whose sideways pulls cancel.
+    test::ExactRun half(reference::straight_rope(3, 1.0, 90.0));
+    ASSERT_TRUE(half.go(0.7));
+    EXPECT_NEAR(run.state().x_m[6], half.state().x_m[3], 1e-12);
+    EXPECT_NEAR(run.state().y_m[6], half.state().y_m[3], 1e-12);
+    EXPECT_NEAR(run.solver().loads().value().largest_tension_n,
+                half.solver().loads().value().largest_tension_n, 1e-9);
+    EXPECT_LT(run.solver().loads().value().pin_force_n, 2.0 * half.solver().loads().value().pin_force_n);
+}
+
+TEST(Exact, MovesARopePinnedAtItsLastParticleAsItsMirrorImage) {
+    RopeDef rope = reference::straight_rope(5, 1.0, 90.0);
+    test::ExactRun forwards(rope);
+    std::reverse(rope.points_m.begin(), rope.points_m.end());
+    rope.pinned = {5};
+    test::ExactRun backwards(rope);
+    ASSERT_TRUE(forwards.go(1.0) && backwards.go(1.0));
+    for (std::size_t i = 0; i <= 5; ++i) {
+        EXPECT_EQ(forwards.state().x_m[i], backwards.state().x_m[5 - i]);
+        EXPECT_EQ(forwards.state().y_m[i], backwards.state().y_m[5 - i]);
+    }
+}
+
+TEST(Exact, KeepsTwoRopesApart) {
+    const RopeDef ropes[] = {reference::straight_rope(3, 1.0, 60.0), reference::straight_rope(8, 2.0, 20.0)};
+    const System system = build_system(ropes);
+    Exact both(system, WorldDef{}, ExactDef{});
+    State state{0.0, system.x_m, system.y_m};
+    ASSERT_EQ(both.advance_to(2.0, state), Status::kOk);
+    for (const std::size_t k : {0U, 1U}) {
+        test::ExactRun alone(ropes[k]);
+        ASSERT_TRUE(alone.go(2.0));
+        EXPECT_LT(alone.tip_error_m({state.x_m[k == 0 ? 3 : 12], state.y_m[k == 0 ? 3 : 12]}), 1e-9);
+    }
+}
+
+TEST(Exact, ThrownFreeRopeKeepsMomentum) {
+    RopeDef rope = reference::straight_rope(5, 1.0, 30.0);
+    rope.pinned = {};
+    rope.mass_kg = {1.0, 2.0, 3.0, 1.0, 5.0, 1.0};
+    rope.velocity_m_s[5] = {2.0, 3.0};  // would stretch the rope: impulses share it out
+    test::ExactRun run(rope, 1e-9, WorldDef{{0.0, 0.0}, 10.0, 0.0});
+    const auto centre_x_m = [&](const std::vector<double>& x_m) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < x_m.size(); ++i) sum += rope.mass_kg[i] * x_m[i];
+        return sum / 13.0;
+    };
+    const double start_m = centre_x_m(run.system().x_m);
+    ASSERT_TRUE(run.go(10.0));
+    EXPECT_NEAR(centre_x_m(run.state().x_m), start_m + 10.0 * 2.0 / 13.0, 1e-9);
+    EXPECT_LT(run.energy_error(), 1e-9);
+}
+
+TEST(Exact, DragIsExact) {
+    // A free particle pair side by side falls as one: v = (g / c) (1 - exp(-c t)).
+    RopeDef rope = reference::straight_rope(1, 1.0, 90.0);
+    rope.pinned = {};
+    const double drag_1_s = 0.7;
+    test::ExactRun run(rope, 1e-12, WorldDef{{0.0, -9.81}, 10.0, drag_1_s});
+    ASSERT_TRUE(run.go(3.0));
+    const double fallen_m = 9.81 / drag_1_s * (3.0 - (1.0 - std::exp(-3.0 * drag_1_s)) / drag_1_s);
+    EXPECT_NEAR(run.state().y_m[0], -fallen_m, 1e-11);
+    EXPECT_FALSE(run.solver().conserves_energy());
+}
+
+TEST(Exact, HangingRopeCarriesItsWeight) {
+    RopeDef rope = reference::straight_rope(4, 1.0, 0.0);
+    rope.payload_kg = 6.0;
+    test::ExactRun run(rope);
+    ASSERT_TRUE(run.go(1.0));
+    const Loads loads = run.solver().loads().value();
+    EXPECT_NEAR(loads.pin_force_n, 98.1, 1e-12);
+    EXPECT_NEAR(loads.largest_tension_n, 98.1, 1e-12);
+    EXPECT_NEAR(run.solver().energy_scale_j(), 98.1, 1e-12);
+}
+
+TEST(Exact, WithoutGravityAndMotionStays) {
+    RopeDef rope = reference::straight_rope(4, 1.0, 77.0);
+    test::ExactRun run(rope, 1e-9, WorldDef{{0.0, 0.0}, 10.0, 0.0});
+    ASSERT_TRUE(run.go(10.0));
+    EXPECT_LT(run.tip_error_m({rope.points_m.back().x, rope.points_m.back().y}), 1e-15);
+}
+
+TEST(Exact, ClosedBetweenTwoPinsKeepsEnergyAndEnds) {
+    std::vector<Vec2> points_m;
+    for (int i = 0; i <= 10; ++i) points_m.push_back({0.1 * i, i % 2 ? -0.05 : 0.05});
+    points_m.front().y = points_m.back().y = 0.0;
+    RopeDef rope = reference::rope_through(std::move(points_m));
+    rope.pinned = {0, 10};
+    test::ExactRun run(rope);
+    for (int k = 1; k <= 300; ++k) {
+        ASSERT_TRUE(run.go(k / 60.0));
+        EXPECT_LT(run.energy_error(), 1e-9);
+        EXPECT_LT(run.strain(), 1e-13);
+    }
+}
+
+}  // namespace
+}  // namespace corda::sim

@@ -1,0 +1,103 @@
+#include "corda/sim/exact/string/part.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "corda/reference/ropes.hpp"
+#include "support/refusal_of.hpp"
+#include "support/solver_run.hpp"
+#include "support/strings.hpp"
+
+namespace corda::sim {
+namespace {
+
+using Reason = Refusal::Reason;
+
+/// Why method exact cannot run a rope; std::nullopt if it can.
+std::optional<Reason> refusal_of(const RopeDef& rope) {
+    return test::refusal_of(build_system({&rope, 1}), ExactDef{1e-9});
+}
+
+TEST(ExactRefusesAString, ThatResistsBending) {
+    RopeDef rope = reference::straight_rope(3, 1.0, 45.0);
+    rope.material.is_string = true;
+    EXPECT_EQ(refusal_of(rope), std::nullopt);
+    rope.bending_n_m2 = 1.0;
+    EXPECT_EQ(refusal_of(rope), Reason::kRigidBendingString);
+}
+
+TEST(ExactRefusesAString, ThatIsLongerThanItsRestLength) {
+    EXPECT_EQ(refusal_of(test::string_of({{0.0, 0.0}, {1.0, 0.0}}, {1.0})), std::nullopt);
+    EXPECT_EQ(refusal_of(test::string_of({{0.0, 0.0}, {1.0, 0.0}}, {0.99})), Reason::kStretchedString);
+}
+
+TEST(ExactRefusesAString, ThatIsStraightBetweenTwoPins) {
+    RopeDef rope = test::string_of({{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.0}}, {});
+    rope.pinned = {0, 2};
+    EXPECT_EQ(refusal_of(rope), Reason::kTautBetweenPins);
+    rope.rest_m = {1.0, 1.001};
+    EXPECT_EQ(refusal_of(rope), std::nullopt);
+}
+
+TEST(ExactRefusesAString, ThatIsClosed) {
+    RopeDef rope = test::string_of({{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}}, {});
+    rope.closed = true;
+    EXPECT_EQ(refusal_of(rope), Reason::kRigidStringGraph);
+}
+
+TEST(SlackString, CarriesNoTensionAndFallsFreely) {
+    RopeDef rope = test::string_of({{5.0, 1.0}, {5.1, 1.0}, {5.2, 1.0}}, {1.0, 1.0});
+    test::ExactRun run(rope);
+    ASSERT_TRUE(run.go(0.3));
+    EXPECT_EQ(run.solver().loads()->largest_tension_n, 0.0);
+    EXPECT_EQ(run.solver().loads()->pin_force_n, 0.0);
+    EXPECT_EQ(run.state().x_m[0], 5.0);
+    EXPECT_EQ(run.state().y_m[0], 1.0);
+    for (const std::size_t i : {1U, 2U}) {
+        EXPECT_NEAR(run.state().x_m[i], rope.points_m[i].x, 1e-15);
+        EXPECT_NEAR(run.state().y_m[i], 1.0 - 0.5 * 9.81 * 0.09, 1e-14);
+    }
+    EXPECT_FALSE(run.solver().conserves_energy());
+    EXPECT_NEAR(run.solver().energy_j(), 9.81 * 2.0, 1e-13);
+    EXPECT_NEAR(run.solver().energy_scale_j(), 9.81 * 2.0 * 2.0, 1e-13);
+}
+
+TEST(StringAndRope, InOneSceneMoveApart) {
+    RopeDef string = test::string_of({{0.0, 0.0}, {0.6, 0.0}}, {1.0});
+    RopeDef rope = reference::straight_rope(5, 1.0, 50.0);
+    rope.origin_m = {3.0, 0.0};
+    const RopeDef ropes[] = {string, rope};
+    const System system = build_system(ropes);
+    Exact both(system, WorldDef{}, ExactDef{});
+    State state{0.0, system.x_m, system.y_m};
+    ASSERT_EQ(both.advance_to(1.0, state), Status::kOk);
+    test::ExactRun string_alone(string);
+    rope.origin_m = {};
+    test::ExactRun rope_alone(rope);
+    ASSERT_TRUE(string_alone.go(1.0) && rope_alone.go(1.0));
+    EXPECT_EQ(state.x_m[1], string_alone.state().x_m[1]);
+    EXPECT_EQ(state.y_m[1], string_alone.state().y_m[1]);
+    EXPECT_NEAR(state.x_m.back() - 3.0, rope_alone.state().x_m.back(), 1e-14);
+    EXPECT_NEAR(both.energy_j(), string_alone.solver().energy_j() + rope_alone.solver().energy_j(), 1e-12);
+}
+
+TEST(PinnedLinks, OfAStringStay) {
+    RopeDef rope = test::string_of({{0.0, 0.0}, {0.5, 0.0}, {1.0, 0.0}}, {1.0, 0.5});
+    rope.pinned = {0, 1};
+    test::ExactRun run(rope);
+    ASSERT_TRUE(run.go(1.0));
+    test::ExactRun pendulum(reference::straight_rope(1, 0.5, 90.0));
+    ASSERT_TRUE(pendulum.go(1.0));
+    EXPECT_NEAR(run.state().x_m[2], 0.5 + pendulum.state().x_m[1], 1e-12);
+    EXPECT_NEAR(run.state().y_m[2], pendulum.state().y_m[1], 1e-12);
+    rope.pinned = {0, 1, 2};
+    test::ExactRun fixed(rope);
+    ASSERT_TRUE(fixed.go(5.0));
+    EXPECT_EQ(fixed.state().x_m, fixed.system().x_m);
+}
+
+}  // namespace
+}  // namespace corda::sim

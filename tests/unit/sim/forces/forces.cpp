@@ -1,0 +1,73 @@
+#include "corda/sim/forces/forces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "corda/reference/ropes.hpp"
+#include "corda/sim/exact/exact.hpp"
+#include "corda/sim/rattle/rattle.hpp"
+#include "corda/sim/relaxation/relaxation.hpp"
+
+namespace corda::sim {
+namespace {
+
+TEST(Forces, AreTheSumOfGravityAndDrag) {
+    WorldDef world;
+    world.gravity_m_s2 = {3.0, -4.0};
+    world.drag_1_s = 0.7;
+    const Forces forces(world);
+    EXPECT_EQ(forces.uniform_m_s2(), (Vec2{3.0, -4.0}));
+    EXPECT_EQ(forces.strength_m_s2(), 5.0);
+    EXPECT_EQ(forces.drag_1_s(), 0.7);
+    EXPECT_FALSE(forces.conserve_energy());
+    EXPECT_TRUE(Forces(WorldDef{}).conserve_energy());
+    EXPECT_EQ(forces.potential_j_kg({2.0, 1.0}), -2.0);
+    EXPECT_EQ(forces.inverse_timescale_1_s(0.2, 0.5), 5.0);
+    EXPECT_EQ(forces.inverse_timescale_1_s(0.2, 2.0), 10.0);
+}
+
+TEST(Forces, DecayIsTheExponentialToRounding) {
+    double largest_error = 0.0;
+    for (const double drag_1_s : {1e-9, 0.3, 1.0, 17.0}) {
+        const Forces forces(ForceTerm{{}, drag_1_s});
+        for (double time_s = -2.0; time_s <= 30.0; time_s += 0.0625) {
+            const double expected = std::exp(-drag_1_s * time_s);
+            largest_error = std::max(largest_error, std::abs(forces.decay(time_s) / expected - 1.0));
+        }
+    }
+    std::printf("decay: off by %.1e\n", largest_error);
+    // Squaring doubles a rounding error, up to eleven times.
+    EXPECT_LT(largest_error, 1e-12);  // measured 3.1e-13
+    EXPECT_EQ(Forces(WorldDef{}).decay(5.0), 1.0);
+    EXPECT_EQ(Forces(ForceTerm{{}, 1e300}).decay(1.0), 0.0);
+}
+
+TEST(Forces, ActOnFreeParticlesInProportionToTheirMass) {
+    RopeDef rope = reference::straight_rope(3, 6.0, 0.0);
+    rope.mass_kg = {7.0, 1.0, 2.0, 4.0};
+    rope.payload_kg = 1.0;
+    const RopeDef ropes[] = {rope, reference::straight_rope(1, 0.5, 30.0)};
+    const System system = build_system(ropes);
+    WorldDef world;
+    world.gravity_m_s2 = {0.0, -10.0};
+    const std::vector<Vec2> force_n = Forces(world).on_particles(system);
+    EXPECT_EQ(force_n, (std::vector<Vec2>{{}, {0, -10}, {0, -20}, {0, -50}, {}, {0, -10}}));
+    EXPECT_DOUBLE_EQ(energy_scale_j(system, force_n), 80.0 * 6.0 + 10.0 * 0.5);
+}
+
+TEST(Forces, GiveAllMethodsTheSameEnergyScale) {
+    RopeDef rope = reference::straight_rope(5, 2.0, 40.0);
+    rope.payload_kg = 3.0;
+    const System system = build_system({&rope, 1});
+    const double expected_j = 9.81 * 8.0 * 2.0;
+    EXPECT_DOUBLE_EQ(Exact(system, WorldDef{}, ExactDef{}).energy_scale_j(), expected_j);
+    EXPECT_DOUBLE_EQ(Rattle(system, WorldDef{}, RattleDef{}, 0.01).energy_scale_j(), expected_j);
+    EXPECT_DOUBLE_EQ(Relaxation(system, WorldDef{}, RelaxationDef{}, 0.01).energy_scale_j(), expected_j);
+    RelaxationDef with_force;
+    with_force.force_n = Vec2{0.0, -2.0};
+    EXPECT_DOUBLE_EQ(Relaxation(system, WorldDef{}, with_force, 0.01).energy_scale_j(), 2.0 * 5.0 * 2.0);
+}
+
+}  // namespace
+}  // namespace corda::sim

@@ -1,0 +1,70 @@
+#include "corda/sim/rattle/constraint_solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include "corda/reference/ropes.hpp"
+#include "corda/sim/rattle/chain_constraints.hpp"
+#include "corda/sim/rattle/graph_constraints.hpp"
+#include "support/nets.hpp"
+
+namespace corda::sim {
+namespace {
+
+bool takes_chains(const System& system) {
+    const auto solver = make_constraint_solver(system);
+    const bool is_graph = dynamic_cast<GraphConstraints*>(solver.get()) != nullptr;
+    EXPECT_NE(is_graph, dynamic_cast<ChainConstraints*>(solver.get()) != nullptr);
+    return !is_graph;
+}
+
+TEST(MakeConstraintSolver, TakesTheChainSolverIfThereIsNoOtherBar) {
+    RopeDef rope = reference::straight_rope(5, 1.0, 40.0);
+    EXPECT_TRUE(takes_chains(build_system({&rope, 1})));
+    const NetDef net = test::leaning_net(3, 3, 0.1);
+    EXPECT_FALSE(takes_chains(build_system({&rope, 1}, {&net, 1})));
+    const RopeDef ring = test::ring(5);
+    EXPECT_FALSE(takes_chains(build_system({&ring, 1})));
+    RopeDef soft_ring = ring;
+    soft_ring.material.compliance_1_n = 1e-3;
+    EXPECT_TRUE(takes_chains(build_system({&soft_ring, 1})));
+}
+
+TEST(ConstraintSolver, KeepsTheRigidBarsThatHaveAFreeEnd) {
+    RopeDef ropes[] = {reference::straight_rope(4, 1.0, 40.0), reference::straight_rope(2, 1.0, 10.0)};
+    ropes[0].pinned = {0, 1};
+    ropes[1].material.compliance_1_n = 1e-3;
+    const auto solver = make_constraint_solver(build_system(ropes));
+    ASSERT_EQ(solver->links().size(), 3U);
+    EXPECT_EQ(solver->links().front().a, 1U);
+    EXPECT_EQ(solver->links().back().b, 4U);
+    EXPECT_DOUBLE_EQ(solver->links().front().rest_m, 0.25);
+}
+
+TEST(AddUnrounded, LosesNothingOfAMillionSmallChanges) {
+    double sum = 1.0;
+    double lost = 0.0;
+    double rounded = 1.0;
+    for (int k = 0; k < 1'000'000; ++k) {
+        add_unrounded(sum, lost, 1e-17);
+        rounded += 1e-17;
+    }
+    EXPECT_EQ(rounded, 1.0);
+    EXPECT_DOUBLE_EQ(sum, 1.0 + 1e-11);
+}
+
+TEST(Motion, StartsAsTheSystemDoesWithNothingLost) {
+    RopeDef rope = reference::straight_rope(2, 1.0, 40.0);
+    rope.velocity_m_s = {{1.0, 2.0}, {3.0, 4.0}, {5.0, 6.0}};
+    const System system = build_system({&rope, 1});
+    const Motion motion = Motion::start_of(system);
+    EXPECT_EQ(motion.x_m, system.x_m);
+    EXPECT_EQ(motion.y_m, system.y_m);
+    EXPECT_EQ(motion.vx_m_s, (std::vector{0.0, 3.0, 5.0}));
+    EXPECT_EQ(motion.vy_m_s, (std::vector{0.0, 4.0, 6.0}));
+    const std::vector<double> none(3, 0.0);
+    EXPECT_EQ(motion.x_lost_m, none);
+    EXPECT_EQ(motion.vy_lost_m_s, none);
+}
+
+}  // namespace
+}  // namespace corda::sim

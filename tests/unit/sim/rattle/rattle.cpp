@@ -1,0 +1,142 @@
+// Method `rattle`: its grid of steps and its bits, drag, graphs.
+
+#include "corda/sim/rattle/rattle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "corda/core/basics.hpp"
+#include "corda/reference/ropes.hpp"
+#include "support/solver_run.hpp"
+
+namespace corda::sim {
+namespace {
+
+TEST(Grid, GivesTheSameBitsWhateverTimesAreAskedFor) {
+    for (const double drag_1_s : {0.0, 0.3}) {
+        WorldDef world;
+        world.drag_1_s = drag_1_s;
+        const RopeDef rope = reference::straight_rope(20, 1.0, 80.0);
+        test::RattleRun direct(rope, world, 4, 1.0 / 240.0);
+        test::RattleRun often(rope, world, 4, 1.0 / 240.0);
+        ASSERT_TRUE(direct.go(1.51));
+        for (const double time_s : {0.0, 0.001, 0.001, 0.35, 0.7, 1.0, 1.0, 1.5, 1.505, 1.51}) {
+            ASSERT_TRUE(often.go(time_s));
+            (void)often.solver().loads();
+        }
+        EXPECT_EQ(direct.state().x_m, often.state().x_m);
+        EXPECT_EQ(direct.state().y_m, often.state().y_m);
+        EXPECT_EQ(direct.solver().energy_j(), often.solver().energy_j());
+        EXPECT_EQ(direct.solver().steps(), 362U);
+    }
+}
+
+TEST(Grid, TimesBetweenItsPointsAreAsGoodAsThePoints) {
+    test::RattleRun fine(reference::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 640.0);
+    test::RattleRun coarse(reference::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 333.0);
+    ASSERT_TRUE(fine.go(1.0));
+    ASSERT_TRUE(coarse.go(1.0 - 0.4 / 333.0));
+    ASSERT_TRUE(coarse.go(1.0));
+    EXPECT_LT(coarse.tip_error_m({fine.tip_x(), fine.tip_y()}), 1e-12);
+    test::RattleRun between(reference::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 330.7);
+    ASSERT_TRUE(between.go(1.0));
+    EXPECT_LT(between.tip_error_m({fine.tip_x(), fine.tip_y()}), 1e-12);
+}
+
+TEST(Step, DividesTheFrameIfNoneIsGiven) {
+    test::RattleRun run(reference::straight_rope(20, 1.0, 45.0), WorldDef{}, 4);
+    const double parts = 1.0 / 60.0 / run.solver().step_s();
+    EXPECT_DOUBLE_EQ(parts, std::round(parts));
+    EXPECT_GT(parts, 1.0);
+    ASSERT_TRUE(run.go(1.0));
+    EXPECT_EQ(run.solver().steps(), static_cast<std::uint64_t>(std::lround(60.0 * parts)));
+}
+
+TEST(Drag, SlowsAFreeFallExactlyAndKeepsTheOrder) {
+    RopeDef rope = reference::straight_rope(4, 1.0, 20.0);
+    rope.pinned = {};
+    WorldDef world;
+    world.drag_1_s = 1.5;
+    const auto error_m = [&](int order, double step_s) {
+        test::RattleRun run(rope, world, order, step_s);
+        EXPECT_TRUE(run.go(1.0));
+        const double c = world.drag_1_s;
+        const double fallen_m = -9.81 / c * (1.0 - (1.0 - std::exp(-c)) / c);
+        return std::abs(run.tip_y() - run.system().y_m.back() - fallen_m);
+    };
+    EXPECT_NEAR(std::log2(error_m(2, 0.1) / error_m(2, 0.05)), 2.0, 0.1);
+    EXPECT_NEAR(std::log2(error_m(4, 0.1) / error_m(4, 0.05)), 4.0, 0.1);
+    EXPECT_LT(error_m(8, 0.05), 1e-13);
+}
+
+/// A net of squares hanging from its pinned top row: columns x rows particles, 0.1 m apart.
+System net(std::uint32_t columns, std::uint32_t rows, bool diagonals) {
+    System system;
+    const auto join = [&](std::uint32_t a, std::uint32_t b) {
+        const double dx = system.x_m[b] - system.x_m[a];
+        const double dy = system.y_m[b] - system.y_m[a];
+        system.bars.push_back({a, b, 1, std::sqrt(dx * dx + dy * dy)});
+    };
+    for (std::uint32_t r = 0; r < rows; ++r) {
+        for (std::uint32_t c = 0; c < columns; ++c) {
+            system.x_m.push_back(0.1 * c + 0.03 * r);
+            system.y_m.push_back(-0.1 * r);
+            system.mass_kg.push_back(1.0);
+            system.inverse_mass_1_kg.push_back(r == 0 ? 0.0 : 1.0);
+        }
+    }
+    system.vx_m_s.assign(system.x_m.size(), 0.0);
+    system.vy_m_s.assign(system.x_m.size(), 0.0);
+    for (std::uint32_t r = 0; r < rows; ++r) {
+        for (std::uint32_t c = 0; c < columns; ++c) {
+            const std::uint32_t i = r * columns + c;
+            if (c + 1 < columns) join(i, i + 1);
+            if (r + 1 < rows) join(i, i + columns);
+            if (diagonals && c + 1 < columns && r + 1 < rows) join(i, i + columns + 1);
+        }
+    }
+    Body body;
+    body.particle_count = system.x_m.size();
+    body.bar_count = body.link_count = system.bars.size();
+    body.is_chain = false;
+    system.bodies.push_back(body);
+    return system;
+}
+
+TEST(Graph, MovesAChainAsAChainSolverDoes) {
+    const RopeDef rope = reference::straight_rope(10, 1.0, 60.0);
+    const System chain = build_system({&rope, 1});
+    System shuffled = chain;
+    std::swap(shuffled.bars[2], shuffled.bars[7]);
+    const MethodDef def = RattleDef{6, 1.0 / 500.0};
+    test::SolverRun<Rattle> first(chain, WorldDef{}, def);
+    test::SolverRun<Rattle> second(shuffled, WorldDef{}, def);
+    ASSERT_TRUE(first.go(1.0) && second.go(1.0));
+    const double largest_m = first.distance_m(second.state());
+    std::printf("graph against chain: %.1e m\n", largest_m);
+    EXPECT_LT(largest_m, 1e-11);
+}
+
+TEST(Graph, ANetSwingsWithItsLengthsAndItsEnergy) {
+    test::SolverRun<Rattle> run(net(8, 6, false), WorldDef{}, RattleDef{4});
+    ASSERT_TRUE(run.go(1.0));
+    std::printf("net: strain %.1e, energy %.1e, h %.1e, parts %llu / %llu\n", run.strain(),
+                run.energy_error(), run.solver().step_s(),
+                static_cast<unsigned long long>(run.solver().parts()),
+                static_cast<unsigned long long>(run.solver().steps()));
+    EXPECT_LT(run.strain(), 1e-13);
+    EXPECT_LT(run.energy_error(), 1e-6);
+}
+
+TEST(Graph, RedundantBarsAreRefused) {
+    const RattleDef def{4};
+    EXPECT_THROW(Rattle(net(5, 5, true), WorldDef{}, def, 1.0 / 60.0), Error);
+    RopeDef rope = reference::straight_rope(20, 1.0, 45.0);
+    rope.reach = 7;
+    const System seven_neighbours = build_system({&rope, 1});
+    EXPECT_THROW(Rattle(seven_neighbours, WorldDef{}, def, 1.0 / 60.0), Error);
+}
+
+}  // namespace
+}  // namespace corda::sim

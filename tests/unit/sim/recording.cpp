@@ -1,0 +1,85 @@
+#include "corda/sim/recording.hpp"
+
+#include <gtest/gtest.h>
+
+#include "corda/reference/ropes.hpp"
+#include "support/simulate.hpp"
+
+namespace corda::sim {
+namespace {
+
+constexpr std::size_t kParticles = 3;
+constexpr std::size_t kBytesPerState = (2 * kParticles + 1) * sizeof(double) + sizeof(Figures);
+
+Simulation swing() {
+    return test::simulate(reference::straight_rope(2, 1.0, 80.0), WorldDef{}, ExactDef{});
+}
+
+TEST(Recording, GivesBackTheStatesOfTheRun) {
+    Simulation run = swing();
+    Recording recording(kParticles, 5, 1 << 20);
+    std::vector<State> states;
+    for (int k = 0; k < 5; ++k) {
+        ASSERT_EQ(recording.advance(run, 0.1 * k, {}), Status::kOk);
+        states.push_back(run.state());
+    }
+    EXPECT_EQ(recording.size(), 5U);
+    EXPECT_EQ(recording.diagnostics().steps, run.diagnostics().steps);
+    State state;
+    for (const std::size_t k : {4U, 0U, 2U}) {
+        ASSERT_TRUE(recording.holds(k));
+        recording.read(k, state);
+        EXPECT_EQ(state.time_s, states[k].time_s);
+        EXPECT_EQ(state.x_m, states[k].x_m);
+        EXPECT_EQ(state.y_m, states[k].y_m);
+    }
+    EXPECT_EQ(recording.figures(4).energy_error, run.figures().energy_error);
+    EXPECT_FALSE(recording.holds(5));
+    EXPECT_EQ(recording.wall_s(), 0.0);
+}
+
+TEST(Recording, KeepsTheBoundsOfStatesBeyondItsBudget) {
+    Recording recording(kParticles, 100, 3 * kBytesPerState);
+    Simulation run = swing();
+    for (int k = 0; k <= 50; ++k) ASSERT_EQ(recording.advance(run, 0.02 * k, {}), Status::kOk);
+    EXPECT_EQ(recording.size(), 51U);
+    EXPECT_TRUE(recording.holds(2));
+    EXPECT_FALSE(recording.holds(3));
+    EXPECT_LT(recording.bounds().min_m().x, 0.0);  // it has swung to the other side
+    EXPECT_LT(recording.bounds().min_m().y, -0.9);
+    EXPECT_GT(recording.bounds().max_m().x, 0.98);
+}
+
+TEST(Recording, AddsNoStateOfARunThatDiverges) {
+    RopeDef rope = reference::straight_rope(1, 1.0, 0.0);
+    rope.pinned = {};
+    RelaxationDef thrown{1.0};
+    thrown.force_n = Vec2{1e11, 0.0};
+    Simulation run = test::simulate(rope, WorldDef{}, thrown);
+    Recording recording(2, 3, 1 << 20);
+    EXPECT_EQ(recording.advance(run, 0.0, {}), Status::kOk);
+    EXPECT_EQ(recording.advance(run, 100.0, {}), Status::kDiverged);
+    EXPECT_EQ(recording.size(), 1U);
+    EXPECT_FALSE(recording.holds(1));
+    EXPECT_EQ(recording.bounds().max_m().x, 0.0);
+}
+
+TEST(Recording, MeasuresTheSteppingAloneAndForgetsItWithTheStates) {
+    double now_s = 0.0;
+    const auto clock_s = [&now_s] { return now_s += 0.25; };
+    Simulation run = swing();
+    Recording recording(kParticles, 3, 1 << 20);
+    ASSERT_EQ(recording.advance(run, 0.1, clock_s), Status::kOk);
+    now_s += 100.0;
+    ASSERT_EQ(recording.advance(run, 0.2, clock_s), Status::kOk);
+    EXPECT_EQ(recording.wall_s(), 0.5);
+    recording.clear();
+    EXPECT_EQ(recording.wall_s(), 0.0);
+    EXPECT_EQ(recording.size(), 0U);
+    EXPECT_FALSE(recording.holds(0));
+    EXPECT_TRUE(recording.bounds().empty());
+    EXPECT_EQ(recording.diagnostics().steps, 0U);
+}
+
+}  // namespace
+}  // namespace corda::sim

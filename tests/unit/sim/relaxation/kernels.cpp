@@ -1,0 +1,85 @@
+// The SIMD kernel of the relaxation method gives the bits of the scalar one.
+
+#include "corda/sim/relaxation/kernels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "corda/sim/relaxation/relaxation.hpp"
+#include "support/random_system.hpp"
+
+namespace corda::sim {
+namespace {
+
+RelaxationDef random_method(test::Random& random) {
+    RelaxationDef def;
+    def.sweeps = std::array{1, 1, 2, 3, 7}[static_cast<std::size_t>(test::pick(random, 0, 4))];
+    def.delta = test::pick(random, 0, 1) * 0.01;
+    if (test::pick(random, 0, 1) == 0) def.force_n = Vec2{0.0, test::pick(random, 0, 1) * -9.8};
+    return def;
+}
+
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+/// A run by one kernel.
+struct KernelRun {
+    KernelRun(const System& system, const RelaxationDef& def, RelaxationKernel kernel)
+        : relaxation(system, WorldDef{}, def, 1.0 / 64.0, kernel), state{0.0, system.x_m, system.y_m} {}
+    Relaxation relaxation;
+    State state;
+};
+
+TEST(FastestRelaxation, HasTheBitsOfTheScalarOneOnRandomBodies) {
+    for (unsigned seed = 0; seed < 250; ++seed) {
+        test::Random random(seed);
+        const System system = test::random_system(random);
+        const RelaxationDef def = random_method(random);
+        KernelRun scalar(system, def, RelaxationKernel::kScalar);
+        KernelRun run(system, def, kFastestRelaxation);
+        double time_s = 0.0;
+        // Single steps, many at once, and times between two steps.
+        for (const double steps : {1.0, 1.0, 1.0, 2.0, 0.25, 0.75, 5.0, 20.0, 1.5, 2.5}) {
+            time_s += steps / 64.0;
+            ASSERT_EQ(scalar.relaxation.advance_to(time_s, scalar.state), Status::kOk);
+            ASSERT_EQ(run.relaxation.advance_to(time_s, run.state), Status::kOk);
+            ASSERT_TRUE(same_bits(scalar.state.x_m, run.state.x_m)) << "seed " << seed << ", " << time_s;
+            ASSERT_TRUE(same_bits(scalar.state.y_m, run.state.y_m)) << "seed " << seed << ", " << time_s;
+            ASSERT_EQ(scalar.relaxation.energy_j(), run.relaxation.energy_j()) << "seed " << seed;
+        }
+    }
+}
+
+TEST(FastestRelaxation, HasTheBitsOfTheScalarOneOverManySteps) {
+    for (const int particles : {20, 40, 100, 300}) {
+        const System system = test::report_system(particles);
+        KernelRun scalar(system, RelaxationDef{}, RelaxationKernel::kScalar);
+        KernelRun run(system, RelaxationDef{}, kFastestRelaxation);
+        ASSERT_EQ(scalar.relaxation.advance_to(60.0, scalar.state), Status::kOk);
+        ASSERT_EQ(run.relaxation.advance_to(60.0, run.state), Status::kOk);
+        EXPECT_LT(std::abs(scalar.state.x_m.back()), particles);
+        EXPECT_TRUE(same_bits(scalar.state.x_m, run.state.x_m)) << particles << " particles";
+        EXPECT_TRUE(same_bits(scalar.state.y_m, run.state.y_m)) << particles << " particles";
+    }
+}
+
+TEST(FastestRelaxation, LeavesAFoldedRopeAloneWhoseBarsHaveNoLength) {
+    // Particles in turn in two places, weightless and motionless: bars of even reach have no length, ever.
+    RopeDef rope = reference::report_rope(50);
+    for (std::size_t i = 0; i < rope.points_m.size(); ++i) rope.points_m[i] = {0.0, i % 2 == 0 ? 0.0 : -1.0};
+    RelaxationDef def;
+    def.force_n = Vec2{};
+    rope.reach = 7;
+    const System system = build_system({&rope, 1});
+    KernelRun run(system, def, kFastestRelaxation);
+    ASSERT_EQ(run.relaxation.advance_to(2.0, run.state), Status::kOk);
+    EXPECT_EQ(run.state.x_m, system.x_m);
+    EXPECT_EQ(run.state.y_m, system.y_m);
+}
+
+}  // namespace
+}  // namespace corda::sim

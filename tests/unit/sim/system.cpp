@@ -1,0 +1,159 @@
+#include "corda/sim/system.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <utility>
+
+#include "corda/reference/ropes.hpp"
+
+namespace corda::sim {
+namespace {
+
+TEST(BarCount, IsTheReportsSevenTimesNLessTwentyEight) {
+    EXPECT_EQ(bar_count(20, 7), 112U);
+    EXPECT_EQ(bar_count(40, 7), 252U);
+    EXPECT_EQ(bar_count(80, 7), 532U);
+    EXPECT_EQ(bar_count(100, 7), 672U);
+}
+
+TEST(BarCount, AReachBeyondTheRopeAddsNoBars) {
+    EXPECT_EQ(bar_count(3, 7), 3U);
+    EXPECT_EQ(bar_count(2, 1), 1U);
+    EXPECT_EQ(bar_count(5, 4), bar_count(5, 1000));
+}
+
+TEST(System, HasTheBarsThatBarCountPromises) {
+    for (const int particles : {2, 3, 7, 8, 20, 100}) {
+        for (const int reach : {1, 2, 7, 10}) {
+            RopeDef rope = reference::report_rope(particles);
+            rope.reach = reach;
+            const System system = build_system({&rope, 1});
+            EXPECT_EQ(system.bars.size(), bar_count(particles, reach))
+                << particles << " particles, reach " << reach;
+            EXPECT_EQ(system.link_count(), static_cast<std::size_t>(particles - 1));
+        }
+    }
+}
+
+TEST(System, OrdersBarsByReachAndThenAlongTheRope) {
+    RopeDef rope = reference::report_rope(4);
+    rope.reach = 2;
+    const System system = build_system({&rope, 1});
+    ASSERT_EQ(system.bars.size(), 5U);
+    const std::array<std::array<unsigned, 3>, 5> expected{
+        {{0, 1, 1}, {1, 2, 1}, {2, 3, 1}, {0, 2, 2}, {1, 3, 2}}};
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        EXPECT_EQ(system.bars[i].a, expected[i][0]);
+        EXPECT_EQ(system.bars[i].b, expected[i][1]);
+        EXPECT_EQ(system.bars[i].reach, expected[i][2]);
+    }
+}
+
+TEST(System, SharesItsArraysAmongRopes) {
+    RopeDef first = reference::straight_rope(3, 3.0, 0.0);
+    RopeDef second = reference::straight_rope(2, 1.0, 90.0);
+    first.origin_m = {10.0, 20.0};
+    second.origin_m = {11.0, 20.0};
+    second.payload_kg = 5.0;
+    second.pinned = {1};
+    second.velocity_m_s = {{1.0, 2.0}, {3.0, 4.0}, {5.0, 6.0}};
+    const std::array<RopeDef, 2> ropes{first, second};
+    const System system = build_system(ropes);
+    ASSERT_EQ(system.particle_count(), 7U);
+    ASSERT_EQ(system.bars.size(), 5U);
+    EXPECT_EQ(system.origin_m, (Vec2{10.0, 20.0}));
+    EXPECT_EQ(system.x_m[4], 1.0);  // the second rope stands 1 m to the right of the first one's origin
+    EXPECT_EQ(system.bodies[1].first_particle, 4U);
+    EXPECT_EQ(system.bars[3].a, 4U);
+    EXPECT_EQ(system.mass_kg[6], 6.0);
+    EXPECT_TRUE(system.is_pinned(5));
+    EXPECT_EQ(system.vx_m_s[5], 0.0);  // a pinned particle has no velocity
+    EXPECT_EQ(system.vy_m_s[6], 6.0);
+    EXPECT_EQ(system.inverse_mass_1_kg[6], 1.0 / 6.0);
+}
+
+TEST(BarCount, OfAClosedRopeHasEachBarOnce) {
+    EXPECT_EQ(bar_count(3, 1, true), 3U);
+    EXPECT_EQ(bar_count(3, 7, true), 3U);  // a triangle has no more
+    EXPECT_EQ(bar_count(4, 2, true), 6U);  // a square and its diagonals
+    EXPECT_EQ(bar_count(5, 2, true), 10U);
+    EXPECT_EQ(bar_count(6, 3, true), 15U);
+    EXPECT_EQ(bar_count(100, 7, true), 700U);
+}
+
+TEST(System, OfAClosedRopeHasTheBarsThatBarCountPromises) {
+    for (const int particles : {3, 4, 5, 6, 7, 20}) {
+        for (const int reach : {1, 2, 3, 10}) {
+            RopeDef rope = reference::report_rope(particles);
+            rope.closed = true;
+            rope.reach = reach;
+            const System system = build_system({&rope, 1});
+            EXPECT_EQ(system.bars.size(), bar_count(particles, reach, true))
+                << particles << " particles, reach " << reach;
+            EXPECT_EQ(system.link_count(), static_cast<std::size_t>(particles));
+            EXPECT_FALSE(system.bodies[0].is_chain);
+            std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
+            for (const Bar& bar : system.bars) pairs.insert(std::minmax(bar.a, bar.b));
+            EXPECT_EQ(pairs.size(), system.bars.size());
+        }
+    }
+}
+
+TEST(System, OfARopeThatBendsHasACornerAtEveryInnerParticle) {
+    RopeDef rope = reference::report_rope(4);
+    rope.points_m = {{0.0, 0.0}, {1.0, 0.0}, {1.0, -3.0}, {-4.0, -3.0}};
+    rope.bending_n_m2 = 6.0;
+    const System open = build_system({&rope, 1});
+    ASSERT_EQ(open.bends.size(), 2U);
+    EXPECT_EQ(open.bends[0].b, 1U);
+    EXPECT_EQ(open.bends[0].stiffness_n_m, 3.0);  // E I over the mean of 1 m and 3 m
+    EXPECT_EQ(open.bends[1].stiffness_n_m, 1.5);
+    rope.closed = true;
+    const System closed = build_system({&rope, 1});
+    ASSERT_EQ(closed.bends.size(), 4U);
+    EXPECT_EQ(closed.bends[3].a, 3U);
+    EXPECT_EQ(closed.bends[3].b, 0U);
+    EXPECT_EQ(closed.bends[3].c, 1U);
+    EXPECT_EQ(closed.bends[3].stiffness_n_m, 2.0);  // between 5 m and 1 m
+}
+
+TEST(System, PutsNetsAfterTheRopes) {
+    const RopeDef rope = reference::straight_rope(2, 2.0, 0.0);
+    NetDef net;
+    net.origin_m = {10.0, 1.0};
+    net.points_m = {{0.0, 0.0}, {3.0, 0.0}, {3.0, -4.0}};
+    net.mass_kg = {1.0, 2.0, 4.0};
+    net.velocity_m_s = {{1.0, 1.0}, {2.0, 2.0}, {3.0, 3.0}};
+    net.bars = {{0, 1}, {1, 2}, {0, 2, false}};
+    net.pinned = {1};
+    net.material.compliance_1_n = 0.5;
+    const System system = build_system({&rope, 1}, {&net, 1});
+    ASSERT_EQ(system.bodies.size(), 2U);
+    const Body& body = system.bodies[1];
+    EXPECT_TRUE(body.is_net);
+    EXPECT_FALSE(body.is_chain);
+    EXPECT_FALSE(system.bodies[0].is_net);
+    EXPECT_TRUE(system.bodies[0].is_chain);
+    EXPECT_EQ(body.first_particle, 3U);
+    EXPECT_EQ(body.first_bar, 2U);
+    EXPECT_EQ(body.bar_count, 3U);
+    EXPECT_EQ(body.link_count, 2U);
+    EXPECT_EQ(body.material.compliance_1_n, 0.5);
+    EXPECT_EQ(system.link_count(), 4U);
+    EXPECT_EQ(system.x_m[3], 10.0);
+    EXPECT_EQ(system.y_m[5], -3.0);
+    EXPECT_EQ(system.bars[4].a, 3U);
+    EXPECT_EQ(system.bars[4].b, 5U);
+    EXPECT_EQ(system.bars[4].rest_m, 5.0);
+    EXPECT_NE(system.bars[4].reach, 1U);  // imaginary
+    EXPECT_TRUE(system.is_pinned(4));
+    EXPECT_EQ(system.vx_m_s[4], 0.0);
+    EXPECT_EQ(system.vx_m_s[5], 3.0);
+    EXPECT_EQ(build_system({}, {&net, 1}).origin_m, net.origin_m);
+}
+
+}  // namespace
+}  // namespace corda::sim

@@ -1,0 +1,54 @@
+#include "corda/sim/work.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "corda/reference/ropes.hpp"
+
+namespace corda::sim {
+namespace {
+
+TEST(Work, VibrationsOfOneMassOnASpring) {
+    RopeDef rope = reference::straight_rope(1, 0.5, 0.0);
+    rope.mass_kg[1] = 4.0;
+    rope.material.compliance_1_n = 0.01;
+    const System system = build_system({&rope, 1});
+    EXPECT_DOUBLE_EQ(vibration_frequency_1_s(system, system.bodies[0]), 1.0 / std::sqrt(0.01 * 0.5 * 4.0));
+}
+
+TEST(Work, VibrationsOfABodyAloneAndOfNoneThatIsRigidAndFlexible) {
+    RopeDef soft = reference::straight_rope(3, 1.0, 0.0);
+    soft.material.compliance_1_n = 1e-2;
+    RopeDef stiff = soft;
+    stiff.material.compliance_1_n = 1e-6;
+    const RopeDef ropes[] = {soft, stiff, reference::straight_rope(3, 1.0, 0.0)};
+    const System system = build_system(ropes);
+    const double soft_1_s = vibration_frequency_1_s(system, system.bodies[0]);
+    EXPECT_NEAR(vibration_frequency_1_s(system, system.bodies[1]) / soft_1_s, 100.0, 1e-10);
+    EXPECT_EQ(vibration_frequency_1_s(system, system.bodies[2]), 0.0);
+}
+
+TEST(Work, VibrationsOfARopeThatResistsBending) {
+    RopeDef rope = reference::straight_rope(4, 1.0, 0.0);
+    rope.bending_n_m2 = 2.0;
+    const System system = build_system({&rope, 1});
+    // E I / a^3 = 128 N / m, times 16 / m for a wave of two links, and the margin for bends of 0.2 radians.
+    const double square_1_s2 = std::pow(vibration_frequency_1_s(system, system.bodies[0]), 2.0);
+    EXPECT_GT(square_1_s2, 128.0 * 15.0);
+    EXPECT_LT(square_1_s2, 128.0 * 20.0);
+}
+
+TEST(Work, OfTheFastestBarAndTheShortestPendulum) {
+    RopeDef rope = reference::rope_through({{0.0, 0.0}, {1.0, 0.0}, {1.25, 0.0}});
+    rope.velocity_m_s[1] = {0.0, 1.0};
+    const System system = build_system({&rope, 1});
+    EXPECT_DOUBLE_EQ(angular_velocity_1_s(system, system.bodies[0]), 4.0);
+    WorldDef world;
+    world.gravity_m_s2 = {3.0, -4.0};
+    EXPECT_DOUBLE_EQ(pendulum_frequency_1_s(system, system.bodies[0], world), std::sqrt(5.0 / 0.25));
+    EXPECT_DOUBLE_EQ(expected_steps(10.0, 3.0), 2.0 * expected_steps(5.0, 3.0));
+}
+
+}  // namespace
+}  // namespace corda::sim
