@@ -1,6 +1,6 @@
 #version 420 core
-// Coverage of one pixel by one capsule, as k/255 in the layer's channel. The same arithmetic, step by step, as
-// render/coverage.hpp: only operations that IEEE 754 fixes to the last bit.
+// Coverage of one pixel by one capsule, as k/255 in the layer's channel. The same steps as capsule_coverage() in
+// src/render/coverage.hpp: only operations that IEEE 754 fixes to the last bit. Change both together.
 
 flat in vec4 capsule_axis;
 flat in vec2 capsule_extent;

@@ -1,6 +1,6 @@
 #version 420 core
-// One quad a capsule. It is wider than the capsule's edge by a margin, so that no raster rule decides a pixel: the
-// rounding of these positions cannot be seen.
+// One quad per capsule. It extends beyond the capsule's edge by a margin, so that the rounding of these positions
+// and the driver's raster rules never decide a pixel.
 
 layout(location = 0) in vec4 axis;   // a.x, a.y, u.x, u.y in pixels, y down
 layout(location = 1) in vec2 extent; // length, radius
@@ -12,13 +12,13 @@ flat out vec4 capsule_axis;
 flat out vec2 capsule_extent;
 
 void main() {
-    float reach = extent.y + edge_margin;
-    float along = (gl_VertexID & 1) == 0 ? -reach : extent.x + reach;
-    float across = (gl_VertexID & 2) == 0 ? -reach : reach;
+    float margin = extent.y + edge_margin;
+    float along = (gl_VertexID & 1) == 0 ? -margin : extent.x + margin;
+    float across = (gl_VertexID & 2) == 0 ? -margin : margin;
     vec2 u = axis.zw;
     vec2 position = axis.xy + along * u + across * vec2(-u.y, u.x);
     capsule_axis = axis;
     capsule_extent = extent;
-    // Row 0 of the framebuffer is the top row of the picture: y is not turned round, here or later.
+    // Row 0 of the framebuffer is the top row of the picture, so y is never flipped, here or later.
     gl_Position = vec4(2.0 * position / frame_size - 1.0, 0.0, 1.0);
 }

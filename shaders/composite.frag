@@ -1,6 +1,6 @@
 #version 420 core
-// Paints the layers over the background in integers, so that no driver's blending decides a bit. The same
-// arithmetic as render/coverage.hpp.
+// Paints the layers over the background in integers, so that no driver's blending decides a bit. The same steps as
+// paint_over() in src/render/coverage.hpp. Change both together.
 
 uniform sampler2DArray masks; // layer l: slice l / 4, channel l % 4
 uniform ivec4 background;
@@ -9,7 +9,7 @@ uniform ivec4 layer_color[64];
 
 out vec4 pixel;
 
-// v / 255 to the nearest integer, for 0 <= v <= 255 * 255.
+// v / 255, rounded to the nearest integer, for 0 <= v <= 255 * 255.
 ivec3 over_255(ivec3 v) {
     ivec3 t = v + 128;
     return (t + (t >> 8)) >> 8;

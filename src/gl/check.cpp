@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "corda/core/error.hpp"
+#include "corda/core/basics.hpp"
 #include "corda/gl/object.hpp"
 
 namespace corda::gl {

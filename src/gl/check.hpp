@@ -4,10 +4,11 @@
 
 namespace corda::gl {
 
-/// Throws corda::Error (kNoGl) where GL holds an error, naming it and `what` was being done.
+/// Throws corda::Error (kNoGl) if glGetError() reports an error. The message names the error and `what` was
+/// being done.
 void check_errors(const std::string& what);
 
-/// Throws corda::Error (kNoGl) where the bound draw framebuffer cannot be drawn to, with GL's reason.
+/// Throws corda::Error (kNoGl) with GL's reason if the bound draw framebuffer is not complete.
 void check_framebuffer(const std::string& what);
 
 }  // namespace corda::gl

@@ -2,9 +2,10 @@
 
 #include <charconv>
 
+#include <epoxy/egl.h>
 #include <fmt/format.h>
 
-#include "corda/core/error.hpp"
+#include "corda/core/basics.hpp"
 #include "corda/gl/egl_display.hpp"
 
 namespace corda::gl {
@@ -45,6 +46,7 @@ ContextDef ContextDef::parse(std::string_view text) {
 
 Context::Context(const ContextDef& def) : impl_(std::make_unique<Impl>()) {
     std::string reasons;
+    bool found_software = false;
     for (const Platform& platform : list_platforms(def)) {
         try {
             impl_->session = std::make_unique<EglSession>(platform);
@@ -56,16 +58,26 @@ Context::Context(const ContextDef& def) : impl_(std::make_unique<Impl>()) {
             impl_->platform = platform.name;
             return;
         }
-        reasons += fmt::format("\n  {}: {} runs on the CPU and --require-gpu was given", platform.name,
+        found_software = true;
+        reasons += fmt::format("\n  {}: {} runs on the CPU and a GPU is required", platform.name,
                                impl_->session->info().gl_renderer);
         impl_->session.reset();
     }
     if (reasons.empty()) reasons = "\n  no such EGL device";
-    throw Error(ExitCode::kNoGl, "no usable OpenGL. Tried:" + reasons +
-                                     "\nOn Debian: apt-get install libegl-mesa0 libgl1-mesa-dri");
+    const char* const remedy =
+        found_software
+            ? "Install the GPU's driver, or draw on the CPU, which gives the same bytes: do not require a GPU"
+        : def.backend != ContextDef::Backend::kAuto
+            ? "Take backend auto, or one that `corda doctor` shows as usable"
+            : "On Debian: apt-get install libegl-mesa0 libgl1-mesa-dri";
+    throw Error(ExitCode::kNoGl, fmt::format("no usable OpenGL. Tried:{}\n{}", reasons, remedy));
 }
 
 Context::~Context() = default;
+
+void Context::make_current() const {
+    impl_->session->make_current();
+}
 
 const ContextInfo& Context::info() const {
     return impl_->session->info();
@@ -75,7 +87,24 @@ const std::string& Context::platform() const {
     return impl_->platform;
 }
 
+SavedContext::SavedContext()
+    : display_(eglGetCurrentDisplay()),
+      context_(eglGetCurrentContext()),
+      draw_surface_(eglGetCurrentSurface(EGL_DRAW)),
+      read_surface_(eglGetCurrentSurface(EGL_READ)),
+      api_(eglQueryAPI()) {}
+
+SavedContext::~SavedContext() {
+    // A context that has been lost meanwhile cannot come back, and a destructor has nobody to tell.
+    if (eglGetCurrentContext() != context_) {
+        EGLDisplay display = context_ == EGL_NO_CONTEXT ? eglGetCurrentDisplay() : display_;
+        eglMakeCurrent(display, draw_surface_, read_surface_, context_);
+    }
+    eglBindAPI(api_);
+}
+
 std::vector<Attempt> probe_contexts() {
+    const SavedContext saved;
     std::vector<Attempt> attempts;
     for (const Platform& platform : list_platforms({})) {
         Attempt& attempt = attempts.emplace_back(Attempt{platform.name, std::nullopt, ""});

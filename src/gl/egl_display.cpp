@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <map>
+#include <mutex>
 
 #include <fmt/format.h>
 
-#include "corda/core/error.hpp"
+#include "corda/core/basics.hpp"
 #include "corda/gl/object.hpp"
 
 namespace corda::gl {
@@ -69,7 +71,8 @@ std::string device_name(EGLDeviceEXT device, int index) {
 }
 
 std::vector<Platform> list_devices() {
-    // epoxy ends the program when a function is called that no library has: ask for the extensions first.
+    // epoxy aborts the program if it is asked for a function that no library has. Ask for the extensions
+    // first.
     const bool can_list =
         has_client_extension("EGL_EXT_device_base") ||
         (has_client_extension("EGL_EXT_device_enumeration") && has_client_extension("EGL_EXT_device_query"));
@@ -105,6 +108,40 @@ bool is_software_renderer(std::string renderer) {
     const std::array<std::string_view, 4> names{"llvmpipe", "softpipe", "swrast", "software rasterizer"};
     return std::any_of(names.begin(), names.end(),
                        [&](std::string_view name) { return renderer.find(name) != std::string::npos; });
+}
+
+/// EGL returns the same display to every caller that asks for the same platform, and terminating it ends all
+/// their contexts. So only the last session of a display terminates it, and none does if the host application
+/// had initialised it before.
+struct OpenDisplays {
+    std::mutex mutex;
+    std::map<EGLDisplay, int> sessions;
+};
+
+OpenDisplays& open_displays() {
+    static OpenDisplays displays;
+    return displays;
+}
+
+bool initialize_display(EGLDisplay display) {
+    OpenDisplays& displays = open_displays();
+    const std::lock_guard lock(displays.mutex);
+    // Only a display that is initialised tells its version. The host's use counts as a session without end.
+    const bool is_of_host =
+        displays.sessions.count(display) == 0 && eglQueryString(display, EGL_VERSION) != nullptr;
+    EGLint major = 0;
+    EGLint minor = 0;
+    if (eglInitialize(display, &major, &minor) != EGL_TRUE) return false;
+    displays.sessions[display] += is_of_host ? 2 : 1;
+    return true;
+}
+
+void close_display(EGLDisplay display) {
+    OpenDisplays& displays = open_displays();
+    const std::lock_guard lock(displays.mutex);
+    if (--displays.sessions[display] > 0) return;
+    displays.sessions.erase(display);
+    eglTerminate(display);
 }
 
 }  // namespace
@@ -159,11 +196,9 @@ void EglSession::open_display(const Platform& platform) {
             break;
     }
     if (display_ == EGL_NO_DISPLAY) fail("getting the display");
-    EGLint major = 0;
-    EGLint minor = 0;
-    if (eglInitialize(display_, &major, &minor) != EGL_TRUE) {
+    if (!initialize_display(display_)) {
         const std::string reason = egl_error_text();
-        display_ = EGL_NO_DISPLAY;  // never initialised: nothing to terminate
+        display_ = EGL_NO_DISPLAY;  // it was not initialised, so close() must not terminate it
         throw Error(ExitCode::kNoGl, "eglInitialize failed: " + reason);
     }
 }
@@ -193,6 +228,13 @@ void EglSession::create_context() {
     context_ = eglCreateContext(display_, config, EGL_NO_CONTEXT, attributes.data());
     if (context_ == EGL_NO_CONTEXT)
         fail(fmt::format("creating an OpenGL {}.{} core context", kMajor, kMinor));
+    make_current();
+}
+
+void EglSession::make_current() const {
+    // Which API a thread means is a state of that thread.
+    if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) fail("binding desktop OpenGL");
+    if (eglGetCurrentContext() == context_) return;
     if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE)
         fail("making the context current");
 }
@@ -206,15 +248,17 @@ void EglSession::read_info() {
     info_.software = is_software_renderer(info_.gl_renderer);
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &info_.max_texture_px);
     if (info_.gl_version.empty())
-        throw Error(ExitCode::kNoGl, "the context is current but OpenGL does not answer");
+        throw Error(ExitCode::kNoGl, "the context is current but glGetString returns no version");
 }
 
 void EglSession::close() {
     if (display_ == EGL_NO_DISPLAY) return;
-    eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-    if (context_ != EGL_NO_CONTEXT) eglDestroyContext(display_, context_);
-    eglTerminate(display_);
-    eglReleaseThread();
+    if (context_ != EGL_NO_CONTEXT) {
+        if (eglGetCurrentContext() == context_)
+            eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+        eglDestroyContext(display_, context_);
+    }
+    close_display(display_);
     context_ = EGL_NO_CONTEXT;
     display_ = EGL_NO_DISPLAY;
 }

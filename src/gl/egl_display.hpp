@@ -10,7 +10,7 @@
 
 namespace corda::gl {
 
-/// A way to an EGL display that this machine may have.
+/// An EGL platform, or an EGL device, that this machine may offer a display for.
 struct Platform {
     enum class Kind { kDevice, kSurfaceless, kDefault };
     Kind kind = Kind::kDefault;
@@ -19,17 +19,20 @@ struct Platform {
     EGLDeviceEXT device = nullptr;
 };
 
-/// The platforms that `def` allows, in the order to try them. Being listed does not mean that one works.
+/// The platforms that `def` allows, in the order in which they are to be tried. A listed platform need not
+/// work.
 [[nodiscard]] std::vector<Platform> list_platforms(const ContextDef& def);
 
-/// An initialised EGL display with a surfaceless context made current, or the reason why there is none.
+/// An initialised EGL display and a surfaceless context that is current on this thread.
 class EglSession {
   public:
-    /// Throws corda::Error (kNoGl) that names the failed step and EGL's reason.
+    /// Throws corda::Error (kNoGl) with the step that failed and EGL's reason.
     explicit EglSession(const Platform& platform);
     EglSession(const EglSession&) = delete;
     EglSession& operator=(const EglSession&) = delete;
     ~EglSession();
+
+    void make_current() const;
 
     [[nodiscard]] const ContextInfo& info() const { return info_; }
 

@@ -1,15 +1,15 @@
 #pragma once
 
 #include <epoxy/egl.h>
-// epoxy's egl.h has to come first.
+// epoxy/egl.h must precede epoxy/gl.h.
 #include <epoxy/gl.h>
 
 #include <utility>
 
 namespace corda::gl {
 
-/// Owns one GL name and gives it back with `Kind::destroy`. Move-only. The context that made it must be
-/// current when it dies, so contexts are declared before the objects made in them.
+/// Owns one GL object name and deletes it with `Kind::destroy`. Move-only. Its context must be current when
+/// it is destroyed, so declare a context before the objects created in it.
 template <typename Kind>
 class Object {
   public:

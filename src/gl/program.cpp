@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "corda/core/error.hpp"
+#include "corda/core/basics.hpp"
 
 namespace corda::gl {
 namespace {
@@ -23,7 +23,7 @@ void compile(GLuint shader, const char* source, const std::string& what) {
     glGetShaderiv(shader, GL_INFO_LOG_LENGTH, &size);
     std::string log(static_cast<std::size_t>(size), '\0');
     glGetShaderInfoLog(shader, size, nullptr, log.data());
-    throw Error(ExitCode::kNoGl, fmt::format("the driver refuses the {} shader: {}", what, log));
+    throw Error(ExitCode::kNoGl, fmt::format("the driver cannot compile the {} shader: {}", what, log));
 }
 
 }  // namespace
@@ -46,7 +46,7 @@ Program::Program(const std::string& name, const char* vertex_source, const char*
     glGetProgramiv(program_.id(), GL_INFO_LOG_LENGTH, &size);
     std::string log(static_cast<std::size_t>(size), '\0');
     glGetProgramInfoLog(program_.id(), size, nullptr, log.data());
-    throw Error(ExitCode::kNoGl, fmt::format("the driver does not link the {} program: {}", name, log));
+    throw Error(ExitCode::kNoGl, fmt::format("the driver cannot link the {} program: {}", name, log));
 }
 
 void Program::use() const {

@@ -6,16 +6,16 @@
 
 namespace corda::gl {
 
-/// A linked pair of a vertex and a fragment shader.
+/// A linked GL program of one vertex and one fragment shader.
 class Program {
   public:
-    /// `name` stands in error messages. Throws corda::Error (kNoGl) with the driver's log where a shader does
-    /// not compile or the pair does not link.
+    /// `name` is used in error messages. Throws corda::Error (kNoGl) with the driver's log if a shader does
+    /// not compile or the program does not link.
     Program(const std::string& name, const char* vertex_source, const char* fragment_source);
 
     void use() const;
 
-    /// Location of an active uniform. Throws corda::Error (kInternal) where there is none of that name.
+    /// The location of an active uniform. Throws corda::Error (kInternal) if there is none of that name.
     [[nodiscard]] GLint uniform(const char* uniform_name) const;
 
   private:

@@ -5,20 +5,20 @@
 #include <cmath>
 #include <cstdint>
 
-#include "corda/core/color.hpp"
+#include "corda/core/image.hpp"
 #include "corda/view/draw_list.hpp"
 
 namespace corda::render {
 
-// The arithmetic of a pixel, shared by definition with shaders/capsule.frag and shaders/composite.frag:
-// single precision +, -, *, comparisons and integers alone, one rounding a step, no contraction. Change both
-// together.
+// The arithmetic of a pixel. shaders/capsule.frag and shaders/composite.frag do the same steps, so change
+// them together. Allowed are +, - and * in single precision with one rounding each, comparisons and integers:
+// what IEEE 754 fixes to the last bit on every driver.
 
-/// Coverage of the pixel with centre (center_x, center_y) by a capsule, 0..255.
+/// Coverage by a capsule of the pixel with centre (center_x, center_y), 0 .. 255.
 ///
-/// The overlap of a box one pixel wide, across the edge, with the capsule's width: right for lines thinner
-/// than a pixel too. The distance to a cap needs a root, taken by three of Newton's steps for 1 / sqrt from
-/// the known integer first guess (relative error below 1e-6, far under 1/255 of a pixel).
+/// It is the overlap of the capsule's width with a box one pixel wide across the edge, which is right for
+/// lines thinner than a pixel too. The distance to a cap needs a square root: three Newton steps for 1 / sqrt
+/// from the well-known integer first guess (relative error below 1e-6, far less than 1/255 of a pixel).
 [[nodiscard]] inline std::uint32_t capsule_coverage(const view::Capsule& capsule, float center_x,
                                                     float center_y) {
     const float dx = center_x - capsule.ax;
@@ -41,14 +41,14 @@ namespace corda::render {
     return static_cast<std::uint32_t>(coverage * 255.0F + 0.5F);
 }
 
-/// v / 255 to the nearest integer, for 0 <= v <= 255 * 255.
+/// v / 255, rounded to the nearest integer, for 0 <= v <= 255 * 255.
 [[nodiscard]] inline std::uint32_t over_255(std::uint32_t v) {
     const std::uint32_t t = v + 128;
     return (t + (t >> 8U)) >> 8U;
 }
 
-/// One channel of a layer's colour painted over `below` where the layer covers `coverage` of the pixel, in
-/// gamma space (straight 8-bit sRGB).
+/// One channel of a layer's colour, painted over `below`. The layer covers `coverage` / 255 of the pixel.
+/// In gamma space: 8-bit sRGB, alpha not premultiplied.
 [[nodiscard]] inline std::uint32_t paint_over(std::uint32_t below, std::uint32_t channel,
                                               std::uint32_t layer_alpha, std::uint32_t coverage) {
     const std::uint32_t alpha = over_255(coverage * layer_alpha);

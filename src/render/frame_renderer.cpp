@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "corda/core/error.hpp"
+#include "corda/core/basics.hpp"
 #include "corda/gl/check.hpp"
 #include "embedded_shaders.hpp"
 
@@ -31,24 +31,12 @@ void check_size(int width, int height) {
                             width, height, widest, highest));
 }
 
-void set_scissor(const PixelRect& rect) {
-    glScissor(rect.x0, rect.y0, rect.width(), rect.height());
-}
-
 }  // namespace
 
 FrameRenderer::FrameRenderer(int width, int height)
     : image_((check_size(width, height), Image(width, height))),
       capsule_program_("capsule", shaders::kCapsuleVert, shaders::kCapsuleFrag),
       composite_program_("composite", shaders::kCompositeVert, shaders::kCompositeFrag) {
-    glDisable(GL_DITHER);
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
-    glEnable(GL_SCISSOR_TEST);
-    glViewport(0, 0, width, height);
-    glPixelStorei(GL_PACK_ALIGNMENT, 4);
-    glPixelStorei(GL_PACK_ROW_LENGTH, width);
-
     glBindTexture(GL_TEXTURE_2D, color_.id());
     glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA8, width, height);
     glBindFramebuffer(GL_FRAMEBUFFER, color_target_.id());
@@ -57,7 +45,8 @@ FrameRenderer::FrameRenderer(int width, int height)
 
     static_assert(std::is_standard_layout_v<view::Capsule> && sizeof(view::Capsule) == 6 * sizeof(float));
     glBindVertexArray(capsule_array_.id());
-    glBindBuffer(GL_ARRAY_BUFFER, capsule_buffer_.id());  // a buffer comes to be when it is bound
+    glBindBuffer(GL_ARRAY_BUFFER,
+                 capsule_buffer_.id());  // binding a name for the first time creates the buffer
     glBindVertexBuffer(0, capsule_buffer_.id(), 0, sizeof(view::Capsule));
     glVertexBindingDivisor(0, 1);
     for (const GLuint attribute : {0U, 1U}) {
@@ -85,25 +74,39 @@ PixelRect FrameRenderer::render(const view::DrawList& list) {
     assert(list.layers.size() <= view::kMaxLayers);
     if (!(list.background == last_background_)) everything_is_stale_ = true;
     const PixelRect damage = everything_is_stale_ ? image_.rect() : last_bounds_.united(list.bounds);
-    last_bounds_ = list.bounds;
-    last_background_ = list.background;
-    everything_is_stale_ = false;
     if (damage.empty()) return damage;
 
+    everything_is_stale_ = true;  // if it fails on the way
     reserve_masks(list.layers.size());
-    set_scissor(damage);
+    set_state(damage);
     draw_masks(list);
     composite(list);
     glReadPixels(damage.x0, damage.y0, damage.width(), damage.height(), GL_RGBA, GL_UNSIGNED_BYTE,
                  image_.pixel(damage.x0, damage.y0));
     gl::check_errors("drawing a frame");
+    last_bounds_ = list.bounds;
+    last_background_ = list.background;
+    everything_is_stale_ = false;
     return damage;
+}
+
+void FrameRenderer::set_state(const PixelRect& damage) const {
+    glDisable(GL_DITHER);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_BLEND);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(damage.x0, damage.y0, damage.width(), damage.height());
+    glViewport(0, 0, image_.width(), image_.height());
+    glPixelStorei(GL_PACK_ALIGNMENT, 4);
+    glPixelStorei(GL_PACK_ROW_LENGTH, image_.width());
 }
 
 void FrameRenderer::reserve_masks(std::size_t layer_count) {
     const std::size_t slices =
         std::max<std::size_t>(1, (layer_count + kLayersPerSlice - 1) / kLayersPerSlice);
     if (slices <= mask_slices_) return;
+    mask_slices_ = 0;  // if it fails on the way
     masks_ = gl::Texture();
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_2D_ARRAY, masks_.id());

@@ -9,28 +9,28 @@
 
 namespace corda::render {
 
-/// Draws lists with OpenGL into a picture in memory. Every frame equals render_reference byte for byte.
+/// Draws draw lists with OpenGL into a picture in memory. Every frame equals that of render_reference() byte
+/// for byte.
 ///
-/// Each layer's capsules are united in a mask (GL_MAX of values that are exactly k/255, four layers a
-/// texture), then one pass paints all layers in integers. Only what differs from the last frame is cleared,
-/// drawn and read back.
+/// The capsules of a layer are united in a mask, by GL_MAX of values that are exactly k/255; a texture slice
+/// holds four masks. Then one pass paints all layers in integers. Only the damage, what may differ from the
+/// last frame, is cleared, drawn and read back.
 class FrameRenderer {
   public:
-    /// A gl::Context must be current and outlive this. Throws corda::Error (kNoGl) where the driver cannot
-    /// hold a frame of that size.
+    /// A gl::Context must be current and outlive this. Throws corda::Error (kNoGl) if the driver cannot draw
+    /// a frame of that size.
     FrameRenderer(int width, int height);
 
-    /// Draws the next frame, of this renderer's size, and returns the pixels that may differ from the last
-    /// one.
+    /// Draws the next frame; `list` has this renderer's size. Returns the damage: the pixels that may differ
+    /// from the last frame. Throws corda::Error (kNoGl); then the next frame is drawn whole.
     PixelRect render(const view::DrawList& list);
 
     /// The last frame.
     [[nodiscard]] const Image& image() const { return image_; }
 
-    /// Makes the next frame a full redraw.
-    void invalidate() { everything_is_stale_ = true; }
-
   private:
+    /// Sets the state that drawing depends on: another renderer may have drawn in this context meanwhile.
+    void set_state(const PixelRect& damage) const;
     void reserve_masks(std::size_t layer_count);
     void draw_masks(const view::DrawList& list);
     void composite(const view::DrawList& list);

@@ -5,7 +5,8 @@
 
 namespace corda::render {
 
-/// Draws a list in plain C++. Slow and simple: the oracle that every GL frame equals byte for byte.
+/// Draws a draw list in plain C++. Slow and simple: the oracle that every frame drawn with OpenGL must equal
+/// byte for byte.
 [[nodiscard]] Image render_reference(const view::DrawList& list);
 
 }  // namespace corda::render

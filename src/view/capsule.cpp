@@ -6,14 +6,17 @@
 namespace corda::view {
 namespace {
 
-constexpr double kSnap = 1024.0;  // steps a pixel: 16384 px * 1024 still fits a float's 24 bits
+constexpr double kSnap = 1024.0;  // steps per pixel: 16384 px * 1024 still fits into a float's 24 bits
+
+constexpr double kFarthestPx = 1e30;  // far from overflow in every product below
+constexpr double kCutSlack = 1.0;     // px; more than rounding takes within the coordinates of a sane scene
 
 double snapped(double x_px) {
     return std::round(x_px * kSnap) / kSnap;
 }
 
-/// Cuts the range [t0, t1] of a + t (b - a) to low <= coordinate <= high (Liang-Barsky); false where nothing
-/// is left.
+/// Cuts the range [t0, t1] of a + t (b - a) to low <= coordinate <= high (Liang-Barsky). Returns false if the
+/// range becomes empty.
 bool cut(double a, double b, double low, double high, double& t0, double& t1) {
     const double d = b - a;
     if (d == 0.0) return a >= low && a <= high;
@@ -27,14 +30,23 @@ bool cut(double a, double b, double low, double high, double& t0, double& t1) {
 }  // namespace
 
 std::optional<Capsule> make_capsule(PixelPoint a, PixelPoint b, double radius_px, int width, int height) {
-    // Twice the reach: the cap of a cut end stays out of the picture too.
+    if (std::isnan(a.x) || std::isnan(a.y) || std::isnan(b.x) || std::isnan(b.y)) return std::nullopt;
+    for (double* coordinate : {&a.x, &a.y, &b.x, &b.y})
+        *coordinate = std::clamp(*coordinate, -kFarthestPx, kFarthestPx);
+    // Twice what the capsule extends around its segment, so that the cap at a cut stays outside the frame.
     const double margin = 2.0 * (radius_px + static_cast<double>(kEdgeMargin));
     double t0 = 0.0;
     double t1 = 1.0;
     if (!cut(a.x, b.x, -margin, width + margin, t0, t1)) return std::nullopt;
     if (!cut(a.y, b.y, -margin, height + margin, t0, t1)) return std::nullopt;
-    const PixelPoint from{snapped(a.x + t0 * (b.x - a.x)), snapped(a.y + t0 * (b.y - a.y))};
-    const PixelPoint to{snapped(a.x + t1 * (b.x - a.x)), snapped(a.y + t1 * (b.y - a.y))};
+    // From far away, rounding can miss the cut by more than a float holds.
+    const auto at = [&](double t) {
+        return PixelPoint{
+            snapped(std::clamp(a.x + t * (b.x - a.x), -margin - kCutSlack, width + margin + kCutSlack)),
+            snapped(std::clamp(a.y + t * (b.y - a.y), -margin - kCutSlack, height + margin + kCutSlack))};
+    };
+    const PixelPoint from = at(t0);
+    const PixelPoint to = at(t1);
     const double dx = to.x - from.x;
     const double dy = to.y - from.y;
     const double length = std::sqrt(dx * dx + dy * dy);
@@ -53,11 +65,11 @@ std::optional<Capsule> make_capsule(PixelPoint a, PixelPoint b, double radius_px
 PixelRect capsule_bounds(const Capsule& capsule, int width, int height) {
     const float bx = capsule.ax + capsule.ux * capsule.length;
     const float by = capsule.ay + capsule.uy * capsule.length;
-    const float reach = capsule.radius + kEdgeMargin;
-    const PixelRect box{static_cast<int>(std::floor(std::min(capsule.ax, bx) - reach)),
-                        static_cast<int>(std::floor(std::min(capsule.ay, by) - reach)),
-                        static_cast<int>(std::ceil(std::max(capsule.ax, bx) + reach)),
-                        static_cast<int>(std::ceil(std::max(capsule.ay, by) + reach))};
+    const float extent = capsule.radius + kEdgeMargin;
+    const PixelRect box{static_cast<int>(std::floor(std::min(capsule.ax, bx) - extent)),
+                        static_cast<int>(std::floor(std::min(capsule.ay, by) - extent)),
+                        static_cast<int>(std::ceil(std::max(capsule.ax, bx) + extent)),
+                        static_cast<int>(std::ceil(std::max(capsule.ay, by) + extent))};
     return box.intersected({0, 0, width, height});
 }
 

@@ -4,16 +4,15 @@
 #include <cstdint>
 #include <vector>
 
-#include "corda/core/color.hpp"
 #include "corda/core/image.hpp"
 
 namespace corda::view {
 
-/// A line with round caps, or a disc where `length` is 0: all points within `radius` of the segment.
+/// A line with round caps: all points within `radius` of a segment. A disc if `length` is 0.
 ///
-/// Pixels, x to the right and y down, the centre of the top left pixel at (0.5, 0.5). (ax, ay) is a multiple
-/// of 1/1024, so that differences to pixel centres are exact in float; (ux, uy) is the unit direction,
-/// rounded once from double.
+/// In pixels, x to the right, y down; the centre of the top left pixel is at (0.5, 0.5). (ax, ay) is the
+/// start of the segment, a multiple of 1/1024, so that differences to pixel centres are exact in float. (ux,
+/// uy) is its unit direction, rounded once from double.
 struct Capsule {
     float ax = 0;
     float ay = 0;
@@ -23,8 +22,8 @@ struct Capsule {
     float radius = 0;
 };
 
-/// Capsules that are united before they are painted in one colour, so that joints and crossings of a
-/// see-through or smooth-edged line do not darken.
+/// Capsules of one colour. They are united before they are painted, so that the joints and crossings of a
+/// transparent or smooth-edged line do not darken.
 struct Layer {
     Color color;
     std::size_t first_capsule = 0;
@@ -38,14 +37,14 @@ struct DrawList {
     Color background;  ///< opaque
     std::vector<Capsule> capsules;
     std::vector<Layer> layers;  ///< contiguous and in the order of `capsules`
-    PixelRect bounds;           ///< holds every pixel that differs from the background; within the frame
+    PixelRect bounds;           ///< contains every pixel that differs from the background; within the frame
 };
 
-/// How far outside `radius` a capsule can still touch a pixel: half a pixel of smooth edge, and slack for
-/// rounding.
+/// How far beyond `radius` a capsule can still touch a pixel, in pixels: half a pixel of smooth edge, and
+/// slack for rounding.
 inline constexpr float kEdgeMargin = 2.0F;
 
-/// Most layers that one frame may have: the renderer keeps a mask a layer.
+/// The most layers that a frame may have. The renderer keeps one mask per layer.
 inline constexpr std::size_t kMaxLayers = 64;
 
 }  // namespace corda::view

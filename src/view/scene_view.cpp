@@ -4,29 +4,31 @@
 #include <cmath>
 #include <string>
 
-#include "corda/core/error.hpp"
+#include "corda/core/basics.hpp"
 #include "corda/view/capsule.hpp"
+#include "corda/view/validate.hpp"
 
 namespace corda::view {
 namespace {
 
 constexpr double kHeightPerRopeWidth = 216.0;
 constexpr double kThinnestRopePx = 1.5;
-constexpr double kNetWidthPerRopeWidth = 0.5;  // a cloth's cells must stay open
-constexpr double kHeightPerPinnedRim = 150.0;  // how far a marker stands out beside the rope
+constexpr double kNetWidthPerRopeWidth = 0.5;  // so that the cells of a cloth stay open
+constexpr double kHeightPerPinnedRim = 150.0;  // rim: how far a marker extends beyond the line
 constexpr double kHeightPerFreeRim = 400.0;
 constexpr double kBarWidthPerRopeWidth = 0.25;
 constexpr double kThinnestBarPx = 1.0;
 
 }  // namespace
 
-SceneView::SceneView(const sim::System& system, const StyleDef& style,
+SceneView::SceneView(const System& system, const StyleDef& style,
                      const std::vector<BodyStyleDef>& body_styles, int width, int height)
     : system_(&system),
       background_(style.background),
       width_(width),
       height_(height),
       rope_width_px_(style.rope_width_px.value_or(std::max(kThinnestRopePx, height / kHeightPerRopeWidth))) {
+    validate(style, body_styles);
     if (style.bars == Bars::kAll) add_bars(style, false);
     add_bodies(style, body_styles);
     if (style.bars != Bars::kNone) add_bars(style, true);
@@ -54,8 +56,8 @@ void SceneView::add_bodies(const StyleDef& style, const std::vector<BodyStyleDef
     const std::size_t first_layer = layers_.size();
     std::size_t next_color = 0;
     for (std::size_t i = 0; i < system_->bodies.size(); ++i) {
-        const sim::Body& body = system_->bodies[i];
-        const BodyStyleDef& own = body_styles[i];
+        const Body& body = system_->bodies[i];
+        const BodyStyleDef own = i < body_styles.size() ? body_styles[i] : BodyStyleDef{};
         const Color color = own.color ? *own.color : style.palette[next_color++ % style.palette.size()];
         const double default_width_px = (body.is_net ? kNetWidthPerRopeWidth : 1.0) * rope_width_px_;
         const double radius_px = 0.5 * own.width_px.value_or(default_width_px);
@@ -70,7 +72,7 @@ void SceneView::add_bars(const StyleDef& style, bool real) {
     const double width_px =
         style.bar_width_px.value_or(std::max(kThinnestBarPx, kBarWidthPerRopeWidth * rope_width_px_));
     ItemLayer layer{real ? style.real_bar_color : style.imaginary_bar_color, {}};
-    for (const sim::Bar& bar : system_->bars) {
+    for (const Bar& bar : system_->bars) {
         if ((bar.reach == 1) == real) layer.items.push_back({bar.a, bar.b, 0.5 * width_px});
     }
     layers_.push_back(std::move(layer));
@@ -80,7 +82,7 @@ void SceneView::add_markers(const StyleDef& style, bool pinned) {
     const double rim_px = height_ / (pinned ? kHeightPerPinnedRim : kHeightPerFreeRim);
     ItemLayer layer{pinned ? style.pinned_color : style.free_color, {}};
     for (std::size_t b = 0; b < system_->bodies.size(); ++b) {
-        const sim::Body& body = system_->bodies[b];
+        const Body& body = system_->bodies[b];
         const double radius_px = style.marker_radius_px.value_or(body_radius_px_[b] + rim_px);
         for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
             if (system_->is_pinned(i) == pinned) layer.items.push_back({i, i, radius_px});
@@ -89,7 +91,7 @@ void SceneView::add_markers(const StyleDef& style, bool pinned) {
     layers_.push_back(std::move(layer));
 }
 
-void SceneView::draw(const sim::State& state, const Camera& camera, DrawList& list) const {
+void SceneView::draw(const State& state, const Camera& camera, DrawList& list) const {
     list.width = width_;
     list.height = height_;
     list.background = background_;

@@ -11,25 +11,27 @@
 
 namespace corda::view {
 
-/// Turns states into draw lists. What is drawn, and in which layer, is settled once; where, anew each frame.
+/// Turns states into draw lists. Construction decides what is drawn and in which layer; each frame decides
+/// where.
 ///
-/// From back to front: imaginary bars, the links of ropes and nets (one layer a colour), real bars, free
+/// From back to front: imaginary bars, the links of ropes and nets (one layer per colour), real bars, free
 /// particles, pinned particles.
 class SceneView {
   public:
-    /// `body_styles` has one entry a body of `system`, which must outlive this. Throws corda::Error
-    /// (kInvalidScene) where the scene needs more than kMaxLayers layers.
-    SceneView(const sim::System& system, const StyleDef& style, const std::vector<BodyStyleDef>& body_styles,
+    /// `body_styles` has an entry per body of `system`; one that is missing overrides nothing. `system` must
+    /// outlive this. Throws corda::Error (kInvalidScene) for a style that validate() refuses, and if the
+    /// scene needs more than kMaxLayers layers.
+    SceneView(const System& system, const StyleDef& style, const std::vector<BodyStyleDef>& body_styles,
               int width, int height);
 
-    /// Pixels around a particle's centre that the widest thing drawn on it reaches.
+    /// Half of the widest line or marker: how far a drawn thing extends around a particle, in pixels.
     [[nodiscard]] double clearance_px() const { return clearance_px_; }
 
-    /// Writes the frame of `state` into `list`, whose memory is used again.
-    void draw(const sim::State& state, const Camera& camera, DrawList& list) const;
+    /// Writes the frame of `state` to `list`. Memory that `list` holds is reused.
+    void draw(const State& state, const Camera& camera, DrawList& list) const;
 
   private:
-    /// A line from particle a to particle b, or a disc where they are the same.
+    /// A line from particle a to particle b; a disc if they are the same.
     struct Item {
         std::size_t a;
         std::size_t b;
@@ -45,12 +47,12 @@ class SceneView {
     void add_markers(const StyleDef& style, bool pinned);
     ItemLayer& layer_of(Color color, std::size_t first_layer);
 
-    const sim::System* system_;
+    const System* system_;
     Color background_;
     int width_;
     int height_;
     double rope_width_px_;
-    std::vector<double> body_radius_px_;  // one a body
+    std::vector<double> body_radius_px_;  // per body
     double clearance_px_ = 0.0;
     std::vector<ItemLayer> layers_;
 };

@@ -6,11 +6,9 @@
 #include <string>
 #include <tuple>
 
-#include "corda/gl/context.hpp"
-#include "corda/render/frame_renderer.hpp"
+#include "corda/pipeline/film.hpp"
 #include "corda/render/reference_renderer.hpp"
-#include "corda/scene/auto_plan.hpp"
-#include "corda/scene/player.hpp"
+#include "support/draw_list_of.hpp"
 #include "support/files.hpp"
 #include "support/image_matchers.hpp"
 
@@ -21,18 +19,14 @@ class Examples : public testing::TestWithParam<std::tuple<std::string, std::stri
 
 TEST_P(Examples, EqualTheReferenceByteForByte) {
     const auto& [path, size] = GetParam();
-    const gl::Context context;
     for (const char* width : {"", "0.5", "60"}) {
-        std::vector<scene::Setting> settings{"video.size=" + size};
+        std::vector<Setting> settings{"video.size=" + size};
         if (*width != '\0') settings.push_back(std::string("style.rope_width_px=") + width);
-        scene::Scene scene = scene::load_scene(path, settings);
-        static_cast<void>(scene::settle_method(scene));
-        scene::Player player(scene);
-        render::FrameRenderer renderer(scene.video.width_px, scene.video.height_px);
-        for (const double time_s : {0.0, 0.37 * scene.world.duration_s, scene.world.duration_s}) {
-            const view::DrawList& list = player.at(time_s);
-            renderer.render(list);
-            EXPECT_TRUE(test::equal_images(renderer.image(), render::render_reference(list)))
+        const Film film(load_scene(path, settings));
+        const double end_s = film.scene().world.duration_s;
+        for (const double time_s : {0.0, 0.37 * end_s, end_s}) {
+            const Image expected = render::render_reference(test::draw_list_of(film, time_s));
+            EXPECT_TRUE(test::equal_images(film.still(time_s), expected))
                 << "rope width \"" << width << "\" at " << time_s << " s";
         }
     }

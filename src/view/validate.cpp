@@ -1,0 +1,46 @@
+#include "corda/view/validate.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "corda/core/basics.hpp"
+
+namespace corda::view {
+namespace {
+
+constexpr double kThinnestPx = 0.1;
+constexpr double kThickestPx = 1000.0;
+constexpr double kWidestMargin = 0.45;
+
+void require_range(bool holds, const std::string& field, const char* range) {
+    if (!holds) throw Error(ExitCode::kInvalidScene, field + " is not " + range);
+}
+
+void validate_width(const std::optional<double>& width_px, const std::string& field) {
+    require_range(!width_px || (*width_px >= kThinnestPx && *width_px <= kThickestPx), field,
+                  "within 0.1 .. 1000");
+}
+
+}  // namespace
+
+void validate(const StyleDef& style, const std::vector<BodyStyleDef>& body_styles) {
+    validate_width(style.rope_width_px, "style: rope_width_px");
+    validate_width(style.marker_radius_px, "style: marker_radius_px");
+    validate_width(style.bar_width_px, "style: bar_width_px");
+    for (std::size_t i = 0; i < body_styles.size(); ++i)
+        validate_width(body_styles[i].width_px, "body_styles " + std::to_string(i) + ": width_px");
+    if (style.palette.empty()) throw Error(ExitCode::kInvalidScene, "style.palette is empty; give a colour");
+}
+
+void validate(const CameraDef& camera) {
+    const auto& center_m = camera.center_m;
+    const auto& height_m = camera.height_m;
+    require_range(!center_m || (std::isfinite(center_m->x) && std::isfinite(center_m->y)), "camera: center_m",
+                  "finite");
+    require_range(!height_m || (*height_m > 0.0 && std::isfinite(*height_m)), "camera: height_m",
+                  "> 0 and finite");
+    require_range(camera.margin >= 0.0 && camera.margin <= kWidestMargin, "camera: margin",
+                  "within 0 .. 0.45");
+}
+
+}  // namespace corda::view

@@ -1,0 +1,95 @@
+#include "corda/gl/context.hpp"
+
+#include <gmock/gmock.h>
+
+#include <optional>
+#include <thread>
+
+#include "support/failure.hpp"
+#include "support/host_context.hpp"
+
+namespace corda::gl {
+namespace {
+
+using Backend = ContextDef::Backend;
+using test::failure_of;
+
+TEST(ContextDefs, AreReadFromText) {
+    EXPECT_EQ(ContextDef::parse("auto").backend, Backend::kAuto);
+    EXPECT_EQ(ContextDef::parse("surfaceless").backend, Backend::kSurfaceless);
+    EXPECT_EQ(ContextDef::parse("default").backend, Backend::kDefault);
+    EXPECT_EQ(ContextDef::parse("device").backend, Backend::kDevice);
+    EXPECT_EQ(ContextDef::parse("device").device, std::nullopt);
+    EXPECT_EQ(ContextDef::parse("device:12").backend, Backend::kDevice);
+    EXPECT_EQ(ContextDef::parse("device:12").device, 12);
+}
+
+TEST(ContextDefs, OfAnyOtherTextAreErrors) {
+    for (const char* text : {"", "Auto", "auto ", "devices", "device:", "device:-1", "device:1x", "device: 1",
+                             "device:99999999999", "surfaceless:0"}) {
+        const test::Failure failure = failure_of([&] { static_cast<void>(ContextDef::parse(text)); });
+        EXPECT_EQ(failure.code, ExitCode::kUsage) << text;
+        EXPECT_THAT(failure.message, testing::HasSubstr("device:N"));
+    }
+}
+
+TEST(Contexts, OfADeviceThatIsNotThereAreErrors) {
+    const test::Failure failure = failure_of([] { const Context context(ContextDef::parse("device:63")); });
+    EXPECT_EQ(failure.code, ExitCode::kNoGl);
+    EXPECT_THAT(failure.message, testing::HasSubstr("no such EGL device"));
+}
+
+TEST(Contexts, BelongToOneThreadAtATime) {
+    const Context context;
+    ExitCode code = ExitCode::kOk;
+    std::thread([&] { code = failure_of([&] { context.make_current(); }).code; }).join();
+    EXPECT_EQ(code, ExitCode::kNoGl);
+}
+
+TEST(Contexts, ThatEndLeaveAnotherOneCurrent) {
+    const test::HostContext host;
+    auto context = std::make_unique<Context>();
+    EXPECT_FALSE(host.is_current());
+    host.make_current();
+    context.reset();
+    EXPECT_EQ(eglGetCurrentContext() != EGL_NO_CONTEXT, true);
+}
+
+TEST(SavedContexts, ComeBack) {
+    const test::HostContext host;
+    {
+        const SavedContext saved_host;
+        const Context outer;
+        EXPECT_FALSE(host.is_current());
+        EGLContext outer_handle = eglGetCurrentContext();
+        {
+            const SavedContext saved_outer;
+            const Context inner;
+            EXPECT_NE(eglGetCurrentContext(), outer_handle);
+        }
+        EXPECT_EQ(eglGetCurrentContext(), outer_handle);
+    }
+    EXPECT_TRUE(host.is_current());
+    EXPECT_TRUE(host.is_alive());
+}
+
+TEST(SavedContexts, OfNoneLeaveNoneCurrent) {
+    const Context context;
+    std::thread([] {
+        {
+            const SavedContext none;
+            const Context other;
+        }
+        EXPECT_EQ(eglGetCurrentContext(), EGL_NO_CONTEXT);
+    }).join();
+}
+
+TEST(Probes, LeaveTheCurrentContextAlone) {
+    const test::HostContext host;
+    EXPECT_FALSE(probe_contexts().empty());
+    EXPECT_TRUE(host.is_current());
+    EXPECT_TRUE(host.is_alive());
+}
+
+}  // namespace
+}  // namespace corda::gl
