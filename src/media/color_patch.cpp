@@ -8,8 +8,8 @@ namespace corda::media {
 namespace {
 
 constexpr std::size_t kPatchCount = 5;
-constexpr int kMargin =
-    8;  // a deblocked edge changes 3 pixels, the chroma filter reads 1, a 8x8 transform block 8
+// Deblocking changes 3 pixels, the chroma filter reads 1, and an 8x8 transform block spreads over 8.
+constexpr int kMargin = 8;
 
 bool same_rgb(const std::uint8_t* a, const std::uint8_t* b) {
     return std::memcmp(a, b, 3) == 0;
@@ -28,8 +28,8 @@ bool is_uniform(const Image& frame, int x, int y) {
     return true;
 }
 
-/// Block-aligned positions of a frame, the telling ones first: corners, centre, edge middles, then all by
-/// rows.
+/// Block-aligned positions, those most likely to differ in colour first: corners, centre, middles of the
+/// edges, then all, row by row.
 std::vector<std::array<int, 2>> positions(const Image& frame) {
     const int columns = frame.width() / kPatchSide;
     const int rows = frame.height() / kPatchSide;
@@ -61,7 +61,7 @@ bool has_place(const std::vector<ColorPatch>& patches, const ColorPatch& patch) 
 
 std::vector<ColorPatch> choose_patches(const Image& frame) {
     std::vector<ColorPatch> chosen;
-    std::vector<ColorPatch> spare;  // further places of a colour that is already chosen
+    std::vector<ColorPatch> spare;  // further places with a colour that is already chosen
     for (const auto& [x, y] : positions(frame)) {
         const std::uint8_t* pixel = frame.pixel(x, y);
         const ColorPatch patch{x, y, {pixel[0], pixel[1], pixel[2]}};
@@ -85,9 +85,9 @@ std::array<double, 3> rgb_from_ycbcr(double y, double cb, double cr) {
 }
 
 double patch_tolerance(int crf) {
-    // Measured over random and saturated colours and five presets: at most 1.7 up to crf 25 (of which 1.6 is
-    // the rounding to 8-bit Y'CbCr), then 3.2 at 28, 3.9 at 33, 6.5 at 40, 11 at 45, 25 at 51. A wrong matrix
-    // or range is off by 15 and more.
+    // Measured with random and saturated colours and five presets: at most 1.7 up to crf 25 (of which 1.6 is
+    // the rounding to 8-bit Y'CbCr), 3.2 at 28, 3.9 at 33, 6.5 at 40, 11 at 45, 25 at 51. A wrong matrix or
+    // range is off by 15 or more.
     return std::max(2.0, 2.0 * std::exp2((crf - 21) / 7.0));
 }
 

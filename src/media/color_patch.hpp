@@ -11,15 +11,15 @@ namespace corda::media {
 /// Side of a colour patch in pixels: one macroblock.
 inline constexpr int kPatchSide = 16;
 
-/// Up to five blocks of `frame`, at multiples of 16, that have one colour together with the 8 pixels around
-/// them (as far as the frame goes), so that neither deblocking nor the chroma filter mixes in another colour.
-/// As many different colours as can be had; corners, centre and edges come first.
+/// Up to five blocks of `frame`, at multiples of 16, each of one colour that also fills the 8 pixels around
+/// it (as far as the frame goes), so that neither deblocking nor the chroma filter mixes in another colour.
+/// Blocks of different colours are preferred; then corners, centre and edges.
 [[nodiscard]] std::vector<ColorPatch> choose_patches(const Image& frame);
 
 /// R'G'B' (0 .. 255, not clipped) of BT.709 limited range Y'CbCr: the inverse of convert_to_yuv420.
 [[nodiscard]] std::array<double, 3> rgb_from_ycbcr(double y, double cb, double cr);
 
-/// How far, in 1/255, a patch of a sound video may be off at this x264 rate factor.
+/// The largest error, in 1/255, that a patch of a correct video may have at this x264 rate factor.
 [[nodiscard]] double patch_tolerance(int crf);
 
 }  // namespace corda::media

@@ -3,24 +3,26 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <atomic>
 #include <cstdarg>
 #include <mutex>
 
-#include "corda/core/error.hpp"
-#include "corda/media/file_ops.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/file.hpp"
 
 namespace corda::media {
 namespace {
 
-constexpr std::size_t kLongestLog = 400;  // characters; a broken stream can complain once a macroblock
+constexpr std::size_t kLongestLog = 400;  // characters; a broken stream can complain once per macroblock
 
+std::atomic<int> quiet_logs{0};
 thread_local LogCapture* innermost_capture = nullptr;
 
 void on_log(void* object, int level, const char* format, va_list arguments) {
+    if (quiet_logs == 0) return av_log_default_callback(object, level, format, arguments);
     if (innermost_capture == nullptr || level > AV_LOG_ERROR) return;
     std::array<char, 256> line{};
     int print_prefix = 0;  // the prefix holds an address, which differs on every run
-    (void)object;
     av_log_format_line(nullptr, level, format, arguments, line.data(), static_cast<int>(line.size()),
                        &print_prefix);
     std::string_view text(line.data());
@@ -32,7 +34,7 @@ void on_log(void* object, int level, const char* format, va_list arguments) {
 
 Options& Options::set(const char* name, const std::string& value) {
     check_libav(av_dict_set(&dictionary_, name, value.c_str(), 0), ExitCode::kInternal,
-                "cannot keep an option");
+                "cannot store an option");
     return *this;
 }
 
@@ -64,9 +66,17 @@ int check_libav(int status, ExitCode code, const std::string& what, std::string_
     return status;
 }
 
-LogCapture::LogCapture() : outer_(innermost_capture) {
+QuietLog::QuietLog() {
     static std::once_flag once;
     std::call_once(once, [] { av_log_set_callback(&on_log); });
+    ++quiet_logs;
+}
+
+QuietLog::~QuietLog() {
+    --quiet_logs;
+}
+
+LogCapture::LogCapture() : outer_(innermost_capture) {
     innermost_capture = this;
 }
 

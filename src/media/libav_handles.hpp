@@ -1,6 +1,7 @@
 #pragma once
 
-// The only header that includes libav. Private to src/media: what other modules see is free of it.
+// The only header that includes libav, private to src/media: headers that other folders include must not
+// include this one.
 
 extern "C" {
 #include <libavcodec/avcodec.h>
@@ -9,7 +10,6 @@ extern "C" {
 #include <libavutil/dict.h>
 #include <libavutil/error.h>
 #include <libavutil/frame.h>
-#include <libavutil/hwcontext.h>
 #include <libavutil/log.h>
 #include <libavutil/mathematics.h>
 #include <libavutil/pixdesc.h>
@@ -19,7 +19,7 @@ extern "C" {
 #include <string>
 #include <string_view>
 
-#include "corda/core/exit_code.hpp"
+#include "corda/core/basics.hpp"
 #include "corda/core/rational.hpp"
 
 namespace corda::media {
@@ -42,14 +42,19 @@ struct PointerDeleter {
     }
 };
 
+/// Frees a context of avio_alloc_context and its buffer.
+inline void free_io(AVIOContext** context) {
+    if (*context != nullptr) av_freep(&(*context)->buffer);
+    avio_context_free(context);
+}
+
 using CodecContext = std::unique_ptr<AVCodecContext, PointerPointerDeleter<&avcodec_free_context>>;
 using Packet = std::unique_ptr<AVPacket, PointerPointerDeleter<&av_packet_free>>;
 using Frame = std::unique_ptr<AVFrame, PointerPointerDeleter<&av_frame_free>>;
-using BufferRef = std::unique_ptr<AVBufferRef, PointerPointerDeleter<&av_buffer_unref>>;
 using InputFormat = std::unique_ptr<AVFormatContext, PointerPointerDeleter<&avformat_close_input>>;
+using CodecParameters = std::unique_ptr<AVCodecParameters, PointerPointerDeleter<&avcodec_parameters_free>>;
+using IoContext = std::unique_ptr<AVIOContext, PointerPointerDeleter<&free_io>>;
 using OutputFormat = std::unique_ptr<AVFormatContext, PointerDeleter<&avformat_free_context>>;
-/// Closes without a word: a writer closes by hand and checks.
-using IoContext = std::unique_ptr<AVIOContext, PointerPointerDeleter<&avio_closep>>;
 
 /// Options for an open call, given by name.
 class Options {
@@ -61,7 +66,7 @@ class Options {
 
     Options& set(const char* name, const std::string& value);
     [[nodiscard]] AVDictionary** get() { return &dictionary_; }
-    /// The name of an option that the open call did not take; empty where it took all.
+    /// The name of an option that the open call did not take; empty if it took all.
     [[nodiscard]] std::string left_over() const;
 
   private:
@@ -71,22 +76,35 @@ class Options {
 /// libav's own text for a negative return value.
 [[nodiscard]] std::string libav_text(int status);
 
-/// Throws corda::Error: "WHAT: <libav's text> (<its log lines>); HINT". A full disk and the like get their
-/// own hint, and kIo.
+/// Throws corda::Error: "WHAT: <libav's text> (<its log lines>); HINT". A full disk and similar errors
+/// get their own hint and kIo.
 [[noreturn]] void fail_libav(ExitCode code, const std::string& what, int status, std::string_view hint = {});
 
-/// Throws like fail_libav where `status` is negative; returns it otherwise.
+/// Throws like fail_libav if `status` is negative; returns it otherwise.
 int check_libav(int status, ExitCode code, const std::string& what, std::string_view hint = {});
 
-/// Returns `handle` or throws corda::Error (kInternal) where libav had no memory for `what`.
+/// Returns `handle` or throws corda::Error (kInternal) if libav had no memory for `what`.
 template <typename Handle>
 Handle check_allocated(Handle handle, const char* what) {
     if (!handle) fail_libav(ExitCode::kInternal, std::string("cannot make ") + what, AVERROR(ENOMEM));
     return handle;
 }
 
-/// From its construction on, libav prints nothing; what it would have printed as an error from this thread
-/// while the object lives is kept, for messages. Objects may nest.
+/// While one lives, libav prints nothing: for what holds objects of libav, which log on threads of their own
+/// and when they are freed.
+///
+/// The first one takes over the log callback, which libav has one of per process and does not tell: one that
+/// the host application had set is lost. While none lives, messages go to av_log_default_callback.
+class QuietLog {
+  public:
+    QuietLog();
+    QuietLog(const QuietLog&) = delete;
+    QuietLog& operator=(const QuietLog&) = delete;
+    ~QuietLog();
+};
+
+/// A QuietLog that also collects, for messages, the errors that libav reports on this thread during the
+/// object's life. Objects may nest.
 class LogCapture {
   public:
     LogCapture();
@@ -100,6 +118,7 @@ class LogCapture {
     void add(std::string_view line);
 
   private:
+    QuietLog quiet_;
     LogCapture* outer_;
     std::string text_;
 };

@@ -6,13 +6,13 @@
 #include <optional>
 #include <string_view>
 
-#include "corda/media/file_ops.hpp"
+#include "corda/core/file.hpp"
 
 namespace corda::media {
 namespace {
 
-constexpr std::uint64_t kLargestIndex = std::uint64_t{1} << 28;  // bytes; an index takes about 20 a frame
-constexpr int kMostBoxes = 10'000'000;                           // a fragmented video of years
+constexpr std::uint64_t kLargestIndex = std::uint64_t{1} << 28;  // bytes; an index takes about 20 per frame
+constexpr int kMostBoxes = 10'000'000;                           // years of fragments
 
 /// Big-endian numbers of a byte range; reading past its end gives 0.
 class Bytes {
@@ -38,7 +38,7 @@ class Bytes {
     std::string_view data_;
 };
 
-/// Calls visit(type, payload) for each box in `data`, as far as they are whole.
+/// Calls visit(type, payload) for each box in `data`, up to the first that is not whole.
 template <typename Visit>
 void for_each_box(std::string_view data, Visit visit) {
     const Bytes bytes(data);
@@ -74,7 +74,7 @@ void read_edits(std::string_view payload, std::vector<Mp4Edit>& edits) {
         const std::size_t at = 8 + i * entry;
         const auto time = wide ? static_cast<std::int64_t>(bytes.number(at + 8, 8))
                                : std::int64_t{static_cast<std::int32_t>(bytes.u32(at + 4))};
-        edits.push_back({static_cast<std::int64_t>(wide ? bytes.number(at, 8) : bytes.u32(at)), time});
+        edits.push_back({wide ? bytes.number(at, 8) : bytes.u32(at), time});
     }
 }
 
@@ -107,7 +107,7 @@ void read_index(std::string_view index, Mp4Boxes& boxes) {
 
 struct BoxHeader {
     std::string type;
-    std::uint64_t size = 0;  ///< with the header; of the rest of the file where the box says 0
+    std::uint64_t size = 0;  ///< including the header; up to the end of the file if the box says 0
     std::uint64_t header_size = 8;
 };
 

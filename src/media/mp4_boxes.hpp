@@ -8,20 +8,20 @@ namespace corda::media {
 
 /// One entry of an edit list: which part of the track is shown.
 struct Mp4Edit {
-    std::int64_t duration = 0;    ///< in movie ticks
+    std::uint64_t duration = 0;   ///< in movie ticks
     std::int64_t media_time = 0;  ///< first stamp shown, in track ticks; -1 is an empty stretch
 };
 
-/// What the boxes of an MP4 file say, read without libav, which rounds and repairs.
+/// What the boxes of an MP4 file say, read without libav, because that rounds and repairs.
 struct Mp4Boxes {
     bool is_mp4 = false;  ///< begins with an ftyp box
     bool whole = false;   ///< every top-level box ends within the file
     std::uint64_t file_bytes = 0;
-    std::uint64_t whole_bytes =
-        0;  ///< end of the last whole box that is of use without the one behind it (not a moof)
+    /// End of the last whole box that is of use without the next one, which a moof is not.
+    std::uint64_t whole_bytes = 0;
     bool has_index = false;    ///< a moov box was found and could be read
     bool fragmented = false;   ///< moof boxes, or a moov that announces them
-    bool index_first = false;  ///< moov stands before mdat
+    bool index_first = false;  ///< moov comes before mdat
     std::uint32_t movie_timescale = 0;
     std::uint64_t movie_duration = 0;
     int tracks = 0;
@@ -32,8 +32,8 @@ struct Mp4Boxes {
     std::vector<Mp4Edit> edits;
 };
 
-/// Reads the boxes of any file; garbage gives a struct with little in it. Throws corda::Error (kIo) where the
-/// file cannot be opened for reading.
+/// Reads the boxes of any file; one that is no MP4 gives a struct with little in it. Throws corda::Error
+/// (kIo) if the file cannot be opened for reading.
 [[nodiscard]] Mp4Boxes read_mp4_boxes(const std::string& path);
 
 }  // namespace corda::media

@@ -1,10 +1,13 @@
 #include "corda/media/mp4_output.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cassert>
+#include <cerrno>
 
-#include "corda/core/error.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/file.hpp"
 
 namespace corda::media {
 namespace {
@@ -12,30 +15,44 @@ namespace {
 constexpr ExitCode kIo = ExitCode::kIo;
 
 // delay_moov writes the header together with the first fragment, when it is known how far decoding runs
-// ahead: without it the part file would start two frames late. Before the first fragment there is nothing to
-// play anyway.
+// ahead; without it the part file would start two frames late. Before the first fragment there is no picture
+// to play anyway.
 constexpr const char* kFragmentFlags = "frag_keyframe+empty_moov+default_base_moof+delay_moov";
 constexpr const char* kFaststartFlags = "faststart";
 
-}  // namespace
+constexpr int kBufferBytes = 1 << 16;
 
-Mp4Output::Mp4Output(std::string path) : path_(std::move(path)) {
-    const LogCapture log;
-    AVIOContext* file = nullptr;
-    check_libav(avio_open(&file, file_url(path_).c_str(), AVIO_FLAG_WRITE), kIo,
-                fmt::format("cannot write '{}'", path_));
-    file_.reset(file);
+int write_bytes(void* descriptor, std::uint8_t* bytes, int count) {
+    const std::string_view data(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(count));
+    const int status = write_all(*static_cast<const int*>(descriptor), data);
+    return status == 0 ? count : AVERROR(status);
 }
 
-void Mp4Output::begin(Mp4Layout layout, const AVCodecParameters& parameters, Rational fps,
-                      const std::string& title, const std::string& comment) {
+std::int64_t seek(void* descriptor, std::int64_t offset, int whence) {
+    if (whence == AVSEEK_SIZE) return AVERROR(ENOSYS);
+    const off_t position = ::lseek(*static_cast<const int*>(descriptor), offset, whence & ~AVSEEK_FORCE);
+    return position < 0 ? AVERROR(errno) : position;
+}
+
+}  // namespace
+
+Mp4Output::Mp4Output(int descriptor, std::string path) : descriptor_(descriptor), path_(std::move(path)) {
+    auto* buffer = static_cast<unsigned char*>(av_malloc(kBufferBytes));
+    if (buffer != nullptr) {
+        io_.reset(avio_alloc_context(buffer, kBufferBytes, 1, &descriptor_, nullptr, &write_bytes, &seek));
+    }
+    io_ = check_allocated(std::move(io_), "an output buffer");
+}
+
+void Mp4Output::begin(const char* container, Mp4Layout layout, const AVCodecParameters& parameters,
+                      Rational fps, const std::string& title, const std::string& comment) {
     assert(!begun_);
     const LogCapture log;
     AVFormatContext* format = nullptr;
-    check_libav(avformat_alloc_output_context2(&format, nullptr, "mp4", file_url(path_).c_str()), kIo,
+    check_libav(avformat_alloc_output_context2(&format, nullptr, container, file_url(path_).c_str()), kIo,
                 "cannot make an MP4 muxer");
     format_.reset(format);
-    format_->pb = file_.get();
+    format_->pb = io_.get();
     // No library version and no date: the same input gives the same bytes.
     // The muxer must not move frame 0 away from 0; both layouts can say that decoding starts earlier.
     format_->avoid_negative_ts = AVFMT_AVOID_NEG_TS_DISABLED;
@@ -73,19 +90,16 @@ void Mp4Output::write(AVPacket& packet) {
     packet.pos = -1;
     check_libav(av_write_frame(format_.get(), &packet), kIo, fmt::format("cannot write to '{}'", path_));
     av_packet_unref(&packet);
-    check_libav(file_->error, kIo, fmt::format("cannot write to '{}'", path_));
+    check_libav(io_->error, kIo, fmt::format("cannot write to '{}'", path_));
 }
 
-void Mp4Output::close() {
+void Mp4Output::finish() {
+    assert(begun_);
     const LogCapture log;
     const std::string what = fmt::format("cannot finish '{}'", path_);
-    if (begun_) {
-        check_libav(av_write_trailer(format_.get()), kIo, what);
-        check_libav(file_->error, kIo, what);
-    }
-    format_.reset();
-    AVIOContext* file = file_.release();
-    check_libav(avio_closep(&file), kIo, what);
+    check_libav(av_write_trailer(format_.get()), kIo, what);
+    avio_flush(io_.get());
+    check_libav(io_->error, kIo, what);
 }
 
 }  // namespace corda::media

@@ -9,33 +9,37 @@ namespace corda::media {
 
 /// How an MP4 file is laid out.
 enum class Mp4Layout {
-    kFragmented,  ///< each group of pictures is complete in itself: playable while it grows
+    kFragmented,  ///< every group of pictures is complete in itself: the file plays while it grows
     kFaststart,   ///< one index, ahead of the pictures
 };
 
-/// An MP4 file with one video track that is being written. Time stamps of packets are frame numbers.
+/// Writes an MP4 file with one video track to an open file. Time stamps of packets are frame numbers.
 class Mp4Output {
   public:
-    /// Creates the file. Throws corda::Error (kIo).
-    explicit Mp4Output(std::string path);
+    /// `descriptor` is open for writing and stays open; `path` is where kFaststart reads the file again.
+    Mp4Output(int descriptor, std::string path);
+    Mp4Output(const Mp4Output&) = delete;
+    Mp4Output& operator=(const Mp4Output&) = delete;
 
-    /// Writes the header; once, before any packet. Throws corda::Error (kIo).
-    void begin(Mp4Layout layout, const AVCodecParameters& parameters, Rational fps, const std::string& title,
-               const std::string& comment);
+    /// Writes the header; call it once, before any packet. `container` is libav's name of the muxer. Throws
+    /// corda::Error (kIo), like all below.
+    void begin(const char* container, Mp4Layout layout, const AVCodecParameters& parameters, Rational fps,
+               const std::string& title, const std::string& comment);
 
     [[nodiscard]] bool begun() const { return begun_; }
 
-    /// Writes a packet (pts and dts in frames, duration 1), which is empty afterwards. Throws corda::Error
-    /// (kIo).
+    /// Writes a packet (pts and dts in frames, duration 1), which is empty afterwards.
     void write(AVPacket& packet);
 
-    /// Writes the trailer and closes, each checked. Throws corda::Error (kIo).
-    void close();
+    /// Writes the trailer and all that is buffered.
+    void finish();
 
   private:
+    QuietLog quiet_;
+    int descriptor_;
     std::string path_;
-    IoContext file_;
-    OutputFormat format_;  // refers to file_
+    IoContext io_;         // writes to descriptor_
+    OutputFormat format_;  // refers to io_
     AVRational frame_base_{};
     bool begun_ = false;
 };

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <vector>
 
-#include "corda/core/error.hpp"
-#include "corda/media/file_ops.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/output_file.hpp"
+#include "corda/media/checked.hpp"
+#include "corda/media/format.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/mp4_boxes.hpp"
 #include "corda/media/mp4_output.hpp"
@@ -31,7 +34,7 @@ PartInput open_part(const std::string& path, std::uint64_t bytes) {
     const AVInputFormat* mov = av_find_input_format("mov");
     const std::string url = fmt::format("subfile,,start,0,end,{},,:{}", bytes, file_url(path));
     check_libav(avformat_open_input(&format, url.c_str(), mov, nullptr), ExitCode::kMismatch,
-                fmt::format("cannot read '{}' as MP4", path), "it holds nothing that can be recovered");
+                fmt::format("cannot read '{}' as MP4", path), "it holds no picture that can be recovered");
     input.format.reset(format);
     const int index = av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
     check_libav(index, ExitCode::kMismatch, fmt::format("no video in '{}'", path));
@@ -39,7 +42,7 @@ PartInput open_part(const std::string& path, std::uint64_t bytes) {
     return input;
 }
 
-/// Reads the next whole packet of the track; false at the end or where the file breaks off.
+/// Reads the next whole packet of the track; false at the end and at the point where the file breaks off.
 bool read_packet(const PartInput& input, AVPacket& packet) {
     while (av_read_frame(input.format.get(), &packet) >= 0) {
         const bool whole = (packet.flags & AV_PKT_FLAG_CORRUPT) == 0;
@@ -55,7 +58,7 @@ struct PartIndex {
     Rational fps;
     std::vector<std::int64_t> frame_of;
     std::int64_t reorder_depth = 0;  ///< how many frames decoding must run ahead of showing
-    std::uint64_t bytes = 0;         ///< of the file that are whole
+    std::uint64_t bytes = 0;         ///< length of the beginning that is whole
     bool truncated = false;
 };
 
@@ -66,9 +69,8 @@ struct PartIndex {
                     path));
 }
 
-/// Turns stamps (in units of the track's clock) into frame numbers, as far as they are complete: the longest
-/// beginning in which each of 0 .. n-1 occurs once. It can be decoded, because everything it refers to comes
-/// before.
+/// Turns stamps (in ticks of the track) into frame numbers, for the longest beginning in which each of 0 ..
+/// n-1 occurs once. This beginning can be decoded, because packets refer only to earlier ones.
 void number_frames(const std::vector<std::int64_t>& stamps, std::int64_t step, PartIndex& index) {
     std::vector<bool> seen(stamps.size(), false);
     std::int64_t highest = -1;
@@ -94,8 +96,8 @@ std::string metadata_entry(const AVFormatContext& format, const char* key) {
     return entry == nullptr ? std::string() : std::string(entry->value);
 }
 
-/// Ticks a frame: what all distances between stamps are multiples of. The duration of a packet is no guide,
-/// libav guesses it at the end of a fragment; for a single frame the comment tells.
+/// Ticks per frame: the greatest common divisor of all distances between stamps. The duration of a packet is
+/// no guide, because libav guesses it at the end of a fragment; for a single frame the comment tells.
 std::int64_t frame_step(const std::vector<std::int64_t>& stamps, const PartInput& input,
                         std::int64_t packet_duration) {
     std::int64_t step = 0;
@@ -117,21 +119,26 @@ PartIndex index_part(const std::string& path) {
     const Packet packet = check_allocated(Packet(av_packet_alloc()), "a packet");
     std::vector<std::int64_t> stamps;
     std::int64_t packet_duration = 0;
+    bool is_damaged = false;
     while (read_packet(input, *packet)) {
-        if (packet->pts == AV_NOPTS_VALUE) fail_rate(path);
+        is_damaged = !is_sane_stamp(packet->pts);
+        if (is_damaged) break;
         packet_duration = packet->duration;
         stamps.push_back(packet->pts);
         av_packet_unref(packet.get());
     }
     if (stamps.empty()) {
         throw Error(ExitCode::kMismatch,
-                    fmt::format("'{}' holds no whole fragment; nothing can be recovered", path));
+                    fmt::format("'{}' holds no whole fragment, so no frame can be recovered", path));
     }
     const std::int64_t step = frame_step(stamps, input, packet_duration);
-    if (step <= 0) fail_rate(path);
+    const auto duration = checked_multiply(step, std::int64_t{input.stream->time_base.num});
+    if (!duration || *duration <= 0) fail_rate(path);
+    index.fps = Rational::reduced(input.stream->time_base.den, *duration);
+    if (index.fps.den > std::numeric_limits<int>::max()) fail_rate(path);  // more than libav can count
     number_frames(stamps, step, index);
-    index.fps = Rational::reduced(input.stream->time_base.den, input.stream->time_base.num * step);
-    index.truncated = boxes.whole_bytes < boxes.file_bytes || index.frame_of.size() < stamps.size();
+    index.truncated =
+        boxes.whole_bytes < boxes.file_bytes || is_damaged || index.frame_of.size() < stamps.size();
     return index;
 }
 
@@ -162,52 +169,45 @@ std::string listed(const std::vector<std::string>& lines) {
     return text;
 }
 
-}  // namespace
-
-RemuxResult remux_part(const std::string& part_path, const std::string& out_path) {
-    const LogCapture log;
-    const PartIndex index = index_part(part_path);
+/// Copies the indexed packets into `output`, with time stamps made anew from frame numbers and the frame
+/// count in the comment.
+void remux(const PartIndex& index, const std::string& part_path, const Format& format, OutputFile& output) {
     const PartInput input = open_part(part_path, index.bytes);
-    const std::string comment = metadata_entry(*input.format, "comment");
-    try {
-        Mp4Output output(out_path);
-        output.begin(Mp4Layout::kFaststart, *input.stream->codecpar, index.fps,
-                     metadata_entry(*input.format, "title"),
-                     comment_with_frames(comment, index.frame_of.size()));
-        copy_packets(input, index, output, part_path);
-        output.close();
-    } catch (...) {
-        remove_quietly(out_path);
-        throw;
-    }
-    return {static_cast<std::int64_t>(index.frame_of.size()), index.truncated};
+    Mp4Output mp4(output.descriptor(), output.temporary_path());
+    mp4.begin(format.container, Mp4Layout::kFaststart, *input.stream->codecpar, index.fps,
+              metadata_entry(*input.format, "title"),
+              comment_with_frames(metadata_entry(*input.format, "comment"), index.frame_of.size()));
+    copy_packets(input, index, mp4, part_path);
+    mp4.finish();
 }
 
-RemuxResult recover_part(const std::string& part_path, const std::string& path,
-                         std::optional<std::int64_t> expected_frames) {
-    const std::string temporary = path + ".tmp";
-    const RemuxResult result = remux_part(part_path, temporary);
-    try {
-        if (expected_frames && *expected_frames != result.frames) {
-            throw Error(ExitCode::kMismatch,
-                        fmt::format("'{}' holds {} frames instead of {}; it stays as it is", part_path,
-                                    result.frames, *expected_frames));
-        }
-        const VerifyReport report = verify(temporary);
-        if (!report.ok()) {
-            throw Error(ExitCode::kMismatch,
-                        fmt::format("the video for '{}' failed its check and stays as '{}':{}", path,
-                                    part_path, listed(report.problems)));
-        }
-        sync_file(temporary);
-        rename_file(temporary, path);
-    } catch (...) {
-        remove_quietly(temporary);
-        throw;
+}  // namespace
+
+RemuxResult finish_part(PartFile& part, const std::string& path, OutputOptions options,
+                        std::optional<std::int64_t> expected_frames) {
+    const LogCapture log;
+    const PartIndex index = index_part(part.path());
+    const RemuxResult result{static_cast<std::int64_t>(index.frame_of.size()), index.truncated};
+    if (expected_frames && *expected_frames != result.frames) {
+        throw Error(ExitCode::kMismatch, fmt::format("'{}' holds {} frames instead of {}; it stays as it is",
+                                                     part.path(), result.frames, *expected_frames));
     }
-    sync_folder_of(path);
-    remove_quietly(part_path);
+    OutputFile output(path, options);
+    remux(index, part.path(), find_format(path), output);
+    const VerifyReport report = verify(output.temporary_path());
+    if (!report.ok()) {
+        throw Error(ExitCode::kMismatch,
+                    fmt::format("the video for '{}' failed its check and stays as '{}':{}", path, part.path(),
+                                listed(report.problems)));
+    }
+    output.commit();
+    part.remove();
     return result;
+}
+
+RemuxResult recover_part(const std::string& part_path, const std::string& path, OutputOptions options) {
+    PartFile part = PartFile::open(part_path);
+    return finish_part(part, path, options);
 }
 
 }  // namespace corda::media

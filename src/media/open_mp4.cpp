@@ -11,7 +11,7 @@ OpenMp4 open_mp4(const std::string& path) {
     const LogCapture log;
     OpenMp4 file;
     AVFormatContext* format = nullptr;
-    // Named, not probed: libav would take a text file for a video of ANSI art, or follow a playlist.
+    // The format is named, because libav by itself would take a text file for ANSI art, or follow a playlist.
     const AVInputFormat* mov = av_find_input_format("mov");
     check_libav(avformat_open_input(&format, file_url(path).c_str(), mov, nullptr), ExitCode::kIo,
                 "the file does not open");
@@ -25,7 +25,7 @@ OpenMp4 open_mp4(const std::string& path) {
                 "the codec parameters are broken");
     file.context->thread_count = kDecoderThreads;
     file.context->pkt_timebase = file.stream->time_base;
-    // A damaged picture is an error, not something to paint over.
+    // A damaged picture is an error; libav would conceal it.
     file.context->err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_EXPLODE;
     check_libav(avcodec_open2(file.context.get(), codec, nullptr), ExitCode::kIo,
                 "the decoder does not open");

@@ -13,7 +13,7 @@ struct OpenMp4 {
     CodecContext context;
 };
 
-/// Opens `path` for decoding. Throws corda::Error (kIo) in libav's words where it is no MP4 file, has no
+/// Opens `path` for decoding. Throws corda::Error (kIo) in libav's words if it is no MP4 file, has no
 /// video track, or needs a decoder that does not open.
 [[nodiscard]] OpenMp4 open_mp4(const std::string& path);
 

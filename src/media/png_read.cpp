@@ -5,18 +5,17 @@
 #include <csetjmp>
 #include <cstring>
 
-#include "corda/core/error.hpp"
-#include "corda/media/file_ops.hpp"
-#include "corda/media/png.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/file.hpp"
+#include "corda/media/defs.hpp"
 
-namespace corda::media {
+namespace corda {
 namespace {
 
-constexpr png_uint_32 kLargestSide = 16384;
-// Deflate cannot shrink more than 1032 to 1: a file that promises more than this is not whole.
+// Deflate shrinks by at most 1032 to 1, so a file that promises more is not whole.
 constexpr double kLargestRatio = 1032.0;
 
-/// What libpng's longjmp must find intact: plain data only.
+/// What libpng's callbacks work with. It lives outside the functions that longjmp returns to.
 struct ReadJob {
     png_structp png = nullptr;
     png_infop info = nullptr;
@@ -29,26 +28,26 @@ struct ReadJob {
     ~ReadJob() { png_destroy_read_struct(&png, &info, nullptr); }
 };
 
-void on_error(png_structp png, png_const_charp message) {
+void on_read_error(png_structp png, png_const_charp message) {
     auto* job = static_cast<ReadJob*>(png_get_error_ptr(png));
     std::strncpy(job->message, message, sizeof job->message - 1);
     png_longjmp(png, 1);
 }
 
-void on_warning(png_structp, png_const_charp) {}
+void on_read_warning(png_structp, png_const_charp) {}
 
-// The three steps that libpng may leave through longjmp: no object with a destructor lives in them.
+// libpng may leave the next three functions by longjmp, so no object with a destructor lives in them.
 
 bool read_header(ReadJob& job) {
     if (setjmp(png_jmpbuf(job.png)) != 0) return false;
     png_init_io(job.png, job.file);
-    png_set_user_limits(job.png, kLargestSide, kLargestSide);
+    png_set_user_limits(job.png, kLargestSidePx, kLargestSidePx);
     png_read_info(job.png, job.info);
     return true;
 }
 
-/// Palette, grey, 1 to 16 bits, tRNS: all become 8-bit RGBA. Colours are not converted (gAMA, iCCP): a
-/// comparison wants the numbers in the file.
+/// Turns every format (palette, grey, 1 to 16 bits, tRNS) into 8-bit RGBA. Colours are not converted (gAMA,
+/// iCCP), because a comparison wants the numbers in the file.
 bool request_rgba8(ReadJob& job) {
     if (setjmp(png_jmpbuf(job.png)) != 0) return false;
     png_set_expand(job.png);
@@ -80,7 +79,7 @@ void open_job(ReadJob& job, const std::string& path) {
     if (count < sizeof signature || png_sig_cmp(signature, 0, sizeof signature) != 0) {
         fail_png(path, "it does not begin like a PNG");
     }
-    job.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);
+    job.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, on_read_error, on_read_warning);
     if (job.png != nullptr) job.info = png_create_info_struct(job.png);
     if (job.info == nullptr) fail_png(path, job.message);
     png_set_sig_bytes(job.png, sizeof signature);
@@ -156,4 +155,4 @@ PngInfo read_png_info(const std::string& path) {
     return collect_info(job);
 }
 
-}  // namespace corda::media
+}  // namespace corda

@@ -1,16 +1,16 @@
 #include <fmt/format.h>
 #include <png.h>
 
-#include <cerrno>
 #include <cmath>
 #include <csetjmp>
 #include <cstring>
+#include <exception>
 
-#include "corda/core/error.hpp"
-#include "corda/media/file_ops.hpp"
-#include "corda/media/png.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/output_file.hpp"
+#include "corda/media/defs.hpp"
 
-namespace corda::media {
+namespace corda {
 namespace {
 
 constexpr double kInchesPerMetre = 1.0 / 0.0254;
@@ -20,7 +20,7 @@ constexpr std::size_t kLongestKeyword = 79;
 constexpr int kLevel = 4;
 constexpr int kFilter = PNG_FILTER_NONE;
 
-/// The text as Latin-1, or nothing where a character is outside it (or the bytes are not UTF-8).
+/// The text as Latin-1; std::nullopt if it has other characters or is not UTF-8.
 std::optional<std::string> to_latin1(const std::string& utf8) {
     std::string latin1;
     for (std::size_t i = 0; i < utf8.size(); ++i) {
@@ -46,34 +46,43 @@ bool is_opaque(const Image& image) {
     return all == 0xff;
 }
 
-/// What libpng's longjmp must find intact: plain data only.
+/// What libpng's callbacks work with. It lives outside the function that longjmp returns to.
 struct WriteJob {
     png_structp png = nullptr;
     png_infop info = nullptr;
-    std::FILE* file = nullptr;
-    int write_errno = 0;
+    OutputFile* file = nullptr;
+    std::exception_ptr write_error;
     char message[160] = "out of memory";
 };
 
-void on_error(png_structp png, png_const_charp message) {
+void on_write_error(png_structp png, png_const_charp message) {
     auto* job = static_cast<WriteJob*>(png_get_error_ptr(png));
     std::strncpy(job->message, message, sizeof job->message - 1);
     png_longjmp(png, 1);
 }
 
-void on_warning(png_structp, png_const_charp) {}
+void on_write_warning(png_structp, png_const_charp) {}
+
+/// An exception must not pass through libpng, which is C.
+bool write_bytes(WriteJob& job, png_const_bytep bytes, png_size_t count) {
+    try {
+        job.file->write({reinterpret_cast<const char*>(bytes), count});
+        return true;
+    } catch (...) {
+        job.write_error = std::current_exception();
+        return false;
+    }
+}
 
 void on_write(png_structp png, png_bytep bytes, png_size_t count) {
-    auto* job = static_cast<WriteJob*>(png_get_io_ptr(png));
-    if (std::fwrite(bytes, 1, count, job->file) == count) return;
-    job->write_errno = errno;
-    png_error(png, "write error");
+    if (!write_bytes(*static_cast<WriteJob*>(png_get_io_ptr(png)), bytes, count))
+        png_error(png, "write error");
 }
 
 void on_flush(png_structp) {}
 
-/// Writes the picture; false with job.message on failure. No object with a destructor lives here: libpng
-/// leaves through longjmp.
+/// Writes the picture; false, and job.message, on failure. No object with a destructor lives here, because
+/// libpng leaves by longjmp.
 bool write_picture(WriteJob& job, const Image& image, bool opaque, png_uint_32 pixels_per_metre,
                    png_textp text, int text_count) {
     if (setjmp(png_jmpbuf(job.png)) != 0) return false;
@@ -124,37 +133,28 @@ std::vector<png_text> libpng_texts(const PngInfo& info, std::vector<std::string>
 
 }  // namespace
 
-void write_png(const std::string& path, const Image& image, const PngInfo& info) {
+void write_png(const std::string& path, const Image& image, const PngInfo& info, OutputOptions options) {
     if (image.width() < 1 || image.height() < 1) {
         throw Error(ExitCode::kUsage, fmt::format("cannot write an empty picture to '{}'", path));
     }
     std::vector<std::string> storage;
     std::vector<png_text> texts = libpng_texts(info, storage);
-    const std::string temporary = path + ".tmp";
-    FileHandle file(std::fopen(temporary.c_str(), "wbe"));
-    if (!file) fail_file("write", temporary, errno);
+    OutputFile file(path, options);
 
     WriteJob job;
-    job.file = file.get();
-    job.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);
+    job.file = &file;
+    job.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &job, on_write_error, on_write_warning);
     if (job.png != nullptr) job.info = png_create_info_struct(job.png);
     const auto pixels_per_metre =
         static_cast<png_uint_32>(std::lround(info.pixels_per_inch * kInchesPerMetre));
     const bool written = job.info != nullptr && write_picture(job, image, is_opaque(image), pixels_per_metre,
                                                               texts.data(), static_cast<int>(texts.size()));
     png_destroy_write_struct(&job.png, &job.info);
-    try {
-        if (!written) {
-            if (job.write_errno != 0) fail_file("write", path, job.write_errno);
-            throw Error(ExitCode::kIo,
-                        fmt::format("cannot write PNG '{}': libpng says: {}", path, job.message));
-        }
-        close_written(std::move(file), path);
-        rename_file(temporary, path);
-    } catch (...) {
-        remove_quietly(temporary);
-        throw;
+    if (job.write_error) std::rethrow_exception(job.write_error);
+    if (!written) {
+        throw Error(ExitCode::kIo, fmt::format("cannot write PNG '{}': libpng says: {}", path, job.message));
     }
+    file.commit();
 }
 
-}  // namespace corda::media
+}  // namespace corda

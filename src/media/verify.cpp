@@ -8,8 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "corda/core/file.hpp"
+#include "corda/media/checked.hpp"
 #include "corda/media/color_patch.hpp"
-#include "corda/media/file_ops.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/mp4_boxes.hpp"
 #include "corda/media/verify_decode.hpp"
@@ -24,7 +25,7 @@ void problem(VerifyReport& report, fmt::format_string<Args...> text, Args&&... a
     report.problems.push_back(fmt::format(text, std::forward<Args>(args)...));
 }
 
-/// A whole number from foreign JSON, or nothing.
+/// A whole number from JSON of any origin; std::nullopt if it is something else.
 std::optional<std::int64_t> whole_number(const Json& json) {
     if (!json.is_number_integer()) return std::nullopt;
     return json.get<std::int64_t>();
@@ -60,8 +61,8 @@ std::vector<ColorPatch> patches_of(const std::string& comment) {
     return patches;
 }
 
-/// The name libav's probe gives to the beginning of a file: "matroska,webm", "png_pipe"; empty where it knows
-/// none.
+/// libav's name for the kind of a file, judged by its beginning: "matroska,webm", "png_pipe"; empty if it
+/// knows none.
 std::string probed_container(const std::string& path) {
     const FileHandle file = open_for_reading(path);
     std::vector<unsigned char> head(4096 + AVPROBE_PADDING_SIZE);
@@ -77,14 +78,14 @@ std::string probed_container(const std::string& path) {
     return format != nullptr && score >= AVPROBE_SCORE_EXTENSION ? format->name : "";
 }
 
-/// The container by itself; false where there is nothing to decode.
+/// Checks the container; false if it holds no stream to decode.
 bool check_container(const std::string& path, const Mp4Boxes& boxes, VerifyReport& report) {
     if (!boxes.is_mp4) {
         report.container = probed_container(path);
         problem(
             report,
-            "this is not an MP4 file (libav takes it for: {}); render it again, or give the name of an MP4",
-            report.container.empty() ? "nothing it knows" : report.container);
+            "this is not an MP4 file (libav takes it for {}); render it again, or give the name of an MP4",
+            report.container.empty() ? "an unknown kind" : report.container);
         return false;
     }
     report.container = boxes.fragmented ? "mp4 (fragmented)" : "mp4";
@@ -96,18 +97,21 @@ bool check_container(const std::string& path, const Mp4Boxes& boxes, VerifyRepor
         return false;
     }
     report.faststart = boxes.index_first && !boxes.fragmented;
-    if (boxes.fragmented) {
-        problem(report,
-                "the file is still in fragments, as a .part file is: it plays, but a browser "
-                "cannot seek in it; remedy: ffmpeg -i FILE -c copy -movflags +faststart NEW.mp4");
-    } else if (!boxes.index_first) {
-        problem(
-            report,
-            "the index stands behind the pictures, so a browser must load the whole file before it starts; "
-            "remedy: ffmpeg -i FILE -c copy -movflags +faststart NEW");
-    }
     if (!boxes.whole) problem(report, "the file breaks off in the middle of a box; copy or render it again");
     return true;
+}
+
+/// Checks that a browser can seek at once.
+void check_index(const Mp4Boxes& boxes, VerifyReport& report) {
+    if (report.faststart) return;
+    problem(
+        report,
+        "{}; remedy: ffmpeg -i FILE -c copy -video_track_timescale {} -movie_timescale {} "
+        "-movflags +faststart NEW.mp4",
+        boxes.fragmented
+            ? "the file is still in fragments, as a .part file is: it plays, but a browser cannot seek in it"
+            : "the index stands behind the pictures, so a browser must load the whole file before it starts",
+        report.fps.num, report.fps.num);
 }
 
 void fill_report(const DecodedVideo& video, VerifyReport& report) {
@@ -123,8 +127,10 @@ void fill_report(const DecodedVideo& video, VerifyReport& report) {
     report.transfer = video.transfer;
     report.chroma_location = video.chroma_location;
     if (video.tick.den <= 0 || video.tick.num <= 0) return;
-    if (video.step > 0) report.fps = Rational::reduced(video.tick.den, video.tick.num * video.step);
-    report.duration_s = Rational::reduced((video.end - video.first_pts) * video.tick.num, video.tick.den);
+    const auto step = checked_multiply(video.step, video.tick.num);
+    if (step && *step > 0) report.fps = Rational::reduced(video.tick.den, *step);
+    const auto duration = checked_multiply(video.end - video.first_pts, video.tick.num);
+    if (duration) report.duration_s = Rational::reduced(*duration, video.tick.den);
 }
 
 void check_decoding(const DecodedVideo& video, VerifyReport& report) {
@@ -152,39 +158,40 @@ void check_stamps(const DecodedVideo& video, VerifyReport& report) {
             report,
             "the frame rate is not constant: frame {} is not {} ticks after the one before; render it again",
             video.uneven_at, video.step);
-    } else if (video.step <= 0) {
+    } else if (report.fps.num <= 0) {
         problem(report, "the frames have no duration, so there is no frame rate; render it again");
     }
 }
 
-/// The clocks and durations as stored: whole numbers that must agree exactly.
+/// Checks the stored clocks and durations, which are whole numbers and must agree exactly.
 void check_clocks(const DecodedVideo& video, const Mp4Boxes& boxes, VerifyReport& report) {
-    if (boxes.fragmented || video.frames == 0 || video.step <= 0 || video.uneven_at >= 0) return;
+    if (boxes.fragmented || video.frames == 0 || report.fps.num <= 0 || video.uneven_at >= 0) return;
     const auto num = static_cast<std::uint64_t>(report.fps.num);
-    const std::int64_t exact = video.frames * report.fps.den;  // ticks of 1/num s
-    // A multiple of the numerator rounds nothing either.
+    const auto exact = checked_multiply(static_cast<std::uint64_t>(video.frames),
+                                        static_cast<std::uint64_t>(report.fps.den));  // ticks of 1/num s
+    // A multiple of the numerator is exact as well.
     const auto fits = [num](std::uint32_t scale) { return scale > 0 && scale % num == 0; };
     if (!fits(boxes.track_timescale) || !fits(boxes.movie_timescale)) {
-        problem(report,
-                "the clocks (track 1/{} s, movie 1/{} s) cannot count frames of {} fps without rounding; "
-                "write it again "
-                "with both time scales = {} (ffmpeg: -video_track_timescale, -movie_timescale)",
-                boxes.track_timescale, boxes.movie_timescale, report.fps.text(), num);
+        problem(
+            report,
+            "the clocks (track 1/{} s, movie 1/{} s) cannot count frames of {} fps without rounding; "
+            "write it again with both time scales = {} (ffmpeg: -video_track_timescale, -movie_timescale)",
+            boxes.track_timescale, boxes.movie_timescale, report.fps.text(), num);
         return;
     }
-    const auto movie_ticks = static_cast<std::uint64_t>(exact) * (boxes.movie_timescale / num);
-    const auto track_ticks = static_cast<std::uint64_t>(exact) * (boxes.track_timescale / num);
-    std::int64_t edit_ticks = 0;
-    for (const Mp4Edit& edit : boxes.edits) edit_ticks += edit.duration;
-    const bool edits_agree = boxes.edits.empty() || static_cast<std::uint64_t>(edit_ticks) == movie_ticks;
-    if (boxes.movie_duration != movie_ticks || boxes.track_presentation != movie_ticks ||
+    const auto movie_ticks = exact ? checked_multiply(*exact, boxes.movie_timescale / num) : std::nullopt;
+    const auto track_ticks = exact ? checked_multiply(*exact, boxes.track_timescale / num) : std::nullopt;
+    std::optional<std::uint64_t> edit_ticks = 0;
+    for (const Mp4Edit& edit : boxes.edits)
+        if (edit_ticks) edit_ticks = checked_add(*edit_ticks, edit.duration);
+    const bool edits_agree = boxes.edits.empty() || edit_ticks == movie_ticks;
+    if (!movie_ticks || boxes.movie_duration != movie_ticks || boxes.track_presentation != movie_ticks ||
         boxes.track_duration != track_ticks || !edits_agree) {
         problem(report,
                 "the stored durations (movie {}/{} s, track {}/{} s) are not exactly {} frames at {} fps = "
-                "{}/{} s; "
-                "joining such files drifts: render it again",
+                "{}/{} s; joining such files drifts: render it again",
                 boxes.movie_duration, boxes.movie_timescale, boxes.track_duration, boxes.track_timescale,
-                video.frames, report.fps.text(), exact, num);
+                video.frames, report.fps.text(), exact.value_or(0), num);
     }
 }
 
@@ -218,8 +225,7 @@ void check_tags(const DecodedVideo& video, VerifyReport& report) {
     if (video.container_tags != "tv bt709 bt709 iec61966-2-1") {
         problem(report,
                 "the container's colour tags (colr box: {}) are not 'tv bt709 bt709 iec61966-2-1', and "
-                "QuickTime believes "
-                "them before the stream's own; render it again",
+                "QuickTime trusts them more than the stream's own; render it again",
                 video.container_tags);
     }
     check_tag(report, "range", report.range, "tv", "players may crush or wash out black and white");
@@ -248,15 +254,15 @@ void check_patches(const std::vector<ColorPatch>& patches, const DecodedVideo& v
             worst = std::max(worst, std::abs(std::clamp(rgb[c], 0.0, 255.0) - patches[i].rgb[c]));
         if (worst <= limit) continue;
         problem(report,
-                "at ({}, {}) the first frame shows R'G'B' {:.1f} {:.1f} {:.1f} where {} {} {} was rendered "
-                "({:.1f} off, limit "
-                "{:.1f}): the colours were converted wrongly, or the video was encoded again",
+                "at ({}, {}) the first frame shows R'G'B' {:.1f} {:.1f} {:.1f} but {} {} {} was rendered "
+                "({:.1f} off, limit {:.1f}): the colours were converted wrongly, or the video was encoded "
+                "again",
                 patches[i].x, patches[i].y, rgb[0], rgb[1], rgb[2], patches[i].rgb[0], patches[i].rgb[1],
                 patches[i].rgb[2], worst, limit);
     }
 }
 
-/// What the file says about itself, against what was found.
+/// Compares what the file says about itself with what was found.
 void check_comment(const DecodedVideo& video, VerifyReport& report) {
     const Json json = parse_comment(video.comment);
     if (!json.contains("fps") && !json.contains("frames")) {
@@ -285,16 +291,17 @@ void add_notes(VerifyReport& report) {
     report.notes.push_back(fmt::format(
         "H.264 {}, 8-bit 4:2:0: plays in Chrome, Edge, Firefox, Safari and QuickTime", report.profile));
     report.notes.emplace_back("the index comes first: a browser starts to play while it loads, and can seek");
-    report.notes.emplace_back(
+    report.notes.push_back(fmt::format(
         "colours are tagged BT.709 with the sRGB transfer: browsers and QuickTime show the rendered sRGB "
-        "values; a "
-        "player that ignores tags still guesses right from 720 lines on");
+        "values; a player that ignores tags {}",
+        report.height_px >= 720 ? "guesses right"
+                                : "may shift them, as it does in any video below 720 lines"));
     if (report.width_px > 4096 || report.height_px > 2304) {
         report.notes.emplace_back(
             "larger than 4096x2304: many phones and hardware decoders refuse this size");
     }
     if (report.fps.value() > 60.0) {
-        report.notes.emplace_back("more than 60 frames a second: most screens drop frames");
+        report.notes.emplace_back("more than 60 frames per second: most screens drop frames");
     }
 }
 
@@ -311,6 +318,7 @@ VerifyReport verify(const std::string& path) {
         return report;
     }
     fill_report(video, report);
+    check_index(boxes, report);
     check_decoding(video, report);
     check_stamps(video, report);
     check_clocks(video, boxes, report);

@@ -17,7 +17,7 @@ struct ColorPatch {
     std::array<std::uint8_t, 3> rgb{};
 };
 
-/// What a video file turned out to be.
+/// What `verify` found in a video file.
 struct VerifyReport {
     std::string container;
     std::string codec;
@@ -30,17 +30,17 @@ struct VerifyReport {
     Rational duration_s{0, 1};  ///< exact: last time stamp plus its duration
     std::string range, matrix, primaries, transfer, chroma_location;
     bool faststart = false;
-    std::vector<std::string> problems;  ///< in words, each with what to do; empty where all is well
-    std::vector<std::string> notes;     ///< in words: what a browser will do with it
+    std::vector<std::string> problems;  ///< in words, each with a remedy; empty if the video is sound
+    std::vector<std::string> notes;     ///< in words, such as what a browser will do with it
 
     [[nodiscard]] bool ok() const { return problems.empty(); }
 };
 
 /// Opens, decodes and checks a video: frame count, constant step from 0, exact duration, track and movie time
-/// scale, profile and pixel format, colour tags, faststart, and, where the file was made by corda (its
-/// comment says so), frame count, rate and colour patches of the first decoded frame against what was
-/// rendered. Throws corda::Error (kIo) only where the file cannot be opened for reading; a file that is not a
-/// video is a report with a problem.
+/// scale, profile and pixel format, colour tags, faststart. If the file's comment says that corda made it,
+/// also frame count, rate and colour patches of the first decoded frame against what was rendered. Throws
+/// corda::Error (kIo) only if the file cannot be opened for reading; a file that is not a video gives a
+/// report with a problem.
 [[nodiscard]] VerifyReport verify(const std::string& path);
 
 }  // namespace corda::media

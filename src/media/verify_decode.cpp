@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "corda/core/error.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/media/checked.hpp"
 #include "corda/media/color_patch.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/open_mp4.hpp"
@@ -14,7 +15,7 @@ std::string named(const char* name) {
     return name == nullptr ? "unknown" : name;
 }
 
-/// Mean of a square of an 8-bit plane.
+/// Mean of the samples in a square of an 8-bit plane.
 double plane_mean(const AVFrame& frame, int plane, int x, int y, int side) {
     std::int64_t sum = 0;
     for (int row = y; row < y + side; ++row) {
@@ -36,9 +37,11 @@ class Decoding {
         while (read_packet()) {
         }
         receive(nullptr);
-        // libav guesses the duration of a last frame; that it is one step follows from the track's stored
-        // duration.
-        if (video_.frames == 1) video_.step = std::max<std::int64_t>(file_.stream->duration, 0);
+        // libav guesses the duration of the last frame; check_clocks in verify.cpp compares the end with the
+        // track's stored duration.
+        if (video_.frames == 1)
+            video_.step =
+                is_sane_stamp(file_.stream->duration) ? std::max<std::int64_t>(file_.stream->duration, 0) : 0;
         video_.end = last_pts_ + video_.step;
         describe();
     }
@@ -65,9 +68,10 @@ class Decoding {
         return true;
     }
 
-    void note_bad(int status) {
-        if (video_.bad_frames++ > 0) return;
-        video_.bad_reason = log_.text().empty() ? libav_text(status) : log_.text();
+    void note_bad(int status) { note_bad(log_.text().empty() ? libav_text(status) : log_.text()); }
+
+    void note_bad(const std::string& reason) {
+        if (video_.bad_frames++ == 0) video_.bad_reason = reason;
     }
 
     bool read_packet() {
@@ -85,7 +89,7 @@ class Decoding {
         return true;
     }
 
-    /// Sends a packet (none: the end) and takes every frame that is ready.
+    /// Sends a packet, or the end of the stream if it is null, and takes every frame that is ready.
     void receive(const AVPacket* packet) {
         int status = avcodec_send_packet(file_.context.get(), packet);
         if (status < 0) note_bad(status);
@@ -94,8 +98,8 @@ class Decoding {
             if (status == AVERROR(EAGAIN) || status == AVERROR_EOF) return;
             if (status < 0) {
                 note_bad(status);
-                // While draining, libav gives an error once a bad frame and goes on; else the next packet is
-                // due.
+                // While draining, libav reports one error per bad frame and goes on; otherwise the next
+                // packet is due.
                 if (packet != nullptr || video_.bad_frames > kMostBadFrames) return;
                 continue;
             }
@@ -109,10 +113,15 @@ class Decoding {
         if (frame.decode_error_flags != 0 || (frame.flags & AV_FRAME_FLAG_CORRUPT) != 0)
             note_bad(AVERROR_INVALIDDATA);
         const std::int64_t pts = frame.pts;
+        if (!is_sane_stamp(pts)) {
+            note_bad(pts == AV_NOPTS_VALUE ? "a frame has no time stamp"
+                                           : "a frame has the time stamp " + std::to_string(pts));
+            return;
+        }
         if (video_.frames == 0) {
             video_.first_pts = pts;
             measure_patches();
-            // Only the first frame's pixels are looked at; the others need to decode, not to be smooth.
+            // Only the first frame's pixels are measured; for the others it is enough that they decode.
             file_.context->skip_loop_filter = AVDISCARD_ALL;
         } else {
             if (video_.frames == 1) video_.step = pts - last_pts_;
@@ -151,7 +160,6 @@ class Decoding {
     void describe() {
         video_.codec = avcodec_get_name(file_.context->codec_id);
         video_.profile = named(avcodec_profile_name(file_.context->codec_id, file_.context->profile));
-        video_.container_duration_us = file_.format->duration == AV_NOPTS_VALUE ? 0 : file_.format->duration;
     }
 
     static constexpr std::int64_t kMostBadFrames = 1000;

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "corda/core/error.hpp"
+#include "corda/core/basics.hpp"
 #include "corda/media/open_mp4.hpp"
 
 namespace corda::media {
@@ -26,6 +26,7 @@ void copy_picture(const AVFrame& frame, Yuv420Image& picture) {
 }  // namespace
 
 struct VideoReader::Impl {
+    QuietLog quiet;
     std::string path;
     OpenMp4 file;
     Packet packet;

@@ -7,10 +7,10 @@
 
 namespace corda::media {
 
-/// Reads the pictures of an MP4 video one after the other, as a player shows them.
+/// Reads the pictures of an MP4 video in the order in which a player shows them.
 class VideoReader {
   public:
-    /// Throws corda::Error (kIo) where the file is no video that can be decoded.
+    /// Throws corda::Error (kIo) if the file is not a video that can be decoded.
     explicit VideoReader(const std::string& path);
     VideoReader(const VideoReader&) = delete;
     VideoReader& operator=(const VideoReader&) = delete;

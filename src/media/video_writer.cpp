@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <vector>
 
-#include "corda/core/error.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/output_file.hpp"
+#include "corda/core/part_file.hpp"
 #include "corda/media/color_patch.hpp"
-#include "corda/media/file_ops.hpp"
-#include "corda/media/h264_encoder.hpp"
+#include "corda/media/encoder.hpp"
 #include "corda/media/mp4_output.hpp"
 #include "corda/media/mp4_remux.hpp"
 
@@ -31,92 +32,109 @@ nlohmann::json patches_json(const std::vector<ColorPatch>& patches) {
 
 }  // namespace
 
-const std::vector<std::string>& x264_presets() {
-    static const std::vector<std::string> presets{"ultrafast", "superfast", "veryfast", "faster",
-                                                  "fast",      "medium",    "slow",     "slower",
-                                                  "veryslow",  "placebo"};
-    return presets;
+void check_video_output(const std::string& path, const VideoDef& def, const std::string& input, bool force) {
+    check_video_def(def);
+    static_cast<void>(find_format(path, def.encoder.codec));
+    check_output(path, input, force);
+    PartFile::check(part_path(path), {.force = force});
 }
 
 struct VideoWriter::Impl {
-    Impl(std::string final_path, const VideoDef& video, VideoMetadata meta)
+    Impl(std::string final_path, const VideoDef& video, VideoMetadata meta, OutputOptions output_options)
         : path(std::move(final_path)),
-          part(part_path(path)),
+          options(output_options),
           def(video),
+          format(find_format(path, def.encoder.codec)),
           title(std::move(meta.title)),
           comment(parsed_comment(meta.comment_json)),
-          encoder(video),
-          output(part) {}
+          encoder(format.make_encoder(format, def)),
+          part(PartFile::create(part_path(path), options)),
+          mp4(part.descriptor(), part.path()) {}
 
     /// Writes the header, once: it waits for the first frame because the comment holds that frame's colours.
     void begin(const Image* first_frame) {
-        if (output.begun()) return;
+        if (mp4.begun()) return;
         comment["fps"] = def.fps.rational().text();
         comment["crf"] = def.encoder.crf;
         comment["patches"] =
             patches_json(first_frame == nullptr ? std::vector<ColorPatch>{} : choose_patches(*first_frame));
-        output.begin(Mp4Layout::kFragmented, encoder.parameters(), def.fps.rational(), title, comment.dump());
+        mp4.begin(format.container, Mp4Layout::kFragmented, encoder->parameters(), def.fps.rational(), title,
+                  comment.dump());
     }
 
-    void drain_and_close() {
+    void drain() {
         begin(nullptr);
-        encoder.drain([this](AVPacket& packet) { output.write(packet); });
-        output.close();
-        closed = true;
+        encoder->drain([this](AVPacket& packet) { mp4.write(packet); });
+        mp4.finish();
+        drained = true;
     }
 
     std::string path;
-    std::string part;
+    OutputOptions options;
     VideoDef def;
+    const Format& format;
     std::string title;
     nlohmann::json comment;
-    H264Encoder encoder;
-    Mp4Output output;
-    bool closed = false;
+    std::unique_ptr<Encoder> encoder;
+    PartFile part;
+    Mp4Output mp4;
+    bool drained = false;
 };
 
-VideoWriter::VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata) {
-    check_video_def(def);
-    impl_ = std::make_unique<Impl>(std::move(path), def, std::move(metadata));
+VideoWriter::VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata,
+                         OutputOptions options) {
+    check_video_output(path, def, "", options.force);
+    impl_ = std::make_unique<Impl>(std::move(path), def, std::move(metadata), options);
 }
 
 VideoWriter::~VideoWriter() {
-    // A part file that has not even a header is of no use to anybody.
-    if (impl_ && !impl_->output.begun()) remove_quietly(impl_->part);
+    // A part without a fragment is of no use, and would be in the way of the next render.
+    if (impl_ && impl_->part.is_empty()) impl_->part.remove();
 }
 
 void VideoWriter::write(const Image& frame, const PixelRect& damage) {
     Impl& impl = *impl_;
-    if (impl.closed)
-        throw Error(ExitCode::kInternal, "a frame was written to a video that is already closed");
+    if (impl.drained)
+        throw Error(ExitCode::kInternal, "a frame was written to a video that has already ended");
     if (frame.width() != impl.def.width_px || frame.height() != impl.def.height_px) {
         throw Error(ExitCode::kInternal,
                     fmt::format("a frame of {}x{} was written to a video of {}x{}", frame.width(),
                                 frame.height(), impl.def.width_px, impl.def.height_px));
     }
     impl.begin(&frame);
-    impl.encoder.encode(frame, damage, [&impl](AVPacket& packet) { impl.output.write(packet); });
+    impl.encoder->encode(frame, damage, [&impl](AVPacket& packet) { impl.mp4.write(packet); });
 }
 
 std::int64_t VideoWriter::frames() const {
-    return impl_->encoder.frames();
+    return impl_->encoder->frames();
 }
 
 void VideoWriter::finish() {
     Impl& impl = *impl_;
-    if (impl.closed) throw Error(ExitCode::kInternal, "a video was finished twice");
+    if (impl.drained) throw Error(ExitCode::kInternal, "a video was finished twice");
     if (frames() == 0) {
         throw Error(
             ExitCode::kUsage,
             fmt::format("'{}' would have no frame; ask for a duration of at least one frame", impl.path));
     }
-    impl.drain_and_close();
-    recover_part(impl.part, impl.path, frames());
+    impl.drain();
+    try {
+        finish_part(impl.part, impl.path, impl.options, frames());
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::kIo) throw;
+        throw Error(error.code(),
+                    fmt::format("{}; all frames are in '{}', which plays", error.what(), impl.part.path()));
+    }
 }
 
 std::string VideoWriter::abandon() {
-    if (!impl_->closed) impl_->drain_and_close();
-    return impl_->part;
+    if (frames() == 0) {
+        impl_->part.remove();
+        return {};
+    }
+    if (!impl_->drained) impl_->drain();
+    impl_->part.sync();
+    return impl_->part.path();
 }
 
 }  // namespace corda::media

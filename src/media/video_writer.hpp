@@ -2,41 +2,21 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
+#include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
-#include "corda/core/rational.hpp"
+#include "corda/media/defs.hpp"
+#include "corda/media/format.hpp"
 
 namespace corda::media {
 
-/// How a video is encoded.
-struct EncoderDef {
-    std::string codec = "libx264";  ///< libav's name of the encoder; "libx264" is the one that exists
-    std::string preset = "medium";  ///< x264: ultrafast .. placebo
-    int crf = 18;  ///< x264 constant rate factor, 1 .. 51 (0 selects High 4:4:4, which browsers refuse)
-    /// Threads of the encoder, 1 .. 64. Fixed, never "as many as there are cores": x264's bytes depend on it.
-    int threads = 2;
-};
+/// Refuses a video that cannot be written, before any work is done: everything that check_video_def and
+/// corda::check_output refuse, an unknown ending, one that cannot hold the codec, and an interrupted render
+/// of the same name, unless `force` is set. Throws corda::Error (kUsage, kIo).
+void check_video_output(const std::string& path, const VideoDef& def, const std::string& input, bool force);
 
-/// The picture size and rate of a video.
-struct VideoDef {
-    int width_px = 1920;  ///< 1 .. 16384, at most 2^26 pixels a frame; even for H.264
-    int height_px = 1080;
-    FrameRate fps{Rational{60, 1}};
-    EncoderDef encoder;
-};
-
-/// The names of x264's presets, fastest first.
-[[nodiscard]] const std::vector<std::string>& x264_presets();
-
-/// Checks every field of `def`, so that a bad one is refused before any work is done. Throws corda::Error
-/// (kUsage), naming the field, the value and what is allowed; for an odd size the nearest even ones.
-void check_video_def(const VideoDef& def);
-
-/// What stands in the file beside the pictures.
+/// What a video file says beside its pictures.
 struct VideoMetadata {
     std::string title;
     /// Compact JSON that `verify` reads back; VideoWriter adds "frames", "fps", "crf" and "patches" to it
@@ -44,20 +24,21 @@ struct VideoMetadata {
     std::string comment_json = "{}";
 };
 
-/// Writes one H.264 MP4: High profile, yuv420p, BT.709 limited range with the sRGB transfer, faststart, one
-/// constant rational frame rate.
+/// Writes a video of one constant rational frame rate, in the format that the ending of its name tells.
 ///
 /// While it runs, whole fragments go to `PATH.part`, which plays at any moment. `finish` drains the encoder,
-/// copies the stream into a plain faststart MP4 (`PATH.tmp`), verifies that, and only then gives it the final
-/// name. Nothing ever stands under the final name that is not complete and verified.
+/// copies the stream into a plain faststart MP4 of temporary name, verifies that, and only then gives it the
+/// final name. Whatever has the final name is complete and verified.
 class VideoWriter {
   public:
-    /// Opens the encoder and the part file. Throws corda::Error: kUsage for an odd size (naming the nearest
-    /// even ones), kEncoder where the encoder is missing or refuses, kIo where the file cannot be made.
-    VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata);
+    /// Opens the encoder and the part file. With `force`, an existing video is replaced at the end, and the
+    /// part of an interrupted render now. Throws corda::Error: kUsage for an unknown ending or a bad def,
+    /// kEncoder if the encoder is missing or refuses, kIo if the file cannot be made, exists, or is being
+    /// written by another render.
+    VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata, OutputOptions options = {});
     VideoWriter(const VideoWriter&) = delete;
     VideoWriter& operator=(const VideoWriter&) = delete;
-    /// Without `finish` or `abandon` the part file stays as it is.
+    /// Without `finish` or `abandon` the part file stays as it is, unless it is empty.
     ~VideoWriter();
 
     /// Adds the next frame, of the size of `def`. `damage` is what may differ from the previous frame (the
@@ -67,28 +48,17 @@ class VideoWriter {
     /// Frames written so far.
     [[nodiscard]] std::int64_t frames() const;
 
-    /// Drains, closes, copies, verifies, and renames to the final name. Needs at least one frame. Throws
-    /// kEncoder, kIo or kMismatch (verify found a problem; the file stays as `PATH.part`).
+    /// Drains, copies, verifies, and gives the video its name. Needs at least one frame. Throws kEncoder, kIo
+    /// or kMismatch (the check found a problem); then the frames stay in `PATH.part`.
     void finish();
 
-    /// Drains and closes the part file, which stays as a playable `PATH.part`, and returns its path.
+    /// Drains and ends the part file, which stays as a playable `PATH.part`, and returns its path. Without
+    /// any frame the part is removed, and the path is empty.
     std::string abandon();
-
-    [[nodiscard]] static std::string part_path(const std::string& path) { return path + ".part"; }
 
   private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
-
-/// Whether an encoder opens on this machine, and libav's reason where it does not.
-struct EncoderProbe {
-    std::string name;
-    bool usable = false;
-    std::string reason;  ///< empty where it is usable
-};
-
-/// Opens every encoder that Corda may come to use with a small picture, and reports: listed is not usable.
-[[nodiscard]] std::vector<EncoderProbe> probe_encoders();
 
 }  // namespace corda::media

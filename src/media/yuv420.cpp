@@ -12,8 +12,9 @@
 namespace corda::media {
 namespace {
 
-// The BT.709 matrix times 219/255 (luma) and 224/255 (chroma) in 1/2^15, so that a product fits a signed
-// 16x16 multiply. The chroma rows sum to 0, or a grey would get a tint; the luma row gives 235 for white.
+// The BT.709 matrix times 219/255 (luma) and 224/255 (chroma) in units of 1/2^15, so that the factors of a
+// product fit into 16 bits. The chroma rows sum to 0, or greys would get a tint; the luma row gives 235 for
+// white.
 constexpr int kShift = 15;
 constexpr int kLumaR = 5983, kLumaG = 20127, kLumaB = 2032;
 constexpr int kCbR = -3298, kCbG = -11094, kCbB = 14392;
@@ -45,9 +46,9 @@ void chroma(const std::uint8_t* upper, const std::uint8_t* lower, int x, std::ui
 
 #if defined(__SSE2__)
 
-// SSE2 is part of every x86-64, so this needs no dispatch. A pixel stays one 32-bit lane: masking it leaves R
-// and B as two 16-bit numbers, shifting first leaves G, and one pmaddwd each multiplies and adds. The
-// integers are those of the scalar code, which does the borders: both must give the same bytes.
+// SSE2 is part of every x86-64, so this needs no dispatch. A pixel stays in one 32-bit lane: masking it
+// leaves R and B as two 16-bit numbers, shifting it first leaves G, and one pmaddwd for each multiplies and
+// adds. The integers are those of the scalar code, which converts the borders, so both give the same bytes.
 struct PixelWeights {
     __m128i rb;
     __m128i g;
@@ -132,7 +133,7 @@ int chroma_row_simd(const std::uint8_t* upper, const std::uint8_t* lower, int i0
                     std::uint8_t* cr) {
     const PixelWeights cb_weights = weights(kCbR, kCbG, kCbB);
     const PixelWeights cr_weights = weights(kCrR, kCrG, kCrB);
-    // G's lane holds alpha in its upper half; its weight there is 0.
+    // The upper half of G's lane holds alpha, whose weight is 0.
     const __m128i mask = _mm_set1_epi32(0x00ff00ff);
     const __m128i bias = _mm_set1_epi32(kChromaBias);
     int i = i0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -27,16 +28,16 @@ class Yuv420Image {
   private:
     int width_ = 0;
     int height_ = 0;
-    std::vector<std::uint8_t> planes_[3];
+    std::array<std::vector<std::uint8_t>, 3> planes_;
 };
 
-/// Converts the part of `rgb` that `damage` touches; the rest of `yuv` stays. Converting only what changed
-/// since the last call gives the same bytes as converting the whole picture. Alpha is ignored. Both have the
-/// same, even size.
+/// Converts the part of `rgb` that `damage` touches; the rest of `yuv` stays. Converting only what has
+/// changed since the last call gives the same bytes as converting the whole picture. Alpha is ignored. Both
+/// pictures have the same size with even sides.
 ///
-/// Y' = 16 + 219 (0.2126 R + 0.7152 G + 0.0722 B), Cb, Cr as ITU-R BT.709-6 section 3 and 4.6 (8 bit), in
-/// integers. A chroma sample stands at the left column of its 2x2 pixels: weights 1-2-1 over columns 2i-1,
-/// 2i, 2i+1 (the edge column repeated) and 1-1 over the two rows.
+/// Y' = 16 + 219 (0.2126 R + 0.7152 G + 0.0722 B), Cb and Cr as in ITU-R BT.709-6, sections 3 and 4.6 (8
+/// bit), in integers. A chroma sample is sited at the left column of its 2x2 pixels: weights 1-2-1 over
+/// columns 2i-1, 2i, 2i+1 (the edge column repeated) and 1-1 over the two rows.
 void convert_to_yuv420(const Image& rgb, const PixelRect& damage, Yuv420Image& yuv);
 
 }  // namespace corda::media

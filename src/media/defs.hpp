@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/image.hpp"
+#include "corda/core/rational.hpp"
+
+#pragma GCC visibility push(default)
+namespace corda {
+
+/// How a video is encoded.
+struct EncoderDef {
+    static constexpr int kLargestCrf = 51;
+    static constexpr int kMostThreads = 64;
+
+    std::string codec = "libx264";  ///< libav's name of the encoder; `corda doctor` lists them
+    std::string preset = "medium";  ///< x264: ultrafast .. placebo
+    /// x264 constant rate factor, 1 .. kLargestCrf (0 selects High 4:4:4, which browsers refuse).
+    int crf = 18;
+    /// Threads of the encoder, 1 .. kMostThreads. Fixed, never "as many as there are cores": x264's bytes
+    /// depend on it.
+    int threads = 2;
+};
+
+/// The picture size and rate of a video.
+struct VideoDef {
+    int width_px = 1920;  ///< see is_picture_size(); even for H.264
+    int height_px = 1080;
+    FrameRate fps{Rational{60, 1}};
+    EncoderDef encoder;
+};
+
+/// What a PNG says beside its pixels.
+struct PngInfo {
+    /// tEXt chunks in file order: keyword (1..79 Latin-1 characters) and UTF-8 text.
+    std::vector<std::pair<std::string, std::string>> text;
+    double pixels_per_inch = 96.0;  ///< written as pHYs; > 0
+};
+
+/// Writes `image` as 8-bit PNG with an sRGB and a pHYs chunk; opaque pictures are stored as RGB. The bytes
+/// depend on nothing but the arguments. The file gets its name when it is complete. Throws
+/// corda::Error (kIo), also if `path` exists and `options` do not say to replace it.
+void write_png(const std::string& path, const Image& image, const PngInfo& info = {},
+               OutputOptions options = {});
+
+/// Reads any PNG of at most kLargestSidePx per side as 8-bit RGBA. Throws corda::Error (kIo) if the file
+/// cannot be read or is not a complete PNG.
+[[nodiscard]] Image read_png(const std::string& path);
+
+/// The tEXt chunks of a PNG. Throws as read_png.
+[[nodiscard]] PngInfo read_png_info(const std::string& path);
+
+}  // namespace corda
+#pragma GCC visibility pop

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "corda/core/image.hpp"
+#include "corda/media/libav_handles.hpp"
+
+namespace corda::media {
+
+/// Turns frames into the packets of one video track. Time stamps and durations of packets count frames.
+class Encoder {
+  public:
+    using PacketSink = std::function<void(AVPacket&)>;
+
+    Encoder() = default;
+    Encoder(const Encoder&) = delete;
+    Encoder& operator=(const Encoder&) = delete;
+    virtual ~Encoder() = default;
+
+    /// Encodes the next frame: `frame` inside `damage` and the previous frame elsewhere; the first frame is
+    /// taken whole. Packets that become ready go to `sink`. Throws corda::Error (kEncoder).
+    virtual void encode(const Image& frame, const PixelRect& damage, const PacketSink& sink) = 0;
+
+    /// Ends the stream; the remaining packets go to `sink`. Throws corda::Error (kEncoder).
+    virtual void drain(const PacketSink& sink) = 0;
+
+    /// Frames encoded so far.
+    [[nodiscard]] virtual std::int64_t frames() const = 0;
+
+    /// What a muxer needs to know about the stream.
+    [[nodiscard]] virtual const AVCodecParameters& parameters() const = 0;
+};
+
+}  // namespace corda::media

@@ -1,0 +1,86 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <regex>
+
+#include "corda/media/picture_quality.hpp"
+#include "support/command.hpp"
+
+namespace corda::media {
+namespace {
+
+constexpr int kWidth = 66;  // not a multiple of 4
+constexpr int kHeight = 50;
+
+/// A picture whose luma at (x, y) is `luma(x, y)`.
+template <typename Luma>
+Yuv420Image picture(Luma luma) {
+    Yuv420Image image(kWidth, kHeight);
+    for (int y = 0; y < kHeight; ++y) {
+        for (int x = 0; x < kWidth; ++x)
+            image.plane(0)[y * kWidth + x] = static_cast<std::uint8_t>(luma(x, y));
+    }
+    return image;
+}
+
+std::string raw_luma(const Yuv420Image& image) {
+    return {reinterpret_cast<const char*>(image.plane(0)), std::size_t{kWidth} * kHeight};
+}
+
+/// What FFmpeg's filter prints after `key` for two grey pictures.
+double by_ffmpeg(const std::string& filter, const std::string& key, const Yuv420Image& a,
+                 const Yuv420Image& b) {
+    const test::ScratchFolder folder;
+    const std::string input = " -f rawvideo -pix_fmt gray -s 66x50 -i ";
+    const auto result =
+        test::run_shell("ffmpeg -hide_banner" + input + folder.write("a", raw_luma(a)) + input +
+                        folder.write("b", raw_luma(b)) + " -lavfi " + filter + " -f null -");
+    std::smatch match;
+    if (!std::regex_search(result.err, match, std::regex(key + ":([-0-9.]+)"))) {
+        ADD_FAILURE() << result.err;
+        return std::nan("");
+    }
+    return std::stod(match[1]);
+}
+
+TEST(PictureQuality, EqualPicturesHavePerfectFigures) {
+    const Yuv420Image a = picture([](int x, int y) { return (7 * x + 13 * y) % 256; });
+    EXPECT_EQ(luma_mean_square(a, a), 0.0);
+    EXPECT_TRUE(std::isinf(psnr_db(luma_mean_square(a, a))));
+    EXPECT_DOUBLE_EQ(luma_ssim(a, a), 1.0);
+}
+
+TEST(PictureQuality, FlatPicturesGiveTheClosedForm) {
+    const Yuv420Image a = picture([](int, int) { return 100; });
+    const Yuv420Image b = picture([](int, int) { return 101; });
+    EXPECT_EQ(luma_mean_square(a, b), 1.0);
+    EXPECT_NEAR(psnr_db(1.0), 20.0 * std::log10(255.0), 1e-12);  // 48.13 dB
+    // Without structure only the luminance term is left: (2 a b + c1) / (a^2 + b^2 + c1).
+    EXPECT_NEAR(luma_ssim(a, b), (20200.0 + 6.5025) / (10000.0 + 10201.0 + 6.5025), 1e-12);
+}
+
+TEST(PictureQuality, OppositePicturesHaveNegativeSimilarity) {
+    const Yuv420Image a = picture([](int x, int) { return x % 2 == 0 ? 0 : 255; });
+    const Yuv420Image b = picture([](int x, int) { return x % 2 == 0 ? 255 : 0; });
+    EXPECT_EQ(luma_mean_square(a, b), 65025.0);
+    // With equal means only the structure term is left: (c2 - 2 s) / (c2 + 2 s), s = 127.5^2 * 64 / 63, c2
+    // = 58.5225.
+    const double twice_variance = 2.0 * 127.5 * 127.5 * 64.0 / 63.0;
+    EXPECT_NEAR(luma_ssim(a, b), (58.5225 - twice_variance) / (58.5225 + twice_variance), 1e-12);  // -0.9965
+}
+
+TEST(PictureQuality, AgreesWithFfmpeg) {
+    std::mt19937 random(1);
+    const Yuv420Image a =
+        picture([](int x, int y) { return 128 + 100 * std::sin(0.2 * x) * std::cos(0.1 * y); });
+    const Yuv420Image b = picture(
+        [&](int x, int y) { return a.plane(0)[y * kWidth + x] + static_cast<int>(random() % 21) - 10; });
+    // FFmpeg prints six digits and computes SSIM in 32-bit floats.
+    EXPECT_NEAR(psnr_db(luma_mean_square(a, b)), by_ffmpeg("psnr", "average", a, b), 1e-5);
+    EXPECT_NEAR(luma_ssim(a, b), by_ffmpeg("ssim", "All", a, b), 2e-5);
+}
+
+}  // namespace
+}  // namespace corda::media

@@ -1,0 +1,193 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <png.h>
+#include <sys/stat.h>
+
+#include <array>
+#include <filesystem>
+#include <random>
+
+#include "corda/core/basics.hpp"
+#include "corda/media/defs.hpp"
+#include "support/command.hpp"
+
+namespace corda::media {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class Png : public testing::Test {
+  protected:
+    [[nodiscard]] std::string file(const std::string& name) const { return folder_.file(name); }
+
+    test::ScratchFolder folder_;
+};
+
+Image random_image(int width, int height, bool opaque) {
+    std::mt19937 random(11);
+    Image image(width, height);
+    for (std::size_t i = 0; i < image.size_bytes(); ++i) {
+        image.data()[i] =
+            opaque && i % 4 == 3 ? std::uint8_t{255} : static_cast<std::uint8_t>(random() & 0xffU);
+    }
+    return image;
+}
+
+ExitCode code_of_reading(const std::string& path) {
+    try {
+        (void)read_png(path);
+    } catch (const Error& error) {
+        EXPECT_THAT(error.what(), HasSubstr(path));
+        return error.code();
+    }
+    return ExitCode::kOk;
+}
+
+TEST_F(Png, RoundTripKeepsEveryPixel) {
+    for (const bool opaque : {true, false}) {
+        const Image image = random_image(37, 23, opaque);
+        write_png(file("a.png"), image, {}, {.force = true});
+        EXPECT_TRUE(read_png(file("a.png")) == image) << opaque;
+        EXPECT_EQ(test::read_file(file("a.png"))[25], opaque ? 2 : 6);  // IHDR colour type: RGB or RGBA
+        EXPECT_THAT(folder_.files(), testing::ElementsAre("a.png"));
+    }
+}
+
+TEST_F(Png, HasItsChunksAndNoDate) {
+    write_png(file("a.png"), random_image(4, 4, true),
+              {{{"Software", "corda"}, {"Title", "Pendule à corde"}}, 144.0});
+    const std::string bytes = test::read_file(file("a.png"));
+    EXPECT_THAT(bytes, HasSubstr(std::string("sRGB\0", 5)));  // 0: perceptual
+    EXPECT_THAT(bytes, HasSubstr("pHYs"));
+    EXPECT_THAT(bytes, HasSubstr("tEXtSoftware"));
+    EXPECT_THAT(bytes, HasSubstr("Pendule \xe0 corde"));  // Latin-1
+    EXPECT_THAT(bytes, testing::Not(HasSubstr("tIME")));
+    EXPECT_THAT(bytes, testing::Not(HasSubstr("iTXt")));
+}
+
+TEST_F(Png, TextComesBackInOrderAsUtf8) {
+    PngInfo info;
+    info.text = {{"Title", "Pendule à corde"}, {"Comment", "θ₀ = 90°"}, {"Empty", ""}, {"Title", "again"}};
+    info.pixels_per_inch = 300.0;
+    write_png(file("a.png"), random_image(4, 4, true), info);
+    EXPECT_THAT(test::read_file(file("a.png")), HasSubstr("iTXtComment"));
+    const PngInfo back = read_png_info(file("a.png"));
+    EXPECT_EQ(back.text, info.text);
+    EXPECT_NEAR(back.pixels_per_inch, 300.0, 0.013);  // whole pixels per metre
+}
+
+TEST_F(Png, SameBytesTwice) {
+    const Image image = random_image(64, 64, false);
+    write_png(file("a.png"), image, {{{"k", "v"}}, 96.0});
+    write_png(file("b.png"), image, {{{"k", "v"}}, 96.0});
+    EXPECT_EQ(test::read_file(file("a.png")), test::read_file(file("b.png")));
+}
+
+TEST_F(Png, BadFilesAreIoErrors) {
+    write_png(file("a.png"), random_image(40, 40, true));
+    const std::string whole = test::read_file(file("a.png"));
+    EXPECT_EQ(code_of_reading(file("missing.png")), ExitCode::kIo);
+    EXPECT_EQ(code_of_reading(folder_.path()), ExitCode::kIo);
+    test::write_file(file("b.png"), "");
+    EXPECT_EQ(code_of_reading(file("b.png")), ExitCode::kIo);
+    test::write_file(file("b.png"), "this is no picture");
+    EXPECT_EQ(code_of_reading(file("b.png")), ExitCode::kIo);
+    for (std::size_t length = 1; length < whole.size(); length += 7) {
+        test::write_file(file("b.png"), whole.substr(0, length));
+        ASSERT_EQ(code_of_reading(file("b.png")), ExitCode::kIo) << length;
+    }
+    for (const std::size_t at : {std::size_t{18}, std::size_t{30}, whole.size() / 2}) {
+        std::string broken = whole;
+        broken[at] = static_cast<char>(broken[at] ^ 0x55);
+        test::write_file(file("b.png"), broken);
+        EXPECT_EQ(code_of_reading(file("b.png")), ExitCode::kIo) << at;
+    }
+}
+
+/// Writes a PNG of any format with libpng itself, every row the same.
+void write_raw(const std::string& path, int width, int height, int depth, int type,
+               const std::vector<png_byte>& row, const std::vector<png_color>& palette = {}) {
+    std::FILE* out = std::fopen(path.c_str(), "wb");
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+    png_infop info = png_create_info_struct(png);
+    png_init_io(png, out);
+    png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), depth, type,
+                 PNG_INTERLACE_ADAM7, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    if (!palette.empty()) png_set_PLTE(png, info, palette.data(), static_cast<int>(palette.size()));
+    png_write_info(png, info);
+    const int passes = png_set_interlace_handling(png);
+    for (int i = 0; i < passes * height; ++i) png_write_row(png, row.data());
+    png_write_end(png, nullptr);
+    png_destroy_write_struct(&png, &info);
+    std::fclose(out);
+}
+
+TEST_F(Png, EveryFormatBecomesRgba8) {
+    write_raw(file("grey1.png"), 2, 1, 1, PNG_COLOR_TYPE_GRAY, {0x40});
+    const Image grey = read_png(file("grey1.png"));
+    EXPECT_EQ(std::vector<int>(grey.data(), grey.data() + 8),
+              (std::vector<int>{0, 0, 0, 255, 255, 255, 255, 255}));
+    write_raw(file("palette.png"), 2, 2, 8, PNG_COLOR_TYPE_PALETTE, {1, 0}, {{1, 2, 3}, {4, 5, 6}});
+    const Image palette = read_png(file("palette.png"));
+    EXPECT_EQ(std::vector<int>(palette.data(), palette.data() + 8),
+              (std::vector<int>{4, 5, 6, 255, 1, 2, 3, 255}));
+    write_raw(file("rgb16.png"), 1, 1, 16, PNG_COLOR_TYPE_RGB, {0xff, 0xff, 0x80, 0x80, 0, 0});
+    const Image deep = read_png(file("rgb16.png"));
+    EXPECT_EQ(std::vector<int>(deep.data(), deep.data() + 4), (std::vector<int>{255, 128, 0, 255}));
+}
+
+TEST_F(Png, RefusesAHugePictureBeforeAllocatingMemory) {
+    // A file of a few bytes promises 16384 x 16384 pixels, and then a side over the limit.
+    for (const int side : {16384, 16385}) {
+        std::FILE* out = std::fopen(file("huge.png").c_str(), "wb");
+        png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+        png_infop info = png_create_info_struct(png);
+        png_init_io(png, out);
+        png_set_IHDR(png, info, static_cast<png_uint_32>(side), static_cast<png_uint_32>(side), 8,
+                     PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                     PNG_FILTER_TYPE_DEFAULT);
+        png_write_info(png, info);
+        const std::array<png_byte, 4> data{};
+        png_write_chunk(png, reinterpret_cast<png_const_bytep>("IDAT"), data.data(), data.size());
+        png_destroy_write_struct(&png, &info);
+        std::fclose(out);
+        EXPECT_EQ(code_of_reading(file("huge.png")), ExitCode::kIo) << side;
+    }
+}
+
+TEST_F(Png, AMissingFolderAndABadKeywordAreErrors) {
+    const Image image = random_image(4, 4, true);
+    try {
+        write_png(file("no/such/folder/a.png"), image);
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::kIo);
+        EXPECT_THAT(error.what(), HasSubstr("No such file"));
+    }
+    EXPECT_THROW(write_png(file("a.png"), image, {{{"", "no keyword"}}, 96.0}), Error);
+    EXPECT_FALSE(fs::exists(file("a.png")));
+}
+
+TEST_F(Png, AnExistingFileIsReplacedOnlyWithForce) {
+    const Image image = random_image(4, 4, true);
+    test::write_file(file("a.png"), "precious");
+    EXPECT_THROW(write_png(file("a.png"), image), Error);
+    EXPECT_EQ(test::read_file(file("a.png")), "precious");
+    write_png(file("a.png"), image, {}, {.force = true});
+    EXPECT_TRUE(read_png(file("a.png")) == image);
+}
+
+TEST_F(Png, AFullDiskIsReportedInTheWordsOfTheSystem) {
+    // More bytes than are buffered, so that the failure comes through libpng.
+    try {
+        write_png("/dev/full", random_image(200, 200, false));
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::kIo);
+        EXPECT_THAT(error.what(), HasSubstr("No space left"));
+    }
+}
+
+}  // namespace
+}  // namespace corda::media

@@ -1,0 +1,123 @@
+#include "corda/media/verify.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "corda/core/basics.hpp"
+#include "corda/media/defs.hpp"
+#include "support/decode_video.hpp"
+#include "video_support.hpp"
+
+namespace corda::media {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST_F(Video, VerifyFindsATruncatedFile) {
+    make_video(file("a.mp4"), small_video(), 60);
+    const std::string whole = test::read_file(file("a.mp4"));
+    for (std::size_t length = 0; length < whole.size(); length += whole.size() / 40 + 1) {
+        test::write_file(file("b.mp4"), whole.substr(0, length));
+        EXPECT_FALSE(verify(file("b.mp4")).ok()) << length;
+    }
+    test::write_file(file("b.mp4"), whole.substr(0, whole.size() - 1));
+    EXPECT_THAT(all_problems(verify(file("b.mp4"))), HasSubstr("breaks off"));
+}
+
+TEST_F(Video, VerifySurvivesDamageAndReportsIt) {
+    make_video(file("a.mp4"), small_video(), 60);
+    const std::string whole = test::read_file(file("a.mp4"));
+    // Damage to any byte must not crash it, and damage to picture data must be reported.
+    for (std::size_t at = 0; at < whole.size(); at += 97) {
+        std::string broken = whole;
+        broken[at] = static_cast<char>(broken[at] ^ 0xff);
+        test::write_file(file("b.mp4"), broken);
+        EXPECT_NO_THROW((void)verify(file("b.mp4"))) << at;
+    }
+    std::string broken = whole;
+    const std::size_t data = whole.find("mdat");
+    for (std::size_t i = data + 1200; i < data + 1300; ++i) broken[i] = static_cast<char>(broken[i] ^ 0xa5);
+    test::write_file(file("b.mp4"), broken);
+    EXPECT_FALSE(verify(file("b.mp4")).ok());
+}
+
+TEST_F(Video, VerifyReportsTimeStampsThatCannotBe) {
+    abandon_video(file("a.mp4"), small_video({10, 1}), 60);  // fragments of 20 frames
+    const std::string whole = test::read_file(file("a.mp4.part"));
+    ASSERT_EQ(decode_times_in(whole), 3);
+    for (const std::uint64_t ticks : kDamagedStamps) {
+        for (int fragment = 0; fragment < 3; ++fragment) {
+            test::write_file(file("b.mp4"), with_decode_time(whole, fragment, ticks));
+            EXPECT_THAT(all_problems(verify(file("b.mp4"))), HasSubstr("a frame has the time stamp"))
+                << ticks << " " << fragment;
+        }
+    }
+}
+
+TEST_F(Video, VerifyFindsALateIndexAndRoundedClocks) {
+    make_video(file("a.mp4"), small_video({24000, 1001}), 60);
+    test::copy_video(file("a.mp4"), file("b.mp4"), test::Retag::kNone);
+    const VerifyReport report = verify(file("b.mp4"));
+    EXPECT_FALSE(report.faststart);
+    EXPECT_THAT(all_problems(report), HasSubstr("+faststart"));
+    EXPECT_THAT(all_problems(report),
+                HasSubstr("movie_timescale"));  // libav's default movie clock is 1/1000 s
+}
+
+TEST_F(Video, VerifyFindsWrongTags) {
+    make_video(file("a.mp4"), small_video(), 4);
+    test::copy_video(file("a.mp4"), file("b.mp4"), test::Retag::kStream);
+    std::string problems = all_problems(verify(file("b.mp4")));
+    EXPECT_THAT(problems, HasSubstr("transfer tag"));
+    EXPECT_THAT(problems, HasSubstr("matrix tag"));
+    test::copy_video(file("a.mp4"), file("b.mp4"), test::Retag::kContainer);
+    problems = all_problems(verify(file("b.mp4")));
+    EXPECT_THAT(problems, HasSubstr("colr box: tv smpte170m"));
+    test::copy_video(file("a.mp4"), file("b.mp4"), test::Retag::kNone);
+    EXPECT_THAT(all_problems(verify(file("b.mp4"))), testing::Not(HasSubstr("tag")));
+}
+
+TEST_F(Video, VerifyComparesWithWhatWasRendered) {
+    make_video(file("a.mp4"), small_video(), 60);
+    const std::string whole = test::read_file(file("a.mp4"));
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string changed = whole;
+        const std::size_t at = changed.find(from);
+        EXPECT_NE(at, std::string::npos) << from;
+        changed.replace(at, from.size(), to);
+        test::write_file(file("b.mp4"), changed);
+        return all_problems(verify(file("b.mp4")));
+    };
+    EXPECT_THAT(with("\"frames\":60", "\"frames\":61"), HasSubstr("61 frames were rendered"));
+    EXPECT_THAT(with("\"fps\":\"60\"", "\"fps\":\"50\""), HasSubstr("rendered for 50 fps"));
+    EXPECT_THAT(with("255,0,0]", "248,0,0]"), HasSubstr("shows R'G'B'"));
+    EXPECT_THAT(with("\"fps\":\"60\"", "\"fps\":\"60\""), IsEmpty());
+}
+
+TEST_F(Video, VerifyReportsFilesThatAreNoVideo) {
+    EXPECT_THROW((void)verify(file("missing.mp4")), Error);
+    EXPECT_THROW((void)verify(folder_.path()), Error);
+    for (const std::string& text :
+         {std::string(), std::string("hello, this is text\n"), std::string(5000, '\0'),
+          std::string("\0\0\0\x08"
+                      "ftyp",
+                      8),
+          std::string("\0\0\0\x01"
+                      "ftyp\xff\xff\xff\xff\xff\xff\xff\xff",
+                      16),
+          std::string("\0\0\0\x08"
+                      "ftyp\0\0\0\x10moov\0\0\0\x08trak",
+                      24)}) {
+        test::write_file(file("b.mp4"), text);
+        EXPECT_THAT(verify(file("b.mp4")).problems, testing::Not(IsEmpty()));
+    }
+    write_png(file("b.mp4"), Image(8, 8), {}, {.force = true});
+    const VerifyReport report = verify(file("b.mp4"));
+    EXPECT_THAT(report.problems, Contains(HasSubstr("not an MP4")));
+    EXPECT_THAT(report.container, HasSubstr("png"));
+}
+
+}  // namespace
+}  // namespace corda::media
