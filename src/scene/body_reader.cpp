@@ -1,3 +1,4 @@
+// What ropes and nets have in common.
 #include <fmt/format.h>
 
 #include "corda/scene/readers.hpp"
@@ -5,80 +6,65 @@
 namespace corda::scene {
 namespace {
 
-constexpr Range kCompliance{.low = 0.0, .high = 1e6};
-
-void check_length(const Value& list, std::size_t count, std::int64_t particles, std::string_view remedy) {
-    if (count == static_cast<std::size_t>(particles)) return;
-    list.fail(fmt::format("{} values for {} particles; {}", count, particles, remedy));
-}
-
-double mass_of(const Value& value) {
-    constexpr std::string_view kRemedy = "give a mass in kg";
-    static_cast<void>(value.number(kPositive, kRemedy));
-    return value.number(kMass, kRemedy);
+/// A value of every particle: `one` of them for all, or a list.
+template <class T>
+std::vector<T> read_all(const Value& value, bool is_list, std::int64_t particles) {
+    const auto count = static_cast<std::size_t>(particles);
+    if (!is_list) return std::vector<T>(count, value.as<T>());
+    if (value.size() != count) {
+        value.add_problem(
+            fmt::format("{} values for {} particles; give one per particle", value.size(), particles));
+        return std::vector<T>(count);
+    }
+    std::vector<T> values;
+    values.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) values.push_back(value.at(i).as<T>());
+    return values;
 }
 
 }  // namespace
 
 std::vector<double> read_mass(const TableReader& body, std::int64_t particles) {
-    constexpr std::string_view kRemedy = "give a mass in kg, or a list with one a particle";
-    const auto value = body.find("mass");
-    const auto count = static_cast<std::size_t>(particles);
-    if (!value || !value->is_list()) return std::vector<double>(count, value ? mass_of(*value) : 1.0);
-    check_length(*value, value->size(kRemedy), particles, kRemedy);
-    std::vector<double> mass_kg;
-    mass_kg.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) mass_kg.push_back(mass_of(value->at(i)));
-    return mass_kg;
+    const auto mass = body.find("mass");
+    if (!mass) return std::vector<double>(static_cast<std::size_t>(particles), kDefaultMassKg);
+    return read_all<double>(*mass, mass->is_list(), particles);
 }
 
-std::vector<sim::Vec2> read_velocity(const TableReader& body, std::int64_t particles) {
-    constexpr std::string_view kRemedy = "give [vx, vy] in m/s, or a list with one such pair a particle";
-    const auto value = body.find("velocity");
-    const auto count = static_cast<std::size_t>(particles);
-    if (!value) return std::vector<sim::Vec2>(count);
+std::vector<Vec2> read_velocity(const TableReader& body, std::int64_t particles) {
+    const auto velocity = body.find("velocity");
+    if (!velocity) return std::vector<Vec2>(static_cast<std::size_t>(particles));
     // [a, b] is one velocity for all; [[a, b], [c, d]] is a list, also for a body of two particles.
-    const std::size_t size = value->size(kRemedy);
-    if (size == 0 || !value->at(0).is_list()) {
-        return std::vector<sim::Vec2>(count, value->pair(kAnyNumber, kRemedy));
-    }
-    check_length(*value, size, particles, kRemedy);
-    std::vector<sim::Vec2> velocity_m_s;
-    velocity_m_s.reserve(count);
-    for (std::size_t i = 0; i < count; ++i) velocity_m_s.push_back(value->at(i).pair(kAnyNumber, kRemedy));
-    return velocity_m_s;
+    return read_all<Vec2>(*velocity, velocity->at(0).is_list(), particles);
 }
 
-sim::MaterialDef read_material(const TableReader& body) {
-    sim::MaterialDef def;
-    body.read_number("compliance", def.compliance_1_n, kCompliance,
-                     "give a strain per newton in 1/N, 0 for bars that do not stretch");
-    if (const auto value = body.find("string")) def.is_string = value->boolean("give true or false");
+MaterialDef read_material(const TableReader& body) {
+    MaterialDef def;
+    body.read("compliance", def.compliance_1_n);
+    body.read("string", def.is_string);
     return def;
 }
 
-std::int64_t read_index(const Value& entry, std::int64_t count, std::string_view owner,
-                        std::string_view remedy) {
-    const std::int64_t written = entry.integer(INT64_MIN, INT64_MAX, remedy);
-    if (written < -count || written >= count) {
-        entry.fail(fmt::format("{} is out of range; {} 0 .. {}, or -1 .. -{} from its end", written, owner,
-                               count - 1, count));
-    }
-    return written < 0 ? written + count : written;
+std::optional<std::uint32_t> read_index(const Value& entry, std::int64_t count, std::string_view owner) {
+    const auto written = entry.as<std::int64_t>();
+    if (written >= -count && written < count)
+        return static_cast<std::uint32_t>(written < 0 ? written + count : written);
+    entry.add_problem(fmt::format("{} is out of range; {} 0 .. {}, or -1 .. -{} from the end", written, owner,
+                                  count - 1, count));
+    return std::nullopt;
 }
 
-std::vector<std::uint32_t> read_pinned(const Value& list, std::int64_t particles, std::string_view remedy,
-                                       const std::function<std::int64_t(const Value&)>& index_of) {
+std::vector<std::uint32_t> read_pinned(
+    const Value& list, std::int64_t particles,
+    const std::function<std::optional<std::uint32_t>(const Value&)>& index_of) {
     std::vector<std::uint32_t> pinned;
     std::vector<bool> seen(static_cast<std::size_t>(particles));
-    for (std::size_t i = 0; i < list.size(remedy); ++i) {
+    for (std::size_t i = 0; i < list.size(); ++i) {
         const Value entry = list.at(i);
-        const std::int64_t index = index_of(entry);
-        if (seen[static_cast<std::size_t>(index)]) {
-            entry.fail(fmt::format("particle {} is given twice; remove one", index));
-        }
-        seen[static_cast<std::size_t>(index)] = true;
-        pinned.push_back(static_cast<std::uint32_t>(index));
+        const auto index = index_of(entry);
+        if (!index) continue;
+        if (seen[*index]) entry.add_problem(fmt::format("particle {} is given twice; remove one", *index));
+        seen[*index] = true;
+        pinned.push_back(*index);
     }
     return pinned;
 }

@@ -9,8 +9,8 @@
 #include <memory>
 #include <system_error>
 
-#include "corda/core/error.hpp"
-#include "corda/scene/scene.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/scene/limits.hpp"
 
 namespace corda::scene {
 namespace {

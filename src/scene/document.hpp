@@ -7,17 +7,18 @@
 
 namespace corda::scene {
 
-/// Parts that a dotted key may have. The scene format needs 3; the TOML parser and its tree recurse once a
+/// Parts that a dotted key may have. The scene format needs 3; the TOML parser and its tree recurse once per
 /// part.
 inline constexpr int kKeyParts = 32;
 
-/// The bytes of a file or a pipe. Throws kIo with the system's reason, kInvalidScene over Limits::kFileBytes.
+/// The bytes of a file or a pipe. Throws kIo with the system's reason, kInvalidScene if they are over
+/// Limits::kFileBytes.
 [[nodiscard]] std::string read_file(const std::string& path);
 
 /// Parses TOML text. Throws kInvalidScene with `source_name`:line:column and the parser's description.
 [[nodiscard]] toml::table parse_document(std::string_view text, const std::string& source_name);
 
-/// A dotted key of too many parts, as an offset into the TOML text; npos where there is none.
+/// A dotted key of too many parts, as an offset into the TOML text; npos if there is none.
 [[nodiscard]] std::size_t find_deep_key(std::string_view text);
 
 }  // namespace corda::scene

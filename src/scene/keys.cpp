@@ -1,10 +1,372 @@
 #include "corda/scene/keys.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <type_traits>
+
+#include "corda/core/image.hpp"
+#include "corda/media/format.hpp"
+#include "corda/media/h264_encoder.hpp"
+#include "corda/scene/readers.hpp"
+
 namespace corda::scene {
+namespace {
+
+using Words = std::vector<std::string_view>;
+
+constexpr Range kAny{};
+constexpr Range kAbove0{.low = 0.0, .low_open = true};
+constexpr Range kFrom0{.low = 0.0};
+constexpr Range kCoordinate{.low = -Limits::kCoordinateMetres, .high = Limits::kCoordinateMetres};
+constexpr Range kDistance{.low = kShortestBarMetres, .high = Limits::kCoordinateMetres};
+constexpr Range kLength{.low = kShortestBarMetres, .high = 4 * Limits::kCoordinateMetres};
+constexpr Range kMass{.low = 1e-12, .high = 1e12};
+constexpr Range kWidthPx{.low = 0.1, .high = 1000.0};
+constexpr double kMostParticles = Limits::kParticles;
+
+Type of(Kind kind, const Range& range = kAny) {
+    return {.kind = kind, .range = range};
+}
+
+Type number(const Range& range = kAny) {
+    return of(Kind::kNumber, range);
+}
+
+Type integer(double low, double high) {
+    return {.kind = Kind::kInteger, .range = {.low = low, .high = high}};
+}
+
+Type one_of(Words words, Kind kind = Kind::kChoice) {
+    return {.kind = kind, .choices = std::move(words)};
+}
+
+Type pair(std::string_view words, const Range& range) {
+    return {.forms = kPair, .range = range, .pair = words};
+}
+
+/// One value, or a pair.
+Type or_pair(Type type, std::string_view words) {
+    type.forms |= kPair;
+    type.pair = words;
+    return type;
+}
+
+/// What `type` is, or a list of that.
+Type or_list(Type type, std::string_view words) {
+    type.forms |= type.forms == kPair ? kPairs : kList;
+    type.list = words;
+    return type;
+}
+
+Type list(Kind kind, std::size_t least, std::size_t most = SIZE_MAX) {
+    return {.kind = kind, .forms = kList, .list = "a list", .least_entries = least, .most_entries = most};
+}
+
+Type pairs(Kind kind, std::string_view words, std::size_t least, const Range& range = kAny) {
+    return {.kind = kind, .forms = kPairs, .range = range, .pair = words, .least_entries = least};
+}
+
+std::string toml_of(bool value) {
+    return value ? "true" : "false";
+}
+
+std::string toml_of(const std::string& value) {
+    return fmt::format("\"{}\"", value);
+}
+
+std::string toml_of(const Color& value) {
+    return toml_of(value.text());
+}
+
+std::string toml_of(Vec2 value) {
+    return fmt::format("[{}, {}]", number_text(value.x), number_text(value.y));
+}
+
+template <class T>
+requires std::is_arithmetic_v<T> std::string toml_of(T value) {
+    return number_text(static_cast<double>(value));
+}
+
+template <class T>
+std::string toml_of(const std::vector<T>& values) {
+    std::vector<std::string> texts;
+    for (const T& value : values) texts.push_back(toml_of(value));
+    return fmt::format("[{}]", fmt::join(texts, ", "));
+}
+
+template <class T>
+Default at(const T& value) {
+    return {.toml = toml_of(value)};
+}
+
+/// The default of a choice whose words are in the order of an enum.
+template <class E>
+Default at(const Words& words, E value) {
+    return at(std::string(words.at(static_cast<std::size_t>(value))));
+}
+
+Default otherwise(std::string_view words) {
+    return {.words = words};
+}
+
+Default required() {
+    return {.required = true};
+}
+
+Default none() {
+    return {};
+}
+
+std::vector<Key> root_keys() {
+    const Type table = of(Kind::kTable);
+    const Type tables = of(Kind::kTables);
+    return {
+        {"", "schema", one_of({"1"}, Kind::kInteger), "", required(), "the version of this list of keys"},
+        {"", "world", table, "", none(), "what acts on every body, and for how long"},
+        {"", "rope", tables, "", none(), "a chain of particles", "a scene has at least one rope or net"},
+        {"", "net", tables, "", none(), "particles and bars in any graph"},
+        {"", "solver", table, "", none(), "how the motion is computed"},
+        {"", "video", table, "", none(), "picture size, frame rate and encoder"},
+        {"", "style", table, "", none(), "how it looks"},
+        {"", "camera", table, "", none(), "where the camera looks"},
+    };
+}
+
+std::vector<Key> world_keys() {
+    const WorldDef def;
+    return {
+        {"world", "gravity", or_pair(number(), "[gx, gy]"), "m/s2", at(-def.gravity_m_s2.y),
+         "the gravity, downwards"},
+        {"world", "duration", number(kAbove0), "s", at(def.duration_s), "the duration",
+         "a video has the frames that start before it"},
+        {"world", "drag", number(kFrom0), "1/s", at(def.drag_1_s), "the drag",
+         "velocities decay by exp(-drag t)"},
+    };
+}
+
+/// `keys` and those that ropes and nets have in common.
+std::vector<Key> body_keys(std::string_view section, std::vector<Key> keys, std::string_view width) {
+    const Type mass = or_list(number(kMass), "a list with one per particle");
+    const Type velocity = or_list(pair("[vx, vy]", kAny), "a list with one such pair per particle");
+    const std::vector<Key> common{
+        {section, "points", pairs(Kind::kNumber, "[x, y]", 2, kCoordinate), "m", none(),
+         "the positions of the particles"},
+        {section, "mass", mass, "kg", at(kDefaultMassKg), "the mass of a particle"},
+        {section, "velocity", velocity, "m/s", at(Vec2{}), "the velocity of the particles at the start"},
+        {section, "compliance", number({.low = 0.0, .high = 1e6}), "1/N", at(MaterialDef{}.compliance_1_n),
+         "the strain per newton of tension, 1/(E A)", "at 0 all lengths are kept"},
+        {section, "color", of(Kind::kColor), "", otherwise("the next of style.palette"), "the colour"},
+        {section, "width_px", number(kWidthPx), "px", otherwise(width), "the width"},
+    };
+    keys.insert(keys.end(), common.begin(), common.end());
+    return keys;
+}
+
+std::vector<Key> rope_shapes() {
+    return {
+        {"rope", "line", of(Kind::kTable), "", none(),
+         "line = { particles = 40, from = [0.0, 0.0], step = [0.0, -1.0] }",
+         "exactly one of line, hang and points"},
+        {"rope", "hang", of(Kind::kTable), "", none(),
+         "hang = { links = 20, length = 1.0, angle_deg = 45.0 }"},
+    };
+}
+
+std::vector<Key> rope_keys() {
+    const RopeDef def;
+    const Type boolean = of(Kind::kBoolean);
+    return {
+        {"rope", "payload", number({.low = 0.0, .high = kMass.high}), "kg", at(def.payload_kg),
+         "the mass added to the last particle"},
+        {"rope", "pinned", list(Kind::kInteger, 0), "", at(def.pinned),
+         "the indices of the particles that never move", "-1 is the last, [] a free rope"},
+        {"rope", "closed", boolean, "", at(def.closed), "the last point is tied to the first",
+         "only for points, at least 3"},
+        {"rope", "string", boolean, "", at(def.material.is_string), "links pull and never push",
+         "without compliance they come taut plastically"},
+        {"rope", "bending", number({.low = 0.0, .high = 1e12}), "N m2", at(def.bending_n_m2),
+         "the bending stiffness E I", "not for a string"},
+        {"rope", "link_length", or_list(number(kLength), "a list with one per link"), "m",
+         otherwise("the distance at the start"), "the length of a link at rest",
+         "needs compliance or string"},
+    };
+}
+
+std::vector<Key> rope_shape_keys() {
+    const Type from = pair("[x, y]", kCoordinate);
+    const std::string_view first = "the position of the first particle";
+    return {
+        {"rope.line", "particles", integer(2, kMostParticles), "", required(), "the number of particles"},
+        {"rope.line", "from", from, "m", at(Vec2{}), first},
+        {"rope.line", "step", pair("[dx, dy]", kCoordinate), "m", required(),
+         "the way from one particle to the next"},
+        {"rope.hang", "links", integer(1, kMostParticles - 1), "", required(), "the number of links",
+         "one less than particles"},
+        {"rope.hang", "length", number(kAbove0), "m", required(), "the length of the whole rope"},
+        {"rope.hang", "angle_deg", number(), "degrees", at(0),
+         "the angle from straight down, positive to +x"},
+        {"rope.hang", "from", from, "m", at(Vec2{}), first},
+    };
+}
+
+std::vector<Key> net_shapes() {
+    return {
+        {"net", "grid", of(Kind::kTable), "", none(), "grid = { columns = 40, rows = 30, spacing = 0.1 }",
+         "exactly one of grid and points"},
+    };
+}
+
+std::vector<Key> net_keys() {
+    Type pinned = list(Kind::kInteger, 0);
+    pinned.forms |= kPairs;
+    pinned.pair = "[column, row]";
+    const Type boolean = of(Kind::kBoolean);
+    return {
+        {"net", "bars", pairs(Kind::kInteger, "[a, b]", 1), "", none(), "the particles that each bar joins",
+         "required with points; -1 is the last particle"},
+        {"net", "pinned", pinned, "", otherwise("the upper corners of a grid, [0] of points"),
+         "the indices of the particles that never move", "-1 is the last; a grid also takes [column, row]"},
+        {"net", "string", boolean, "", at(MaterialDef{}.is_string), "bars pull and never push",
+         "needs compliance"},
+        {"net.grid", "columns", integer(1, kMostParticles), "", required(),
+         "the number of particles in a row", "indices go row by row from the upper left"},
+        {"net.grid", "rows", integer(1, kMostParticles), "", required(), "the number of rows"},
+        {"net.grid", "from", pair("[x, y]", kCoordinate), "m", at(Vec2{}),
+         "the position of the upper left particle"},
+        {"net.grid", "spacing", or_pair(number(kDistance), "[dx, dy]"), "m", required(),
+         "the distance from one particle to the next"},
+        {"net.grid", "diagonals", boolean, "", at(kDefaultDiagonals),
+         "two imaginary bars cross in each cell"},
+    };
+}
+
+/// The orders of `rattle`.
+Words order_words() {
+    static const std::vector<std::string> words = [] {
+        std::vector<std::string> texts;
+        for (const int order : RattleDef::kOrders) texts.push_back(std::to_string(order));
+        return texts;
+    }();
+    return {words.begin(), words.end()};
+}
+
+std::vector<Key> solver_keys() {
+    const Words methods(kMethodNames.begin(), kMethodNames.end());
+    const Words automatic{AutoDef::kName};
+    const Words exact{ExactDef::kName};
+    const Words rattle{RattleDef::kName};
+    const Words relaxation{RelaxationDef::kName};
+    const Words stepped{RattleDef::kName, RelaxationDef::kName};
+    constexpr Range kTolerance{.low = ExactDef::kTightestTolerance, .high = ExactDef::kLoosestTolerance};
+    const RelaxationDef def;
+    return {
+        {"solver", "method", one_of(methods), "", at(methods, SolverDef{}.index()), "the method"},
+        {"solver", "tolerance_px", number(kAbove0), "px", at(AutoDef{}.tolerance_px),
+         "the bound of the displayed position error", "", automatic},
+        {"solver", "tolerance", number(kTolerance), "", at(ExactDef{}.tolerance),
+         "the position error relative to the length of the rope", "", exact},
+        {"solver", "order", one_of(order_words(), Kind::kInteger), "", at(RattleDef{}.order), "the order", "",
+         rattle},
+        {"solver", "step", number({.low = 1e-9}), "s", otherwise("one frame; rattle: a stable part of one"),
+         "the step", "", stepped},
+        {"solver", "reach", integer(1, kMostParticles), "", at(kDefaultReach), "the reach",
+         "ropes have bars to the next 1..reach particles", relaxation,
+         ": bars to farther particles make a straight rope a rigid rod, and its equations singular"},
+        {"solver", "sweeps", integer(1, 1e6), "", at(def.sweeps),
+         "the number of passes over all bars per step", "", relaxation},
+        {"solver", "delta", number({.low = 0.0, .high = 1.0, .high_open = true}), "", at(def.delta),
+         "the share of the velocity lost per step", "", relaxation, ", or give world.drag"},
+        {"solver", "force", pair("[fx, fy]", kAny), "N", otherwise("the weight"),
+         "the force on every particle", "in place of gravity: a light particle accelerates more", relaxation,
+         ", or give world.gravity"},
+    };
+}
+
+std::vector<Key> video_keys() {
+    const VideoDef def;
+    const auto& presets = media::x264_presets();
+    Type size = pair("[width, height]", {.low = 1, .high = kLargestSidePx});
+    size.kind = Kind::kInteger;
+    static const std::string size_note =
+        fmt::format("even for a video; {} pixels in all at most", kMostPicturePx);
+    return {
+        {"video", "size", size, "px", at(std::vector<int>{def.width_px, def.height_px}),
+         "the size of the picture", size_note},
+        {"video", "fps", of(Kind::kFrameRate, {.low = 1e-3, .high = 1e5}), "1/s",
+         Default{.toml = def.fps.rational().text()}, "the frames per second"},
+        {"video", "codec", one_of(media::codec_names()), "", at(def.encoder.codec), "the encoder"},
+        {"video", "preset", one_of({presets.begin(), presets.end()}), "", at(def.encoder.preset),
+         "how long the encoder searches for a smaller file"},
+        {"video", "crf", integer(1, EncoderDef::kLargestCrf), "", at(def.encoder.crf),
+         "the constant rate factor", "1 is the best; browsers refuse the profile that 0 selects"},
+        {"video", "threads", integer(1, EncoderDef::kMostThreads), "", at(def.encoder.threads),
+         "the number of threads of the encoder", "the bytes depend on it"},
+    };
+}
+
+std::vector<Key> style_keys() {
+    const StyleDef def;
+    const Type color = of(Kind::kColor);
+    const Words markers{"none", "pinned", "all"};
+    const Words bars{"none", "real", "all"};
+    return {
+        {"style", "background", of(Kind::kOpaqueColor), "", at(def.background), "the background"},
+        {"style", "palette", list(Kind::kColor, 1, 64), "", at(def.palette),
+         "the colours that ropes, then nets take in turn"},
+        {"style", "rope_width_px", number(kWidthPx), "px", otherwise("grows with the height"),
+         "the width of ropes"},
+        {"style", "markers", one_of(markers), "", at(markers, def.markers), "the particles with a marker"},
+        {"style", "marker_radius_px", number(kWidthPx), "px", otherwise("grows with the width of the rope"),
+         "the radius of markers"},
+        {"style", "pinned_color", color, "", at(def.pinned_color), "the markers of pinned particles"},
+        {"style", "free_color", color, "", at(def.free_color), "the markers of free particles"},
+        {"style", "bars", one_of(bars), "", at(bars, def.bars), "the bars that are drawn apart"},
+        {"style", "bar_width_px", number(kWidthPx), "px", otherwise("a quarter of the width of ropes"),
+         "the width of bars"},
+        {"style", "real_bar_color", color, "", at(def.real_bar_color), "the bars between neighbours"},
+        {"style", "imaginary_bar_color", color, "", at(def.imaginary_bar_color), "the longer bars"},
+    };
+}
+
+std::vector<Key> camera_keys() {
+    return {
+        {"camera", "center", pair("[x, y]", kCoordinate), "m", otherwise("fits the whole motion"),
+         "the position in the middle of the picture"},
+        {"camera", "height", number({.low = 1e-9, .high = 4 * Limits::kCoordinateMetres}), "m",
+         otherwise("fits the whole motion"), "the height of the picture"},
+        {"camera", "margin", number({.low = 0.0, .high = 0.45}), "", at(CameraDef{}.margin),
+         "the share of the shorter side left free at each edge"},
+    };
+}
+
+}  // namespace
+
+const std::vector<Key>& all_keys() {
+    static const std::vector<Key> keys = [] {
+        std::vector<Key> all;
+        for (const std::vector<Key>& part :
+             {root_keys(), world_keys(), body_keys("rope", rope_shapes(), "style.rope_width_px"), rope_keys(),
+              rope_shape_keys(), body_keys("net", net_shapes(), "half of style.rope_width_px"), net_keys(),
+              solver_keys(), video_keys(), style_keys(), camera_keys()}) {
+            all.insert(all.end(), part.begin(), part.end());
+        }
+        return all;
+    }();
+    return keys;
+}
+
+const Key* find_key(std::string_view section, std::string_view name) {
+    const auto& keys = all_keys();
+    const auto found = std::find_if(
+        keys.begin(), keys.end(), [&](const Key& key) { return key.section == section && key.name == name; });
+    return found == keys.end() ? nullptr : &*found;
+}
 
 std::vector<std::string_view> keys_of(std::string_view section) {
     std::vector<std::string_view> names;
-    for (const KeyText& key : kKeys) {
+    for (const Key& key : all_keys()) {
         if (key.section == section) names.push_back(key.name);
     }
     return names;

@@ -1,15 +1,32 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <string_view>
+#include <variant>
 #include <vector>
 
+#include "corda/scene/limits.hpp"
 #include "corda/scene/scene.hpp"
 #include "corda/scene/table_reader.hpp"
 
 namespace corda::scene {
 
-/// The tables of a scene file, one reader each.
+/// Bars shorter than this have no direction: the solvers' squared lengths come near the smallest number.
+inline constexpr double kShortestBarMetres = 1e-12;
+
+// Defaults that no Def holds.
+inline constexpr double kDefaultMassKg = 1.0;
+inline constexpr int kDefaultReach = 7;  ///< the source report's
+inline constexpr bool kDefaultDiagonals = true;
+
+/// The names of the alternatives of SolverDef, in its order.
+inline constexpr std::array<std::string_view, std::variant_size_v<SolverDef>> kMethodNames{
+    AutoDef::kName, ExactDef::kName, RattleDef::kName, RelaxationDef::kName};
+
+/// The tables of a scene file.
 struct Sections {
     TableReader world;
     TableReader solver;
@@ -20,16 +37,18 @@ struct Sections {
     std::vector<TableReader> nets;
 };
 
-/// Finds the tables and refuses unknown keys. Throws kInvalidScene where `schema` is not 1 or there is
-/// neither a rope nor a net.
-[[nodiscard]] Sections read_sections(const Source& source, const toml::table& document);
+/// The table [solver].
+struct SolverSection {
+    SolverDef def;
+    int reach = 1;  ///< of the bars of ropes
+};
 
-[[nodiscard]] sim::WorldDef read_world(const TableReader& world);
-[[nodiscard]] sim::SolverDef read_solver(const TableReader& solver);
-[[nodiscard]] media::VideoDef read_video(const TableReader& video);
-[[nodiscard]] view::StyleDef read_style(const TableReader& style);
-[[nodiscard]] view::CameraDef read_camera(const TableReader& camera);
-[[nodiscard]] view::BodyStyleDef read_body_style(const TableReader& body);
+[[nodiscard]] WorldDef read_world(const TableReader& world);
+[[nodiscard]] SolverSection read_solver(const TableReader& solver);
+[[nodiscard]] VideoDef read_video(const TableReader& video);
+[[nodiscard]] StyleDef read_style(const TableReader& style);
+[[nodiscard]] CameraDef read_camera(const TableReader& camera);
+[[nodiscard]] BodyStyleDef read_body_style(const TableReader& body);
 
 /// How many particles and bars a body asks for.
 struct BodySize {
@@ -37,42 +56,37 @@ struct BodySize {
     std::int64_t bars = 0;
 };
 
-/// The size of a rope with bars up to `reach`, without making any. Refuses a rope that does not have exactly
-/// one shape.
-[[nodiscard]] BodySize read_rope_size(const TableReader& rope, int reach);
+/// The size of a rope with bars to the next 1..reach particles, without making any. Empty if a problem, such
+/// as a rope of two shapes, leaves it unknown.
+[[nodiscard]] std::optional<BodySize> read_rope_size(const TableReader& rope, int reach);
 
-/// A rope of `particles` as `read_rope_size` gave them; no link or bar up to `reach` has the length 0.
-[[nodiscard]] sim::RopeDef read_rope(const TableReader& rope, std::int64_t particles, int reach);
+/// A rope whose size `read_rope_size` has found. If the size is not known, the particles are left out.
+[[nodiscard]] RopeDef read_rope(const TableReader& rope, const std::optional<BodySize>& size, int reach);
 
-/// The positions of a rope's particles, into `origin_m` and `points_m`; `closed` is set.
-void read_shape(const TableReader& rope, std::int64_t particles, int reach, sim::RopeDef& def);
+/// The positions of a rope's particles, into `origin_m` and `points_m`; `closed` and `reach` are set. Returns
+/// whether it has them.
+bool read_rope_shape(const TableReader& rope, std::int64_t particles, RopeDef& def);
 
-/// The size of a net, without making any. Refuses one that does not have exactly one shape.
-[[nodiscard]] BodySize read_net_size(const TableReader& net);
+/// The size of a net, as `read_rope_size`.
+[[nodiscard]] std::optional<BodySize> read_net_size(const TableReader& net);
 
-/// A net whose size `read_net_size` has found; no bar has the length 0, none is there twice.
-[[nodiscard]] sim::NetDef read_net(const TableReader& net);
+/// A net, as `read_rope`: no bar has the length 0, none is there twice.
+[[nodiscard]] NetDef read_net(const TableReader& net, const std::optional<BodySize>& size);
 
 // What ropes and nets have in common.
 
-/// In m. Shorter bars have no direction: the solvers' squared lengths come near the smallest number.
-inline constexpr double kShortestBar = 1e-12;
-
-/// Masses in kg of particles and payloads.
-inline constexpr Range kMass{.low = 1e-12, .high = 1e12};
-
 [[nodiscard]] std::vector<double> read_mass(const TableReader& body, std::int64_t particles);
-[[nodiscard]] std::vector<sim::Vec2> read_velocity(const TableReader& body, std::int64_t particles);
-[[nodiscard]] sim::MaterialDef read_material(const TableReader& body);
+[[nodiscard]] std::vector<Vec2> read_velocity(const TableReader& body, std::int64_t particles);
+[[nodiscard]] MaterialDef read_material(const TableReader& body);
 
-/// An index below `count` that may be counted from the end, -1 the last, as one from the beginning. `owner`
-/// is "the rope has particles" in the message for one out of range.
-[[nodiscard]] std::int64_t read_index(const Value& entry, std::int64_t count, std::string_view owner,
-                                      std::string_view remedy);
+/// An index below `count`, negative ones counted from the end, as one from the beginning. If it is out of
+/// range, `owner`, e.g. "the rope has particles", begins the rest of the message.
+[[nodiscard]] std::optional<std::uint32_t> read_index(const Value& entry, std::int64_t count,
+                                                      std::string_view owner);
 
-/// The particles of a list that `index_of` understands each entry of; refuses one that is there twice.
+/// The particles of a list whose entries `index_of` understands; one that is there twice is a problem.
 [[nodiscard]] std::vector<std::uint32_t> read_pinned(
-    const Value& list, std::int64_t particles, std::string_view remedy,
-    const std::function<std::int64_t(const Value&)>& index_of);
+    const Value& list, std::int64_t particles,
+    const std::function<std::optional<std::uint32_t>(const Value&)>& index_of);
 
 }  // namespace corda::scene

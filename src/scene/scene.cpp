@@ -2,12 +2,37 @@
 
 #include <filesystem>
 
+#include "corda/scene/check_limits.hpp"
+#include "corda/scene/checker.hpp"
 #include "corda/scene/document.hpp"
-#include "corda/scene/limits.hpp"
 #include "corda/scene/readers.hpp"
 #include "corda/scene/settings.hpp"
 
-namespace corda::scene {
+namespace corda {
+
+using namespace scene;  // the readers
+
+namespace {
+
+Sections sections_of(const toml::table& document, Problems& problems) {
+    const TableReader root(problems, document, "", "");
+    return {root.table("world"),  root.table("solver"), root.table("video"), root.table("style"),
+            root.table("camera"), root.tables("rope"),  root.tables("net")};
+}
+
+/// Ropes and nets, with their styles.
+void read_bodies(const Sections& sections, const SceneSize& size, int reach, Scene& scene) {
+    for (const TableReader& rope : sections.ropes) {
+        scene.ropes.push_back(read_rope(rope, size.bodies[scene.body_styles.size()], reach));
+        scene.body_styles.push_back(read_body_style(rope));
+    }
+    for (const TableReader& net : sections.nets) {
+        scene.nets.push_back(read_net(net, size.bodies[scene.body_styles.size()]));
+        scene.body_styles.push_back(read_body_style(net));
+    }
+}
+
+}  // namespace
 
 Scene load_scene(const std::string& path, const std::vector<Setting>& settings) {
     return parse_scene(read_file(path), path, settings);
@@ -16,36 +41,35 @@ Scene load_scene(const std::string& path, const std::vector<Setting>& settings) 
 Scene parse_scene(std::string_view toml, const std::string& source_name,
                   const std::vector<Setting>& settings) {
     toml::table document = parse_document(toml, source_name);
-    for (const Setting& setting : settings) apply_setting(document, setting);
-    const Source source(source_name, document);
-    const Sections sections = read_sections(source, document);
+    Problems problems(source_name, document);
+    for (const Setting& setting : settings) apply_setting(document, setting, problems);
+    check_document(document, problems);
+    const Sections sections = sections_of(document, problems);
 
     Scene scene;
     scene.name = std::filesystem::path(source_name).stem().string();
     scene.source = source_name;
     scene.world = read_world(sections.world);
-    scene.solver = read_solver(sections.solver);
+    const SolverSection solver = read_solver(sections.solver);
+    scene.solver = solver.def;
     scene.video = read_video(sections.video);
     scene.style = read_style(sections.style);
     scene.camera = read_camera(sections.camera);
-
-    const SceneSize size = count_bodies(sections, scene.solver);
+    const SceneSize size = count_bodies(sections, solver.reach);
     check_work(sections, scene, size.bars);
-    for (std::size_t i = 0; i < sections.ropes.size(); ++i) {
-        scene.ropes.push_back(read_rope(sections.ropes[i], size.rope_particles[i], scene.solver.reach));
-        scene.body_styles.push_back(read_body_style(sections.ropes[i]));
-    }
-    for (const TableReader& net : sections.nets) {
-        scene.nets.push_back(read_net(net));
-        scene.body_styles.push_back(read_body_style(net));
-    }
-    check_stiffness(sections, scene);
-    check_pace(sections, scene);
+    if (size.fits) read_bodies(sections, size, solver.reach, scene);
+    problems.throw_if_any();
+    check_motion(sections, scene);
+    problems.throw_if_any();
     return scene;
 }
 
-sim::System system_of(const Scene& scene) {
-    return sim::build_system(scene.ropes, scene.nets, scene.solver.reach);
+std::string_view solver_name(const SolverDef& solver) {
+    return kMethodNames[solver.index()];
 }
 
-}  // namespace corda::scene
+System system_of(const Scene& scene) {
+    return build_system(scene.ropes, scene.nets);
+}
+
+}  // namespace corda

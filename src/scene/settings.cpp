@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "corda/core/error.hpp"
+#include "corda/core/basics.hpp"
 #include "corda/scene/document.hpp"
-#include "corda/scene/source.hpp"
+#include "corda/scene/problems.hpp"
 
 namespace corda::scene {
 namespace {
@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kLongestLabel = 80;
 constexpr std::string_view kWhitespace = " \t\r\n";
 
-/// One part of a dotted key: a name, or an index where the name is empty.
+/// One part of a dotted key: a name, or an index if the name is empty.
 struct Step {
     std::string name;
     std::size_t index = 0;
@@ -67,7 +67,7 @@ std::optional<Step> take_index(std::string_view& rest) {
     return step;
 }
 
-/// "rope[0].mass" as its parts; nothing for text that is not a dotted key.
+/// "rope[0].mass" as its parts; std::nullopt for text that is not a dotted key.
 std::optional<std::vector<Step>> parse_key(std::string_view key) {
     std::vector<Step> steps;
     std::string_view rest = key;
@@ -97,7 +97,7 @@ toml::table parse_value(std::string_view text, const std::string& label) {
             // A bare word such as `relaxation`, a colour, or "30000/1001": a string, below.
         }
     }
-    // Parsed once more, as only the parser can give a node its source.
+    // Parsed once more, because only the parser can give a node its source.
     toml::table parsed = toml::parse("value = ''", std::string_view(label));
     parsed.get("value")->as_string()->get() = text;
     return parsed;
@@ -139,7 +139,7 @@ class SettingWriter {
             toml::array& list = *node_->as_array();
             list.replace(list.cbegin() + static_cast<std::ptrdiff_t>(step.index), std::move(value));
         } else {
-            // A region of the same setting, as a message about an unknown key names the key's place.
+            // A region of the same setting, because a message about an unknown key names the key's place.
             const toml::key key(step.name, toml::source_region(value.source()));
             as_table().insert_or_assign(key, std::move(value));
         }
@@ -182,7 +182,7 @@ class SettingWriter {
 
 }  // namespace
 
-void apply_setting(toml::table& document, const Setting& setting) {
+void apply_setting(toml::table& document, const Setting& setting, Problems& problems) {
     const std::size_t equals = setting.find('=');
     if (equals == std::string::npos) fail_usage(setting, "there is no '='");
     const std::string_view key = trimmed(std::string_view(setting).substr(0, equals));
@@ -191,7 +191,11 @@ void apply_setting(toml::table& document, const Setting& setting) {
     if (!steps) fail_usage(setting, fmt::format("\"{}\" is not a key", printable(key)));
     if (steps->size() > static_cast<std::size_t>(kKeyParts))
         fail_usage(setting, "the key has too many parts");
-    SettingWriter(document, setting).write(*steps, trimmed(std::string_view(setting).substr(equals + 1)));
+    try {
+        SettingWriter(document, setting).write(*steps, trimmed(std::string_view(setting).substr(equals + 1)));
+    } catch (const Error& error) {
+        problems.add(error.what());
+    }
 }
 
 }  // namespace corda::scene

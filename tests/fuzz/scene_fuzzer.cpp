@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "corda/core/error.hpp"
+#include "corda/core/basics.hpp"
 #include "corda/scene/scene.hpp"
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
         // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast)
         const std::string_view toml(reinterpret_cast<const char*>(data), size);
-        static_cast<void>(corda::scene::parse_scene(toml, "fuzz.toml"));
+        static_cast<void>(corda::parse_scene(toml, "fuzz.toml"));
     } catch (const corda::Error&) {
         return 0;
     }

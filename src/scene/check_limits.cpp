@@ -1,0 +1,186 @@
+#include "corda/scene/check_limits.hpp"
+
+#include <fmt/format.h>
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+#include "corda/sim/work.hpp"
+
+namespace corda::scene {
+namespace {
+
+struct Place {
+    const TableReader* table;
+    std::string_view key;
+};
+
+/// Adds a problem at the first of the keys that the file gives, otherwise at the first body.
+void fail_at(const Sections& sections, std::initializer_list<Place> places, std::string_view problem) {
+    for (const Place& place : places) {
+        if (const auto value = place.table->find(place.key)) return value->add_problem(problem);
+    }
+    (sections.ropes.empty() ? sections.nets : sections.ropes).front().add_problem(problem);
+}
+
+bool check_frames(const Sections& sections, const Scene& scene) {
+    if (!sections.world.is_sound("duration") || !sections.video.is_sound("fps")) return false;
+    const double duration_s = scene.world.duration_s;
+    const double frames = duration_s * scene.video.fps.per_second();
+    const std::initializer_list<Place> places{{&sections.world, "duration"}, {&sections.video, "fps"}};
+    std::string problem;
+    if (frames > static_cast<double>(Limits::kFrames)) {
+        problem = fmt::format(
+            "{:g} s at {} frames per second are {:g} frames, over the limit of {}; give a shorter duration "
+            "or fewer frames per second",
+            duration_s, scene.video.fps.rational().text(), frames, Limits::kFrames);
+    } else if (scene.video.fps.frame_count(duration_s) < 1) {
+        problem = fmt::format("{:g} s hold no frame; give a longer duration", duration_s);
+    }
+    if (!problem.empty()) fail_at(sections, places, problem);
+    return problem.empty();
+}
+
+/// Steps that the scene asks for by name; a frame takes one otherwise.
+double step_count(const Scene& scene) {
+    std::optional<double> step_s;
+    if (const auto* rattle = std::get_if<RattleDef>(&scene.solver)) step_s = rattle->step_s;
+    if (const auto* relaxation = std::get_if<RelaxationDef>(&scene.solver)) step_s = relaxation->step_s;
+    return scene.world.duration_s / step_s.value_or(scene.video.fps.interval_s());
+}
+
+int sweep_count(const Scene& scene) {
+    const auto* relaxation = std::get_if<RelaxationDef>(&scene.solver);
+    return relaxation == nullptr ? 1 : relaxation->sweeps;
+}
+
+bool check_steps(const Sections& sections, const Scene& scene) {
+    if (!sections.solver.is_sound("method") || !sections.solver.is_sound("step")) return false;
+    const double steps = step_count(scene);
+    if (steps <= static_cast<double>(Limits::kSteps)) return true;
+    fail_at(
+        sections, {{&sections.solver, "step"}, {&sections.world, "duration"}},
+        fmt::format("{:g} s are {:g} steps, over the limit of {}; give a longer step or a shorter duration",
+                    scene.world.duration_s, steps, Limits::kSteps));
+    return false;
+}
+
+void check_bar_updates(const Sections& sections, const Scene& scene, std::int64_t bars) {
+    if (!sections.solver.is_sound("sweeps") || !sections.solver.is_sound("reach")) return;
+    const double steps = step_count(scene);
+    const double updates = static_cast<double>(bars) * sweep_count(scene) * steps;
+    if (updates <= Limits::kBarUpdates) return;
+    fail_at(
+        sections,
+        {{&sections.solver, "sweeps"},
+         {&sections.solver, "step"},
+         {&sections.solver, "reach"},
+         {&sections.world, "duration"}},
+        fmt::format("{} bars, {} sweeps and {:g} steps are {:g} bar updates, over the limit of {:g}; give "
+                    "fewer of one of them",
+                    bars, sweep_count(scene), steps, updates, Limits::kBarUpdates));
+}
+
+/// Adds one body to what all ask for together. Returns whether there is memory for them.
+bool add_size(const TableReader& body, const BodySize& size, std::string_view fewer_bars, BodySize& all) {
+    all.particles += size.particles;
+    all.bars += size.bars;
+    const auto too_many = [&](std::string_view what, std::int64_t count, std::int64_t limit,
+                              std::string_view fewer) {
+        if (count <= limit) return false;
+        body.add_problem(
+            fmt::format("the ropes and nets up to this one have {} {}, over the limit of {}; give {}", count,
+                        what, limit, fewer));
+        return true;
+    };
+    return !too_many("particles", all.particles, Limits::kParticles, "fewer") &&
+           !too_many("bars", all.bars, Limits::kBars, fewer_bars);
+}
+
+/// Adds a problem at the first of the keys that body `i` of the scene has, otherwise at the body.
+void fail_in_body(const Sections& sections, std::size_t i, std::initializer_list<const char*> keys,
+                  std::string_view problem) {
+    const bool is_rope = i < sections.ropes.size();
+    const TableReader& body = is_rope ? sections.ropes[i] : sections.nets[i - sections.ropes.size()];
+    for (const char* const key : keys) {
+        if (const auto value = body.find(key)) return value->add_problem(problem);
+    }
+    body.add_problem(problem);
+}
+
+void check_stiffness(const Sections& sections, const Scene& scene, const System& system) {
+    for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+        const Body& body = system.bodies[i];
+        const double steps =
+            sim::expected_steps(sim::vibration_frequency_1_s(system, body), scene.world.duration_s);
+        const double updates = steps * static_cast<double>(body.particle_count);
+        if (updates <= Limits::kElasticUpdates) continue;
+        fail_in_body(sections, i, {"compliance", "bending"},
+                     fmt::format("vibrates so fast that {:g} s take some {:g} steps, {:g} particle updates, "
+                                 "over the limit of {:g}; give more compliance, less bending, heavier "
+                                 "particles or a shorter duration",
+                                 scene.world.duration_s, steps, updates, Limits::kElasticUpdates));
+    }
+}
+
+void check_pace(const Sections& sections, const Scene& scene, const System& system) {
+    if (std::holds_alternative<RelaxationDef>(scene.solver)) return;
+    const auto updates = [&](double frequency_1_s) {
+        return sim::expected_steps(frequency_1_s, scene.video.fps.interval_s()) *
+               static_cast<double>(system.particle_count());
+    };
+    const auto too_fast = [&](double frequency_1_s) {
+        return updates(frequency_1_s) > Limits::kFrameUpdates;
+    };
+    const auto problem = [&](std::string_view what, double frequency_1_s, std::string_view remedy) {
+        return fmt::format(
+            "{} so fast that a frame takes some {:g} particle updates, over the limit of {:g}; give {}", what,
+            updates(frequency_1_s), Limits::kFrameUpdates, remedy);
+    };
+    if (too_fast(scene.world.drag_1_s))
+        fail_at(sections, {{&sections.world, "drag"}},
+                problem("slows down", scene.world.drag_1_s, "less drag"));
+    for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+        const double turn_1_s = sim::angular_velocity_1_s(system, system.bodies[i]);
+        if (too_fast(turn_1_s))
+            fail_in_body(sections, i, {"velocity"},
+                         problem("turns", turn_1_s, "less speed, longer links or more frames per second"));
+        const double swing_1_s = sim::pendulum_frequency_1_s(system, system.bodies[i], scene.world);
+        if (too_fast(swing_1_s))
+            fail_at(sections, {{&sections.world, "gravity"}},
+                    problem("swings", swing_1_s, "less gravity or longer links"));
+    }
+}
+
+}  // namespace
+
+SceneSize count_bodies(const Sections& sections, int reach) {
+    SceneSize size;
+    BodySize all;
+    bool is_known = sections.solver.is_sound("method") && sections.solver.is_sound("reach");
+    const auto add = [&](const TableReader& body, const std::optional<BodySize>& own,
+                         std::string_view fewer_bars) {
+        size.bodies.push_back(own);
+        is_known = is_known && own;
+        if (size.fits && own) size.fits = add_size(body, *own, fewer_bars, all);
+    };
+    for (const TableReader& rope : sections.ropes)
+        add(rope, read_rope_size(rope, reach), "fewer particles or a smaller solver.reach");
+    for (const TableReader& net : sections.nets) add(net, read_net_size(net), "fewer");
+    if (is_known && size.fits) size.bars = all.bars;
+    return size;
+}
+
+void check_work(const Sections& sections, const Scene& scene, std::optional<std::int64_t> bars) {
+    if (check_frames(sections, scene) && check_steps(sections, scene) && bars)
+        check_bar_updates(sections, scene, *bars);
+}
+
+void check_motion(const Sections& sections, const Scene& scene) {
+    const System system = system_of(scene);
+    check_stiffness(sections, scene, system);
+    check_pace(sections, scene, system);
+}
+
+}  // namespace corda::scene

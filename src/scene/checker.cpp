@@ -1,0 +1,280 @@
+#include "corda/scene/checker.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "corda/core/image.hpp"
+#include "corda/core/nearest.hpp"
+#include "corda/scene/keys.hpp"
+#include "corda/scene/rate.hpp"
+#include "corda/scene/readers.hpp"
+
+namespace corda::scene {
+namespace {
+
+/// For a key that another table has: `; it is a key of video`.
+std::string other_home(std::string_view name) {
+    const auto& keys = all_keys();
+    const auto key = std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == name; });
+    if (key == keys.end()) return "";
+    return fmt::format("; it is a key of {}", key->section.empty() ? "the top level" : key->section);
+}
+
+/// Checks a value of one key.
+class ValueChecker {
+  public:
+    ValueChecker(const Key& key, Problems& problems) : key_(&key), problems_(&problems) {}
+
+    /// Whether the value is one that the key may have; adds a problem if not.
+    bool check(const toml::node& node, const std::string& path) const {
+        const toml::array* const list = node.as_array();
+        if (list == nullptr && takes(kOne)) return check_one(node, path);
+        if (list == nullptr) return fail_type(node, path, takes(kList | kPairs) ? "a list" : key_->type.pair);
+        if (key_->type.forms == kOne) return fail_type(node, path, one_words());
+        const bool is_nested = !list->empty() && list->get(0)->is_array();
+        if (takes(kPair) && !(is_nested && takes(kPairs))) return check_pair(node, path);
+        return check_list(*list, path);
+    }
+
+  private:
+    [[nodiscard]] bool takes(unsigned forms) const { return (key_->type.forms & forms) != 0; }
+
+    bool check_list(const toml::array& list, const std::string& path) const {
+        if (list.size() < key_->type.least_entries || list.size() > key_->type.most_entries)
+            return fail(list, path, list.empty() ? "the list is empty" : described(list));
+        bool good = true;
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            const toml::node& entry = *list.get(i);
+            const std::string entry_path = fmt::format("{}[{}]", path, i);
+            const bool is_pair = entry.is_array() ? takes(kPairs) : !takes(kList);
+            good &= is_pair ? check_pair(entry, entry_path) : check_one(entry, entry_path);
+        }
+        return good;
+    }
+
+    bool check_pair(const toml::node& node, const std::string& path) const {
+        const toml::array* const pair = node.as_array();
+        if (pair == nullptr || pair->size() != 2) return fail_type(node, path, key_->type.pair);
+        const bool first = check_one(*pair->get(0), path + "[0]");
+        return check_one(*pair->get(1), path + "[1]") && first;
+    }
+
+    bool check_one(const toml::node& node, const std::string& path) const {
+        switch (key_->type.kind) {
+            case Kind::kBoolean:
+                return node.is_boolean() || fail_type(node, path, one_words());
+            case Kind::kInteger:
+                return node.is_integer() ? check_number(node, path) : fail_type(node, path, one_words());
+            case Kind::kNumber:
+                return node.is_number() ? check_number(node, path) : fail_type(node, path, one_words());
+            default:
+                break;
+        }
+        if (key_->type.kind == Kind::kFrameRate && node.is_number()) return check_rate(node, path);
+        if (!node.is_string()) return fail_type(node, path, one_words());
+        const std::string& text = node.as_string()->get();
+        if (key_->type.kind == Kind::kFrameRate) return check_rate(node, path);
+        return key_->type.kind == Kind::kChoice ? check_choice(text, node, path)
+                                                : check_color(text, node, path);
+    }
+
+    bool check_number(const toml::node& node, const std::string& path) const {
+        const double value = number_of(node);
+        const std::string text =
+            node.is_integer() ? std::to_string(node.as_integer()->get()) : fmt::format("{}", value);
+        if (!std::isfinite(value)) return fail(node, path, text + " is not a finite number");
+        if (!key_->type.choices.empty()) return check_choice(text, node, path);
+        const Range& range = key_->type.range;
+        const auto outside = [&](std::string_view relation, double bound) {
+            return fail(node, path, fmt::format("{} is not {} {}", text, relation, number_text(bound)));
+        };
+        if (range.low_open ? value <= range.low : value < range.low)
+            return outside(range.low_open ? ">" : ">=", range.low);
+        if (range.high_open ? value >= range.high : value > range.high)
+            return outside(range.high_open ? "<" : "<=", range.high);
+        return true;
+    }
+
+    bool check_rate(const toml::node& node, const std::string& path) const {
+        const auto rate = read_rate(node);
+        if (const auto* const problem = std::get_if<std::string>(&rate)) return fail(node, path, *problem);
+        const double value = std::get<Rational>(rate).value();
+        const bool inside = value >= key_->type.range.low && value <= key_->type.range.high;
+        return inside || fail(node, path, fmt::format("{} is out of range", std::get<Rational>(rate).text()));
+    }
+
+    bool check_choice(const std::string& text, const toml::node& node, const std::string& path) const {
+        constexpr std::string_view kOldName = "rope";
+        constexpr std::string_view kNewName = RattleDef::kName;
+        const auto& words = key_->type.choices;
+        if (std::find(words.begin(), words.end(), text) != words.end()) return true;
+        if (node.is_number()) return fail(node, path, fmt::format("{} is not allowed", text));
+        if (text == kOldName && std::find(words.begin(), words.end(), kNewName) != words.end()) {
+            problems_->add(
+                node.source(), path,
+                fmt::format("\"{}\" is called {} now; write \"{}\"", kOldName, kNewName, kNewName));
+            return false;
+        }
+        const auto meant = nearest(text, words);
+        if (!meant) return fail(node, path, fmt::format("\"{}\" is unknown", printable(text)));
+        problems_->add(node.source(), path,
+                       fmt::format("\"{}\" is unknown; did you mean \"{}\"?", printable(text), *meant));
+        return false;
+    }
+
+    bool check_color(const std::string& text, const toml::node& node, const std::string& path) const {
+        const auto color = Color::parse(text);
+        if (!color) return fail(node, path, fmt::format("\"{}\" is not a colour", printable(text)));
+        const bool good = key_->type.kind != Kind::kOpaqueColor || color->a == 255;
+        return good || fail(node, path, fmt::format("\"{}\" is not opaque", text));
+    }
+
+    [[nodiscard]] std::string_view one_words() const {
+        switch (key_->type.kind) {
+            case Kind::kBoolean:
+                return "true or false";
+            case Kind::kInteger:
+                return "an integer";
+            case Kind::kNumber:
+                return "a number";
+            case Kind::kFrameRate:
+                return "an integer or text in quotes";
+            default:
+                return "text in quotes";
+        }
+    }
+
+    bool fail_type(const toml::node& node, const std::string& path, std::string_view expected) const {
+        return fail(node, path, fmt::format("{}, not {}", described(node), expected));
+    }
+
+    bool fail(const toml::node& node, const std::string& path, std::string_view problem) const {
+        problems_->add(node.source(), path, fmt::format("{}; {}", problem, remedy(*key_)));
+        return false;
+    }
+
+    const Key* key_;
+    Problems* problems_;
+};
+
+std::string dotted(std::string_view front, std::string_view name) {
+    return front.empty() ? std::string(name) : fmt::format("{}.{}", front, name);
+}
+
+/// Checks tables, each with the tables in it.
+class TableChecker {
+  public:
+    explicit TableChecker(Problems& problems) : problems_(&problems) {}
+
+    /// Checks the table at `path`, which has the keys of `section`.
+    void check(toml::table& table, std::string_view section, const std::string& path) const {
+        refuse_unknown_keys(table, section, path);
+        if (section == "solver") refuse_foreign_keys(table);
+        for (const Key& key : all_keys()) {
+            if (key.section != section) continue;
+            const std::string key_path = dotted(path, key.name);
+            toml::node* const node = table.get(key.name);
+            if (node != nullptr && !check_value(key, *node, dotted(section, key.name), key_path)) {
+                table.erase(key.name);
+            } else if (node == nullptr && key.initial.required && problems_->is_sound(key_path)) {
+                problems_->add(table.source(), key_path, fmt::format("missing; {}", remedy(key)));
+            }
+        }
+    }
+
+  private:
+    void refuse_unknown_keys(const toml::table& table, std::string_view section,
+                             const std::string& path) const {
+        const auto known = keys_of(section);
+        for (const auto& [key, node] : table) {
+            if (find_key(section, key.str()) != nullptr) continue;
+            const auto meant = nearest(key.str(), known);
+            if (meant) problems_->add_misspelt(dotted(path, *meant));
+            std::string hint = meant ? fmt::format("; did you mean \"{}\"?", *meant) : other_home(key.str());
+            if (hint.empty()) hint = fmt::format("; valid keys: {}", fmt::join(known, ", "));
+            const std::string name = printable(key.str());
+            problems_->add(key.source(), dotted(path, name), fmt::format("unknown key \"{}\"{}", name, hint));
+        }
+    }
+
+    /// Refuses keys of other methods, whatever their values. Without a valid method no key is foreign.
+    void refuse_foreign_keys(toml::table& solver) const {
+        const auto has = [](const std::vector<std::string_view>& words, std::string_view word) {
+            return std::find(words.begin(), words.end(), word) != words.end();
+        };
+        const std::string method = solver.contains("method") ? solver["method"].value_or(std::string())
+                                                             : std::string(solver_name(SolverDef{}));
+        if (!has(find_key("solver", "method")->type.choices, method) || !problems_->is_sound("solver.method"))
+            return;
+        for (const Key& key : all_keys()) {
+            const toml::node* const node = key.section == "solver" ? solver.get(key.name) : nullptr;
+            if (node == nullptr || key.methods.empty() || has(key.methods, method)) continue;
+            problems_->add(node->source(), path_of(key),
+                           fmt::format("method \"{}\" does not use it, only {}; remove it{}", method,
+                                       fmt::join(key.methods, ", "), key.instead));
+            solver.erase(key.name);
+        }
+    }
+
+    bool check_value(const Key& key, toml::node& node, const std::string& section,
+                     const std::string& path) const {
+        if (key.type.kind == Kind::kTables) return check_tables(key, node, path);
+        if (key.type.kind != Kind::kTable) return ValueChecker(key, *problems_).check(node, path);
+        if (!node.is_table()) return fail(key, node, path, "a table");
+        check(*node.as_table(), section, path);
+        return true;
+    }
+
+    bool check_tables(const Key& key, toml::node& node, const std::string& path) const {
+        toml::array* const list = node.as_array();
+        if (list == nullptr) return fail(key, node, path, "a list");
+        if (list->empty()) {
+            problems_->add(node.source(), path, fmt::format("the list is empty; {}", remedy(key)));
+            return false;
+        }
+        for (std::size_t i = 0; i < list->size(); ++i) {
+            toml::node& entry = *list->get(i);
+            const std::string entry_path = fmt::format("{}[{}]", path, i);
+            if (entry.is_table()) {
+                check(*entry.as_table(), key.name, entry_path);
+            } else {
+                fail(key, entry, entry_path, "a table");
+            }
+        }
+        return true;
+    }
+
+    bool fail(const Key& key, const toml::node& node, const std::string& path,
+              std::string_view expected) const {
+        problems_->add(node.source(), path,
+                       fmt::format("{}, not {}; {}", described(node), expected, remedy(key)));
+        return false;
+    }
+
+    Problems* problems_;
+};
+
+/// In a file of another schema any key may be right.
+void check_schema(const toml::table& document, Problems& problems) {
+    const toml::value<std::int64_t>* const schema = document["schema"].as_integer();
+    if (schema == nullptr || std::to_string(schema->get()) == find_key("", "schema")->type.choices.front())
+        return;
+    problems.add(schema->source(), "schema",
+                 fmt::format("{} is not a known version; this program reads schema = 1", schema->get()));
+    problems.throw_if_any();
+}
+
+}  // namespace
+
+void check_document(toml::table& document, Problems& problems) {
+    check_schema(document, problems);
+    TableChecker(problems).check(document, "", "");
+    const bool has_bodies = document.contains("rope") || document.contains("net");
+    if (!has_bodies && problems.is_sound("rope") && problems.is_sound("net"))
+        problems.add(document.source(), "rope", "missing; give one or more [[rope]] or [[net]]");
+}
+
+}  // namespace corda::scene

@@ -1,0 +1,102 @@
+// The tables whose keys stand for themselves: what the list of keys (keys.hpp) says is all there is to check.
+#include <fmt/format.h>
+
+#include "corda/core/image.hpp"
+#include "corda/scene/rate.hpp"
+#include "corda/scene/readers.hpp"
+
+namespace corda::scene {
+
+WorldDef read_world(const TableReader& world) {
+    WorldDef def;
+    if (const auto gravity = world.find("gravity")) {
+        // 0 - g and not -g: no gravity is +0.
+        def.gravity_m_s2 = gravity->is_list() ? gravity->as<Vec2>() : Vec2{0.0, 0.0 - gravity->as<double>()};
+    }
+    world.read("duration", def.duration_s);
+    world.read("drag", def.drag_1_s);
+    return def;
+}
+
+SolverSection read_solver(const TableReader& solver) {
+    std::string_view method = AutoDef::kName;
+    solver.read("method", method);
+    if (method == ExactDef::kName) {
+        ExactDef def;
+        solver.read("tolerance", def.tolerance);
+        return {def};
+    }
+    if (method == RattleDef::kName) {
+        RattleDef def;
+        solver.read("order", def.order);
+        solver.read("step", def.step_s);
+        return {def};
+    }
+    if (method == RelaxationDef::kName) {
+        RelaxationDef def;
+        int reach = kDefaultReach;
+        solver.read("step", def.step_s);
+        solver.read("reach", reach);
+        solver.read("sweeps", def.sweeps);
+        solver.read("delta", def.delta);
+        solver.read("force", def.force_n);
+        return {def, reach};
+    }
+    AutoDef def;
+    solver.read("tolerance_px", def.tolerance_px);
+    return {def};
+}
+
+VideoDef read_video(const TableReader& video) {
+    VideoDef def;
+    if (const auto size = video.find("size")) {
+        def.width_px = size->at(0).as<int>();
+        def.height_px = size->at(1).as<int>();
+        const std::int64_t pixels = std::int64_t{def.width_px} * def.height_px;
+        if (pixels > kMostPicturePx)
+            size->add_problem(fmt::format("{} x {} are {} pixels, over the limit of {}; give a smaller size",
+                                          def.width_px, def.height_px, pixels, kMostPicturePx));
+    }
+    if (const auto fps = video.find("fps")) def.fps = FrameRate(std::get<Rational>(read_rate(fps->node())));
+    video.read("codec", def.encoder.codec);
+    video.read("preset", def.encoder.preset);
+    video.read("crf", def.encoder.crf);
+    video.read("threads", def.encoder.threads);
+    return def;
+}
+
+StyleDef read_style(const TableReader& style) {
+    StyleDef def;
+    style.read("background", def.background);
+    if (const auto palette = style.find("palette")) {
+        def.palette.clear();
+        for (std::size_t i = 0; i < palette->size(); ++i) def.palette.push_back(palette->at(i).as<Color>());
+    }
+    style.read("rope_width_px", def.rope_width_px);
+    style.read("markers", def.markers);
+    style.read("marker_radius_px", def.marker_radius_px);
+    style.read("pinned_color", def.pinned_color);
+    style.read("free_color", def.free_color);
+    style.read("bars", def.bars);
+    style.read("bar_width_px", def.bar_width_px);
+    style.read("real_bar_color", def.real_bar_color);
+    style.read("imaginary_bar_color", def.imaginary_bar_color);
+    return def;
+}
+
+CameraDef read_camera(const TableReader& camera) {
+    CameraDef def;
+    camera.read("center", def.center_m);
+    camera.read("height", def.height_m);
+    camera.read("margin", def.margin);
+    return def;
+}
+
+BodyStyleDef read_body_style(const TableReader& body) {
+    BodyStyleDef def;
+    body.read("color", def.color);
+    body.read("width_px", def.width_px);
+    return def;
+}
+
+}  // namespace corda::scene

@@ -1,0 +1,96 @@
+#include "corda/scene/problems.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "corda/core/basics.hpp"
+
+namespace corda::scene {
+namespace {
+
+constexpr std::size_t kMostShown = 20;
+constexpr std::size_t kMostKept = 10'000;  // bounds the memory for a file that is not a scene at all
+
+bool is_continuation(char c) {
+    return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U;
+}
+
+}  // namespace
+
+std::string printable(std::string_view text, std::size_t longest) {
+    std::size_t length = std::min(text.size(), longest);
+    while (length < text.size() && length > 0 && is_continuation(text[length])) --length;
+    std::string result;
+    for (const char c : text.substr(0, length)) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte < 0x20 || byte == 0x7f) {
+            result += fmt::format("\\x{:02x}", byte);
+        } else {
+            result += c;
+        }
+    }
+    if (length < text.size()) result += "...";
+    return result;
+}
+
+std::string described(const toml::node& node) {
+    switch (node.type()) {
+        case toml::node_type::table:
+            return "this is a table";
+        case toml::node_type::array:
+            return fmt::format("this is a list of {}", node.as_array()->size());
+        case toml::node_type::string:
+            return fmt::format("\"{}\" is a string", printable(node.as_string()->get()));
+        case toml::node_type::integer:
+            return fmt::format("{} is an integer", node.as_integer()->get());
+        case toml::node_type::floating_point:
+            return fmt::format("{} is a number with a fraction", node.as_floating_point()->get());
+        case toml::node_type::boolean:
+            return fmt::format("{} is a boolean", node.as_boolean()->get());
+        default:
+            return "this is a date or a time";
+    }
+}
+
+double number_of(const toml::node& node) {
+    return node.is_integer() ? static_cast<double>(node.as_integer()->get())
+                             : node.as_floating_point()->get();
+}
+
+void Problems::add(const toml::source_region& region, std::string_view key, std::string_view problem) {
+    if (problems_.size() == kMostKept) {
+        ++not_kept_;
+        return;
+    }
+    if (!reported_.emplace(key).second) return;
+    for (std::size_t end = 0; end != std::string_view::npos;) {
+        end = key.find_first_of(".[", end + 1);
+        unsound_.emplace(key.substr(0, end));
+    }
+    const bool is_setting = region.path && region.path != document_path_;
+    const toml::source_position begin = region.begin ? region.begin : toml::source_position{1, 1};
+    const std::string place =
+        is_setting ? *region.path : fmt::format("{}:{}:{}", source_name_, begin.line, begin.column);
+    problems_.push_back(
+        {is_setting, begin.line, begin.column, fmt::format("{}: {}: {}", place, key, problem)});
+}
+
+void Problems::add(const std::string& message) {
+    problems_.push_back({true, 0, 0, message});
+}
+
+void Problems::throw_if_any() const {
+    if (problems_.empty()) return;
+    std::vector<Problem> sorted = problems_;
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [](const Problem& a, const Problem& b) { return a.place() < b.place(); });
+    std::string text;
+    for (std::size_t i = 0; i < std::min(sorted.size(), kMostShown); ++i)
+        text += (i == 0 ? "" : "\n") + sorted[i].message;
+    const std::size_t count = sorted.size() + not_kept_;
+    if (count > kMostShown) text += fmt::format("\nand {} more", count - kMostShown);
+    throw Error(ExitCode::kInvalidScene, text);
+}
+
+}  // namespace corda::scene

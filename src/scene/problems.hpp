@@ -1,0 +1,67 @@
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <cstddef>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace corda::scene {
+
+/// Text from a file as it may stand in a message: control characters escaped, cut off after `longest` bytes.
+[[nodiscard]] std::string printable(std::string_view text, std::size_t longest = 60);
+
+/// What a node is, with its value if that is short: `"abc" is a string`, `this is a table`.
+[[nodiscard]] std::string described(const toml::node& node);
+
+/// The value of an integer or a number, rounded to the nearest double. Requires one of them.
+[[nodiscard]] double number_of(const toml::node& node);
+
+/// What is wrong with a scene, collected over the whole file.
+class Problems {
+  public:
+    /// `document` is what `toml::parse` returned for the text named `source_name`.
+    Problems(std::string source_name, const toml::table& document)
+        : source_name_(std::move(source_name)), document_path_(document.source().path) {}
+
+    /// Adds "place: key: problem". The place is that of `region`: "swing.toml:12:5", or the setting that the
+    /// value came with. Only the first problem of a key counts.
+    void add(const toml::source_region& region, std::string_view key, std::string_view problem);
+
+    /// Adds a problem whose message is complete.
+    void add(const std::string& message);
+
+    /// A key that was meant by a misspelt one, about which there is a problem already.
+    void add_misspelt(std::string_view key) { unsound_.emplace(key); }
+
+    /// Whether neither `key` nor anything in it has a problem. What contradicts an unsound value only repeats
+    /// its problem.
+    [[nodiscard]] bool is_sound(std::string_view key) const { return !unsound_.contains(key); }
+
+    [[nodiscard]] bool empty() const { return problems_.empty(); }
+
+    /// Throws one Error (kInvalidScene) with the first problems, one per line in the order of the file, then
+    /// those of settings.
+    void throw_if_any() const;
+
+  private:
+    struct Problem {
+        bool is_setting = false;
+        std::size_t line = 0;
+        std::size_t column = 0;
+        std::string message;
+
+        [[nodiscard]] auto place() const { return std::tuple(is_setting, line, column); }
+    };
+
+    std::string source_name_;
+    toml::source_path_ptr document_path_;
+    std::vector<Problem> problems_;
+    std::size_t not_kept_ = 0;
+    std::set<std::string, std::less<>> reported_;
+    std::set<std::string, std::less<>> unsound_;
+};
+
+}  // namespace corda::scene

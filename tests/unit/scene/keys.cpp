@@ -1,0 +1,201 @@
+// The list of keys says what the reader does, and the README says what the list says.
+#include "corda/scene/keys.hpp"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "unit/scene/support.hpp"
+
+namespace corda::scene {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+/// A scene that has the section of `key`, read with one more setting for that key; "" for none.
+Scene scene_with(const Key& key, const std::string& value) {
+    std::string toml = "schema = 1\n[[rope]]\nline = { particles = 3, step = [0, -1] }\n";
+    if (key.section == "rope.hang") toml = "schema = 1\n[[rope]]\nhang = { links = 3, length = 1 }\n";
+    if (key.section == "net" || key.section == "net.grid")
+        toml = "schema = 1\n[[net]]\ngrid = { columns = 3, rows = 2, spacing = 0.5 }\n";
+    std::string path = path_of(key);
+    if (const std::size_t list = path.find("[]"); list != std::string::npos) path.insert(list + 1, "0");
+    std::vector<Setting> settings;
+    if (!key.methods.empty()) settings.push_back(fmt::format("solver.method={}", key.methods.front()));
+    if (!value.empty()) settings.push_back(path + "=" + value);
+    return parse_scene(toml, "swing.toml", settings);
+}
+
+std::string text(const std::optional<double>& value) {
+    return value ? fmt::format("{}", *value) : "-";
+}
+
+std::string text(Vec2 value) {
+    return fmt::format("[{}, {}]", value.x, value.y);
+}
+
+template <class List, class Text>
+std::string text(const List& list, const Text& text_of) {
+    std::string all;
+    for (const auto& entry : list) all += text_of(entry) + " ";
+    return all;
+}
+
+std::string text(const SolverDef& solver) {
+    struct Visitor {
+        std::string operator()(const AutoDef& def) const { return text(def.tolerance_px); }
+        std::string operator()(const ExactDef& def) const { return text(def.tolerance); }
+        std::string operator()(const RattleDef& def) const { return text(def.step_s) + text(def.order); }
+        std::string operator()(const RelaxationDef& def) const {
+            return text(def.step_s) + text(def.sweeps) + text(def.delta) + text(def.force_n.has_value());
+        }
+    };
+    return std::string(solver_name(solver)) + std::visit(Visitor{}, solver);
+}
+
+template <class Body>
+std::string body_text(const Body& body) {
+    return text(body.origin_m) + text(body.points_m, [](Vec2 v) { return text(v); }) +
+           text(body.mass_kg, [](double m) { return text(m); }) +
+           text(body.velocity_m_s, [](Vec2 v) { return text(v); }) +
+           text(body.pinned, [](std::uint32_t i) { return std::to_string(i); }) +
+           text(body.material.compliance_1_n) + text(body.material.is_string);
+}
+
+/// Everything that a key may change.
+std::string text(const Scene& scene) {
+    std::string all =
+        text(scene.world.gravity_m_s2) + text(scene.world.duration_s) + text(scene.world.drag_1_s);
+    for (const RopeDef& rope : scene.ropes)
+        all += body_text(rope) + text(rope.payload_kg) + text(rope.reach) + text(rope.closed) +
+               text(rope.rest_m.size()) + text(rope.bending_n_m2);
+    for (const NetDef& net : scene.nets) all += body_text(net) + text(net.bars.size());
+    const VideoDef& video = scene.video;
+    all += text(scene.solver) + text(video.width_px) + text(video.height_px) + video.fps.rational().text() +
+           video.encoder.codec + video.encoder.preset + text(video.encoder.crf) + text(video.encoder.threads);
+    const StyleDef& style = scene.style;
+    for (const Color color : {style.background, style.pinned_color, style.free_color, style.real_bar_color,
+                              style.imaginary_bar_color})
+        all += color.text();
+    return all + text(style.palette, [](Color color) { return color.text(); }) +
+           text(static_cast<int>(style.markers)) + text(static_cast<int>(style.bars)) +
+           text(scene.camera.margin);
+}
+
+TEST(SceneKeys, AreUniqueInTheirSections) {
+    std::set<std::string> paths;
+    for (const Key& key : all_keys()) {
+        EXPECT_TRUE(paths.insert(path_of(key)).second) << path_of(key);
+        EXPECT_EQ(find_key(key.section, key.name), &key);
+    }
+    EXPECT_EQ(find_key("world", "gravty"), nullptr);
+}
+
+TEST(SceneKeys, HaveAMeaningATypeAndARemedy) {
+    for (const Key& key : all_keys()) {
+        SCOPED_TRACE(path_of(key));
+        EXPECT_THAT(key.meaning, Not(IsEmpty()));
+        EXPECT_THAT(type_text(key), Not(IsEmpty()));
+        EXPECT_THAT(remedy(key), testing::AnyOf(testing::StartsWith("give "), testing::StartsWith("write ")));
+        EXPECT_EQ((key.type.forms & (kPair | kPairs)) != 0, !key.type.pair.empty());
+    }
+}
+
+TEST(SceneKeys, DefaultsAreThoseOfAFileWithoutTheKey) {
+    int count = 0;
+    for (const Key& key : all_keys()) {
+        if (key.initial.toml.empty()) continue;
+        SCOPED_TRACE(path_of(key));
+        EXPECT_EQ(text(scene_with(key, key.initial.toml)), text(scene_with(key, "")));
+        ++count;
+    }
+    EXPECT_GT(count, 40);
+}
+
+/// A value of the key that holds `number`; empty for a list of pairs.
+std::string value_with(const Key& key, const std::string& number) {
+    if ((key.type.forms & kOne) != 0) return number;
+    return (key.type.forms & kPair) != 0 ? fmt::format("[{}, {}]", number, number) : "";
+}
+
+TEST(SceneKeys, RefuseValuesOutsideTheirRangeNamingIt) {
+    int count = 0;
+    for (const Key& key : all_keys()) {
+        const Range& range = key.type.range;
+        const auto expect_refused = [&](double number) {
+            const std::string value = value_with(key, fmt::format("{}", number));
+            if (value.empty() || !std::isfinite(number)) return;
+            SCOPED_TRACE(path_of(key) + " = " + value);
+            try {
+                static_cast<void>(scene_with(key, value));
+                ADD_FAILURE() << "is accepted";
+            } catch (const Error& error) {
+                EXPECT_EQ(error.code(), ExitCode::kInvalidScene);
+                EXPECT_THAT(error.what(), HasSubstr(range_text(key)));
+                EXPECT_THAT(error.what(), HasSubstr(key.name));
+            }
+            ++count;
+        };
+        if (range.low != Range{}.low) expect_refused(range.low_open ? range.low : range.low - 1.0);
+        if (range.high != Range{}.high) expect_refused(range.high_open ? range.high : 2.0 * range.high);
+    }
+    EXPECT_GT(count, 50);
+}
+
+TEST(SceneKeys, AreAllInTheHelp) {
+    const std::string help = keys_text();
+    for (const Key& key : all_keys()) EXPECT_THAT(help, HasSubstr(fmt::format("\n  {} ", key.name)));
+    EXPECT_THAT(help, HasSubstr("\n[[rope]]\n"));
+    EXPECT_THAT(help, HasSubstr("\nnet.grid\n"));
+    EXPECT_THAT(help, HasSubstr("  margin               number, 0 .. 0.45, default 0.08\n"));
+}
+
+TEST(SceneKeys, NumbersAreShort) {
+    for (const auto& [value, words] : {std::pair{1e-9, "1e-9"},
+                                       {0.08, "0.08"},
+                                       {4e9, "4e9"},
+                                       {16384.0, "16384"},
+                                       {1e6, "1e6"},
+                                       {999999.0, "999999"},
+                                       {-1e9, "-1e9"},
+                                       {9.81, "9.81"},
+                                       {0.0, "0"},
+                                       {1e-12, "1e-12"}})
+        EXPECT_EQ(number_text(value), words);
+}
+
+std::string file_text(const std::string& path) {
+    std::ostringstream all;
+    all << std::ifstream(path).rdbuf();
+    return all.str();
+}
+
+/// CORDA_UPDATE_README=1 in the environment writes the table into the README.
+TEST(SceneKeys, StandInTheReadme) {
+    const std::string path = CORDA_EXAMPLES "/../README.md";
+    const std::string begin = "<!-- begin of the scene keys -->\n";
+    const std::string end = "<!-- end of the scene keys -->\n";
+    std::string readme = file_text(path);
+    const std::size_t first = readme.find(begin);
+    const std::size_t last = readme.find(end);
+    ASSERT_NE(first, std::string::npos);
+    ASSERT_NE(last, std::string::npos);
+    const std::size_t table = first + begin.size();
+    const std::string expected = "\n" + keys_markdown() + "\n";
+    if (std::getenv("CORDA_UPDATE_README") != nullptr) {
+        readme.replace(table, last - table, expected);
+        std::ofstream(path) << readme;
+    }
+    EXPECT_EQ(file_text(path).substr(table, expected.size()), expected)
+        << "run this test with CORDA_UPDATE_README=1";
+}
+
+}  // namespace
+}  // namespace corda::scene
