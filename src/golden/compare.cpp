@@ -5,12 +5,12 @@
 #include <cassert>
 #include <cstdlib>
 
-namespace corda::golden {
+namespace corda {
 namespace {
 
 constexpr int kChannels = 4;
 
-/// Largest and summed difference of the channels of one pixel.
+/// The largest and the sum of the differences of one pixel's channels.
 struct PixelDifference {
     int max = 0;
     int sum = 0;
@@ -26,14 +26,14 @@ PixelDifference difference_of(const std::uint8_t* a, const std::uint8_t* b) {
     return result;
 }
 
-/// Dark enough that a difference stands out, and never as bright as one.
+/// A grey that is dark enough for differences to stand out: always darker than heat().
 std::uint8_t dim_grey(const std::uint8_t* rgba) {
     constexpr int kDimming = 3;
     const int luma = (299 * rgba[0] + 587 * rgba[1] + 114 * rgba[2]) / 1000;
     return static_cast<std::uint8_t>(luma / kDimming);
 }
 
-/// Red for the smallest difference to yellow for 255.
+/// From red for a difference of 1 to yellow for 255.
 std::array<std::uint8_t, kChannels> heat(int difference) {
     constexpr int kFaintestRed = 160;
     const int red = std::min(255, kFaintestRed + difference);
@@ -42,15 +42,15 @@ std::array<std::uint8_t, kChannels> heat(int difference) {
 
 }  // namespace
 
-bool Comparison::within(const Limits& limits) const {
+bool Difference::within(const DifferenceLimits& limits) const {
     if (!same_size) return false;
     if (!limits.max && !limits.mean && !limits.share) return equal;
     return (!limits.max || max <= *limits.max) && (!limits.mean || mean <= *limits.mean) &&
            (!limits.share || share <= *limits.share);
 }
 
-Comparison compare(const Image& a, const Image& b) {
-    Comparison result;
+Difference compare(const Image& a, const Image& b) {
+    Difference result;
     if (a.width() != b.width() || a.height() != b.height()) {
         result.same_size = false;
         result.equal = false;
@@ -85,4 +85,4 @@ Image difference_image(const Image& a, const Image& b) {
     return result;
 }
 
-}  // namespace corda::golden
+}  // namespace corda

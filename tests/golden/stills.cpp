@@ -6,13 +6,11 @@
 #include <cstdlib>
 #include <string>
 
-#include "corda/gl/context.hpp"
 #include "corda/golden/compare.hpp"
-#include "corda/media/png.hpp"
-#include "corda/render/frame_renderer.hpp"
+#include "corda/media/defs.hpp"
+#include "corda/pipeline/film.hpp"
 #include "corda/render/reference_renderer.hpp"
-#include "corda/scene/auto_plan.hpp"
-#include "corda/scene/player.hpp"
+#include "support/draw_list_of.hpp"
 #include "support/files.hpp"
 #include "support/image_matchers.hpp"
 
@@ -26,27 +24,23 @@ class GoldenStill : public testing::TestWithParam<std::string> {};
 TEST_P(GoldenStill, IsUnchanged) {
     const std::string golden_path =
         std::string(CORDA_GOLDENS) + "/stills/" + test::test_name(GetParam()) + ".png";
-    scene::Scene scene = scene::load_scene(GetParam(), {"video.size=[128,128]", "world.duration=1.0"});
-    static_cast<void>(scene::settle_method(scene));
-    scene::Player player(scene);
-    const gl::Context context;
-    render::FrameRenderer renderer(128, 128);
-    const view::DrawList& list = player.at(kTimeSeconds);
-    renderer.render(list);
+    const Film film(load_scene(GetParam(), {"video.size=[128,128]", "world.duration=1.0"}));
+    const Image drawn = film.still(kTimeSeconds);
     if (std::getenv("CORDA_UPDATE_GOLDENS") != nullptr) {
-        media::PngInfo info;
-        info.text = {{"Scene", scene.name}, {"Renderer", context.info().gl_renderer}};
-        media::write_png(golden_path, renderer.image(), info);
+        PngInfo info;
+        info.text = {{"Scene", film.scene().name}, {"Renderer", film.gl().renderer}};
+        write_png(golden_path, drawn, info, {.force = true});
     }
-    const Image golden = media::read_png(golden_path);
-    EXPECT_TRUE(test::equal_images(renderer.image(), golden)) << golden_path;
-    EXPECT_TRUE(test::equal_images(render::render_reference(list), golden)) << golden_path;
+    const Image golden = read_png(golden_path);
+    EXPECT_TRUE(test::equal_images(drawn, golden)) << golden_path;
+    EXPECT_TRUE(test::equal_images(render::render_reference(test::draw_list_of(film, kTimeSeconds)), golden))
+        << golden_path;
     // Not a blank picture.
     Image blank(128, 128);
     for (int y = 0; y < 128; ++y) {
         for (int x = 0; x < 128; ++x) std::copy_n(golden.pixel(0, 0), 4, blank.pixel(x, y));
     }
-    EXPECT_GT(golden::compare(golden, blank).share, 0.002);
+    EXPECT_GT(compare(golden, blank).share, 0.002);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, GoldenStill,

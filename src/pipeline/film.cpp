@@ -1,0 +1,251 @@
+#include "corda/pipeline/film.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "corda/core/clock.hpp"
+#include "corda/pipeline/describe.hpp"
+#include "corda/pipeline/motion.hpp"
+#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/stage.hpp"
+#include "corda/pipeline/validate.hpp"
+#include "corda/sim/auto/planner.hpp"
+#include "corda/view/camera.hpp"
+
+namespace corda {
+namespace {
+
+std::optional<MethodDef> named_method(const SolverDef& solver) {
+    return std::visit(
+        [](const auto& def) -> std::optional<MethodDef> {
+            if constexpr (std::is_same_v<std::decay_t<decltype(def)>, AutoDef>)
+                return std::nullopt;
+            else
+                return def;
+        },
+        solver);
+}
+
+}  // namespace
+
+struct Film::Impl {
+    Impl(const Scene& given, FilmDef options)
+        : scene(given),
+          def(std::move(options)),
+          system(system_of(scene)),
+          stage(scene, system, def.backend, def.require_gpu),
+          motion(system, scene.world, named_method(scene.solver),
+                 Timeline(scene.video.fps, pipeline::last_frame_of(scene), def.stills_s),
+                 def.motion_budget_bytes) {
+        if (const auto* automatic = std::get_if<AutoDef>(&scene.solver)) {
+            plan = motion.record([&](const Timeline& timeline, sim::Recording& recording) {
+                return plan_within(automatic->tolerance_px, timeline, recording);
+            });
+        } else {
+            plan.method = motion.method();
+        }
+    }
+
+    Plan plan_within(double tolerance_px, const Timeline& timeline, sim::Recording& recording) const {
+        const auto tolerance_m = [&](const MotionBounds& bounds) {
+            return tolerance_px / stage.map_of(stage.fitted(bounds)).pixels_per_metre();
+        };
+        return sim::plan_method(system, scene.world, {tolerance_m, timeline, def.on_progress, now_s},
+                                recording);
+    }
+
+    /// The camera, fitted once the whole motion is known.
+    const CameraDef& find_camera() {
+        if (camera) return *camera;
+        if (view::needs_motion(scene.camera)) {
+            motion.run_to_end(def.on_progress);
+            MotionBounds bounds = motion.recording().bounds();
+            // The start is there even if the first step diverges.
+            if (bounds.empty()) bounds.include({0.0, system.x_m, system.y_m});
+            camera = stage.fitted(bounds);
+        } else {
+            camera = scene.camera;
+        }
+        return *camera;
+    }
+
+    const State& at(double time_s) {
+        if (!pipeline::has_time(scene, time_s)) {
+            throw Error(ExitCode::kUsage,
+                        fmt::format("{} s is not within 0 .. {} s; world.duration sets the end", time_s,
+                                    scene.world.duration_s));
+        }
+        return motion.at(time_s);
+    }
+
+    /// Requires a pipeline::Stage::Use.
+    PixelRect draw(double time_s) {
+        const view::Camera map = stage.map_of(find_camera());
+        return stage.draw(at(time_s), map);
+    }
+
+    Scene scene;
+    FilmDef def;
+    System system;
+    pipeline::Stage stage;
+    pipeline::Motion motion;
+    Plan plan;
+    std::optional<CameraDef> camera;
+};
+
+Film::Film(const Scene& scene, FilmDef def) {
+    try {
+        pipeline::validate(scene, def.stills_s);
+        impl_ = std::make_unique<Impl>(scene, std::move(def));
+    } catch (const Refusal& refusal) {
+        throw pipeline::explained(refusal, scene.source);
+    }
+}
+
+Film::Film(Film&&) noexcept = default;
+Film& Film::operator=(Film&&) noexcept = default;
+
+Film::~Film() = default;
+
+const Scene& Film::scene() const {
+    return impl_->scene;
+}
+
+const System& Film::system() const {
+    return impl_->system;
+}
+
+std::int64_t Film::frame_count() const {
+    return impl_->scene.video.fps.frame_count(impl_->scene.world.duration_s);
+}
+
+std::int64_t Film::last_frame() const {
+    return pipeline::last_frame_of(impl_->scene);
+}
+
+double Film::time_s(std::int64_t k) const {
+    if (k >= 0 && k <= last_frame()) return impl_->scene.video.fps.time_s(k);
+    throw Error(ExitCode::kUsage, fmt::format("frame {} is not within 0 .. {}", k, last_frame()));
+}
+
+const Plan& Film::plan() const {
+    return impl_->plan;
+}
+
+std::optional<double> Film::error_bound_px() const {
+    if (!plan().error_bound_m) return std::nullopt;
+    return *plan().error_bound_m * impl_->stage.map_of(impl_->find_camera()).pixels_per_metre();
+}
+
+const CameraDef& Film::camera() const {
+    return impl_->find_camera();
+}
+
+int Film::simulation_passes() const {
+    return plan().simulation_passes + impl_->motion.passes();
+}
+
+const State& Film::state(std::int64_t k) const {
+    return impl_->at(time_s(k));
+}
+
+const State& Film::state_at(double time_s) const {
+    return impl_->at(time_s);
+}
+
+const Figures& Film::figures() const {
+    return impl_->motion.figures();
+}
+
+const Diagnostics& Film::diagnostics() const {
+    return impl_->motion.recording().diagnostics();
+}
+
+double Film::stepping_s() const {
+    return impl_->motion.recording().wall_s();
+}
+
+Image Film::frame(std::int64_t k) const {
+    return still(time_s(k));
+}
+
+Image Film::still(double time_s) const {
+    const pipeline::Stage::Use use(impl_->stage);
+    impl_->draw(time_s);
+    return impl_->stage.image();
+}
+
+GlInfo Film::gl() const {
+    const pipeline::Stage::Use use(impl_->stage);
+    const gl::Context& context = impl_->stage.context();
+    return {context.info().gl_renderer, context.info().gl_vendor, context.info().gl_version,
+            context.platform()};
+}
+
+FilmPainter::FilmPainter(Film& film) : film_(&film), use_(film.impl_->stage) {}
+
+PixelRect FilmPainter::draw(double time_s) {
+    pipeline::Stage& stage = film_->impl_->stage;
+    const bool is_next = stage.pictures() == pictures_;
+    const PixelRect damage = film_->impl_->draw(time_s);
+    pictures_ = stage.pictures();
+    return is_next ? damage : stage.image().rect();
+}
+
+const Image& FilmPainter::image() const {
+    return film_->impl_->stage.image();
+}
+
+struct Renderer::Impl {
+    Impl(const Scene& given, const std::string& backend)
+        : scene(given), system(system_of(scene)), stage(scene, system, backend, false) {
+        MotionBounds bounds;
+        bounds.include({0.0, system.x_m, system.y_m});
+        camera = stage.fitted(bounds);
+    }
+    Scene scene;
+    System system;
+    pipeline::Stage stage;
+    CameraDef camera;
+    State state;
+};
+
+Renderer::Renderer(const Scene& scene, const std::string& backend) {
+    try {
+        impl_ = std::make_unique<Impl>(scene, backend);
+    } catch (const Refusal& refusal) {
+        throw pipeline::explained(refusal, scene.source);
+    }
+}
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+Renderer::~Renderer() = default;
+
+const CameraDef& Renderer::camera() const {
+    return impl_->camera;
+}
+
+Image Renderer::draw(std::span<const Vec2> positions_m) {
+    const std::size_t count = impl_->system.particle_count();
+    if (positions_m.size() != count) {
+        throw Error(ExitCode::kUsage,
+                    fmt::format("{} positions for the {} particles of the scene; give one each",
+                                positions_m.size(), count));
+    }
+    State& state = impl_->state;
+    state.x_m.resize(count);
+    state.y_m.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        if (!std::isfinite(positions_m[i].x) || !std::isfinite(positions_m[i].y))
+            throw Error(ExitCode::kUsage, fmt::format("position {} is not finite", i));
+        state.x_m[i] = positions_m[i].x - impl_->system.origin_m.x;
+        state.y_m[i] = positions_m[i].y - impl_->system.origin_m.y;
+    }
+    const pipeline::Stage::Use use(impl_->stage);
+    impl_->stage.draw(state, impl_->stage.map_of(impl_->camera));
+    return impl_->stage.image();
+}
+
+}  // namespace corda

@@ -1,0 +1,157 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/image.hpp"
+#include "corda/scene/scene.hpp"
+#include "corda/sim/simulation.hpp"
+#include "corda/view/defs.hpp"
+
+#pragma GCC visibility push(default)
+namespace corda {
+
+/// How a Film is made.
+struct FilmDef {
+    /// Times in seconds, beside those of frames, at which stills or states will be asked for. Others can be
+    /// asked for too, and then cost a simulation of their own. 0 .. world.duration_s.
+    std::vector<double> stills_s;
+    /// Most memory for recorded states. A motion that needs more is simulated again when it is read, with
+    /// the same bits.
+    std::size_t motion_budget_bytes = std::size_t{256} << 20;
+    /// The way to OpenGL: "auto", "device", "device:N", "surfaceless" or "default".
+    std::string backend = "auto";
+    bool require_gpu = false;  ///< refuse an OpenGL that runs on the CPU
+    OnProgress on_progress;    ///< called with the frames done so far, in every pass of the simulation
+};
+
+/// What draws a Film.
+struct GlInfo {
+    std::string renderer;  ///< GL_RENDERER
+    std::string vendor;
+    std::string version;
+    std::string platform;  ///< how the context was reached, e.g. "EGL device 0"
+};
+
+/// A scene as pictures: plans a method, simulates the motion once, fits the camera to it, and draws any frame
+/// in any order. The same scene gives the same bytes.
+///
+/// A Film may be used from any thread, but only by one at a time. Films of any sizes work side by side.
+class Film {
+  public:
+    /// Plans a scene of method `auto`, which simulates it; a scene that names its method is simulated as far
+    /// as it is asked for. Throws corda::Error: kInvalidScene if no method can run the scene or a field of
+    /// it is not what it is declared to be, kUsage for an unknown backend or a still outside of the scene,
+    /// kInterrupted if on_progress asks to stop.
+    explicit Film(const Scene& scene, FilmDef def = {});
+    Film(Film&&) noexcept;
+    Film& operator=(Film&&) noexcept;
+    ~Film();
+
+    [[nodiscard]] const Scene& scene() const;
+    [[nodiscard]] const System& system() const;
+
+    /// Number of images of the scene's video: those that start before its end.
+    [[nodiscard]] std::int64_t frame_count() const;
+    /// The index of the last frame time that is not after the scene's end: states exist up to it.
+    [[nodiscard]] std::int64_t last_frame() const;
+    /// The time of frame `k`: exactly k / fps, rounded once.
+    [[nodiscard]] double time_s(std::int64_t k) const;
+
+    /// The method and the proof of its error.
+    [[nodiscard]] const Plan& plan() const;
+    /// Bound on the displayed position error in pixels; std::nullopt if the plan has none.
+    [[nodiscard]] std::optional<double> error_bound_px() const;
+    /// The camera with center and height filled in: given again, it draws the same bytes. Simulates what has
+    /// not been yet, unless the scene gives both.
+    [[nodiscard]] const CameraDef& camera() const;
+    /// How often the whole motion has been integrated so far, counted by the code that integrates.
+    [[nodiscard]] int simulation_passes() const;
+
+    /// Positions at frame `k`, 0 .. last_frame(), or at a time in 0 .. world.duration_s. The reference holds
+    /// until the next call. Throws corda::Error: kUsage out of range, kDiverged if the motion ends before.
+    [[nodiscard]] const State& state(std::int64_t k) const;
+    [[nodiscard]] const State& state_at(double time_s) const;
+    /// Figures of the last state asked for.
+    [[nodiscard]] const Figures& figures() const;
+    /// Figures of the run up to the last time simulated.
+    [[nodiscard]] const Diagnostics& diagnostics() const;
+    /// Seconds of the stepping alone.
+    [[nodiscard]] double stepping_s() const;
+
+    /// Draws frame `k`, 0 .. last_frame(), or the picture at a time in 0 .. world.duration_s: RGBA8, row 0 on
+    /// top. Throws as state(), and kNoGl.
+    [[nodiscard]] Image frame(std::int64_t k) const;
+    [[nodiscard]] Image still(double time_s) const;
+    /// What draws. Throws kNoGl.
+    [[nodiscard]] GlInfo gl() const;
+
+  private:
+    friend class FilmPainter;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// The blocks `[solver]` and `[camera]` of a film, in TOML: pasted into its scene they freeze what was
+/// chosen, and the same frames come out, byte for byte. Throws corda::Error: kUsage if method `relaxation`
+/// moves ropes that differ in reach (only code can make such), and what camera() throws.
+[[nodiscard]] std::string frozen_toml(const Film& film);
+
+/// Draws positions that come from anywhere: one's own simulation, or measured ones.
+class Renderer {
+  public:
+    /// Bodies, style and picture size are those of `scene`, whose points count as the first positions: a
+    /// camera without center and height is fitted to them. Throws corda::Error: kInvalidScene for a field
+    /// that is not what its declaration says, kUsage for an unknown backend (see FilmDef).
+    explicit Renderer(const Scene& scene, const std::string& backend = "auto");
+    Renderer(Renderer&&) noexcept;
+    Renderer& operator=(Renderer&&) noexcept;
+    ~Renderer();
+
+    /// The camera with center and height filled in.
+    [[nodiscard]] const CameraDef& camera() const;
+    /// Draws the particles at these positions in m, in world coordinates, one per particle: those of the
+    /// ropes, then those of the nets. Throws corda::Error: kUsage for another number of them, or one that
+    /// is not finite, kNoGl.
+    [[nodiscard]] Image draw(std::span<const Vec2> positions_m);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Which frames render_video writes, and how.
+struct RenderDef {
+    bool force = false;  ///< replace an existing file
+    std::int64_t first = 0;
+    std::optional<std::int64_t> end;  ///< one past the last frame; default Film::frame_count()
+    OnProgress on_progress;           ///< called after each frame; returning false stops
+};
+
+/// What render_video has made.
+struct Rendered {
+    std::int64_t frames = 0;
+    bool complete = true;   ///< false if on_progress asked to stop
+    std::string kept_part;  ///< where the frames so far are if it is not complete; empty if there are none
+    std::string encoder;
+};
+
+/// Refuses a video of `scene` that render_video would refuse, before there is a film. Throws corda::Error:
+/// kUsage for an ending, a size, a codec or a range that cannot be, or if `path` is the file `input` (empty:
+/// there is none); kIo if the file exists (see force) or cannot be written.
+void check_render(const Scene& scene, const std::string& path, const RenderDef& def = {},
+                  const std::string& input = {});
+
+/// Draws, encodes, verifies and names a video; the ending of `path` chooses the format. Throws corda::Error:
+/// as check_render, before anything is simulated or drawn; kEncoder, kNoGl, kDiverged (the frames before it
+/// are kept; the message names the file).
+Rendered render_video(Film& film, const std::string& path, const RenderDef& def = {});
+
+}  // namespace corda
+#pragma GCC visibility pop

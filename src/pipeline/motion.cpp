@@ -1,0 +1,89 @@
+#include "corda/pipeline/motion.hpp"
+
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/clock.hpp"
+
+namespace corda::pipeline {
+
+Motion::Motion(const System& system, const WorldDef& world, const std::optional<MethodDef>& method,
+               Timeline timeline, std::size_t budget_bytes)
+    : system_(&system),
+      world_(world),
+      timeline_(std::move(timeline)),
+      recording_(system.particle_count(), timeline_.size(), budget_bytes) {
+    if (!method) return;
+    method_ = *method;
+    start();
+}
+
+Plan Motion::record(const std::function<Plan(const Timeline&, sim::Recording&)>& plan) {
+    Plan made = plan(timeline_, recording_);
+    method_ = made.method;
+    diverges_ = recording_.size() < timeline_.size();
+    return made;
+}
+
+void Motion::start() {
+    run_.emplace(*system_, world_, method_, timeline_.fps().interval_s());
+    method_ = run_->method();
+    next_ = 0;
+}
+
+bool Motion::step() {
+    if (next_ == 0) ++passes_;
+    const double time_s = timeline_.time_s(next_);
+    const bool is_new = next_ == recording_.size();
+    const Status status = is_new ? recording_.advance(*run_, time_s, now_s) : run_->advance_to(time_s);
+    if (status == Status::kDiverged) {
+        diverges_ = true;
+        run_.reset();
+        return false;
+    }
+    ++next_;
+    return true;
+}
+
+void Motion::run_to_end(const OnProgress& on_progress) {
+    const auto total = static_cast<std::int64_t>(timeline_.size());
+    while (recording_.size() < timeline_.size() && !diverges_) {
+        if (!run_ || next_ > recording_.size()) start();
+        report_progress(on_progress, static_cast<std::int64_t>(next_), total);
+        static_cast<void>(step());
+    }
+}
+
+const State& Motion::at(double time_s) {
+    const auto index = timeline_.find(time_s);
+    if (index && recording_.holds(*index)) {
+        recording_.read(*index, state_);
+        figures_ = recording_.figures(*index);
+        return state_;
+    }
+    if (index && diverges_ && *index >= recording_.size()) fail_diverged(time_s);
+    if (!run_ || run_->state().time_s > time_s) start();
+    while (next_ < timeline_.size() && timeline_.time_s(next_) <= time_s) {
+        if (!step()) fail_diverged(time_s);
+    }
+    if (run_->state().time_s < time_s && run_->advance_to(time_s) == Status::kDiverged) {
+        run_.reset();
+        fail_diverged(time_s);
+    }
+    figures_ = run_->figures();
+    return run_->state();
+}
+
+void Motion::fail_diverged(double time_s) const {
+    const double last_s = recording_.size() == 0 ? 0.0 : timeline_.time_s(recording_.size() - 1);
+    const bool has_step = !std::holds_alternative<ExactDef>(method_);
+    throw Error(ExitCode::kDiverged,
+                fmt::format("the simulation diverged before t = {:.6g} s (last good state at {:.6g} s); less "
+                            "speed or force may help{}",
+                            time_s, last_s, has_step ? ", or a smaller solver.step" : ""));
+}
+
+}  // namespace corda::pipeline

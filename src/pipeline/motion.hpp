@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/timeline.hpp"
+#include "corda/sim/recording.hpp"
+#include "corda/sim/simulation.hpp"
+
+namespace corda::pipeline {
+
+/// The states of one run of a system at the times of a timeline, readable in any order. They are simulated
+/// once, when first asked for, and recorded; those beyond the memory budget are simulated again, with the
+/// same bits.
+class Motion {
+  public:
+    /// A motion that has not begun, by a method or by the one that record() will find. `system` must outlive
+    /// it. Throws corda::Refusal if the method cannot run the system.
+    Motion(const System& system, const WorldDef& world, const std::optional<MethodDef>& method,
+           Timeline timeline, std::size_t budget_bytes);
+    Motion(const Motion&) = delete;
+    Motion& operator=(const Motion&) = delete;
+
+    /// Lets a planner record the run that it proves: `plan` is called with the recording, which then is this
+    /// motion.
+    Plan record(const std::function<Plan(const Timeline&, sim::Recording&)>& plan);
+
+    /// Simulates what has not been yet. A run that diverges ends the motion early and is no error.
+    void run_to_end(const OnProgress& on_progress);
+
+    /// The state at a time of the timeline, or at any other time between 0 and its end. The reference holds
+    /// until the next call. Throws corda::Error (kDiverged) if the motion ends before.
+    const State& at(double time_s);
+    /// Figures of the last state that at() returned.
+    [[nodiscard]] const Figures& figures() const { return figures_; }
+
+    [[nodiscard]] const Timeline& timeline() const { return timeline_; }
+    [[nodiscard]] const sim::Recording& recording() const { return recording_; }
+    /// With every default filled in.
+    [[nodiscard]] const MethodDef& method() const { return method_; }
+    /// How many simulations this object has begun to step.
+    [[nodiscard]] int passes() const { return passes_; }
+    /// Whether the run is known to end before the timeline does.
+    [[nodiscard]] bool diverges() const { return diverges_; }
+
+  private:
+    void start();
+    /// Goes on to the next time of the timeline; false if the run diverges there.
+    [[nodiscard]] bool step();
+    [[noreturn]] void fail_diverged(double time_s) const;
+
+    const System* system_;
+    WorldDef world_;
+    MethodDef method_;
+    Timeline timeline_;
+    sim::Recording recording_;
+    std::optional<Simulation> run_;  ///< started as soon as something has to be simulated
+    std::size_t next_ = 0;           ///< the time that it goes to next
+    int passes_ = 0;
+    bool diverges_ = false;
+    State state_;
+    Figures figures_;
+};
+
+}  // namespace corda::pipeline

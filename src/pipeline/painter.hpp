@@ -1,0 +1,30 @@
+#pragma once
+
+#include "corda/pipeline/film.hpp"
+#include "corda/pipeline/stage.hpp"
+
+namespace corda {
+
+/// Draws a film's frames one after the other without copying them, for a caller that encodes them. The film's
+/// context is current on this thread for as long as it lives; afterwards, the one before is again.
+class FilmPainter {
+  public:
+    /// Throws corda::Error (kNoGl).
+    explicit FilmPainter(Film& film);
+    FilmPainter(const FilmPainter&) = delete;
+    FilmPainter& operator=(const FilmPainter&) = delete;
+    ~FilmPainter() = default;
+
+    /// Draws the picture at a time; returns the pixels that may differ from the last one that this painter
+    /// drew: all, if somebody else has drawn the film since.
+    PixelRect draw(double time_s);
+    /// The last picture of the film.
+    [[nodiscard]] const Image& image() const;
+
+  private:
+    Film* film_;
+    pipeline::Stage::Use use_;
+    std::int64_t pictures_ = -1;  ///< the stage's count after the last draw
+};
+
+}  // namespace corda

@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "corda/core/version.hpp"
+#include "corda/media/video_writer.hpp"
+#include "corda/pipeline/film.hpp"
+#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/validate.hpp"
+
+namespace corda {
+namespace {
+
+/// What the file says of itself beside its pictures.
+media::VideoMetadata metadata(const Film& film, std::int64_t first) {
+    const Plan& plan = film.plan();
+    nlohmann::json comment = {
+        {"corda", version()},   {"scene", film.scene().name}, {"method", method_name(plan.method)},
+        {"first_frame", first}, {"error_bound_m", nullptr},   {"error_bound_px", nullptr},
+        {"horizon_s", nullptr}};
+    if (plan.error_bound_m) comment["error_bound_m"] = *plan.error_bound_m;
+    if (const auto bound_px = film.error_bound_px()) comment["error_bound_px"] = *bound_px;
+    if (plan.horizon_s) comment["horizon_s"] = *plan.horizon_s;
+    return {film.scene().name, comment.dump()};
+}
+
+/// The frames up to a divergence are kept, and the message names their file.
+[[noreturn]] void keep_diverged(const Error& error, const std::string& path, std::int64_t first,
+                                media::VideoWriter& writer) {
+    const std::int64_t frames = writer.frames();
+    if (frames == 0) throw Error(error.code(), error.what());
+    const std::string kept = writer.abandon();
+    throw Error(error.code(),
+                fmt::format("{}; frames {}..{} before it are in {}, which plays; {} was not written",
+                            error.what(), first, first + frames - 1, kept, path));
+}
+
+/// Draws and encodes frames first <= k < end; false if it was asked to stop.
+bool write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProgress& on_progress,
+                  media::VideoWriter& writer) {
+    FilmPainter painter(film);
+    for (std::int64_t k = first; k < end; ++k) {
+        if (on_progress && !on_progress(k - first, end - first)) return false;
+        const PixelRect damage = painter.draw(film.time_s(k));
+        writer.write(painter.image(), damage);
+    }
+    if (on_progress) on_progress(end - first, end - first);
+    return true;
+}
+
+}  // namespace
+
+void check_render(const Scene& scene, const std::string& path, const RenderDef& def,
+                  const std::string& input) {
+    pipeline::validate(scene, {});
+    const std::int64_t count = scene.video.fps.frame_count(scene.world.duration_s);
+    const std::int64_t end = def.end.value_or(count);
+    if (def.first < 0 || def.first >= end || end > count) {
+        throw Error(
+            ExitCode::kUsage,
+            fmt::format("frames {}:{} are not FIRST:END with 0 <= FIRST < END <= {} (END is not drawn)",
+                        def.first, end, count));
+    }
+    media::check_video_output(path, scene.video, input, def.force);
+}
+
+Rendered render_video(Film& film, const std::string& path, const RenderDef& def) {
+    check_render(film.scene(), path, def);
+    const std::int64_t end = def.end.value_or(film.frame_count());
+    static_cast<void>(film.camera());  // what can fail does so before a file is made
+    static_cast<void>(film.gl());
+    media::VideoWriter writer(path, film.scene().video, metadata(film, def.first), {.force = def.force});
+    Rendered result;
+    result.encoder = film.scene().video.encoder.codec;
+    try {
+        result.complete = write_frames(film, def.first, end, def.on_progress, writer);
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::kDiverged) throw;
+        keep_diverged(error, path, def.first, writer);
+    }
+    result.frames = writer.frames();
+    if (result.complete) {
+        writer.finish();
+    } else {
+        result.kept_part = writer.abandon();
+    }
+    return result;
+}
+
+}  // namespace corda

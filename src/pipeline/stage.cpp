@@ -1,0 +1,71 @@
+#include "corda/pipeline/stage.hpp"
+
+#include <fmt/format.h>
+
+#include "corda/core/basics.hpp"
+#include "corda/view/validate.hpp"
+
+namespace corda::pipeline {
+namespace {
+
+/// The scene, if its pictures can be drawn. A scene file has been checked for that; one filled in code has
+/// not.
+const Scene& drawable(const Scene& scene) {
+    view::validate(scene.camera);
+    const int width = scene.video.width_px;
+    const int height = scene.video.height_px;
+    if (is_picture_size(width, height)) return scene;
+    throw Error(ExitCode::kInvalidScene,
+                fmt::format("video.size: {}x{} is not within 1 .. {} pixels per side and {} in all", width,
+                            height, kLargestSidePx, kMostPicturePx));
+}
+
+}  // namespace
+
+Stage::Stage(const Scene& scene, const System& system, const std::string& backend, bool require_gpu)
+    : scene_(&drawable(scene)),
+      system_(&system),
+      gl_(gl::ContextDef::parse(backend)),
+      view_(system, scene.style, scene.body_styles, scene.video.width_px, scene.video.height_px) {
+    gl_.require_gpu = require_gpu;
+}
+
+Stage::~Stage() {
+    if (!canvas_) return;
+    const gl::SavedContext saved;
+    try {
+        canvas_->context.make_current();
+    } catch (const Error&) {
+        // The renderer's objects can be given back only in their own context. It is lost, or another
+        // thread's.
+        static_cast<void>(canvas_.release());
+        return;
+    }
+    canvas_.reset();
+}
+
+CameraDef Stage::fitted(const MotionBounds& bounds) const {
+    return view::fit_camera(scene_->camera, system_->origin_m, bounds,
+                            {scene_->video.width_px, scene_->video.height_px, view_.clearance_px()});
+}
+
+view::Camera Stage::map_of(const CameraDef& camera) const {
+    return {camera, system_->origin_m, scene_->video.width_px, scene_->video.height_px};
+}
+
+void Stage::open() {
+    if (canvas_) {
+        canvas_->context.make_current();
+    } else {
+        canvas_ = std::make_unique<Canvas>(gl_, scene_->video.width_px, scene_->video.height_px);
+    }
+}
+
+PixelRect Stage::draw(const State& state, const view::Camera& map) {
+    view_.draw(state, map, list_);
+    canvas_->context.make_current();  // a callback since open() may have left another one
+    ++pictures_;
+    return canvas_->renderer.render(list_);
+}
+
+}  // namespace corda::pipeline

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "corda/gl/context.hpp"
+#include "corda/render/frame_renderer.hpp"
+#include "corda/scene/scene.hpp"
+#include "corda/view/camera.hpp"
+#include "corda/view/scene_view.hpp"
+
+namespace corda::pipeline {
+
+/// What draws a scene's bodies at any positions. OpenGL is opened by the first picture.
+class Stage {
+  public:
+    /// `scene` and `system`, its own, must outlive the stage. Throws corda::Error: kUsage for an unknown
+    /// backend, kInvalidScene for a size, style or camera that cannot be.
+    Stage(const Scene& scene, const System& system, const std::string& backend, bool require_gpu);
+    Stage(const Stage&) = delete;
+    Stage& operator=(const Stage&) = delete;
+    ~Stage();
+
+    /// The scene's camera with center and height filled in, so that a motion within `bounds` is in view.
+    [[nodiscard]] CameraDef fitted(const MotionBounds& bounds) const;
+    /// The map to pixels of a camera with center and height.
+    [[nodiscard]] view::Camera map_of(const CameraDef& camera) const;
+
+    /// Opens OpenGL; at the end, what was the thread's context before is so again. Uses may nest. Throws
+    /// corda::Error (kNoGl).
+    class Use {
+      public:
+        explicit Use(Stage& stage) { stage.open(); }
+
+      private:
+        gl::SavedContext saved_;
+    };
+
+    /// Draws a state; returns the pixels that may differ from the last picture. Requires a Use.
+    PixelRect draw(const State& state, const view::Camera& map);
+    /// The last picture.
+    [[nodiscard]] const Image& image() const { return canvas_->renderer.image(); }
+    /// How many pictures were drawn.
+    [[nodiscard]] std::int64_t pictures() const { return pictures_; }
+    /// Requires a Use.
+    [[nodiscard]] const gl::Context& context() const { return canvas_->context; }
+
+  private:
+    /// The context dies after the renderer.
+    struct Canvas {
+        Canvas(const gl::ContextDef& def, int width_px, int height_px)
+            : context(def), renderer(width_px, height_px) {}
+        gl::Context context;
+        render::FrameRenderer renderer;
+    };
+
+    void open();
+
+    const Scene* scene_;
+    const System* system_;
+    gl::ContextDef gl_;
+    view::SceneView view_;
+    view::DrawList list_;
+    std::unique_ptr<Canvas> canvas_;
+    std::int64_t pictures_ = 0;
+};
+
+}  // namespace corda::pipeline

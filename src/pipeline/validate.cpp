@@ -1,0 +1,57 @@
+#include "corda/pipeline/validate.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "corda/core/basics.hpp"
+#include "corda/scene/limits.hpp"
+#include "corda/sim/validate.hpp"
+
+namespace corda::pipeline {
+namespace {
+
+void validate_frames(const Scene& scene) {
+    const Rational fps = scene.video.fps.rational();
+    const auto is_part = [](std::int64_t part) { return part >= 1 && part <= Rational::kLargestPart; };
+    if (!is_part(fps.num) || !is_part(fps.den)) {
+        throw Error(ExitCode::kInvalidScene,
+                    fmt::format("video: fps {}/{} is not a fraction of integers within 1 .. {}", fps.num,
+                                fps.den, Rational::kLargestPart));
+    }
+    const double frames = scene.world.duration_s * scene.video.fps.per_second();
+    constexpr auto kMost = static_cast<double>(scene::Limits::kFrames);
+    if (frames <= kMost && scene.video.fps.frame_count(scene.world.duration_s) >= 1) return;
+    throw Error(
+        ExitCode::kInvalidScene,
+        fmt::format("world: duration_s of {:g} s at {} frames per second are {:g} frames; 1 .. {} are "
+                    "possible",
+                    scene.world.duration_s, fps.text(), frames, scene::Limits::kFrames));
+}
+
+}  // namespace
+
+std::int64_t last_frame_of(const Scene& scene) {
+    return scene.video.fps.last_frame_within(scene.world.duration_s);
+}
+
+bool has_time(const Scene& scene, double time_s) {
+    const double last_s = scene.video.fps.time_s(last_frame_of(scene));
+    return time_s >= 0.0 && time_s <= std::max(scene.world.duration_s, last_s);
+}
+
+void validate(const Scene& scene, std::span<const double> stills_s) {
+    sim::validate(scene.world);
+    validate_frames(scene);
+    const auto* automatic = std::get_if<AutoDef>(&scene.solver);
+    if (automatic != nullptr && !(automatic->tolerance_px > 0.0 && std::isfinite(automatic->tolerance_px)))
+        throw Error(ExitCode::kInvalidScene, "solver: tolerance_px is not > 0 and finite");
+    for (const double time_s : stills_s) {
+        if (has_time(scene, time_s)) continue;
+        throw Error(ExitCode::kUsage,
+                    fmt::format("stills_s: {} s is not within 0 .. {} s", time_s, scene.world.duration_s));
+    }
+}
+
+}  // namespace corda::pipeline

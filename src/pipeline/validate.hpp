@@ -1,0 +1,21 @@
+#pragma once
+
+#include <span>
+
+#include "corda/scene/scene.hpp"
+
+namespace corda::pipeline {
+
+/// The number of the last frame of a scene; states exist up to it.
+[[nodiscard]] std::int64_t last_frame_of(const Scene& scene);
+
+/// Whether a scene's motion has a state at that time; false for NaN.
+[[nodiscard]] bool has_time(const Scene& scene, double time_s);
+
+/// Checks what a motion is planned by, before anything is computed from it: a scene that is filled in code
+/// has not been checked by the reader of scene files. Its bodies are checked by system_of, what is seen of
+/// them by Stage. Throws corda::Error: kInvalidScene for the scene's world, rate or tolerance, kUsage for a
+/// still outside of its time.
+void validate(const Scene& scene, std::span<const double> stills_s);
+
+}  // namespace corda::pipeline

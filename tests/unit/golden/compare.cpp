@@ -1,0 +1,129 @@
+// The comparer itself: a golden test is worth what its comparison is.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+
+#include "corda/golden/compare.hpp"
+
+namespace corda {
+namespace {
+
+Image grey(int width, int height, std::uint8_t level = 100) {
+    Image image(width, height);
+    std::fill(image.data(), image.data() + image.size_bytes(), level);
+    return image;
+}
+
+std::array<int, 4> pixel(const Image& image, int x, int y) {
+    const std::uint8_t* p = image.pixel(x, y);
+    return {p[0], p[1], p[2], p[3]};
+}
+
+TEST(Compare, EqualPictures) {
+    const Difference result = compare(grey(5, 4), grey(5, 4));
+    EXPECT_TRUE(result.same_size);
+    EXPECT_TRUE(result.equal);
+    EXPECT_EQ(result.max, 0);
+    EXPECT_EQ(result.mean, 0.0);
+    EXPECT_EQ(result.share, 0.0);
+    EXPECT_TRUE(result.within({}));
+}
+
+TEST(Compare, OneChannelOffByOne) {
+    for (int channel = 0; channel < 4; ++channel) {  // alpha counts as the others do
+        for (const int change : {-1, 1}) {
+            Image b = grey(5, 4);
+            b.pixel(4, 3)[channel] = static_cast<std::uint8_t>(100 + change);
+            const Difference result = compare(grey(5, 4), b);
+            EXPECT_FALSE(result.equal);
+            EXPECT_EQ(result.max, 1);
+            EXPECT_EQ(result.mean, 1.0 / 80.0);
+            EXPECT_EQ(result.share, 1.0 / 20.0);
+            EXPECT_FALSE(result.within({}));
+        }
+    }
+}
+
+TEST(Compare, LargestDifference) {
+    const Difference result = compare(grey(3, 3, 0), grey(3, 3, 255));
+    EXPECT_EQ(result.max, 255);
+    EXPECT_EQ(result.mean, 255.0);
+    EXPECT_EQ(result.share, 1.0);
+    EXPECT_TRUE(result.within({.max = 255, .mean = 255, .share = 1}));
+}
+
+TEST(Compare, AnotherSizeIsNeverWithin) {
+    for (const Image& other : {grey(4, 5), grey(5, 5), grey(20, 1), Image()}) {
+        const Difference result = compare(grey(5, 4), other);
+        EXPECT_FALSE(result.same_size);
+        EXPECT_FALSE(result.equal);
+        EXPECT_FALSE(result.within({}));
+        EXPECT_FALSE(result.within({.max = 255, .mean = 255, .share = 1}));
+    }
+}
+
+TEST(Compare, EmptyPicturesAreEqual) {
+    EXPECT_TRUE(compare(Image(), Image()).within({}));
+}
+
+TEST(Within, HoldsAtTheBoundAndNotBeyond) {
+    Image b = grey(10, 10);
+    b.pixel(1, 1)[0] = 104;
+    b.pixel(2, 1)[1] = 96;
+    const Difference result = compare(grey(10, 10), b);
+    EXPECT_EQ(result.max, 4);
+    EXPECT_EQ(result.mean, 8.0 / 400.0);
+    EXPECT_EQ(result.share, 2.0 / 100.0);
+    EXPECT_TRUE(result.within({.max = 4, .mean = {}, .share = {}}));
+    EXPECT_FALSE(result.within({.max = 3.99, .mean = {}, .share = {}}));
+    EXPECT_TRUE(result.within({.max = {}, .mean = 0.02, .share = {}}));
+    EXPECT_FALSE(result.within({.max = {}, .mean = 0.0199, .share = {}}));
+    EXPECT_TRUE(result.within({.max = {}, .mean = {}, .share = 0.02}));
+    EXPECT_FALSE(result.within({.max = {}, .mean = {}, .share = 0.0199}));
+}
+
+TEST(Within, NeedsAllLimitsThatAreGiven) {
+    Image b = grey(10, 10);
+    b.pixel(1, 1)[0] = 104;
+    const Difference result = compare(grey(10, 10), b);
+    EXPECT_TRUE(result.within({.max = 4, .mean = 1, .share = 0.01}));
+    EXPECT_FALSE(result.within({.max = 4, .mean = 1, .share = 0.001}));
+    EXPECT_FALSE(result.within({.max = 0, .mean = 1, .share = 1}));
+}
+
+TEST(DifferenceImage, ShowsEqualPixelsAsDimGrey) {
+    const Image image = difference_image(grey(2, 2, 255), grey(2, 2, 255));
+    const auto [r, g, b, a] = pixel(image, 1, 1);
+    EXPECT_EQ(r, g);
+    EXPECT_EQ(g, b);
+    EXPECT_LE(r, 85);
+    EXPECT_GT(r, 0);
+    EXPECT_EQ(a, 255);
+}
+
+TEST(DifferenceImage, ShowsTheSmallestDifferenceBrightly) {
+    Image b = grey(2, 2);
+    b.pixel(0, 1)[3] = 101;
+    const Image image = difference_image(grey(2, 2), b);
+    const auto [r, g, blue, a] = pixel(image, 0, 1);
+    EXPECT_GE(r, 160);
+    EXPECT_LE(g, 10);
+    EXPECT_EQ(blue, 0);
+    EXPECT_EQ(a, 255);
+}
+
+TEST(DifferenceImage, GoesFromRedToYellow) {
+    std::array<int, 4> last{};
+    for (int difference = 1; difference <= 255; ++difference) {
+        const auto heat =
+            pixel(difference_image(grey(1, 1, 0), grey(1, 1, static_cast<std::uint8_t>(difference))), 0, 0);
+        EXPECT_GE(heat[0], last[0]);
+        EXPECT_GT(heat[1], last[1]);
+        last = heat;
+    }
+    EXPECT_EQ(last, (std::array<int, 4>{255, 255, 0, 255}));
+}
+
+}  // namespace
+}  // namespace corda

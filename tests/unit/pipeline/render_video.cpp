@@ -1,0 +1,185 @@
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <optional>
+
+#include "corda/media/verify.hpp"
+#include "corda/pipeline/film.hpp"
+#include "support/command.hpp"
+#include "support/failure.hpp"
+#include "support/host_context.hpp"
+
+namespace corda {
+namespace {
+
+using test::failure_of;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::string kRope = R"(schema = 1
+[world]
+duration = 1.0
+[[rope]]
+hang = { links = 12, length = 1.0, angle_deg = 50.0 }
+[solver]
+method = "exact"
+[video]
+size = [96, 64]
+fps = 20
+preset = "ultrafast"
+)";
+
+Film film_of(const std::string& toml = kRope) {
+    return Film(parse_scene(toml, "film.toml"));
+}
+
+RenderDef range(std::int64_t first, std::optional<std::int64_t> end) {
+    RenderDef def;
+    def.first = first;
+    def.end = end;
+    return def;
+}
+
+class RenderVideo : public testing::Test {
+  protected:
+    [[nodiscard]] std::string file(const std::string& name) const { return folder_.file(name); }
+
+    /// The bytes of the video of `film`.
+    [[nodiscard]] std::string render(Film& film, const RenderDef& def = {}) const {
+        const Rendered rendered = render_video(film, file("out.mp4"), def);
+        EXPECT_TRUE(rendered.complete);
+        const std::string bytes = test::read_file(file("out.mp4"));
+        std::filesystem::remove(file("out.mp4"));
+        return bytes;
+    }
+
+    test::ScratchFolder folder_;
+};
+
+TEST_F(RenderVideo, WritesEveryFrameOnce) {
+    Film film = film_of();
+    std::vector<std::int64_t> heard;
+    RenderDef def;
+    def.on_progress = [&](std::int64_t done, std::int64_t total) {
+        EXPECT_EQ(total, 20);
+        heard.push_back(done);
+        return true;
+    };
+    const Rendered rendered = render_video(film, file("a.mp4"), def);
+    EXPECT_EQ(rendered.frames, 20);
+    EXPECT_TRUE(rendered.complete);
+    EXPECT_EQ(rendered.kept_part, "");
+    EXPECT_EQ(rendered.encoder, "libx264");
+    ASSERT_EQ(heard.size(), 21U);
+    for (std::int64_t k = 0; k <= 20; ++k) EXPECT_EQ(heard[static_cast<std::size_t>(k)], k);
+    EXPECT_EQ(media::verify(file("a.mp4")).frames, 20);
+    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4"));
+}
+
+TEST_F(RenderVideo, WritesARange) {
+    Film film = film_of();
+    EXPECT_EQ(render_video(film, file("a.mp4"), range(15, std::nullopt)).frames, 5);
+    EXPECT_EQ(render_video(film, file("b.mp4"), range(19, 20)).frames, 1);
+    EXPECT_EQ(render_video(film, file("c.mp4"), range(0, 2)).frames, 2);
+}
+
+TEST_F(RenderVideo, RefusesRangesThatCannotBe) {
+    Film film = film_of();
+    using Range = std::pair<std::int64_t, std::optional<std::int64_t>>;
+    for (const auto& [first, end] :
+         std::vector<Range>{{-1, 5}, {5, 5}, {6, 5}, {0, 0}, {0, 21}, {20, std::nullopt}, {0, -1}}) {
+        const RenderDef def = range(first, end);
+        const test::Failure failure = failure_of([&] { render_video(film, file("a.mp4"), def); });
+        EXPECT_EQ(failure.code, ExitCode::kUsage) << first;
+        EXPECT_THAT(failure.message, HasSubstr("0 <= FIRST < END <= 20"));
+        EXPECT_EQ(failure_of([&] { check_render(film.scene(), file("a.mp4"), def); }).code, ExitCode::kUsage);
+    }
+    EXPECT_THAT(folder_.files(), IsEmpty());
+}
+
+TEST_F(RenderVideo, ChecksTheOutputBeforeItSimulates) {
+    Film film = film_of();
+    test::write_file(file("a.mp4"), "precious");
+    test::write_file(file("b.mp4.part"), "interrupted");
+    for (const char* name : {"a.mp4", "b.mp4", "no/such/folder/a.mp4"})
+        EXPECT_EQ(failure_of([&] { render_video(film, file(name)); }).code, ExitCode::kIo) << name;
+    EXPECT_EQ(failure_of([&] { render_video(film, file("c.avi")); }).code, ExitCode::kUsage);
+    EXPECT_EQ(film.simulation_passes(), 0);
+    EXPECT_EQ(test::read_file(file("a.mp4")), "precious");
+    RenderDef def;
+    def.force = true;
+    EXPECT_EQ(failure_of([&] { check_render(film.scene(), file("a.mp4"), def, file("a.mp4")); }).code,
+              ExitCode::kUsage);
+    check_render(film.scene(), file("a.mp4"), def);
+}
+
+TEST_F(RenderVideo, ChecksTheVideoBeforeItSimulates) {
+    for (const auto& spoil : std::vector<void (*)(VideoDef&)>{[](VideoDef& v) { v.encoder.codec = "gif"; },
+                                                              [](VideoDef& v) { v.encoder.crf = 0; },
+                                                              [](VideoDef& v) { v.width_px = 97; }}) {
+        Scene scene = parse_scene(kRope, "film.toml");
+        spoil(scene.video);
+        Film film(scene);
+        EXPECT_EQ(failure_of([&] { render_video(film, file("a.mp4")); }).code, ExitCode::kUsage);
+        EXPECT_EQ(film.simulation_passes(), 0);
+    }
+    EXPECT_THAT(folder_.files(), IsEmpty());
+}
+
+TEST_F(RenderVideo, KeepsThePartWhenItIsStopped) {
+    Film film = film_of();
+    RenderDef def;
+    def.on_progress = [](std::int64_t done, std::int64_t) { return done < 7; };
+    const Rendered rendered = render_video(film, file("a.mp4"), def);
+    EXPECT_FALSE(rendered.complete);
+    EXPECT_EQ(rendered.frames, 7);
+    EXPECT_EQ(rendered.kept_part, file("a.mp4.part"));
+    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.part"));
+    def.on_progress = [](std::int64_t, std::int64_t) { return false; };
+    def.force = true;
+    EXPECT_EQ(render_video(film, file("a.mp4"), def).kept_part, "");
+    EXPECT_THAT(folder_.files(), IsEmpty());
+}
+
+TEST_F(RenderVideo, KeepsTheFramesBeforeADivergence) {
+    Scene scene = parse_scene(kRope, "film.toml");
+    scene.camera = {Vec2{0.0, 0.0}, 3.0};
+    scene.solver = RelaxationDef{.force_n = Vec2{1e300, 0.0}};
+    Film diverging(scene);
+    const test::Failure failure = failure_of([&] { render_video(diverging, file("a.mp4")); });
+    EXPECT_EQ(failure.code, ExitCode::kDiverged);
+    EXPECT_THAT(failure.message, HasSubstr(file("a.mp4.part")));
+    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.part"));
+}
+
+TEST_F(RenderVideo, HasTheSameBytesWhateverItsCallbackDraws) {
+    Film film = film_of();
+    const std::string alone = render(film);
+    const Film other = film_of(
+        "schema = 1\n[[rope]]\nline = { particles = 5, step = [0.1, -1.0] }\n"
+        "[video]\nsize = [50, 30]\n");
+    const test::HostContext host;
+    std::optional<Film> dying;
+    RenderDef def;
+    const std::vector<std::function<void(std::int64_t)>> callbacks{
+        [&](std::int64_t done) { static_cast<void>(film.frame(19 - std::min<std::int64_t>(done, 19))); },
+        [&](std::int64_t done) { static_cast<void>(other.frame(done)); },
+        [&](std::int64_t) {
+            dying.emplace(film_of());
+            static_cast<void>(dying->frame(3));
+            dying.reset();
+        },
+        [&](std::int64_t) { host.make_current(); }};
+    for (const auto& callback : callbacks) {
+        def.on_progress = [&](std::int64_t done, std::int64_t) {
+            callback(done);
+            return true;
+        };
+        EXPECT_EQ(render(film, def), alone);
+        EXPECT_TRUE(host.is_current());
+    }
+}
+
+}  // namespace
+}  // namespace corda

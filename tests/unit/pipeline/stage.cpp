@@ -1,0 +1,131 @@
+#include "corda/pipeline/stage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <thread>
+
+#include "corda/pipeline/film.hpp"
+#include "corda/pipeline/painter.hpp"
+#include "support/failure.hpp"
+#include "support/host_context.hpp"
+#include "support/image_matchers.hpp"
+
+namespace corda {
+namespace {
+
+using pipeline::Stage;
+using test::equal_images;
+
+/// A rope of two points, in a picture of that size.
+Scene scene_of(int width_px, int height_px) {
+    Scene scene;
+    scene.ropes.resize(1);
+    scene.ropes[0].points_m = {{0.0, 0.0}, {0.7, -0.5}};
+    scene.camera = {Vec2{0.0, 0.0}, 2.0, 0.0};
+    scene.solver = ExactDef{};
+    scene.video.width_px = width_px;
+    scene.video.height_px = height_px;
+    return scene;
+}
+
+/// A stage with all that it needs.
+struct Show {
+    explicit Show(Scene given) : scene(std::move(given)) {}
+
+    Image draw() {
+        const Stage::Use use(stage);
+        stage.draw({0.0, system.x_m, system.y_m}, stage.map_of(scene.camera));
+        return stage.image();
+    }
+
+    Scene scene;
+    System system = system_of(scene);
+    Stage stage{scene, system, "auto", false};
+};
+
+TEST(Stages, RefuseWhatCannotBeDrawn) {
+    const auto code_of = [](void (*spoil)(Scene&)) {
+        Scene scene = scene_of(16, 16);
+        spoil(scene);
+        return test::failure_of([&] { const Show show(scene); }).code;
+    };
+    EXPECT_EQ(code_of([](Scene&) {}), ExitCode::kOk);
+    EXPECT_EQ(code_of([](Scene& s) { s.video.height_px = 0; }), ExitCode::kInvalidScene);
+    EXPECT_EQ(code_of([](Scene& s) { s.camera.height_m = 0.0; }), ExitCode::kInvalidScene);
+    EXPECT_EQ(code_of([](Scene& s) { s.style.rope_width_px = 0.0; }), ExitCode::kInvalidScene);
+    EXPECT_EQ(test::failure_of([] {
+                  const Scene scene = scene_of(16, 16);
+                  const System system = system_of(scene);
+                  const Stage stage(scene, system, "metal", false);
+              }).code,
+              ExitCode::kUsage);
+}
+
+TEST(Stages, DrawTheSameWhenTheirUsesNest) {
+    Show a(scene_of(64, 48));
+    Show b(scene_of(40, 40));
+    const Image a_alone = a.draw();
+    const Image b_alone = b.draw();
+    const Stage::Use use_a(a.stage);
+    for (int i = 0; i < 2; ++i) {
+        EXPECT_TRUE(equal_images(b.draw(), b_alone));
+        EXPECT_TRUE(equal_images(a.draw(), a_alone));
+        Show(scene_of(20, 20)).draw();  // ends here
+        const State state{0.0, a.system.x_m, a.system.y_m};
+        a.stage.draw(state, a.stage.map_of(a.scene.camera));
+        EXPECT_TRUE(equal_images(a.stage.image(), a_alone));
+    }
+    EXPECT_EQ(a.stage.pictures(), 5);
+}
+
+TEST(Stages, DrawTheSameAfterACallbackThatLeftAnotherContext) {
+    Show a(scene_of(64, 48));
+    const Image alone = a.draw();
+    const Stage::Use use(a.stage);
+    const test::HostContext host;
+    const State state{0.0, a.system.x_m, a.system.y_m};
+    a.stage.draw(state, a.stage.map_of(a.scene.camera));
+    EXPECT_TRUE(equal_images(a.stage.image(), alone));
+}
+
+TEST(Stages, LeaveTheContextOfTheHostCurrent) {
+    const test::HostContext host;
+    {
+        Show show(scene_of(32, 32));
+        show.draw();
+        EXPECT_TRUE(host.is_current());
+        const Film film(show.scene);
+        static_cast<void>(film.frame(1));
+        static_cast<void>(film.gl());
+        EXPECT_TRUE(host.is_current());
+    }
+    EXPECT_TRUE(host.is_current());
+    EXPECT_TRUE(host.is_alive());
+}
+
+TEST(Stages, LeaveNoContextBehindForOtherThreads) {
+    Show show(scene_of(32, 32));
+    const Image here = show.draw();
+    std::thread([&] { EXPECT_TRUE(equal_images(show.draw(), here)); }).join();
+    EXPECT_TRUE(equal_images(show.draw(), here));
+}
+
+TEST(Painters, InterleaveAndTellWhatOthersHaveDrawn) {
+    Film a(scene_of(64, 48));
+    Film b(scene_of(40, 40));
+    const Image a_first = a.frame(0);
+    const Image b_first = b.frame(0);
+    FilmPainter paint_a(a);
+    FilmPainter paint_b(b);
+    EXPECT_EQ(paint_a.draw(0.0), a_first.rect());
+    EXPECT_EQ(paint_b.draw(0.0), b_first.rect());
+    EXPECT_TRUE(equal_images(paint_a.image(), a_first));
+    EXPECT_TRUE(equal_images(paint_b.image(), b_first));
+    EXPECT_NE(paint_a.draw(0.1), a_first.rect());
+    static_cast<void>(a.frame(40));
+    EXPECT_EQ(paint_a.draw(0.1), a_first.rect());
+}
+
+}  // namespace
+}  // namespace corda

@@ -1,0 +1,48 @@
+#include "corda/pipeline/validate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "support/failure.hpp"
+
+namespace corda::pipeline {
+namespace {
+
+using test::failure_of;
+
+TEST(ValidScenes, HaveFromOneFrameToTheLimit) {
+    const auto code_of = [](double duration_s, Rational fps) {
+        Scene scene;
+        scene.world.duration_s = duration_s;
+        scene.video.fps = FrameRate(fps);
+        return failure_of([&] { validate(scene, {}); }).code;
+    };
+    EXPECT_EQ(code_of(10.0, {60, 1}), ExitCode::kOk);
+    EXPECT_EQ(code_of(1e-9, {1, 1'000'000'000}), ExitCode::kInvalidScene);
+    EXPECT_EQ(code_of(1e16, {1, 1'000'000'000}), ExitCode::kOk);
+    EXPECT_EQ(code_of(1.0, {10'000'000, 1}), ExitCode::kOk);
+    EXPECT_EQ(code_of(1.0, {10'000'001, 1}), ExitCode::kInvalidScene);
+    EXPECT_EQ(code_of(1.0, {1'000'000'001, 1000}), ExitCode::kInvalidScene);
+    EXPECT_EQ(code_of(1.0, {1, -1}), ExitCode::kInvalidScene);
+}
+
+TEST(Times, OfASceneGoToItsEndAndItsLastFrame) {
+    Scene scene;
+    scene.world.duration_s = 0.1;  // rounded down, by 30 per second a bit less than 3 frames
+    scene.video.fps = FrameRate(Rational{30, 1});
+    EXPECT_EQ(last_frame_of(scene), 3);
+    EXPECT_TRUE(has_time(scene, 0.0));
+    EXPECT_TRUE(has_time(scene, 0.1));
+    EXPECT_TRUE(has_time(scene, scene.video.fps.time_s(3)));
+    EXPECT_FALSE(has_time(scene, -0.001));
+    EXPECT_FALSE(has_time(scene, 0.101));
+    EXPECT_FALSE(has_time(scene, std::nan("")));
+    const std::array<double, 2> stills_s{0.05, std::nan("")};
+    EXPECT_EQ(failure_of([&] { validate(scene, stills_s); }).code, ExitCode::kUsage);
+    EXPECT_EQ(failure_of([&] { validate(scene, std::span(stills_s).first(1)); }).code, ExitCode::kOk);
+}
+
+}  // namespace
+}  // namespace corda::pipeline
