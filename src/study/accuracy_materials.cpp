@@ -1,22 +1,21 @@
-// R9 of PHYSICS section 4 and the closed form of a mass on a spring: what links are made of.
+// What links are made of: R9 (section 4 of src/sim/README.md), and a mass on a spring in closed form.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "corda/reference/numbers.hpp"
+#include "corda/reference/pendulum.hpp"
+#include "corda/reference/ropes.hpp"
 #include "corda/sim/distance.hpp"
 #include "corda/study/accuracy.hpp"
-#include "corda/study/pendulum.hpp"
-#include "corda/study/ropes.hpp"
 
 namespace corda::study {
 namespace {
 
-constexpr double kGravity = 9.81;
-
 /// The time at which a pendulum is at this x on its way down, before its first passage under the pin, in s.
-double time_on_the_way_down_s(const Pendulum& pendulum, double x_m) {
+double time_on_the_way_down_s(const reference::Pendulum& pendulum, double x_m) {
     double before_s = 0.0;
     double after_s = 0.25 * pendulum.period_s();
     for (int k = 0; k < 60; ++k) {
@@ -26,62 +25,64 @@ double time_on_the_way_down_s(const Pendulum& pendulum, double x_m) {
     return before_s;
 }
 
-/// A mass on a string of 1 m let go at (0.6, 0) falls to y = -0.8, keeps the tangential part of its velocity
-/// and goes on as the pendulum that turns at cos(angle) = 0.512.
-void add_r9(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
+/// A mass on a string of 1 m, let go at (0.6, 0), falls to y = -0.8, keeps the tangential part of its
+/// velocity and moves on like the pendulum that turns at cos(angle) = 0.512.
+void add_r9(bool /*is_quick*/, std::vector<AccuracyRow>& rows) {
     constexpr double kSimulatedSeconds = 5.0;
     constexpr double kStartX = 0.6;
-    sim::RopeDef rope = rope_through({{0.0, 0.0}, {kStartX, 0.0}});
+    RopeDef rope = reference::rope_through({{0.0, 0.0}, {kStartX, 0.0}});
     rope.rest_m = {1.0};
     rope.material.is_string = true;
-    const double fall_s = std::sqrt(2.0 * 0.8 / kGravity);
-    const Pendulum pendulum(std::sqrt(static_cast<long double>(kGravity)), std::acos(0.512L));
+    const double fall_s = std::sqrt(2.0 * 0.8 / reference::kGravity);
+    const reference::Pendulum pendulum(std::sqrt(static_cast<long double>(reference::kGravity)),
+                                       std::acos(0.512L));
     const double lead_s = time_on_the_way_down_s(pendulum, kStartX);
     const std::array<NamedMethod, 2> methods{
-        {{"exact, 1e-9", sim::exact_solver(1e-9)}, {"exact, 1e-13", sim::exact_solver(1e-13)}}};
+        {{"exact, 1e-9", ExactDef{1e-9}}, {"exact, 1e-13", ExactDef{1e-13}}}};
     const auto error_of = [&](Probe& probe) {
         double largest = 0.0;
         for (int k = 1; k <= 100; ++k) {
             const double time_s = kSimulatedSeconds * k / 100.0;
             probe.go(time_s);
-            const sim::Vec2 expected = time_s < fall_s ? sim::Vec2{kStartX, -0.5 * kGravity * time_s * time_s}
-                                                       : pendulum.direction(time_s - fall_s + lead_s);
-            const sim::Vec2 apart = probe.tip_m() - expected;
+            const Vec2 expected = time_s < fall_s
+                                      ? Vec2{kStartX, -0.5 * reference::kGravity * time_s * time_s}
+                                      : pendulum.direction(time_s - fall_s + lead_s);
+            const Vec2 apart = probe.tip_m() - expected;
             largest = std::max(largest, sim::length(apart.x, apart.y));
         }
         return largest;
     };
-    add_probe_rows(named_row("R9", "fall, snap and swing, 5 s", "position / L"), rope, sim::WorldDef{},
-                   methods, kSimulatedSeconds, error_of, rows);
+    add_probe_rows({"R9", "fall, snap and swing, 5 s", "position / L"}, rope, WorldDef{}, methods,
+                   kSimulatedSeconds, error_of, rows);
 }
 
 /// y = -L - d (1 - cos(omega t)), d = m g / k, omega^2 = k / m, k = 1 / (compliance L).
-void add_spring(const StudyDef& /*def*/, std::vector<AccuracyRow>& rows) {
+void add_spring(bool /*is_quick*/, std::vector<AccuracyRow>& rows) {
     constexpr double kSimulatedSeconds = 10.0;
     constexpr double kRestMetres = 0.7;
     constexpr double kMassKg = 2.0;
     constexpr double kCompliance = 0.01;  // 1/N
-    sim::RopeDef rope = straight_rope(1, kRestMetres, 0.0);
+    RopeDef rope = reference::straight_rope(1, kRestMetres, 0.0);
     rope.mass_kg[1] = kMassKg;
     rope.material.compliance_1_n = kCompliance;
     const double stiffness_n_m = 1.0 / (kCompliance * kRestMetres);
     const double omega_1_s = std::sqrt(stiffness_n_m / kMassKg);
-    const std::array<NamedMethod, 3> methods{{{"exact, 1e-9", sim::exact_solver(1e-9)},
-                                              {"exact, 1e-13", sim::exact_solver(1e-13)},
-                                              {"rope, order 8", sim::rope_solver(8, 1.0 / 100.0)}}};
+    const std::array<NamedMethod, 3> methods{{{"exact, 1e-9", ExactDef{1e-9}},
+                                              {"exact, 1e-13", ExactDef{1e-13}},
+                                              {"rattle, order 8", RattleDef{8, 1.0 / 100.0}}}};
     const auto error_of = [&](Probe& probe) {
         double largest = 0.0;
         for (int k = 1; k <= 100; ++k) {
             const double time_s = kSimulatedSeconds * k / 100.0;
             probe.go(time_s);
-            const double y_m =
-                -kRestMetres - kMassKg * kGravity / stiffness_n_m * (1.0 - std::cos(omega_1_s * time_s));
+            const double y_m = -kRestMetres - kMassKg * reference::kGravity / stiffness_n_m *
+                                                  (1.0 - std::cos(omega_1_s * time_s));
             largest = std::max(largest, std::abs(probe.tip_m().y - y_m) / kRestMetres);
         }
         return largest;
     };
-    add_probe_rows(named_row("spring", "10 s from its rest length", "position / L"), rope, sim::WorldDef{},
-                   methods, kSimulatedSeconds, error_of, rows);
+    add_probe_rows({"spring", "10 s from its rest length", "position / L"}, rope, WorldDef{}, methods,
+                   kSimulatedSeconds, error_of, rows);
 }
 
 }  // namespace

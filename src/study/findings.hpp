@@ -5,7 +5,8 @@
 
 namespace corda::study {
 
-/// The chapter "The source report's findings": each measured, with a sentence on what the figures say of it.
+/// The chapter "The source report's findings" (section 1 of src/sim/README.md): a measurement of each, and a
+/// sentence on what it says.
 [[nodiscard]] ChapterWork findings_work(const StudyDef& def);
 
 }  // namespace corda::study

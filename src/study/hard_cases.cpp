@@ -1,78 +1,70 @@
 #include "corda/study/hard_cases.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <utility>
 
-#include "corda/core/error.hpp"
+#include <fmt/format.h>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/clock.hpp"
 
 namespace corda::study {
 namespace {
 
-struct Row {
-    Outcome outcome;
-    std::string held;
-    std::optional<double> wall_s;
-};
+constexpr const char* kPassed = "yes";
+constexpr const char* kFailed = "no";
+constexpr const char* kNotRun = "not run";
 
-struct Cases {
-    std::vector<HardCase> cases;
-    std::vector<Row> rows;  ///< in the order of cases
-};
-
-Row run(const HardCase& hard, bool is_quick) {
-    using Clock = std::chrono::steady_clock;
-    if (hard.takes_long && is_quick) return {{"left out of a quick study", false}, "not run", std::nullopt};
-    const Clock::time_point from = Clock::now();
-    Row row;
-    try {
-        row.outcome = hard.run();
-    } catch (const Error& error) {
-        row.outcome = {error.what(), false};
+std::vector<report::Cell> row_of(const HardCase& hard, bool is_quick) {
+    std::vector<report::Cell> row{hard.name, hard.method, hard.criterion};
+    if (hard.is_slow && is_quick) {
+        row.insert(row.end(), {"too slow for a quick study", kNotRun});
+        return row;
     }
-    row.wall_s = std::chrono::duration<double>(Clock::now() - from).count();
-    row.held = row.outcome.is_held ? "yes" : "no";
+    const double from_s = now_s();
+    Outcome outcome;
+    try {
+        outcome = hard.run();
+    } catch (const Error& error) {
+        outcome.measured = error.what();
+    }
+    row.insert(row.end(), {outcome.measured, outcome.passed ? kPassed : kFailed, now_s() - from_s});
     return row;
 }
 
-Chapter chapter_of(const Cases& shared) {
-    Table table{"hard_cases", "Hard cases", {}, {}, {}};
-    table.columns = {{"case", "case"},         {"method", "method"}, {"criterion", "passes when"},
-                     {"measured", "measured"}, {"held", "held"},     {"wall_s", "wall time [s]"}};
-    std::ptrdiff_t counts[3] = {0, 0, 0};
-    for (std::size_t k = 0; k < shared.cases.size(); ++k) {
-        const HardCase& hard = shared.cases[k];
-        const Row& row = shared.rows[k];
-        table.rows.push_back({hard.name, hard.method, hard.criterion, row.outcome.measured, row.held,
-                              row.wall_s ? Cell(*row.wall_s) : Cell()});
-        ++counts[row.held == "yes" ? 0 : (row.held == "no" ? 1 : 2)];
-    }
-    table.note = "Energy errors are over the total weight times the length where nothing else is said.";
-    Chapter chapter;
+report::Chapter chapter_of(const report::Table& table) {
+    const auto count = [&](const char* result) {
+        return std::count_if(table.rows.begin(), table.rows.end(),
+                             [&](const auto& row) { return row[4] == report::Cell(result); });
+    };
+    report::Chapter chapter;
     chapter.title = "Hard cases";
-    chapter.paragraphs = {fmt::format("Of {} cases {} held, {} did not, and {} were not run here.",
-                                      shared.cases.size(), counts[0], counts[1], counts[2])};
-    chapter.tables = {std::move(table)};
+    chapter.paragraphs = {fmt::format("Of {} cases, {} passed, {} failed and {} were not run.",
+                                      table.rows.size(), count(kPassed), count(kFailed), count(kNotRun))};
+    chapter.tables = {table};
     return chapter;
 }
 
 }  // namespace
 
 ChapterWork hard_cases_work(const StudyDef& def) {
-    const auto shared = std::make_shared<Cases>();
-    add_hard_motions(shared->cases);
-    add_hard_sizes(shared->cases);
-    shared->cases.insert(shared->cases.end(), def.input_cases.begin(), def.input_cases.end());
+    std::vector<HardCase> cases;
+    add_hard_motions(cases);
+    add_hard_sizes(cases);
+    add_hard_inputs(cases);
+    const auto table = std::make_shared<report::Table>();
+    table->id = "hard_cases";
+    table->title = "Hard cases";
+    table->columns = {{"case", "case"},         {"method", "method"}, {"criterion", "passes if"},
+                      {"measured", "measured"}, {"passed", "passed"}, {"wall_s", "wall time [s]"}};
+    table->note = "An energy error is a fraction of the total weight times the length.";
     ChapterWork work;
-    for (std::size_t k = 0; k < shared->cases.size(); ++k) {
-        work.jobs.push_back(
-            {shared->cases[k].name + ", " + shared->cases[k].method,
-             [shared, k, is_quick = def.quick] { shared->rows.push_back(run(shared->cases[k], is_quick)); }});
+    for (const HardCase& hard : cases) {
+        work.jobs.push_back({hard.name + ", " + hard.method,
+                             [table, hard, is_quick = def.quick] { table->add(row_of(hard, is_quick)); }});
     }
-    work.finish = [shared] { return chapter_of(*shared); };
+    work.finish = [table] { return chapter_of(*table); };
     return work;
 }
 

@@ -1,106 +1,105 @@
 #include "corda/study/measure.hpp"
 
+#include "corda/sim/solver.hpp"
+
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
-#include "corda/core/error.hpp"
+#include <fmt/format.h>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/clock.hpp"
 
 namespace corda::study {
 namespace {
 
-using Clock = std::chrono::steady_clock;  // CLOCK_MONOTONIC
-
-sim::Simulation start(const Problem& problem, const sim::SolverDef& solver, sim::Figured figured) {
-    return {sim::build_system(problem.ropes, problem.nets, solver.reach), problem.world, solver,
-            problem.frame_interval_s, figured};
+Simulation start(const Problem& problem, const MethodDef& method) {
+    return {problem.system(), problem.world, method, problem.fps.interval_s()};
 }
 
-struct Distance {
-    double largest_m = 0.0;
-    double rms_m = 0.0;
-};
-
-/// Of the particles that the truth knows.
-Distance distance(const sim::State& state, const sim::State& truth) {
+/// Compares the particles that the truth knows.
+void compare(const State& state, const State& truth, double length_m, Measurement& result) {
     double largest_m2 = 0.0;
     double sum_m2 = 0.0;
-    std::size_t count = 0;
+    int count = 0;
     for (std::size_t i = 0; i < state.x_m.size(); ++i) {
-        if (std::isnan(truth.x_m[i]) || std::isnan(truth.y_m[i])) continue;
         const double dx = state.x_m[i] - truth.x_m[i];
         const double dy = state.y_m[i] - truth.y_m[i];
+        if (std::isnan(truth.x_m[i]) || std::isnan(truth.y_m[i])) continue;
         largest_m2 = std::max(largest_m2, dx * dx + dy * dy);
         sum_m2 += dx * dx + dy * dy;
         ++count;
     }
-    if (count == 0) return {};
-    return {std::sqrt(largest_m2), std::sqrt(sum_m2 / static_cast<double>(count))};
+    if (count == 0) return;
+    result.largest_error = std::max(result.largest_error, std::sqrt(largest_m2) / length_m);
+    result.rms_error = std::max(result.rms_error, std::sqrt(sum_m2 / count) / length_m);
 }
 
-/// Runs all frames, compares those that the reference has, and writes down what the run shows.
-void watch(const Problem& problem, const sim::SolverDef& solver, Measurement& result) {
-    sim::Simulation run = start(problem, solver, sim::Figured::kYes);
-    sim::State truth = run.state();
+/// Runs all frames, compares those that the reference knows, and notes what the run shows.
+void watch(const Problem& problem, const MethodDef& method, Measurement& result) {
+    Simulation run = start(problem, method);
+    State truth = run.state();
     bool is_compared = false;
-    for (std::int64_t k = 1; k <= problem.last_frame; ++k) {
-        const double time_s = static_cast<double>(k) * problem.frame_interval_s;
-        if (run.advance_to(time_s) == sim::Status::kDiverged) {
-            result.failure = "diverged before " + std::to_string(time_s) + " s";
-            break;
+    for (std::int64_t k = 1; k <= problem.last_frame(); ++k) {
+        const double time_s = problem.fps.time_s(k);
+        if (run.advance_to(time_s) == Status::kDiverged) {
+            result.failure = fmt::format("diverged before {:.6g} s", time_s);
+            return;
         }
         if (!problem.reference || !problem.reference(k, truth)) continue;
         is_compared = true;
-        const Distance apart = distance(run.state(), truth);
-        result.largest_error = std::max(result.largest_error, apart.largest_m / problem.length_m);
-        result.rms_error = std::max(result.rms_error, apart.rms_m / problem.length_m);
+        compare(run.state(), truth, problem.length_m, result);
     }
-    if (!is_compared) {
-        result.largest_error = std::numeric_limits<double>::quiet_NaN();
-        result.rms_error = result.largest_error;
-    }
-    const sim::Diagnostics shown = run.diagnostics();
+    if (!is_compared) result.largest_error = result.rms_error = std::numeric_limits<double>::quiet_NaN();
+    const Diagnostics shown = run.diagnostics();
     result.largest_strain = shown.largest.strain;
     result.energy_error = shown.largest.energy_error;
     result.steps = shown.steps;
 }
 
-/// Seconds that all frames take, the set-up left out; the minimum of the repeats.
-double stepping_s(const Problem& problem, const sim::SolverDef& solver, const Timing& timing) {
-    double least_s = std::numeric_limits<double>::infinity();
-    for (int repeat = 0; repeat < std::max(1, timing.repeats); ++repeat) {
+/// Seconds that all frames take without the set-up: the shortest of the repeats. The bare solver is timed,
+/// without the figures that a Simulation works out.
+double stepping_s(const Problem& problem, const MethodDef& method, const Timing& timing) {
+    const System system = problem.system();
+    const std::int64_t last_frame = problem.last_frame();
+    double shortest_s = std::numeric_limits<double>::infinity();
+    for (int repeat = 0; repeat < timing.repeats; ++repeat) {
         double sum_s = 0.0;
         int runs = 0;
         do {
-            sim::Simulation run = start(problem, solver, sim::Figured::kNo);
-            const Clock::time_point from = Clock::now();
-            for (std::int64_t k = 1; k <= problem.last_frame; ++k) {
-                const double time_s = static_cast<double>(k) * problem.frame_interval_s;
-                if (run.advance_to(time_s) == sim::Status::kDiverged) break;
+            const auto solver = sim::make_solver(system, problem.world, method, problem.fps.interval_s());
+            State state{0.0, system.x_m, system.y_m};
+            const double from_s = now_s();
+            for (std::int64_t k = 1; k <= last_frame; ++k) {
+                if (solver->advance_to(problem.fps.time_s(k), state) == Status::kDiverged) break;
             }
-            sum_s += std::chrono::duration<double>(Clock::now() - from).count();
+            sum_s += now_s() - from_s;
             ++runs;
         } while (sum_s < timing.shortest_s);
-        least_s = std::min(least_s, sum_s / runs);
+        shortest_s = std::min(shortest_s, sum_s / runs);
     }
-    return least_s;
+    return shortest_s;
 }
 
 }  // namespace
 
-Measurement measure(const Problem& problem, const sim::SolverDef& solver, const std::string& label,
+Problem with_reach(Problem problem, int reach) {
+    for (RopeDef& rope : problem.ropes) rope.reach = reach;
+    return problem;
+}
+
+Measurement measure(const Problem& problem, const MethodDef& method, const std::string& label,
                     double parameter, const Timing& timing) {
     Measurement result;
-    result.solver = solver;
+    result.method = method;
     result.label = label;
     result.parameter = parameter;
     try {
-        watch(problem, solver, result);
-        if (!result.failure.empty()) return result;
-        const double simulated_s = static_cast<double>(problem.last_frame) * problem.frame_interval_s;
-        if (simulated_s == 0.0) return result;
-        result.ms_per_simulated_s = 1e3 * stepping_s(problem, solver, timing) / simulated_s;
+        watch(problem, method, result);
+        const double simulated_s = problem.fps.time_s(problem.last_frame());
+        if (result.failure.empty() && timing.repeats > 0 && simulated_s > 0.0)
+            result.ms_per_simulated_s = 1e3 * stepping_s(problem, method, timing) / simulated_s;
     } catch (const Error& error) {
         result.failure = error.what();
     }

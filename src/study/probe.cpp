@@ -1,32 +1,29 @@
 #include "corda/study/probe.hpp"
 
-#include <fmt/format.h>
-
-#include <chrono>
 #include <cmath>
 
-#include "corda/core/error.hpp"
+#include <fmt/format.h>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/clock.hpp"
 
 namespace corda::study {
 
-Probe::Probe(const sim::RopeDef& rope, const sim::WorldDef& world, const sim::SolverDef& solver,
-             double frame_interval_s)
-    : simulation_(sim::build_system({&rope, 1}, solver.reach), world, solver, frame_interval_s) {}
+Probe::Probe(const RopeDef& rope, const WorldDef& world, const MethodDef& method, double frame_interval_s)
+    : simulation_(build_system({&rope, 1}), world, method, frame_interval_s) {}
 
 void Probe::go(double time_s) {
-    using Clock = std::chrono::steady_clock;
-    const Clock::time_point from = Clock::now();
-    const sim::Status status = simulation_.advance_to(time_s);
-    wall_s_ += std::chrono::duration<double>(Clock::now() - from).count();
-    if (status == sim::Status::kDiverged)
-        throw Error(ExitCode::kDiverged, fmt::format("diverged before {:g} s", time_s));
+    const double from_s = now_s();
+    const Status status = simulation_.advance_to(time_s);
+    wall_s_ += now_s() - from_s;
+    if (status == Status::kDiverged)
+        throw Error(ExitCode::kDiverged, fmt::format("diverged before {:.6g} s", time_s));
 }
 
-void Probe::go_by_frames(double time_s) {
-    constexpr double kFramesPerSecond = 60.0;
-    const auto last = std::llround(time_s * kFramesPerSecond);
-    for (auto k = std::llround(state().time_s * kFramesPerSecond) + 1; k <= last; ++k)
-        go(static_cast<double>(k) / kFramesPerSecond);
+void Probe::go_by_frames(double time_s, double frames_per_second) {
+    const auto last = std::llround(time_s * frames_per_second);
+    for (auto k = std::llround(state().time_s * frames_per_second) + 1; k <= last; ++k)
+        go(static_cast<double>(k) / frames_per_second);
 }
 
 }  // namespace corda::study

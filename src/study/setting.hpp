@@ -1,5 +1,6 @@
 #pragma once
 
+#include <istream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,11 +9,11 @@
 
 namespace corda::study {
 
-/// What a study runs on and how it takes its times, for Report::setting: processor, cores, compiler, build,
-/// version of Corda, and `timing` in words. Nothing of it names a date, a user or a folder.
+/// What a study runs on and how it times, for Report::setting: processor, cores, compiler, build, version of
+/// Corda, and `timing` in words. No dates, users or folders.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> setting(const Timing& timing);
 
-/// The processor's name out of the text of /proc/cpuinfo; "unknown" where it has none.
-[[nodiscard]] std::string processor_name(const std::string& cpuinfo);
+/// The processor's name in the text of /proc/cpuinfo; "unknown" if it has none.
+[[nodiscard]] std::string processor_name(std::istream& cpuinfo);
 
 }  // namespace corda::study

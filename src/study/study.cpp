@@ -4,12 +4,16 @@
 #include <array>
 #include <string_view>
 
-#include "corda/core/error.hpp"
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "corda/core/basics.hpp"
 #include "corda/study/accuracy.hpp"
 #include "corda/study/findings.hpp"
 #include "corda/study/hard_cases.hpp"
-#include "corda/study/sweep.hpp"
-#include "corda/study/work.hpp"
+#include "corda/study/pictures.hpp"
+#include "corda/study/setting.hpp"
+#include "corda/study/speed.hpp"
 
 namespace corda::study {
 namespace {
@@ -17,39 +21,34 @@ namespace {
 struct ChapterKind {
     std::string_view name;
     ChapterWork (*work)(const StudyDef&);
-    bool takes_a_problem;  ///< else it is about built-in problems alone
+    bool takes_a_scene;
 };
-constexpr std::array<ChapterKind, 4> kChapters{{{"speed", speed_work, true},
+constexpr std::array<ChapterKind, 5> kChapters{{{"speed", speed_work, true},
                                                 {"findings", findings_work, false},
                                                 {"accuracy", accuracy_work, false},
-                                                {"hard_cases", hard_cases_work, false}}};
+                                                {"hard_cases", hard_cases_work, false},
+                                                {"picture", pictures_work, true}}};
 
-std::vector<ChapterKind> chosen_chapters(const StudyDef& def) {
-    std::vector<ChapterKind> chosen;
-    for (const ChapterKind& kind : kChapters) {
-        const bool is_asked_for =
-            std::find(def.chapters.begin(), def.chapters.end(), kind.name) != def.chapters.end();
-        if (is_asked_for && def.problem && !kind.takes_a_problem) {
-            throw Error(ExitCode::kUsage, "chapter \"" + std::string(kind.name) +
-                                              "\" is about the built-in problems; leave the scene out, or "
-                                              "ask for chapter \"speed\"");
+void check_chapters(const StudyDef& def) {
+    for (const std::string& name : def.chapters) {
+        const auto kind = std::find_if(kChapters.begin(), kChapters.end(),
+                                       [&](const ChapterKind& one) { return one.name == name; });
+        if (kind == kChapters.end()) {
+            throw Error(ExitCode::kUsage, fmt::format("there is no chapter \"{}\"; known are {}", name,
+                                                      fmt::join(chapter_names(), ", ")));
         }
-        if (is_asked_for || (def.chapters.empty() && (kind.takes_a_problem || !def.problem)))
-            chosen.push_back(kind);
+        if (def.scene && !kind->takes_a_scene) {
+            throw Error(
+                ExitCode::kUsage,
+                fmt::format("chapter \"{}\" is about built-in problems; leave out the scene or the chapter",
+                            name));
+        }
     }
-    return chosen;
 }
 
-void refuse_unknown_chapters(const StudyDef& def) {
-    const std::vector<std::string> names = chapter_names();
-    for (const std::string& asked : def.chapters) {
-        if (std::find(names.begin(), names.end(), asked) != names.end()) continue;
-        std::string known;
-        for (const std::string& name : names) known.append(known.empty() ? "" : ", ").append(name);
-        throw Error(
-            ExitCode::kUsage,
-            std::string("there is no chapter \"").append(asked).append("\"; known are ").append(known));
-    }
+bool is_wanted(const ChapterKind& kind, const StudyDef& def) {
+    if (def.chapters.empty()) return kind.takes_a_scene || !def.scene;
+    return std::find(def.chapters.begin(), def.chapters.end(), kind.name) != def.chapters.end();
 }
 
 }  // namespace
@@ -64,27 +63,29 @@ Timing study_timing(bool quick) {
     return quick ? Timing{2, 0.002} : Timing{};
 }
 
-Report run_study(const StudyDef& def, const Progress& progress) {
-    refuse_unknown_chapters(def);
-    std::vector<ChapterWork> works;
-    int of = 0;
-    for (const ChapterKind& kind : chosen_chapters(def)) {
-        works.push_back(kind.work(def));
-        of += static_cast<int>(works.back().jobs.size());
+Study::Study(const StudyDef& def)
+    : title_(def.scene ? "Corda: study of " + def.scene->name : "Corda: study of its methods"),
+      timing_(study_timing(def.quick)) {
+    check_chapters(def);
+    if (def.quick) title_ += " (quick: not to quote from)";
+    for (const ChapterKind& kind : kChapters) {
+        if (is_wanted(kind, def)) works_.push_back(kind.work(def));
     }
-    Report report;
-    report.title = def.problem ? "Corda: study of " + def.problem->title : "Corda: study of its methods";
-    if (def.quick) report.title += " (quick: not to quote from)";
+}
+
+report::Report Study::run(const OnJob& on_job) {
+    report::Report report{title_, setting(timing_), {}};
+    int total = 0;
+    for (const ChapterWork& work : works_) total += static_cast<int>(work.jobs.size());
     int done = 0;
-    for (const ChapterWork& work : works) {
+    for (const ChapterWork& work : works_) {
         for (const Job& job : work.jobs) {
-            if (progress) progress(done, of, job.what);
+            if (on_job) on_job(done++, total, job.what);
             job.run();
-            ++done;
         }
         report.chapters.push_back(work.finish());
     }
-    if (progress) progress(done, of, "done");
+    if (on_job) on_job(done, total, "done");
     return report;
 }
 

@@ -3,39 +3,47 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "corda/study/hard_case.hpp"
+#include "corda/pipeline/film.hpp"
+#include "corda/report/report.hpp"
 #include "corda/study/measure.hpp"
-#include "corda/study/report.hpp"
+#include "corda/study/work.hpp"
 
 namespace corda::study {
 
-/// What a study looks into.
+/// What a study measures.
 struct StudyDef {
-    bool quick = false;  ///< fewer points, shorter runs: to see whether it works, not to quote from
-    /// A problem to study in place of the built-in ones. Where its `reference` is empty, one is made by a far
-    /// tighter run of another formulation.
-    std::optional<Problem> problem;
-    std::vector<std::string> chapters;  ///< names out of chapter_names(); empty: all that apply
-    std::vector<HardCase> input_cases;  ///< hard cases of what this library never sees: scene files
+    bool quick = false;  ///< fewer points and shorter runs: to see whether it works, not to quote from
+    std::optional<Scene> scene;         ///< studied instead of the built-in problems
+    std::vector<std::string> chapters;  ///< some of chapter_names(); empty: all that apply
+    FilmDef film;                       ///< how chapter "picture" gets to OpenGL
 };
 
-/// Key of the column that says why a run failed: a row with a text in it is shown as failed by every writer.
-inline constexpr std::string_view kFailureKey = "failure";
+/// Hears how far a study is: `done` of `total` jobs are done, and `what` is next. What it throws ends the
+/// study.
+using OnJob = std::function<void(int done, int total, const std::string& what)>;
 
-/// Hears how far a study is: `done` of `of` runs, `what` in words. What it throws ends the study.
-using Progress = std::function<void(int done, int of, const std::string& what)>;
-
-/// The names by which chapters are asked for, in the order of a report: [a-z0-9_]+.
+/// The names of the chapters, [a-z0-9_]+, in the order of the report.
 [[nodiscard]] std::vector<std::string> chapter_names();
 
-/// How the runs of a study are timed.
+/// How a study times its runs.
 [[nodiscard]] Timing study_timing(bool quick);
 
-/// Runs a study: title and chapters of its report; `setting` is left empty (setting.hpp fills it). Throws
-/// corda::Error: kUsage for an unknown chapter, kInvalidScene for a problem that no method can run.
-[[nodiscard]] Report run_study(const StudyDef& def, const Progress& progress);
+/// A study that has been checked and is ready to run.
+class Study {
+  public:
+    /// Throws corda::Error: kUsage for an unknown chapter, or one that does not apply to a scene; kNoGl if
+    /// chapter "picture" is wanted and cannot be drawn.
+    explicit Study(const StudyDef& def);
+
+    /// Measures everything. Throws corda::Error, e.g. kInvalidScene if no method can run the scene.
+    [[nodiscard]] report::Report run(const OnJob& on_job);
+
+  private:
+    std::string title_;
+    Timing timing_;
+    std::vector<ChapterWork> works_;
+};
 
 }  // namespace corda::study

@@ -1,61 +1,48 @@
 #include "corda/study/truth.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
-#include "corda/core/error.hpp"
-#include "corda/sim/rattle.hpp"
-#include "corda/sim/trial.hpp"
+#include <fmt/format.h>
+
+#include "corda/core/basics.hpp"
+#include "corda/sim/auto/trial.hpp"
+#include "corda/sim/recording.hpp"
 
 namespace corda::study {
 namespace {
 
 constexpr double kTightTolerance = 1e-14;
-constexpr double kTightShare = 0.25;  ///< of a stable step of order 8
-/// What a reference may hold, in coordinates: 256 MiB. Longer ones keep every n-th frame.
-constexpr std::size_t kMostNumbers = std::size_t{1} << 25U;
+constexpr double kTightShare = 0.25;  ///< of the step that rattle of order 8 chooses
 
-/// The frames of a run.
-struct Trajectory {
-    std::int64_t stride = 1;
-    std::vector<sim::State> frames;  ///< of frames stride, 2 stride, ...; ends where the run diverged
+using SharedRecording = std::shared_ptr<const sim::Recording>;
 
-    [[nodiscard]] const sim::State* at(std::int64_t k) const {
-        if (k % stride != 0 || k == 0) return nullptr;
-        const auto index = static_cast<std::size_t>(k / stride - 1);
-        return index < frames.size() ? &frames[index] : nullptr;
+/// The states at all frames, up to where the run diverges.
+SharedRecording record(const Problem& problem, const MethodDef& method) {
+    Simulation run(problem.system(), problem.world, method, problem.fps.interval_s());
+    const std::int64_t last_frame = problem.last_frame();
+    constexpr std::size_t kNoBudget = std::numeric_limits<std::size_t>::max();
+    auto frames = std::make_shared<sim::Recording>(run.system().particle_count(),
+                                                   static_cast<std::size_t>(last_frame + 1), kNoBudget);
+    for (std::int64_t k = 0; k <= last_frame; ++k) {
+        if (frames->advance(run, problem.fps.time_s(k), {}) == Status::kDiverged) break;
     }
-};
-
-Trajectory run(const Problem& problem, const sim::SolverDef& solver) {
-    sim::Simulation simulation(sim::build_system(problem.ropes, problem.nets, solver.reach), problem.world,
-                               solver, problem.frame_interval_s, sim::Figured::kNo);
-    const std::size_t numbers =
-        2 * simulation.system().particle_count() * static_cast<std::size_t>(problem.last_frame);
-    Trajectory result;
-    result.stride = static_cast<std::int64_t>(numbers / kMostNumbers + 1);
-    for (std::int64_t k = result.stride; k <= problem.last_frame; k += result.stride) {
-        const double time_s = static_cast<double>(k) * problem.frame_interval_s;
-        if (simulation.advance_to(time_s) == sim::Status::kDiverged) break;
-        result.frames.push_back(simulation.state());
-    }
-    return result;
+    return frames;
 }
 
-Reference as_reference(std::shared_ptr<const Trajectory> trajectory) {
-    return [kept = std::move(trajectory)](std::int64_t k, sim::State& state) {
-        const sim::State* const found = kept->at(k);
-        if (found == nullptr) return false;
-        state = *found;
+/// The first `count` frames of a recording.
+Reference as_reference(SharedRecording frames, std::size_t count) {
+    return [kept = std::move(frames), count](std::int64_t k, State& state) {
+        const auto index = static_cast<std::size_t>(k);
+        if (index >= count) return false;
+        kept->read(index, state);
         return true;
     };
 }
 
-double rms_m(const sim::State& a, const sim::State& b) {
+double rms_m(const State& a, const State& b) {
     double sum_m2 = 0.0;
     for (std::size_t i = 0; i < a.x_m.size(); ++i) {
         const double dx = a.x_m[i] - b.x_m[i];
@@ -65,44 +52,43 @@ double rms_m(const sim::State& a, const sim::State& b) {
     return std::sqrt(sum_m2 / static_cast<double>(a.x_m.size()));
 }
 
-/// Cuts both where they part, and writes down how far apart they are until there.
-void cut_at_horizon(Trajectory& first, Trajectory& second, Subject& subject) {
-    const Problem& problem = subject.problem;
-    std::size_t common = std::min(first.frames.size(), second.frames.size());
-    double largest = 0.0;
-    for (std::size_t k = 0; k < common; ++k) {
-        const double apart = rms_m(first.frames[k], second.frames[k]) / problem.length_m;
-        if (!(apart <= kHorizonDifference)) common = k;
-        if (k < common) largest = std::max(largest, apart);
+/// The number of frames before the horizon. Notes the horizon and the difference up to it.
+std::size_t find_horizon(const sim::Recording& first, const sim::Recording& second, Subject& subject) {
+    State a;
+    State b;
+    std::size_t k = 0;
+    subject.disagreement = 0.0;
+    for (; first.holds(k) && second.holds(k); ++k) {
+        first.read(k, a);
+        second.read(k, b);
+        const double apart = rms_m(a, b) / subject.problem.length_m;
+        if (!(apart <= kHorizonDifference)) break;
+        subject.disagreement = std::max(*subject.disagreement, apart);
     }
-    subject.disagreement = largest;
-    const auto frames = static_cast<std::size_t>(problem.last_frame / first.stride);
-    if (common < frames)
-        subject.horizon_s =
-            static_cast<double>(common) * static_cast<double>(first.stride) * problem.frame_interval_s;
-    first.frames.resize(common);
-    second.frames.resize(common);
+    const auto last = static_cast<std::int64_t>(k) - 1;
+    if (last < subject.problem.last_frame()) subject.horizon_s = subject.problem.fps.time_s(last);
+    return k;
 }
 
 struct TightRun {
-    sim::SolverDef solver;
+    MethodDef method;
     std::string words;
 };
 
 TightRun tight_exact(double tolerance) {
-    return {sim::exact_solver(tolerance), fmt::format("method exact at a tolerance of {:.0e}", tolerance)};
+    return {ExactDef{tolerance}, fmt::format("method exact at a tolerance of {:.0e}", tolerance)};
 }
 
-TightRun tight_rope(const Problem& problem, double share) {
-    const double step_s = share * rope_step_s(problem, 8);
-    return {sim::rope_solver(8, step_s), fmt::format("method rope of order 8 at a step of {:.3g} s", step_s)};
+TightRun tight_rattle(const Problem& problem, double share) {
+    const double step_s = share * rattle_step_s(problem, 8);
+    return {RattleDef{8, step_s}, fmt::format("method rattle of order 8 at a step of {:.3g} s", step_s)};
 }
 
 }  // namespace
 
-Problem facing(const Subject& subject, sim::Method method) {
+Problem facing(const Subject& subject, const MethodDef& method) {
     Problem problem = subject.problem;
-    if (method != sim::Method::kExact || !subject.exact_reference) return problem;
+    if (!std::holds_alternative<ExactDef>(method) || !subject.exact_reference) return problem;
     problem.reference = subject.exact_reference;
     problem.truth = subject.exact_truth;
     return problem;
@@ -110,42 +96,42 @@ Problem facing(const Subject& subject, sim::Method method) {
 
 void find_truth(Subject& subject) {
     Problem& problem = subject.problem;
-    const std::string exact_refusal = refusal(problem, sim::exact_solver(kTightTolerance));
-    const std::string rope_refusal = refusal(problem, sim::rope_solver(8));
+    const std::string exact_refusal = refusal(problem, ExactDef{kTightTolerance});
     const bool has_exact = exact_refusal.empty();
-    const bool has_rope = rope_refusal.empty();
-    if (!has_exact && !has_rope) {
-        sim::SolverDef relaxation = sim::relaxation_solver(problem.frame_interval_s, 1, 1);
-        if (!refusal(problem, relaxation).empty()) throw Error(ExitCode::kInvalidScene, exact_refusal);
+    const bool has_rattle = refusal(problem, RattleDef{8}).empty();
+    if (!has_exact && !has_rattle) {
+        if (!refusal(problem, RelaxationDef{}).empty()) throw Error(ExitCode::kInvalidScene, exact_refusal);
         problem.truth =
-            "none: no method can tell how this scene truly moves, so that no error of a position is given";
+            "none, because no method can tell how this scene truly moves; errors of positions are not given";
         return;
     }
-    const TightRun first = has_exact ? tight_exact(kTightTolerance) : tight_rope(problem, kTightShare / 2.0);
-    const TightRun second = has_rope ? tight_rope(problem, kTightShare) : tight_exact(10.0 * kTightTolerance);
-    auto first_run = std::make_shared<Trajectory>(run(problem, first.solver));
-    auto second_run = std::make_shared<Trajectory>(run(problem, second.solver));
-    cut_at_horizon(*first_run, *second_run, subject);
-    const bool is_one_method = !(has_exact && has_rope);
-    const std::string caveat =
-        is_one_method ? " (the only method that can run this scene beside relaxation: its own errors are "
-                        "measured against a far tighter run of itself)"
-                      : "";
-    problem.truth = first.words + caveat;
-    problem.reference = as_reference(first_run);
-    if (is_one_method) return;
-    subject.exact_truth = second.words;
-    subject.exact_reference = as_reference(second_run);
+    const TightRun first =
+        has_exact ? tight_exact(kTightTolerance) : tight_rattle(problem, kTightShare / 2.0);
+    const TightRun second =
+        has_rattle ? tight_rattle(problem, kTightShare) : tight_exact(10.0 * kTightTolerance);
+    const SharedRecording first_run = record(problem, first.method);
+    const SharedRecording second_run = record(problem, second.method);
+    const std::size_t count = find_horizon(*first_run, *second_run, subject);
+    problem.truth = first.words;
+    problem.reference = as_reference(first_run, count);
+    if (has_exact && has_rattle) {
+        subject.exact_truth = second.words;
+        subject.exact_reference = as_reference(second_run, count);
+    } else {
+        problem.truth +=
+            " (no other accurate method can run this scene, so that this method's own errors are "
+            "measured against a far tighter run of itself)";
+    }
 }
 
-double rope_step_s(const Problem& problem, int order) {
-    const sim::System system = sim::build_system(problem.ropes, problem.nets, 1);
-    return sim::Rattle(system, problem.world, sim::rope_solver(order), problem.frame_interval_s).step_s();
+double rattle_step_s(const Problem& problem, int order) {
+    const Simulation run(problem.system(), problem.world, RattleDef{order}, problem.fps.interval_s());
+    return std::get<RattleDef>(run.method()).step_s.value();
 }
 
-std::string refusal(const Problem& problem, const sim::SolverDef& solver) {
-    const sim::System system = sim::build_system(problem.ropes, problem.nets, solver.reach);
-    return sim::refusal(system, problem.world, solver, problem.frame_interval_s);
+std::string refusal(const Problem& problem, const MethodDef& method) {
+    const auto refused = sim::refusal(problem.system(), problem.world, method, problem.fps.interval_s());
+    return refused ? refused->what() : "";
 }
 
 }  // namespace corda::study

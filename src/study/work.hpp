@@ -4,20 +4,21 @@
 #include <string>
 #include <vector>
 
-#include "corda/study/report.hpp"
+#include "corda/report/report.hpp"
 
 namespace corda::study {
 
-/// One run of a chapter, or what belongs together.
+/// A run of a chapter, or several that belong together.
 struct Job {
-    std::string what;  ///< in words, for who waits
+    std::string what;  ///< for whoever waits
     std::function<void()> run;
 };
 
-/// A chapter to be: its jobs in order, then what they add up to. Jobs and `finish` share their data.
+/// A chapter that is yet to be measured: its jobs in order, and `finish`, which makes the chapter of their
+/// figures. They share their data.
 struct ChapterWork {
     std::vector<Job> jobs;
-    std::function<Chapter()> finish;
+    std::function<report::Chapter()> finish;
 };
 
 }  // namespace corda::study

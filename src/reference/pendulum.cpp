@@ -1,9 +1,9 @@
-#include "corda/study/pendulum.hpp"
+#include "corda/reference/pendulum.hpp"
 
 #include <cmath>
 #include <numbers>
 
-namespace corda::study {
+namespace corda::reference {
 
 Pendulum::Pendulum(long double omega0_1_s, long double angle_rad)
     : omega0_1_s_(omega0_1_s), modulus_(std::sin(angle_rad / 2.0L)) {
@@ -18,9 +18,9 @@ Pendulum::Pendulum(long double omega0_1_s, long double angle_rad)
     period_s_ = 2.0L * std::numbers::pi_v<long double> / (mean_[kMeans] * omega0_1_s_);
 }
 
-sim::Vec2 Pendulum::direction(long double time_s) const {
+Vec2 Pendulum::direction(long double time_s) const {
     const long double into_s = std::fmod(time_s, period_s_);
-    // Amplitudes from the last mean down: sin(2 phi_{n-1} - phi_n) = c_n / a_n sin phi_n.
+    // Amplitudes, descending from the last mean: sin(2 phi_{n-1} - phi_n) = c_n / a_n sin phi_n.
     long double phi = std::ldexp(mean_[kMeans] * omega0_1_s_ * into_s, kMeans);
     long double above = phi;
     for (int n = kMeans; n > 0; --n) {
@@ -49,4 +49,4 @@ double damped_fall_m(double mass_kg, double step_s, int steps, double delta, dou
                                (steps - (1.0L - std::pow(1.0L - d, steps)) / d));
 }
 
-}  // namespace corda::study
+}  // namespace corda::reference

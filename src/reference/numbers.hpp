@@ -3,23 +3,27 @@
 #include <algorithm>
 #include <array>
 
-#include "corda/sim/vec2.hpp"
+#include "corda/sim/defs.hpp"
 
-namespace corda::study {
+namespace corda::reference {
 
-// Numbers that others have worked out, to more digits than a double holds where nothing else is said: PHYSICS
-// section 4. Masses are 1 kg, lengths 1 m and gravity 9.81 m/s^2 where a table does not say otherwise.
+// Reference numbers R1 to R7 and R11, computed independently of Corda. Their definitions and sources are in
+// section 4 of src/sim/README.md. They have more digits than a double holds unless a table says otherwise;
+// masses are 1 kg and lengths 1 m likewise.
 
-/// R1, IFToMM benchmark A01: the period of a pendulum from the horizontal.
+/// The gravity that all of them take, in m/s^2.
+inline constexpr double kGravity = 9.81;
+
+/// R1, IFToMM benchmark A01: the period of a pendulum released from the horizontal.
 inline constexpr double kA01PeriodSeconds = 2.3678419475762374;
 
-/// R2: the period of a pendulum in small swings, 2 pi sqrt(L / g).
+/// R2: the period of a pendulum for small swings, 2 pi sqrt(L / g).
 inline constexpr double kSmallSwingSeconds = 2.006066680710647;
 
-/// R2: the period of a pendulum that swings up to an angle, from 2 / pi K(sin(angle / 2)).
+/// R2: the period of a pendulum that swings up to an angle, as a ratio: (2 / pi) K(sin(angle / 2)).
 struct SwingPeriod {
     double angle_deg;  ///< from straight down, below 180
-    double ratio;      ///< over kSmallSwingSeconds
+    double ratio;      ///< period over kSmallSwingSeconds
 };
 inline constexpr std::array<SwingPeriod, 9> kSwingPeriods{{
     {10, 1.0019071881432166},
@@ -33,12 +37,12 @@ inline constexpr std::array<SwingPeriod, 9> kSwingPeriods{{
     {179.99, 6.832737338014762},
 }};
 
-/// R2: a full turn of a pendulum that passes the bottom with v^2 = 6 g L.
+/// R2: the time of a full turn of a pendulum that passes the bottom with v^2 = 6 g L.
 inline constexpr double kFullTurnSeconds = 1.0578477230355216;
 
-/// R3: the period of a rigid rod of equal masses from the horizontal, evenly spaced from the pin on.
+/// R3: the period, from the horizontal, of a rigid rod of equal masses that are evenly spaced from the pin.
 struct RodPeriod {
-    int links;  ///< and moving masses
+    int links;  ///< also the number of moving masses
     double period_s;
 };
 inline constexpr std::array<RodPeriod, 5> kRodPeriods{{
@@ -49,11 +53,11 @@ inline constexpr std::array<RodPeriod, 5> kRodPeriods{{
     {50, 1.942977482042899},
 }};
 
-/// R4: a small oscillation of a hanging chain: omega^2 = (g / a) x, x being a zero of the Laguerre polynomial
-/// L_N where the tip has the mass of the others.
+/// R4: a small oscillation of a hanging chain. If all masses are equal, omega^2 = (g / a) z with a zero z of
+/// the Laguerre polynomial L_N.
 struct SmallOscillation {
     int links;
-    double tip_mass_kg;  ///< of the last particle in all
+    double tip_mass_kg;  ///< of the last particle, in all
     double omega_1_s;
 };
 inline constexpr std::array<SmallOscillation, 13> kSmallOscillations{{
@@ -72,14 +76,14 @@ inline constexpr std::array<SmallOscillation, 13> kSmallOscillations{{
     {10, 1000, 3.1346641280336},
 }};
 
-/// R5: a straight chain of unit masses released at rest, and where its tip is later.
+/// R5: a straight chain of unit masses, released at rest, and the place of its tip at a later time.
 struct ReleasedChain {
     int links;
     double length_m;
     double angle_deg;    ///< from straight down towards +x
-    double tip_mass_kg;  ///< of the last particle in all
+    double tip_mass_kg;  ///< of the last particle, in all
     double time_s;
-    sim::Vec2 tip_m;  ///< from the pin
+    Vec2 tip_m;  ///< from the pin
 };
 inline constexpr std::array<ReleasedChain, 15> kReleasedChains{{
     {2, 2, 90, 1, 1, {-1.44481884994347579652, -1.32179446138146455585}},
@@ -99,8 +103,8 @@ inline constexpr std::array<ReleasedChain, 15> kReleasedChains{{
     {10, 1, 90, 1000, 5, {0.92550693774088658561, -0.34521126487484581376}},
 }};
 
-/// The tip of R5's row of equal masses with these numbers. No such row, no compilation.
-[[nodiscard]] consteval sim::Vec2 released_tip_m(int links, double angle_deg, double time_s) {
+/// The tip in the row of R5 that has these numbers and equal masses. Does not compile if there is none.
+[[nodiscard]] consteval Vec2 released_tip_m(int links, double angle_deg, double time_s) {
     return std::find_if(kReleasedChains.begin(), kReleasedChains.end(),
                         [&](const ReleasedChain& row) {
                             return row.links == links && row.angle_deg == angle_deg && row.time_s == time_s &&
@@ -109,11 +113,11 @@ inline constexpr std::array<ReleasedChain, 15> kReleasedChains{{
         ->tip_m;
 }
 
-/// R6: a chain of 1.5 m that hangs at rest between two pins 1 m apart.
+/// R6: a chain of 1.5 m in all that hangs at rest between two pins 1 m apart.
 struct HangingChain {
     int links;
     double tension_over_weight;  ///< horizontal tension over the weight of a particle
-    double lowest_m;             ///< y of the lowest particle, from the pins
+    double lowest_m;             ///< y of the lowest particle, measured from the pins
 };
 inline constexpr std::array<HangingChain, 3> kHangingChains{{
     {10, 2.0510510143091193, -0.50594593157108448},
@@ -121,7 +125,8 @@ inline constexpr std::array<HangingChain, 3> kHangingChains{{
     {40, 8.2186678030027642, -0.50283577286535318},
 }};
 
-/// R7: a folded chain, down by half of its links, across by one and up again, one end let go. To 7 digits.
+/// R7: a folded chain that hangs down by half of its links, goes across by one and up again; the end that is
+/// up is let go. To 7 digits.
 struct FoldedChain {
     int links;                      ///< odd
     std::array<double, 3> times_s;  ///< at which the tip has fallen .25, .5, .75 m
@@ -132,13 +137,14 @@ inline constexpr std::array<FoldedChain, 3> kFoldedChains{{
     {81, {.2226169, .3062475, .3606003}},
 }};
 
-/// A position that others have published.
+/// Where the tip of a chain is at a time.
 struct PublishedTip {
     double time_s;
-    sim::Vec2 tip_m;
+    Vec2 tip_m;
 };
 
-/// R11: the last particle of the source report's start, 40 particles, g = 9.8 m/s^2; reference/swing40.txt.
+/// R11: the last particle of the source report's start, 40 particles, g = 9.8 m/s^2. All particles:
+/// tests/accuracy/data/swing40.txt.
 inline constexpr std::array<PublishedTip, 4> kReportTips{{
     {1.0, {3.414020640719306, -39.04020640719306}},
     {2.0, {1.9523468902633656, -39.123468902633476}},
@@ -146,4 +152,12 @@ inline constexpr std::array<PublishedTip, 4> kReportTips{{
     {10.0, {3.798605351207355, -39.0037520751634}},
 }};
 
-}  // namespace corda::study
+/// The highest update rate in the source report's table (section 1 of src/sim/README.md): its steps, with
+/// drawing, for bars of reach 7.
+struct ReportRate {
+    int particles;
+    double updates_per_s;
+};
+inline constexpr std::array<ReportRate, 4> kReportRates{{{20, 610}, {40, 270}, {80, 140}, {100, 115}}};
+
+}  // namespace corda::reference

@@ -1,8 +1,8 @@
 #include <nlohmann/json.hpp>
 
-#include "corda/study/writers.hpp"
+#include "corda/report/writers.hpp"
 
-namespace corda::study {
+namespace corda::report {
 namespace {
 
 // Keeps the order in which a reader wants the keys.
@@ -60,4 +60,4 @@ std::string json_text(const Report& report) {
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace corda::study
+}  // namespace corda::report

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include "corda/study/writers.hpp"
+#include "corda/report/writers.hpp"
 
-namespace corda::study {
+namespace corda::report {
 namespace {
 
 std::string quoted(const std::string& text) {
@@ -15,7 +15,7 @@ std::string quoted(const std::string& text) {
     return result + '"';
 }
 
-std::string cell_text(const Cell& cell) {
+std::string csv_cell(const Cell& cell) {
     if (const auto* number = std::get_if<double>(&cell)) return fmt::format("{:.17g}", *number);
     if (const auto* text = std::get_if<std::string>(&cell)) return quoted(*text);
     return {};
@@ -33,11 +33,11 @@ std::string csv_text(const Table& table) {
     for (const auto& row : table.rows) {
         for (std::size_t i = 0; i < row.size(); ++i) {
             if (i > 0) text += ',';
-            text += cell_text(row[i]);
+            text += csv_cell(row[i]);
         }
         text += '\n';
     }
     return text;
 }
 
-}  // namespace corda::study
+}  // namespace corda::report

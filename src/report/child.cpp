@@ -1,4 +1,4 @@
-#include "corda/study/child.hpp"
+#include "corda/report/child.hpp"
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -9,32 +9,27 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <memory>
 
 #include <fmt/format.h>
 
-#include "corda/core/error.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/file.hpp"
 
-namespace corda::study {
+namespace corda::report {
 namespace {
-
-struct FileCloser {
-    void operator()(std::FILE* file) const noexcept { std::fclose(file); }
-};
-using File = std::unique_ptr<std::FILE, FileCloser>;
 
 [[noreturn]] void fail(const char* what, const std::string& program, int error_number) {
     throw Error(ExitCode::kIo, fmt::format("{} {}: {}", what, program, std::strerror(error_number)));
 }
 
-// Files without a name in place of pipes: nobody waits for the other to read.
-File temporary_file(const std::string& program) {
-    File file(std::tmpfile());
+// Nameless files instead of pipes: neither side ever waits for the other to read.
+FileHandle temporary_file(const std::string& program) {
+    FileHandle file(std::tmpfile());
     if (!file) fail("cannot make a temporary file for", program, errno);
     return file;
 }
 
-std::string contents(const File& file) {
+std::string contents(const FileHandle& file) {
     std::string text;
     std::rewind(file.get());
     std::array<char, 65536> block{};
@@ -44,7 +39,7 @@ std::string contents(const File& file) {
     return text;
 }
 
-/// posix_spawn's file actions and attributes, freed with it.
+/// posix_spawn's file actions and attributes.
 struct SpawnSetup {
     posix_spawn_file_actions_t actions{};
     posix_spawnattr_t attributes{};
@@ -80,9 +75,9 @@ int wait_for(pid_t child, const std::string& program) {
 ChildResult run_child(const std::vector<std::string>& command, const std::string& input,
                       const std::string& hint) {
     const std::string& program = command.front();
-    const File in = temporary_file(program);
-    const File out = temporary_file(program);
-    const File err = temporary_file(program);
+    const FileHandle in = temporary_file(program);
+    const FileHandle out = temporary_file(program);
+    const FileHandle err = temporary_file(program);
     if (std::fwrite(input.data(), 1, input.size(), in.get()) != input.size() || std::fflush(in.get()) != 0) {
         fail("cannot write the input of", program, errno);
     }
@@ -109,4 +104,4 @@ ChildResult run_child(const std::vector<std::string>& command, const std::string
     return result;
 }
 
-}  // namespace corda::study
+}  // namespace corda::report

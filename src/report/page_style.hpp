@@ -1,9 +1,9 @@
 #pragma once
 
-namespace corda::study {
+namespace corda::report {
 
-/// The style sheet of the page, in it. Light and dark follow the reader's system; the plots take part through
-/// the two greys that gnuplot writes.
+/// The style sheet, which stands in the page. Light or dark follows the reader's system, for plots too: their
+/// text, borders and grid get the page's colours.
 inline constexpr const char* kPageStyle = R"css(
 :root {
   color-scheme: light dark;
@@ -59,4 +59,4 @@ svg .gridline { stroke: var(--grid); }
 }
 )css";
 
-}  // namespace corda::study
+}  // namespace corda::report

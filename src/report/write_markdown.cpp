@@ -3,14 +3,13 @@
 
 #include <fmt/format.h>
 
-#include "corda/study/study.hpp"
-#include "corda/study/writers.hpp"
+#include "corda/report/writers.hpp"
 
-namespace corda::study {
+namespace corda::report {
 namespace {
 
-/// Plain text as Markdown inside a line: every character itself.
-std::string escaped(std::string_view text) {
+/// Plain text as Markdown inside a line, with every special character escaped.
+std::string markdown_text(std::string_view text) {
     constexpr std::string_view kSpecial = "\\`*_[]<>|~$&";
     std::string result;
     for (const char c : text) {
@@ -20,9 +19,9 @@ std::string escaped(std::string_view text) {
     return result;
 }
 
-/// The same for text that starts a line, where "#", "-" or "1." would make it a heading or a list.
+/// The same for a text at the start of a line, which "#", "-" or "1." would make a heading or a list.
 std::string paragraph_text(std::string_view text) {
-    std::string result = escaped(text);
+    std::string result = markdown_text(text);
     const std::size_t mark = std::min(result.find_first_not_of("0123456789"), result.size());
     constexpr std::string_view kBlockStarts = "#+-=";
     constexpr std::string_view kListMarks = ".)";
@@ -33,26 +32,27 @@ std::string paragraph_text(std::string_view text) {
     return result + "\n\n";
 }
 
-/// Characters as code points: near enough to columns of a fixed-width font for what stands in a report.
+/// The number of code points, which is near enough to that of columns in a fixed-width font.
 std::size_t width(std::string_view text) {
     return static_cast<std::size_t>(
         std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
 }
 
-std::string cell_text(const Cell& cell) {
+std::string markdown_cell(const Cell& cell) {
     if (const auto* number = std::get_if<double>(&cell)) return short_number(*number);
-    if (const auto* text = std::get_if<std::string>(&cell)) return escaped(*text);
+    if (const auto* text = std::get_if<std::string>(&cell)) return markdown_text(*text);
     return {};
 }
 
-/// The cells of a table as text, the titles first.
-std::vector<std::vector<std::string>> cell_texts(const Table& table, const std::vector<std::size_t>& shown) {
+/// The titles of the shown columns, then the rows, as text.
+std::vector<std::vector<std::string>> markdown_cells(const Table& table,
+                                                     const std::vector<std::size_t>& shown) {
     std::vector<std::vector<std::string>> rows(1);
-    for (const std::size_t i : shown) rows[0].push_back(escaped(table.columns[i].title));
+    for (const std::size_t i : shown) rows[0].push_back(markdown_text(table.columns[i].title));
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
         auto& cells = rows.emplace_back();
         for (const std::size_t i : shown) {
-            cells.push_back(cell_text(table.rows[r][i]));
+            cells.push_back(markdown_cell(table.rows[r][i]));
             if (table.columns[i].key == kFailureKey && is_failed(table, r)) {
                 cells.back().insert(0, "**failed:** ");
             }
@@ -67,12 +67,12 @@ void add_padded(const std::string& cell, std::size_t to, bool right, std::string
 }
 
 void add_table(const Table& table, std::string& text) {
-    text += fmt::format("**{}**\n\n", escaped(table.title));
+    text += fmt::format("**{}**\n\n", markdown_text(table.title));
     std::vector<std::size_t> shown;
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
         if (is_for_people(table, i)) shown.push_back(i);
     }
-    const auto rows = cell_texts(table, shown);
+    const auto rows = markdown_cells(table, shown);
     std::vector<std::size_t> widths(shown.size(), 3);
     for (const auto& row : rows) {
         for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width(row[i]));
@@ -101,18 +101,18 @@ Table setting_table(const Report& report) {
 }  // namespace
 
 std::string markdown_text(const Report& report) {
-    std::string text = fmt::format("# {}\n\n", escaped(report.title));
+    std::string text = fmt::format("# {}\n\n", markdown_text(report.title));
     if (!report.setting.empty()) add_table(setting_table(report), text);
     for (const Chapter& chapter : report.chapters) {
-        text += fmt::format("## {}\n\n", escaped(chapter.title));
+        text += fmt::format("## {}\n\n", markdown_text(chapter.title));
         for (const std::string& paragraph : chapter.paragraphs) text += paragraph_text(paragraph);
         for (const Plot& plot : chapter.plots) {
-            text += fmt::format("![{}]({}.svg)\n\n", escaped(plot.title), plot.id);
+            text += fmt::format("![{}]({}.svg)\n\n", markdown_text(plot.title), plot.id);
         }
         for (const Table& table : chapter.tables) add_table(table, text);
     }
-    text.pop_back();  // one line end at the end
+    text.pop_back();  // one newline at the end, not two
     return text;
 }
 
-}  // namespace corda::study
+}  // namespace corda::report

@@ -2,17 +2,17 @@
 
 #include <fmt/format.h>
 
-#include "corda/study/page_style.hpp"
-#include "corda/study/writers.hpp"
+#include "corda/report/page_style.hpp"
+#include "corda/report/writers.hpp"
 
-namespace corda::study {
+namespace corda::report {
 namespace {
 
-/// A cell with more bytes is broken into lines.
+/// A cell with more bytes than this may be broken into lines.
 constexpr std::size_t kLongText = 40;
 
-/// Plain text as text or attribute value of HTML and XML.
-std::string escaped(std::string_view text) {
+/// Plain text as the text or an attribute value of HTML and XML.
+std::string html_text(std::string_view text) {
     std::string result;
     for (const char c : text) {
         switch (c) {
@@ -32,7 +32,7 @@ std::string escaped(std::string_view text) {
                 result += "&#39;";
                 break;
             default:
-                result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;  // XML has no controls
+                result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;  // XML has no control characters
         }
     }
     return result;
@@ -53,19 +53,19 @@ std::string cell_html(const Cell& cell) {
     }
     if (const auto* text = std::get_if<std::string>(&cell); text != nullptr && !text->empty()) {
         return fmt::format("<td class=\"{}\">{}</td>", text->size() > kLongText ? "long" : "text",
-                           escaped(*text));
+                           html_text(*text));
     }
     return "<td class=\"missing\">–</td>";
 }
 
 std::string table_html(const Table& table) {
     std::string text = fmt::format("<div class=\"scroll\">\n<table id=\"table-{}\">\n<caption>{}</caption>\n",
-                                   table.id, escaped(table.title));
+                                   table.id, html_text(table.title));
     text += "<thead><tr>";
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
         if (!is_for_people(table, i)) continue;
         text += fmt::format("<th scope=\"col\"{}>{}</th>", is_numeric(table, i) ? " class=\"number\"" : "",
-                            escaped(table.columns[i].title));
+                            html_text(table.columns[i].title));
     }
     text += "</tr></thead>\n<tbody>\n";
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
@@ -76,7 +76,7 @@ std::string table_html(const Table& table) {
         text += "</tr>\n";
     }
     text += "</tbody>\n</table>\n</div>\n";
-    if (!table.note.empty()) text += fmt::format("<p class=\"note\">{}</p>\n", escaped(table.note));
+    if (!table.note.empty()) text += fmt::format("<p class=\"note\">{}</p>\n", html_text(table.note));
     return text;
 }
 
@@ -93,7 +93,7 @@ void remove_element(std::string& text, std::string_view start, std::string_view 
     if (last != std::string::npos) text.erase(first, last + end.size() - first);
 }
 
-/// An SVG file of gnuplot as an element of the page: without what belongs to a file, named for those who
+/// An SVG file by gnuplot as an element of the page: without the file's header, with a label for readers who
 /// cannot see it, and with ids that no other plot has.
 std::string svg_element(std::string svg, const Plot& plot) {
     svg.erase(0, std::min(svg.find("<svg"), svg.size()));
@@ -105,7 +105,7 @@ std::string svg_element(std::string svg, const Plot& plot) {
     }
     replace_all(svg, "id=\"gnuplot_canvas\"", fmt::format("id=\"{}_canvas\"", plot.id));
     if (svg.rfind("<svg", 0) == 0) {
-        svg.insert(4, fmt::format(" role=\"img\" aria-label=\"{}\"", escaped(plot.title)));
+        svg.insert(4, fmt::format(" role=\"img\" aria-label=\"{}\"", html_text(plot.title)));
     }
     return svg;
 }
@@ -116,7 +116,8 @@ std::string setting_html(const Report& report) {
         "<div class=\"scroll\">\n<table class=\"setting\" "
         "id=\"setting\">\n<caption>Setting</caption>\n<tbody>\n";
     for (const auto& [name, value] : report.setting) {
-        text += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", escaped(name), escaped(value));
+        text +=
+            fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", html_text(name), html_text(value));
     }
     return text + "</tbody>\n</table>\n</div>\n";
 }
@@ -126,7 +127,7 @@ std::string contents_html(const Report& report) {
     std::string text = "<nav aria-label=\"Chapters\">\n<ol>\n";
     for (std::size_t i = 0; i < report.chapters.size(); ++i) {
         text += fmt::format("<li><a href=\"#chapter-{}\">{}</a></li>\n", i + 1,
-                            escaped(report.chapters[i].title));
+                            html_text(report.chapters[i].title));
     }
     return text + "</ol>\n</nav>\n";
 }
@@ -134,9 +135,9 @@ std::string contents_html(const Report& report) {
 std::string chapter_html(const Chapter& chapter, std::size_t number, const SvgOf& svg_of) {
     std::string text =
         fmt::format("<section id=\"chapter-{0}\">\n<h2><a href=\"#chapter-{0}\">{0}. {1}</a></h2>\n", number,
-                    escaped(chapter.title));
+                    html_text(chapter.title));
     for (const std::string& paragraph : chapter.paragraphs) {
-        text += fmt::format("<p>{}</p>\n", escaped(paragraph));
+        text += fmt::format("<p>{}</p>\n", html_text(paragraph));
     }
     for (const Plot& plot : chapter.plots) {
         text +=
@@ -154,7 +155,7 @@ std::string html_text(const Report& report, const SvgOf& svg_of) {
         "<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width, "
         "initial-scale=1\"/>\n"
         "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
-        escaped(report.title), kPageStyle);
+        html_text(report.title), kPageStyle);
     text += contents_html(report) + setting_html(report);
     for (std::size_t i = 0; i < report.chapters.size(); ++i) {
         text += chapter_html(report.chapters[i], i + 1, svg_of);
@@ -162,4 +163,4 @@ std::string html_text(const Report& report, const SvgOf& svg_of) {
     return text + "</body>\n</html>\n";
 }
 
-}  // namespace corda::study
+}  // namespace corda::report

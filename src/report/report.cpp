@@ -1,4 +1,4 @@
-#include "corda/study/report.hpp"
+#include "corda/report/report.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,14 +8,13 @@
 
 #include <fmt/format.h>
 
-#include "corda/core/error.hpp"
-#include "corda/study/study.hpp"
-#include "corda/study/writers.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/report/writers.hpp"
 
-namespace corda::study {
+namespace corda::report {
 namespace {
 
-// Between these, exponents are harder to read than zeros.
+// From here to there a number is written in full: exponents would be harder to read than zeros.
 constexpr double kSmallestRounded = 1e3;
 constexpr double kLargestInFull = 1e6;
 
@@ -23,7 +22,8 @@ void check_name(const std::string& name, const char* kind, std::set<std::string>
     const bool is_plain =
         !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == std::string::npos;
     if (!is_plain) {
-        throw Error(ExitCode::kInternal, fmt::format("a report's {} '{}' is not [a-z0-9_]+", kind, name));
+        throw Error(ExitCode::kInternal,
+                    fmt::format("the {} '{}' of a report is not [a-z0-9_]+", kind, name));
     }
     if (!seen.insert(name).second) {
         throw Error(ExitCode::kInternal, fmt::format("a report has the {} '{}' twice", kind, name));
@@ -90,10 +90,10 @@ std::string short_number(double value) {
         return fmt::format("{:.0f}", shown + 0.0);  // + 0.0: -0 becomes 0
     }
     std::string text = fmt::format("{:.3g}", value);
-    // "1.23e-05" is a computer's way to write 1.23e-5.
+    // People write 1.23e-5, not 1.23e-05.
     const std::size_t digits = text.find('e') + 2;
     if (digits >= 2 && digits + 1 < text.size() && text[digits] == '0') text.erase(digits, 1);
     return text;
 }
 
-}  // namespace corda::study
+}  // namespace corda::report

@@ -4,23 +4,23 @@
 
 #include <fmt/format.h>
 
-#include "corda/core/error.hpp"
-#include "corda/study/child.hpp"
-#include "corda/study/writers.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/report/child.hpp"
+#include "corda/report/writers.hpp"
 
-namespace corda::study {
+namespace corda::report {
 namespace {
 
 constexpr const char* kHint = "Corda draws plots with it; install it with: apt-get install gnuplot-nox";
 
-/// Colours that stay apart for colour-blind readers (after Okabe and Ito 2008, without their yellow and
-/// black, which a light or a dark page swallows), and shapes that stay apart without any colour.
+/// Colours that colour-blind readers can tell apart (after Okabe and Ito 2008, without their yellow and
+/// black, which cannot be seen on a light or a dark page), and shapes that differ without any colour.
 constexpr std::array<const char*, 8> kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                              "#e69f00", "#56b4e9", "#7a5fd0", "#8c6d31"};
-constexpr std::array<int, 5> kPointTypes{7, 5, 9, 13, 11};  // filled: open ones are thin in an SVG
+constexpr std::array<int, 5> kPointTypes{7, 5, 9, 13, 11};  // filled ones: open ones are thin in an SVG
 constexpr std::array<int, 3> kDashTypes{1, 2, 4};
 
-/// A text as gnuplot takes it literally: in single quotes, where nothing but the quote itself has a meaning.
+/// A text that gnuplot takes literally: in single quotes, inside which only the quote itself is special.
 std::string literal(std::string_view text) {
     std::string result = "'";
     for (const char c : text) {
@@ -30,17 +30,17 @@ std::string literal(std::string_view text) {
     return result + "'";
 }
 
-bool can_stand(double value, bool log_axis) {
+bool is_drawable(double value, bool log_axis) {
     return std::isfinite(value) && (!log_axis || value > 0.0);
 }
 
-bool can_stand(const Plot& plot, const std::pair<double, double>& point) {
-    return can_stand(point.first, plot.log_x) && can_stand(point.second, plot.log_y);
+bool is_drawable(const Plot& plot, const std::pair<double, double>& point) {
+    return is_drawable(point.first, plot.log_x) && is_drawable(point.second, plot.log_y);
 }
 
 bool has_points(const Plot& plot, const Series& series) {
     for (const auto& point : series.points) {
-        if (can_stand(plot, point)) return true;
+        if (is_drawable(plot, point)) return true;
     }
     return false;
 }
@@ -55,7 +55,7 @@ std::string axis(char name, const std::string& title, bool is_log) {
 std::string data_block(const Plot& plot, std::size_t index) {
     std::string text = fmt::format("$s{} << END\n", index);
     for (const auto& point : plot.series[index].points) {
-        if (can_stand(plot, point)) {
+        if (is_drawable(plot, point)) {
             text += fmt::format("{:.17g} {:.17g}\n", point.first, point.second);
         } else {
             text += "NaN NaN\n";
@@ -73,7 +73,7 @@ std::string plot_item(const Plot& plot, std::size_t index) {
         "dashtype {} title {}",
         source, kColors[index % kColors.size()], kPointTypes[index % kPointTypes.size()],
         kDashTypes[index / kColors.size() % kDashTypes.size()],
-        literal(is_drawn ? series.name : series.name + " (nothing to draw)"));
+        literal(is_drawn ? series.name : series.name + " (no points)"));
 }
 
 std::string terminal(const Plot& plot, PlotFormat format) {
@@ -87,12 +87,12 @@ std::string terminal(const Plot& plot, PlotFormat format) {
         plot.id);
 }
 
-/// The end of gnuplot's own words, where the reason stands.
+/// The end of gnuplot's messages, which has the reason.
 std::string last_words(const std::string& text) {
     constexpr std::size_t kMost = 400;
     std::string words = text.substr(text.size() > kMost ? text.size() - kMost : 0);
     while (!words.empty() && (words.back() == '\n' || words.back() == ' ')) words.pop_back();
-    return words.empty() ? "it said nothing" : words;
+    return words.empty() ? "without a message" : words;
 }
 
 }  // namespace
@@ -111,7 +111,7 @@ std::string gnuplot_script(const Plot& plot, PlotFormat format) {
         is_empty = false;
         text += data_block(plot, i);
     }
-    // gnuplot refuses a plot without a single point; one outside the ranges draws the axes alone.
+    // gnuplot refuses a plot without points. One that is outside the ranges gives the axes alone.
     text += is_empty ? "set xrange [1:10]\nset yrange [1:10]\nplot NaN notitle" : "plot ";
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
         text += (i > 0 || is_empty ? ", \\\n" : "") + plot_item(plot, i);
@@ -120,7 +120,7 @@ std::string gnuplot_script(const Plot& plot, PlotFormat format) {
 }
 
 std::string draw_plot(const Plot& plot, PlotFormat format) {
-    // -d: nobody's .gnuplot has a say.
+    // -d: without the user's .gnuplot.
     const ChildResult child = run_child({"gnuplot", "-d"}, gnuplot_script(plot, format), kHint);
     if (child.exit_code != 0 || child.out.empty()) {
         throw Error(ExitCode::kIo, fmt::format("gnuplot cannot draw '{}' (status {}): {}", plot.id,
@@ -136,4 +136,4 @@ void check_gnuplot() {
                                            last_words(child.err), kHint));
 }
 
-}  // namespace corda::study
+}  // namespace corda::report

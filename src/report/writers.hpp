@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "corda/core/basics.hpp"
+#include "corda/report/report.hpp"
+
+namespace corda::report {
+
+// The forms of a report. Each is a function of the report alone: the same report gives the same bytes
+// (pictures: with the same version of gnuplot).
+
+/// A table as CSV: a row of column keys, then the rows. Quoted as in section 2 of RFC 4180, but with LF; a
+/// number has 17 significant digits, so that reading it gives the same bits.
+[[nodiscard]] std::string csv_text(const Table& table);
+
+/// The whole report as JSON, "schema": 1. A row is an object by column key; an empty cell is null, and so
+/// is a number that JSON does not have (infinite, NaN).
+[[nodiscard]] std::string json_text(const Report& report);
+
+/// The whole report as GitHub-flavoured Markdown with aligned tables and short numbers; a failed row says so
+/// in its failure column. Plots are linked as `<id>.svg`.
+[[nodiscard]] std::string markdown_text(const Report& report);
+
+/// Gives the SVG of a plot.
+using SvgOf = std::function<std::string(const Plot&)>;
+
+/// The whole report as one HTML page without scripts, style sheets or pictures of its own: it needs no other
+/// file. It is also well-formed XML.
+[[nodiscard]] std::string html_text(const Report& report, const SvgOf& svg_of);
+
+/// The format of a plot's picture of 1200 x 800 pixels.
+enum class PlotFormat { kPng, kSvg };
+
+/// The script with which gnuplot draws `plot` to its standard output. A point that an axis cannot show (not
+/// finite, or not positive on a logarithmic axis) is left out and breaks its line.
+[[nodiscard]] std::string gnuplot_script(const Plot& plot, PlotFormat format);
+
+/// The bytes of a plot's picture, drawn by gnuplot. Throws corda::Error (kIo): see check_gnuplot, and with
+/// gnuplot's own text if it fails.
+[[nodiscard]] std::string draw_plot(const Plot& plot, PlotFormat format);
+
+/// Throws corda::Error (kIo), naming the package, if gnuplot does not run. Call it before a report's figures
+/// are computed, so that they are not computed in vain.
+void check_gnuplot();
+
+/// Writes report.html, report.json, report.md, one `<id>.csv` per table, and `<id>.png` and `<id>.svg` per
+/// plot into a folder, which is made if it is missing; returns the paths, report.html first. All files are
+/// complete in memory before the first is written (see OutputFile). Files of other names stay. Throws
+/// corda::Error: kIo, or kInternal for a report that breaks the rules of report.hpp (check_report).
+std::vector<std::string> write_report(const Report& report, const std::string& folder,
+                                      OutputOptions options = {});
+
+/// Throws corda::Error (kInternal) if an id or a column key is not [a-z0-9_]+ or occurs twice, or if a row
+/// does not have one cell per column.
+void check_report(const Report& report);
+
+/// Whether the row has a reason in the failure column.
+[[nodiscard]] bool is_failed(const Table& table, std::size_t row);
+
+/// Whether a column has numbers and no texts.
+[[nodiscard]] bool is_numeric(const Table& table, std::size_t column);
+
+/// Whether people are shown a column: the failure column only if a row failed.
+[[nodiscard]] bool is_for_people(const Table& table, std::size_t column);
+
+/// A number for people: three significant digits, e.g. "1.23e-5" or "1230"; whole numbers below a million in
+/// full.
+[[nodiscard]] std::string short_number(double value);
+
+}  // namespace corda::report

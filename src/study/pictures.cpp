@@ -1,0 +1,315 @@
+#include "corda/study/pictures.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/clock.hpp"
+#include "corda/media/picture_quality.hpp"
+#include "corda/media/video_reader.hpp"
+#include "corda/media/video_writer.hpp"
+#include "corda/pipeline/describe.hpp"
+#include "corda/pipeline/painter.hpp"
+#include "corda/study/problems.hpp"
+#include "corda/study/truth.hpp"
+
+namespace corda::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSwing = R"(schema = 1
+[[rope]]
+line = { particles = 40, step = [0.1, -1.0] }
+[solver]
+method = "exact"
+)";
+constexpr double kForever = std::numeric_limits<double>::infinity();
+constexpr std::array<const char*, 6> kPresets{"ultrafast", "superfast", "veryfast", "fast", "medium", "slow"};
+
+/// A folder for trial videos, removed with everything in it.
+class TrialFolder {
+  public:
+    TrialFolder() : path_((fs::temp_directory_path() / "corda-study-XXXXXX").string()) {
+        if (mkdtemp(path_.data()) != nullptr) return;
+        throw Error(ExitCode::kIo, fmt::format("{}: cannot make this folder for trial videos; set TMPDIR to "
+                                               "a folder that can be written to",
+                                               path_));
+    }
+    TrialFolder(const TrialFolder&) = delete;
+    TrialFolder& operator=(const TrialFolder&) = delete;
+    ~TrialFolder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+
+    [[nodiscard]] std::string video() const { return path_ + "/trial.mp4"; }
+
+  private:
+    std::string path_;
+};
+
+/// A way to solve the scene.
+struct SolverSetting {
+    std::string series;
+    std::string words;  ///< within the series; empty: those of the method that auto chose
+    SolverDef solver;
+    int reach = 1;
+};
+
+std::vector<SolverSetting> list_settings(double frame_s) {
+    const auto words = [](int steps) { return fmt::format("{} steps per frame", steps); };
+    std::vector<SolverSetting> settings{
+        {"relaxation, reach 7", "1 step per frame", RelaxationDef{frame_s}, 7}};
+    for (const int steps : {2, 8}) {
+        settings.push_back(
+            {"relaxation, reach 1, 40 sweeps", words(steps), RelaxationDef{frame_s / steps, 40}});
+    }
+    for (const int steps : {2, 4, 8, 16})
+        settings.push_back({"rattle, order 4", words(steps), RattleDef{4, frame_s / steps}});
+    for (const double tolerance : {1e-2, 1e-4, 1e-6, 1e-8})
+        settings.push_back({"exact", fmt::format("tolerance {:.0e}", tolerance), ExactDef{tolerance}});
+    settings.push_back({"auto, 0.1 px", "", AutoDef{0.1}});
+    return settings;
+}
+
+/// The shortest times of the parts of a render, in seconds.
+struct RenderTime {
+    double simulate_s = kForever;
+    double draw_s = kForever;
+    double encode_s = kForever;  ///< up to the verified file
+    double whole_s = kForever;
+};
+
+/// What the jobs of the chapter share.
+struct Pictures {
+    explicit Pictures(const StudyDef& def)
+        : film_def(def.film),
+          repeats(def.quick ? 1 : 5),
+          scene(def.scene ? *def.scene : parse_scene(kSwing, "the swing")) {
+        constexpr std::int64_t kQuickFrames = 30;
+        constexpr std::int64_t kFrames = 120;
+        scene.video.width_px = def.quick ? 640 : 1280;
+        scene.video.height_px = def.quick ? 360 : 720;
+        const FrameRate fps = scene.video.fps;
+        const std::int64_t frames = fps.frame_count(scene.world.duration_s);
+        scene.world.duration_s = fps.time_s(std::min(frames, def.quick ? kQuickFrames : kFrames));
+        subject.problem = problem_of(scene);
+    }
+
+    [[nodiscard]] Scene scene_with(const SolverDef& solver, int reach) const {
+        Scene changed = scene;
+        changed.solver = solver;
+        for (RopeDef& rope : changed.ropes) rope.reach = reach;
+        return changed;
+    }
+
+    FilmDef film_def;
+    int repeats;
+    Scene scene;
+    Subject subject;
+    std::string gl_renderer;
+    TrialFolder folder;
+    report::Table solvers;
+    report::Table presets;
+    report::Plot plot;
+};
+
+/// Draws and encodes a film, which took `simulate_s` to simulate, and keeps the shortest times in `time`.
+void time_film(Film& film, const VideoDef& video, double simulate_s, const std::string& path,
+               RenderTime& time) {
+    FilmPainter painter(film);
+    fs::remove(path);
+    double draw_s = 0.0;
+    double encode_s = 0.0;
+    double last_s = now_s();
+    const auto lap = [&last_s](double& sum_s) {
+        const double from_s = std::exchange(last_s, now_s());
+        sum_s += last_s - from_s;
+    };
+    media::VideoWriter writer(path, video, {});
+    lap(encode_s);
+    for (std::int64_t k = 0; k < film.frame_count(); ++k) {
+        const PixelRect damage = painter.draw(film.time_s(k));
+        lap(draw_s);
+        writer.write(painter.image(), damage);
+        lap(encode_s);
+    }
+    writer.finish();
+    lap(encode_s);
+    time.simulate_s = std::min(time.simulate_s, simulate_s);
+    time.draw_s = std::min(time.draw_s, draw_s);
+    time.encode_s = std::min(time.encode_s, encode_s);
+    time.whole_s = std::min(time.whole_s, simulate_s + draw_s + encode_s);
+}
+
+/// Largest displayed distance of a particle from the truth, in pixels.
+std::optional<double> error_px(const Pictures& pictures, const Film& film, int reach) {
+    const Problem problem = with_reach(facing(pictures.subject, film.plan().method), reach);
+    const Measurement run = measure(problem, film.plan().method, "", 0.0, Timing{0, 0.0});
+    const double pixels_per_metre = film.scene().video.height_px / film.camera().height_m.value();
+    return run.largest_error * problem.length_m * pixels_per_metre;
+}
+
+void add_solver(const SolverSetting& setting, Pictures& pictures) {
+    const Scene scene = pictures.scene_with(setting.solver, setting.reach);
+    RenderTime time;
+    std::string words = setting.words;
+    std::optional<double> error;
+    try {
+        for (int repeat = 0; repeat < pictures.repeats; ++repeat) {
+            const double start_s = now_s();
+            Film film(scene, pictures.film_def);
+            static_cast<void>(film.camera());
+            static_cast<void>(film.state(film.frame_count() - 1));
+            time_film(film, scene.video, now_s() - start_s, pictures.folder.video(), time);
+            if (repeat > 0) continue;
+            if (words.empty()) words = describe(film.plan().method);
+            error = error_px(pictures, film, setting.reach);
+        }
+    } catch (const Error& failure) {
+        if (failure.code() != ExitCode::kDiverged && failure.code() != ExitCode::kInvalidScene) throw;
+        pictures.solvers.add_failed({setting.series, words}, failure.what());
+        return;
+    }
+    const auto frames = static_cast<double>(scene.video.fps.frame_count(scene.world.duration_s));
+    pictures.solvers.add({setting.series, words, report::cell_of(error), 1e3 * time.whole_s,
+                          1e3 * time.simulate_s, 1e3 * time.draw_s, 1e3 * time.encode_s,
+                          frames / time.whole_s});
+    auto& series = pictures.plot.series;
+    if (series.empty() || series.back().name != setting.series) series.push_back({setting.series, {}});
+    series.back().points.emplace_back(1e3 * time.whole_s, error.value());
+}
+
+/// Adds luma PSNR and SSIM of a video against the frames that it was made of, drawn again.
+void add_quality(Film& film, const std::string& path, std::vector<report::Cell>& row) {
+    FilmPainter painter(film);
+    media::VideoReader reader(path);
+    const VideoDef& video = film.scene().video;
+    media::Yuv420Image drawn(video.width_px, video.height_px);
+    media::Yuv420Image decoded;
+    double squares = 0.0;
+    double ssim = 0.0;
+    const std::int64_t frames = film.frame_count();
+    for (std::int64_t k = 0; k < frames; ++k) {
+        painter.draw(film.time_s(k));
+        media::convert_to_yuv420(painter.image(), painter.image().rect(), drawn);
+        if (!reader.read(decoded))
+            throw Error(ExitCode::kMismatch, fmt::format("the trial video ends before frame {}", k));
+        squares += media::luma_mean_square(drawn, decoded) / static_cast<double>(frames);
+        ssim += media::luma_ssim(drawn, decoded) / static_cast<double>(frames);
+    }
+    row.insert(row.end(), {media::psnr_db(squares), 1.0 - ssim});
+}
+
+void add_preset(const char* preset, Pictures& pictures) {
+    Film film(pictures.scene_with(AutoDef{}, 1), pictures.film_def);
+    VideoDef video = film.scene().video;
+    video.encoder.preset = preset;
+    const std::string path = pictures.folder.video();
+    RenderTime time;
+    for (int repeat = 0; repeat < pictures.repeats; ++repeat) time_film(film, video, 0.0, path, time);
+    std::vector<report::Cell> row{preset};
+    add_quality(film, path, row);
+    row.insert(row.end(), {static_cast<double>(fs::file_size(path)),
+                           static_cast<double>(film.frame_count()) / time.encode_s, 1e3 * time.encode_s});
+    pictures.presets.add(std::move(row));
+}
+
+void describe_tables(Pictures& pictures) {
+    report::Table& solvers = pictures.solvers;
+    solvers.id = "picture_solvers";
+    solvers.title = "The whole render by solver";
+    solvers.columns = {{"solver", "solver"},
+                       {"setting", "setting"},
+                       {"error_px", "largest displayed error [px]"},
+                       {"whole_ms", "whole render [ms]"},
+                       {"simulate_ms", "simulating [ms]"},
+                       {"draw_ms", "drawing [ms]"},
+                       {"encode_ms", "encoding [ms]"},
+                       {"frames_per_s", "frames per second"},
+                       report::failure_column()};
+    solvers.note = fmt::format(
+        "The shortest of {} renders, column by column. Simulating includes the plan of auto, and encoding "
+        "the check of the finished file. Starting OpenGL is in none of them.",
+        pictures.repeats);
+    report::Table& presets = pictures.presets;
+    presets.id = "picture_presets";
+    presets.title = "x264 presets on the same frames";
+    presets.columns = {
+        {"preset", "preset"}, {"psnr_db", "luma PSNR [dB]"},         {"one_minus_ssim", "1 - luma SSIM"},
+        {"bytes", "bytes"},   {"frames_per_s", "frames per second"}, {"encode_ms", "encoding [ms]"}};
+    const EncoderDef& encoder = pictures.scene.video.encoder;
+    presets.note = fmt::format(
+        "CRF {}, {} threads. Speed is that of encoding up to the checked file, without simulating and "
+        "drawing. PSNR is of the mean square over all frames; SSIM (Wang and others 2004, windows of 8x8) is "
+        "the mean over the frames.",
+        encoder.crf, encoder.threads);
+    pictures.plot = {"picture_error",
+                     "Displayed error against the time of the whole render",
+                     "whole render [ms]",
+                     "largest displayed error [px]",
+                     true,
+                     true,
+                     {}};
+}
+
+std::string setting_paragraph(const Pictures& pictures) {
+    const VideoDef& video = pictures.scene.video;
+    const Subject& subject = pictures.subject;
+    std::string text =
+        fmt::format("{} frames of {}x{} at {} per second, drawn by {}. The truth is {}",
+                    video.fps.frame_count(pictures.scene.world.duration_s), video.width_px, video.height_px,
+                    video.fps.rational().text(), pictures.gl_renderer, subject.problem.truth);
+    if (subject.exact_reference) text += fmt::format("; for exact it is {}", subject.exact_truth);
+    return text + ".";
+}
+
+std::string share_paragraph(const report::Table& solvers) {
+    double least = kForever;
+    double most = 0.0;
+    for (const auto& row : solvers.rows) {
+        const auto* const whole_ms = std::get_if<double>(&row[3]);
+        if (whole_ms == nullptr) continue;
+        const double share = std::get<double>(row[4]) / *whole_ms;
+        least = std::min(least, share);
+        most = std::max(most, share);
+    }
+    if (most == 0.0) return "No solver ran the scene.";
+    return fmt::format(
+        "Simulating takes {:.2g} % to {:.2g} % of the whole render; the rest is drawing and encoding.",
+        100.0 * least, 100.0 * most);
+}
+
+}  // namespace
+
+ChapterWork pictures_work(const StudyDef& def) {
+    const auto pictures = std::make_shared<Pictures>(def);
+    describe_tables(*pictures);
+    // Whether OpenGL works does not depend on the scene; this one costs no simulation.
+    pictures->gl_renderer = Film(parse_scene(kSwing, "the swing"), def.film).gl().renderer;
+    ChapterWork work;
+    work.jobs.push_back({"pictures: truth", [pictures] { find_truth(pictures->subject); }});
+    for (const SolverSetting& setting : list_settings(pictures->scene.video.fps.interval_s())) {
+        work.jobs.push_back({"pictures: " + setting.series, [=] { add_solver(setting, *pictures); }});
+    }
+    for (const char* preset : kPresets) {
+        work.jobs.push_back(
+            {fmt::format("pictures: preset {}", preset), [=] { add_preset(preset, *pictures); }});
+    }
+    work.finish = [pictures] {
+        return report::Chapter{"Pictures: from a scene to a video",
+                               {setting_paragraph(*pictures), share_paragraph(pictures->solvers)},
+                               {pictures->solvers, pictures->presets},
+                               {pictures->plot}};
+    };
+    return work;
+}
+
+}  // namespace corda::study

@@ -1,0 +1,234 @@
+#include "corda/study/speed.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "corda/study/problems.hpp"
+#include "corda/study/slope.hpp"
+#include "corda/study/sweep.hpp"
+#include "corda/study/truth.hpp"
+
+namespace corda::study {
+namespace {
+
+/// The accuracies that are compared, and what the fastest of MuJoCo 3.12, Simbody 3.7, Box2D 2.4 and Bullet
+/// 3.24 takes for each on the source report's swing, in ms per simulated second on one core of the machine
+/// that the README names.
+struct Accuracy {
+    double error;
+    double peer_ms;
+};
+constexpr std::array<Accuracy, 6> kAccuracies{
+    {{1e-3, 0.94}, {1e-4, 3.9}, {1e-6, 4.0}, {1e-8, 15}, {1e-9, 15}, {1e-12, 85}}};
+
+/// The runs on a problem and their results.
+struct Sweep {
+    Subject subject;
+    bool has_peers = false;
+    std::vector<Measurement> results;
+
+    [[nodiscard]] const Problem& problem() const { return subject.problem; }
+};
+
+report::Table runs_table(const Sweep& sweep) {
+    report::Table table{"speed_" + sweep.problem().id, sweep.problem().title, {}, {}, {}};
+    table.columns = {{"series", "method"},
+                     {"parameter", "step [s] or tolerance"},
+                     {"error_largest_over_length", "largest error / L"},
+                     {"error_rms_over_length", "RMS error / L"},
+                     {"strain_largest", "largest strain"},
+                     {"energy_error_over_mgl", "energy error / (m g L)"},
+                     {"ms_per_simulated_s", "ms per simulated second"},
+                     {"steps", "steps"},
+                     report::failure_column()};
+    for (const Measurement& run : sweep.results) {
+        if (!run.failure.empty()) {
+            table.add_failed({run.label, run.parameter}, run.failure);
+            continue;
+        }
+        table.add({run.label, run.parameter, report::cell_of(run.largest_error),
+                   report::cell_of(run.rms_error), run.largest_strain, report::cell_of(run.energy_error),
+                   run.ms_per_simulated_s, static_cast<double>(run.steps)});
+    }
+    table.note =
+        "Errors are the largest over all frames: of the distance of one particle from the truth, and of the "
+        "root mean square of the distances of all particles.";
+    return table;
+}
+
+/// The points of a series over which its error falls and is far above rounding.
+std::vector<std::pair<double, double>> falling_points(const Sweep& sweep, const std::string& label) {
+    constexpr double kLargest = 0.1;
+    const double floor = 30.0 * std::max(1e-15, sweep.subject.disagreement.value_or(0.0));
+    std::vector<std::pair<double, double>> points;
+    for (const Measurement& run : sweep.results) {
+        if (run.label != label || !run.failure.empty() || !(run.rms_error < kLargest)) continue;
+        if (run.rms_error < floor || (!points.empty() && run.rms_error >= points.back().second)) break;
+        points.emplace_back(run.parameter, run.rms_error);
+    }
+    return points;
+}
+
+/// In the order of the sweep.
+std::vector<std::string> labels_of(const Sweep& sweep) {
+    std::vector<std::string> labels;
+    for (const Measurement& run : sweep.results) {
+        if (labels.empty() || labels.back() != run.label) labels.push_back(run.label);
+    }
+    return labels;
+}
+
+report::Table slopes_table(const Sweep& sweep) {
+    report::Table table{"slopes_" + sweep.problem().id,
+                        "How the error falls with the step or the tolerance",
+                        {{"series", "method"}, {"slope", "exponent"}, {"points", "points of the fit"}},
+                        {},
+                        {}};
+    for (const std::string& label : labels_of(sweep)) {
+        if (const auto slope = fit_slope(falling_points(sweep, label))) {
+            table.add({label, slope->exponent, static_cast<double>(slope->points)});
+        } else {
+            table.add({label});
+        }
+    }
+    table.note =
+        "The exponent p of RMS error ~ parameter ^ p by least squares, over the runs whose error still falls "
+        "and is well above rounding; empty if there are fewer than three.";
+    return table;
+}
+
+report::Table fastest_table(const Sweep& sweep) {
+    report::Table table{"fastest_" + sweep.problem().id, "Fastest at each accuracy", {}, {}, {}};
+    table.columns = {{"error_goal", "RMS error / L at most"},
+                     {"series", "method"},
+                     {"parameter", "step [s] or tolerance"},
+                     {"error_rms_over_length", "RMS error / L"},
+                     {"ms_per_simulated_s", "ms per simulated second"}};
+    if (sweep.has_peers) {
+        table.columns.push_back({"peer_ms_per_simulated_s", "best peer, ms"});
+        table.note =
+            "Peers: the fastest of MuJoCo 3.12, Simbody 3.7, Box2D 2.4 and Bullet 3.24 at this accuracy, on "
+            "one core of a machine of the same type.";
+    }
+    for (const auto& [error, peer_ms] : kAccuracies) {
+        std::vector<report::Cell> row{error, "none", {}, {}, {}};
+        if (const Measurement* const best = cheapest_within(sweep.results, error))
+            row = {error, best->label, best->parameter, best->rms_error, best->ms_per_simulated_s};
+        if (sweep.has_peers) row.emplace_back(peer_ms);
+        table.add(std::move(row));
+    }
+    return table;
+}
+
+report::Plot plot_of(const Sweep& sweep) {
+    report::Plot plot;
+    plot.id = "speed_" + sweep.problem().id;
+    plot.title = sweep.problem().title;
+    plot.x_title = "RMS error / L";
+    plot.y_title = "ms per simulated second";
+    for (const std::string& label : labels_of(sweep)) {
+        report::Series series{label, {}};
+        for (const Measurement& run : sweep.results) {
+            // An error of 0 has no place on a logarithmic axis.
+            if (run.label == label && run.failure.empty() && run.rms_error > 0.0)
+                series.points.emplace_back(run.rms_error, run.ms_per_simulated_s);
+        }
+        if (!series.points.empty()) plot.series.push_back(std::move(series));
+    }
+    return plot;
+}
+
+std::string truth_paragraph(const Sweep& sweep) {
+    const Subject& subject = sweep.subject;
+    std::string text = fmt::format("{}. The truth is {}.", sweep.problem().title, sweep.problem().truth);
+    if (subject.exact_reference) {
+        text +=
+            fmt::format(" Method exact itself is compared with {}. The two differ by {:.1e} L at most (RMS).",
+                        subject.exact_truth, subject.disagreement.value_or(0.0));
+    }
+    if (subject.horizon_s) {
+        text += fmt::format(
+            " The motion is chaotic: after {:.3g} s two tight runs differ by more than {:.0e} L, and later "
+            "frames are not compared.",
+            *subject.horizon_s, kHorizonDifference);
+    }
+    return text;
+}
+
+std::string peers_paragraph(const Sweep& sweep) {
+    const auto ahead = std::count_if(kAccuracies.begin(), kAccuracies.end(), [&](const Accuracy& accuracy) {
+        const Measurement* const best = cheapest_within(sweep.results, accuracy.error);
+        return best != nullptr && best->ms_per_simulated_s < accuracy.peer_ms;
+    });
+    return fmt::format("Corda is faster than the best peer at {} of {} accuracies.", ahead,
+                       kAccuracies.size());
+}
+
+std::vector<Problem> problems_of(const StudyDef& def) {
+    if (def.scene) return {problem_of(*def.scene)};
+    return {report_swing(), a01_pendulum(), released_chain(), spinning_chain()};
+}
+
+void add_jobs(const std::shared_ptr<Sweep>& sweep, bool is_quick, std::vector<Job>& jobs) {
+    jobs.push_back({sweep->problem().id + ": truth", [sweep] {
+                        if (!sweep->problem().reference) find_truth(sweep->subject);
+                    }});
+    for (const SweepRun& run : sweep_runs(sweep->problem(), is_quick)) {
+        jobs.push_back({fmt::format("{}: {}, {:.3g}", sweep->problem().id, run.label, run.parameter),
+                        [sweep, run, timing = study_timing(is_quick)] {
+                            const Problem problem = with_reach(facing(sweep->subject, run.method), run.reach);
+                            sweep->results.push_back(
+                                measure(problem, run.method, run.label, run.parameter, timing));
+                        }});
+    }
+}
+
+void add_sweep(const Sweep& sweep, report::Chapter& chapter) {
+    chapter.paragraphs.push_back(truth_paragraph(sweep));
+    if (sweep.has_peers) chapter.paragraphs.push_back(peers_paragraph(sweep));
+    chapter.tables.push_back(fastest_table(sweep));
+    chapter.tables.push_back(slopes_table(sweep));
+    chapter.tables.push_back(runs_table(sweep));
+    chapter.plots.push_back(plot_of(sweep));
+}
+
+}  // namespace
+
+const Measurement* cheapest_within(std::span<const Measurement> runs, double error) {
+    const Measurement* best = nullptr;
+    for (const Measurement& run : runs) {
+        if (!run.failure.empty() || !(run.rms_error <= error)) continue;
+        if (best == nullptr || run.ms_per_simulated_s < best->ms_per_simulated_s) best = &run;
+    }
+    return best;
+}
+
+ChapterWork speed_work(const StudyDef& def) {
+    ChapterWork work;
+    std::vector<std::shared_ptr<Sweep>> sweeps;
+    for (Problem& problem : problems_of(def)) {
+        auto sweep = std::make_shared<Sweep>();
+        sweep->has_peers = !def.scene && sweeps.empty();
+        sweep->subject.problem = std::move(problem);
+        add_jobs(sweep, def.quick, work.jobs);
+        sweeps.push_back(std::move(sweep));
+    }
+    work.finish = [sweeps] {
+        report::Chapter chapter;
+        chapter.title = "Speed against error";
+        chapter.paragraphs = {
+            "Every run computes the positions of all particles at every frame. Its time is that of the "
+            "stepping alone, without set-up. A method is compared with another method if another one can run "
+            "the problem."};
+        for (const auto& sweep : sweeps) add_sweep(*sweep, chapter);
+        return chapter;
+    };
+    return work;
+}
+
+}  // namespace corda::study

@@ -1,0 +1,72 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "samples.hpp"
+
+namespace corda::report {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(Report, NumbersForPeopleHaveThreeDigits) {
+    EXPECT_EQ(short_number(1.0 / 3.0), "0.333");
+    EXPECT_EQ(short_number(1.23456e-5), "1.23e-5");
+    EXPECT_EQ(short_number(-1.23456e-105), "-1.23e-105");
+    EXPECT_EQ(short_number(2.5e12), "2.5e+12");
+    EXPECT_EQ(short_number(123456.0), "123456");
+    EXPECT_EQ(short_number(1234.5), "1230");
+    EXPECT_EQ(short_number(999.7), "1000");
+    EXPECT_EQ(short_number(-99950.5), "-100000");
+    EXPECT_EQ(short_number(999600.5), "1e+6");
+    EXPECT_EQ(short_number(1e6), "1e+6");
+    EXPECT_EQ(short_number(-0.0), "0");
+    EXPECT_EQ(short_number(kInfinity), "∞");
+    EXPECT_EQ(short_number(-kInfinity), "−∞");
+    EXPECT_EQ(short_number(std::nan("")), "NaN");
+}
+
+TEST(Report, FailureColumnIsShownIfARowFailed) {
+    Table table = small_table();
+    EXPECT_THAT(markdown_text({"R", {}, {{"C", {}, {table}, {}}}}), HasSubstr("| Failure"));
+    table.rows.pop_back();
+    EXPECT_THAT(markdown_text({"R", {}, {{"C", {}, {table}, {}}}}), Not(HasSubstr("Failure")));
+    EXPECT_THAT(html_text({"R", {}, {{"C", {}, {table}, {}}}}, {}), Not(HasSubstr("Failure")));
+    EXPECT_THAT(csv_text(table), HasSubstr(",failure\n"));  // programs find every key
+}
+
+TEST(Report, IsRefusedIfBroken) {
+    EXPECT_NO_THROW(check_report(small_report()));
+    const auto code_with = [](const std::function<void(Report&)>& change) {
+        Report report = small_report();
+        change(report);
+        return code_of([&report] { check_report(report); });
+    };
+    EXPECT_EQ(code_with([](Report& r) { r.chapters[0].tables[0].id = "../x"; }), ExitCode::kInternal);
+    EXPECT_EQ(code_with([](Report& r) { r.chapters[0].tables[0].id = ""; }), ExitCode::kInternal);
+    EXPECT_EQ(code_with([](Report& r) { r.chapters[1].plots[0].id = "error"; }), ExitCode::kInternal);
+    EXPECT_EQ(code_with([](Report& r) { r.chapters[0].tables[0].rows[1].pop_back(); }), ExitCode::kInternal);
+    EXPECT_EQ(code_with([](Report& r) { r.chapters[0].tables[0].columns[1].key = "method"; }),
+              ExitCode::kInternal);
+}
+
+TEST(Report, TablesFillTheirRows) {
+    Table table{"t", "", {{"method", ""}, {"error", ""}, failure_column()}, {}, ""};
+    table.add({"exact", 1e-9});
+    table.add_failed({"rattle"}, "it diverged");
+    EXPECT_EQ(csv_text(table), "method,error,failure\nexact,1.0000000000000001e-09,\nrattle,,it diverged\n");
+    EXPECT_FALSE(is_failed(table, 0));
+    EXPECT_TRUE(is_failed(table, 1));
+    EXPECT_TRUE(is_numeric(table, 1));
+    EXPECT_FALSE(is_numeric(table, 0));
+}
+
+TEST(Report, CellsOfMissingNumbersAreEmpty) {
+    EXPECT_EQ(cell_of(2.0), Cell(2.0));
+    EXPECT_EQ(cell_of(std::nullopt), Cell());
+    EXPECT_EQ(cell_of(std::nan("")), Cell());
+    EXPECT_EQ(cell_of(kInfinity), Cell(kInfinity));
+}
+
+}  // namespace
+}  // namespace corda::report

@@ -1,0 +1,107 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "corda/media/defs.hpp"
+#include "samples.hpp"
+#include "support/command.hpp"
+
+namespace corda::report {
+namespace {
+
+using test::run_shell;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Sets an environment variable for as long as it lives.
+class Environment {
+  public:
+    Environment(const char* name, const std::string& value) : name_(name), old_(std::getenv(name)) {
+        setenv(name, value.c_str(), 1);
+    }
+    Environment(const Environment&) = delete;
+    Environment& operator=(const Environment&) = delete;
+    ~Environment() { setenv(name_, old_.c_str(), 1); }
+
+  private:
+    const char* name_;
+    std::string old_;
+};
+
+TEST(Plots, ScriptsQuoteEveryText) {
+    const std::string script = gnuplot_script(small_plot(), PlotFormat::kSvg);
+    EXPECT_THAT(script, HasSubstr("set title 'Error, a_b, \"q\" <b>&amp; | *x* ''y'' `touch pwned`"));
+    EXPECT_THAT(script, HasSubstr("set logscale x\n"));
+    EXPECT_THAT(script, HasSubstr("0.01 0.0001\nNaN NaN\nEND\n"));  // a zero breaks the line
+    EXPECT_THAT(script, HasSubstr("keyentry"));
+    Plot linear = small_plot();
+    linear.log_x = linear.log_y = false;
+    EXPECT_THAT(gnuplot_script(linear, PlotFormat::kSvg),
+                AllOf(HasSubstr("0.10000000000000001 0\nEND"), Not(HasSubstr("logscale"))));
+}
+
+TEST(Plots, ArePicturesOfTheRightSize) {
+    const test::ScratchFolder folder;
+    Plot empty = small_plot();
+    empty.id = "empty";
+    empty.series.clear();
+    Plot pointless = small_plot();
+    pointless.id = "pointless";
+    pointless.series = {{"never", {{-1.0, 1.0}}}};
+    Plot one = small_plot();
+    one.id = "one";
+    one.series = {{"one", {{1.0, 1.0}}}};
+    for (const Plot& plot : {small_plot(), empty, pointless, one}) {
+        const std::string png = folder.write(plot.id + ".png", draw_plot(plot, PlotFormat::kPng));
+        const Image image = read_png(png);
+        EXPECT_EQ(image.width(), 1200) << plot.id;
+        EXPECT_EQ(image.height(), 800) << plot.id;
+        const std::string svg = folder.write(plot.id + ".svg", draw_plot(plot, PlotFormat::kSvg));
+        const auto result = run_shell("xmllint --noout --nonet " + test::quoted(svg));
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_THAT(test::read_file(svg), HasSubstr("viewBox=\"0 0 1200 800\"")) << plot.id;
+    }
+    EXPECT_FALSE(std::filesystem::exists("pwned"));
+    EXPECT_THAT(test::read_file(folder.file("error.svg")), HasSubstr("`touch pwned` $(touch pwned) @m \\"));
+    EXPECT_THAT(test::read_file(folder.file("error.svg")), HasSubstr("never (no points)"));
+}
+
+TEST(Plots, MissingGnuplotNamesItsPackage) {
+    const test::ScratchFolder folder;
+    const Environment path("PATH", folder.path());
+    for (const auto& action : {std::function<void()>([] { check_gnuplot(); }), std::function<void()>([] {
+                                   (void)draw_plot(small_plot(), PlotFormat::kPng);
+                               })}) {
+        try {
+            action();
+            FAIL() << "no error";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ExitCode::kIo);
+            EXPECT_THAT(error.what(), AllOf(HasSubstr("gnuplot does not start: No such file or directory"),
+                                            HasSubstr("apt-get install gnuplot-nox")));
+        }
+    }
+}
+
+TEST(Plots, FailureOfGnuplotIsReported) {
+    const test::ScratchFolder folder;
+    const std::string fake = folder.write("gnuplot", "#!/bin/sh\necho 'no such terminal' >&2\nexit 3\n");
+    std::filesystem::permissions(fake, std::filesystem::perms::owner_all);
+    const Environment path("PATH", folder.path());
+    try {
+        (void)draw_plot(small_plot(), PlotFormat::kPng);
+        FAIL() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::kIo);
+        EXPECT_STREQ(error.what(), "gnuplot cannot draw 'error' (status 3): no such terminal");
+    }
+    EXPECT_EQ(code_of([] { check_gnuplot(); }), ExitCode::kIo);
+    EXPECT_EQ(code_of([&] { write_report(small_report(), folder.file("out")); }), ExitCode::kIo);
+    EXPECT_FALSE(std::filesystem::exists(folder.file("out")));
+}
+
+}  // namespace
+}  // namespace corda::report

@@ -1,0 +1,27 @@
+#include "corda/study/speed.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace corda::study {
+namespace {
+
+TEST(Speed, TakesTheCheapestRunThatMeetsTheError) {
+    std::vector<Measurement> runs(4);
+    runs[0].rms_error = 1e-2;
+    runs[0].ms_per_simulated_s = 1.0;
+    runs[1].rms_error = 1e-5;
+    runs[1].ms_per_simulated_s = 5.0;
+    runs[2].rms_error = 1e-7;
+    runs[2].ms_per_simulated_s = 3.0;
+    runs[3].failure = "diverged";  // its error of 0 does not count
+    EXPECT_EQ(cheapest_within(runs, 1e-1), &runs[0]);
+    EXPECT_EQ(cheapest_within(runs, 1e-4), &runs[2]);
+    EXPECT_EQ(cheapest_within(runs, 1e-9), nullptr);
+    runs[1].rms_error = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(cheapest_within(runs, 1e-5), &runs[2]);
+}
+
+}  // namespace
+}  // namespace corda::study
