@@ -1,16 +1,17 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "console.hpp"
-#include "corda/core/exit_code.hpp"
-#include "corda/gl/context.hpp"
-#include "corda/scene/auto_plan.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/pipeline/film.hpp"
 #include "corda/scene/scene.hpp"
 
 namespace corda::app {
@@ -27,6 +28,16 @@ void add_verify(CLI::App& app, Action& action);
 void add_doctor(CLI::App& app, Action& action);
 void add_plan(CLI::App& app, Action& action);
 void add_study(CLI::App& app, Action& action);
+void add_help(CLI::App& app, Action& action);
+
+/// The subcommand of that name; null if there is none.
+[[nodiscard]] const CLI::App* find_command(const CLI::App& app, std::string_view name);
+
+/// The names of the subcommands.
+[[nodiscard]] std::vector<std::string> command_names(const CLI::App& app);
+
+/// What to use in place of an unknown word: "did you mean render?", or all the words that are known.
+[[nodiscard]] std::string advice(std::string_view word, const std::vector<std::string>& known);
 
 /// A scene file and what the command line puts in the place of its values.
 struct SceneOptions {
@@ -41,7 +52,7 @@ struct SceneOptions {
                       const std::string& help);
     /// `--size WxH` for `--set video.size=[W,H]`.
     void add_size(CLI::App& command);
-    [[nodiscard]] scene::Scene load() const { return scene::load_scene(path, settings); }
+    [[nodiscard]] Scene load() const { return load_scene(path, settings); }
 };
 
 /// Which OpenGL to draw with.
@@ -50,24 +61,24 @@ struct GlOptions {
     bool require_gpu = false;
 
     void add_to(CLI::App& command);
-    /// Throws corda::Error (kUsage) for an unknown backend.
-    [[nodiscard]] gl::ContextDef def() const;
+    void apply_to(FilmDef& film) const;
 };
 
-/// Shows how far a run is that comes before the one asked for, once that takes more than a second, and ends
-/// it by a corda::Error where a signal asks for that. `console` has to outlive it.
-[[nodiscard]] sim::FrameWatch preparation(const Console& console, const std::string& what);
+/// Shows how far the simulation of a film is once it takes more than a second, and ends it by a corda::Error
+/// if a signal asks for that. `console` must outlive it.
+[[nodiscard]] OnProgress show_progress(const Console& console, const std::string& what);
 
-/// Settles method auto and says what it became and how far it can be trusted.
-[[nodiscard]] std::optional<scene::AutoPlan> settle_method(const Console& console, scene::Scene& scene);
+/// The bound on the error of a film whose plan has one: "0.06 px, 0.0003 m, up to 0.75 s".
+[[nodiscard]] std::string bound_text(const Film& film);
 
-/// Puts "error_bound_m", "error_bound_px" and "horizon_s" into a report; null where nothing was proved.
-void report_proof(const std::optional<scene::AutoPlan>& proof, nlohmann::json& json);
+/// Says what method `auto` became and how far it can be trusted.
+void report_plan(const Console& console, const Film& film);
 
-/// The solver in words: "exact at tolerance 1e-08".
-[[nodiscard]] std::string describe(const sim::SolverDef& solver);
+/// What every report on a film begins with: method, size, proof, camera and passes; null for what a film does
+/// not have. Simulates what has not been yet.
+[[nodiscard]] nlohmann::json film_json(const Film& film);
 
 /// Says with -v what draws, and how it was reached.
-void report_gl(const Console& console, const gl::Context& context);
+void report_gl(const Console& console, const GlInfo& gl);
 
 }  // namespace corda::app

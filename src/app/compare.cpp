@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "corda/core/error.hpp"
-#include "corda/media/png.hpp"
-#include "output.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/output_file.hpp"
+#include "corda/media/defs.hpp"
 
 namespace corda::app {
 namespace {
@@ -16,12 +16,12 @@ namespace {
 struct CompareOptions {
     std::string a;
     std::string b;
-    golden::Limits limits;
+    DifferenceLimits limits;
     std::string diff;
     bool force = false;
 };
 
-nlohmann::json report(const golden::Comparison& comparison, bool passed) {
+nlohmann::json report(const Difference& comparison, bool passed) {
     nlohmann::json json = {{"schema", 1},      {"equal", comparison.equal},
                            {"passed", passed}, {"same_size", comparison.same_size},
                            {"max", nullptr},   {"mean", nullptr},
@@ -36,12 +36,17 @@ nlohmann::json report(const golden::Comparison& comparison, bool passed) {
 
 ExitCode compare(const Console& console, const CompareOptions& options) {
     if (!options.diff.empty()) {
+        if (std::filesystem::path(options.diff).extension() != ".png") {
+            throw Error(
+                ExitCode::kUsage,
+                fmt::format("--diff {}: the picture is written as .png; give such a name", options.diff));
+        }
         check_output(options.diff, options.a, options.force);
         check_output(options.diff, options.b, options.force);
     }
-    const Image a = media::read_png(options.a);
-    const Image b = media::read_png(options.b);
-    const golden::Comparison comparison = golden::compare(a, b);
+    const Image a = read_png(options.a);
+    const Image b = read_png(options.b);
+    const Difference comparison = compare(a, b);
     const bool passed = comparison.within(options.limits);
     if (!comparison.same_size) {
         console.result(
@@ -54,7 +59,7 @@ ExitCode compare(const Console& console, const CompareOptions& options) {
                                    comparison.mean, comparison.share));
     }
     if (!options.diff.empty() && comparison.same_size) {
-        media::write_png(options.diff, golden::difference_image(a, b));
+        write_png(options.diff, difference_image(a, b), {}, {.force = options.force});
         console.info(fmt::format("difference picture: {}", options.diff));
     }
     console.report(report(comparison, passed));
@@ -66,10 +71,13 @@ ExitCode compare(const Console& console, const CompareOptions& options) {
 void add_compare(CLI::App& app, Action& action) {
     auto options = std::make_shared<CompareOptions>();
     CLI::App* command = app.add_subcommand(
-        "compare", "compare two PNG files; exit 7 where they differ (by more than the limits)");
+        "compare", "compare two PNG files; exit 7 if they differ (by more than the limits)");
     command->add_option("A", options->a, "PNG file")->required();
     command->add_option("B", options->b, "PNG file")->required();
-    command->add_option("--max", options->limits.max, "largest difference of a channel that passes, 0 .. 255")
+    command
+        ->add_option(
+            "--max", options->limits.max,
+            "largest difference of a channel that passes, 0 .. 255; with no limit only equal pictures pass")
         ->check(CLI::Range(0.0, 255.0));
     command
         ->add_option("--mean", options->limits.mean, "mean difference of all channels that passes, 0 .. 255")

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -13,7 +12,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "corda/core/error.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/clock.hpp"
 
 namespace corda::app {
 namespace {
@@ -28,7 +28,7 @@ void write_stdout(std::string_view text) {
         throw Error(ExitCode::kIo, fmt::format("writing to standard output: {}", std::strerror(errno)));
 }
 
-/// What cannot be told must not end the work: a closed or full stderr is let be.
+/// A closed or full stderr must not end the work.
 void write_stderr(const std::string& text) {
     static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
     std::fflush(stderr);
@@ -47,10 +47,6 @@ std::string duration_text(double seconds) {
 }
 
 }  // namespace
-
-double now_s() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 Console::Console(const ConsoleDef& def)
     : def_(def), is_terminal_(isatty(STDERR_FILENO) == 1), uses_color_(is_terminal_ && !is_set("NO_COLOR")) {}

@@ -10,7 +10,7 @@ namespace corda::app {
 
 /// How much is said, and whether results are JSON.
 struct ConsoleDef {
-    bool quiet = false;    ///< nothing but errors on stderr
+    bool quiet = false;    ///< errors alone on stderr
     bool verbose = false;  ///< also details
     bool json = false;     ///< results on stdout as JSON in place of words
 };
@@ -30,10 +30,9 @@ class Console {
     void warning(std::string_view text) const;
     void error(std::string_view text) const;
 
-    /// A line of result on stdout, where results are words. Throws corda::Error (kIo) where stdout takes no
-    /// more.
+    /// A line of result on stdout, if results are words. Throws corda::Error (kIo) if stdout takes no more.
     void result(std::string_view text) const;
-    /// The result on stdout, where results are JSON.
+    /// The result on stdout, if results are JSON.
     void report(const nlohmann::json& json) const;
 
   private:
@@ -68,8 +67,5 @@ class Progress {
     double last_drawn_s_ = 0.0;
     bool bar_is_drawn_ = false;
 };
-
-/// Seconds on a clock that only goes forward.
-[[nodiscard]] double now_s();
 
 }  // namespace corda::app

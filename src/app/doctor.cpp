@@ -1,10 +1,14 @@
 #include <algorithm>
+#include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "corda/media/video_writer.hpp"
+#include "corda/gl/context.hpp"
+#include "corda/media/format.hpp"
+#include "corda/media/probe.hpp"
 
 namespace corda::app {
 namespace {
@@ -19,7 +23,7 @@ void print_contexts(const Console& console, const std::vector<gl::Attempt>& atte
         const gl::ContextInfo& info = *attempt.info;
         console.result(fmt::format("  yes  {}: {} on the {}", attempt.platform, info.gl_renderer,
                                    info.software ? "CPU" : "GPU"));
-        console.result(fmt::format("       OpenGL {} by {}; EGL {} by {}; frames up to {} pixels a side",
+        console.result(fmt::format("       OpenGL {} by {}; EGL {} by {}; frames up to {} pixels per side",
                                    info.gl_version, info.gl_vendor, info.egl_version, info.egl_vendor,
                                    info.max_texture_px));
     }
@@ -42,25 +46,43 @@ nlohmann::json to_json(const gl::Attempt& attempt) {
     return json;
 }
 
+/// The endings of the files that can be written, or of those that cannot.
+std::set<std::string_view> endings(const std::vector<media::EncoderProbe>& encoders, bool writable) {
+    std::set<std::string_view> result;
+    for (const media::Format& format : media::formats()) {
+        const bool usable = std::any_of(encoders.begin(), encoders.end(), [&](const auto& encoder) {
+            if (!encoder.usable) return false;
+            const auto rows = media::formats();
+            return std::any_of(rows.begin(), rows.end(), [&](const media::Format& row) {
+                return std::string_view(row.ending) == format.ending && encoder.name == row.codec;
+            });
+        });
+        if (usable == writable) result.insert(format.ending);
+    }
+    return result;
+}
+
 ExitCode doctor(const Console& console) {
     const std::vector<gl::Attempt> attempts = gl::probe_contexts();
     const std::vector<media::EncoderProbe> encoders = media::probe_encoders();
     const bool has_gl = std::any_of(attempts.begin(), attempts.end(),
                                     [](const gl::Attempt& a) { return a.info.has_value(); });
-    const bool has_h264 = std::any_of(encoders.begin(), encoders.end(), [](const media::EncoderProbe& e) {
-        return e.name == "libx264" && e.usable;
-    });
     print_contexts(console, attempts);
-    console.result("Encoders, opened to see (Corda writes with libx264):");
+    console.result("Encoders, each tried with a small picture:");
     for (const media::EncoderProbe& encoder : encoders) {
         console.result(encoder.usable ? fmt::format("  yes  {}", encoder.name)
                                       : fmt::format("  no   {}: {}", encoder.name, encoder.reason));
     }
     console.result(has_gl ? "This machine can draw."
                           : "This machine cannot draw: apt-get install libegl-mesa0 libgl1-mesa-dri");
-    console.result(has_h264 ? "This machine can write MP4."
-                            : "This machine cannot write MP4: libavcodec has no libx264");
-    nlohmann::json json = {{"schema", 1}, {"can_draw", has_gl}, {"can_write_mp4", has_h264}};
+    const std::set<std::string_view> written = endings(encoders, true);
+    const std::set<std::string_view> missing = endings(encoders, false);
+    if (!written.empty()) console.result(fmt::format("It can write {}.", fmt::join(written, ", ")));
+    if (!missing.empty()) {
+        console.result(
+            fmt::format("It cannot write {}: apt-get install libavcodec59", fmt::join(missing, ", ")));
+    }
+    nlohmann::json json = {{"schema", 1}, {"can_draw", has_gl}, {"can_write", written}};
     json["contexts"] = nlohmann::json::array();
     for (const gl::Attempt& attempt : attempts) json["contexts"].push_back(to_json(attempt));
     json["encoders"] = nlohmann::json::array();
@@ -70,7 +92,7 @@ ExitCode doctor(const Console& console) {
     }
     console.report(json);
     if (!has_gl) return ExitCode::kNoGl;
-    return has_h264 ? ExitCode::kOk : ExitCode::kEncoder;
+    return missing.empty() ? ExitCode::kOk : ExitCode::kEncoder;
 }
 
 }  // namespace

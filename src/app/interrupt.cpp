@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <ctime>
 
+#include "corda/core/basics.hpp"
+
 namespace corda::app {
 namespace {
 
@@ -66,6 +68,10 @@ ExitCode interruption() {
         default:
             return ExitCode::kOk;
     }
+}
+
+void stop_if_asked() {
+    if (interruption() != ExitCode::kOk) throw Error(interruption(), "interrupted; nothing was written");
 }
 
 }  // namespace corda::app

@@ -1,19 +1,23 @@
 #pragma once
 
-#include "corda/core/exit_code.hpp"
+#include "corda/core/basics.hpp"
 
 namespace corda::app {
 
-/// From now on the first SIGINT or SIGTERM only asks the program to stop where nothing is lost; one that
-/// comes more than a tenth of a second later ends it at once. SIGPIPE and SIGXFSZ become ordinary
-/// write errors.
+/// From now on the first SIGINT or SIGTERM only asks the program to stop at a point that loses no
+/// work; one that comes more than a tenth of a second later ends it at once. SIGPIPE and SIGXFSZ become
+/// ordinary write errors.
 void install_signal_handlers();
 
-/// Gives a closed standard stream a file that takes nothing, so that no file that is opened later gets its
-/// number and what is meant for the stream.
+/// Opens /dev/null for each closed standard stream: a file opened later would get its number, and with it
+/// what is meant for the stream.
 void keep_standard_streams();
 
 /// The status to exit with once a signal has asked to stop; kOk before.
 [[nodiscard]] ExitCode interruption();
+
+/// Throws corda::Error of that status once a signal has asked to stop: for work that has not written anything
+/// yet.
+void stop_if_asked();
 
 }  // namespace corda::app

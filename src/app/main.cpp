@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <new>
 #include <optional>
@@ -7,15 +8,35 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "corda/core/error.hpp"
-#include "corda/scene/nearest_key.hpp"
+#include "corda/core/basics.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
 namespace {
+
+/// One row of the table that `corda --help` prints.
+struct ExitCodeText {
+    ExitCode code;
+    std::string_view meaning;
+};
+
+constexpr std::array<ExitCodeText, 12> kExitCodes{{
+    {ExitCode::kOk, "success"},
+    {ExitCode::kInternal, "internal error: a bug in corda"},
+    {ExitCode::kUsage, "usage: unknown command, flag or value"},
+    {ExitCode::kInvalidScene, "invalid scene file"},
+    {ExitCode::kNoGl, "no usable OpenGL"},
+    {ExitCode::kEncoder, "codec missing or encoder failed"},
+    {ExitCode::kIo, "input/output error, disk full, or output exists (see --force)"},
+    {ExitCode::kMismatch, "compare or verify found a difference or a problem"},
+    {ExitCode::kDiverged, "the simulation diverged"},
+    {ExitCode::kTemporary, "out of memory, or another temporary failure: try again"},
+    {ExitCode::kInterrupted, "interrupted (SIGINT); what was done is kept"},
+    {ExitCode::kTerminated, "terminated (SIGTERM); what was done is kept"},
+}};
 
 std::string exit_code_table() {
     std::string text = "Exit codes:\n";
@@ -27,23 +48,45 @@ std::string exit_code_table() {
 void add_console_flags(CLI::App& app, ConsoleDef& def) {
     for (CLI::App* command : app.get_subcommands({})) {
         command->add_flag("--json", def.json, "print the result as JSON on standard output");
-        command->add_flag("-q,--quiet", def.quiet, "say nothing but errors");
+        command->add_flag("-q,--quiet", def.quiet, "print errors alone");
         command->add_flag("-v,--verbose", def.verbose, "say more");
     }
 }
 
-/// Why the first word is no command; nothing where it is one, or an option.
+/// Why the first word is no command; std::nullopt if it is one, or an option.
 std::optional<std::string> unknown_command(const CLI::App& app, int argc, char** argv) {
     if (argc < 2 || argv[1][0] == '-') return std::nullopt;
+    if (find_command(app, argv[1]) != nullptr) return std::nullopt;
+    return fmt::format("there is no command \"{}\"; {}", argv[1], advice(argv[1], command_names(app)));
+}
+
+/// The first argument of a command that looks like an option and is none; std::nullopt if all are.
+std::optional<std::string> unknown_option(const CLI::App& app, int argc, char** argv) {
+    const CLI::App* const command = argc < 2 ? nullptr : find_command(app, argv[1]);
+    if (command == nullptr) return std::nullopt;
     std::vector<std::string> names;
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-        names.push_back(command->get_name());
-    if (std::find(names.begin(), names.end(), argv[1]) != names.end()) return std::nullopt;
-    const std::vector<std::string_view> candidates(names.begin(), names.end());
-    const auto nearest = scene::nearest_key(argv[1], candidates);
-    return fmt::format("there is no command \"{}\"; {}", argv[1],
-                       nearest ? fmt::format("did you mean {}?", *nearest)
-                               : fmt::format("known are {}", fmt::join(names, ", ")));
+    for (const CLI::Option* option : command->get_options()) {
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+    for (int i = 2; i < argc; ++i) {
+        const std::string_view argument = argv[i];
+        if (argument == "--") return std::nullopt;
+        const std::string word(argument.substr(0, argument.find('=')));
+        if (word.starts_with("--") && std::find(names.begin(), names.end(), word) == names.end())
+            return fmt::format("unknown option {}; {}", word, advice(word, names));
+    }
+    return std::nullopt;
+}
+
+/// Says what went wrong, with --json on standard output too.
+int fail(const Console& console, ExitCode code, const std::string& message) {
+    console.error(message);
+    try {
+        console.report({{"schema", 1}, {"error", {{"code", static_cast<int>(code)}, {"message", message}}}});
+    } catch (const Error&) {
+        // Standard output takes no more; the exit code still tells.
+    }
+    return static_cast<int>(code);
 }
 
 int run(int argc, char** argv) {
@@ -63,33 +106,32 @@ int run(int argc, char** argv) {
     add_doctor(app, action);
     add_plan(app, action);
     add_study(app, action);
+    add_help(app, action);
     add_console_flags(app, console_def);
-    if (const auto word = unknown_command(app, argc, argv)) {
-        Console({}).error(*word);
-        return static_cast<int>(ExitCode::kUsage);
-    }
+    // What the options say is not known until they are parsed, and that may fail.
+    const Console early({.json = std::find(argv, argv + argc, std::string_view("--json")) != argv + argc});
+    if (const auto word = unknown_command(app, argc, argv)) return fail(early, ExitCode::kUsage, *word);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        const bool asked_for_text = app.exit(error) == 0;
-        return static_cast<int>(asked_for_text ? ExitCode::kOk : ExitCode::kUsage);
+        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+        const auto word = unknown_option(app, argc, argv);
+        return fail(early, ExitCode::kUsage,
+                    word ? *word : fmt::format("{}; see --help", std::string_view(error.what())));
     } catch (const Error& error) {
-        Console({}).error(error.what());
-        return static_cast<int>(error.code());
+        return fail(early, error.code(), error.what());
     }
     const Console console(console_def);
     try {
         install_signal_handlers();
         return static_cast<int>(action(console));
     } catch (const Error& error) {
-        console.error(error.what());
-        return static_cast<int>(error.code());
+        return fail(console, error.code(), error.what());
     } catch (const std::bad_alloc&) {
-        console.error("out of memory; a smaller scene or picture may help");
-        return static_cast<int>(ExitCode::kTemporary);
+        return fail(console, ExitCode::kTemporary, "out of memory; a smaller scene or picture may help");
     } catch (const std::exception& error) {
-        console.error(fmt::format("internal error, please report it: {}", error.what()));
-        return static_cast<int>(ExitCode::kInternal);
+        return fail(console, ExitCode::kInternal,
+                    fmt::format("internal error, please report it: {}", error.what()));
     }
 }
 

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "commands.hpp"
-#include "corda/core/error.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/nearest.hpp"
 
 namespace corda::app {
 namespace {
@@ -22,9 +24,29 @@ std::string size_setting(const std::string& text) {
 
 }  // namespace
 
+std::vector<std::string> command_names(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(command->get_name());
+    return names;
+}
+
+const CLI::App* find_command(const CLI::App& app, std::string_view name) {
+    const auto found =
+        app.get_subcommands([&](const CLI::App* command) { return command->get_name() == name; });
+    return found.empty() ? nullptr : found.front();
+}
+
+std::string advice(std::string_view word, const std::vector<std::string>& known) {
+    const std::vector<std::string_view> candidates(known.begin(), known.end());
+    const auto meant = nearest(word, candidates);
+    return meant ? fmt::format("did you mean {}?", *meant)
+                 : fmt::format("known are {}", fmt::join(known, ", "));
+}
+
 void SceneOptions::add_to(CLI::App& command, Need need) {
     command.add_option("SCENE", path, "scene file (TOML)")->required(need == Need::kRequired);
-    // One value a flag: a value may have commas and brackets of its own.
+    // One value per flag: a value may have commas and brackets of its own.
     command
         .add_option("--set", settings, "put VALUE in the place of a key of the scene, e.g. rope[0].mass=2")
         ->type_name("KEY=VALUE")
@@ -54,15 +76,14 @@ void GlOptions::add_to(CLI::App& command) {
     command.add_flag("--require-gpu", require_gpu, "refuse to draw on the CPU (exit 4)");
 }
 
-gl::ContextDef GlOptions::def() const {
-    gl::ContextDef result = gl::ContextDef::parse(backend.empty() ? "auto" : backend);
-    result.require_gpu = require_gpu;
-    return result;
+void GlOptions::apply_to(FilmDef& film) const {
+    if (!backend.empty()) film.backend = backend;
+    film.require_gpu = require_gpu;
 }
 
-void report_gl(const Console& console, const gl::Context& context) {
-    console.detail(fmt::format("drawing with {} ({}), OpenGL {}, by {}", context.info().gl_renderer,
-                               context.info().gl_vendor, context.info().gl_version, context.platform()));
+void report_gl(const Console& console, const GlInfo& gl) {
+    console.detail(fmt::format("drawing with {} ({}), OpenGL {}, by {}", gl.renderer, gl.vendor, gl.version,
+                               gl.platform));
 }
 
 }  // namespace corda::app

@@ -7,10 +7,16 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "corda/scene/player.hpp"
+#include "corda/pipeline/describe.hpp"
+#include "corda/sim/auto/planner.hpp"
 
 namespace corda::app {
 namespace {
+
+struct PlanOptions {
+    SceneOptions scene;
+    bool toml = false;
+};
 
 /// The values above 0 of one figure of all bodies.
 class Values {
@@ -36,99 +42,96 @@ struct Materials {
     Values bending_n_m2;
     bool rigid = false;
     bool slack = false;    ///< a string, of either kind
-    bool plastic = false;  ///< a rigid string: energy is lost where it comes taut
+    bool plastic = false;  ///< a rigid string: energy is lost when it comes taut
 };
 
-Materials list_materials(const scene::Scene& scene) {
+Materials list_materials(const Scene& scene) {
     Materials result;
-    const auto include = [&result](const sim::MaterialDef& material) {
+    const auto include = [&result](const MaterialDef& material) {
         const bool rigid = material.compliance_1_n == 0.0;
         result.compliance_1_n.include(material.compliance_1_n);
         result.rigid = result.rigid || rigid;
         result.slack = result.slack || material.is_string;
         result.plastic = result.plastic || (material.is_string && rigid);
     };
-    for (const sim::RopeDef& rope : scene.ropes) {
+    for (const RopeDef& rope : scene.ropes) {
         include(rope.material);
         result.bending_n_m2.include(rope.bending_n_m2);
     }
-    for (const sim::NetDef& net : scene.nets) include(net.material);
+    for (const NetDef& net : scene.nets) include(net.material);
     return result;
 }
 
-std::string force_term(const scene::Scene& scene) {
-    if (scene.solver.method == sim::Method::kRelaxation && scene.solver.force_n) {
-        return fmt::format("a force of ({}, {}) N on every particle, in place of gravity",
-                           scene.solver.force_n->x, scene.solver.force_n->y);
+std::string force_term(const Scene& scene, const RelaxationDef* relaxation) {
+    if (relaxation != nullptr && relaxation->force_n) {
+        return fmt::format("a force of ({}, {}) N per particle, in place of gravity", relaxation->force_n->x,
+                           relaxation->force_n->y);
     }
-    const sim::Vec2 gravity_m_s2 = scene.world.gravity_m_s2;
-    if (gravity_m_s2 == sim::Vec2{}) return "no gravity";
+    const Vec2 gravity_m_s2 = scene.world.gravity_m_s2;
+    if (gravity_m_s2 == Vec2{}) return "no gravity";
     return fmt::format("gravity of ({}, {}) m/s2", gravity_m_s2.x, gravity_m_s2.y);
 }
 
-std::string drag_term(const scene::Scene& scene, const Materials& materials) {
+std::string drag_term(const Scene& scene, const Materials& materials, const RelaxationDef* relaxation) {
     if (scene.world.drag_1_s != 0.0) return fmt::format("linear drag of {} 1/s, exact", scene.world.drag_1_s);
-    if (scene.solver.method == sim::Method::kRelaxation) {
-        return scene.solver.delta > 0.0
-                   ? fmt::format("damping: a share of {} of the velocity is lost a step", scene.solver.delta)
+    if (relaxation != nullptr) {
+        return relaxation->delta > 0.0
+                   ? fmt::format("damping: a share of {} of the velocity is lost per step", relaxation->delta)
                    : "no drag; the passes lose energy, and print how much";
     }
-    return materials.plastic ? "no drag: energy is lost only where a string comes taut"
+    return materials.plastic ? "no drag: energy is lost only when a string comes taut"
                              : "no drag: energy is kept";
 }
 
-std::string nets_term(const scene::Scene& scene) {
+std::string nets_term(const Scene& scene) {
     std::size_t real = 0;
     std::size_t all = 0;
-    for (const sim::NetDef& net : scene.nets) {
+    for (const NetDef& net : scene.nets) {
         all += net.bars.size();
-        real += static_cast<std::size_t>(std::count_if(net.bars.begin(), net.bars.end(),
-                                                       [](const sim::NetBar& bar) { return bar.is_real; }));
+        real += static_cast<std::size_t>(
+            std::count_if(net.bars.begin(), net.bars.end(), [](const NetBar& bar) { return bar.is_real; }));
     }
     return fmt::format("nets: {}, of {} bars and {} imaginary ones", scene.nets.size(), real, all - real);
 }
 
-/// What the scene asks for and what it therefore costs nothing to leave out.
-std::vector<std::string> list_terms(const scene::Scene& scene) {
+/// What is modelled, a line per term: what a scene does not ask for is left out.
+std::vector<std::string> list_terms(const Scene& scene, const MethodDef& method) {
+    const auto* relaxation = std::get_if<RelaxationDef>(&method);
     const Materials materials = list_materials(scene);
-    std::vector<std::string> terms{force_term(scene), drag_term(scene, materials)};
-    if (scene.solver.method == sim::Method::kRelaxation) {
+    std::vector<std::string> terms{force_term(scene, relaxation), drag_term(scene, materials, relaxation)};
+    if (relaxation != nullptr) {
         terms.emplace_back("bars that stretch by what the passes leave");
     } else if (materials.rigid) {
         terms.emplace_back("links that do not stretch");
     }
     if (!materials.compliance_1_n.empty()) {
-        terms.push_back(fmt::format("links that stretch by {} of their length a newton",
+        terms.push_back(fmt::format("links that stretch by {} of their length per newton",
                                     materials.compliance_1_n.text()));
     }
     if (materials.slack) terms.emplace_back("strings: links that pull and never push");
     if (!materials.bending_n_m2.empty())
         terms.push_back(fmt::format("bending stiffness of {} N m2", materials.bending_n_m2.text()));
     const auto closed = std::count_if(scene.ropes.begin(), scene.ropes.end(),
-                                      [](const sim::RopeDef& rope) { return rope.closed; });
+                                      [](const RopeDef& rope) { return rope.closed; });
     if (closed > 0) terms.push_back(fmt::format("closed ropes: {}", closed));
     if (!scene.nets.empty()) terms.push_back(nets_term(scene));
     return terms;
 }
 
-std::string why(const scene::Scene& scene, const std::optional<scene::AutoPlan>& proof) {
-    return proof ? proof->plan.reason
-                 : fmt::format("the scene asks for {}", sim::method_name(scene.solver.method));
+/// Steps of the whole run: those of the proved run, or the duration over the step; std::nullopt if only a run
+/// can tell.
+std::optional<double> steps_of_plan(const Film& film) {
+    const Plan& plan = film.plan();
+    if (plan.error_bound_m) return static_cast<double>(plan.trials.back().steps);
+    const double duration_s = film.scene().world.duration_s;
+    if (const auto* rattle = std::get_if<RattleDef>(&plan.method)) return duration_s / rattle->step_s.value();
+    if (const auto* relaxation = std::get_if<RelaxationDef>(&plan.method))
+        return duration_s / relaxation->step_s.value();
+    return std::nullopt;
 }
 
-/// Steps from the start to the end, where they are known before the run: those of the plan's trial, or of a
-/// literal step.
-std::optional<double> expected_steps(const scene::Scene& scene, const std::optional<scene::AutoPlan>& proof) {
-    if (proof && proof->plan.error_bound_m) {
-        return static_cast<double>(proof->plan.trials.back().steps);
-    }
-    const bool has_default = scene.solver.method == sim::Method::kRelaxation;
-    if (!scene.solver.step_s && !has_default) return std::nullopt;
-    return scene.world.duration_s / scene.solver.step_s.value_or(scene.video.fps.interval_s());
-}
-
-nlohmann::json to_json(const sim::Trial& trial) {
-    return {{"solver", describe(trial.solver)},
+nlohmann::json to_json(const Trial& trial) {
+    return {{"solver", describe(trial.method)},
             {"check", describe(trial.check)},
             {"steps", trial.steps},
             {"largest_difference_m", trial.largest_difference_m},
@@ -136,47 +139,52 @@ nlohmann::json to_json(const sim::Trial& trial) {
             {"to_the_end", trial.to_the_end}};
 }
 
-ExitCode plan(const Console& console, const SceneOptions& options) {
-    scene::Scene scene = options.load();
-    const auto proof = settle_method(console, scene);
-    const sim::System system = scene::system_of(scene);
-    // What would refuse to run has no plan.
-    static_cast<void>(scene::Run(scene));
-    const std::vector<std::string> terms = list_terms(scene);
-    nlohmann::json json = {{"schema", 1},
-                           {"method", sim::method_name(scene.solver.method)},
-                           {"solver", describe(scene.solver)},
-                           {"reason", why(scene, proof)},
-                           {"terms", terms},
-                           {"particles", system.particle_count()},
-                           {"bars", system.bars.size()},
-                           {"links", system.link_count()},
-                           {"frames", scene::frame_count(scene)},
-                           {"steps", nullptr},
-                           {"cost_s", nullptr},
-                           {"trials", nlohmann::json::array()}};
-    report_proof(proof, json);
-    console.result(fmt::format("{}: {}", scene.name, scene::describe(system)));
+void report_in_words(const Console& console, const Film& film, const std::vector<std::string>& terms) {
+    const Plan& plan = film.plan();
+    console.result(fmt::format("{}: {}", film.scene().name, describe(film.system())));
     for (const std::string& term : terms) console.result("modelled: " + term);
-    console.result(fmt::format("solver: {}, because {}", describe(scene.solver), why(scene, proof)));
-    if (proof) {
-        for (const sim::Trial& trial : proof->plan.trials) {
-            json["trials"].push_back(to_json(trial));
-            console.result(fmt::format("tried: {} against {}: {} steps, differ by {:.2g} m up to {:.6g} s",
-                                       describe(trial.solver), describe(trial.check), trial.steps,
-                                       trial.largest_difference_m, trial.reached_s));
-        }
+    console.result(fmt::format("solver: {}, because {}", describe(plan.method), describe(plan)));
+    for (const Trial& trial : plan.trials) {
+        console.result(fmt::format("tried: {} against {}: {} steps, differ by {:.2g} m up to {:.6g} s",
+                                   describe(trial.method), describe(trial.check), trial.steps,
+                                   trial.largest_difference_m, trial.reached_s));
     }
-    if (proof && proof->plan.error_bound_m) {
-        console.result(fmt::format("expected error: at most {:.2g} px, {:.2g} m", *proof->error_bound_px(),
-                                   *proof->plan.error_bound_m));
+    if (plan.error_bound_m) {
+        console.result(fmt::format("expected error: at most {}{}", bound_text(film),
+                                   plan.horizon_s ? "; after that the motion cannot be predicted" : ""));
     }
-    if (const auto steps = expected_steps(scene, proof)) {
-        const double cost_s = 1e-9 * *steps * sim::step_cost_ns(system, scene.solver);
+}
+
+ExitCode plan(const Console& console, const PlanOptions& options) {
+    FilmDef def;
+    def.on_progress = show_progress(console, "plan");
+    const Film film(options.scene.load(), def);
+    report_plan(console, film);
+    const CameraDef& camera = film.camera();
+    if (options.toml) {
+        console.result(frozen_toml(film));
+        console.report({{"schema", 1}, {"toml", frozen_toml(film)}});
+        return ExitCode::kOk;
+    }
+    const std::vector<std::string> terms = list_terms(film.scene(), film.plan().method);
+    report_in_words(console, film, terms);
+    console.result(fmt::format("camera: center ({:.6g}, {:.6g}) m, {:.6g} m high", camera.center_m->x,
+                               camera.center_m->y, *camera.height_m));
+    nlohmann::json json = film_json(film);
+    json["reason"] = describe(film.plan());
+    json["terms"] = terms;
+    json["frames"] = film.frame_count();
+    json["steps"] = nullptr;
+    json["cost_s"] = nullptr;
+    json["trials"] = nlohmann::json::array();
+    for (const Trial& trial : film.plan().trials) json["trials"].push_back(to_json(trial));
+    if (const auto steps = steps_of_plan(film)) {
+        const double cost_s = 1e-9 * *steps * sim::step_cost_ns(film.system(), film.plan().method);
         json["steps"] = std::llround(*steps);
         json["cost_s"] = cost_s;
         console.result(fmt::format("expected cost: {:.0f} steps of {} particles and {} bars, some {:.2g} s",
-                                   *steps, system.particle_count(), system.bars.size(), cost_s));
+                                   *steps, film.system().particle_count(), film.system().bars.size(),
+                                   cost_s));
     }
     console.report(json);
     return ExitCode::kOk;
@@ -185,13 +193,16 @@ ExitCode plan(const Console& console, const SceneOptions& options) {
 }  // namespace
 
 void add_plan(CLI::App& app, Action& action) {
-    auto options = std::make_shared<SceneOptions>();
+    auto options = std::make_shared<PlanOptions>();
     CLI::App* command =
         app.add_subcommand("plan", "say what will be modelled and why, which solver, its error and cost");
-    options->add_to(*command);
-    options->add_size(*command);
-    options->add_shortcut(*command, "--fps", "video.fps", "frames a second");
-    options->add_shortcut(*command, "--duration", "world.duration", "seconds");
+    options->scene.add_to(*command);
+    options->scene.add_size(*command);
+    options->scene.add_shortcut(*command, "--fps", "video.fps", "frames per second");
+    options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
+    command->add_flag("--toml", options->toml,
+                      "print [solver] and [camera] as they were chosen; put in the place of the scene's own, "
+                      "they freeze it");
     command->callback([options, &action] {
         action = [options](const Console& console) { return plan(console, *options); };
     });

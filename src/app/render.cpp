@@ -1,17 +1,16 @@
 #include <charconv>
-#include <filesystem>
 #include <memory>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "corda/core/error.hpp"
-#include "corda/media/video_writer.hpp"
-#include "corda/render/frame_renderer.hpp"
-#include "corda/scene/player.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/clock.hpp"
+#include "corda/pipeline/describe.hpp"
+#include "corda/pipeline/film.hpp"
 #include "interrupt.hpp"
-#include "output.hpp"
 
 namespace corda::app {
 namespace {
@@ -25,144 +24,91 @@ struct RenderOptions {
     bool dry_run = false;
 };
 
-/// Frames first <= k < last.
-struct FrameRange {
-    std::int64_t first = 0;
-    std::int64_t last = 0;
-    [[nodiscard]] std::int64_t count() const { return last - first; }
-};
-
-std::int64_t parse_frame(const std::string& text, std::int64_t if_empty) {
-    if (text.empty()) return if_empty;
-    std::int64_t frame = -1;
-    const auto [stop, status] = std::from_chars(text.data(), text.data() + text.size(), frame);
-    return status == std::errc{} && stop == text.data() + text.size() ? frame : -1;
+/// Reads a whole number into `frame`; false for any other text.
+template <typename Frame>
+bool parse_frame(std::string_view text, Frame& frame) {
+    std::int64_t value = 0;
+    const auto [stop, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+    frame = value;
+    return status == std::errc{} && stop == text.data() + text.size();
 }
 
-FrameRange parse_range(const std::string& text, std::int64_t frames) {
-    if (text.empty()) return {0, frames};
+/// Puts "FIRST:END" into `def`, either of which may be left out.
+void parse_range(std::string_view text, RenderDef& def) {
+    if (text.empty()) return;
     const auto colon = text.find(':');
-    FrameRange range{-1, -1};
-    if (colon != std::string::npos) {
-        range = {parse_frame(text.substr(0, colon), 0), parse_frame(text.substr(colon + 1), frames)};
-    }
-    if (range.first < 0 || range.last > frames || range.first >= range.last) {
-        throw Error(
-            ExitCode::kUsage,
-            fmt::format("--frames {}: is not FIRST:END with 0 <= FIRST < END <= {} (END is not drawn)", text,
-                        frames));
-    }
-    return range;
-}
-
-void check_video_name(const std::string& output) {
-    if (std::filesystem::path(output).extension() == ".mp4") return;
+    const bool is_range = colon != std::string_view::npos &&
+                          (colon == 0 || parse_frame(text.substr(0, colon), def.first)) &&
+                          (colon + 1 == text.size() || parse_frame(text.substr(colon + 1), def.end));
+    if (is_range) return;
     throw Error(ExitCode::kUsage,
-                fmt::format("-o {}: the ending names the container, and .mp4 is the one there is", output));
+                fmt::format("--frames {}: is not FIRST:END, two frame numbers (END is not drawn)", text));
 }
 
-/// What the file says of itself beside its pictures.
-media::VideoMetadata metadata(const scene::Scene& scene, const FrameRange& range,
-                              const std::optional<scene::AutoPlan>& proof) {
-    nlohmann::json comment = {{"corda", CORDA_VERSION},
-                              {"scene", scene.name},
-                              {"method", sim::method_name(scene.solver.method)},
-                              {"first_frame", range.first}};
-    report_proof(proof, comment);
-    return {scene.name, comment.dump()};
-}
-
-/// Draws and encodes the frames; returns how many.
-std::int64_t draw_frames(const Console& console, const scene::Scene& scene, const FrameRange& range,
-                         scene::Player& player, media::VideoWriter& writer) {
-    render::FrameRenderer renderer(scene.video.width_px, scene.video.height_px);
-    Progress progress(console, "render", range.count());
-    for (std::int64_t k = range.first; k < range.last; ++k) {
-        if (interruption() != ExitCode::kOk) break;
-        const PixelRect damage = renderer.render(player.at(scene.video.fps.time_s(k)));
-        writer.write(renderer.image(), damage);
-        progress.update(k + 1 - range.first);
-    }
-    return writer.frames();
-}
-
-nlohmann::json report(const scene::Scene& scene, const std::string& output, std::int64_t frames,
-                      double wall_s, const scene::Player& player, const std::string& gl_renderer) {
-    const sim::System& system = player.run().simulation().system();
-    return {{"schema", 1},
-            {"output", output},
-            {"frames", frames},
-            {"width", scene.video.width_px},
-            {"height", scene.video.height_px},
-            {"fps", scene.video.fps.per_second()},
-            {"fps_exact", scene.video.fps.rational().text()},
-            {"wall_s", wall_s},
-            {"frames_per_wall_s", static_cast<double>(frames) / wall_s},
-            {"method", sim::method_name(scene.solver.method)},
-            {"particles", system.particle_count()},
-            {"bars", system.bars.size()},
-            {"encoder", scene.video.encoder.codec},
-            {"gl_renderer", gl_renderer}};
-}
-
-ExitCode keep_interrupted(const Console& console, const RenderOptions& options, media::VideoWriter& writer,
-                          const FrameRange& range) {
-    const std::int64_t frames = writer.frames();
-    const std::string kept = writer.abandon();
+ExitCode report_interrupted(const Console& console, const RenderOptions& options, std::int64_t first,
+                            std::int64_t count, const Rendered& rendered) {
     console.warning(
-        frames > 0
+        rendered.frames > 0
             ? fmt::format("interrupted: frames {}..{} of {} are in {}, which plays; {} was not written",
-                          range.first, range.first + frames - 1, range.count(), kept, options.output)
+                          first, first + rendered.frames - 1, count, rendered.kept_part, options.output)
             : fmt::format("interrupted before the first frame; {} was not written", options.output));
     return interruption();
 }
 
-/// The frames up to a divergence are kept, and the message says where.
-[[noreturn]] void keep_diverged(const Error& error, const RenderOptions& options, media::VideoWriter& writer,
-                                const FrameRange& range) {
-    const std::int64_t frames = writer.frames();
-    if (frames == 0) throw Error(error.code(), error.what());
-    const std::string kept = writer.abandon();
-    throw Error(error.code(),
-                fmt::format("{}; frames {}..{} before it are in {}, which plays; {} was not written",
-                            error.what(), range.first, range.first + frames - 1, kept, options.output));
+nlohmann::json report(const Film& film, const RenderOptions& options, const Rendered& rendered, double wall_s,
+                      const std::string& gl_renderer) {
+    const VideoDef& video = film.scene().video;
+    nlohmann::json json = film_json(film);
+    json["output"] = options.output;
+    json["frames"] = rendered.frames;
+    json["width"] = video.width_px;
+    json["height"] = video.height_px;
+    json["fps"] = video.fps.per_second();
+    json["fps_exact"] = video.fps.rational().text();
+    json["wall_s"] = wall_s;
+    json["frames_per_wall_s"] = static_cast<double>(rendered.frames) / wall_s;
+    json["encoder"] = rendered.encoder;
+    json["gl_renderer"] = gl_renderer;
+    return json;
 }
 
 ExitCode render(const Console& console, const RenderOptions& options) {
     const double start_s = now_s();
-    scene::Scene scene = options.scene.load();
-    const FrameRange range = parse_range(options.frames, scene::frame_count(scene));
-    const gl::ContextDef context_def = options.gl.def();
-    check_video_name(options.output);
-    media::check_video_def(scene.video);
-    check_output(options.output, options.scene.path, options.force);
-    const auto proof = settle_method(console, scene);
-    scene::Player player(scene, preparation(console, "fit the camera"));
-    console.info(fmt::format("{}: {}, method {}; {} frames of {}x{} at {} a second", scene.name,
-                             scene::describe(player.run().simulation().system()),
-                             sim::method_name(scene.solver.method), range.count(), scene.video.width_px,
-                             scene.video.height_px, scene.video.fps.rational().text()));
-    if (options.dry_run) return ExitCode::kOk;
-
-    const gl::Context context(context_def);
-    report_gl(console, context);
-    media::VideoWriter writer(options.output, scene.video, metadata(scene, range, proof));
-    std::int64_t frames = 0;
-    try {
-        frames = draw_frames(console, scene, range, player, writer);
-    } catch (const Error& error) {
-        if (error.code() != ExitCode::kDiverged) throw;
-        keep_diverged(error, options, writer, range);
+    Scene scene = options.scene.load();
+    RenderDef def;
+    def.force = options.force;
+    parse_range(options.frames, def);
+    check_render(scene, options.output, def, options.scene.path);
+    FilmDef film_def;
+    film_def.on_progress = show_progress(console, "simulate");
+    options.gl.apply_to(film_def);
+    Film film(scene, film_def);
+    report_plan(console, film);
+    const std::int64_t count = def.end.value_or(film.frame_count()) - def.first;
+    const VideoDef& video = film.scene().video;
+    console.info(fmt::format("{}: {}, method {}; {} frames of {}x{} at {} per second", film.scene().name,
+                             describe(film.system()), method_name(film.plan().method), count, video.width_px,
+                             video.height_px, video.fps.rational().text()));
+    static_cast<void>(film.camera());
+    if (options.dry_run) {
+        console.report(film_json(film));
+        return ExitCode::kOk;
     }
-    if (interruption() != ExitCode::kOk) return keep_interrupted(console, options, writer, range);
-    writer.finish();
+
+    const GlInfo gl = film.gl();
+    report_gl(console, gl);
+    Progress progress(console, "render", count);
+    def.on_progress = [&](std::int64_t done, std::int64_t) {
+        progress.update(done);
+        return interruption() == ExitCode::kOk;
+    };
+    const Rendered rendered = render_video(film, options.output, def);
+    if (!rendered.complete) return report_interrupted(console, options, def.first, count, rendered);
     const double wall_s = now_s() - start_s;
-    console.info(fmt::format("{} frames in {:.3g} s, {:.1f} a second; verified", frames, wall_s,
-                             static_cast<double>(frames) / wall_s));
+    console.info(fmt::format("{} frames in {:.3g} s, {:.1f} per second; verified", rendered.frames, wall_s,
+                             static_cast<double>(rendered.frames) / wall_s));
     console.result(options.output);
-    nlohmann::json json = report(scene, options.output, frames, wall_s, player, context.info().gl_renderer);
-    report_proof(proof, json);
-    console.report(json);
+    console.report(report(film, options, rendered, wall_s, gl.renderer));
     return ExitCode::kOk;
 }
 
@@ -174,7 +120,7 @@ void add_render(CLI::App& app, Action& action) {
     options->scene.add_to(*command);
     command->add_option("-o,--output", options->output, "video file (.mp4)")->required();
     options->scene.add_size(*command);
-    options->scene.add_shortcut(*command, "--fps", "video.fps", "frames a second, e.g. 60 or 30000/1001");
+    options->scene.add_shortcut(*command, "--fps", "video.fps", "frames per second, e.g. 60 or 30000/1001");
     options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
     options->scene.add_shortcut(*command, "--crf", "video.crf", "x264 quality, 1 (best) .. 51");
     options->scene.add_shortcut(*command, "--preset", "video.preset", "x264 preset, ultrafast .. placebo");

@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <iterator>
 #include <memory>
 
@@ -5,10 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "corda/core/error.hpp"
-#include "corda/scene/player.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/output_file.hpp"
+#include "corda/pipeline/describe.hpp"
+#include "corda/pipeline/film.hpp"
 #include "interrupt.hpp"
-#include "output.hpp"
 
 namespace corda::app {
 namespace {
@@ -29,7 +31,7 @@ std::string csv_header(std::size_t particles, bool diagnostics) {
 }
 
 /// A figure that the method does not have is an empty cell.
-void write_figures(const sim::Figures& figures, std::string& line) {
+void write_figures(const Figures& figures, std::string& line) {
     auto out = std::back_inserter(line);
     const auto write = [&out](const std::optional<double>& figure) {
         *out++ = ',';
@@ -41,67 +43,56 @@ void write_figures(const sim::Figures& figures, std::string& line) {
     write(figures.loads ? std::optional(figures.loads->largest_tension_n) : std::nullopt);
 }
 
-void write_row(const sim::Simulation& simulation, bool diagnostics, std::string& line) {
-    const sim::State& state = simulation.state();
-    const sim::Vec2 origin_m = simulation.system().origin_m;
+void write_row(const Film& film, const State& state, bool diagnostics, std::string& line) {
+    const Vec2 origin_m = film.system().origin_m;
     line.clear();
     auto out = std::back_inserter(line);
     fmt::format_to(out, "{:.17g}", state.time_s);
     for (std::size_t i = 0; i < state.x_m.size(); ++i) {
         fmt::format_to(out, ",{:.17g},{:.17g}", origin_m.x + state.x_m[i], origin_m.y + state.y_m[i]);
     }
-    if (diagnostics) write_figures(simulation.figures(), line);
+    if (diagnostics) write_figures(film.figures(), line);
     line += '\n';
 }
 
-nlohmann::json report(const scene::Scene& scene, const scene::Run& run,
-                      const std::optional<scene::AutoPlan>& proof) {
-    const sim::System& system = run.simulation().system();
-    const sim::Diagnostics diagnostics = run.simulation().diagnostics();
-    const sim::Figures& largest = diagnostics.largest;
-    nlohmann::json json = {{"schema", 1},
-                           {"method", sim::method_name(scene.solver.method)},
-                           {"solver", describe(scene.solver)},
-                           {"particles", system.particle_count()},
-                           {"bars", system.bars.size()},
-                           {"links", system.link_count()},
-                           {"steps", diagnostics.steps},
-                           {"wall_s", run.wall_s()},
-                           {"energy_error", nullptr},
-                           {"max_strain", largest.strain},
-                           {"max_pin_force_n", nullptr},
-                           {"max_tension_n", nullptr}};
+nlohmann::json report(const Film& film) {
+    const Figures& largest = film.diagnostics().largest;
+    nlohmann::json json = film_json(film);
+    json["steps"] = film.diagnostics().steps;
+    json["wall_s"] = film.stepping_s();
+    json["energy_error"] = nullptr;
+    json["max_strain"] = largest.strain;
+    json["max_pin_force_n"] = nullptr;
+    json["max_tension_n"] = nullptr;
     if (largest.energy_error) json["energy_error"] = *largest.energy_error;
     if (largest.loads) json["max_pin_force_n"] = largest.loads->pin_force_n;
     if (largest.loads) json["max_tension_n"] = largest.loads->largest_tension_n;
-    report_proof(proof, json);
     return json;
 }
 
-/// What the run cost, in the unit that the method's cost is counted in.
-std::string cost_text(const scene::Scene& scene, const scene::Run& run) {
-    const sim::System& system = run.simulation().system();
-    const bool relaxation = scene.solver.method == sim::Method::kRelaxation;
-    const auto steps = static_cast<double>(run.simulation().diagnostics().steps);
-    const double pieces = relaxation ? static_cast<double>(system.bars.size()) * scene.solver.sweeps
-                                     : static_cast<double>(system.particle_count());
+/// What the run cost, in the unit in which the method's cost is counted.
+std::string cost_text(const Film& film) {
+    const System& system = film.system();
+    const auto* relaxation = std::get_if<RelaxationDef>(&film.plan().method);
+    const auto steps = static_cast<double>(film.diagnostics().steps);
+    const double pieces = relaxation != nullptr ? static_cast<double>(system.bars.size()) * relaxation->sweeps
+                                                : static_cast<double>(system.particle_count());
+    const double wall_s = film.stepping_s();
     if (steps * pieces == 0.0) return "no steps";
-    return fmt::format("{:.0f} steps in {:.3g} s: {:.4g} updates/s, {:.3g} ns a {}", steps, run.wall_s(),
-                       steps / run.wall_s(), 1e9 * run.wall_s() / (steps * pieces),
-                       relaxation ? "bar" : "particle");
+    return fmt::format("{:.0f} steps in {:.3g} s: {:.4g} steps/s, {:.3g} ns per {}", steps, wall_s,
+                       steps / wall_s, 1e9 * wall_s / (steps * pieces),
+                       relaxation != nullptr ? "bar" : "particle");
 }
 
-/// Runs all frame times; returns whether it got to the end.
-bool run_to_end(const Console& console, const scene::Scene& scene, bool diagnostics, scene::Run& run,
-                TextOutput* csv) {
-    const std::int64_t last = scene.video.fps.last_frame_within(scene.world.duration_s);
-    Progress progress(console, "simulate", last + 1);
+/// Writes the states of all frame times; returns whether it got to the end.
+bool write_states(const Console& console, const Film& film, bool diagnostics, OutputFile* csv) {
+    Progress progress(console, "simulate", film.last_frame() + 1);
     std::string line;
-    for (std::int64_t k = 0; k <= last; ++k) {
+    for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
         if (interruption() != ExitCode::kOk) return false;
-        run.at(scene.video.fps.time_s(k));
+        const State& state = film.state(k);
         if (csv != nullptr) {
-            write_row(run.simulation(), diagnostics, line);
+            write_row(film, state, diagnostics, line);
             csv->write(line);
         }
         progress.update(k + 1);
@@ -109,42 +100,62 @@ bool run_to_end(const Console& console, const scene::Scene& scene, bool diagnost
     return true;
 }
 
+/// Refuses an ending that is not known; a device such as /dev/null needs none.
+void check_ending(const std::string& output) {
+    const std::filesystem::path path(output);
+    std::error_code ignored;
+    const bool is_device =
+        std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
+    if (output.empty() || is_standard_output(output) || path.extension() == ".csv" || is_device) return;
+    throw Error(
+        ExitCode::kUsage,
+        fmt::format("-o {}: states are written as .csv; give such a name, or - for standard output", output));
+}
+
 ExitCode simulate(const Console& console, const SimulateOptions& options) {
-    if (options.output == "-" && console.json()) {
+    const bool to_stdout = is_standard_output(options.output);
+    if (to_stdout && console.json()) {
         throw Error(ExitCode::kUsage, "-o - and --json both want standard output; give the CSV a file name");
     }
-    scene::Scene scene = options.scene.load();
-    const bool to_file = !options.output.empty() && options.output != "-";
-    if (to_file) check_output(options.output, options.scene.path, options.force);
-    const auto proof = settle_method(console, scene);
-    scene::Run run(scene);
-    const sim::System& system = run.simulation().system();
-    console.info(fmt::format("{}: {}, method {}", scene.name, scene::describe(system),
-                             sim::method_name(scene.solver.method)));
-    if (options.dry_run) return ExitCode::kOk;
+    check_ending(options.output);
+    Scene scene = options.scene.load();
+    const bool to_file = !options.output.empty() && !to_stdout;
+    if (to_file) check_output(options.output, options.scene.path, options.force, OutputKind::kStream);
+    FilmDef def;
+    def.on_progress = show_progress(console, "plan");
+    const Film film(scene, def);
+    report_plan(console, film);
+    console.info(fmt::format("{}: {}, method {}", film.scene().name, describe(film.system()),
+                             method_name(film.plan().method)));
+    if (options.dry_run) {
+        console.report(film_json(film));
+        return ExitCode::kOk;
+    }
 
-    std::unique_ptr<TextOutput> csv;
+    std::unique_ptr<OutputFile> csv;
     if (!options.output.empty()) {
-        csv = std::make_unique<TextOutput>(options.output);
-        csv->write(csv_header(system.particle_count(), options.diagnostics));
+        csv = std::make_unique<OutputFile>(options.output, OutputOptions{.force = options.force});
+        csv->write(csv_header(film.system().particle_count(), options.diagnostics));
     }
     bool complete = false;
     try {
-        complete = run_to_end(console, scene, options.diagnostics, run, csv.get());
+        complete = write_states(console, film, options.diagnostics, csv.get());
     } catch (const Error& error) {
-        if (!to_file || error.code() != ExitCode::kDiverged) throw;
-        throw Error(error.code(),
-                    fmt::format("{}; the rows before it are in {}", error.what(), csv->part_path()));
+        if (!csv || error.code() != ExitCode::kDiverged) throw;
+        const std::string kept = csv->keep();
+        if (to_stdout) throw;
+        throw Error(error.code(), fmt::format("{}; the rows before it are in {}", error.what(), kept));
     }
     if (!complete) {
-        if (to_file) console.warning(fmt::format("interrupted; the rows so far are in {}", csv->part_path()));
+        const std::string kept = csv ? csv->keep() : std::string();
+        if (to_file) console.warning(fmt::format("interrupted; the rows so far are in {}", kept));
         return interruption();
     }
-    if (csv) csv->finish();
-    console.info(fmt::format("{}; largest strain {:.3g}", cost_text(scene, run),
-                             run.simulation().diagnostics().largest.strain));
+    if (csv) csv->commit();
+    console.info(
+        fmt::format("{}; largest strain {:.3g}", cost_text(film), film.diagnostics().largest.strain));
     if (to_file) console.result(options.output);
-    console.report(report(scene, run, proof));
+    console.report(report(film));
     return ExitCode::kOk;
 }
 
@@ -157,7 +168,7 @@ void add_simulate(CLI::App& app, Action& action) {
     options->scene.add_to(*command);
     command->add_option("-o,--output", options->output,
                         "CSV file, or - for standard output; none: figures only");
-    options->scene.add_shortcut(*command, "--fps", "video.fps", "rows a second");
+    options->scene.add_shortcut(*command, "--fps", "video.fps", "rows per second");
     options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
     command->add_flag("--diagnostics", options->diagnostics,
                       "add energy error, strain, pin force and tension to every row");

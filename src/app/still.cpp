@@ -8,11 +8,12 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "corda/core/error.hpp"
-#include "corda/media/png.hpp"
-#include "corda/render/frame_renderer.hpp"
-#include "corda/scene/player.hpp"
-#include "output.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/output_file.hpp"
+#include "corda/media/defs.hpp"
+#include "corda/pipeline/describe.hpp"
+#include "corda/pipeline/film.hpp"
+#include "interrupt.hpp"
 
 namespace corda::app {
 namespace {
@@ -34,11 +35,19 @@ struct Shot {
     std::string path;
 };
 
-bool is_file_name(const std::string& output) {
-    return std::filesystem::path(output).extension() == ".png";
+/// Whether the output is one picture. A name with an ending is meant as a file; folders have none, or exist,
+/// or end with a slash.
+bool is_picture(const std::string& output) {
+    const std::filesystem::path path(output);
+    if (path.extension() == ".png") return true;
+    if (output != "-" && (!path.has_extension() || std::filesystem::is_directory(path))) return false;
+    throw Error(ExitCode::kUsage,
+                fmt::format("-o {}: stills are written as .png; give such a name, or a folder "
+                            "(ending with / if its name has a dot)",
+                            output));
 }
 
-std::vector<Shot> list_shots(const StillOptions& options, const scene::Scene& scene) {
+std::vector<Shot> list_shots(const StillOptions& options, const Scene& scene) {
     std::vector<Shot> shots;
     for (const double time_s : options.times_s) {
         if (!std::isfinite(time_s) || time_s < 0.0 || time_s > scene.world.duration_s) {
@@ -48,10 +57,12 @@ std::vector<Shot> list_shots(const StillOptions& options, const scene::Scene& sc
         }
         shots.push_back({time_s, std::nullopt, fmt::format("{}_t{:011.6f}.png", scene.name, time_s)});
     }
-    const std::int64_t last = scene.video.fps.last_frame_within(scene.world.duration_s);
+    const std::int64_t last = scene.video.fps.frame_count(scene.world.duration_s) - 1;
     for (const std::int64_t frame : options.frames) {
         if (frame < 0 || frame > last) {
-            throw Error(ExitCode::kUsage, fmt::format("--frame {}: is not within 0 .. {}", frame, last));
+            throw Error(
+                ExitCode::kUsage,
+                fmt::format("--frame {}: is not within 0 .. {}; world.duration sets the end", frame, last));
         }
         shots.push_back(
             {scene.video.fps.time_s(frame), frame, fmt::format("{}_f{:06}.png", scene.name, frame)});
@@ -68,7 +79,7 @@ std::vector<Shot> list_shots(const StillOptions& options, const scene::Scene& sc
 }
 
 void set_paths(const StillOptions& options, std::vector<Shot>& shots) {
-    if (is_file_name(options.output)) {
+    if (is_picture(options.output)) {
         if (shots.size() != 1) {
             throw Error(ExitCode::kUsage, fmt::format("-o {}: is one file for {} stills; give a folder",
                                                       options.output, shots.size()));
@@ -82,55 +93,58 @@ void set_paths(const StillOptions& options, std::vector<Shot>& shots) {
     for (const Shot& shot : shots) check_output(shot.path, options.scene.path, options.force);
 }
 
-media::PngInfo describe_shot(const Shot& shot, const scene::Scene& scene, double pixels_per_inch) {
-    media::PngInfo info;
+PngInfo describe_shot(const Shot& shot, const Scene& scene, double pixels_per_inch) {
+    PngInfo info;
     info.pixels_per_inch = pixels_per_inch;
     info.text = {{"Software", "corda " CORDA_VERSION},
                  {"Title", scene.name},
-                 {"Scene", scene.name},
                  {"Time", fmt::format("{} s", shot.time_s)}};
     if (shot.frame) info.text.emplace_back("Frame", fmt::format("{}", *shot.frame));
     return info;
 }
 
-ExitCode still(const Console& console, const StillOptions& options) {
-    scene::Scene scene = options.scene.load();
-    std::vector<Shot> shots = list_shots(options, scene);
-    const gl::ContextDef context_def = options.gl.def();
-    set_paths(options, shots);
-    const auto proof = settle_method(console, scene);
-    scene::Player player(scene, preparation(console, "fit the camera"));
-    console.detail(fmt::format("{}: {}", scene.name, scene::describe(player.run().simulation().system())));
-    nlohmann::json outputs = nlohmann::json::array();
-    if (!options.dry_run) {
-        const gl::Context context(context_def);
-        report_gl(console, context);
-        render::FrameRenderer renderer(scene.video.width_px, scene.video.height_px);
-        const sim::FrameWatch watch = preparation(console, "simulate");
-        const FrameRate& fps = scene.video.fps;
-        std::int64_t frame = 0;
+/// Draws and writes the stills. If interrupted, the message says how many were written.
+void write_shots(const std::vector<Shot>& shots, const StillOptions& options, const Film& film) {
+    std::size_t written = 0;
+    try {
         for (const Shot& shot : shots) {
-            // Frame by frame, so that a signal is seen on the way.
-            for (; fps.time_s(frame) < shot.time_s; ++frame) {
-                watch(frame, scene::frame_count(scene));
-                player.at(fps.time_s(frame));
-            }
-            renderer.render(player.at(shot.time_s));
-            media::write_png(shot.path, renderer.image(),
-                             describe_shot(shot, scene, options.pixels_per_inch));
+            stop_if_asked();
+            write_png(shot.path, film.still(shot.time_s),
+                      describe_shot(shot, film.scene(), options.pixels_per_inch), {.force = options.force});
+            ++written;
         }
+    } catch (const Error& error) {
+        if (written == 0 || error.code() != interruption()) throw;
+        throw Error(error.code(), fmt::format("interrupted: {} of {} stills are written, the last of them {}",
+                                              written, shots.size(), shots[written - 1].path));
     }
+}
+
+ExitCode still(const Console& console, const StillOptions& options) {
+    Scene scene = options.scene.load();
+    std::vector<Shot> shots = list_shots(options, scene);
+    set_paths(options, shots);
+    FilmDef def;
+    def.on_progress = show_progress(console, "simulate");
+    for (const Shot& shot : shots) def.stills_s.push_back(shot.time_s);
+    options.gl.apply_to(def);
+    const Film film(scene, def);
+    report_plan(console, film);
+    console.detail(fmt::format("{}: {}", film.scene().name, describe(film.system())));
+    static_cast<void>(film.camera());
+    if (!options.dry_run) {
+        report_gl(console, film.gl());
+        write_shots(shots, options, film);
+    }
+    nlohmann::json json = film_json(film);
+    json["outputs"] = nlohmann::json::array();
     for (const Shot& shot : shots) {
         if (options.dry_run) console.info(fmt::format("would write {}", shot.path));
         if (!options.dry_run) console.result(shot.path);
-        outputs.push_back({{"path", shot.path}, {"time_s", shot.time_s}});
+        json["outputs"].push_back({{"path", shot.path}, {"time_s", shot.time_s}});
     }
-    nlohmann::json json = {{"schema", 1},
-                           {"outputs", outputs},
-                           {"width", scene.video.width_px},
-                           {"height", scene.video.height_px},
-                           {"method", sim::method_name(scene.solver.method)}};
-    report_proof(proof, json);
+    json["width"] = film.scene().video.width_px;
+    json["height"] = film.scene().video.height_px;
     console.report(json);
     return ExitCode::kOk;
 }
@@ -150,7 +164,7 @@ void add_still(CLI::App& app, Action& action) {
     at->excludes(frame);
     command->add_option("-o,--output", options->output, "folder, or a .png file for one still")->required();
     options->scene.add_size(*command);
-    options->scene.add_shortcut(*command, "--fps", "video.fps", "frames a second");
+    options->scene.add_shortcut(*command, "--fps", "video.fps", "frames per second");
     options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
     command->add_option("--ppi", options->pixels_per_inch, "pixels per inch, for the size in print")
         ->check(CLI::Range(1.0, 10000.0));

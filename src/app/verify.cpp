@@ -37,7 +37,7 @@ nlohmann::json to_json(const std::string& path, const media::VerifyReport& repor
 ExitCode verify(const Console& console, const std::string& path) {
     const media::VerifyReport report = media::verify(path);
     if (!report.codec.empty()) {
-        console.result(fmt::format("{}: {} {} {} {}x{}, {} frames at {} a second, {} s", path,
+        console.result(fmt::format("{}: {} {} {} {}x{}, {} frames at {} per second, {} s", path,
                                    report.container, report.codec, report.profile, report.width_px,
                                    report.height_px, report.frames, report.fps.text(),
                                    report.duration_s.value()));

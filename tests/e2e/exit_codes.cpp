@@ -42,7 +42,7 @@ TEST_F(ExitCodes, HelpPrintsThemAll) {
     const auto result = run_corda({"--help"});
     for (const char* row : {"0  success", "2  usage", "3  invalid scene", "4  no usable OpenGL", "5  codec",
                             "6  input/output", "7  compare or verify", "8  the simulation diverged",
-                            "75  temporary", "130  interrupted", "143  terminated"}) {
+                            "75  out of memory", "130  interrupted", "143  terminated"}) {
         EXPECT_THAT(result.out, HasSubstr(row));
     }
 }
@@ -62,6 +62,30 @@ TEST_F(ExitCodes, TwoForUsage) {
     EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--set", "nonsense"}).exit_code, 2);
 }
 
+TEST_F(ExitCodes, TwoForAnEndingThatCannotBeWritten) {
+    for (const char* const name : {"x.svg", "x.pdf", "x.jpg", "-"}) {
+        const std::string output = *name == '-' ? name : folder_.file(name);
+        const auto result = run_corda({"still", scene_, "--at", "0", "-o", output});
+        EXPECT_EQ(result.exit_code, 2) << name;
+        EXPECT_THAT(result.err, HasSubstr(".png")) << name;
+    }
+    const auto result = run_corda({"simulate", scene_, "-o", folder_.file("x.npy")});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr(".csv"));
+    EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});
+    // What the messages advise works.
+    EXPECT_EQ(run_corda({"still", scene_, "--at", "0", "-o", folder_.file("dotted.v2/")}).exit_code, 0);
+    EXPECT_EQ(run_corda({"simulate", scene_, "-o", "/dev/null"}).exit_code, 0);
+}
+
+TEST_F(ExitCodes, TwoForAFrameThatTheVideoDoesNotHave) {
+    // 0.2 s at 30 per second: frames 0 .. 5; the motion ends at frame time 6.
+    EXPECT_EQ(run_corda({"still", scene_, "--frame", "5", "-o", folder_.file("a.png")}).exit_code, 0);
+    const auto result = run_corda({"still", scene_, "--frame", "6", "-o", folder_.file("b.png")});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr("0 .. 5"));
+}
+
 TEST_F(ExitCodes, TwoForAnUnknownCommandNamingTheNearest) {
     for (const auto& [command, remedy] :
          {std::pair{"rendr", "did you mean render?"}, {"foo", "known are render, still, simulate"}}) {
@@ -72,7 +96,14 @@ TEST_F(ExitCodes, TwoForAnUnknownCommandNamingTheNearest) {
     }
 }
 
-TEST_F(ExitCodes, AreTheSameWhereStderrTakesNoMore) {
+TEST_F(ExitCodes, TwoForAnUnknownOptionNamingTheNearest) {
+    const auto result = run_corda({"render", scene_, "--siz", "64x64"});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_EQ(result.err, "corda: error: unknown option --siz; did you mean --size?\n");
+    EXPECT_THAT(run_corda({"render", scene_, "--fsp=3"}).err, HasSubstr("--fsp; did you mean --fps?"));
+}
+
+TEST_F(ExitCodes, AreTheSameIfStderrIsFull) {
     const std::string program = test::quoted(CORDA_PROGRAM);
     for (const char* const stderr_is : {"2>&-", "2>/dev/full"}) {
         EXPECT_EQ(run_shell(program + " plan " + folder_.file("none.toml") + " " + stderr_is).exit_code, 6);
@@ -86,7 +117,7 @@ TEST_F(ExitCodes, ThreeFromPlanToo) {
     const std::string taut = folder_.write("taut.toml",
                                            "schema = 1\n[[rope]]\npoints = [[0, 0], [1, 0], [2, 0]]\n"
                                            "pinned = [0, 2]\n");
-    for (const char* const method : {"auto", "rope", "exact"}) {
+    for (const char* const method : {"auto", "rattle", "exact"}) {
         const auto result = run_corda({"plan", taut, "--set", std::string("solver.method=") + method});
         EXPECT_EQ(result.exit_code, 3) << method;
         EXPECT_THAT(result.err, HasSubstr("taut.toml: ")) << method;
@@ -161,6 +192,27 @@ TEST_F(ExitCodes, SixRatherThanOverwriteWithoutForce) {
     EXPECT_EQ(test::read_file(csv) + test::read_file(png), "preciousprecious");
 }
 
+TEST_F(ExitCodes, SixRatherThanOverwriteAnInterruptedRenderWithoutForce) {
+    const std::string part = folder_.write("out.mp4.part", "frames");
+    const auto refused = run_corda({"render", scene_, "-o", video_});
+    EXPECT_EQ(refused.exit_code, 6);
+    EXPECT_THAT(refused.err, HasSubstr("interrupted render"));
+    EXPECT_EQ(test::read_file(part), "frames");
+    EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--force"}).exit_code, 0);
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.mp4", "scene.toml"}));
+}
+
+TEST_F(ExitCodes, SixForTheSecondOfTwoRendersToOneName) {
+    const std::string render = test::quoted(CORDA_PROGRAM) + " render --force " + scene_ + " -o " + video_;
+    const auto both = run_shell(
+        render + " --size 640x360 --duration 20 & pid=$!; for i in $(seq 200); do [ -e " + video_ +
+        ".part ] && break; sleep 0.1; done; " + render + "; echo second $?; wait $pid; echo first $?");
+    EXPECT_EQ(both.out, "second 6\n" + video_ + "\nfirst 0\n") << both.err;
+    EXPECT_THAT(both.err, HasSubstr("another render is writing"));
+    EXPECT_EQ(run_corda({"verify", video_}).exit_code, 0);
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.mp4", "scene.toml"}));
+}
+
 TEST_F(ExitCodes, SevenForADifferenceOrAProblem) {
     ASSERT_EQ(run_corda({"still", scene_, "--at", "0,0.2", "-o", folder_.file("stills")}).exit_code, 0);
     const std::string a = folder_.file("stills/scene_t0000.000000.png");
@@ -210,7 +262,7 @@ TEST_F(ExitCodes, SeventyFiveWithoutMemory) {
 test::CommandResult interrupted_render(const std::string& signal, const std::string& scene,
                                        const std::string& video) {
     return run_shell(test::quoted(CORDA_PROGRAM) + " render " + scene + " -o " + video +
-                     " --size 640x360 --duration 5000 & pid=$!; for i in $(seq 200); do sleep 0.1; [ -s " +
+                     " --size 640x360 --duration 200 & pid=$!; for i in $(seq 200); do sleep 0.1; [ -s " +
                      video + ".part ] && break; done; sleep 0.5; kill -" + signal + " $pid; wait $pid");
 }
 
@@ -225,6 +277,18 @@ TEST_F(ExitCodes, OneHundredThirtyWhenInterruptedKeepingAPlayablePart) {
 TEST_F(ExitCodes, OneHundredFortyThreeWhenTerminated) {
     EXPECT_EQ(interrupted_render("TERM", scene_, video_).exit_code, 143);
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.mp4.part", "scene.toml"}));
+}
+
+TEST_F(ExitCodes, OneHundredThirtyOfStillsSayingHowManyAreWritten) {
+    std::string frames = "0";
+    for (int k = 1; k < 300; ++k) frames += "," + std::to_string(k);
+    const std::string stills = folder_.file("stills");
+    const auto result = run_shell(test::quoted(CORDA_PROGRAM) + " still " + scene_ + " -o " + stills +
+                                  " --size 1920x1080 --duration 10 --frame " + frames +
+                                  " & pid=$!; for i in $(seq 200); do sleep 0.05; [ -n \"$(ls " + stills +
+                                  "/*.png 2>/dev/null)\" ] && break; done; kill -INT $pid; wait $pid");
+    EXPECT_EQ(result.exit_code, 130) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("of 300 stills are written"));
 }
 
 TEST_F(ExitCodes, OneHundredFortyThreeWhenTerminatedWhilePlanning) {

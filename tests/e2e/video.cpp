@@ -3,13 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "corda/gl/context.hpp"
-#include "corda/media/png.hpp"
-#include "corda/render/frame_renderer.hpp"
-#include "corda/scene/player.hpp"
+#include "corda/media/defs.hpp"
+#include "corda/pipeline/painter.hpp"
 #include "support/command.hpp"
 #include "support/decode_video.hpp"
 #include "support/image_matchers.hpp"
@@ -21,6 +20,7 @@ namespace {
 using nlohmann::json;
 using test::run_corda;
 using test::ScratchFolder;
+using testing::HasSubstr;
 
 const char* const kScene = R"(schema = 1
 [world]
@@ -81,7 +81,7 @@ class Video : public testing::Test {
 
 class VideoTimes
     : public Video,
-      public testing::WithParamInterface<std::tuple<const char*, int, std::int64_t, std::int64_t>> {};
+      public testing::WithParamInterface<std::tuple<std::string, int, std::int64_t, std::int64_t>> {};
 
 TEST_P(VideoTimes, AreExact) {
     const auto [rate, frames, num, den] = GetParam();
@@ -107,7 +107,30 @@ TEST_P(VideoTimes, AreExact) {
 INSTANTIATE_TEST_SUITE_P(Rates, VideoTimes,
                          testing::Values(std::tuple{"60", 120, 60, 1}, std::tuple{"25", 50, 25, 1},
                                          std::tuple{"30000/1001", 60, 30000, 1001},
-                                         std::tuple{"24000/1001", 48, 24000, 1001}));
+                                         std::tuple{"24000/1001", 48, 24000, 1001}),
+                         [](const auto& rate) {
+                             return fmt::format("{}_{}", std::get<2>(rate.param), std::get<3>(rate.param));
+                         });
+
+TEST_F(Video, InFragmentsIsMendedByTheRemedyThatVerifyGives) {
+    ASSERT_EQ(run_corda({"render", scene_, "-o", video_, "--fps", "30000/1001"}).exit_code, 0);
+    const std::string fragments = folder_.file("fragments.mp4");
+    const std::string mended = folder_.file("mended.mp4");
+    const std::string cut = "ffmpeg -v error -i " + video_ + " -c copy -movflags frag_keyframe+empty_moov ";
+    ASSERT_EQ(test::run_shell(cut + fragments).exit_code, 0);
+    const auto report = run_corda({"verify", fragments});
+    EXPECT_EQ(report.exit_code, 7);
+    const std::string text = report.out + report.err;
+    const std::string mark = "remedy: ffmpeg ";
+    ASSERT_THAT(text, HasSubstr(mark));
+    std::string arguments = text.substr(text.find(mark) + mark.size());
+    arguments.resize(arguments.find('\n'));
+    arguments.replace(arguments.find("FILE"), 4, fragments);
+    arguments.replace(arguments.find("NEW.mp4"), 7, mended);
+    ASSERT_EQ(test::run_shell("ffmpeg -v error " + arguments).exit_code, 0);
+    const auto after = run_corda({"verify", mended});
+    EXPECT_EQ(after.exit_code, 0) << after.out << after.err;
+}
 
 TEST_F(Video, IsTaggedForBrowsers) {
     ASSERT_EQ(run_corda({"render", scene_, "-o", video_}).exit_code, 0);
@@ -148,14 +171,14 @@ TEST_F(Video, KeepsPureColoursAndTheFirstFrame) {
         for (std::size_t c = 0; c < 3; ++c)
             EXPECT_NEAR(rgb[c], patch.rgb[c], 2.0) << "row " << patch.y << " channel " << c;
     }
-    EXPECT_GE(test::luma_psnr_db(decoded.pictures[0], media::read_png(folder_.file("first.png"))), 40.0);
+    EXPECT_GE(test::luma_psnr_db(decoded.pictures[0], read_png(folder_.file("first.png"))), 40.0);
 }
 
 TEST_F(Video, OfAMovingRopeKeepsItsFirstFrame) {
     ASSERT_EQ(run_corda({"render", scene_, "-o", video_}).exit_code, 0);
     ASSERT_EQ(run_corda({"still", scene_, "--frame", "0", "-o", folder_.file("first.png")}).exit_code, 0);
     const test::DecodedFrames decoded = test::decode_video(video_);
-    EXPECT_GE(test::luma_psnr_db(decoded.pictures[0], media::read_png(folder_.file("first.png"))), 40.0);
+    EXPECT_GE(test::luma_psnr_db(decoded.pictures[0], read_png(folder_.file("first.png"))), 40.0);
 }
 
 TEST_F(Video, IsTheSameBytesOnEveryRunAndThreadCount) {
@@ -173,7 +196,7 @@ TEST_F(Video, FramesTakeAPartOfIt) {
     ASSERT_EQ(still.exit_code, 0) << still.err;
     const test::DecodedFrames decoded = test::decode_video(video_);
     ASSERT_EQ(decoded.pictures.size(), 5U);
-    EXPECT_GE(test::luma_psnr_db(decoded.pictures[0], media::read_png(folder_.file("tenth.png"))), 40.0);
+    EXPECT_GE(test::luma_psnr_db(decoded.pictures[0], read_png(folder_.file("tenth.png"))), 40.0);
 }
 
 TEST_F(Video, StillsAreTheFramesBeforeEncodingByteForByte) {
@@ -182,19 +205,17 @@ TEST_F(Video, StillsAreTheFramesBeforeEncodingByteForByte) {
               0);
     ASSERT_EQ(run_corda({"still", scene_, "--frame", "22", "-o", folder_.file("frame.png")}).exit_code, 0);
     // The video's frames, drawn one after the other as render does.
-    const scene::Scene scene = scene::load_scene(scene_);
-    scene::Player player(scene);
-    const gl::Context context;
-    render::FrameRenderer renderer(320, 180);
+    Film film(load_scene(scene_));
+    FilmPainter painter(film);
     const std::map<int, std::string> stills{
         {0, "0000.000000"}, {3, "0000.100000"}, {15, "0000.500000"}, {22, "0000.733333"}};
     for (int k = 0; k <= 22; ++k) {
-        renderer.render(player.at(scene.video.fps.time_s(k)));
+        painter.draw(film.time_s(k));
         if (!stills.contains(k)) continue;
         const std::string path = folder_.file("at/scene_t" + stills.at(k) + ".png");
-        EXPECT_TRUE(test::equal_images(media::read_png(path), renderer.image())) << path;
+        EXPECT_TRUE(test::equal_images(read_png(path), painter.image())) << path;
     }
-    EXPECT_TRUE(test::equal_images(media::read_png(folder_.file("frame.png")), renderer.image()));
+    EXPECT_TRUE(test::equal_images(read_png(folder_.file("frame.png")), painter.image()));
 }
 
 TEST_F(Video, StillsSayWhatTheyShow) {
@@ -202,11 +223,11 @@ TEST_F(Video, StillsSayWhatTheyShow) {
                          "--size", "65x33"})
                   .exit_code,
               0);
-    const media::PngInfo info = media::read_png_info(folder_.file("a.png"));
-    EXPECT_THAT(info.text, testing::Contains(testing::Pair("Scene", "scene")));
+    const PngInfo info = read_png_info(folder_.file("a.png"));
+    EXPECT_THAT(info.text, testing::Contains(testing::Pair("Title", "scene")));
     EXPECT_THAT(info.text, testing::Contains(testing::Pair("Time", "0.3 s")));
     EXPECT_NEAR(info.pixels_per_inch, 300.0, 0.02);
-    EXPECT_EQ(media::read_png(folder_.file("a.png")).width(), 65);
+    EXPECT_EQ(read_png(folder_.file("a.png")).width(), 65);
     const std::string bytes = test::read_file(folder_.file("a.png"));
     EXPECT_NE(bytes.find("sRGB"), std::string::npos);
     EXPECT_NE(bytes.find("pHYs"), std::string::npos);

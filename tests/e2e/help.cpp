@@ -1,0 +1,43 @@
+// `corda help`: the same words as --help, and the keys of a scene file.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "corda/scene/keys.hpp"
+#include "support/command.hpp"
+
+namespace corda {
+namespace {
+
+using test::run_corda;
+using testing::HasSubstr;
+
+TEST(Help, IsThatOfTheOption) {
+    const auto general = run_corda({"help"});
+    EXPECT_EQ(general.exit_code, 0);
+    EXPECT_EQ(general.out, run_corda({"--help"}).out);
+    EXPECT_THAT(general.out, HasSubstr("Exit codes:"));
+    const auto still = run_corda({"help", "still"});
+    EXPECT_EQ(still.exit_code, 0);
+    EXPECT_EQ(still.out, run_corda({"still", "--help"}).out);
+    EXPECT_THAT(still.out, HasSubstr("--at"));
+}
+
+TEST(Help, ListsTheKeysOfAScene) {
+    const auto scene = run_corda({"help", "scene"});
+    EXPECT_EQ(scene.exit_code, 0);
+    EXPECT_EQ(scene.out, scene::keys_text());
+    const auto json = nlohmann::json::parse(run_corda({"help", "scene", "--json"}).out);
+    EXPECT_EQ(json.at("help"), scene::keys_text());
+}
+
+TEST(Help, OfAnUnknownTopicNamesTheNearest) {
+    const auto near = run_corda({"help", "scen"});
+    EXPECT_EQ(near.exit_code, 2);
+    EXPECT_THAT(near.err, HasSubstr("there is no help on \"scen\"; did you mean scene?"));
+    EXPECT_THAT(run_corda({"help", "magic"}).err, HasSubstr("known are render, still, simulate"));
+}
+
+}  // namespace
+}  // namespace corda
