@@ -6,7 +6,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 "$root/src/cmake/setup.sh" build
 preset=$root/build/release
 [[ -f "$preset/build.ninja" ]] || (cd "$root" && cmake --preset release >/dev/null)
-cmake --build "$preset" --target corda
+cmake --build "$preset"
 
 corda=$preset/corda
 # An existing video of these very inputs is kept: a second call does no needless work.

@@ -1,14 +1,25 @@
-# Install rules and the package that find_package(corda) reads.
+# The public library, install rules, and what find_package(corda) and pkg-config read.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-get_property(libraries GLOBAL PROPERTY CORDA_LIBRARIES)
-install(TARGETS ${libraries} EXPORT corda_targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-foreach(module core sim study view gl render media golden scene)
-    install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/${module}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/corda/${module}
-        FILES_MATCHING PATTERN "*.hpp")
-endforeach()
+corda_add_public_library(
+    FOLDERS core sim view gl render media golden scene pipeline
+    HEADERS
+        corda.hpp
+        core/basics.hpp core/image.hpp core/rational.hpp
+        golden/compare.hpp
+        media/defs.hpp
+        pipeline/film.hpp
+        scene/scene.hpp
+        sim/defs.hpp sim/simulation.hpp sim/system.hpp
+        view/defs.hpp
+    PRIVATE Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json PNG::PNG
+        PkgConfig::EPOXY PkgConfig::LIBAV PkgConfig::TOMLPLUSPLUS)
+
+install(TARGETS corda_library EXPORT corda_targets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS corda RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/corda)
 install(EXPORT corda_targets NAMESPACE corda:: DESTINATION ${package_dir})
@@ -17,3 +28,14 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/corda-config.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/corda-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/corda-config.cmake ${PROJECT_BINARY_DIR}/corda-config-version.cmake
     DESTINATION ${package_dir})
+# Users of a static libcorda link what it needs; a shared one carries its own.
+if(BUILD_SHARED_LIBS)
+    set(CORDA_PC_REQUIRES Requires.private)
+else()
+    set(CORDA_PC_REQUIRES Requires)
+endif()
+# From the folder of corda.pc, so that the installed tree can be moved.
+set(pc_dir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig)
+cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${pc_dir} OUTPUT_VARIABLE CORDA_PC_TO_PREFIX)
+configure_file(${CMAKE_CURRENT_LIST_DIR}/corda.pc.in ${PROJECT_BINARY_DIR}/corda.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/corda.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -1,6 +1,6 @@
-# One static library a folder of src. Its headers are reached as "corda/<folder>/<name>.hpp" through a link in the
-# build tree that belongs to that library alone, so a folder can include only what it links: the link line is the
-# rule about who may see whom.
+# One library per folder of src. Its headers are reached as "corda/<folder>/<name>.hpp" through a link in the build tree
+# that belongs to that library alone, so a folder can include only what it links: the link line is the rule about who may
+# see whom.
 
 add_library(corda_options INTERFACE)
 add_library(corda::options ALIAS corda_options)
@@ -16,30 +16,65 @@ endif()
 if(CORDA_SANITIZE)
     target_compile_options(corda_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
         -fno-omit-frame-pointer
-        # GCC 12 sees uninitialised values in std::regex where it is instrumented (PR 105562).
+        # GCC 12 sees uninitialised values in std::regex if it is instrumented (PR 105562).
         $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
     target_link_options(corda_options INTERFACE -fsanitize=address,undefined)
 endif()
 
-# corda_link_sanitizer(<executable>): what an executable needs for readable reports, under CORDA_SANITIZE alone.
+# corda_link_sanitizer(<executable>): what an executable needs for readable reports under CORDA_SANITIZE.
 function(corda_link_sanitizer target)
-    if(CORDA_SANITIZE)
-        target_sources(${target} PRIVATE ${PROJECT_SOURCE_DIR}/tests/support/keep_modules.cpp)
+    if(NOT CORDA_SANITIZE)
+        return()
     endif()
+    if(NOT TARGET corda_keep_modules)
+        add_library(corda_keep_modules OBJECT ${PROJECT_SOURCE_DIR}/tests/support/keep_modules.cpp)
+        target_link_libraries(corda_keep_modules PRIVATE corda::options)
+    endif()
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:corda_keep_modules>)
 endfunction()
 
-# corda_add_library(<folder> SOURCES <files> [PUBLIC <targets>] [PRIVATE <targets>])
+# corda_add_library(<folder> [PUBLIC <targets>] [PRIVATE <targets>]): all .cpp files of the folder and those below it.
+# Compiled once, as objects, which the public library (corda_add_public_library) takes too.
 function(corda_add_library folder)
-    cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
-    add_library(corda_${folder} STATIC ${ARG_SOURCES})
-    add_library(corda::${folder} ALIAS corda_${folder})
-    set_target_properties(corda_${folder} PROPERTIES EXPORT_NAME ${folder} POSITION_INDEPENDENT_CODE ON)
+    cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
     set(include_dir ${PROJECT_BINARY_DIR}/include/${folder})
     file(MAKE_DIRECTORY ${include_dir}/corda)
     file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${include_dir}/corda/${folder} SYMBOLIC)
-    target_include_directories(corda_${folder} PUBLIC $<BUILD_INTERFACE:${include_dir}>
-        $<INSTALL_INTERFACE:include>)
-    target_compile_features(corda_${folder} PUBLIC cxx_std_20)
-    target_link_libraries(corda_${folder} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} $<BUILD_INTERFACE:corda::options>)
-    set_property(GLOBAL APPEND PROPERTY CORDA_LIBRARIES corda_${folder})
+    add_library(corda_${folder}_objects OBJECT ${sources})
+    add_library(corda_${folder} STATIC $<TARGET_OBJECTS:corda_${folder}_objects>)
+    add_library(corda::${folder} ALIAS corda_${folder})
+    foreach(target corda_${folder}_objects corda_${folder})
+        # A shared library exports what the public headers declare between visibility pragmas.
+        set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON
+            CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+        target_include_directories(${target} PUBLIC ${include_dir})
+        target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} corda::options)
+    endforeach()
+endfunction()
+
+# corda_add_public_library(FOLDERS <folders> HEADERS <headers> PRIVATE <targets>): corda::corda, the one library that is
+# installed, from the objects of these folders; users see only these headers.
+function(corda_add_public_library)
+    cmake_parse_arguments(ARG "" "" "FOLDERS;HEADERS;PRIVATE" ${ARGN})
+    add_library(corda_library)  # static, or shared with BUILD_SHARED_LIBS
+    add_library(corda::corda ALIAS corda_library)
+    set_target_properties(corda_library PROPERTIES OUTPUT_NAME corda EXPORT_NAME corda
+        VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+    target_compile_features(corda_library PUBLIC cxx_std_20)
+    target_link_libraries(corda_library PRIVATE ${ARG_PRIVATE})
+    foreach(folder IN LISTS ARG_FOLDERS)
+        target_sources(corda_library PRIVATE $<TARGET_OBJECTS:corda_${folder}_objects>)
+    endforeach()
+    # In the build tree too, users of the library see the public headers alone.
+    set(include_dir ${PROJECT_BINARY_DIR}/include/public)
+    file(REMOVE_RECURSE ${include_dir})
+    foreach(header IN LISTS ARG_HEADERS)
+        cmake_path(GET header PARENT_PATH folder)
+        file(MAKE_DIRECTORY ${include_dir}/corda/${folder})
+        file(CREATE_LINK ${PROJECT_SOURCE_DIR}/src/${header} ${include_dir}/corda/${header} SYMBOLIC)
+        install(FILES ${PROJECT_SOURCE_DIR}/src/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/corda/${folder})
+    endforeach()
+    target_include_directories(corda_library PUBLIC $<BUILD_INTERFACE:${include_dir}>
+        $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 endfunction()

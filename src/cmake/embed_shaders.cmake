@@ -1,4 +1,4 @@
-# Script mode: writes OUTPUT, a header with one string constant a file of SHADERS: capsule.vert -> kCapsuleVert.
+# Script mode: writes OUTPUT, a header with one string constant per file of SHADERS: capsule.vert -> kCapsuleVert.
 set(text "// Generated from shaders/. Do not edit.\n#pragma once\n\nnamespace corda::render::shaders {\n")
 foreach(shader IN LISTS SHADERS)
     get_filename_component(name ${shader} NAME)

@@ -10,7 +10,7 @@ packages=(
     pkg-config              # finds the libraries that ship no CMake package
     libepoxy-dev            # loads EGL and OpenGL functions on any driver
     libegl-dev              # the EGL headers that epoxy includes
-    libegl-mesa0            # EGL without a screen, also where no GPU is
+    libegl-mesa0            # EGL without a screen, even without a GPU
     libgl1-mesa-dri         # llvmpipe: OpenGL on the CPU
     libavcodec-dev          # the H.264 encoder (x264) and the decoder that checks its output
     libavformat-dev         # the MP4 muxer and demuxer
