@@ -5,9 +5,9 @@
 
 namespace corda::test {
 
-/// What a finished command left behind.
+/// How a command ended, and what it printed.
 struct CommandResult {
-    int exit_code = -1;  ///< 128 + the signal where one ended it
+    int exit_code = -1;  ///< 128 + the signal that ended it
     std::string out;
     std::string err;
 };
@@ -23,7 +23,7 @@ struct CommandResult {
 [[nodiscard]] CommandResult run_corda(const std::vector<std::string>& arguments,
                                       const std::string& environment = "");
 
-/// A folder of its own for a test, removed with all in it.
+/// A folder for one test, removed with everything in it.
 class ScratchFolder {
   public:
     ScratchFolder();
@@ -45,7 +45,7 @@ class ScratchFolder {
 /// Writes a file's bytes.
 void write_file(const std::string& path, const std::string& bytes);
 
-/// The bytes of a file; empty where there is none.
+/// The bytes of a file; empty if there is no such file.
 [[nodiscard]] std::string read_file(const std::string& path);
 
 }  // namespace corda::test

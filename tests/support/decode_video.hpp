@@ -23,7 +23,7 @@ struct DecodedFrames {
 [[nodiscard]] DecodedFrames decode_video(const std::string& path);
 
 /// Which colour tags copy_video replaces by BT.601 and BT.709 transfer.
-enum class Retag { kNothing, kContainer, kStream };
+enum class Retag { kNone, kContainer, kStream };
 
 /// Stream-copies `from` to an MP4 with libav's default layout (index behind the pictures, clocks of its
 /// choice).

@@ -6,27 +6,27 @@
 #include <utility>
 #include <vector>
 
-#include "corda/study/ropes.hpp"
+#include "corda/reference/ropes.hpp"
 
 namespace corda::test {
 
 /// A closed rope of `particles` unit masses on a circle of radius 1 m whose top is at the origin, at rest;
 /// the top one pinned.
-inline sim::RopeDef ring(int particles) {
-    std::vector<sim::Vec2> points_m;
+inline RopeDef ring(int particles) {
+    std::vector<Vec2> points_m;
     for (int i = 0; i < particles; ++i) {
         const double angle = 2.0 * std::numbers::pi * i / particles;
         points_m.push_back({std::sin(angle), std::cos(angle) - 1.0});
     }
-    sim::RopeDef rope = study::rope_through(std::move(points_m));
+    RopeDef rope = reference::rope_through(std::move(points_m));
     rope.closed = true;
     return rope;
 }
 
 /// A cloth of columns x rows unit masses `spacing_m` apart that hangs from the two ends of its top row, with
 /// both diagonals in every square as imaginary bars.
-inline sim::NetDef cloth(std::uint32_t columns, std::uint32_t rows, double spacing_m) {
-    sim::NetDef net;
+inline NetDef cloth(std::uint32_t columns, std::uint32_t rows, double spacing_m) {
+    NetDef net;
     const auto at = [&](std::uint32_t row, std::uint32_t column) { return row * columns + column; };
     for (std::uint32_t r = 0; r < rows; ++r) {
         for (std::uint32_t c = 0; c < columns; ++c) {
@@ -49,9 +49,9 @@ inline sim::NetDef cloth(std::uint32_t columns, std::uint32_t rows, double spaci
 
 /// A net of unit masses, particle r * columns + c at spacing * (c + 0.3 r, -r): leaning to the right; bars
 /// along rows, then along columns, then, with `diagonals`, both of every cell. The top row is pinned.
-inline sim::NetDef leaning_net(std::uint32_t columns, std::uint32_t rows, double spacing_m,
-                               bool diagonals = false) {
-    sim::NetDef net;
+inline NetDef leaning_net(std::uint32_t columns, std::uint32_t rows, double spacing_m,
+                          bool diagonals = false) {
+    NetDef net;
     for (std::uint32_t r = 0; r < rows; ++r) {
         for (std::uint32_t c = 0; c < columns; ++c)
             net.points_m.push_back({spacing_m * (c + 0.3 * r), -spacing_m * r});

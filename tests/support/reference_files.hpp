@@ -8,16 +8,16 @@
 #include <string>
 #include <vector>
 
-#include "corda/sim/vec2.hpp"
+#include "corda/sim/defs.hpp"
 
 namespace corda::test {
 
-/// PHYSICS R1: where the bob of the IFToMM benchmark problem A01 (simple pendulum) is at t = 0.5, 1, ...,
-/// 2000 s, in metres, worked out to more digits than a double holds.
-inline std::vector<sim::Vec2> read_a01() {
+/// R1 (src/sim/README.md): where the bob of the IFToMM benchmark problem A01 (simple pendulum) is at
+/// t = 0.5, 1, ..., 2000 s, in metres, to more digits than a double holds.
+inline std::vector<Vec2> read_a01() {
     std::ifstream file(CORDA_TEST_DATA "/a01_pendulum.txt");
-    std::vector<sim::Vec2> points_m;
-    for (sim::Vec2 point; file >> point.x >> point.y;) points_m.push_back(point);
+    std::vector<Vec2> points_m;
+    for (Vec2 point; file >> point.x >> point.y;) points_m.push_back(point);
     EXPECT_EQ(points_m.size(), 4000U) << CORDA_TEST_DATA;
     return points_m;
 }
@@ -25,10 +25,10 @@ inline std::vector<sim::Vec2> read_a01() {
 /// Where all particles of the source report's start are at a time.
 struct ReportFrame {
     double time_s = 0.0;
-    std::vector<sim::Vec2> points_m;
+    std::vector<Vec2> points_m;
 };
 
-/// PHYSICS R11: the 40 particles at 1, 2, 5 and 10 s.
+/// R11 (src/sim/README.md): the 40 particles at 1, 2, 5 and 10 s.
 inline std::vector<ReportFrame> read_report_swing() {
     constexpr std::size_t kParticles = 40;
     std::ifstream file(CORDA_TEST_DATA "/swing40.txt");
@@ -38,7 +38,7 @@ inline std::vector<ReportFrame> read_report_swing() {
         std::istringstream numbers(line);
         ReportFrame& frame = frames.emplace_back();
         numbers >> frame.time_s;
-        for (sim::Vec2 point; numbers >> point.x >> point.y;) frame.points_m.push_back(point);
+        for (Vec2 point; numbers >> point.x >> point.y;) frame.points_m.push_back(point);
         EXPECT_EQ(frame.points_m.size(), kParticles) << frame.time_s;
     }
     EXPECT_EQ(frames.size(), 4U) << CORDA_TEST_DATA;

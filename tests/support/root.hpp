@@ -5,7 +5,8 @@
 
 namespace corda::test {
 
-/// Where a function changes its sign between two times, by the Illinois form of regula falsi.
+/// The time between `low` and `high` at which a function changes its sign, by the Illinois form of regula
+/// falsi.
 inline double root(const std::function<double(double)>& f, double low, double high) {
     double f_low = f(low);
     double f_high = f(high);

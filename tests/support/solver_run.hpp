@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "corda/sim/distance.hpp"
-#include "corda/sim/exact.hpp"
-#include "corda/sim/rattle.hpp"
+#include "corda/sim/exact/exact.hpp"
+#include "corda/sim/rattle/rattle.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::test {
@@ -21,25 +21,25 @@ namespace corda::test {
 template <class S = sim::Solver>
 class SolverRun {
   public:
-    SolverRun(sim::System system, const sim::WorldDef& world, const sim::SolverDef& def)
+    SolverRun(System system, const WorldDef& world, const MethodDef& def)
         : system_(std::move(system)),
           solver_(start(system_, world, def)),
           state_{0.0, system_.x_m, system_.y_m},
           start_energy_j_(solver_->energy_j()) {}
-    SolverRun(const sim::RopeDef& rope, const sim::WorldDef& world, const sim::SolverDef& def)
-        : SolverRun(sim::build_system({&rope, 1}, 1), world, def) {}
-    SolverRun(const sim::NetDef& net, const sim::WorldDef& world, const sim::SolverDef& def)
-        : SolverRun(sim::build_system({}, {&net, 1}, 1), world, def) {}
+    SolverRun(const RopeDef& rope, const WorldDef& world, const MethodDef& def)
+        : SolverRun(build_system({&rope, 1}), world, def) {}
+    SolverRun(const NetDef& net, const WorldDef& world, const MethodDef& def)
+        : SolverRun(build_system({}, {&net, 1}), world, def) {}
     SolverRun(const SolverRun&) = delete;  // the solver refers to the system
     SolverRun& operator=(const SolverRun&) = delete;
     ~SolverRun() = default;
 
     /// Goes on to a time and looks at what is there; false where the solver gives up.
     [[nodiscard]] bool go(double time_s) {
-        if (solver_->advance_to(time_s, state_) != sim::Status::kOk) return false;
+        if (solver_->advance_to(time_s, state_) != Status::kOk) return false;
         keep_largest(largest_change_j_, solver_->energy_j() - start_energy_j_);
         keep_largest(largest_move_m_, largest_distance_m(system_.x_m, system_.y_m));
-        for (const sim::Bar& bar : system_.bars) {
+        for (const Bar& bar : system_.bars) {
             const double length_m =
                 sim::length(state_.x_m[bar.b] - state_.x_m[bar.a], state_.y_m[bar.b] - state_.y_m[bar.a]);
             keep_largest(largest_strain_, length_m / bar.rest_m - 1.0);
@@ -57,11 +57,11 @@ class SolverRun {
 
     [[nodiscard]] double tip_x() const { return state_.x_m.back(); }
     [[nodiscard]] double tip_y() const { return state_.y_m.back(); }
-    [[nodiscard]] double tip_error_m(sim::Vec2 expected_m) const {
+    [[nodiscard]] double tip_error_m(Vec2 expected_m) const {
         return sim::length(tip_x() - expected_m.x, tip_y() - expected_m.y);
     }
     /// Largest distance of a particle from where it is in another state.
-    [[nodiscard]] double distance_m(const sim::State& other) const {
+    [[nodiscard]] double distance_m(const State& other) const {
         return largest_distance_m(other.x_m, other.y_m);
     }
     /// Largest distance of a particle from its start at any look.
@@ -75,18 +75,19 @@ class SolverRun {
         return largest_change_j_ / (scale_j > 0.0 ? scale_j : std::abs(start_energy_j_));
     }
     [[nodiscard]] double largest_energy_change_j() const { return largest_change_j_; }
-    [[nodiscard]] const sim::State& state() const { return state_; }
-    [[nodiscard]] const sim::System& system() const { return system_; }
+    [[nodiscard]] const State& state() const { return state_; }
+    [[nodiscard]] const System& system() const { return system_; }
     [[nodiscard]] S& solver() { return *solver_; }
 
   private:
-    static std::unique_ptr<S> start(const sim::System& system, const sim::WorldDef& world,
-                                    const sim::SolverDef& def) {
+    static std::unique_ptr<S> start(const System& system, const WorldDef& world, const MethodDef& def) {
         constexpr double kFrameSeconds = 1.0 / 60.0;
         if constexpr (std::is_same_v<S, sim::Solver>) {
             return sim::make_solver(system, world, def, kFrameSeconds);
+        } else if constexpr (std::is_same_v<S, sim::Exact>) {
+            return std::make_unique<S>(system, world, std::get<ExactDef>(def));
         } else {
-            return std::make_unique<S>(system, world, def, kFrameSeconds);
+            return std::make_unique<S>(system, world, std::get<RattleDef>(def), kFrameSeconds);
         }
     }
     /// Written so that a number that is none stays.
@@ -101,9 +102,9 @@ class SolverRun {
         return largest_m;
     }
 
-    sim::System system_;
+    System system_;
     std::unique_ptr<S> solver_;
-    sim::State state_;
+    State state_;
     double start_energy_j_;
     double largest_change_j_ = 0.0;
     double largest_move_m_ = 0.0;
@@ -123,19 +124,19 @@ double largest_distance_m(SolverRun<A>& one, SolverRun<B>& other, int looks) {
     return largest_m;
 }
 
-/// One rope by the method `rope`.
+/// One rope by the method `rattle`.
 class RattleRun : public SolverRun<sim::Rattle> {
   public:
-    RattleRun(const sim::RopeDef& rope, const sim::WorldDef& world, int order,
+    RattleRun(const RopeDef& rope, const WorldDef& world, int order,
               std::optional<double> step_s = std::nullopt)
-        : SolverRun(rope, world, sim::rope_solver(order, step_s)) {}
+        : SolverRun(rope, world, RattleDef{order, step_s}) {}
 };
 
 /// One rope by the method `exact`.
 class ExactRun : public SolverRun<sim::Exact> {
   public:
-    explicit ExactRun(const sim::RopeDef& rope, double tolerance = 1e-9, const sim::WorldDef& world = {})
-        : SolverRun(rope, world, sim::exact_solver(tolerance)) {}
+    explicit ExactRun(const RopeDef& rope, double tolerance = 1e-9, const WorldDef& world = {})
+        : SolverRun(rope, world, ExactDef{tolerance}) {}
 };
 
 }  // namespace corda::test

@@ -3,13 +3,13 @@
 #include <utility>
 #include <vector>
 
-#include "corda/study/ropes.hpp"
+#include "corda/reference/ropes.hpp"
 
 namespace corda::test {
 
 /// A rope of unit masses whose links, of `rest_m` at rest (none: as long as they are), pull and never push.
-inline sim::RopeDef string_of(std::vector<sim::Vec2> points_m, std::vector<double> rest_m) {
-    sim::RopeDef rope = study::rope_through(std::move(points_m));
+inline RopeDef string_of(std::vector<Vec2> points_m, std::vector<double> rest_m) {
+    RopeDef rope = reference::rope_through(std::move(points_m));
     rope.rest_m = std::move(rest_m);
     rope.material.is_string = true;
     return rope;

@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# Fails if a comment, a message or a page cites what is not in the repository: a reference number (R1, R2, ...), a
+# section of a README, a file, or the target of a link; and if a page below src puts between backticks an identifier
+# that is in no source. How to cite: "R5", "section 5 of src/sim/README.md", "tests/accuracy/data/swing40.txt",
+# "section 5" within one page.
+# Usage: citations.sh [ROOT]
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+cd "${1:-$here/../..}"
+mapfile -t files < <(find README.md src tests examples shaders -type f -regextype egrep \
+    -regex '.*\.(md|hpp|cpp|frag|vert|sh|toml|cmake|txt|in)' ! -path 'tests/lint/citations*' | sort)
+mapfile -t pages < <(printf '%s\n' "${files[@]}" | grep '\.md$')
+awk -f "$here/citations.awk" <(find . -mindepth 1 -path ./.git -prune -o -path ./build -prune -o -print | sed 's/^..//') \
+    part=headings "${pages[@]}" part=citations "${files[@]}"

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "corda/core/basics.hpp"
+
+namespace corda::test {
+
+/// How a piece of work ended: with kOk, or with the corda::Error it threw.
+struct Failure {
+    ExitCode code = ExitCode::kOk;
+    std::string message;
+};
+
+[[nodiscard]] inline Failure failure_of(const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const Error& error) {
+        return {error.code(), error.what()};
+    }
+    return {};
+}
+
+}  // namespace corda::test
