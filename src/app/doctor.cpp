@@ -46,20 +46,16 @@ nlohmann::json to_json(const gl::Attempt& attempt) {
     return json;
 }
 
-/// The endings of the files that can be written, or of those that cannot.
-std::set<std::string_view> endings(const std::vector<media::EncoderProbe>& encoders, bool writable) {
-    std::set<std::string_view> result;
+/// The endings of the files that some usable encoder writes.
+std::set<std::string_view> writable_endings(const std::vector<media::EncoderProbe>& encoders) {
+    std::set<std::string_view> endings;
     for (const media::Format& format : media::formats()) {
-        const bool usable = std::any_of(encoders.begin(), encoders.end(), [&](const auto& encoder) {
-            if (!encoder.usable) return false;
-            const auto rows = media::formats();
-            return std::any_of(rows.begin(), rows.end(), [&](const media::Format& row) {
-                return std::string_view(row.ending) == format.ending && encoder.name == row.codec;
-            });
+        const bool is_usable = std::any_of(encoders.begin(), encoders.end(), [&](const auto& encoder) {
+            return encoder.usable && encoder.name == format.codec;
         });
-        if (usable == writable) result.insert(format.ending);
+        if (is_usable) endings.insert(format.ending);
     }
-    return result;
+    return endings;
 }
 
 ExitCode doctor(const Console& console) {
@@ -75,8 +71,10 @@ ExitCode doctor(const Console& console) {
     }
     console.result(has_gl ? "This machine can draw."
                           : "This machine cannot draw: apt-get install libegl-mesa0 libgl1-mesa-dri");
-    const std::set<std::string_view> written = endings(encoders, true);
-    const std::set<std::string_view> missing = endings(encoders, false);
+    const std::set<std::string_view> written = writable_endings(encoders);
+    std::set<std::string_view> missing;
+    for (const media::Format& format : media::formats())
+        if (!written.contains(format.ending)) missing.insert(format.ending);
     if (!written.empty()) console.result(fmt::format("It can write {}.", fmt::join(written, ", ")));
     if (!missing.empty()) {
         console.result(

@@ -162,8 +162,9 @@ ExitCode plan(const Console& console, const PlanOptions& options) {
     report_plan(console, film);
     const CameraDef& camera = film.camera();
     if (options.toml) {
-        console.result(frozen_toml(film));
-        console.report({{"schema", 1}, {"toml", frozen_toml(film)}});
+        const std::string toml = frozen_toml(film);
+        console.result(toml);
+        console.report({{"schema", 1}, {"toml", toml}});
         return ExitCode::kOk;
     }
     const std::vector<std::string> terms = list_terms(film.scene(), film.plan().method);

@@ -82,4 +82,11 @@ inline void expect_impulses_along_the_bars(sim::ConstraintSolver& constraints, c
     }
 }
 
+/// Takes a stage so long that a bar would have to turn too far: no impulses can end it.
+inline void expect_to_give_up(sim::ConstraintSolver& constraints, const System& system) {
+    sim::Motion motion = sim::Motion::start_of(system);
+    std::vector<double> impulse(constraints.links().size(), 0.0);
+    EXPECT_FALSE(constraints.move({1.0, 1.0, {0.0, -10.0}}, motion, impulse));
+}
+
 }  // namespace corda::test

@@ -22,4 +22,9 @@ struct Failure {
     return {};
 }
 
+/// The code alone.
+[[nodiscard]] inline ExitCode code_of(const std::function<void()>& work) {
+    return failure_of(work).code;
+}
+
 }  // namespace corda::test

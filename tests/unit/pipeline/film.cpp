@@ -9,11 +9,13 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/pipeline/painter.hpp"
+#include "support/failure.hpp"
 #include "support/image_matchers.hpp"
 
 namespace corda {
 namespace {
 
+using test::code_of;
 using test::equal_images;
 using testing::HasSubstr;
 
@@ -33,15 +35,6 @@ Film film_of(const std::string& toml, FilmDef def = {}) {
 
 Film film_by(const std::string& solver, FilmDef def = {}) {
     return film_of(kRope + "[solver]\n" + solver, std::move(def));
-}
-
-ExitCode code_of(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const Error& error) {
-        return error.code();
-    }
-    return ExitCode::kOk;
 }
 
 void expect_same_bits(const State& a, const State& b) {

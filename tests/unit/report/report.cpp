@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "samples.hpp"
+#include "support/failure.hpp"
 
 namespace corda::report {
 namespace {
@@ -40,7 +41,7 @@ TEST(Report, IsRefusedIfBroken) {
     const auto code_with = [](const std::function<void(Report&)>& change) {
         Report report = small_report();
         change(report);
-        return code_of([&report] { check_report(report); });
+        return test::code_of([&report] { check_report(report); });
     };
     EXPECT_EQ(code_with([](Report& r) { r.chapters[0].tables[0].id = "../x"; }), ExitCode::kInternal);
     EXPECT_EQ(code_with([](Report& r) { r.chapters[0].tables[0].id = ""; }), ExitCode::kInternal);

@@ -49,13 +49,4 @@ inline Report small_report() {
     return report;
 }
 
-inline ExitCode code_of(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const Error& error) {
-        return error.code();
-    }
-    return ExitCode::kOk;
-}
-
 }  // namespace corda::report

@@ -7,6 +7,7 @@
 #include "corda/media/defs.hpp"
 #include "samples.hpp"
 #include "support/command.hpp"
+#include "support/failure.hpp"
 
 namespace corda::report {
 namespace {
@@ -98,8 +99,8 @@ TEST(Plots, FailureOfGnuplotIsReported) {
         EXPECT_EQ(error.code(), ExitCode::kIo);
         EXPECT_STREQ(error.what(), "gnuplot cannot draw 'error' (status 3): no such terminal");
     }
-    EXPECT_EQ(code_of([] { check_gnuplot(); }), ExitCode::kIo);
-    EXPECT_EQ(code_of([&] { write_report(small_report(), folder.file("out")); }), ExitCode::kIo);
+    EXPECT_EQ(test::code_of([] { check_gnuplot(); }), ExitCode::kIo);
+    EXPECT_EQ(test::code_of([&] { write_report(small_report(), folder.file("out")); }), ExitCode::kIo);
     EXPECT_FALSE(std::filesystem::exists(folder.file("out")));
 }
 

@@ -5,6 +5,7 @@
 
 #include "samples.hpp"
 #include "support/command.hpp"
+#include "support/failure.hpp"
 
 namespace corda::report {
 namespace {
@@ -24,7 +25,7 @@ TEST(WriteReport, WritesEveryFile) {
     const std::filesystem::directory_iterator files(out);
     EXPECT_EQ(std::distance(begin(files), end(files)), std::ssize(paths));  // no temporary ones are left
     const std::string& file = paths[0];
-    EXPECT_EQ(code_of([&] { write_report(small_report(), file); }), ExitCode::kIo);
+    EXPECT_EQ(test::code_of([&] { write_report(small_report(), file); }), ExitCode::kIo);
 }
 
 TEST(WriteReport, ReplacesFilesOnlyIfForced) {
@@ -33,7 +34,7 @@ TEST(WriteReport, ReplacesFilesOnlyIfForced) {
     report.chapters.pop_back();
     write_report(report, folder.path());
     const std::string other = folder.write("other.csv", "mine");
-    EXPECT_EQ(code_of([&] { write_report(report, folder.path()); }), ExitCode::kIo);
+    EXPECT_EQ(test::code_of([&] { write_report(report, folder.path()); }), ExitCode::kIo);
     report.title = "Changed";
     write_report(report, folder.path(), {.force = true});
     EXPECT_EQ(test::read_file(folder.file("report.json")), json_text(report));

@@ -34,9 +34,7 @@ TEST(GraphConstraints, MoveByImpulsesAlongTheBarsToTheirLengths) {
 TEST(GraphConstraints, GiveUpIfABarWouldTurnTooFar) {
     const System system = net_and_ring();
     GraphConstraints constraints(system);
-    Motion motion = Motion::start_of(system);
-    std::vector<double> impulse(constraints.links().size(), 0.0);
-    EXPECT_FALSE(constraints.move({1.0, 1.0, {0.0, -10.0}}, motion, impulse));
+    test::expect_to_give_up(constraints, system);
 }
 
 TEST(GraphConstraints, BoundTheFrequencyByWhatPullsAtAParticle) {
