@@ -26,6 +26,11 @@ struct Rational {
     /// "60" or "30000/1001".
     [[nodiscard]] std::string text() const;
 
+    /// Whether it can be a frame rate: both parts are within 1 .. kLargestPart.
+    [[nodiscard]] bool is_rate() const {
+        return num >= 1 && num <= kLargestPart && den >= 1 && den <= kLargestPart;
+    }
+
     [[nodiscard]] double value() const { return static_cast<double>(num) / static_cast<double>(den); }
 
     friend bool operator==(const Rational&, const Rational&) = default;
@@ -37,7 +42,7 @@ struct Rational {
 class FrameRate {
   public:
     FrameRate() = default;
-    /// Requires a positive rate.
+    /// Requires Rational::is_rate().
     explicit FrameRate(Rational frames_per_second) : rate_(frames_per_second) {}
 
     [[nodiscard]] Rational rational() const { return rate_; }

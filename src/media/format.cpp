@@ -48,8 +48,7 @@ void check_size(int width, int height) {
 }
 
 void check_rate(Rational fps) {
-    constexpr std::int64_t kLargest = Rational::kLargestPart;
-    if (fps.num >= 1 && fps.den >= 1 && fps.num <= kLargest && fps.den <= kLargest) return;
+    if (fps.is_rate()) return;
     fail_usage("frame rate {} is out of range; use a positive rate such as 60 or 30000/1001", fps.text());
 }
 

@@ -14,8 +14,7 @@ namespace {
 
 void validate_frames(const Scene& scene) {
     const Rational fps = scene.video.fps.rational();
-    const auto is_part = [](std::int64_t part) { return part >= 1 && part <= Rational::kLargestPart; };
-    if (!is_part(fps.num) || !is_part(fps.den)) {
+    if (!fps.is_rate()) {
         throw Error(ExitCode::kInvalidScene,
                     fmt::format("video: fps {}/{} is not a fraction of integers within 1 .. {}", fps.num,
                                 fps.den, Rational::kLargestPart));

@@ -5,6 +5,15 @@
 namespace corda {
 namespace {
 
+TEST(Rational, IsARateIfBothPartsArePositiveAndNotTooLarge) {
+    constexpr std::int64_t kLargest = Rational::kLargestPart;
+    for (const Rational rate : {Rational{1, 1}, Rational{30000, 1001}, Rational{kLargest, kLargest}})
+        EXPECT_TRUE(rate.is_rate()) << rate.text();
+    for (const Rational other : {Rational{0, 1}, Rational{-60, 1}, Rational{60, 0}, Rational{60, -1},
+                                 Rational{kLargest + 1, 1}, Rational{1, kLargest + 1}})
+        EXPECT_FALSE(other.is_rate()) << other.text();
+}
+
 TEST(Rational, ReadsIntegersAndFractionsInLowestTerms) {
     EXPECT_EQ(Rational::parse("60"), (Rational{60, 1}));
     EXPECT_EQ(Rational::parse("30000/1001"), (Rational{30000, 1001}));
