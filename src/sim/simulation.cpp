@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 #include <utility>
-#include "corda/core/basics.hpp"
 
+#include "corda/core/basics.hpp"
 #include "corda/sim/distance.hpp"
 #include "corda/sim/exact/exact.hpp"
 #include "corda/sim/flush_denormals.hpp"
