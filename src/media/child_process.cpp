@@ -1,0 +1,144 @@
+#include "corda/media/child_process.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/file.hpp"
+
+namespace corda::media {
+namespace {
+
+constexpr int kWaitMs = 100;
+
+/// Kills what still runs when it goes out of scope.
+class Child {
+  public:
+    explicit Child(pid_t pid) : pid_(pid) {}
+    Child(const Child&) = delete;
+    Child& operator=(const Child&) = delete;
+    ~Child() {
+        if (pid_ != 0) kill();
+    }
+
+    /// Waits for the end, and returns waitpid's status.
+    int wait() {
+        int status = 0;
+        while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+        }
+        pid_ = 0;
+        return status;
+    }
+
+    void kill() {
+        ::kill(pid_, SIGKILL);
+        wait();
+    }
+
+  private:
+    pid_t pid_;
+};
+
+std::uint64_t address_space_bytes() {
+    std::uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+void lower_limit(decltype(RLIMIT_AS) resource, rlim_t value) {
+    rlimit limit{};
+    getrlimit(resource, &limit);
+    limit.rlim_cur = std::min(limit.rlim_cur, value);
+    setrlimit(resource, &limit);
+}
+
+/// What the child does. It ends without the destructors and handlers of the process that it is a copy of.
+[[noreturn]] void be_child(const std::function<std::string()>& work, const ChildLimits& limits,
+                           const Descriptor& out) {
+    for (const int signal : {SIGINT, SIGTERM, SIGXCPU}) std::signal(signal, SIG_DFL);
+    lower_limit(RLIMIT_AS, address_space_bytes() + limits.memory_bytes);
+    lower_limit(RLIMIT_CPU, static_cast<rlim_t>(limits.cpu_s));
+    lower_limit(RLIMIT_CORE, 0);
+    try {
+        _exit(write_all(out.get(), work()) == 0 ? EXIT_SUCCESS : EXIT_FAILURE);
+    } catch (...) {
+        _exit(EXIT_FAILURE);
+    }
+}
+
+/// Appends what the child writes until it closes its end; false if that takes longer than `wall_s`.
+bool receive(const Descriptor& in, double wall_s, const std::function<void()>& on_wait, std::string& text) {
+    std::array<char, 4096> block{};
+    // Waits are counted rather than read off a clock, which goes on while a shell has stopped both processes.
+    for (double waited_s = 0.0; waited_s < wall_s;) {
+        if (on_wait) on_wait();
+        pollfd ready{in.get(), POLLIN, 0};
+        const int count = poll(&ready, 1, kWaitMs);
+        if (count == 0) waited_s += kWaitMs / 1000.0;
+        if (count <= 0) continue;
+        const ssize_t bytes = read(in.get(), block.data(), block.size());
+        if (bytes == 0) return true;
+        if (bytes > 0) text.append(block.data(), static_cast<std::size_t>(bytes));
+    }
+    return false;
+}
+
+/// What ended a child that did not finish; throws if it was not its own doing.
+std::string fate(int status, const ChildLimits& limits) {
+    if (!WIFSIGNALED(status)) return fmt::format("crashed (status {})", WEXITSTATUS(status));
+    const int signal = WTERMSIG(status);
+    for (const int foreign : {SIGKILL, SIGTERM, SIGINT, SIGHUP}) {
+        if (signal == foreign)
+            throw Error(ExitCode::kTemporary,
+                        fmt::format("the process that decodes was ended from outside ({}), as a system does "
+                                    "that runs out of memory; try again",
+                                    strsignal(signal)));
+    }
+    if (signal == SIGXCPU) return fmt::format("took more than {} s of computing", limits.cpu_s);
+    return fmt::format("crashed ({})", strsignal(signal));
+}
+
+}  // namespace
+
+std::optional<ChildEnd> run_in_child(const std::function<std::string()>& work, const ChildLimits& limits,
+                                     const std::function<void()>& on_wait) {
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) fail_file("make a pipe for", "a child process", errno);
+    const Descriptor in(ends[0]);
+    Descriptor out(ends[1]);
+    const pid_t parent = getpid();
+    const pid_t pid = fork();
+    if (pid < 0) return std::nullopt;
+    if (pid == 0) {
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        if (getppid() != parent) _exit(EXIT_FAILURE);
+        be_child(work, limits, out);
+    }
+    Child child(pid);
+    static_cast<void>(out.close());
+    ChildEnd end;
+    if (!receive(in, limits.wall_s, on_wait, end.text)) {
+        child.kill();
+        end.text = fmt::format("did not end within {} s", limits.wall_s);
+        return end;
+    }
+    const int status = child.wait();
+    if (on_wait) on_wait();  // a signal that ended the child may have been meant for both
+    end.finished = status == 0 && !end.text.empty();
+    if (!end.finished) end.text = fate(status, limits);
+    return end;
+}
+
+}  // namespace corda::media
