@@ -27,11 +27,11 @@ struct Color {
     friend bool operator==(const Color&, const Color&) = default;
 };
 
-/// The largest side of a picture that Corda draws, reads or writes, and the most pixels of one that it draws.
+/// The largest side of a picture that Corda draws or reads, and the most pixels of one.
 inline constexpr int kLargestSidePx = 16384;
 inline constexpr std::int64_t kMostPicturePx = std::int64_t{1} << 26;
 
-/// Whether Corda draws pictures of this size.
+/// Whether Corda draws and reads pictures of this size.
 constexpr bool is_picture_size(std::int64_t width, std::int64_t height) {
     return width >= 1 && height >= 1 && width <= kLargestSidePx && height <= kLargestSidePx &&
            width * height <= kMostPicturePx;

@@ -46,8 +46,8 @@ struct PngInfo {
 void write_png(const std::string& path, const Image& image, const PngInfo& info = {},
                OutputOptions options = {});
 
-/// Reads any PNG of at most kLargestSidePx per side as 8-bit RGBA. Throws corda::Error (kIo) if the file
-/// cannot be read or is not a complete PNG.
+/// Reads any PNG of a size that is_picture_size() as 8-bit RGBA. Throws corda::Error (kIo) if it is larger,
+/// before memory is taken, or if the file cannot be read or is not a complete PNG.
 [[nodiscard]] Image read_png(const std::string& path);
 
 /// The tEXt chunks of a PNG. Throws as read_png.

@@ -41,7 +41,7 @@ void on_read_warning(png_structp, png_const_charp) {}
 bool read_header(ReadJob& job) {
     if (setjmp(png_jmpbuf(job.png)) != 0) return false;
     png_init_io(job.png, job.file);
-    png_set_user_limits(job.png, kLargestSidePx, kLargestSidePx);
+    png_set_user_limits(job.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // check_png_size has better words
     png_read_info(job.png, job.info);
     return true;
 }
@@ -86,9 +86,16 @@ void open_job(ReadJob& job, const std::string& path) {
     if (!read_header(job)) fail_png(path, job.message);
 }
 
-Image read_pixels(ReadJob& job, const std::string& path) {
+/// Refuses a picture that takes too much memory, and one that its file cannot hold.
+void check_png_size(const ReadJob& job, const std::string& path) {
     const png_uint_32 width = png_get_image_width(job.png, job.info);
     const png_uint_32 height = png_get_image_height(job.png, job.info);
+    if (!is_picture_size(width, height)) {
+        throw Error(ExitCode::kIo,
+                    fmt::format("cannot read PNG '{}': it has {} x {} pixels, and at most {} per side and {} "
+                                "in all are read; give a smaller picture",
+                                path, width, height, kLargestSidePx, kMostPicturePx));
+    }
     struct stat status {};
     const bool known_size = ::fstat(::fileno(job.file), &status) == 0 && S_ISREG(status.st_mode);
     const double stored_bytes = static_cast<double>(png_get_rowbytes(job.png, job.info)) * height;
@@ -96,8 +103,13 @@ Image read_pixels(ReadJob& job, const std::string& path) {
         fail_png(path,
                  fmt::format("a file of {} bytes cannot hold {} x {} pixels", status.st_size, width, height));
     }
+}
+
+Image read_pixels(ReadJob& job, const std::string& path) {
+    check_png_size(job, path);
     if (!request_rgba8(job)) fail_png(path, job.message);
-    Image image(static_cast<int>(width), static_cast<int>(height));
+    const png_uint_32 height = png_get_image_height(job.png, job.info);
+    Image image(static_cast<int>(png_get_image_width(job.png, job.info)), static_cast<int>(height));
     if (png_get_rowbytes(job.png, job.info) != image.row_bytes()) fail_png(path, "libpng gave no 8-bit RGBA");
     std::vector<png_bytep> rows(height);
     for (png_uint_32 y = 0; y < height; ++y) rows[y] = image.pixel(0, static_cast<int>(y));

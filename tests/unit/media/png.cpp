@@ -8,6 +8,7 @@
 #include <random>
 
 #include "corda/core/basics.hpp"
+#include "corda/media/child_process.hpp"
 #include "corda/media/defs.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"
@@ -136,23 +137,50 @@ TEST_F(Png, EveryFormatBecomesRgba8) {
     EXPECT_EQ(std::vector<int>(deep.data(), deep.data() + 4), (std::vector<int>{255, 128, 0, 255}));
 }
 
-TEST_F(Png, RefusesAHugePictureBeforeAllocatingMemory) {
-    // A file of a few bytes promises 16384 x 16384 pixels, and then a side over the limit.
-    for (const int side : {16384, 16385}) {
-        std::FILE* out = std::fopen(file("huge.png").c_str(), "wb");
-        png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
-        png_infop info = png_create_info_struct(png);
-        png_init_io(png, out);
-        png_set_IHDR(png, info, static_cast<png_uint_32>(side), static_cast<png_uint_32>(side), 8,
-                     PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-                     PNG_FILTER_TYPE_DEFAULT);
-        png_write_info(png, info);
-        const std::array<png_byte, 4> data{};
-        png_write_chunk(png, reinterpret_cast<png_const_bytep>("IDAT"), data.data(), data.size());
-        png_destroy_write_struct(&png, &info);
-        std::fclose(out);
-        EXPECT_EQ(code_of_reading(file("huge.png")), ExitCode::kIo) << side;
+/// Writes a PNG that ends after a few bytes of its pixels.
+void write_beginning(const std::string& path, int width, int height) {
+    std::FILE* out = std::fopen(path.c_str(), "wb");
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+    png_infop info = png_create_info_struct(png);
+    png_init_io(png, out);
+    png_set_user_limits(png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+    png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
+                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
+    png_write_info(png, info);
+    const std::array<png_byte, 4> data{};
+    png_write_chunk(png, reinterpret_cast<png_const_bytep>("IDAT"), data.data(), data.size());
+    png_destroy_write_struct(&png, &info);
+    std::fclose(out);
+}
+
+TEST_F(Png, RefusesAHugePictureInItsOwnWords) {
+    for (const auto& [width, height] :
+         {std::pair{16384, 16384}, {16384, 4097}, {16385, 1}, {1, 16385}, {2000000000, 2000000000}}) {
+        write_beginning(file("huge.png"), width, height);
+        const test::Failure failure = test::failure_of([&] { (void)read_png(file("huge.png")); });
+        EXPECT_EQ(failure.code, ExitCode::kIo);
+        EXPECT_EQ(failure.message, "cannot read PNG '" + file("huge.png") + "': it has " +
+                                       std::to_string(width) + " x " + std::to_string(height) +
+                                       " pixels, and at most 16384 per side and 67108864 in all are read; "
+                                       "give a smaller picture");
     }
+    write_beginning(file("huge.png"), 16384, 4096);
+    const test::Failure failure = test::failure_of([&] { (void)read_png(file("huge.png")); });
+    EXPECT_THAT(failure.message, HasSubstr("bytes cannot hold 16384 x 4096 pixels"));
+}
+
+TEST_F(Png, RefusesASmallFileOfManyPixelsBeforeTakingMemory) {
+    constexpr int kSide = 16384;
+    write_raw(file("bomb.png"), kSide, kSide, 1, PNG_COLOR_TYPE_GRAY, std::vector<png_byte>(kSide / 8));
+    EXPECT_LT(fs::file_size(file("bomb.png")), 100'000U);  // measured: 33 kB for 1 GiB of RGBA
+    const auto read = [&] {
+        const test::Failure failure = test::failure_of([&] { (void)read_png(file("bomb.png")); });
+        return std::to_string(static_cast<int>(failure.code));
+    };
+    const auto end = run_in_child(read, {std::uint64_t{1} << 26, 10, 10.0});
+    EXPECT_TRUE(end->finished);
+    EXPECT_EQ(end->text, "6");
 }
 
 TEST_F(Png, AMissingFolderAndABadKeywordAreErrors) {
