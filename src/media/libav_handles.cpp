@@ -58,6 +58,7 @@ void fail_libav(ExitCode code, const std::string& what, int status, std::string_
     std::string message = fmt::format("{}: {}", what, libav_text(status));
     if (!log.empty()) message += fmt::format(" ({})", log);
     if (!shown_hint.empty()) message += fmt::format("; {}", shown_hint);
+    if (status == AVERROR(ENOMEM)) code = ExitCode::kTemporary;
     throw Error(out_of_space ? ExitCode::kIo : code, message);
 }
 

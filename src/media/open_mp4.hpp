@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <memory>
 #include <string>
 
 #include "corda/media/libav_handles.hpp"
@@ -10,6 +12,8 @@ namespace corda::media {
 struct OpenMp4 {
     InputFormat format;
     const AVStream* stream = nullptr;  ///< owned by `format`
+    /// Whether a frame found no memory, which decoders report as damage.
+    std::unique_ptr<std::atomic<bool>> lacks_memory = std::make_unique<std::atomic<bool>>(false);
     CodecContext context;
 };
 

@@ -68,7 +68,11 @@ class Decoding {
         return true;
     }
 
-    void note_bad(int status) { note_bad(log_.text().empty() ? libav_text(status) : log_.text()); }
+    void note_bad(int status) {
+        if (status == AVERROR(ENOMEM) || *file_.lacks_memory)
+            fail_libav(ExitCode::kTemporary, "decoding", AVERROR(ENOMEM));
+        note_bad(log_.text().empty() ? libav_text(status) : log_.text());
+    }
 
     void note_bad(const std::string& reason) {
         if (video_.bad_frames++ == 0) video_.bad_reason = reason;
