@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "interrupt.hpp"
 
 namespace corda::app {
 namespace {
@@ -35,7 +36,7 @@ nlohmann::json to_json(const std::string& path, const media::VerifyReport& repor
 }
 
 ExitCode verify(const Console& console, const std::string& path) {
-    const media::VerifyReport report = media::verify(path);
+    const media::VerifyReport report = media::verify_in_child(path, stop_if_asked);
     if (!report.codec.empty()) {
         console.result(fmt::format("{}: {} {} {} {}x{}, {} frames at {} per second, {} s", path,
                                    report.container, report.codec, report.profile, report.width_px,
@@ -53,8 +54,10 @@ ExitCode verify(const Console& console, const std::string& path) {
 
 void add_verify(CLI::App& app, Action& action) {
     auto path = std::make_shared<std::string>();
-    CLI::App* command =
-        app.add_subcommand("verify", "check a video's frames, times, tags and colours; exit 7 on a problem");
+    CLI::App* command = app.add_subcommand(
+        "verify",
+        "check a video's structure, times and tags, that every frame decodes, and the colours of the first "
+        "frame alone; exit 7 on a problem");
     command->add_option("FILE", *path, "video file")->required();
     command->callback(
         [path, &action] { action = [path](const Console& console) { return verify(console, *path); }; });

@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <filesystem>
+#include <new>
+#include <nlohmann/json.hpp>
+
+#include "corda/core/basics.hpp"
+#include "corda/media/child_process.hpp"
+#include "corda/media/verify.hpp"
+
+namespace corda {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Rational, num, den)
+
+namespace media {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(VerifyReport, container, codec, profile, pixel_format, width_px, height_px,
+                                   fps, frames, duration_s, range, matrix, primaries, transfer,
+                                   chroma_location, faststart, problems, notes)
+
+namespace {
+
+using Json = nlohmann::json;
+
+// A frame of kMostPicturePx has 100 MB, and a decoder holds up to some 20; others are far smaller.
+constexpr int kMemoryGib = 4;
+constexpr std::uint64_t kMemoryBytes = std::uint64_t{kMemoryGib} << 30;
+
+/// In time, more than a sound file takes: measured are 0.06 s per kB, in a still scene, whose frames are
+/// small.
+ChildLimits limits_for(const std::string& path) {
+    constexpr std::int64_t kLeastS = 20;
+    constexpr std::int64_t kBytesPerS = 1000;
+    constexpr double kWallPerCpu = 3.0;  // the machine may be busy
+    std::error_code none;                // for what is no regular file
+    const std::uintmax_t size = std::filesystem::file_size(path, none);
+    const std::int64_t bytes = none ? 0 : static_cast<std::int64_t>(size);
+    const std::int64_t cpu_s = kLeastS + bytes / kBytesPerS;
+    return {kMemoryBytes, cpu_s, kWallPerCpu * static_cast<double>(cpu_s)};
+}
+
+VerifyReport damaged(const std::string& decoding) {
+    VerifyReport report;
+    report.problems.push_back(
+        fmt::format("decoding {}; the file is damaged: copy or render it again", decoding));
+    return report;
+}
+
+/// Whether the user allows less memory than a child may take: then a lack of it is not the file's fault.
+bool has_little_memory() {
+    rlimit limit{};
+    getrlimit(RLIMIT_AS, &limit);
+    return limit.rlim_cur < kMemoryBytes;
+}
+
+/// What the child tells: the report, or the error that `verify` threw. As CBOR, because the words may quote
+/// any bytes of the file.
+std::string told(const std::string& path, bool has_little) {
+    Json json;
+    const auto fail = [&](ExitCode code, const char* message) {
+        if (code == ExitCode::kTemporary && !has_little) {
+            json["report"] =
+                damaged(fmt::format("asks for more memory than it may have ({} GiB)", kMemoryGib));
+        } else {
+            json["error"] = {{"code", static_cast<int>(code)}, {"message", message}};
+        }
+    };
+    try {
+        json["report"] = verify(path);
+    } catch (const Error& error) {
+        fail(error.code(), error.what());
+    } catch (const std::bad_alloc&) {
+        fail(ExitCode::kTemporary, "out of memory");
+    }
+    std::string bytes;
+    Json::to_cbor(json, bytes);
+    return bytes;
+}
+
+}  // namespace
+
+VerifyReport verify_in_child(const std::string& path, const std::function<void()>& on_wait) {
+    const bool has_little = has_little_memory();
+    const auto end = run_in_child([&] { return told(path, has_little); }, limits_for(path), on_wait);
+    if (!end) return verify(path);
+    if (!end->finished) return damaged(end->text);
+    const Json json = Json::from_cbor(end->text);
+    if (!json.contains("error")) return json.at("report");
+    const Json& error = json["error"];
+    throw Error(static_cast<ExitCode>(error.at("code").get<int>()), error.at("message").get<std::string>());
+}
+
+}  // namespace media
+}  // namespace corda
