@@ -119,15 +119,15 @@ class ValueChecker {
             return false;
         }
         const auto meant = nearest(text, words);
-        if (!meant) return fail(node, path, fmt::format("\"{}\" is unknown", printable(text)));
+        if (!meant) return fail(node, path, fmt::format("\"{}\" is unknown", excerpt(text)));
         problems_->add(node.source(), path,
-                       fmt::format("\"{}\" is unknown; did you mean \"{}\"?", printable(text), *meant));
+                       fmt::format("\"{}\" is unknown; did you mean \"{}\"?", excerpt(text), *meant));
         return false;
     }
 
     bool check_color(const std::string& text, const toml::node& node, const std::string& path) const {
         const auto color = Color::parse(text);
-        if (!color) return fail(node, path, fmt::format("\"{}\" is not a colour", printable(text)));
+        if (!color) return fail(node, path, fmt::format("\"{}\" is not a colour", excerpt(text)));
         const bool good = key_->type.kind != Kind::kOpaqueColor || color->a == 255;
         return good || fail(node, path, fmt::format("\"{}\" is not opaque", text));
     }
@@ -195,7 +195,7 @@ class TableChecker {
             if (meant) problems_->add_misspelt(dotted(path, *meant));
             std::string hint = meant ? fmt::format("; did you mean \"{}\"?", *meant) : other_home(key.str());
             if (hint.empty()) hint = fmt::format("; valid keys: {}", fmt::join(known, ", "));
-            const std::string name = printable(key.str());
+            const std::string name = excerpt(key.str());
             problems_->add(key.source(), dotted(path, name), fmt::format("unknown key \"{}\"{}", name, hint));
         }
     }

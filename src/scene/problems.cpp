@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 
 namespace corda::scene {
 namespace {
@@ -18,20 +19,10 @@ bool is_continuation(char c) {
 
 }  // namespace
 
-std::string printable(std::string_view text, std::size_t longest) {
+std::string excerpt(std::string_view text, std::size_t longest) {
     std::size_t length = std::min(text.size(), longest);
     while (length < text.size() && length > 0 && is_continuation(text[length])) --length;
-    std::string result;
-    for (const char c : text.substr(0, length)) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (byte < 0x20 || byte == 0x7f) {
-            result += fmt::format("\\x{:02x}", byte);
-        } else {
-            result += c;
-        }
-    }
-    if (length < text.size()) result += "...";
-    return result;
+    return printable(text.substr(0, length)) + (length < text.size() ? "..." : "");
 }
 
 std::string described(const toml::node& node) {
@@ -41,7 +32,7 @@ std::string described(const toml::node& node) {
         case toml::node_type::array:
             return fmt::format("this is a list of {}", node.as_array()->size());
         case toml::node_type::string:
-            return fmt::format("\"{}\" is a string", printable(node.as_string()->get()));
+            return fmt::format("\"{}\" is a string", excerpt(node.as_string()->get()));
         case toml::node_type::integer:
             return fmt::format("{} is an integer", node.as_integer()->get());
         case toml::node_type::floating_point:

@@ -10,8 +10,9 @@
 
 namespace corda::scene {
 
-/// Text from a file as it may stand in a message: control characters escaped, cut off after `longest` bytes.
-[[nodiscard]] std::string printable(std::string_view text, std::size_t longest = 60);
+/// Text from a file as it may stand in a message: printable (see core/text.hpp), cut off after `longest`
+/// bytes.
+[[nodiscard]] std::string excerpt(std::string_view text, std::size_t longest = 60);
 
 /// What a node is, with its value if that is short: `"abc" is a string`, `this is a table`.
 [[nodiscard]] std::string described(const toml::node& node);

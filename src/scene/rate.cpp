@@ -45,7 +45,7 @@ std::variant<Rational, std::string> read_rate(const toml::node& node) {
     if (node.is_number()) return rate_from_number(number_of(node));
     const std::string& text = node.as_string()->get();
     if (const auto rate = Rational::parse(text)) return *rate;
-    return fmt::format("\"{}\" is not a fraction", printable(text));
+    return fmt::format("\"{}\" is not a fraction", excerpt(text));
 }
 
 }  // namespace corda::scene

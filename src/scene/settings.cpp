@@ -28,7 +28,7 @@ struct Step {
 };
 
 std::string label_of(const Setting& setting) {
-    return "--set " + printable(setting, kLongestLabel);
+    return "--set " + excerpt(setting, kLongestLabel);
 }
 
 [[noreturn]] void fail_usage(const Setting& setting, std::string_view problem) {
@@ -188,7 +188,7 @@ void apply_setting(toml::table& document, const Setting& setting, Problems& prob
     const std::string_view key = trimmed(std::string_view(setting).substr(0, equals));
     if (key.empty()) fail_usage(setting, "the key is empty");
     const auto steps = parse_key(key);
-    if (!steps) fail_usage(setting, fmt::format("\"{}\" is not a key", printable(key)));
+    if (!steps) fail_usage(setting, fmt::format("\"{}\" is not a key", excerpt(key)));
     if (steps->size() > static_cast<std::size_t>(kKeyParts))
         fail_usage(setting, "the key has too many parts");
     try {

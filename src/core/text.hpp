@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace corda {
+
+/// `bytes`, which may be anything, as UTF-8: each byte that is not part of a character becomes its number in
+/// hexadecimal, e.g. "\xe9". U+FFFE and U+FFFF, which XML does not have, count as none.
+[[nodiscard]] std::string utf8(std::string_view bytes);
+
+/// The same with each byte of a control character as its number, e.g. "\x1b": one line that a terminal, a
+/// title and XML can show. Printable text stays as it is.
+[[nodiscard]] std::string printable(std::string_view bytes);
+
+}  // namespace corda

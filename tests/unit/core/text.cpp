@@ -1,0 +1,39 @@
+#include "corda/core/text.hpp"
+
+#include <gtest/gtest.h>
+
+namespace corda {
+namespace {
+
+TEST(Text, OfUtf8StaysAsItIs) {
+    for (const char* text :
+         {"", "swing", "caf\xc3\xa9 \xe2\x88\x9e \xf0\x9f\xaa\xa2", "\xc2\xa0 \xed\x9f\xbf \xee\x80\x80",
+          "\xef\xbf\xbd \xf0\x90\x80\x80 \xf4\x8f\xbf\xbf", "back\\slash \\x1b"}) {
+        EXPECT_EQ(utf8(text), text);
+        EXPECT_EQ(printable(text), text);
+    }
+}
+
+TEST(Text, OfOtherBytesIsEscaped) {
+    EXPECT_EQ(utf8("caf\xe9.toml"), "caf\\xe9.toml");  // Latin-1
+    EXPECT_EQ(utf8("\xc3"), "\\xc3");                  // broken off
+    EXPECT_EQ(utf8("\xe2\x88"), "\\xe2\\x88");
+    EXPECT_EQ(utf8("\xc3\xa9\xa9"), "\xc3\xa9\\xa9");        // no lead byte
+    EXPECT_EQ(utf8("\xc0\xaf\xe0\x80\xaf\xf0\x80\x80\xaf"),  // longer than need be
+              "\\xc0\\xaf\\xe0\\x80\\xaf\\xf0\\x80\\x80\\xaf");
+    EXPECT_EQ(utf8("\xed\xa0\x80"), "\\xed\\xa0\\x80");  // a surrogate
+    EXPECT_EQ(utf8("\xf4\x90\x80\x80\xff"), "\\xf4\\x90\\x80\\x80\\xff");
+    EXPECT_EQ(utf8("\xef\xbf\xbe\xef\xbf\xbf"), "\\xef\\xbf\\xbe\\xef\\xbf\\xbf");
+}
+
+TEST(Text, ThatCanBePrintedHasNoControlCharacters) {
+    EXPECT_EQ(printable("\x1b[31mred\x07\n\t\x7f"), "\\x1b[31mred\\x07\\x0a\\x09\\x7f");
+    EXPECT_EQ(printable(std::string_view("a\0b", 3)), "a\\x00b");
+    EXPECT_EQ(printable("\xc2\x9b"
+                        "31m\x9b"),
+              "\\xc2\\x9b31m\\x9b");  // CSI, as a character and as a byte
+    EXPECT_EQ(utf8("\x1b\n\xc2\x9b"), "\x1b\n\xc2\x9b");
+}
+
+}  // namespace
+}  // namespace corda
