@@ -14,6 +14,8 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
+#include "corda/core/text.hpp"
+#include "corda/report/utf8_json.hpp"
 
 namespace corda::app {
 namespace {
@@ -48,10 +50,24 @@ std::string duration_text(double seconds) {
 
 }  // namespace
 
-Console::Console(const ConsoleDef& def)
-    : def_(def), is_terminal_(isatty(STDERR_FILENO) == 1), uses_color_(is_terminal_ && !is_set("NO_COLOR")) {}
+std::string printable_lines(std::string_view text) {
+    std::string lines;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        lines += (begin > 0 ? "\n" : "") + printable(text.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return lines;
+}
 
-void Console::say(std::string_view label, std::string_view color, std::string_view text) const {
+Console::Console(const ConsoleDef& def)
+    : def_(def),
+      prints_results_(isatty(STDOUT_FILENO) == 1),
+      is_terminal_(isatty(STDERR_FILENO) == 1),
+      uses_color_(is_terminal_ && !is_set("NO_COLOR")) {}
+
+void Console::say(std::string_view label, std::string_view color, std::string_view message) const {
+    const std::string text = printable_lines(message);
     if (uses_color_ && !label.empty()) {
         write_stderr(fmt::format("corda: \x1b[{}m{}\x1b[0m{}\n", color, label, text));
     } else {
@@ -76,11 +92,13 @@ void Console::error(std::string_view text) const {
 }
 
 void Console::result(std::string_view text) const {
-    if (!def_.json) write_stdout(text);
+    if (!def_.json) write_stdout(prints_results_ ? printable_lines(text) : std::string(text));
 }
 
-void Console::report(const nlohmann::json& json) const {
-    if (def_.json) write_stdout(json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+void Console::report(nlohmann::json json) const {
+    report::make_utf8(json);
+    // A terminal gets ASCII, which has no control characters if it is JSON.
+    if (def_.json) write_stdout(json.dump(2, ' ', prints_results_));
 }
 
 Progress::Progress(const Console& console, std::string_view what, std::int64_t total)

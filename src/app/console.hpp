@@ -15,7 +15,11 @@ struct ConsoleDef {
     bool json = false;     ///< results on stdout as JSON in place of words
 };
 
-/// Results go to stdout, everything else to stderr.
+/// `text` with all but the ends of its lines printable (see core/text.hpp).
+[[nodiscard]] std::string printable_lines(std::string_view text);
+
+/// Results go to stdout, everything else to stderr. What a terminal shows is printable, whatever names and
+/// keys it comes from; a result that goes elsewhere keeps its bytes.
 class Console {
   public:
     explicit Console(const ConsoleDef& def);
@@ -32,13 +36,14 @@ class Console {
 
     /// A line of result on stdout, if results are words. Throws corda::Error (kIo) if stdout takes no more.
     void result(std::string_view text) const;
-    /// The result on stdout, if results are JSON.
-    void report(const nlohmann::json& json) const;
+    /// The result on stdout, if results are JSON. A text that is not UTF-8 is escaped (see core/text.hpp).
+    void report(nlohmann::json json) const;
 
   private:
-    void say(std::string_view label, std::string_view color, std::string_view text) const;
+    void say(std::string_view label, std::string_view color, std::string_view message) const;
 
     ConsoleDef def_;
+    bool prints_results_;  ///< stdout is a terminal
     bool is_terminal_;
     bool uses_color_;
 };

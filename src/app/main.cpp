@@ -79,7 +79,8 @@ std::optional<std::string> unknown_option(const CLI::App& app, int argc, char** 
 }
 
 /// Says what went wrong, with --json on standard output too.
-int fail(const Console& console, ExitCode code, const std::string& message) {
+int fail(const Console& console, ExitCode code, const std::string& text) {
+    const std::string message = printable_lines(text);
     console.error(message);
     try {
         console.report({{"schema", 1}, {"error", {{"code", static_cast<int>(code)}, {"message", message}}}});

@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/output_file.hpp"
+#include "corda/core/text.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
@@ -97,7 +98,7 @@ PngInfo describe_shot(const Shot& shot, const Scene& scene, double pixels_per_in
     PngInfo info;
     info.pixels_per_inch = pixels_per_inch;
     info.text = {{"Software", "corda " CORDA_VERSION},
-                 {"Title", scene.name},
+                 {"Title", printable(scene.name)},
                  {"Time", fmt::format("{} s", shot.time_s)}};
     if (shot.frame) info.text.emplace_back("Frame", fmt::format("{}", *shot.frame));
     return info;

@@ -8,6 +8,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/output_file.hpp"
+#include "corda/core/text.hpp"
 #include "corda/media/defs.hpp"
 
 namespace corda {
@@ -20,7 +21,7 @@ constexpr std::size_t kLongestKeyword = 79;
 constexpr int kLevel = 4;
 constexpr int kFilter = PNG_FILTER_NONE;
 
-/// The text as Latin-1; std::nullopt if it has other characters or is not UTF-8.
+/// The text as Latin-1; std::nullopt if it has other characters.
 std::optional<std::string> to_latin1(const std::string& utf8) {
     std::string latin1;
     for (std::size_t i = 0; i < utf8.size(); ++i) {
@@ -108,12 +109,13 @@ bool write_picture(WriteJob& job, const Image& image, bool opaque, png_uint_32 p
 std::vector<png_text> libpng_texts(const PngInfo& info, std::vector<std::string>& storage) {
     storage.reserve(info.text.size() * 2);
     std::vector<png_text> texts;
-    for (const auto& [keyword, text] : info.text) {
+    for (const auto& [keyword, bytes] : info.text) {
         if (keyword.empty() || keyword.size() > kLongestKeyword) {
             throw Error(ExitCode::kUsage,
                         fmt::format("PNG text keyword '{}' has {} characters; it must have 1 to {}", keyword,
                                     keyword.size(), kLongestKeyword));
         }
+        const std::string text = utf8(bytes);
         const auto latin1 = to_latin1(text);
         std::string& key = storage.emplace_back(keyword);
         std::string& value = storage.emplace_back(latin1 ? *latin1 : text);

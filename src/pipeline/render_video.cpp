@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
 #include "corda/media/video_writer.hpp"
 #include "corda/pipeline/film.hpp"
@@ -13,14 +14,15 @@ namespace {
 /// What the file says of itself beside its pictures.
 media::VideoMetadata metadata(const Film& film, std::int64_t first) {
     const Plan& plan = film.plan();
+    const std::string title = printable(film.scene().name);
     nlohmann::json comment = {
-        {"corda", version()},   {"scene", film.scene().name}, {"method", method_name(plan.method)},
-        {"first_frame", first}, {"error_bound_m", nullptr},   {"error_bound_px", nullptr},
+        {"corda", version()},   {"scene", title},           {"method", method_name(plan.method)},
+        {"first_frame", first}, {"error_bound_m", nullptr}, {"error_bound_px", nullptr},
         {"horizon_s", nullptr}};
     if (plan.error_bound_m) comment["error_bound_m"] = *plan.error_bound_m;
     if (const auto bound_px = film.error_bound_px()) comment["error_bound_px"] = *bound_px;
     if (plan.horizon_s) comment["horizon_s"] = *plan.horizon_s;
-    return {film.scene().name, comment.dump()};
+    return {title, comment.dump()};
 }
 
 /// The frames up to a divergence are kept, and the message names their file.

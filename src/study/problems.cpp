@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string_view>
 #include <utility>
 
+#include "corda/core/text.hpp"
 #include "corda/reference/pendulum.hpp"
 #include "corda/reference/ropes.hpp"
 
@@ -20,10 +22,11 @@ Problem problem_with(RopeDef rope, double duration_s) {
     return problem;
 }
 
-/// A scene's name as an id.
-std::string id_of(const std::string& name) {
+/// A scene's name as an id, of which names of files are made.
+std::string id_of(std::string_view name) {
+    constexpr std::size_t kLongest = 100;
     std::string id;
-    for (const char c : name) {
+    for (const char c : name.substr(0, kLongest)) {
         const bool is_upper = c >= 'A' && c <= 'Z';
         const bool is_plain = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
         id += is_upper ? static_cast<char>(c - 'A' + 'a') : (is_plain ? c : '_');
@@ -99,7 +102,7 @@ Problem released_problem(const reference::ReleasedChain& row) {
 Problem problem_of(const Scene& scene) {
     Problem problem;
     problem.id = id_of(scene.name);
-    problem.title = scene.name;
+    problem.title = printable(scene.name);
     problem.ropes = scene.ropes;
     problem.nets = scene.nets;
     problem.world = scene.world;
