@@ -39,6 +39,9 @@ void add_help(CLI::App& app, Action& action);
 /// What to use in place of an unknown word: "did you mean render?", or all the words that are known.
 [[nodiscard]] std::string advice(std::string_view word, const std::vector<std::string>& known);
 
+/// Accepts a number from `low` to `high`. CLI::Range lets "nan" pass.
+[[nodiscard]] CLI::Validator within(double low, double high);
+
 /// A scene file and what the command line puts in the place of its values.
 struct SceneOptions {
     std::string path;

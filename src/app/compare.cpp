@@ -75,15 +75,13 @@ void add_compare(CLI::App& app, Action& action) {
     command->add_option("A", options->a, "PNG file")->required();
     command->add_option("B", options->b, "PNG file")->required();
     command
-        ->add_option(
-            "--max", options->limits.max,
-            "largest difference of a channel that passes, 0 .. 255; with no limit only equal pictures pass")
-        ->check(CLI::Range(0.0, 255.0));
-    command
-        ->add_option("--mean", options->limits.mean, "mean difference of all channels that passes, 0 .. 255")
-        ->check(CLI::Range(0.0, 255.0));
-    command->add_option("--share", options->limits.share, "share of differing pixels that passes, 0 .. 1")
-        ->check(CLI::Range(0.0, 1.0));
+        ->add_option("--max", options->limits.max,
+                     "largest difference of a channel that passes; with no limit only equal pictures pass")
+        ->check(within(0.0, 255.0));
+    command->add_option("--mean", options->limits.mean, "mean difference of all channels that passes")
+        ->check(within(0.0, 255.0));
+    command->add_option("--share", options->limits.share, "share of differing pixels that passes")
+        ->check(within(0.0, 1.0));
     command->add_option("--diff", options->diff, "write a picture of the differences to this PNG file");
     command->add_flag("--force", options->force, "replace an existing difference picture");
     command->callback([options, &action] {

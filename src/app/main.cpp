@@ -53,6 +53,18 @@ void add_console_flags(CLI::App& app, ConsoleDef& def) {
     }
 }
 
+/// An empty value is a variable of a script that is not set, and must not count as an option that was left
+/// out.
+void refuse_empty_values(CLI::App& app) {
+    const auto check = [](const std::string& value) {
+        return value.empty() ? std::string("the value is empty; give one, or leave it out") : std::string();
+    };
+    for (CLI::App* command : app.get_subcommands({})) {
+        for (CLI::Option* option : command->get_options())
+            if (option->get_items_expected_max() > 0) option->check(check);
+    }
+}
+
 /// Why the first word is no command; std::nullopt if it is one, or an option.
 std::optional<std::string> unknown_command(const CLI::App& app, int argc, char** argv) {
     if (argc < 2 || argv[1][0] == '-') return std::nullopt;
@@ -109,6 +121,7 @@ int run(int argc, char** argv) {
     add_study(app, action);
     add_help(app, action);
     add_console_flags(app, console_def);
+    refuse_empty_values(app);
     // What the options say is not known until they are parsed, and that may fail.
     const Console early({.json = std::find(argv, argv + argc, std::string_view("--json")) != argv + argc});
     if (const auto word = unknown_command(app, argc, argv)) return fail(early, ExitCode::kUsage, *word);

@@ -1,9 +1,12 @@
+#include <cmath>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/nearest.hpp"
+#include "corda/scene/keys.hpp"
 
 namespace corda::app {
 namespace {
@@ -44,6 +47,16 @@ std::string advice(std::string_view word, const std::vector<std::string>& known)
                  : fmt::format("known are {}", fmt::join(known, ", "));
 }
 
+CLI::Validator within(double low, double high) {
+    const std::string range = fmt::format("{} .. {}", low, high);
+    const auto check = [=](const std::string& text) {
+        double value = 0.0;
+        const bool is_within = CLI::detail::lexical_cast(text, value) && value >= low && value <= high;
+        return is_within ? std::string() : fmt::format("\"{}\" is not a number within {}", text, range);
+    };
+    return {check, range};
+}
+
 void SceneOptions::add_to(CLI::App& command, Need need) {
     command.add_option("SCENE", path, "scene file (TOML)")->required(need == Need::kRequired);
     // One value per flag: a value may have commas and brackets of its own.
@@ -57,9 +70,19 @@ void SceneOptions::add_to(CLI::App& command, Need need) {
 
 void SceneOptions::add_shortcut(CLI::App& command, const std::string& name, const std::string& key,
                                 const std::string& help) {
-    command.add_option_function<std::string>(
-        name, [this, key](const std::string& value) { settings.push_back(key + "=" + value); },
-        help + " (--set " + key + ")");
+    const std::size_t dot = key.find('.');
+    const scene::Key& row = *scene::find_key(key.substr(0, dot), key.substr(dot + 1));
+    const auto check = [&row](const std::string& text) {
+        double value = 0.0;
+        const bool is_finite = !CLI::detail::lexical_cast(text, value) || std::isfinite(value);
+        return is_finite ? std::string()
+                         : fmt::format("{} is not a finite number; {}", text, scene::remedy(row));
+    };
+    command
+        .add_option_function<std::string>(
+            name, [this, key](const std::string& value) { settings.push_back(key + "=" + value); },
+            help + " (--set " + key + ")")
+        ->check(check);
 }
 
 void SceneOptions::add_size(CLI::App& command) {

@@ -168,7 +168,7 @@ void add_still(CLI::App& app, Action& action) {
     options->scene.add_shortcut(*command, "--fps", "video.fps", "frames per second");
     options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
     command->add_option("--ppi", options->pixels_per_inch, "pixels per inch, for the size in print")
-        ->check(CLI::Range(1.0, 10000.0));
+        ->check(within(1.0, 10000.0));
     options->gl.add_to(*command);
     command->add_flag("--force", options->force, "replace existing files");
     command->add_flag("--dry-run", options->dry_run, "check everything and write nothing");

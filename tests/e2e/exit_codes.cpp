@@ -62,6 +62,73 @@ TEST_F(ExitCodes, TwoForUsage) {
     EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--set", "nonsense"}).exit_code, 2);
 }
 
+TEST_F(ExitCodes, TwoForANumberThatIsNone) {
+    struct Option {
+        std::vector<std::string> arguments;
+        const char* name;
+        const char* range;
+    };
+    const std::vector<Option> options{
+        {{"compare", scene_, scene_}, "--max", "0 .. 255"},
+        {{"compare", scene_, scene_}, "--mean", "0 .. 255"},
+        {{"compare", scene_, scene_}, "--share", "0 .. 1"},
+        {{"still", scene_, "--at", "0", "-o", folder_.file("a.png")}, "--ppi", "1 .. 10000"},
+        {{"still", scene_, "-o", folder_.file("a.png")}, "--at", "0 .. 0.2 s"},
+        {{"still", scene_, "--at", "0", "-o", folder_.file("a.png")}, "--duration", "> 0"},
+        {{"render", scene_, "-o", video_}, "--duration", "> 0"},
+        {{"render", scene_, "-o", video_}, "--fps", "0.001 .. 100000"},
+        {{"render", scene_, "-o", video_}, "--crf", "1 .. 51"},
+        {{"render", scene_, "-o", video_}, "--threads", "1 .. 64"},
+        {{"simulate", scene_}, "--duration", "> 0"},
+        {{"plan", scene_}, "--fps", "0.001 .. 100000"},
+    };
+    for (const Option& option : options) {
+        for (const char* value : {"nan", "-inf", "INF", "1e999"}) {
+            auto arguments = option.arguments;
+            arguments.insert(arguments.end(), {option.name, value});
+            const auto result = run_corda(arguments);
+            EXPECT_EQ(result.exit_code, 2) << option.name << ' ' << value << result.err;
+            EXPECT_THAT(result.err, HasSubstr(option.name));
+            EXPECT_THAT(result.err, HasSubstr(option.range));
+        }
+    }
+    EXPECT_THAT(run_corda({"compare", scene_, scene_, "--max", "nan"}).err,
+                HasSubstr("--max: \"nan\" is not a number within 0 .. 255"));
+    EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});
+}
+
+TEST_F(ExitCodes, TwoForAnEmptyValue) {
+    const std::vector<std::vector<std::string>> commands{
+        {"render", "", "-o", video_},
+        {"render", scene_, "-o", ""},
+        {"render", scene_, "-o", video_, "--set", ""},
+        {"render", scene_, "-o", video_, "--fps", ""},
+        {"render", scene_, "-o", video_, "--frames", ""},
+        {"render", scene_, "-o", video_, "--size", ""},
+        {"render", scene_, "-o", video_, "--backend", ""},
+        {"still", scene_, "--at", "", "-o", folder_.path()},
+        {"still", scene_, "--frame", "", "-o", folder_.path()},
+        {"still", scene_, "--at", "0", "-o", ""},
+        {"simulate", scene_, "-o", ""},
+        {"compare", "", scene_},
+        {"compare", scene_, scene_, "--max", ""},
+        {"compare", scene_, scene_, "--diff", ""},
+        {"verify", ""},
+        {"plan", ""},
+        {"study", "", "-o", folder_.file("report")},
+        {"study", "-o", ""},
+        {"study", "-o", folder_.file("report"), "--chapter", ""},
+        {"help", ""}};
+    for (const auto& command : commands) {
+        const auto result = run_corda(command);
+        EXPECT_EQ(result.exit_code, 2) << testing::PrintToString(command);
+        EXPECT_THAT(result.err, testing::AnyOf(HasSubstr("is empty"), HasSubstr("\"\"")))
+            << testing::PrintToString(command);
+    }
+    EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});
+    EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--dry-run"}, "CORDA_BACKEND=").exit_code, 0);
+}
+
 TEST_F(ExitCodes, TwoForAnEndingThatCannotBeWritten) {
     for (const char* const name : {"x.svg", "x.pdf", "x.jpg", "-"}) {
         const std::string output = *name == '-' ? name : folder_.file(name);
