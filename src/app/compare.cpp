@@ -9,6 +9,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/media/defs.hpp"
+#include "interrupt.hpp"
 
 namespace corda::app {
 namespace {
@@ -44,9 +45,10 @@ ExitCode compare(const Console& console, const CompareOptions& options) {
         check_output(options.diff, options.a, options.force);
         check_output(options.diff, options.b, options.force);
     }
-    const Image a = read_png(options.a);
-    const Image b = read_png(options.b);
-    const Difference comparison = compare(a, b);
+    const OnProgress goes_on = stopping_if_asked();
+    const Image a = read_png(options.a, goes_on);
+    const Image b = read_png(options.b, goes_on);
+    const Difference comparison = compare(a, b, goes_on);
     const bool passed = comparison.within(options.limits);
     if (!comparison.same_size) {
         console.result(
@@ -59,7 +61,8 @@ ExitCode compare(const Console& console, const CompareOptions& options) {
                                    comparison.mean, comparison.share));
     }
     if (!options.diff.empty() && comparison.same_size) {
-        write_png(options.diff, difference_image(a, b), {}, {.force = options.force});
+        write_png(options.diff, difference_image(a, b, goes_on), {},
+                  {.force = options.force, .on_progress = goes_on});
         console.info(fmt::format("difference picture: {}", options.diff));
     }
     console.report(report(comparison, passed));

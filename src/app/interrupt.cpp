@@ -1,6 +1,7 @@
 #include "interrupt.hpp"
 
 #include <fcntl.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -27,11 +28,20 @@ std::int64_t now_ns() {
     return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
+/// A call that began to wait just after the signal does not know of it: from now on SIGALRM breaks off every
+/// one that takes long.
+void break_off_waiting() {
+    const itimerval often{{0, 100'000}, {0, 100'000}};
+    setitimer(ITIMER_REAL, &often, nullptr);
+}
+
 void ask_to_stop(int signal) {
+    if (signal == SIGALRM) return;
     const std::int64_t at_ns = now_ns();
     std::int64_t first_ns = 0;
     if (asked_at_ns.compare_exchange_strong(first_ns, at_ns)) {
         asked_to_stop_by = signal;
+        break_off_waiting();
     } else if (at_ns - first_ns > kSameWishNs) {
         std::signal(signal, SIG_DFL);
         std::raise(signal);
@@ -41,10 +51,9 @@ void ask_to_stop(int signal) {
 }  // namespace
 
 void install_signal_handlers() {
-    for (const int signal : {SIGINT, SIGTERM}) {
-        struct sigaction action = {};
+    for (const int signal : {SIGINT, SIGTERM, SIGALRM}) {
+        struct sigaction action = {};  // without SA_RESTART: opening a pipe that nobody writes to must end
         action.sa_handler = ask_to_stop;
-        action.sa_flags = SA_RESTART;
         sigemptyset(&action.sa_mask);
         sigaction(signal, &action, nullptr);
     }
@@ -70,8 +79,15 @@ ExitCode interruption() {
     }
 }
 
-void stop_if_asked() {
-    if (interruption() != ExitCode::kOk) throw Error(interruption(), "interrupted; nothing was written");
+void stop_if_asked(const char* message) {
+    if (interruption() != ExitCode::kOk) throw Error(interruption(), message);
+}
+
+OnProgress stopping_if_asked(const char* message) {
+    return [message](std::int64_t, std::int64_t) {
+        stop_if_asked(message);
+        return true;
+    };
 }
 
 }  // namespace corda::app

@@ -16,8 +16,11 @@ void keep_standard_streams();
 /// The status to exit with once a signal has asked to stop; kOk before.
 [[nodiscard]] ExitCode interruption();
 
-/// Throws corda::Error of that status once a signal has asked to stop: for work that has not written anything
-/// yet.
-void stop_if_asked();
+/// Throws corda::Error of that status once a signal has asked to stop. The message is for work that has not
+/// written anything yet, unless another one is given.
+void stop_if_asked(const char* message = "interrupted; nothing was written");
+
+/// The same as a callback for work that reports its progress.
+[[nodiscard]] OnProgress stopping_if_asked(const char* message = "interrupted; nothing was written");
 
 }  // namespace corda::app

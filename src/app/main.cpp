@@ -140,7 +140,10 @@ int run(int argc, char** argv) {
         install_signal_handlers();
         return static_cast<int>(action(console));
     } catch (const Error& error) {
-        return fail(console, error.code(), error.what());
+        // A read or a write that the signal broke off fails like any other.
+        const bool is_broken_off = error.code() == ExitCode::kInterrupted || error.code() == ExitCode::kIo;
+        const bool is_asked = interruption() != ExitCode::kOk;
+        return fail(console, is_asked && is_broken_off ? interruption() : error.code(), error.what());
     } catch (const std::bad_alloc&) {
         return fail(console, ExitCode::kTemporary, "out of memory; a smaller scene or picture may help");
     } catch (const std::exception& error) {

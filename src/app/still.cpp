@@ -111,7 +111,8 @@ void write_shots(const std::vector<Shot>& shots, const StillOptions& options, co
         for (const Shot& shot : shots) {
             stop_if_asked();
             write_png(shot.path, film.still(shot.time_s),
-                      describe_shot(shot, film.scene(), options.pixels_per_inch), {.force = options.force});
+                      describe_shot(shot, film.scene(), options.pixels_per_inch),
+                      {.force = options.force, .on_progress = stopping_if_asked()});
             ++written;
         }
     } catch (const Error& error) {

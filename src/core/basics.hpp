@@ -47,9 +47,10 @@ inline void report_progress(const OnProgress& on_progress, std::int64_t done, st
         throw Error(ExitCode::kInterrupted, "stopped by the caller");
 }
 
-/// What writing a file may do to what is there already.
+/// How a file is written.
 struct OutputOptions {
-    bool force = false;  ///< replace an existing file, and keep its permissions
+    bool force = false;        ///< replace an existing file, and keep its permissions
+    OnProgress on_progress{};  ///< asked often by what takes long; false ends it with kInterrupted
 };
 
 }  // namespace corda

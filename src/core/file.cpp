@@ -63,11 +63,13 @@ std::string_view hint_for_errno(int error_number) {
 }
 
 void fail_file(std::string_view action, const std::string& path, int error_number) {
+    // Only a pipe or a device makes a call wait for so long that a signal breaks it off.
+    const ExitCode code = error_number == EINTR ? ExitCode::kInterrupted : ExitCode::kIo;
     const std::string_view hint = hint_for_errno(error_number);
     std::string message =
         "cannot " + std::string(action) + " '" + path + "': " + std::generic_category().message(error_number);
     if (!hint.empty()) message += "; " + std::string(hint);
-    throw Error(ExitCode::kIo, message);
+    throw Error(code, message);
 }
 
 void make_folder(const std::string& path) {
@@ -77,8 +79,11 @@ void make_folder(const std::string& path) {
 }
 
 void sync_file(const Descriptor& file, const std::string& path) {
+    int status = 0;
+    do status = ::fsync(file.get());
+    while (status != 0 && errno == EINTR);
     // Pipes, and folders on some file systems, cannot be synced and say EINVAL.
-    if (::fsync(file.get()) != 0 && errno != EINVAL) fail_file("sync to disk", path, errno);
+    if (status != 0 && errno != EINVAL) fail_file("sync to disk", path, errno);
 }
 
 void sync_folder_of(const std::string& path) {

@@ -14,7 +14,8 @@ struct FileCloser {
 /// A C file. What is to stay is written by OutputFile, which also checks the close.
 using FileHandle = std::unique_ptr<std::FILE, FileCloser>;
 
-/// Opens a file for reading. Throws corda::Error (kIo), also for a folder.
+/// Opens a file for reading. Throws corda::Error: kIo, also for a folder; kInterrupted if a signal comes
+/// while it waits for the writer of a pipe.
 [[nodiscard]] FileHandle open_for_reading(const std::string& path);
 
 /// Owns an open file descriptor.
@@ -47,8 +48,8 @@ class Descriptor {
 /// Writes all of `bytes` to an open descriptor. Returns 0 or an errno value.
 [[nodiscard]] int write_all(int descriptor, std::string_view bytes) noexcept;
 
-/// Throws corda::Error (kIo): "cannot ACTION 'PATH': REASON; HINT", with the reason and the hint for
-/// `error_number`.
+/// Throws corda::Error (kIo; kInterrupted for EINTR): "cannot ACTION 'PATH': REASON; HINT", with the reason
+/// and the hint for `error_number`.
 [[noreturn]] void fail_file(std::string_view action, const std::string& path, int error_number);
 
 /// What a user can do about an errno value; empty if its text says it all.

@@ -49,7 +49,7 @@ bool Difference::within(const DifferenceLimits& limits) const {
            (!limits.share || share <= *limits.share);
 }
 
-Difference compare(const Image& a, const Image& b) {
+Difference compare(const Image& a, const Image& b, const OnProgress& on_progress) {
     Difference result;
     if (a.width() != b.width() || a.height() != b.height()) {
         result.same_size = false;
@@ -59,11 +59,14 @@ Difference compare(const Image& a, const Image& b) {
     std::uint64_t sum = 0;
     std::uint64_t differing = 0;
     const std::uint64_t pixels = a.size_bytes() / kChannels;
-    for (std::uint64_t i = 0; i < pixels; ++i) {
-        const PixelDifference pixel = difference_of(a.data() + i * kChannels, b.data() + i * kChannels);
-        result.max = std::max(result.max, pixel.max);
-        sum += static_cast<std::uint64_t>(pixel.sum);
-        differing += pixel.max > 0 ? 1 : 0;
+    for (int y = 0; y < a.height(); ++y) {
+        report_progress(on_progress, y, a.height());
+        for (std::size_t i = 0; i < a.row_bytes(); i += kChannels) {
+            const PixelDifference pixel = difference_of(a.pixel(0, y) + i, b.pixel(0, y) + i);
+            result.max = std::max(result.max, pixel.max);
+            sum += static_cast<std::uint64_t>(pixel.sum);
+            differing += pixel.max > 0 ? 1 : 0;
+        }
     }
     result.equal = differing == 0;
     if (pixels == 0) return result;
@@ -72,10 +75,12 @@ Difference compare(const Image& a, const Image& b) {
     return result;
 }
 
-Image difference_image(const Image& a, const Image& b) {
+Image difference_image(const Image& a, const Image& b, const OnProgress& on_progress) {
     assert(a.width() == b.width() && a.height() == b.height());
     Image result(a.width(), a.height());
     for (std::size_t i = 0; i < a.size_bytes(); i += kChannels) {
+        if (i % a.row_bytes() == 0)
+            report_progress(on_progress, static_cast<std::int64_t>(i / a.row_bytes()), a.height());
         const PixelDifference pixel = difference_of(a.data() + i, b.data() + i);
         const std::uint8_t grey = dim_grey(a.data() + i);
         const std::array<std::uint8_t, kChannels> rgba =

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
 
 #pragma GCC visibility push(default)
@@ -28,12 +29,14 @@ struct Difference {
     [[nodiscard]] bool within(const DifferenceLimits& limits) const;
 };
 
-/// Compares all pixels and channels of two pictures.
-[[nodiscard]] Difference compare(const Image& a, const Image& b);
+/// Compares all pixels and channels of two pictures. Throws corda::Error (kInterrupted) if `on_progress`,
+/// called with the rows, asks to stop.
+[[nodiscard]] Difference compare(const Image& a, const Image& b, const OnProgress& on_progress = {});
 
 /// A picture of where two pictures of the same size differ. Equal pixels are a dim grey copy of `a`. Others
 /// go from red to yellow with the size of the difference; even the smallest is bright enough to be seen.
-[[nodiscard]] Image difference_image(const Image& a, const Image& b);
+/// Throws as compare.
+[[nodiscard]] Image difference_image(const Image& a, const Image& b, const OnProgress& on_progress = {});
 
 }  // namespace corda
 #pragma GCC visibility pop

@@ -35,20 +35,23 @@ struct VideoDef {
 
 /// What a PNG says beside its pixels.
 struct PngInfo {
-    /// tEXt chunks in file order: keyword (1..79 Latin-1 characters) and UTF-8 text.
+    /// tEXt chunks in file order: keyword (1..79 Latin-1 characters) and UTF-8 text; bytes that are not UTF-8
+    /// are written as "\xe9".
     std::vector<std::pair<std::string, std::string>> text;
     double pixels_per_inch = 96.0;  ///< written as pHYs; > 0
 };
 
 /// Writes `image` as 8-bit PNG with an sRGB and a pHYs chunk; opaque pictures are stored as RGB. The bytes
 /// depend on nothing but the arguments. The file gets its name when it is complete. Throws
-/// corda::Error (kIo), also if `path` exists and `options` do not say to replace it.
+/// corda::Error: kIo, also if `path` exists and `options` do not say to replace it; kInterrupted if
+/// they ask to stop.
 void write_png(const std::string& path, const Image& image, const PngInfo& info = {},
                OutputOptions options = {});
 
-/// Reads any PNG of a size that is_picture_size() as 8-bit RGBA. Throws corda::Error (kIo) if it is larger,
-/// before memory is taken, or if the file cannot be read or is not a complete PNG.
-[[nodiscard]] Image read_png(const std::string& path);
+/// Reads any PNG of a size that is_picture_size() as 8-bit RGBA. Throws corda::Error: kIo if it is larger,
+/// before memory is taken, or if the file cannot be read or is not a complete PNG, kInterrupted if
+/// `on_progress`, called with its rows, asks to stop.
+[[nodiscard]] Image read_png(const std::string& path, const OnProgress& on_progress = {});
 
 /// The tEXt chunks of a PNG. Throws as read_png.
 [[nodiscard]] PngInfo read_png_info(const std::string& path);

@@ -111,7 +111,7 @@ std::int64_t frame_step(const std::vector<std::int64_t>& stamps, const PartInput
     return av_rescale_q(1, frame_time_base(*fps), input.stream->time_base);
 }
 
-PartIndex index_part(const std::string& path) {
+PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
     const Mp4Boxes boxes = read_mp4_boxes(path);
     PartIndex index;
     index.bytes = boxes.whole_bytes;
@@ -121,6 +121,7 @@ PartIndex index_part(const std::string& path) {
     std::int64_t packet_duration = 0;
     bool is_damaged = false;
     while (read_packet(input, *packet)) {
+        report_progress(on_progress, std::ssize(stamps), 0);
         is_damaged = !is_sane_stamp(packet->pts);
         if (is_damaged) break;
         packet_duration = packet->duration;
@@ -149,13 +150,14 @@ std::string comment_with_frames(const std::string& comment, std::size_t frames) 
     return json.dump();
 }
 
-void copy_packets(const PartInput& input, const PartIndex& index, Mp4Output& output,
-                  const std::string& path) {
+void copy_packets(const PartInput& input, const PartIndex& index, Mp4Output& output, const std::string& path,
+                  const OnProgress& on_progress) {
     const Packet packet = check_allocated(Packet(av_packet_alloc()), "a packet");
     for (std::size_t i = 0; i < index.frame_of.size(); ++i) {
         if (!read_packet(input, *packet)) {
             throw Error(ExitCode::kIo, fmt::format("'{}' changed while it was read", path));
         }
+        report_progress(on_progress, static_cast<std::int64_t>(i), std::ssize(index.frame_of));
         packet->pts = index.frame_of[i];
         packet->dts = static_cast<std::int64_t>(i) - index.reorder_depth;
         packet->duration = 1;
@@ -171,13 +173,14 @@ std::string listed(const std::vector<std::string>& lines) {
 
 /// Copies the indexed packets into `output`, with time stamps made anew from frame numbers and the frame
 /// count in the comment.
-void remux(const PartIndex& index, const std::string& part_path, const Format& format, OutputFile& output) {
+void remux(const PartIndex& index, const std::string& part_path, const Format& format,
+           const OnProgress& on_progress, OutputFile& output) {
     const PartInput input = open_part(part_path, index.bytes);
     Mp4Output mp4(output.descriptor(), output.temporary_path());
     mp4.begin(format.container, Mp4Layout::kFaststart, *input.stream->codecpar, index.fps,
               metadata_entry(*input.format, "title"),
               comment_with_frames(metadata_entry(*input.format, "comment"), index.frame_of.size()));
-    copy_packets(input, index, mp4, part_path);
+    copy_packets(input, index, mp4, part_path, on_progress);
     mp4.finish();
 }
 
@@ -186,15 +189,18 @@ void remux(const PartIndex& index, const std::string& part_path, const Format& f
 RemuxResult finish_part(PartFile& part, const std::string& path, OutputOptions options,
                         std::optional<std::int64_t> expected_frames) {
     const LogCapture log;
-    const PartIndex index = index_part(part.path());
+    const OnProgress all_done = [&options, frames = expected_frames.value_or(0)](std::int64_t, std::int64_t) {
+        return !options.on_progress || options.on_progress(frames, frames);
+    };
+    const PartIndex index = index_part(part.path(), all_done);
     const RemuxResult result{static_cast<std::int64_t>(index.frame_of.size()), index.truncated};
     if (expected_frames && *expected_frames != result.frames) {
         throw Error(ExitCode::kMismatch, fmt::format("'{}' holds {} frames instead of {}; it stays as it is",
                                                      part.path(), result.frames, *expected_frames));
     }
     OutputFile output(path, options);
-    remux(index, part.path(), find_format(path), output);
-    const VerifyReport report = verify(output.temporary_path());
+    remux(index, part.path(), find_format(path), all_done, output);
+    const VerifyReport report = verify(output.temporary_path(), all_done);
     if (!report.ok()) {
         throw Error(ExitCode::kMismatch,
                     fmt::format("the video for '{}' failed its check and stays as '{}':{}", path, part.path(),

@@ -59,9 +59,13 @@ bool request_rgba8(ReadJob& job) {
     return true;
 }
 
-bool read_rows(ReadJob& job, png_bytepp rows) {
+bool read_rows(ReadJob& job, Image& image, const OnProgress& on_progress) {
     if (setjmp(png_jmpbuf(job.png)) != 0) return false;
-    png_read_image(job.png, rows);
+    const std::int64_t total = std::int64_t{png_set_interlace_handling(job.png)} * image.height();
+    for (std::int64_t done = 0; done < total; ++done) {
+        report_progress(on_progress, done, total);
+        png_read_row(job.png, image.pixel(0, static_cast<int>(done % image.height())), nullptr);
+    }
     png_read_end(job.png, job.info);
     return true;
 }
@@ -105,15 +109,13 @@ void check_png_size(const ReadJob& job, const std::string& path) {
     }
 }
 
-Image read_pixels(ReadJob& job, const std::string& path) {
+Image read_pixels(ReadJob& job, const std::string& path, const OnProgress& on_progress) {
     check_png_size(job, path);
     if (!request_rgba8(job)) fail_png(path, job.message);
-    const png_uint_32 height = png_get_image_height(job.png, job.info);
-    Image image(static_cast<int>(png_get_image_width(job.png, job.info)), static_cast<int>(height));
+    Image image(static_cast<int>(png_get_image_width(job.png, job.info)),
+                static_cast<int>(png_get_image_height(job.png, job.info)));
     if (png_get_rowbytes(job.png, job.info) != image.row_bytes()) fail_png(path, "libpng gave no 8-bit RGBA");
-    std::vector<png_bytep> rows(height);
-    for (png_uint_32 y = 0; y < height; ++y) rows[y] = image.pixel(0, static_cast<int>(y));
-    if (!read_rows(job, rows.data())) fail_png(path, job.message);
+    if (!read_rows(job, image, on_progress)) fail_png(path, job.message);
     return image;
 }
 
@@ -149,12 +151,12 @@ PngInfo collect_info(const ReadJob& job) {
 
 }  // namespace
 
-Image read_png(const std::string& path) {
+Image read_png(const std::string& path, const OnProgress& on_progress) {
     const FileHandle file = open_for_reading(path);
     ReadJob job;
     job.file = file.get();
     open_job(job, path);
-    return read_pixels(job, path);
+    return read_pixels(job, path, on_progress);
 }
 
 PngInfo read_png_info(const std::string& path) {
@@ -163,7 +165,7 @@ PngInfo read_png_info(const std::string& path) {
     job.file = file.get();
     open_job(job, path);
     // Text may stand after the pixels, so the whole file is read.
-    (void)read_pixels(job, path);
+    (void)read_pixels(job, path, {});
     return collect_info(job);
 }
 

@@ -54,6 +54,11 @@ struct WriteJob {
     OutputFile* file = nullptr;
     std::exception_ptr write_error;
     char message[160] = "out of memory";
+
+    WriteJob() = default;
+    WriteJob(const WriteJob&) = delete;
+    WriteJob& operator=(const WriteJob&) = delete;
+    ~WriteJob() { png_destroy_write_struct(&png, &info); }
 };
 
 void on_write_error(png_structp png, png_const_charp message) {
@@ -85,7 +90,7 @@ void on_flush(png_structp) {}
 /// Writes the picture; false, and job.message, on failure. No object with a destructor lives here, because
 /// libpng leaves by longjmp.
 bool write_picture(WriteJob& job, const Image& image, bool opaque, png_uint_32 pixels_per_metre,
-                   png_textp text, int text_count) {
+                   png_textp text, int text_count, const OnProgress& on_progress) {
     if (setjmp(png_jmpbuf(job.png)) != 0) return false;
     png_set_write_fn(job.png, &job, on_write, on_flush);
     png_set_user_limits(job.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
@@ -100,7 +105,10 @@ bool write_picture(WriteJob& job, const Image& image, bool opaque, png_uint_32 p
     png_set_filter(job.png, PNG_FILTER_TYPE_BASE, kFilter);
     png_write_info(job.png, job.info);
     if (opaque) png_set_filler(job.png, 0, PNG_FILLER_AFTER);
-    for (int y = 0; y < image.height(); ++y) png_write_row(job.png, image.pixel(0, y));
+    for (int y = 0; y < image.height(); ++y) {
+        report_progress(on_progress, y, image.height());
+        png_write_row(job.png, image.pixel(0, y));
+    }
     png_write_end(job.png, nullptr);
     return true;
 }
@@ -149,9 +157,9 @@ void write_png(const std::string& path, const Image& image, const PngInfo& info,
     if (job.png != nullptr) job.info = png_create_info_struct(job.png);
     const auto pixels_per_metre =
         static_cast<png_uint_32>(std::lround(info.pixels_per_inch * kInchesPerMetre));
-    const bool written = job.info != nullptr && write_picture(job, image, is_opaque(image), pixels_per_metre,
-                                                              texts.data(), static_cast<int>(texts.size()));
-    png_destroy_write_struct(&job.png, &job.info);
+    const bool written =
+        job.info != nullptr && write_picture(job, image, is_opaque(image), pixels_per_metre, texts.data(),
+                                             static_cast<int>(texts.size()), options.on_progress);
     if (job.write_error) std::rethrow_exception(job.write_error);
     if (!written) {
         throw Error(ExitCode::kIo, fmt::format("cannot write PNG '{}': libpng says: {}", path, job.message));

@@ -312,12 +312,12 @@ void add_notes(bool saw_colors, VerifyReport& report) {
 
 }  // namespace
 
-VerifyReport verify(const std::string& path) {
+VerifyReport verify(const std::string& path, const OnProgress& on_progress) {
     const LogCapture log;
     VerifyReport report;
     const Mp4Boxes boxes = read_mp4_boxes(path);
     if (!check_container(path, boxes, report)) return report;
-    const DecodedVideo video = decode_all(path, patches_of);
+    const DecodedVideo video = decode_all(path, patches_of, on_progress);
     if (!video.opened) {
         problem(report, "{}; the file is damaged: copy or render it again", video.open_reason);
         return report;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "corda/core/basics.hpp"
 #include "corda/core/rational.hpp"
 
 namespace corda::media {
@@ -45,10 +46,10 @@ struct VerifyReport {
 /// colours of the first frame against what was rendered. What the other frames show is not compared with
 /// anything: a change that still decodes is not found.
 ///
-/// Throws corda::Error (kIo) only if the file cannot be opened for reading; a file that is not a video gives
-/// a report with a problem. libav ends the process at some damaged files: one of unknown origin is for
-/// verify_in_child.
-[[nodiscard]] VerifyReport verify(const std::string& path);
+/// Throws corda::Error: kIo if the file cannot be opened for reading (one that is not a video gives a report
+/// with a problem), kInterrupted if `on_progress`, called with the frames, asks to stop. libav ends the
+/// process at some damaged files: one of unknown origin is for verify_in_child.
+[[nodiscard]] VerifyReport verify(const std::string& path, const OnProgress& on_progress = {});
 
 /// As `verify`, in a child process with limits on memory and time. If that crashes or exceeds a limit, the
 /// file is damaged: a report with a problem. If the system starts no further process, it verifies in this

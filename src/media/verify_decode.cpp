@@ -31,11 +31,10 @@ class Decoding {
     Decoding(DecodedVideo& video, std::vector<ColorPatch> (*patches_of)(const std::string&))
         : video_(video), patches_of_(patches_of) {}
 
-    void run(const std::string& path) {
+    void run(const std::string& path, const OnProgress& on_progress) {
         if (!open(path)) return;
         video_.opened = true;
-        while (read_packet()) {
-        }
+        while (read_packet()) report_progress(on_progress, video_.frames, 0);
         receive(nullptr);
         // libav guesses the duration of the last frame; check_clocks in verify.cpp compares the end with the
         // track's stored duration.
@@ -180,9 +179,10 @@ class Decoding {
 }  // namespace
 
 DecodedVideo decode_all(const std::string& path,
-                        std::vector<ColorPatch> (*patches_of)(const std::string& comment)) {
+                        std::vector<ColorPatch> (*patches_of)(const std::string& comment),
+                        const OnProgress& on_progress) {
     DecodedVideo video;
-    Decoding(video, patches_of).run(path);
+    Decoding(video, patches_of).run(path, on_progress);
     return video;
 }
 

@@ -33,9 +33,10 @@ struct DecodedVideo {
 };
 
 /// Decodes every frame of the MP4 file at `path`. `patches_of` is called with the file's comment and returns
-/// the patches to measure in the first frame. Throws corda::Error (kTemporary) if there is not enough memory,
-/// and nothing else for a bad file.
+/// the patches to measure in the first frame, `on_progress` with the frames. Throws corda::Error: kTemporary
+/// if there is not enough memory, kInterrupted if `on_progress` asks to stop; nothing else for a bad file.
 [[nodiscard]] DecodedVideo decode_all(const std::string& path,
-                                      std::vector<ColorPatch> (*patches_of)(const std::string& comment));
+                                      std::vector<ColorPatch> (*patches_of)(const std::string& comment),
+                                      const OnProgress& on_progress);
 
 }  // namespace corda::media

@@ -131,7 +131,9 @@ struct RenderDef {
     bool force = false;  ///< replace an existing file
     std::int64_t first = 0;
     std::optional<std::int64_t> end;  ///< one past the last frame; default Film::frame_count()
-    OnProgress on_progress;           ///< called after each frame; returning false stops
+    /// Called after each frame, and again and again while the finished video is copied and verified, then
+    /// with all frames done; returning false stops.
+    OnProgress on_progress;
 };
 
 /// What render_video has made.

@@ -36,17 +36,20 @@ media::VideoMetadata metadata(const Film& film, std::int64_t first) {
                             error.what(), first, first + frames - 1, kept, path));
 }
 
-/// Draws and encodes frames first <= k < end; false if it was asked to stop.
-bool write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProgress& on_progress,
+/// Draws and encodes frames first <= k < end.
+void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProgress& on_progress,
                   media::VideoWriter& writer) {
     FilmPainter painter(film);
     for (std::int64_t k = first; k < end; ++k) {
-        if (on_progress && !on_progress(k - first, end - first)) return false;
+        report_progress(on_progress, k - first, end - first);
         const PixelRect damage = painter.draw(film.time_s(k));
         writer.write(painter.image(), damage);
     }
-    if (on_progress) on_progress(end - first, end - first);
-    return true;
+    report_progress(on_progress, end - first, end - first);
+}
+
+bool is_interruption(const Error& error) {
+    return error.code() == ExitCode::kInterrupted || error.code() == ExitCode::kTerminated;
 }
 
 }  // namespace
@@ -70,21 +73,20 @@ Rendered render_video(Film& film, const std::string& path, const RenderDef& def)
     const std::int64_t end = def.end.value_or(film.frame_count());
     static_cast<void>(film.camera());  // what can fail does so before a file is made
     static_cast<void>(film.gl());
-    media::VideoWriter writer(path, film.scene().video, metadata(film, def.first), {.force = def.force});
+    media::VideoWriter writer(path, film.scene().video, metadata(film, def.first),
+                              {.force = def.force, .on_progress = def.on_progress});
     Rendered result;
     result.encoder = film.scene().video.encoder.codec;
     try {
-        result.complete = write_frames(film, def.first, end, def.on_progress, writer);
-    } catch (const Error& error) {
-        if (error.code() != ExitCode::kDiverged) throw;
-        keep_diverged(error, path, def.first, writer);
-    }
-    result.frames = writer.frames();
-    if (result.complete) {
+        write_frames(film, def.first, end, def.on_progress, writer);
         writer.finish();
-    } else {
+    } catch (const Error& error) {
+        if (error.code() == ExitCode::kDiverged) keep_diverged(error, path, def.first, writer);
+        if (!is_interruption(error)) throw;
+        result.complete = false;
         result.kept_part = writer.abandon();
     }
+    result.frames = writer.frames();
     return result;
 }
 

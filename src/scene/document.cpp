@@ -20,6 +20,9 @@ struct CloseFile {
 };
 
 [[noreturn]] void fail_io(const std::string& path, int reason) {
+    if (reason == EINTR) {
+        throw Error(ExitCode::kInterrupted, fmt::format("{}: interrupted while waiting for the scene", path));
+    }
     throw Error(ExitCode::kIo, fmt::format("{}: cannot read the scene file: {}; give the path of a TOML file",
                                            path, std::generic_category().message(reason)));
 }

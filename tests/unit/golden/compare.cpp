@@ -5,6 +5,7 @@
 #include <array>
 
 #include "corda/golden/compare.hpp"
+#include "support/failure.hpp"
 
 namespace corda {
 namespace {
@@ -28,6 +29,16 @@ TEST(Compare, EqualPictures) {
     EXPECT_EQ(result.mean, 0.0);
     EXPECT_EQ(result.share, 0.0);
     EXPECT_TRUE(result.within({}));
+}
+
+TEST(Compare, StopsIfItIsAsked) {
+    const Image a = grey(5, 4);
+    for (const std::int64_t last : {0, 3}) {
+        const OnProgress stop = [last](std::int64_t row, std::int64_t) { return row < last; };
+        EXPECT_EQ(test::code_of([&] { static_cast<void>(compare(a, a, stop)); }), ExitCode::kInterrupted);
+        EXPECT_EQ(test::code_of([&] { static_cast<void>(difference_image(a, a, stop)); }),
+                  ExitCode::kInterrupted);
+    }
 }
 
 TEST(Compare, OneChannelOffByOne) {

@@ -216,5 +216,26 @@ TEST_F(Png, AFullDiskIsReportedInTheWordsOfTheSystem) {
     }
 }
 
+TEST_F(Png, StopsIfItIsAsked) {
+    const Image image = random_image(5, 4, true);
+    write_png(file("a.png"), image);
+    for (const std::int64_t last : {0, 3}) {
+        const OnProgress stop = [last](std::int64_t row, std::int64_t) { return row < last; };
+        EXPECT_EQ(test::code_of([&] { write_png(file("b.png"), image, {}, {.on_progress = stop}); }),
+                  ExitCode::kInterrupted);
+        EXPECT_EQ(test::code_of([&] { static_cast<void>(read_png(file("a.png"), stop)); }),
+                  ExitCode::kInterrupted);
+    }
+    EXPECT_EQ(folder_.files(), std::vector<std::string>{"a.png"});
+}
+
+TEST_F(Png, TextsAreUtf8) {
+    PngInfo info;
+    info.text = {{"Title", "caf\xe9"}, {"Author", "\xe2\x88\x9e\xff"}};
+    write_png(file("a.png"), random_image(2, 2, true), info);
+    EXPECT_EQ(read_png_info(file("a.png")).text[0].second, "caf\\xe9");
+    EXPECT_EQ(read_png_info(file("a.png")).text[1].second, "\xe2\x88\x9e\\xff");
+}
+
 }  // namespace
 }  // namespace corda::media

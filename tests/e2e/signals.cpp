@@ -1,0 +1,134 @@
+// The first signal ends every command within a second, whatever it is doing.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "corda/media/defs.hpp"
+#include "corda/media/mp4_remux.hpp"
+#include "support/command.hpp"
+
+namespace corda {
+namespace {
+
+using test::run_shell;
+using testing::HasSubstr;
+
+const char* const kScene = R"(schema = 1
+[world]
+duration = 40
+[[rope]]
+hang = { links = 6, length = 1.0, angle_deg = 30.0 }
+[solver]
+method = "exact"
+[video]
+size = [640, 360]
+fps = 30
+preset = "ultrafast"
+)";
+
+/// When the program has a handler for SIGINT, signal 2: its bit is the second in the last digit of the mask.
+const char* const kIsListening = "grep -q '^SigCgt:.*[2367abef]$' /proc/$pid/status 2>/dev/null";
+
+/// How a command ended, and how long after the signal.
+struct Interrupted {
+    test::CommandResult result;
+    int ms = -1;
+};
+
+/// Starts `corda ARGUMENTS`, sends it a signal when the shell command `until` succeeds, and waits for its
+/// end.
+Interrupted interrupt(const std::string& arguments, const std::string& signal, const std::string& until) {
+    Interrupted end;
+    end.result =
+        run_shell(test::quoted(CORDA_PROGRAM) + " " + arguments + " & pid=$!; for i in $(seq 1500); do " +
+                  until + " && break; sleep 0.01; done; from=$(date +%s%N); kill -" + signal +
+                  " $pid; wait $pid; code=$?; echo; echo ms $((($(date +%s%N) - from) / 1000000));"
+                  " exit $code");
+    const std::size_t at = end.result.out.rfind("\nms ");
+    if (at != std::string::npos) end.ms = std::atoi(end.result.out.c_str() + at + 4);
+    return end;
+}
+
+class Signals : public testing::Test {
+  protected:
+    test::ScratchFolder folder_;
+    std::string scene_ = folder_.write("scene.toml", kScene);
+};
+
+TEST_F(Signals, EndTheWaitForAPipe) {
+    const std::string pipe = folder_.file("pipe");
+    ASSERT_EQ(run_shell("mkfifo " + pipe).exit_code, 0);
+    for (const std::string& arguments :
+         {"plan " + pipe, "simulate " + pipe, "render " + pipe + " -o " + folder_.file("a.mp4"),
+          "still " + pipe + " --at 0 -o " + folder_.file("a.png"),
+          "study " + pipe + " -o " + folder_.file("report"), "compare " + pipe + " " + pipe}) {
+        for (const auto& [signal, exit_code] : {std::pair{"INT", 130}, {"TERM", 143}}) {
+            const Interrupted end = interrupt(arguments, signal, kIsListening);
+            EXPECT_EQ(end.result.exit_code, exit_code) << arguments << end.result.err;
+            EXPECT_LT(end.ms, 1000) << arguments;  // measured 6 .. 120: the wait may begin after the signal
+        }
+    }
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"pipe", "scene.toml"}));
+}
+
+TEST_F(Signals, EndTheWaitForTheWriterOfAPipe) {
+    const std::string pipe = folder_.file("pipe");
+    ASSERT_EQ(run_shell("mkfifo " + pipe).exit_code, 0);
+    for (const std::string& command : {"plan " + pipe, "compare " + pipe + " " + pipe}) {
+        const auto writer = run_shell("{ exec 3> " + pipe + "; printf schema >&3; sleep 20; } & writer=$!; " +
+                                      test::quoted(CORDA_PROGRAM) + " " + command +
+                                      " & pid=$!; sleep 0.5; kill -TERM $pid; " +
+                                      "wait $pid; code=$?; kill $writer; exit $code");
+        EXPECT_EQ(writer.exit_code, 143) << writer.err;
+    }
+}
+
+TEST_F(Signals, EndAComparison) {
+    // Reading these takes a second or more.
+    write_png(folder_.file("a.png"), Image(8192, 4096));
+    const std::string pictures = folder_.file("a.png") + " " + folder_.file("a.png");
+    const Interrupted end =
+        interrupt("compare " + pictures + " --diff " + folder_.file("d.png"), "INT", kIsListening);
+    EXPECT_EQ(end.result.exit_code, 130) << end.result.err;
+    EXPECT_THAT(end.result.err, HasSubstr("interrupted; nothing was written"));
+    EXPECT_LT(end.ms, 1000);  // measured 20
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"a.png", "scene.toml"}));
+}
+
+TEST_F(Signals, EndTheLastCopyOfAVideoKeepingItsFrames) {
+    const std::string video = folder_.file("a.mp4");
+    // The file of temporary name is the copy. Verifying it takes a second or more.
+    const Interrupted end =
+        interrupt("render " + scene_ + " -o " + video, "TERM", "ls " + video + ".*.tmp >/dev/null 2>&1");
+    EXPECT_EQ(end.result.exit_code, 143) << end.result.err;
+    EXPECT_THAT(end.result.err, HasSubstr("interrupted: frames 0..1199 of 1200 are in " + video +
+                                          ".part, which plays; " + video + " was not written"));
+    EXPECT_LT(end.ms, 1000);  // measured 30
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"a.mp4.part", "scene.toml"}));
+    EXPECT_EQ(media::recover_part(video + ".part", folder_.file("b.mp4")).frames, 1200);
+}
+
+TEST_F(Signals, EndAStill) {
+    // Simulating until then takes a second or more.
+    const Interrupted end = interrupt(
+        "still " + scene_ + " --at 0,3e5 --duration 3e5 -o " + folder_.file("stills"), "INT", kIsListening);
+    EXPECT_EQ(end.result.exit_code, 130) << end.result.err;
+    EXPECT_THAT(end.result.err, HasSubstr("interrupted; nothing was written"));
+    EXPECT_LT(end.ms, 1000);  // measured 20
+}
+
+TEST_F(Signals, EndAStudy) {
+    // While it measures with the first methods.
+    const Interrupted end = interrupt("study -q -o " + folder_.file("report"), "INT", kIsListening);
+    EXPECT_EQ(end.result.exit_code, 130) << end.result.err;
+    EXPECT_THAT(end.result.err, HasSubstr("interrupted; nothing was written"));
+    EXPECT_LT(end.ms, 1000);  // measured 60
+}
+
+}  // namespace
+}  // namespace corda
