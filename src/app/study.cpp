@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,6 +17,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
 #include "corda/core/file.hpp"
+#include "corda/report/report_folder.hpp"
 #include "corda/report/writers.hpp"
 #include "interrupt.hpp"
 
@@ -23,6 +25,8 @@ namespace corda::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* kInterrupted = "interrupted";  // what is kept, is said where it is known
 
 struct StudyOptions {
     SceneOptions scene;
@@ -33,9 +37,8 @@ struct StudyOptions {
     bool force = false;
 };
 
-/// Makes the folder of the report, before hours of measuring. Throws corda::Error (kUsage, kIo).
+/// Makes the folder of the report, before hours of measuring. Throws corda::Error (kIo).
 void prepare_folder(const std::string& path, bool force) {
-    if (path.empty()) throw Error(ExitCode::kUsage, "-o \"\": is not the name of a folder");
     std::error_code ignored;
     if (fs::exists(path, ignored) && !fs::is_directory(path, ignored)) {
         throw Error(ExitCode::kIo, fmt::format("{}: exists and is not a folder; choose another name", path));
@@ -52,15 +55,37 @@ void prepare_folder(const std::string& path, bool force) {
     }
 }
 
-report::Report measure(const Console& console, study::Study& study) {
+/// Measures everything and writes each chapter when it is measured. What ends the study early is thrown when
+/// the report of the chapters before it is written.
+void measure(const Console& console, study::Study& study, report::ReportFolder& folder) {
     std::unique_ptr<Progress> progress;
-    return study.run([&](int done, int total, const std::string& what) {
-        stop_if_asked();
+    const auto on_job = [&](int done, int total, const std::string& what) {
         if (!progress) progress = std::make_unique<Progress>(console, "study", total);
         if (!console.draws_bar() && done < total)
             console.detail(fmt::format("study {} of {}: {}", done + 1, total, what));
         progress->update(done);
-    });
+    };
+    report::Report report;
+    std::optional<Error> failure;
+    try {
+        study.run(
+            on_job, [&](const report::Chapter& chapter) { folder.add(chapter); }, report);
+    } catch (const Error& error) {
+        failure = error;
+    }
+    progress.reset();
+    try {
+        if (!report.chapters.empty()) folder.finish(report);
+    } catch (const Error& error) {
+        if (!failure) failure = error;
+    }
+    if (!failure) return;
+    const std::vector<std::string>& paths = folder.paths();
+    throw Error(failure->code(),
+                fmt::format("{}; {}", failure->what(),
+                            paths.empty() ? "nothing was written"
+                                          : fmt::format("{} files are written, the last of them is {}",
+                                                        paths.size(), paths.front())));
 }
 
 ExitCode study_command(const Console& console, StudyOptions options) {
@@ -71,15 +96,14 @@ ExitCode study_command(const Console& console, StudyOptions options) {
         throw Error(ExitCode::kUsage, "--set changes a scene; name its file");
     }
     options.gl.apply_to(options.def.film);
-    options.def.film.on_progress = [](std::int64_t, std::int64_t) {
-        stop_if_asked();
-        return true;
-    };
+    options.def.on_step = [] { stop_if_asked(kInterrupted); };
     study::Study study(options.def);
     prepare_folder(options.output, options.force);
     report::check_gnuplot();
-    const std::vector<std::string> paths =
-        report::write_report(measure(console, study), options.output, {.force = options.force});
+    report::ReportFolder folder(options.output,
+                                {.force = options.force, .on_progress = stopping_if_asked(kInterrupted)});
+    measure(console, study, folder);
+    const std::vector<std::string>& paths = folder.paths();
     console.info(fmt::format("{} files in {:.3g} s", paths.size(), now_s() - start_s));
     for (const std::string& path : paths) console.result(path);
     console.report(

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "corda/core/text.hpp"
 #include "corda/report/writers.hpp"
 
 namespace corda::report {
@@ -17,7 +18,7 @@ std::string quoted(const std::string& text) {
 
 std::string csv_cell(const Cell& cell) {
     if (const auto* number = std::get_if<double>(&cell)) return fmt::format("{:.17g}", *number);
-    if (const auto* text = std::get_if<std::string>(&cell)) return quoted(*text);
+    if (const auto* text = std::get_if<std::string>(&cell)) return quoted(utf8(*text));
     return {};
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "corda/core/text.hpp"
 #include "corda/report/page_style.hpp"
 #include "corda/report/writers.hpp"
 
@@ -14,7 +15,7 @@ constexpr std::size_t kLongText = 40;
 /// Plain text as the text or an attribute value of HTML and XML.
 std::string html_text(std::string_view text) {
     std::string result;
-    for (const char c : text) {
+    for (const char c : printable(text)) {
         switch (c) {
             case '&':
                 result += "&amp;";
@@ -32,7 +33,7 @@ std::string html_text(std::string_view text) {
                 result += "&#39;";
                 break;
             default:
-                result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;  // XML has no control characters
+                result += c;
         }
     }
     return result;
@@ -78,12 +79,6 @@ std::string table_html(const Table& table) {
     text += "</tbody>\n</table>\n</div>\n";
     if (!table.note.empty()) text += fmt::format("<p class=\"note\">{}</p>\n", html_text(table.note));
     return text;
-}
-
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
-        text.replace(at, from.size(), to);
-    }
 }
 
 void remove_element(std::string& text, std::string_view start, std::string_view end) {

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "corda/report/utf8_json.hpp"
 #include "corda/report/writers.hpp"
 
 namespace corda::report {
@@ -56,8 +57,9 @@ std::string json_text(const Report& report) {
     for (const auto& [name, value] : report.setting) setting.push_back({{"name", name}, {"value", value}});
     Json chapters = Json::array();
     for (const Chapter& chapter : report.chapters) chapters.push_back(to_json(chapter));
-    const Json json = {{"schema", 1}, {"title", report.title}, {"setting", setting}, {"chapters", chapters}};
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    Json json = {{"schema", 1}, {"title", report.title}, {"setting", setting}, {"chapters", chapters}};
+    make_utf8(json);
+    return json.dump(2) + "\n";
 }
 
 }  // namespace corda::report

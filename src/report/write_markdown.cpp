@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "corda/core/text.hpp"
 #include "corda/report/writers.hpp"
 
 namespace corda::report {
@@ -12,9 +13,9 @@ namespace {
 std::string markdown_text(std::string_view text) {
     constexpr std::string_view kSpecial = "\\`*_[]<>|~$&";
     std::string result;
-    for (const char c : text) {
+    for (const char c : printable(text)) {
         if (kSpecial.find(c) != std::string_view::npos) result += '\\';
-        result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+        result += c;
     }
     return result;
 }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 #include "corda/report/child.hpp"
 #include "corda/report/writers.hpp"
 
@@ -20,14 +21,12 @@ constexpr std::array<const char*, 8> kColors{"#0072b2", "#d55e00", "#009e73", "#
 constexpr std::array<int, 5> kPointTypes{7, 5, 9, 13, 11};  // filled ones: open ones are thin in an SVG
 constexpr std::array<int, 3> kDashTypes{1, 2, 4};
 
-/// A text that gnuplot takes literally: in single quotes, inside which only the quote itself is special.
+/// A text that gnuplot takes literally: in single quotes, inside which only the quote itself is special. Each
+/// of those is joined on in double quotes: gnuplot takes '' for a quote only behind another character.
 std::string literal(std::string_view text) {
-    std::string result = "'";
-    for (const char c : text) {
-        if (c == '\'') result += '\'';
-        result += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    }
-    return result + "'";
+    std::string result = printable(text);
+    replace_all(result, "'", R"('."'".')");
+    return "'" + result + "'";
 }
 
 bool is_drawable(double value, bool log_axis) {
@@ -87,6 +86,13 @@ std::string terminal(const Plot& plot, PlotFormat format) {
         plot.id);
 }
 
+/// Whether a picture has its end. gnuplot does not say that it could not write all of it.
+bool is_whole(std::string_view picture, PlotFormat format) {
+    constexpr std::size_t kLongestEnd = 16;
+    const std::size_t end = picture.rfind(format == PlotFormat::kSvg ? "</svg>" : "IEND");
+    return end != std::string_view::npos && picture.size() - end <= kLongestEnd;
+}
+
 /// The end of gnuplot's messages, which has the reason.
 std::string last_words(const std::string& text) {
     constexpr std::size_t kMost = 400;
@@ -126,7 +132,14 @@ std::string draw_plot(const Plot& plot, PlotFormat format) {
         throw Error(ExitCode::kIo, fmt::format("gnuplot cannot draw '{}' (status {}): {}", plot.id,
                                                child.exit_code, last_words(child.err)));
     }
-    return child.out;
+    std::string picture = child.out;
+    if (!is_whole(picture, format)) {
+        throw Error(ExitCode::kIo,
+                    fmt::format("the picture '{}' by gnuplot breaks off; free some space in /tmp", plot.id));
+    }
+    // gnuplot escapes & and <, but no > where XML wants it.
+    if (format == PlotFormat::kSvg) replace_all(picture, "]]>", "]]&gt;");
+    return picture;
 }
 
 void check_gnuplot() {

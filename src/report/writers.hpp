@@ -3,22 +3,23 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "corda/core/basics.hpp"
 #include "corda/report/report.hpp"
 
 namespace corda::report {
 
 // The forms of a report. Each is a function of the report alone: the same report gives the same bytes
-// (pictures: with the same version of gnuplot).
+// (pictures: with the same version of gnuplot). Texts may be any bytes: where nothing else is said, a control
+// character and what is not UTF-8 become the numbers of their bytes (see core/text.hpp).
 
-/// A table as CSV: a row of column keys, then the rows. Quoted as in section 2 of RFC 4180, but with LF; a
-/// number has 17 significant digits, so that reading it gives the same bits.
+/// A table as CSV: a row of column keys, then the rows. Quoted as in section 2 of RFC 4180, but with LF, and
+/// in UTF-8 (see core/text.hpp); a number has 17 significant digits, so that reading it gives the same bits.
 [[nodiscard]] std::string csv_text(const Table& table);
 
 /// The whole report as JSON, "schema": 1. A row is an object by column key; an empty cell is null, and so
-/// is a number that JSON does not have (infinite, NaN).
+/// is a number that JSON does not have (infinite, NaN). Only what is not UTF-8 becomes numbers.
 [[nodiscard]] std::string json_text(const Report& report);
 
 /// The whole report as GitHub-flavoured Markdown with aligned tables and short numbers; a failed row says so
@@ -47,13 +48,6 @@ enum class PlotFormat { kPng, kSvg };
 /// are computed, so that they are not computed in vain.
 void check_gnuplot();
 
-/// Writes report.html, report.json, report.md, one `<id>.csv` per table, and `<id>.png` and `<id>.svg` per
-/// plot into a folder, which is made if it is missing; returns the paths, report.html first. All files are
-/// complete in memory before the first is written (see OutputFile). Files of other names stay. Throws
-/// corda::Error: kIo, or kInternal for a report that breaks the rules of report.hpp (check_report).
-std::vector<std::string> write_report(const Report& report, const std::string& folder,
-                                      OutputOptions options = {});
-
 /// Throws corda::Error (kInternal) if an id or a column key is not [a-z0-9_]+ or occurs twice, or if a row
 /// does not have one cell per column.
 void check_report(const Report& report);
@@ -66,6 +60,9 @@ void check_report(const Report& report);
 
 /// Whether people are shown a column: the failure column only if a row failed.
 [[nodiscard]] bool is_for_people(const Table& table, std::size_t column);
+
+/// Puts `to` in the place of every `from`, which is not empty.
+void replace_all(std::string& text, std::string_view from, std::string_view to);
 
 /// A number for people: three significant digits, e.g. "1.23e-5" or "1230"; whole numbers below a million in
 /// full.

@@ -8,6 +8,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/sim/auto/planner.hpp"
+#include "corda/study/step.hpp"
 
 namespace corda::study {
 namespace {
@@ -108,7 +109,11 @@ void add_auto_row(const AccuracyRow& named, const Problem& problem, const Timing
     sim::Recording unread(system.particle_count(), 1, 0);
     const auto tolerance_m = [&](const MotionBounds&) { return kTolerance * problem.length_m; };
     const Timeline timeline(problem.fps, problem.last_frame());
-    const Plan plan = sim::plan_method(system, problem.world, {tolerance_m, timeline, {}, {}}, unread);
+    const OnProgress on_frame = [](std::int64_t, std::int64_t) {
+        take_step();
+        return true;
+    };
+    const Plan plan = sim::plan_method(system, problem.world, {tolerance_m, timeline, on_frame, {}}, unread);
     add_problem_row(named, problem, {"auto", plan.method}, timing, rows);
     AccuracyRow& row = rows.back();
     row.title += fmt::format(" (auto chose {})", method_name(plan.method));

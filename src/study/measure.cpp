@@ -10,6 +10,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
+#include "corda/study/step.hpp"
 
 namespace corda::study {
 namespace {
@@ -43,6 +44,7 @@ void watch(const Problem& problem, const MethodDef& method, Measurement& result)
     bool is_compared = false;
     for (std::int64_t k = 1; k <= problem.last_frame(); ++k) {
         const double time_s = problem.fps.time_s(k);
+        take_step();
         if (run.advance_to(time_s) == Status::kDiverged) {
             result.failure = fmt::format("diverged before {:.6g} s", time_s);
             return;
@@ -68,6 +70,7 @@ double stepping_s(const Problem& problem, const MethodDef& method, const Timing&
         double sum_s = 0.0;
         int runs = 0;
         do {
+            take_step();
             const auto solver = sim::make_solver(system, problem.world, method, problem.fps.interval_s());
             State state{0.0, system.x_m, system.y_m};
             const double from_s = now_s();

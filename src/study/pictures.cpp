@@ -17,6 +17,7 @@
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/painter.hpp"
 #include "corda/study/problems.hpp"
+#include "corda/study/step.hpp"
 #include "corda/study/truth.hpp"
 
 namespace corda::study {
@@ -87,10 +88,19 @@ struct RenderTime {
     double whole_s = kForever;
 };
 
+FilmDef film_of(const StudyDef& def) {
+    FilmDef film = def.film;
+    film.on_progress = [](std::int64_t, std::int64_t) {
+        take_step();
+        return true;
+    };
+    return film;
+}
+
 /// What the jobs of the chapter share.
 struct Pictures {
     explicit Pictures(const StudyDef& def)
-        : film_def(def.film),
+        : film_def(film_of(def)),
           repeats(def.quick ? 1 : 5),
           scene(def.scene ? *def.scene : parse_scene(kSwing, "the swing")) {
         constexpr std::int64_t kQuickFrames = 30;
@@ -136,6 +146,7 @@ void time_film(Film& film, const VideoDef& video, double simulate_s, const std::
     media::VideoWriter writer(path, video, {});
     lap(encode_s);
     for (std::int64_t k = 0; k < film.frame_count(); ++k) {
+        take_step();
         const PixelRect damage = painter.draw(film.time_s(k));
         lap(draw_s);
         writer.write(painter.image(), damage);
@@ -198,6 +209,7 @@ void add_quality(Film& film, const std::string& path, std::vector<report::Cell>&
     double ssim = 0.0;
     const std::int64_t frames = film.frame_count();
     for (std::int64_t k = 0; k < frames; ++k) {
+        take_step();
         painter.draw(film.time_s(k));
         media::convert_to_yuv420(painter.image(), painter.image().rect(), drawn);
         if (!reader.read(decoded))

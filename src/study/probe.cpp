@@ -6,6 +6,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
+#include "corda/study/step.hpp"
 
 namespace corda::study {
 
@@ -13,6 +14,7 @@ Probe::Probe(const RopeDef& rope, const WorldDef& world, const MethodDef& method
     : simulation_(build_system({&rope, 1}), world, method, frame_interval_s) {}
 
 void Probe::go(double time_s) {
+    take_step();
     const double from_s = now_s();
     const Status status = simulation_.advance_to(time_s);
     wall_s_ += now_s() - from_s;

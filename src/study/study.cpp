@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 #include "corda/study/accuracy.hpp"
 #include "corda/study/findings.hpp"
 #include "corda/study/hard_cases.hpp"
@@ -64,17 +65,34 @@ Timing study_timing(bool quick) {
 }
 
 Study::Study(const StudyDef& def)
-    : title_(def.scene ? "Corda: study of " + def.scene->name : "Corda: study of its methods"),
-      timing_(study_timing(def.quick)) {
+    : title_("Corda: study of " + (def.scene ? printable(def.scene->name) : "its methods")),
+      timing_(study_timing(def.quick)),
+      on_step_(def.on_step) {
     check_chapters(def);
     if (def.quick) title_ += " (quick: not to quote from)";
     for (const ChapterKind& kind : kChapters) {
-        if (is_wanted(kind, def)) works_.push_back(kind.work(def));
+        if (!is_wanted(kind, def)) continue;
+        works_.push_back(kind.work(def));
+        names_.emplace_back(kind.name);
     }
 }
 
-report::Report Study::run(const OnJob& on_job) {
-    report::Report report{title_, setting(timing_), {}};
+void Study::run(const OnJob& on_job, const OnChapter& on_chapter, report::Report& report) {
+    report = {title_, setting(timing_), {}};
+    const HearSteps hear(on_step_);
+    try {
+        measure(on_job, on_chapter, report);
+    } catch (const Error& error) {
+        report.setting.emplace_back("Ends early", error.what());
+        const auto missing = names_.begin() + std::ssize(report.chapters);
+        if (missing != names_.end())
+            report.setting.emplace_back("Not measured",
+                                        fmt::format("{}", fmt::join(missing, names_.end(), ", ")));
+        throw;
+    }
+}
+
+void Study::measure(const OnJob& on_job, const OnChapter& on_chapter, report::Report& report) {
     int total = 0;
     for (const ChapterWork& work : works_) total += static_cast<int>(work.jobs.size());
     int done = 0;
@@ -82,11 +100,12 @@ report::Report Study::run(const OnJob& on_job) {
         for (const Job& job : work.jobs) {
             if (on_job) on_job(done++, total, job.what);
             job.run();
+            take_step();  // a job may have noted what the last one threw as its result
         }
         report.chapters.push_back(work.finish());
+        on_chapter(report.chapters.back());
     }
     if (on_job) on_job(done, total, "done");
-    return report;
 }
 
 }  // namespace corda::study

@@ -8,21 +8,25 @@
 #include "corda/pipeline/film.hpp"
 #include "corda/report/report.hpp"
 #include "corda/study/measure.hpp"
+#include "corda/study/step.hpp"
 #include "corda/study/work.hpp"
 
 namespace corda::study {
 
-/// What a study measures.
+/// What a study measures, and how it is ended.
 struct StudyDef {
     bool quick = false;  ///< fewer points and shorter runs: to see whether it works, not to quote from
     std::optional<Scene> scene;         ///< studied instead of the built-in problems
     std::vector<std::string> chapters;  ///< some of chapter_names(); empty: all that apply
     FilmDef film;                       ///< how chapter "picture" gets to OpenGL
+    OnStep on_step;                     ///< may be empty
 };
 
-/// Hears how far a study is: `done` of `total` jobs are done, and `what` is next. What it throws ends the
-/// study.
+/// Hears how far a study is: `done` of `total` jobs are done, and `what` is next. May be empty.
 using OnJob = std::function<void(int done, int total, const std::string& what)>;
+
+/// Hears of every chapter when it is measured.
+using OnChapter = std::function<void(const report::Chapter&)>;
 
 /// The names of the chapters, [a-z0-9_]+, in the order of the report.
 [[nodiscard]] std::vector<std::string> chapter_names();
@@ -37,13 +41,19 @@ class Study {
     /// chapter "picture" is wanted and cannot be drawn.
     explicit Study(const StudyDef& def);
 
-    /// Measures everything. Throws corda::Error, e.g. kInvalidScene if no method can run the scene.
-    [[nodiscard]] report::Report run(const OnJob& on_job);
+    /// Measures everything, and adds the chapters to `report` one after the other. Throws corda::Error, e.g.
+    /// kInvalidScene if no method can run the scene, and what the callbacks throw; then `report` has the
+    /// chapters up to there, and says in its setting why it ends and what was not measured.
+    void run(const OnJob& on_job, const OnChapter& on_chapter, report::Report& report);
 
   private:
+    void measure(const OnJob& on_job, const OnChapter& on_chapter, report::Report& report);
+
     std::string title_;
     Timing timing_;
+    OnStep on_step_;
     std::vector<ChapterWork> works_;
+    std::vector<std::string> names_;  ///< of the chapters of works_
 };
 
 }  // namespace corda::study

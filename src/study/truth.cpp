@@ -10,6 +10,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/sim/auto/trial.hpp"
 #include "corda/sim/recording.hpp"
+#include "corda/study/step.hpp"
 
 namespace corda::study {
 namespace {
@@ -27,6 +28,7 @@ SharedRecording record(const Problem& problem, const MethodDef& method) {
     auto frames = std::make_shared<sim::Recording>(run.system().particle_count(),
                                                    static_cast<std::size_t>(last_frame + 1), kNoBudget);
     for (std::int64_t k = 0; k <= last_frame; ++k) {
+        take_step();
         if (frames->advance(run, problem.fps.time_s(k), {}) == Status::kDiverged) break;
     }
     return frames;

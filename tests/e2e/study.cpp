@@ -135,13 +135,13 @@ TEST_F(Study, RefusesBeforeItMeasures) {
     };
     const std::vector<Case> cases{
         {{"--quick"}, 2, "--output"},
-        {{"-o", ""}, 2, "-o \"\": is not the name of a folder"},
+        {{"-o", ""}, 2, "--output: the value is empty"},
         {{"-o", out_, "--chapter", "speeds"}, 2, "there is no chapter \"speeds\"; known are speed, findings"},
-        {{"-o", out_, "--chapter", ""}, 2, "there is no chapter \"\""},
+        {{"-o", out_, "--chapter", ""}, 2, "--chapter: the value is empty"},
         {{scene, "-o", out_, "--chapter", "findings"}, 2, "chapter \"findings\" is about built-in problems"},
         {{"-o", out_, "--set", "video.fps=30"}, 2, "--set changes a scene; name its file"},
         {{"-o", out_, "--backend", "none"}, 2, "backend \"none\" is unknown"},
-        {{"", "-o", out_}, 6, "cannot read the scene file"},
+        {{"", "-o", out_}, 2, "SCENE: the value is empty"},
         {{folder_.file("missing.toml"), "-o", out_}, 6, "missing.toml: cannot read the scene file"},
         {{"-o", scene}, 6, "scene.toml: exists and is not a folder"},
         {{"-o", folder_.path()}, 6, "is not empty; give --force"},
@@ -179,6 +179,41 @@ TEST_F(Study, StopsAtASignalAndWritesNoFile) {
     EXPECT_EQ(result.exit_code, 124) << result.err;  // that of timeout: the signal was sent
     EXPECT_THAT(result.err, HasSubstr("interrupted; nothing was written"));
     EXPECT_TRUE(fs::is_empty(out_));
+}
+
+/// A study of two chapters, of a scene that no chapter takes long for.
+std::string study_of(const std::string& scene, const std::string& folder) {
+    return test::quoted(CORDA_PROGRAM) + " study " + scene + " -o " + folder +
+           " --quick --chapter speed,picture";
+}
+
+const char* const kSmallScene =
+    "schema = 1\n[world]\nduration = 0.1\n[[rope]]\nhang = { links = 3, length = 1.0, angle_deg = 9.0 }\n";
+
+TEST_F(Study, EndsItsReportAtASignal) {
+    const std::string scene = folder_.write("scene.toml", kSmallScene);
+    // The last file of the first chapter is there, while the others are measured.
+    const auto result =
+        run_shell(study_of(scene, out_) + " & pid=$!; for i in $(seq 1000); do [ -e " + out_ +
+                  "/speed_scene.png ] && break; sleep 0.05; done; kill -TERM $pid; wait $pid");
+    EXPECT_EQ(result.exit_code, 143) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("error: interrupted; 8 files are written, the last of them is " + out_ +
+                                      "/report.html"));
+    const json report = json::parse(test::read_file(out_ + "/report.json"));
+    ASSERT_EQ(report["chapters"].size(), 1U);
+    EXPECT_EQ(report["setting"].back(), json({{"name", "Not measured"}, {"value", "picture"}}));
+    expect_files_of(report, out_);
+}
+
+TEST_F(Study, KeepsItsTablesOnAFullDisk) {
+    const std::string scene = folder_.write("scene.toml", kSmallScene);
+    // Files may have 24 KiB, which tables have (16 at most) and plots exceed (44 at least): what a full disk
+    // looks like to a program.
+    const auto result = run_shell("trap '' XFSZ; ulimit -f 24; " + study_of(scene, out_));
+    EXPECT_EQ(result.exit_code, 6) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("files are written, the last of them is " + out_));
+    for (const char* name : {"fastest_scene.csv", "slopes_scene.csv", "speed_scene.csv", "report.md"})
+        EXPECT_GT(test::read_file(out_ + "/" + name).size(), 100U) << name;
 }
 
 }  // namespace

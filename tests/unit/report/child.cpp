@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <cstdio>
 
 #include "corda/core/basics.hpp"
 
@@ -29,6 +30,14 @@ TEST(Child, StatusIsThatOfTheProgram) {
     EXPECT_EQ(failed.exit_code, 3);
     EXPECT_EQ(failed.err, "reason\n");
     EXPECT_EQ(run_child({"sh", "-c", "kill -TERM $$"}, "", "").exit_code, 128 + SIGTERM);
+}
+
+TEST(Child, IsNotEndedBySignalsForThisProcessGroup) {
+    const ChildResult result = run_child({"sh", "-c", "ps -o pgid= -p $$; echo $$"}, "", "");
+    int group = 0;
+    int process = 0;
+    ASSERT_EQ(std::sscanf(result.out.c_str(), "%d %d", &group, &process), 2) << result.out << result.err;
+    EXPECT_EQ(group, process);
 }
 
 TEST(Child, EndsAtABrokenPipeEvenIfThisProgramIgnoresThem) {

@@ -7,6 +7,7 @@
 
 #include "corda/core/basics.hpp"
 #include "own_problems.hpp"
+#include "support/failure.hpp"
 #include "support/nets.hpp"
 
 namespace corda::study {
@@ -33,12 +34,22 @@ TEST(Study, OfASceneShowsFailedRunsAndFillsItsTables) {
     int calls = 0;
     int left = -1;
     Study study(def);
-    const report::Report report = study.run([&](int done, int total, const std::string& what) {
-        EXPECT_EQ(done, calls);
-        EXPECT_FALSE(what.empty());
-        ++calls;
-        left = total - done;
-    });
+    int chapters = 0;
+    report::Report report;
+    study.run(
+        [&](int done, int total, const std::string& what) {
+            EXPECT_EQ(done, calls);
+            EXPECT_FALSE(what.empty());
+            ++calls;
+            left = total - done;
+        },
+        [&](const report::Chapter& chapter) {
+            ++chapters;
+            EXPECT_EQ(chapter.title, "Speed against error");
+            EXPECT_EQ(left, 1);
+        },
+        report);
+    EXPECT_EQ(chapters, 1);
     EXPECT_GT(calls, 10);
     EXPECT_EQ(left, 0);
     EXPECT_THAT(report.title, HasSubstr("Own rope-1"));
@@ -57,6 +68,27 @@ TEST(Study, OfASceneShowsFailedRunsAndFillsItsTables) {
         }
     }
     EXPECT_TRUE(has_failed_row);  // exact refuses a closed rope
+}
+
+TEST(Study, EndsWithTheChaptersBeforeWhatEndsIt) {
+    StudyDef def;
+    def.quick = true;
+    def.chapters = {"findings", "hard_cases"};
+    bool ends = false;
+    def.on_step = [&ends] {
+        if (ends) throw Error(ExitCode::kTerminated, "stopped");
+    };
+    Study study(def);
+    report::Report report;
+    const auto run = [&] {
+        study.run(
+            {}, [&](const report::Chapter&) { ends = true; }, report);
+    };
+    EXPECT_EQ(test::code_of(run), ExitCode::kTerminated);
+    ASSERT_EQ(report.chapters.size(), 1U);
+    using Row = std::pair<std::string, std::string>;
+    EXPECT_EQ(report.setting[report.setting.size() - 2], Row("Ends early", "stopped"));
+    EXPECT_EQ(report.setting.back(), Row("Not measured", "hard_cases"));
 }
 
 TEST(Study, NamesUnknownAndUnsuitableChapters) {

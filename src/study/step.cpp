@@ -1,0 +1,22 @@
+#include "corda/study/step.hpp"
+
+#include <utility>
+
+namespace corda::study {
+namespace {
+
+thread_local const OnStep* heard_by = nullptr;
+
+}  // namespace
+
+HearSteps::HearSteps(const OnStep& on_step) : outer_(std::exchange(heard_by, &on_step)) {}
+
+HearSteps::~HearSteps() {
+    heard_by = outer_;
+}
+
+void take_step() {
+    if (heard_by != nullptr && *heard_by) (*heard_by)();
+}
+
+}  // namespace corda::study

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+
+namespace corda::study {
+
+/// Called many times a second by whatever a study computes. What it throws ends the study.
+using OnStep = std::function<void()>;
+
+/// For as long as it lives, take_step() on this thread calls `on_step`, which must outlive it. The runs of a
+/// study are far below its chapters: a parameter would pass through all of them.
+class HearSteps {
+  public:
+    explicit HearSteps(const OnStep& on_step);
+    HearSteps(const HearSteps&) = delete;
+    HearSteps& operator=(const HearSteps&) = delete;
+    ~HearSteps();
+
+  private:
+    const OnStep* outer_;
+};
+
+/// Tells whoever hears the steps of this thread, if anyone.
+void take_step();
+
+}  // namespace corda::study

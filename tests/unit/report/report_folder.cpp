@@ -1,0 +1,140 @@
+#include "corda/report/report_folder.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <utility>
+
+#include "samples.hpp"
+#include "support/command.hpp"
+#include "support/failure.hpp"
+
+namespace corda::report {
+namespace {
+
+using test::code_of;
+using test::run_shell;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+/// The paths of a report that is written at once.
+std::vector<std::string> write(const Report& report, const std::string& path, OutputOptions options = {}) {
+    ReportFolder folder(path, std::move(options));
+    for (const Chapter& chapter : report.chapters) folder.add(chapter);
+    folder.finish(report);
+    return folder.paths();
+}
+
+TEST(ReportFolder, GetsEveryFile) {
+    const test::ScratchFolder folder;
+    const std::string out = folder.file("some/out");
+    const auto paths = write(small_report(), out);
+    EXPECT_THAT(paths, ElementsAre(out + "/report.html", out + "/report.json", out + "/report.md",
+                                   out + "/linear.png", out + "/linear.svg", out + "/error.png",
+                                   out + "/error.svg", out + "/speed.csv"));
+    for (const std::string& path : paths) EXPECT_GT(std::filesystem::file_size(path), 0U) << path;
+    EXPECT_EQ(test::read_file(out + "/speed.csv"), csv_text(small_table()));
+    EXPECT_EQ(test::read_file(out + "/report.json"), json_text(small_report()));
+    const std::filesystem::directory_iterator files(out);
+    EXPECT_EQ(std::distance(begin(files), end(files)), std::ssize(paths));  // no temporary ones are left
+    const std::string& file = paths[0];
+    EXPECT_EQ(code_of([&] { write(small_report(), file); }), ExitCode::kIo);
+}
+
+TEST(ReportFolder, ReplacesFilesOnlyIfForced) {
+    const test::ScratchFolder folder;
+    Report report = small_report();
+    report.chapters.pop_back();
+    write(report, folder.path());
+    const std::string other = folder.write("other.csv", "mine");
+    EXPECT_EQ(code_of([&] { write(report, folder.path()); }), ExitCode::kIo);
+    report.title = "Changed";
+    write(report, folder.path(), {.force = true});
+    EXPECT_EQ(test::read_file(folder.file("report.json")), json_text(report));
+    EXPECT_EQ(test::read_file(other), "mine");
+}
+
+TEST(ReportFolder, HasAChapterAsSoonAsItIsAdded) {
+    const test::ScratchFolder folder;
+    ReportFolder report(folder.path());
+    report.add(small_report().chapters[0]);
+    EXPECT_THAT(folder.files(), ElementsAre("error.png", "error.svg", "speed.csv"));
+}
+
+TEST(ReportFolder, IsFinishedWithThePicturesThatWereDrawn) {
+    const test::ScratchFolder folder;
+    const Report whole = small_report();
+    // Asked once per picture, of which the first chapter has two.
+    const auto asks = [asked = 0](std::int64_t, std::int64_t) mutable { return ++asked < 3; };
+    ReportFolder report(folder.path(), {.on_progress = asks});
+    report.add(whole.chapters[0]);
+    EXPECT_EQ(code_of([&] { report.add(whole.chapters[1]); }), ExitCode::kInterrupted);
+    report.finish(whole);
+    EXPECT_THAT(folder.files(), ElementsAre("error.png", "error.svg", "report.html", "report.json",
+                                            "report.md", "speed.csv"));
+    for (const char* name : {"report.html", "report.json", "report.md"}) {
+        EXPECT_THAT(test::read_file(folder.file(name)), HasSubstr("Second")) << name;
+        EXPECT_THAT(test::read_file(folder.file(name)), Not(HasSubstr("linear"))) << name;
+    }
+}
+
+TEST(ReportFolder, IsFinishedAsFarAsItCanBe) {
+    const test::ScratchFolder folder;
+    const std::string taken = folder.write("report.md", "mine");
+    ReportFolder report(folder.path());
+    report.add(small_report().chapters[0]);
+    EXPECT_EQ(code_of([&] { report.finish(small_report()); }), ExitCode::kIo);
+    EXPECT_EQ(test::read_file(taken), "mine");
+    EXPECT_TRUE(std::filesystem::exists(folder.file("report.html")));
+}
+
+TEST(ReportFolder, IsWellFormedWhateverATextIs) {
+    const test::ScratchFolder folder;
+    const std::vector<std::string> texts{"'x",
+                                         "'",
+                                         "''",
+                                         "a''b'''c",
+                                         "]]>",
+                                         "<!-- --> <?x?> <![CDATA[ &x;",
+                                         "\x1b[31m\x07\n\t\x7f",
+                                         "caf\xe9",
+                                         "\xef\xbf\xbe \xed\xa0\x80 \xf4\x90\x80\x80",
+                                         "a\\",
+                                         "\"",
+                                         "END\n",
+                                         "",
+                                         "`touch pwned` @x $x %s {/=20 x}",
+                                         nasty};
+    Report report{"", {}, {{"", {}, {}, {}}}};
+    Chapter& chapter = report.chapters[0];
+    for (const std::string& text : texts) {
+        const std::string id = "id" + std::to_string(chapter.plots.size());
+        chapter.paragraphs.push_back(text);
+        chapter.tables.push_back({id, text, {{"key", text}, failure_column()}, {}, text});
+        chapter.tables.back().add_failed({text}, text);
+        const std::vector<Series> series{{text, {{0.0, 1.0}, {1.0, 2.0}}}, {text, {}}};
+        chapter.plots.push_back({id, text, text, text, false, false, series});
+        report.setting.emplace_back(text, text);
+        report.title += text;
+        chapter.title += text;
+    }
+    write(report, folder.path());
+    const std::string enter = "cd " + folder.path() + " && ";
+    const auto html = run_shell(enter + "xmllint --noout --nonet --dropdtd report.html");
+    EXPECT_EQ(html.exit_code, 0) << html.err;
+    const auto svgs = run_shell(enter + "xmllint --noout --nonet *.svg");
+    EXPECT_EQ(svgs.exit_code, 0) << svgs.err;
+    const auto utf8 = run_shell(enter + "cat *.csv *.md *.json *.html *.svg | iconv -f UTF-8 -t UTF-16");
+    EXPECT_EQ(utf8.exit_code, 0) << utf8.err;
+    EXPECT_THAT(test::read_file(folder.file("id3.svg")), HasSubstr(">a''b'''c<"));
+    EXPECT_THAT(test::read_file(folder.file("id4.svg")), HasSubstr(">]]&gt;<"));
+    EXPECT_THAT(test::read_file(folder.file("id6.svg")), HasSubstr(">\\x1b[31m\\x07\\x0a\\x09\\x7f<"));
+    EXPECT_THAT(test::read_file(folder.file("id7.csv")), HasSubstr("caf\\xe9,caf\\xe9\n"));
+    EXPECT_THAT(test::read_file(folder.file("report.json")), HasSubstr(R"("caf\\xe9")"));
+    EXPECT_FALSE(std::filesystem::exists("pwned"));
+}
+
+}  // namespace
+}  // namespace corda::report
