@@ -30,7 +30,6 @@ constexpr const char* kInterrupted = "interrupted";  // what is kept, is said wh
 
 struct StudyOptions {
     SceneOptions scene;
-    bool has_scene = false;
     GlOptions gl;
     std::string output;
     study::StudyDef def;
@@ -90,7 +89,7 @@ void measure(const Console& console, study::Study& study, report::ReportFolder& 
 
 ExitCode study_command(const Console& console, StudyOptions options) {
     const double start_s = now_s();
-    if (options.has_scene) {
+    if (!options.scene.path.empty()) {
         options.def.scene = options.scene.load();
     } else if (!options.scene.settings.empty()) {
         throw Error(ExitCode::kUsage, "--set changes a scene; name its file");
@@ -127,8 +126,7 @@ void add_study(CLI::App& app, Action& action) {
         ->type_name("NAME");
     options->gl.add_to(*command);
     command->add_flag("--force", options->force, "write into a folder that is not empty");
-    command->callback([options, command, &action] {
-        options->has_scene = command->count("SCENE") > 0;
+    command->callback([options, &action] {
         action = [options](const Console& console) { return study_command(console, *options); };
     });
 }

@@ -70,7 +70,8 @@ TEST_F(Signals, EndTheWaitForAPipe) {
         for (const auto& [signal, exit_code] : {std::pair{"INT", 130}, {"TERM", 143}}) {
             const Interrupted end = interrupt(arguments, signal, kIsListening);
             EXPECT_EQ(end.result.exit_code, exit_code) << arguments << end.result.err;
-            EXPECT_LT(end.ms, 1000) << arguments;  // measured 6 .. 120: the wait may begin after the signal
+            // Measured 4 .. 18, and up to 100 more if the wait begins after the signal.
+            EXPECT_LT(end.ms, 1000) << arguments;
         }
     }
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"pipe", "scene.toml"}));
@@ -96,7 +97,7 @@ TEST_F(Signals, EndAComparison) {
         interrupt("compare " + pictures + " --diff " + folder_.file("d.png"), "INT", kIsListening);
     EXPECT_EQ(end.result.exit_code, 130) << end.result.err;
     EXPECT_THAT(end.result.err, HasSubstr("interrupted; nothing was written"));
-    EXPECT_LT(end.ms, 1000);  // measured 20
+    EXPECT_LT(end.ms, 1000);  // measured 20 .. 130
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"a.png", "scene.toml"}));
 }
 
@@ -108,7 +109,7 @@ TEST_F(Signals, EndTheLastCopyOfAVideoKeepingItsFrames) {
     EXPECT_EQ(end.result.exit_code, 143) << end.result.err;
     EXPECT_THAT(end.result.err, HasSubstr("interrupted: frames 0..1199 of 1200 are in " + video +
                                           ".part, which plays; " + video + " was not written"));
-    EXPECT_LT(end.ms, 1000);  // measured 30
+    EXPECT_LT(end.ms, 1000);  // measured 21
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"a.mp4.part", "scene.toml"}));
     EXPECT_EQ(media::recover_part(video + ".part", folder_.file("b.mp4")).frames, 1200);
 }
@@ -119,7 +120,7 @@ TEST_F(Signals, EndAStill) {
         "still " + scene_ + " --at 0,3e5 --duration 3e5 -o " + folder_.file("stills"), "INT", kIsListening);
     EXPECT_EQ(end.result.exit_code, 130) << end.result.err;
     EXPECT_THAT(end.result.err, HasSubstr("interrupted; nothing was written"));
-    EXPECT_LT(end.ms, 1000);  // measured 20
+    EXPECT_LT(end.ms, 1000);  // measured 4
 }
 
 TEST_F(Signals, EndAStudy) {
@@ -127,7 +128,7 @@ TEST_F(Signals, EndAStudy) {
     const Interrupted end = interrupt("study -q -o " + folder_.file("report"), "INT", kIsListening);
     EXPECT_EQ(end.result.exit_code, 130) << end.result.err;
     EXPECT_THAT(end.result.err, HasSubstr("interrupted; nothing was written"));
-    EXPECT_LT(end.ms, 1000);  // measured 60
+    EXPECT_LT(end.ms, 1000);  // measured 60 .. 230
 }
 
 }  // namespace
