@@ -16,11 +16,11 @@ void keep_standard_streams();
 /// The status to exit with once a signal has asked to stop; kOk before.
 [[nodiscard]] ExitCode interruption();
 
-/// Throws corda::Error of that status once a signal has asked to stop. The message is for work that has not
-/// written anything yet, unless another one is given.
-void stop_if_asked(const char* message = "interrupted; nothing was written");
+/// Throws corda::Error of that status once a signal has asked to stop: for work that has not written anything
+/// yet.
+void stop_if_asked();
 
 /// The same as a callback for work that reports its progress.
-[[nodiscard]] OnProgress stopping_if_asked(const char* message = "interrupted; nothing was written");
+[[nodiscard]] OnProgress stopping_if_asked();
 
 }  // namespace corda::app

@@ -32,5 +32,14 @@ TEST(Json, HoldsTheWholeReport) {
     EXPECT_EQ(back["chapters"][0]["paragraphs"][1], "2. No list");
 }
 
+TEST(Json, EscapesBytesThatItCannotHold) {
+    Report report = small_report();
+    report.title = "caf\xe9 \x1b";
+    report.chapters[0].tables[0].rows[0][0] = "\xff";
+    const json back = json::parse(json_text(report));
+    EXPECT_EQ(back["title"], "caf\\xe9 \x1b");
+    EXPECT_EQ(back["chapters"][0]["tables"][0]["rows"][0]["method"], "\\xff");
+}
+
 }  // namespace
 }  // namespace corda::report
