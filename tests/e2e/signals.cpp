@@ -41,14 +41,14 @@ struct Interrupted {
 };
 
 /// Starts `corda ARGUMENTS`, sends it a signal when the shell command `until` succeeds, and waits for its
-/// end.
+/// end, for 20 s at most.
 Interrupted interrupt(const std::string& arguments, const std::string& signal, const std::string& until) {
     Interrupted end;
     end.result =
         run_shell(test::quoted(CORDA_PROGRAM) + " " + arguments + " & pid=$!; for i in $(seq 1500); do " +
-                  until + " && break; sleep 0.01; done; from=$(date +%s%N); kill -" + signal +
-                  " $pid; wait $pid; code=$?; echo; echo ms $((($(date +%s%N) - from) / 1000000));"
-                  " exit $code");
+                  until + " && break; sleep 0.01; done;" + " { sleep 20; kill -KILL $pid; } & dog=$!;" +
+                  " from=$(date +%s%N); kill -" + signal + " $pid; wait $pid; code=$?; kill $dog;" +
+                  " echo; echo ms $((($(date +%s%N) - from) / 1000000)); exit $code");
     const std::size_t at = end.result.out.rfind("\nms ");
     if (at != std::string::npos) end.ms = std::atoi(end.result.out.c_str() + at + 4);
     return end;
