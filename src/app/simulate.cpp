@@ -134,7 +134,9 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
 
     std::unique_ptr<OutputFile> csv;
     if (!options.output.empty()) {
-        csv = std::make_unique<OutputFile>(options.output, OutputOptions{.force = options.force});
+        const auto goes_on = [](std::int64_t, std::int64_t) { return interruption() == ExitCode::kOk; };
+        csv = std::make_unique<OutputFile>(options.output,
+                                           OutputOptions{.force = options.force, .on_progress = goes_on});
         csv->write(csv_header(film.system().particle_count(), options.diagnostics));
     }
     bool complete = false;

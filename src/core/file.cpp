@@ -33,10 +33,10 @@ Descriptor create_new(const std::string& path, unsigned mode) noexcept {
     return Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode));
 }
 
-int write_all(int descriptor, std::string_view bytes) noexcept {
+int write_all(int descriptor, std::string_view bytes, const OnProgress& on_wait) {
     while (!bytes.empty()) {
         const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
-        if (count < 0 && errno != EINTR) return errno;
+        if (count < 0 && (errno != EINTR || (on_wait && !on_wait(0, 0)))) return errno;
         if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
     }
     return 0;

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "corda/core/basics.hpp"
+
 namespace corda {
 
 struct FileCloser {
@@ -45,8 +47,9 @@ class Descriptor {
 /// leads nowhere. Sets errno if it fails.
 [[nodiscard]] Descriptor create_new(const std::string& path, unsigned mode) noexcept;
 
-/// Writes all of `bytes` to an open descriptor. Returns 0 or an errno value.
-[[nodiscard]] int write_all(int descriptor, std::string_view bytes) noexcept;
+/// Writes all of `bytes` to an open descriptor. A signal that breaks off the wait for the reader of a pipe
+/// asks `on_wait`, and what that throws is thrown. Returns 0 or an errno value: EINTR if it asks to stop.
+[[nodiscard]] int write_all(int descriptor, std::string_view bytes, const OnProgress& on_wait = {});
 
 /// Throws corda::Error (kIo; kInterrupted for EINTR): "cannot ACTION 'PATH': REASON; HINT", with the reason
 /// and the hint for `error_number`.

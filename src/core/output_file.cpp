@@ -174,13 +174,13 @@ void OutputFile::write(std::string_view bytes) {
     if (buffer_.size() + bytes.size() > kBufferBytes) flush();
     if (bytes.size() < kBufferBytes) {
         buffer_ += bytes;
-    } else if (const int status = write_all(descriptor_.get(), bytes); status != 0) {
+    } else if (const int status = write_all(descriptor_.get(), bytes, options_.on_progress); status != 0) {
         fail_file("write", path_, status);
     }
 }
 
 void OutputFile::flush() {
-    const int status = write_all(descriptor_.get(), buffer_);
+    const int status = write_all(descriptor_.get(), buffer_, options_.on_progress);
     buffer_.clear();
     if (status != 0) fail_file("write", path_, status);
 }

@@ -89,6 +89,19 @@ TEST_F(Signals, EndTheWaitForTheWriterOfAPipe) {
     }
 }
 
+TEST_F(Signals, EndTheWaitForTheReaderOfAPipe) {
+    const std::string pipe = folder_.file("pipe");
+    ASSERT_EQ(run_shell("mkfifo " + pipe).exit_code, 0);
+    const std::string simulate = test::quoted(CORDA_PROGRAM) + " simulate " + scene_ + " -o " + pipe;
+    // The file has more than a pipe holds.
+    const auto end =
+        run_shell("sleep 20 < " + pipe + " & reader=$!; " + simulate +
+                  " & pid=$!; sleep 0.5; kill -TERM $pid; wait $pid; code=$?; kill $reader; exit $code");
+    EXPECT_EQ(end.exit_code, 143) << end.err;
+    const Interrupted alone = interrupt("simulate " + scene_ + " -o " + pipe, "INT", kIsListening);
+    EXPECT_EQ(alone.result.exit_code, 130) << alone.result.err;
+}
+
 TEST_F(Signals, EndAComparison) {
     // Reading these takes a second or more.
     write_png(folder_.file("a.png"), Image(8192, 4096));
