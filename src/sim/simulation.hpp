@@ -75,13 +75,14 @@ class Simulation {
 /// A method that was tried, and how far its positions differ from those of a tighter run.
 struct Trial {
     MethodDef method;
-    MethodDef check;  ///< of the tighter run
+    MethodDef check;  ///< of the tighter runs
     std::uint64_t steps = 0;
-    std::uint64_t check_steps = 0;
+    std::uint64_t check_steps = 0;      ///< of one of them
     double largest_difference_m = 0.0;  ///< up to `reached_s`
+    double error_bound_m = 0.0;         ///< up to `reached_s`
     double reached_s = 0.0;             ///< the last frame time up to which it was within the tolerance
     bool to_the_end = false;            ///< within the tolerance at all frame times
-    bool diverged = false;              ///< one of the two runs diverged after `reached_s`
+    bool diverged = false;              ///< the run or a check diverged after `reached_s`
 };
 
 /// Why a scene is run by its method.

@@ -4,8 +4,8 @@
 
 namespace corda::sim {
 
-/// Finds a method whose positions stay within the tolerance and proves it by a second, tighter run beside the
-/// first. The states of the proved run are left in `recording`: they are what is drawn.
+/// Finds a method whose positions stay within the tolerance and proves it by tighter runs beside the first.
+/// The states of the proved run are left in `recording`: they are what is drawn.
 ///
 /// - Chains, and bodies that stretch: `exact` at the loosest sufficient tolerance, checked by a run a hundred
 ///   times tighter.
@@ -14,7 +14,8 @@ namespace corda::sim {
 /// - Bars whose lengths depend on each other (a net with diagonals), at the start or during the motion:
 ///   `relaxation`, without a bound on its error.
 ///
-/// The bound is bound_per_difference() times the largest difference of the two runs. If no trial stays within
+/// The bound is bound_per_difference() times the largest difference of run and checks, and what these cannot
+/// see (section 3.6 of src/sim/README.md). If no trial stays within
 /// the tolerance to the end, the tightest is taken, with a horizon. Decisions depend on counts and positions,
 /// never on a clock: the same scene gives the same plan. Throws corda::Refusal if no method can run the
 /// system, and corda::Error (kInterrupted) if asked to stop.

@@ -25,19 +25,28 @@ struct PlanDef {
     std::function<double()> clock_s;  ///< measures the stepping of each run; empty: not measured
 };
 
+/// Whether forces of the system have kinks: where a string that stretches comes taut.
+[[nodiscard]] bool has_kinks(const System& system);
+
 /// The factor between the bound on an error and the difference to a tighter run. The error may exceed the
-/// difference by the tighter run's own error. Usually 1.01 would be enough, because the check is a hundred
-/// times tighter, and at the limit of double precision, where both runs are equally wrong, 2: it is 3. If a
-/// string stretches it is 30, because its force has a kink that the error estimates of both runs may miss.
+/// difference by the tighter run's own error, a hundredth of it as a rule and a sixth near the limit of
+/// double precision: 3 leaves room. If a string stretches it is 30, because its force has a kink that the
+/// error estimates of both runs may miss.
 [[nodiscard]] double bound_per_difference(const System& system);
 
-/// Runs the trial's two methods side by side, the check in turned coordinates, so that its rounding differs
-/// from the start on, and records in `trial` how far they agree. `recording` is cleared and receives the
-/// run's states. Once the difference is too large for good, the check ends; the run goes on to the end if
-/// `keeps_going`, because it is then what will be drawn. Each of the two that begins to move adds one to
-/// `passes`. Throws corda::Refusal, and corda::Error (kInterrupted) if asked to stop.
-void run_trial(const System& system, const WorldDef& world, const PlanDef& def, bool keeps_going,
-               Trial& trial, Recording& recording, int& passes);
+/// The place of a trial among those of a plan.
+struct TrialKind {
+    bool is_first = true;  ///< it has one check; later ones, of motions that are hard to predict, have two
+    bool is_last = true;   ///< its run is what will be drawn: it goes on to the end without its checks
+};
+
+/// Runs the trial's method and its checks side by side, the checks in turned coordinates, so that their
+/// rounding differs from the start on, and records in `trial` how far they agree. What two checks differ by
+/// counts three times. `recording` is cleared and receives the run's states. Once the difference is too large
+/// for good, the checks end. Each that begins to move adds one to `passes`. Throws corda::Refusal, and
+/// corda::Error (kInterrupted) if asked to stop.
+void run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial& trial,
+               Recording& recording, int& passes);
 
 /// Why a method cannot run a system; std::nullopt if it can.
 [[nodiscard]] std::optional<Refusal> refusal(const System& system, const WorldDef& world,
