@@ -120,7 +120,7 @@ void check_output(const std::string& path, const std::string& input, bool force,
     }
 }
 
-OutputFile::OutputFile(std::string path, OutputOptions options)
+OutputFile::OutputFile(std::string path, const OutputOptions& options)
     : path_(std::move(path)), target_(path_), options_(options) {
     if (is_standard_output(path_)) {
         descriptor_ = Descriptor(::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));

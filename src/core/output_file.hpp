@@ -33,7 +33,7 @@ void check_output(const std::string& path, const std::string& input, bool force,
 class OutputFile {
   public:
     /// Creates the temporary file. Throws corda::Error (kIo), like all below.
-    explicit OutputFile(std::string path, OutputOptions options = {});
+    explicit OutputFile(std::string path, const OutputOptions& options = {});
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
     /// Removes the temporary file unless `commit` or `keep` was called.

@@ -51,7 +51,7 @@ void remove_old(const std::string& path) {
 PartFile::PartFile(std::string path, Descriptor descriptor)
     : path_(std::move(path)), descriptor_(std::move(descriptor)) {}
 
-void PartFile::check(const std::string& path, OutputOptions options) {
+void PartFile::check(const std::string& path, const OutputOptions& options) {
     const Descriptor old = open_existing(path);
     if (!old && errno == ENOENT) return;
     if (old && !lock(old, path, LOCK_SH | LOCK_NB)) fail_busy(path);
@@ -61,7 +61,7 @@ void PartFile::check(const std::string& path, OutputOptions options) {
         "'" + path + "' holds an interrupted render; move it away, or start anew with force (--force)");
 }
 
-PartFile PartFile::create(std::string path, OutputOptions options) {
+PartFile PartFile::create(std::string path, const OutputOptions& options) {
     if (options.force) remove_old(path);
     Descriptor file = create_new(path, 0666);
     if (!file) {

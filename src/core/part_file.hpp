@@ -21,11 +21,11 @@ class PartFile {
   public:
     /// Throws corda::Error (kIo) if a part file is in the way: with `force`, only one that another process
     /// holds.
-    static void check(const std::string& path, OutputOptions options);
+    static void check(const std::string& path, const OutputOptions& options);
 
     /// Creates the part file, with `force` in place of an old one. Throws as `check`, and if it cannot be
     /// made.
-    [[nodiscard]] static PartFile create(std::string path, OutputOptions options);
+    [[nodiscard]] static PartFile create(std::string path, const OutputOptions& options);
 
     /// Locks the part file that an earlier run left. Throws corda::Error (kIo).
     [[nodiscard]] static PartFile open(std::string path);

@@ -46,7 +46,7 @@ struct PngInfo {
 /// corda::Error: kIo, also if `path` exists and `options` do not say to replace it; kInterrupted if
 /// they ask to stop.
 void write_png(const std::string& path, const Image& image, const PngInfo& info = {},
-               OutputOptions options = {});
+               const OutputOptions& options = {});
 
 /// Reads any PNG of a size that is_picture_size() as 8-bit RGBA. Throws corda::Error: kIo if it is larger,
 /// before memory is taken, or if the file cannot be read or is not a complete PNG, kInterrupted if

@@ -186,7 +186,7 @@ void remux(const PartIndex& index, const std::string& part_path, const Format& f
 
 }  // namespace
 
-RemuxResult finish_part(PartFile& part, const std::string& path, OutputOptions options,
+RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOptions& options,
                         std::optional<std::int64_t> expected_frames) {
     const LogCapture log;
     const OnProgress all_done = [&options, frames = expected_frames.value_or(0)](std::int64_t, std::int64_t) {
@@ -211,7 +211,8 @@ RemuxResult finish_part(PartFile& part, const std::string& path, OutputOptions o
     return result;
 }
 
-RemuxResult recover_part(const std::string& part_path, const std::string& path, OutputOptions options) {
+RemuxResult recover_part(const std::string& part_path, const std::string& path,
+                         const OutputOptions& options) {
     PartFile part = PartFile::open(part_path);
     return finish_part(part, path, options);
 }

@@ -21,11 +21,12 @@ struct RemuxResult {
 /// removes the part. Throws corda::Error: kIo if a file cannot be read or written, or if `path` exists and is
 /// not to be replaced; kMismatch if the part holds no whole fragment, has no constant frame rate, or gives a
 /// video that fails its check; kInterrupted if `options.on_progress` asks to stop. Then the part stays.
-RemuxResult recover_part(const std::string& part_path, const std::string& path, OutputOptions options = {});
+RemuxResult recover_part(const std::string& part_path, const std::string& path,
+                         const OutputOptions& options = {});
 
 /// As recover_part, for a part that this process holds. Also throws kMismatch if it has another number of
 /// frames than `expected_frames`, if given. `options.on_progress` hears that all of them are done.
-RemuxResult finish_part(PartFile& part, const std::string& path, OutputOptions options,
+RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOptions& options,
                         std::optional<std::int64_t> expected_frames = std::nullopt);
 
 }  // namespace corda::media

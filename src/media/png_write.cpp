@@ -143,7 +143,8 @@ std::vector<png_text> libpng_texts(const PngInfo& info, std::vector<std::string>
 
 }  // namespace
 
-void write_png(const std::string& path, const Image& image, const PngInfo& info, OutputOptions options) {
+void write_png(const std::string& path, const Image& image, const PngInfo& info,
+               const OutputOptions& options) {
     if (image.width() < 1 || image.height() < 1) {
         throw Error(ExitCode::kUsage, fmt::format("cannot write an empty picture to '{}'", path));
     }

@@ -40,7 +40,8 @@ void check_video_output(const std::string& path, const VideoDef& def, const std:
 }
 
 struct VideoWriter::Impl {
-    Impl(std::string final_path, const VideoDef& video, VideoMetadata meta, OutputOptions output_options)
+    Impl(std::string final_path, const VideoDef& video, VideoMetadata meta,
+         const OutputOptions& output_options)
         : path(std::move(final_path)),
           options(output_options),
           def(video),
@@ -82,7 +83,7 @@ struct VideoWriter::Impl {
 };
 
 VideoWriter::VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata,
-                         OutputOptions options) {
+                         const OutputOptions& options) {
     check_video_output(path, def, "", options.force);
     impl_ = std::make_unique<Impl>(std::move(path), def, std::move(metadata), options);
 }

@@ -35,7 +35,8 @@ class VideoWriter {
     /// part of an interrupted render now. Throws corda::Error: kUsage for an unknown ending or a bad def,
     /// kEncoder if the encoder is missing or refuses, kIo if the file cannot be made, exists, or is being
     /// written by another render.
-    VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata, OutputOptions options = {});
+    VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata,
+                const OutputOptions& options = {});
     VideoWriter(const VideoWriter&) = delete;
     VideoWriter& operator=(const VideoWriter&) = delete;
     /// Without `finish` or `abandon` the part file stays as it is, unless it is empty.
