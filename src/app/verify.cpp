@@ -36,7 +36,7 @@ nlohmann::json to_json(const std::string& path, const media::VerifyReport& repor
 }
 
 ExitCode verify(const Console& console, const std::string& path) {
-    const media::VerifyReport report = media::verify_in_child(path, stop_if_asked);
+    const media::VerifyReport report = media::verify_in_child(path, stopping_if_asked());
     if (!report.codec.empty()) {
         console.result(fmt::format("{}: {} {} {} {}x{}, {} frames at {} per second, {} s", path,
                                    report.container, report.codec, report.profile, report.width_px,

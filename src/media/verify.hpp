@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,9 +52,8 @@ struct VerifyReport {
 
 /// As `verify`, in a child process with limits on memory and time. If that crashes or exceeds a limit, the
 /// file is damaged: a report with a problem. If the system starts no further process, it verifies in this
-/// one. See run_in_child for `on_wait`, for what else it throws, and why this process must have no other
-/// thread.
-[[nodiscard]] VerifyReport verify_in_child(const std::string& path,
-                                           const std::function<void()>& on_wait = {});
+/// one. `on_progress` is asked at least ten times a second. See run_in_child for what else it throws, and why
+/// this process must have no other thread.
+[[nodiscard]] VerifyReport verify_in_child(const std::string& path, const OnProgress& on_progress = {});
 
 }  // namespace corda::media

@@ -80,10 +80,11 @@ std::string told(const std::string& path, bool has_little) {
 
 }  // namespace
 
-VerifyReport verify_in_child(const std::string& path, const std::function<void()>& on_wait) {
+VerifyReport verify_in_child(const std::string& path, const OnProgress& on_progress) {
     const bool has_little = has_little_memory();
+    const auto on_wait = [&] { report_progress(on_progress, 0, 0); };
     const auto end = run_in_child([&] { return told(path, has_little); }, limits_for(path), on_wait);
-    if (!end) return verify(path);
+    if (!end) return verify(path, on_progress);
     if (!end->finished) return damaged(end->text);
     const Json json = Json::from_cbor(end->text);
     if (!json.contains("error")) return json.at("report");

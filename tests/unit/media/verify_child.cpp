@@ -100,6 +100,9 @@ TEST_F(VerifyChild, NeedsNoThread) {
     const VerifyReport report = verify_in_child(file("a.mp4"));
     EXPECT_THAT(all_problems(report), IsEmpty());
     EXPECT_EQ(report.frames, 30);
+    const auto stop = [](std::int64_t, std::int64_t) { return false; };
+    EXPECT_EQ(test::code_of([&] { static_cast<void>(verify_in_child(file("a.mp4"), stop)); }),
+              ExitCode::kInterrupted);
 }
 
 }  // namespace
