@@ -101,7 +101,7 @@ class ExtendedMotion {
         return {y[first + j] - y[first + i], y[first + count_ + j] - y[first + count_ + i]};
     }
 
-    /// Adds `force` to the acceleration of a particle.
+    /// Adds what a force does to the acceleration of a particle, or an impulse to its velocity.
     void push(Vector& slope, std::size_t i, const Eigen::Matrix<Real, 2, 1>& force) const {
         const auto k = static_cast<Eigen::Index>(i);
         slope[2 * count_ + k] += inverse_mass_[i] * force[0];
@@ -155,6 +155,17 @@ class ExtendedMotion {
         return right;
     }
 
+    /// Forces or impulses of the rigid bars at `y`: each bar's multiplier times what leads from `a` to `b`,
+    /// on `b`.
+    void push_along_bars(Vector& slope, const Vector& y, const Vector& multiplier) const {
+        for (Eigen::Index k = 0; k < multiplier.size(); ++k) {
+            const Elastic& bar = rigid_[static_cast<std::size_t>(k)];
+            const Eigen::Matrix<Real, 2, 1> force = multiplier[k] * apart(y, bar.a, bar.b, 0);
+            push(slope, bar.a, -force);
+            push(slope, bar.b, force);
+        }
+    }
+
     void derivative(const Vector& y, Vector& slope) {
         slope.head(2 * count_) = y.tail(2 * count_);
         for (Eigen::Index i = 0; i < count_; ++i) {
@@ -177,13 +188,7 @@ class ExtendedMotion {
             right[k] = -apart(y, bar.a, bar.b, 2 * count_).squaredNorm() -
                        apart(y, bar.a, bar.b, 0).dot(apart(slope, bar.a, bar.b, 2 * count_));
         }
-        const Vector multiplier = solve(y, right);
-        for (Eigen::Index k = 0; k < right.size(); ++k) {
-            const Elastic& bar = rigid_[static_cast<std::size_t>(k)];
-            const Eigen::Matrix<Real, 2, 1> force = multiplier[k] * apart(y, bar.a, bar.b, 0);
-            push(slope, bar.a, -force);
-            push(slope, bar.b, force);
-        }
+        push_along_bars(slope, y, solve(y, right));
     }
 
     /// The impulses of rigid bars that take what would stretch them from the velocities.
@@ -194,13 +199,7 @@ class ExtendedMotion {
             const Elastic& bar = rigid_[static_cast<std::size_t>(k)];
             right[k] = -apart(y_, bar.a, bar.b, 0).dot(apart(y_, bar.a, bar.b, 2 * count_));
         }
-        const Vector multiplier = solve(y_, right);
-        for (Eigen::Index k = 0; k < right.size(); ++k) {
-            const Elastic& bar = rigid_[static_cast<std::size_t>(k)];
-            const Eigen::Matrix<Real, 2, 1> impulse = multiplier[k] * apart(y_, bar.a, bar.b, 0);
-            push(y_, bar.a, -impulse);
-            push(y_, bar.b, impulse);
-        }
+        push_along_bars(y_, y_, solve(y_, right));
     }
 
     /// One step; returns the estimate of the positions' largest error in parts of the size.

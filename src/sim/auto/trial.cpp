@@ -182,8 +182,8 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
     const double interval_s = def.timeline.fps().interval_s();
     Simulation run(system, world, trial.method, interval_s);
     std::deque<Check> checks;
-    const bool has_one =
-        kind.is_first || has_kinks(system);  // what checks differ by at kinks is not rounding
+    // What checks differ by at kinks is not rounding.
+    const bool has_one = kind.is_first || has_kinks(system);
     for (std::size_t i = 0; i < (has_one ? 1 : kTurns.size()); ++i)
         checks.emplace_back(system, world, trial.check, interval_s, i);
     Comparison comparison(bound_per_difference(system), def.tolerance_m);
