@@ -19,8 +19,9 @@ class Recording {
     /// Forgets all states.
     void clear();
     /// Advances a run to the next time and adds its state, unless the run diverges. `clock_s`, if not empty,
-    /// measures the stepping.
-    Status advance(Simulation& run, double time_s, const std::function<double()>& clock_s);
+    /// measures the stepping. `goes_on`: see Simulation::advance_to.
+    Status advance(Simulation& run, double time_s, const std::function<double()>& clock_s,
+                   const GoesOn& goes_on = {});
 
     /// Number of states added.
     [[nodiscard]] std::size_t size() const { return size_; }

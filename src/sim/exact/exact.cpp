@@ -90,10 +90,10 @@ Exact::Exact(const System& system, const Forces& forces, const ExactDef& def)
     for (const Body& body : system.bodies) parts_.push_back(make_part(system, body, forces, def));
 }
 
-Status Exact::advance_to(double time_s, State& state) {
+Status Exact::advance_to(double time_s, State& state, StopCheck& stop) {
     const FlushDenormals flush;
     for (const auto& part : parts_) {
-        if (part->advance_to(time_s, state) == Status::kDiverged) return Status::kDiverged;
+        if (part->advance_to(time_s, state, stop) == Status::kDiverged) return Status::kDiverged;
     }
     state.time_s = time_s;
     return Status::kOk;
