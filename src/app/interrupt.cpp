@@ -79,13 +79,13 @@ ExitCode interruption() {
     }
 }
 
-void stop_if_asked() {
-    if (interruption() != ExitCode::kOk) throw Error(interruption(), "interrupted; nothing was written");
+void stop_if_asked(const char* message) {
+    if (interruption() != ExitCode::kOk) throw Error(interruption(), message);
 }
 
-OnProgress stopping_if_asked() {
-    return [](std::int64_t, std::int64_t) {
-        stop_if_asked();
+OnProgress stopping_if_asked(const char* message) {
+    return [message](std::int64_t, std::int64_t) {
+        stop_if_asked(message);
         return true;
     };
 }

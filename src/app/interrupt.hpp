@@ -16,11 +16,14 @@ void keep_standard_streams();
 /// The status to exit with once a signal has asked to stop; kOk before.
 [[nodiscard]] ExitCode interruption();
 
-/// Throws corda::Error of that status once a signal has asked to stop: for work that has not written anything
-/// yet.
-void stop_if_asked();
+/// For work that has not written anything yet, and for work that says itself what it has written.
+inline constexpr const char* kNothingWritten = "interrupted; nothing was written";
+inline constexpr const char* kSomethingWritten = "interrupted";
+
+/// Throws corda::Error of that status once a signal has asked to stop.
+void stop_if_asked(const char* message = kNothingWritten);
 
 /// The same as a callback for work that reports its progress.
-[[nodiscard]] OnProgress stopping_if_asked();
+[[nodiscard]] OnProgress stopping_if_asked(const char* message = kNothingWritten);
 
 }  // namespace corda::app

@@ -79,8 +79,11 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     def.force = options.force;
     parse_range(options.frames, def);
     check_render(scene, options.output, def, options.scene.path);
+    OnProgress on_progress = show_progress(console, "simulate");
     FilmDef film_def;
-    film_def.on_progress = show_progress(console, "simulate");
+    film_def.on_progress = [&on_progress](std::int64_t done, std::int64_t all) {
+        return on_progress(done, all);
+    };
     options.gl.apply_to(film_def);
     Film film(scene, film_def);
     report_plan(console, film);
@@ -97,6 +100,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
 
     const GlInfo gl = film.gl();
     report_gl(console, gl);
+    on_progress = stopping_if_asked();  // what is simulated from now on shows as frames that are drawn
     Progress progress(console, "render", count);
     def.on_progress = [&](std::int64_t done, std::int64_t) {
         progress.update(done);

@@ -90,12 +90,12 @@ std::string cost_text(const Film& film) {
     return text;
 }
 
-/// Writes the states of all frame times; returns whether it got to the end.
-bool write_states(const Console& console, const Film& film, bool diagnostics, OutputFile* csv) {
+/// Writes the states of all frame times.
+void write_states(const Console& console, const Film& film, bool diagnostics, OutputFile* csv) {
     Progress progress(console, "simulate", film.last_frame() + 1);
     std::string line;
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
-        if (interruption() != ExitCode::kOk) return false;
+        stop_if_asked(kSomethingWritten);
         const State& state = film.state(k);
         if (csv != nullptr) {
             write_row(film, state, diagnostics, line);
@@ -103,7 +103,6 @@ bool write_states(const Console& console, const Film& film, bool diagnostics, Ou
         }
         progress.update(k + 1);
     }
-    return true;
 }
 
 /// Refuses an ending that is not known; a device such as /dev/null needs none.
@@ -127,8 +126,9 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     Scene scene = options.scene.load();
     const bool to_file = !options.output.empty() && !to_stdout;
     if (to_file) check_output(options.output, options.scene.path, options.force, OutputKind::kStream);
+    OnProgress on_progress = show_progress(console, "plan");
     FilmDef def;
-    def.on_progress = show_progress(console, "plan");
+    def.on_progress = [&on_progress](std::int64_t done, std::int64_t all) { return on_progress(done, all); };
     const Film film(scene, def);
     report_plan(console, film);
     console.info(fmt::format("{}: {}, method {}", film.scene().name, describe(film.system()),
@@ -138,26 +138,21 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
         return ExitCode::kOk;
     }
 
+    on_progress = stopping_if_asked(kSomethingWritten);
     std::unique_ptr<OutputFile> csv;
     if (!options.output.empty()) {
-        const auto goes_on = [](std::int64_t, std::int64_t) { return interruption() == ExitCode::kOk; };
         csv = std::make_unique<OutputFile>(options.output,
-                                           OutputOptions{.force = options.force, .on_progress = goes_on});
+                                           OutputOptions{.force = options.force, .on_progress = on_progress});
         csv->write(csv_header(film.system().particle_count(), options.diagnostics));
     }
-    bool complete = false;
     try {
-        complete = write_states(console, film, options.diagnostics, csv.get());
+        write_states(console, film, options.diagnostics, csv.get());
     } catch (const Error& error) {
-        if (!csv || error.code() != ExitCode::kDiverged) throw;
+        const bool ends_early = error.code() == ExitCode::kDiverged || error.code() == interruption();
+        if (!csv || !ends_early) throw;
         const std::string kept = csv->keep();
         if (to_stdout) throw;
         throw Error(error.code(), fmt::format("{}; the rows before it are in {}", error.what(), kept));
-    }
-    if (!complete) {
-        const std::string kept = csv ? csv->keep() : std::string();
-        if (to_file) console.warning(fmt::format("interrupted; the rows so far are in {}", kept));
-        return interruption();
     }
     if (csv) csv->commit();
     console.info(

@@ -52,11 +52,6 @@ void prepare_folder(const std::string& path, bool force) {
     }
 }
 
-/// What was written is said where it is known.
-void end_if_asked() {
-    if (interruption() != ExitCode::kOk) throw Error(interruption(), "interrupted");
-}
-
 /// Measures everything and writes each chapter when it is measured. What ends the study early is thrown when
 /// the report of the chapters before it is written.
 void measure(const Console& console, study::Study& study, report::ReportFolder& folder) {
@@ -98,15 +93,12 @@ ExitCode study_command(const Console& console, StudyOptions options) {
         throw Error(ExitCode::kUsage, "--set changes a scene; name its file");
     }
     options.gl.apply_to(options.def.film);
-    options.def.on_step = end_if_asked;
+    options.def.on_step = [] { stop_if_asked(kSomethingWritten); };
     study::Study study(options.def);
     prepare_folder(options.output, options.force);
     report::check_gnuplot();
-    const auto goes_on = [](std::int64_t, std::int64_t) {
-        end_if_asked();
-        return true;
-    };
-    report::ReportFolder folder(options.output, {.force = options.force, .on_progress = goes_on});
+    report::ReportFolder folder(
+        options.output, {.force = options.force, .on_progress = stopping_if_asked(kSomethingWritten)});
     measure(console, study, folder);
     const std::vector<std::string>& paths = folder.paths();
     console.info(fmt::format("{} files in {:.3g} s", paths.size(), now_s() - start_s));

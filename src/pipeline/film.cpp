@@ -93,7 +93,7 @@ struct Film::Impl {
                         fmt::format("{} s is not within 0 .. {} s; world.duration sets the end", time_s,
                                     scene.world.duration_s));
         }
-        return motion.at(time_s);
+        return motion.at(time_s, def.on_progress);
     }
 
     /// Requires a pipeline::Stage::Use.

@@ -28,7 +28,9 @@ struct FilmDef {
     /// The way to OpenGL: "auto", "device", "device:N", "surfaceless" or "default".
     std::string backend = "auto";
     bool require_gpu = false;  ///< refuse an OpenGL that runs on the CPU
-    OnProgress on_progress;    ///< called with the frames done so far, in every pass of the simulation
+    /// Called with the frames done so far, in every pass of the simulation, and again during frames that take
+    /// long; returning false ends what is being asked for by kInterrupted. It can be asked for again.
+    OnProgress on_progress;
 };
 
 /// What draws a Film.
@@ -75,7 +77,8 @@ class Film {
     [[nodiscard]] int simulation_passes() const;
 
     /// Positions at frame `k`, 0 .. last_frame(), or at a time in 0 .. world.duration_s. The reference holds
-    /// until the next call. Throws corda::Error: kUsage out of range, kDiverged if the motion ends before.
+    /// until the next call. Throws corda::Error: kUsage out of range, kDiverged if the motion ends before,
+    /// kInterrupted if on_progress asks to stop.
     [[nodiscard]] const State& state(std::int64_t k) const;
     [[nodiscard]] const State& state_at(double time_s) const;
     /// Figures of the last state asked for.

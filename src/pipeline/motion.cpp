@@ -34,12 +34,24 @@ void Motion::start() {
     next_ = 0;
 }
 
-bool Motion::step() {
+Status Motion::advance_to(double time_s, bool is_new, const OnProgress& on_progress) {
+    const GoesOn goes_on = [this, &on_progress] {
+        report_progress(on_progress, static_cast<std::int64_t>(next_), std::ssize(timeline_));
+        return true;
+    };
+    try {
+        return is_new ? recording_.advance(*run_, time_s, now_s, goes_on) : run_->advance_to(time_s, goes_on);
+    } catch (...) {
+        run_.reset();  // it must not be used further; the next that is asked for starts anew
+        throw;
+    }
+}
+
+bool Motion::step(const OnProgress& on_progress) {
     if (next_ == 0) ++passes_;
     const double time_s = timeline_.time_s(next_);
     const bool is_new = next_ == recording_.size();
-    const Status status = is_new ? recording_.advance(*run_, time_s, now_s) : run_->advance_to(time_s);
-    if (status == Status::kDiverged) {
+    if (advance_to(time_s, is_new, on_progress) == Status::kDiverged) {
         diverges_ = true;
         run_.reset();
         return false;
@@ -53,11 +65,11 @@ void Motion::run_to_end(const OnProgress& on_progress) {
     while (recording_.size() < timeline_.size() && !diverges_) {
         if (!run_ || next_ > recording_.size()) start();
         report_progress(on_progress, static_cast<std::int64_t>(next_), total);
-        static_cast<void>(step());
+        static_cast<void>(step(on_progress));
     }
 }
 
-const State& Motion::at(double time_s) {
+const State& Motion::at(double time_s, const OnProgress& on_progress) {
     const auto index = timeline_.find(time_s);
     if (index && recording_.holds(*index)) {
         recording_.read(*index, state_);
@@ -67,9 +79,9 @@ const State& Motion::at(double time_s) {
     if (index && diverges_ && *index >= recording_.size()) fail_diverged(time_s);
     if (!run_ || run_->state().time_s > time_s) start();
     while (next_ < timeline_.size() && timeline_.time_s(next_) <= time_s) {
-        if (!step()) fail_diverged(time_s);
+        if (!step(on_progress)) fail_diverged(time_s);
     }
-    if (run_->state().time_s < time_s && run_->advance_to(time_s) == Status::kDiverged) {
+    if (run_->state().time_s < time_s && advance_to(time_s, false, on_progress) == Status::kDiverged) {
         run_.reset();
         fail_diverged(time_s);
     }

@@ -32,8 +32,9 @@ class Motion {
     void run_to_end(const OnProgress& on_progress);
 
     /// The state at a time of the timeline, or at any other time between 0 and its end. The reference holds
-    /// until the next call. Throws corda::Error (kDiverged) if the motion ends before.
-    const State& at(double time_s);
+    /// until the next call. `on_progress` is asked during steps that take long. Throws corda::Error:
+    /// kDiverged if the motion ends before, kInterrupted if asked to stop.
+    const State& at(double time_s, const OnProgress& on_progress = {});
     /// Figures of the last state that at() returned.
     [[nodiscard]] const Figures& figures() const { return figures_; }
 
@@ -49,7 +50,9 @@ class Motion {
   private:
     void start();
     /// Goes on to the next time of the timeline; false if the run diverges there.
-    [[nodiscard]] bool step();
+    [[nodiscard]] bool step(const OnProgress& on_progress);
+    /// Advances run_, and records the state if it is new.
+    Status advance_to(double time_s, bool is_new, const OnProgress& on_progress);
     [[noreturn]] void fail_diverged(double time_s) const;
 
     const System* system_;

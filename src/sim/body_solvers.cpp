@@ -25,9 +25,9 @@ bool all_conserve_energy(const std::vector<BodySolvers::Part>& parts) {
 BodySolvers::BodySolvers(std::vector<Part> parts)
     : Solver(sum_of_scales_j(parts), all_conserve_energy(parts)), parts_(std::move(parts)) {}
 
-Status BodySolvers::advance_to(double time_s, State& state) {
+Status BodySolvers::advance_to(double time_s, State& state, StopCheck& stop) {
     for (Part& part : parts_) {
-        if (part.solver->advance_to(time_s, part.state) == Status::kDiverged) return Status::kDiverged;
+        if (part.solver->advance_to(time_s, part.state, stop) == Status::kDiverged) return Status::kDiverged;
         const auto first = static_cast<std::ptrdiff_t>(part.first_particle);
         std::copy(part.state.x_m.begin(), part.state.x_m.end(), state.x_m.begin() + first);
         std::copy(part.state.y_m.begin(), part.state.y_m.end(), state.y_m.begin() + first);

@@ -22,7 +22,7 @@ class BodySolvers final : public Solver {
     /// `parts`: one per body, in order.
     explicit BodySolvers(std::vector<Part> parts);
 
-    Status advance_to(double time_s, State& state) override;
+    Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;
     [[nodiscard]] std::optional<Loads> loads() const override;
     /// The sum over all bodies.

@@ -30,9 +30,10 @@ void Recording::clear() {
     bodies_ = 0;
 }
 
-Status Recording::advance(Simulation& run, double time_s, const std::function<double()>& clock_s) {
+Status Recording::advance(Simulation& run, double time_s, const std::function<double()>& clock_s,
+                          const GoesOn& goes_on) {
     const double start_s = clock_s ? clock_s() : 0.0;
-    const Status status = run.advance_to(time_s);
+    const Status status = run.advance_to(time_s, goes_on);
     if (clock_s) wall_s_ += clock_s() - start_s;
     if (status == Status::kDiverged) return status;
     const State& state = run.state();

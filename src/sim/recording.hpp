@@ -22,8 +22,9 @@ class Recording {
     /// Forgets all states.
     void clear();
     /// Advances a run to the next time and adds its state, unless the run diverges. `clock_s`, if not empty,
-    /// measures the stepping.
-    Status advance(Simulation& run, double time_s, const std::function<double()>& clock_s);
+    /// measures the stepping. `goes_on`: see Simulation::advance_to.
+    Status advance(Simulation& run, double time_s, const std::function<double()>& clock_s,
+                   const GoesOn& goes_on = {});
     /// Adds the recording of a body whose particles begin at `first_particle`, made by for_part(). The states
     /// are then those that all bodies added so far have.
     void add_body(const Recording& body, std::size_t first_particle);

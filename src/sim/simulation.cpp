@@ -133,13 +133,20 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
-Status Simulation::advance_to(double time_s) {
+Status Simulation::advance_to(double time_s, const GoesOn& goes_on) {
+    if (is_stepping_) {
+        throw Error(ExitCode::kUsage, "advance_to(" + std::to_string(time_s) +
+                                          "): the simulation was interrupted; make a new Simulation");
+    }
     if (!(time_s >= state_.time_s) || std::isinf(time_s)) {
         throw Error(ExitCode::kUsage, "advance_to(" + std::to_string(time_s) + "): the state is already at " +
                                           std::to_string(state_.time_s) + " s; make a new Simulation");
     }
     if (has_diverged_) return Status::kDiverged;
-    has_diverged_ = solver_->advance_to(time_s, next_) == Status::kDiverged || !is_sound(next_);
+    StopCheck stop(goes_on);
+    is_stepping_ = true;
+    has_diverged_ = solver_->advance_to(time_s, next_, stop) == Status::kDiverged || !is_sound(next_);
+    is_stepping_ = false;
     if (has_diverged_) return Status::kDiverged;
     std::swap(state_, next_);
     observe();

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "corda/core/basics.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::sim {
@@ -49,9 +50,11 @@ class Simulation {
     ~Simulation();
 
     /// Goes on to `time_s` seconds. The state is then that of exactly this time, with the same bits whatever
-    /// times were asked for on the way. If the run diverges, the last good state stays for good. Throws
-    /// corda::Error (kUsage) if `time_s` is before the state's time or not finite.
-    Status advance_to(double time_s);
+    /// times were asked for on the way. If the run diverges, the last good state stays for good. `goes_on` is
+    /// asked about every millisecond; if it ends the run, the last state stays, and this simulation must not
+    /// be used further. Throws corda::Error: kUsage if `time_s` is before the state's time or not finite, or
+    /// after an interruption; kInterrupted if `goes_on` returned false; and what `goes_on` throws.
+    Status advance_to(double time_s, const GoesOn& goes_on = {});
 
     /// Positions relative to `system().origin_m`, at the last time that was reached.
     [[nodiscard]] const State& state() const { return state_; }
@@ -75,6 +78,7 @@ class Simulation {
     State state_;
     State next_;  ///< kept for its memory
     bool has_diverged_ = false;
+    bool is_stepping_ = false;  ///< still, if an exception ended the steps
     bool conserves_energy_ = true;
     double initial_energy_j_ = 0.0;
     double energy_scale_j_ = 0.0;

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "corda/core/stop_check.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/forces/forces.hpp"
 #include "corda/sim/system.hpp"
@@ -21,8 +22,9 @@ class Solver {
 
     /// Writes the positions at exactly `time_s` to `state`, which has room for all particles. Times never go
     /// back. If the method fails (no convergence, a step too small, numbers that are not finite) it returns
-    /// kDiverged; `state` is then undefined and the solver must not be used further.
-    virtual Status advance_to(double time_s, State& state) = 0;
+    /// kDiverged; `state` is then undefined and the solver must not be used further. The same holds if
+    /// `stop`, which hears of all steps, throws.
+    virtual Status advance_to(double time_s, State& state, StopCheck& stop) = 0;
 
     /// Kinetic plus potential energy in joules at the solver's own time nearest to the last `advance_to`.
     [[nodiscard]] virtual double energy_j() const = 0;

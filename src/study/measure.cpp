@@ -41,7 +41,7 @@ void watch(const Problem& problem, std::span<const MethodDef> methods, Measureme
     for (std::int64_t k = 1; k <= problem.last_frame(); ++k) {
         const double time_s = problem.fps.time_s(k);
         take_step();
-        if (run.advance_to(time_s) == Status::kDiverged) {
+        if (run.advance_to(time_s, take_step) == Status::kDiverged) {
             result.failure = fmt::format("diverged before {:.6g} s", time_s);
             return;
         }
@@ -61,6 +61,8 @@ void watch(const Problem& problem, std::span<const MethodDef> methods, Measureme
 double stepping_s(const Problem& problem, const MethodDef& method, const Timing& timing) {
     const System system = problem.system();
     const std::int64_t last_frame = problem.last_frame();
+    const GoesOn goes_on = take_step;
+    StopCheck stop(goes_on);
     double shortest_s = std::numeric_limits<double>::infinity();
     for (int repeat = 0; repeat < timing.repeats; ++repeat) {
         double sum_s = 0.0;
@@ -71,7 +73,7 @@ double stepping_s(const Problem& problem, const MethodDef& method, const Timing&
             State state{0.0, system.x_m, system.y_m};
             const double from_s = now_s();
             for (std::int64_t k = 1; k <= last_frame; ++k) {
-                if (solver->advance_to(problem.fps.time_s(k), state) == Status::kDiverged) break;
+                if (solver->advance_to(problem.fps.time_s(k), state, stop) == Status::kDiverged) break;
             }
             sum_s += now_s() - from_s;
             ++runs;

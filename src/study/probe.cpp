@@ -16,7 +16,7 @@ Probe::Probe(const RopeDef& rope, const WorldDef& world, const MethodDef& method
 void Probe::go(double time_s) {
     take_step();
     const double from_s = now_s();
-    const Status status = simulation_.advance_to(time_s);
+    const Status status = simulation_.advance_to(time_s, take_step);
     wall_s_ += now_s() - from_s;
     if (status == Status::kDiverged)
         throw Error(ExitCode::kDiverged, fmt::format("diverged before {:.6g} s", time_s));

@@ -15,8 +15,9 @@ HearSteps::~HearSteps() {
     heard_by = outer_;
 }
 
-void take_step() {
+bool take_step() {
     if (heard_by != nullptr && *heard_by) (*heard_by)();
+    return true;
 }
 
 }  // namespace corda::study

@@ -20,7 +20,7 @@ class HearSteps {
     const OnStep* outer_;
 };
 
-/// Tells whoever hears the steps of this thread, if anyone.
-void take_step();
+/// Tells whoever hears the steps of this thread, if anyone. Returns true, so that it is a GoesOn.
+bool take_step();
 
 }  // namespace corda::study

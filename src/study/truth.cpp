@@ -31,7 +31,7 @@ SharedRecording record(const Problem& problem, const MethodDef& method) {
                                                    static_cast<std::size_t>(last_frame + 1), kNoBudget);
     for (std::int64_t k = 0; k <= last_frame; ++k) {
         take_step();
-        if (frames->advance(run, problem.fps.time_s(k), {}) == Status::kDiverged) break;
+        if (frames->advance(run, problem.fps.time_s(k), {}, take_step) == Status::kDiverged) break;
     }
     return frames;
 }

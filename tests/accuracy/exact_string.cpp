@@ -13,6 +13,7 @@
 #include "support/root.hpp"
 #include "support/solver_run.hpp"
 #include "support/strings.hpp"
+#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -27,7 +28,7 @@ class StringRun {
           part(system, system.bodies[0], world, tolerance),
           state{0.0, system.x_m, system.y_m} {}
 
-    bool advance_to(double time_s) { return part.advance_to(time_s, state) == Status::kOk; }
+    bool advance_to(double time_s) { return part.advance_to(time_s, state, test::unstopped) == Status::kOk; }
 
     System system;
     StringPart part;

@@ -13,6 +13,7 @@
 
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/relaxation/relaxation.hpp"
+#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -46,7 +47,7 @@ class TimedRun {
         const std::clock_t start = std::clock();
         for (int taken = 0; taken < steps_; taken += steps_at_once_) {
             step_ += steps_at_once_;
-            benchmark::DoNotOptimize(solver_->advance_to(step_ / 60.0, state_));
+            benchmark::DoNotOptimize(solver_->advance_to(step_ / 60.0, state_, test::unstopped));
         }
         const auto ticks = static_cast<double>(std::clock() - start);
         slices_s_.push_back(ticks / CLOCKS_PER_SEC);

@@ -13,6 +13,7 @@
 #include "corda/sim/distance.hpp"
 #include "corda/sim/exact/string/part.hpp"
 #include "support/strings.hpp"
+#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -33,7 +34,8 @@ class WatchedString {
     bool run(double duration_s, int frames_per_second = 60) {
         const auto frames = static_cast<int>(std::lround(duration_s * frames_per_second));
         for (int k = 1; k <= frames; ++k) {
-            if (part_.advance_to(static_cast<double>(k) / frames_per_second, state_) == Status::kDiverged)
+            if (part_.advance_to(static_cast<double>(k) / frames_per_second, state_, test::unstopped) ==
+                Status::kDiverged)
                 return false;
             for (const Bar& bar : system_.bars) {
                 const double distance_m =

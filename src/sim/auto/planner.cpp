@@ -104,10 +104,15 @@ void record(const System& system, const WorldDef& world, const PlanDef& def, Bod
     recording.clear();
     ++plan.passes;
     const auto total = static_cast<std::int64_t>(def.timeline.size());
-    for (std::int64_t i = 0; i < total; ++i) {
+    std::int64_t i = 0;
+    const GoesOn goes_on = [&] {
         report_progress(def.on_progress, i, total);
+        return true;
+    };
+    for (; i < total; ++i) {
+        goes_on();
         const double time_s = def.timeline.time_s(static_cast<std::size_t>(i));
-        if (recording.advance(run, time_s, def.clock_s) == Status::kDiverged) return;
+        if (recording.advance(run, time_s, def.clock_s, goes_on) == Status::kDiverged) return;
     }
 }
 

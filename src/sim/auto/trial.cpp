@@ -64,7 +64,7 @@ class Check {
     Check(const Check&) = delete;
     Check& operator=(const Check&) = delete;
 
-    Status advance_to(double time_s) { return solver_->advance_to(time_s, state_); }
+    Status advance_to(double time_s, StopCheck& stop) { return solver_->advance_to(time_s, state_, stop); }
     [[nodiscard]] std::uint64_t steps() const { return solver_->steps(); }
     /// Where it has a particle, in the scene's directions.
     [[nodiscard]] Vec2 position_m(std::size_t i) const {
@@ -190,18 +190,24 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
     recording.clear();
     const auto total = static_cast<std::int64_t>(def.timeline.size());
     bool is_checked = true;
-    for (std::int64_t i = 0; i < total && (is_checked || kind.is_last); ++i) {
+    std::int64_t i = 0;
+    const GoesOn goes_on = [&] {
         report_progress(def.on_progress, i, total);
+        return true;
+    };
+    StopCheck stop(goes_on);
+    for (; i < total && (is_checked || kind.is_last); ++i) {
+        goes_on();
         const double time_s = def.timeline.time_s(static_cast<std::size_t>(i));
         if (i == 0) ++passes;
-        if (recording.advance(run, time_s, def.clock_s) == Status::kDiverged) {
+        if (recording.advance(run, time_s, def.clock_s, goes_on) == Status::kDiverged) {
             trial.diverged = is_checked;
             break;
         }
         if (!is_checked || !def.timeline.is_frame(static_cast<std::size_t>(i))) continue;
         for (Check& check : checks) {
             if (i == 0) ++passes;
-            trial.diverged = trial.diverged || check.advance_to(time_s) == Status::kDiverged;
+            trial.diverged = trial.diverged || check.advance_to(time_s, stop) == Status::kDiverged;
         }
         if (!trial.diverged) comparison.add(time_s, difference_m(run.state(), checks), recording.bounds());
         is_checked = !trial.diverged && !comparison.has_parted();

@@ -21,7 +21,7 @@ using ToleranceOf = std::function<double(const MotionBounds&)>;
 struct PlanDef {
     ToleranceOf tolerance_m;
     Timeline timeline;
-    OnProgress on_progress = {};      ///< called for every frame of every trial
+    OnProgress on_progress = {};      ///< called for every frame of every trial, and during long ones
     std::function<double()> clock_s;  ///< measures the stepping of each run; empty: not measured
 };
 

@@ -26,6 +26,9 @@ std::size_t order_for(double tolerance) {
     return tolerance >= 1e-12 ? 16 : kLargestSeriesOrder;
 }
 
+/// Work of a step as a StopCheck counts it: its series take as long as this many updates of a particle.
+constexpr std::uint64_t kUpdatesPerLink = 8;
+
 /// Less than a rounding error of the angular velocities, because it bounds the last term alone.
 constexpr double kSmallestTerm = 1e-18;
 
@@ -42,7 +45,8 @@ ChainPart::ChainPart(const System& system, const Body& body, const Forces& force
     }
 }
 
-Status ChainPart::step(Mover& mover) {
+Status ChainPart::step(Mover& mover, StopCheck& stop) {
+    stop.spend(1 + kUpdatesPerLink * mover.chain.link_count);
     const StepControl& control = mover.control;
     const double last_s = mover.end_s - mover.start_s;
     const double unit_s = last_s > 0.0 ? last_s : control.first_s;
@@ -61,11 +65,11 @@ Status ChainPart::step(Mover& mover) {
     return Status::kOk;
 }
 
-Status ChainPart::advance_to(double time_s, State& state) {
+Status ChainPart::advance_to(double time_s, State& state, StopCheck& stop) {
     if (!std::isfinite(time_s)) return Status::kDiverged;
     for (Mover& mover : movers_) {
         while (mover.end_s < time_s) {
-            if (step(mover) == Status::kDiverged) return Status::kDiverged;
+            if (step(mover, stop) == Status::kDiverged) return Status::kDiverged;
         }
         if (mover.steps == 0) continue;  // output_ is the start
         mover.series.evaluate(time_s - mover.start_s, output_.data());

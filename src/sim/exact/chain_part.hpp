@@ -20,7 +20,7 @@ class ChainPart final : public ExactPart {
     /// `body`: a chain of the system. Throws what ChainDynamics throws.
     ChainPart(const System& system, const Body& body, const Forces& forces, double tolerance);
 
-    Status advance_to(double time_s, State& state) override;
+    Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override { return dynamics_.energy_j(output_.data()); }
     [[nodiscard]] Loads loads() override { return dynamics_.loads(output_.data()); }
     [[nodiscard]] std::uint64_t steps() const override;
@@ -36,7 +36,7 @@ class ChainPart final : public ExactPart {
         std::uint64_t steps = 0;
     };
 
-    Status step(Mover& mover);
+    Status step(Mover& mover, StopCheck& stop);
 
     ChainDynamics dynamics_;
     std::vector<double> state_;   ///< each chain at the end of its last step

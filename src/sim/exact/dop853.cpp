@@ -77,10 +77,10 @@ Dop853::Dop853(Ode& ode, std::vector<double> start, std::vector<ErrorScale> scal
     ode_.derivative(y_.data(), slope_[dop853::k13].data());
 }
 
-Status Dop853::advance_to(double time_s) {
+Status Dop853::advance_to(double time_s, StopCheck& stop) {
     if (!std::isfinite(time_s)) return Status::kDiverged;
     while (time_s_ < time_s) {
-        if (step() == Status::kDiverged) return Status::kDiverged;
+        if (step(stop) == Status::kDiverged) return Status::kDiverged;
     }
     return Status::kOk;
 }
@@ -92,7 +92,7 @@ void Dop853::evaluate(const dop853::Row<Count>& row, double step_s, const std::v
     ode_.derivative(scratch.data(), slope_[slot].data());
 }
 
-Status Dop853::step() {
+Status Dop853::step(StopCheck& stop) {
     std::swap(slope_[dop853::k1], slope_[dop853::k13]);
     double largest_growth = kLargestGrowth;
     while (accepted_ + rejected_ < StepControl::kMostSteps) {
@@ -100,6 +100,7 @@ Status Dop853::step() {
         const double end_s = time_s_ + next_step_s_;
         const double step_s = end_s - time_s_;
         if (!(step_s > control_.smallest_s)) return Status::kDiverged;
+        stop.spend(1 + y_.size());
         evaluate_stages(step_s);
         const double step_error = error(step_s);
         const double factor = step_error < kInfinity ? std::clamp(kSafety / eighth_root(step_error),

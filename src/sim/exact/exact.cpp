@@ -76,10 +76,10 @@ Exact::Exact(const System& system, const Forces& forces, const ExactDef& def)
     assert(system.bodies.size() == 1);
 }
 
-Status Exact::advance_to(double time_s, State& state) {
+Status Exact::advance_to(double time_s, State& state, StopCheck& stop) {
     const FlushDenormals flush;
     state.time_s = time_s;
-    return part_->advance_to(time_s, state);
+    return part_->advance_to(time_s, state, stop);
 }
 
 }  // namespace corda::sim

@@ -30,7 +30,7 @@ class Exact final : public Solver {
     /// that is taut between two pins, and for what StringPart refuses.
     Exact(const System& system, const Forces& forces, const ExactDef& def);
 
-    Status advance_to(double time_s, State& state) override;
+    Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override { return part_->energy_j(); }
     [[nodiscard]] std::optional<Loads> loads() const override { return part_->loads(); }
     [[nodiscard]] std::uint64_t steps() const override { return part_->steps(); }

@@ -38,8 +38,8 @@ OdePart::OdePart(std::unique_ptr<Dynamics> dynamics, double tolerance)
       integrator_(*dynamics_, dynamics_->initial_state(), dynamics_->error_scales(),
                   step_control(dynamics_->inverse_timescale_1_s(), tolerance)) {}
 
-Status OdePart::advance_to(double time_s, State& state) {
-    if (integrator_.advance_to(time_s) == Status::kDiverged) return Status::kDiverged;
+Status OdePart::advance_to(double time_s, State& state, StopCheck& stop) {
+    if (integrator_.advance_to(time_s, stop) == Status::kDiverged) return Status::kDiverged;
     integrator_.interpolate(time_s, output_.data());
     dynamics_->project(output_.data());
     dynamics_->positions(output_.data(), state);

@@ -19,7 +19,7 @@ class ExactPart {
     virtual ~ExactPart() = default;
 
     /// Writes the positions of the body's particles at `time_s` to `state`; leaves the rest of it alone.
-    virtual Status advance_to(double time_s, State& state) = 0;
+    virtual Status advance_to(double time_s, State& state, StopCheck& stop) = 0;
 
     // See Solver; of this body alone.
     [[nodiscard]] virtual double energy_j() const = 0;
@@ -37,7 +37,7 @@ class OdePart final : public ExactPart {
   public:
     OdePart(std::unique_ptr<Dynamics> dynamics, double tolerance);
 
-    Status advance_to(double time_s, State& state) override;
+    Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override { return dynamics_->energy_j(output_.data()); }
     [[nodiscard]] Loads loads() override { return dynamics_->loads(output_.data()); }
     [[nodiscard]] std::uint64_t steps() const override { return integrator_.accepted_steps(); }

@@ -94,17 +94,17 @@ double Rattle::expected_frequency(double elastic_square) const {
                      std::max(elastic_square, elastic_.common_square_frequency()));
 }
 
-Status Rattle::advance_to(double time_s, State& state) {
+Status Rattle::advance_to(double time_s, State& state, StopCheck& stop) {
     const FlushDenormals flush;
     const GridTime target = locate(time_s, step_s_);
     assert(step_ <= target.step);
     while (step_ < target.step) {
-        if (!advance(step_s_, grid_, &history_)) return Status::kDiverged;
+        if (!advance(step_s_, grid_, &history_, stop)) return Status::kDiverged;
         ++step_;
     }
     if (!target.is_on_grid) {
         between_ = grid_;
-        if (!advance(time_s - static_cast<double>(step_) * step_s_, between_, nullptr))
+        if (!advance(time_s - static_cast<double>(step_) * step_s_, between_, nullptr, stop))
             return Status::kDiverged;
     }
     if (!complete(target.is_on_grid ? grid_ : between_)) return Status::kDiverged;
@@ -114,7 +114,7 @@ Status Rattle::advance_to(double time_s, State& state) {
     return Status::kOk;
 }
 
-bool Rattle::advance(double span_s, Trajectory& trajectory, History* history) {
+bool Rattle::advance(double span_s, Trajectory& trajectory, History* history, StopCheck& stop) {
     const double limit = composition_.stable_omega_h;
     std::uint64_t done = 0;
     while (done < kSmallestParts) {
@@ -122,7 +122,7 @@ bool Rattle::advance(double span_s, Trajectory& trajectory, History* history) {
         const double part_s = span_s * power_of_half(trajectory.level);
         const bool stable = trajectory.frequency_1_s * part_s <= kGuardShare * limit;
         if (stable) part_start_ = trajectory;
-        if (stable && take_part(part_s, trajectory, history)) {
+        if (stable && take_part(part_s, trajectory, history, stop)) {
             done += part;
             if (history != nullptr) ++parts_;
             const bool joins = trajectory.level > 0 && done % (2 * part) == 0 &&
@@ -139,9 +139,10 @@ bool Rattle::advance(double span_s, Trajectory& trajectory, History* history) {
     return true;
 }
 
-bool Rattle::take_part(double part_s, Trajectory& trajectory, History* history) {
+bool Rattle::take_part(double part_s, Trajectory& trajectory, History* history, StopCheck& stop) {
     if (history != nullptr) history->newest = (history->newest + 1) % kHistory;
     for (std::size_t i = 0; i < composition_.stages.size(); ++i) {
+        stop.spend(1 + mass_kg_.size());
         const double span_s = composition_.stages[i] * part_s;
         const double decay = forces_.decay(0.5 * (trajectory.last_span_s + span_s));
         const double kick_s = 0.5 * (decay * trajectory.last_span_s + span_s);

@@ -41,7 +41,7 @@ class Rattle final : public Solver {
     /// lengths depend on each other, and for rigid strings.
     Rattle(const System& system, const Forces& forces, const RattleDef& def, double frame_interval_s);
 
-    Status advance_to(double time_s, State& state) override;
+    Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;
     /// From the tensions that keep the second derivatives of the rigid bars' lengths 0.
     [[nodiscard]] std::optional<Loads> loads() const override;
@@ -71,8 +71,8 @@ class Rattle final : public Solver {
     static constexpr int kHistory = 3;
 
     /// Advances by `span_s` in as many parts as are needed.
-    [[nodiscard]] bool advance(double span_s, Trajectory& trajectory, History* history);
-    [[nodiscard]] bool take_part(double part_s, Trajectory& trajectory, History* history);
+    [[nodiscard]] bool advance(double span_s, Trajectory& trajectory, History* history, StopCheck& stop);
+    [[nodiscard]] bool take_part(double part_s, Trajectory& trajectory, History* history, StopCheck& stop);
     [[nodiscard]] double* multipliers(History& history, std::size_t stage, int age) const;
     void guess(std::size_t stage, double kick_s, const Trajectory& trajectory, History* history);
     [[nodiscard]] bool is_elastic() const { return !elastic_.empty(); }

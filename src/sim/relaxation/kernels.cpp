@@ -131,13 +131,12 @@ void run_together(const Pointers& p, std::span<Cursor> sweeps, std::size_t packe
 void run_staggered(const Pointers& p, const RelaxationSweeps& sweeps, std::size_t length, std::size_t lag) {
     std::array<Cursor, kSweepsAtOnce> cursors;
     std::size_t under_way = 0;
-    std::uint64_t begun = 0;
-    const auto may_begin = [&] { return begun < sweeps.count && under_way < cursors.size(); };
-    while (begun < sweeps.count || under_way > 0) {
+    std::uint64_t next = sweeps.begin;
+    const auto may_begin = [&] { return next < sweeps.end && under_way < cursors.size(); };
+    while (next < sweeps.end || under_way > 0) {
         if (may_begin() && (under_way == 0 || cursors[under_way - 1].packet >= lag)) {
-            const bool updates = begun % sweeps.per_step == 0 && !(begun == 0 && sweeps.starts_updated);
-            cursors[under_way++] = {0, updates};
-            ++begun;
+            cursors[under_way++] = {0, sweeps.updates_before(next)};
+            ++next;
         }
         // Up to where the next sweep begins or the first one ends.
         std::size_t packets = length - cursors[0].packet;
@@ -156,8 +155,8 @@ void run_staggered(const Pointers& p, const RelaxationSweeps& sweeps, std::size_
 void run_sweeps(std::span<const RelaxationBar> bars, const RelaxationSweeps& sweeps,
                 RelaxationMotion& motion) {
     double* const position = motion.position_m.data();
-    for (std::uint64_t sweep = 0; sweep < sweeps.count; ++sweep) {
-        if (sweep % sweeps.per_step == 0 && !(sweep == 0 && sweeps.starts_updated)) {
+    for (std::uint64_t sweep = sweeps.begin; sweep < sweeps.end; ++sweep) {
+        if (sweeps.updates_before(sweep)) {
             for (std::size_t k = 0; k < motion.position_m.size(); ++k) update(k, motion);
         }
         for (const RelaxationBar& bar : bars) {
@@ -175,8 +174,8 @@ void run_sweeps([[maybe_unused]] const RelaxationSchedule& schedule,
                             motion.last_move_m.data(), motion.push_m.data(),    motion.keep};
     if (!schedule.packets.empty())
         return run_staggered(pointers, sweeps, schedule.packets.size(), schedule.lag);
-    for (std::uint64_t sweep = sweeps.starts_updated ? sweeps.per_step : 0; sweep < sweeps.count;
-         sweep += sweeps.per_step) {
+    for (std::uint64_t sweep = sweeps.begin; sweep < sweeps.end; ++sweep) {
+        if (!sweeps.updates_before(sweep)) continue;
         for (const std::uint32_t particle : schedule.updates) update_particle(pointers, particle);
     }
 #endif

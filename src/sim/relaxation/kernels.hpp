@@ -37,12 +37,17 @@ inline constexpr RelaxationKernel kFastestRelaxation = RelaxationKernel::kSse2;
 inline constexpr RelaxationKernel kFastestRelaxation = RelaxationKernel::kScalar;
 #endif
 
-/// Which sweeps to run: `count` of them from the start of a step, `per_step` in each step. Verlet's update of
-/// all particles precedes the first sweep of a step.
+/// Which sweeps to run: `begin` <= k < `end`, counted from the start of a step, `per_step` in each step.
+/// Verlet's update of all particles precedes the first sweep of a step.
 struct RelaxationSweeps {
-    std::uint64_t count = 0;
+    std::uint64_t begin = 0;
+    std::uint64_t end = 0;
     std::uint64_t per_step = 1;
-    bool starts_updated = false;  ///< no update in the first step: the particles have been moved already
+    bool starts_updated = false;  ///< no update before sweep 0: the particles have been moved already
+
+    [[nodiscard]] bool updates_before(std::uint64_t sweep) const {
+        return sweep % per_step == 0 && !(sweep == 0 && starts_updated);
+    }
 };
 
 /// Sweeps over `bars` in their order and updates all particles, one after the other.

@@ -26,6 +26,14 @@ void refuse_materials(const System& system) {
 /// a level 2 cache.
 constexpr std::size_t kParticlesTogether = 256;
 
+/// Sweeps run in pieces of this many bars and particles, a few milliseconds, after which a StopCheck hears of
+/// them. Fewer would make the kernel wait more often for the last sweep to end.
+constexpr std::uint64_t kMostAtOnce = 1'000'000;
+/// But of no fewer sweeps, so that what a rope too large for the caches reads from memory is still shared.
+constexpr std::uint64_t kFewestSweeps = 12;
+/// Bars or particles that take as long as one update of a StopCheck.
+constexpr std::uint64_t kBarsPerUpdate = 8;
+
 /// The bars among these that can move a particle.
 std::vector<RelaxationBar> movable_bars(const System& system, std::size_t first, std::size_t count) {
     std::vector<RelaxationBar> bars;
@@ -95,12 +103,12 @@ Relaxation::Relaxation(const System& system, const Forces& forces, const Relaxat
     }
 }
 
-Status Relaxation::advance_to(double time_s, State& state) {
+Status Relaxation::advance_to(double time_s, State& state, StopCheck& stop) {
     const FlushDenormals flush;
     const GridTime at = locate(time_s, step_s_);
     const std::uint64_t target = at.is_on_grid ? at.step : at.step + 1;  // interpolation looks back
     assert(step_ <= target);
-    if (step_ < target) advance(target - step_);
+    if (step_ < target) advance(target - step_, stop);
     state.time_s = time_s;
     if (at.is_on_grid) {
         for (std::size_t i = 0; i < state.x_m.size(); ++i) {
@@ -113,7 +121,7 @@ Status Relaxation::advance_to(double time_s, State& state) {
     return Status::kOk;
 }
 
-void Relaxation::advance(std::uint64_t steps) {
+void Relaxation::advance(std::uint64_t steps, StopCheck& stop) {
     const std::size_t size = motion_.position_m.size();
     // The first step is Euler's: its move, h v(0), is known from the start.
     const bool starts_updated = step_ == 0;
@@ -121,15 +129,29 @@ void Relaxation::advance(std::uint64_t steps) {
         for (std::size_t k = 0; k < size; ++k) motion_.position_m[k] += motion_.move_m[k];
         motion_.unrelaxed_m = motion_.position_m;
     }
-    const RelaxationSweeps sweeps{steps * sweeps_, sweeps_, starts_updated};
-    if (kernel_ == RelaxationKernel::kScalar) run_sweeps(bars_, sweeps, motion_);
-    for (const RelaxationSchedule& schedule : schedules_) run_sweeps(schedule, sweeps, motion_);
+    const RelaxationSweeps sweeps{0, steps * sweeps_, sweeps_, starts_updated};
+    if (kernel_ == RelaxationKernel::kScalar) sweep(bars_, bars_.size() + size / 2, sweeps, stop);
+    for (const RelaxationSchedule& schedule : schedules_) {
+        const std::size_t bars = RelaxationPacket::kLanes * schedule.packets.size();
+        sweep(schedule, bars + schedule.updates.size(), sweeps, stop);
+    }
     // The move takes up what the bars moved. Within several steps the next update does this.
     for (std::size_t k = 0; k < size; ++k) {
         motion_.move_m[k] += motion_.position_m[k] - motion_.unrelaxed_m[k];
         motion_.unrelaxed_m[k] = motion_.position_m[k];
     }
     step_ += steps;
+}
+
+template <class Bars>
+void Relaxation::sweep(const Bars& bars, std::size_t size, RelaxationSweeps sweeps, StopCheck& stop) {
+    const std::uint64_t at_once = std::max<std::uint64_t>(kFewestSweeps, kMostAtOnce / (1 + size));
+    const std::uint64_t end = sweeps.end;
+    for (; sweeps.begin < end; sweeps.begin = sweeps.end) {
+        sweeps.end = sweeps.begin + std::min(at_once, end - sweeps.begin);
+        run_sweeps(bars, sweeps, motion_);
+        stop.spend(1 + (sweeps.end - sweeps.begin) * size / kBarsPerUpdate);
+    }
 }
 
 void Relaxation::interpolate(double fraction, State& state) const {

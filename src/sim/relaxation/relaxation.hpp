@@ -32,13 +32,16 @@ class Relaxation final : public Solver {
     Relaxation(const System& system, const Forces& forces, const RelaxationDef& def, double default_step_s,
                RelaxationKernel kernel = kFastestRelaxation);
 
-    Status advance_to(double time_s, State& state) override;
+    Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;
     [[nodiscard]] std::uint64_t steps() const override { return step_; }
     [[nodiscard]] std::vector<MethodDef> methods() const override { return {def_}; }
 
   private:
-    void advance(std::uint64_t steps);
+    void advance(std::uint64_t steps, StopCheck& stop);
+    /// Runs sweeps over some bars, to which `size` bars and particles belong, as one run_sweeps() would.
+    template <class Bars>
+    void sweep(const Bars& bars, std::size_t size, RelaxationSweeps sweeps, StopCheck& stop);
     void interpolate(double fraction, State& state) const;
 
     RelaxationDef def_;  ///< with its step

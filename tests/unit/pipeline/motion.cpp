@@ -136,5 +136,24 @@ TEST(Motions, TakeTheRunThatAPlannerRecords) {
     EXPECT_FALSE(motion.diverges());
 }
 
+TEST(Motions, AskDuringLongStepsAndBeginAnewAfterAnInterruption) {
+    const System system = system_of_a_rope();
+    const MethodDef method = RelaxationDef{1e-5, 8};
+    Motion motion(system, WorldDef{}, method, Timeline(kFps, 3), kMuch);
+    static_cast<void>(motion.at(kFps.time_s(1)));
+    std::int64_t asked_at = 0;
+    const OnProgress stop = [&asked_at](std::int64_t done, std::int64_t) {
+        asked_at = done;
+        return false;
+    };
+    const test::Failure failure = failure_of([&] { static_cast<void>(motion.at(kFps.time_s(2), stop)); });
+    EXPECT_EQ(failure.code, ExitCode::kInterrupted);
+    EXPECT_EQ(asked_at, 2);
+    Motion alone(system, WorldDef{}, method, Timeline(kFps, 3), kMuch);
+    EXPECT_EQ(motion.at(kFps.time_s(3)).x_m, alone.at(kFps.time_s(3)).x_m);
+    EXPECT_EQ(motion.recording().size(), 4U);
+    EXPECT_EQ(motion.passes(), 2);
+}
+
 }  // namespace
 }  // namespace corda::pipeline

@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/stop_check.hpp"
+#include "support/nets.hpp"
 #include "support/random_system.hpp"
 #include "support/simulate.hpp"
 
@@ -69,6 +73,82 @@ TEST(Simulation, RefusesTimesThatItCannotReach) {
         EXPECT_THROW(static_cast<void>(run.advance_to(time_s)), Error) << time_s;
     EXPECT_EQ(run.state().time_s, 1.0);
     EXPECT_EQ(run.advance_to(1.0), Status::kOk);
+}
+
+/// A run to 1 s of what each part of a method steps.
+struct LongRun {
+    std::string name;
+    System system;
+    MethodDef method;
+
+    [[nodiscard]] Simulation start() const { return {system, WorldDef{}, method}; }
+};
+
+System system_with(RopeDef rope, const MaterialDef& material, double bending_n_m2 = 0.0) {
+    rope.material = material;
+    rope.bending_n_m2 = bending_n_m2;
+    return build_system({&rope, 1});
+}
+
+std::vector<LongRun> long_runs() {
+    const RopeDef rope = reference::straight_rope(100, 1.0, 60.0);
+    const NetDef net = test::leaning_net(6, 6, 0.1);
+    RelaxationDef many_steps = with_step(1e-5);
+    RelaxationDef many_sweeps = with_step(1.0);
+    many_sweeps.sweeps = 100'000;
+    return {{"series", system_with(rope, {}), ExactDef{1e-9}},
+            {"chain that bends", system_with(rope, {}, 1e-3), ExactDef{1e-6}},
+            {"elastic", system_with(rope, {1e-4, false}), ExactDef{1e-6}},
+            {"string", system_with(reference::report_rope(100), {0.0, true}), ExactDef{1e-9}},
+            {"rattle of a chain", system_with(rope, {}), RattleDef{4, 1e-3}},
+            {"rattle of a graph", build_system({}, {&net, 1}), RattleDef{4, 1e-3}},
+            {"relaxation of many steps", system_with(rope, {}), many_steps},
+            {"relaxation of many sweeps", system_with(rope, {}), many_sweeps}};
+}
+
+TEST(Simulation, AsksInEveryMethodWhetherItGoesOn) {
+    for (const LongRun& run : long_runs()) {
+        std::uint64_t asked = 0;
+        Simulation simulation = run.start();
+        ASSERT_EQ(simulation.advance_to(1.0,
+                                        [&asked] {
+                                            ++asked;
+                                            return true;
+                                        }),
+                  Status::kOk)
+            << run.name;
+        Simulation alone = run.start();
+        ASSERT_EQ(alone.advance_to(1.0), Status::kOk) << run.name;
+        EXPECT_EQ(alone.state().x_m, simulation.state().x_m) << run.name;
+        const auto* relaxation = std::get_if<RelaxationDef>(&run.method);
+        // Pieces of sweeps are 100 times as long, and go over bars too.
+        const double steps = static_cast<double>(simulation.diagnostics().steps) *
+                             (relaxation == nullptr ? 1.0 : relaxation->sweeps / 50.0);
+        const double updates = steps * static_cast<double>(run.system.particle_count());
+        EXPECT_GE(static_cast<double>(asked), 0.5 * updates / StopCheck::kUpdates) << run.name;
+        EXPECT_GE(asked, 5U) << run.name;
+    }
+}
+
+TEST(Simulation, EndsInEveryMethodOnceItShallNotGoOn) {
+    for (const LongRun& run : long_runs()) {
+        Simulation simulation = run.start();
+        int left = 3;
+        try {
+            static_cast<void>(simulation.advance_to(1.0, [&left] { return --left > 0; }));
+            ADD_FAILURE() << run.name;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ExitCode::kInterrupted) << run.name;
+        }
+        EXPECT_EQ(left, 0) << run.name;
+        EXPECT_EQ(simulation.state().time_s, 0.0) << run.name;
+        try {
+            static_cast<void>(simulation.advance_to(1.0));
+            ADD_FAILURE() << run.name;
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ExitCode::kUsage) << run.name;
+        }
+    }
 }
 
 }  // namespace

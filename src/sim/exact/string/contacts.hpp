@@ -29,7 +29,7 @@ class StringContacts {
     /// A link that the snap of another one shortens by less than 1e-10 of its length before it comes back
     /// counts as taut. Two links that lie on each other shorten each other so in turn, ever more slowly; the
     /// end of this is what impulses along both at once give.
-    [[nodiscard]] bool resolve(System& string, std::vector<std::uint8_t>& is_taut);
+    [[nodiscard]] bool resolve(System& string, std::vector<std::uint8_t>& is_taut, StopCheck& stop);
 
     // In the state that was resolved last, smaller tensions and changes of length are rounding.
     [[nodiscard]] double tension_error_n(std::size_t link) const {
@@ -46,7 +46,7 @@ class StringContacts {
     void find_present(const System& string, const std::vector<std::uint8_t>& is_taut);
     void snap(System& string) const;
     /// Finds the links that stay taut after the snap.
-    [[nodiscard]] bool find_tensions(const System& string);
+    [[nodiscard]] bool find_tensions(const System& string, StopCheck& stop);
     void find_accelerations(const System& string);
 
     Forces forces_;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "corda/core/stop_check.hpp"
 #include "corda/sim/exact/dop853.hpp"
 #include "corda/sim/exact/string/contacts.hpp"
 #include "corda/sim/exact/string/dynamics.hpp"
@@ -39,7 +40,8 @@ class StringEvents {
 
     /// The first event in the last step of `integrator`, which integrates `dynamics`: the time, to rounding,
     /// from which on a margin is not negative. std::nullopt if there is none.
-    [[nodiscard]] std::optional<double> first_in_step(Dop853& integrator, StringDynamics& dynamics);
+    [[nodiscard]] std::optional<double> first_in_step(Dop853& integrator, StringDynamics& dynamics,
+                                                      StopCheck& stop);
 
   private:
     struct Sample {
@@ -50,6 +52,7 @@ class StringEvents {
     struct Motion {
         Dop853& integrator;
         StringDynamics& dynamics;
+        StopCheck& stop;
     };
 
     /// Writes the margin of every link at a time within the step and returns the largest.

@@ -117,7 +117,8 @@ StringPart::StringPart(const System& system, const Body& body, const Forces& for
     refuse_bends(system, body);
     refuse_long_links(string_);
     refuse_taut(string_);
-    if (!start(0.0)) {
+    StopCheck nobody;
+    if (!start(0.0, nobody)) {
         throw Refusal(Refusal::Reason::kUndecidedString,
                       "the start does not determine which links of a string are taut");
     }
@@ -126,10 +127,10 @@ StringPart::StringPart(const System& system, const Body& body, const Forces& for
     local_.y_m = string_.y_m;
 }
 
-Status StringPart::advance_to(double time_s, State& state) {
+Status StringPart::advance_to(double time_s, State& state, StopCheck& stop) {
     if (!std::isfinite(time_s)) return Status::kDiverged;
     while (known_s_ < time_s) {
-        if (!(event_s_ ? pass_event() : take_step())) return Status::kDiverged;
+        if (!(event_s_ ? pass_event(stop) : take_step(stop))) return Status::kDiverged;
     }
     output_.resize(integrator_->size());
     integrator_->interpolate(std::clamp(time_s - start_s_, integrator_->old_time_s(), integrator_->time_s()),
@@ -144,8 +145,8 @@ Status StringPart::advance_to(double time_s, State& state) {
     return Status::kOk;
 }
 
-bool StringPart::start(double first_step_s) {
-    if (!contacts_.resolve(string_, is_taut_)) return false;
+bool StringPart::start(double first_step_s, StopCheck& stop) {
+    if (!contacts_.resolve(string_, is_taut_, stop)) return false;
     dynamics_ = std::make_unique<StringDynamics>(string_, is_taut_, forces_);
     StepControl control = step_control(dynamics_->inverse_timescale_1_s(), tolerance_);
     control.first_s = std::max(control.first_s, first_step_s);
@@ -155,14 +156,14 @@ bool StringPart::start(double first_step_s) {
     return true;
 }
 
-bool StringPart::take_step() {
-    if (integrator_->step() == Status::kDiverged) return false;
-    event_s_ = finder_.first_in_step(*integrator_, *dynamics_);
+bool StringPart::take_step(StopCheck& stop) {
+    if (integrator_->step(stop) == Status::kDiverged) return false;
+    event_s_ = finder_.first_in_step(*integrator_, *dynamics_, stop);
     known_s_ = start_s_ + (event_s_ ? *event_s_ : integrator_->time_s());
     return true;
 }
 
-bool StringPart::pass_event() {
+bool StringPart::pass_event(StopCheck& stop) {
     std::vector<double> y(integrator_->size());
     integrator_->interpolate(*event_s_, y.data());
     dynamics_->project(y.data());
@@ -174,7 +175,7 @@ bool StringPart::pass_event() {
     event_s_.reset();
     steps_before_ += integrator_->accepted_steps();
     rejected_before_ += integrator_->rejected_steps();
-    return count_event() && start(integrator_->next_step_s());
+    return count_event() && start(integrator_->next_step_s(), stop);
 }
 
 bool StringPart::count_event() {

@@ -29,7 +29,7 @@ class StringPart final : public ExactPart {
     /// does not determine which links are taut.
     StringPart(const System& system, const Body& body, const Forces& forces, double tolerance);
 
-    Status advance_to(double time_s, State& state) override;
+    Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;
     /// Slack links carry no tension.
     [[nodiscard]] Loads loads() override { return dynamics_->loads(output_.data()); }
@@ -42,9 +42,9 @@ class StringPart final : public ExactPart {
   private:
     /// Finds the taut links of string_ and starts the motion there, with a first step of at least
     /// `first_step_s` if the tolerance allows. False if the taut links cannot be found.
-    [[nodiscard]] bool start(double first_step_s);
-    [[nodiscard]] bool take_step();
-    [[nodiscard]] bool pass_event();
+    [[nodiscard]] bool start(double first_step_s, StopCheck& stop);
+    [[nodiscard]] bool take_step(StopCheck& stop);
+    [[nodiscard]] bool pass_event(StopCheck& stop);
     /// Counts an event; false if there are too many in too short a time.
     [[nodiscard]] bool count_event();
 

@@ -28,13 +28,14 @@ TensionLcp::TensionLcp(std::vector<double> inverse_mass_1_kg)
     wrong_.reserve(links);
 }
 
-bool TensionLcp::solve(double w_error) {
+bool TensionLcp::solve(double w_error, StopCheck& stop) {
     const std::size_t links = side.size();
     // Pivoting by single links terminates, but rounding could undo that.
     const std::size_t most_rounds = 100 + 20 * links;
     std::size_t fewest = std::numeric_limits<std::size_t>::max();
     int patience = kPatience;
     for (std::size_t round = 0; round < most_rounds; ++round) {
+        stop.spend(1 + links);
         solve_pulling();
         wrong_.clear();
         for (std::size_t k = 0; k < links; ++k) {

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "corda/core/stop_check.hpp"
+
 namespace corda::sim {
 
 /// Which links of a chain pull, and how strongly, if a link can pull and never push: a linear complementarity
@@ -41,7 +43,7 @@ class TensionLcp {
 
     /// False if no solution was found. `w_error`: w above minus this counts as >= 0. A link whose z or w is
     /// negative by no more than its error stays on the side of the guess.
-    [[nodiscard]] bool solve(double w_error);
+    [[nodiscard]] bool solve(double w_error, StopCheck& stop);
 
     [[nodiscard]] const std::vector<double>& z() const { return z_; }
     [[nodiscard]] const std::vector<double>& w() const { return w_; }

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "support/chains.hpp"
+#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -28,9 +29,9 @@ TEST(ChainPart, GivesTheSameBitsWhateverTimesAreAskedFor) {
         ChainPart often(system, system.bodies.front(), WorldDef{}, 1e-9);
         State state = start_of(system);
         State other = start_of(system);
-        ASSERT_EQ(direct.advance_to(0.9, state), Status::kOk);
+        ASSERT_EQ(direct.advance_to(0.9, state, test::unstopped), Status::kOk);
         for (const double time_s : {0.0, 1e-6, 0.1, 0.1, 0.25, 0.8999999, 0.9})
-            ASSERT_EQ(often.advance_to(time_s, other), Status::kOk);
+            ASSERT_EQ(often.advance_to(time_s, other, test::unstopped), Status::kOk);
         EXPECT_EQ(state.x_m, other.x_m);
         EXPECT_EQ(state.y_m, other.y_m);
         EXPECT_EQ(direct.steps(), often.steps());
@@ -43,7 +44,7 @@ TEST(ChainPart, ComesNearerToTheTruthByMoreSteps) {
     const auto run = [&](double tolerance) {
         ChainPart part(system, system.bodies.front(), WorldDef{}, tolerance);
         State state = start_of(system);
-        EXPECT_EQ(part.advance_to(0.5, state), Status::kOk);
+        EXPECT_EQ(part.advance_to(0.5, state, test::unstopped), Status::kOk);
         EXPECT_EQ(part.rejected_steps(), 0U);
         return std::pair(state, part.steps());
     };
@@ -67,8 +68,8 @@ TEST(ChainPart, LetsEachChainTakeStepsOfItsOwn) {
     ChainPart one(alone, alone.bodies.front(), WorldDef{}, 1e-9);
     State state = start_of(both);
     State expected = start_of(alone);
-    ASSERT_EQ(two.advance_to(2.0, state), Status::kOk);
-    ASSERT_EQ(one.advance_to(2.0, expected), Status::kOk);
+    ASSERT_EQ(two.advance_to(2.0, state, test::unstopped), Status::kOk);
+    ASSERT_EQ(one.advance_to(2.0, expected, test::unstopped), Status::kOk);
     EXPECT_EQ(state.x_m[0], expected.x_m[1]);
     EXPECT_EQ(state.y_m[0], expected.y_m[1]);
     EXPECT_GT(two.steps(), 5U * one.steps());
@@ -78,8 +79,10 @@ TEST(ChainPart, CannotReachATimeThatIsNone) {
     const System system = test::chain(test::Pins::kStart);
     ChainPart part(system, system.bodies.front(), WorldDef{}, 1e-9);
     State state = start_of(system);
-    EXPECT_EQ(part.advance_to(std::numeric_limits<double>::infinity(), state), Status::kDiverged);
-    EXPECT_EQ(part.advance_to(std::numeric_limits<double>::quiet_NaN(), state), Status::kDiverged);
+    EXPECT_EQ(part.advance_to(std::numeric_limits<double>::infinity(), state, test::unstopped),
+              Status::kDiverged);
+    EXPECT_EQ(part.advance_to(std::numeric_limits<double>::quiet_NaN(), state, test::unstopped),
+              Status::kDiverged);
     EXPECT_EQ(part.steps(), 0U);
 }
 

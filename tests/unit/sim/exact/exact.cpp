@@ -7,6 +7,7 @@
 #include "corda/reference/ropes.hpp"
 #include "support/refusal_of.hpp"
 #include "support/solver_run.hpp"
+#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -75,7 +76,7 @@ TEST(Exact, KeepsTwoRopesApart) {
     const System system = build_system(ropes);
     Exact both(system, WorldDef{}, ExactDef{});
     State state{0.0, system.x_m, system.y_m};
-    ASSERT_EQ(both.advance_to(2.0, state), Status::kOk);
+    ASSERT_EQ(both.advance_to(2.0, state, test::unstopped), Status::kOk);
     for (const std::size_t k : {0U, 1U}) {
         test::ExactRun alone(ropes[k]);
         ASSERT_TRUE(alone.go(2.0));

@@ -4,12 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 
 #include "corda/sim/relaxation/relaxation.hpp"
 #include "support/random_system.hpp"
+#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -45,8 +47,8 @@ TEST(FastestRelaxation, HasTheBitsOfTheScalarOneOnRandomBodies) {
         // Single steps, many at once, and times between two steps.
         for (const double steps : {1.0, 1.0, 1.0, 2.0, 0.25, 0.75, 5.0, 20.0, 1.5, 2.5}) {
             time_s += steps / 64.0;
-            ASSERT_EQ(scalar.relaxation.advance_to(time_s, scalar.state), Status::kOk);
-            ASSERT_EQ(run.relaxation.advance_to(time_s, run.state), Status::kOk);
+            ASSERT_EQ(scalar.relaxation.advance_to(time_s, scalar.state, test::unstopped), Status::kOk);
+            ASSERT_EQ(run.relaxation.advance_to(time_s, run.state, test::unstopped), Status::kOk);
             ASSERT_TRUE(same_bits(scalar.state.x_m, run.state.x_m)) << "seed " << seed << ", " << time_s;
             ASSERT_TRUE(same_bits(scalar.state.y_m, run.state.y_m)) << "seed " << seed << ", " << time_s;
             ASSERT_EQ(scalar.relaxation.energy_j(), run.relaxation.energy_j()) << "seed " << seed;
@@ -59,11 +61,47 @@ TEST(FastestRelaxation, HasTheBitsOfTheScalarOneOverManySteps) {
         const System system = test::report_system(particles);
         KernelRun scalar(system, RelaxationDef{}, RelaxationKernel::kScalar);
         KernelRun run(system, RelaxationDef{}, kFastestRelaxation);
-        ASSERT_EQ(scalar.relaxation.advance_to(60.0, scalar.state), Status::kOk);
-        ASSERT_EQ(run.relaxation.advance_to(60.0, run.state), Status::kOk);
+        ASSERT_EQ(scalar.relaxation.advance_to(60.0, scalar.state, test::unstopped), Status::kOk);
+        ASSERT_EQ(run.relaxation.advance_to(60.0, run.state, test::unstopped), Status::kOk);
         EXPECT_LT(std::abs(scalar.state.x_m.back()), particles);
         EXPECT_TRUE(same_bits(scalar.state.x_m, run.state.x_m)) << particles << " particles";
         EXPECT_TRUE(same_bits(scalar.state.y_m, run.state.y_m)) << particles << " particles";
+    }
+}
+
+TEST(Relaxing, InPiecesOfSweepsGivesTheSameBits) {
+    const System system = test::report_system(40);
+    std::vector<RelaxationBar> bars;
+    for (const Bar& bar : system.bars) {
+        const double share_a = system.is_pinned(bar.a) ? 0.0 : 0.5;
+        bars.push_back({bar.a, bar.b, bar.rest_m, share_a, 1.0 - share_a});
+    }
+    const RelaxationSchedule schedule =
+        schedule_bars(bars, 0, static_cast<std::uint32_t>(system.particle_count()));
+    RelaxationMotion start;
+    for (std::size_t i = 0; i < system.particle_count(); ++i) {
+        const double push_m = system.is_pinned(i) ? 0.0 : -0.002;
+        start.position_m.insert(start.position_m.end(), {system.x_m[i], system.y_m[i]});
+        start.push_m.insert(start.push_m.end(), {0.0, push_m});
+    }
+    start.unrelaxed_m = start.position_m;
+    start.move_m.assign(start.position_m.size(), 0.0);
+    start.last_move_m = start.move_m;
+    for (const bool starts_updated : {false, true}) {
+        RelaxationMotion whole = start;
+        run_sweeps(schedule, {0, 100, 7, starts_updated}, whole);
+        for (const std::uint64_t piece : {1, 3, 7, 8, 50}) {
+            RelaxationMotion packed = start;
+            RelaxationMotion scalar = start;
+            for (std::uint64_t k = 0; k < 100; k += piece) {
+                const RelaxationSweeps sweeps{k, std::min<std::uint64_t>(100, k + piece), 7, starts_updated};
+                run_sweeps(schedule, sweeps, packed);
+                run_sweeps(bars, sweeps, scalar);
+            }
+            EXPECT_TRUE(same_bits(packed.position_m, whole.position_m)) << piece;
+            EXPECT_TRUE(same_bits(packed.last_move_m, whole.last_move_m)) << piece;
+            EXPECT_TRUE(same_bits(scalar.position_m, whole.position_m)) << piece;
+        }
     }
 }
 
@@ -76,7 +114,7 @@ TEST(FastestRelaxation, LeavesAFoldedRopeAloneWhoseBarsHaveNoLength) {
     rope.reach = 7;
     const System system = build_system({&rope, 1});
     KernelRun run(system, def, kFastestRelaxation);
-    ASSERT_EQ(run.relaxation.advance_to(2.0, run.state), Status::kOk);
+    ASSERT_EQ(run.relaxation.advance_to(2.0, run.state, test::unstopped), Status::kOk);
     EXPECT_EQ(run.state.x_m, system.x_m);
     EXPECT_EQ(run.state.y_m, system.y_m);
 }

@@ -10,6 +10,7 @@
 #include "support/refusal_of.hpp"
 #include "support/solver_run.hpp"
 #include "support/strings.hpp"
+#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -73,7 +74,7 @@ TEST(StringAndRope, InOneSceneMoveApart) {
     const System system = build_system(ropes);
     Exact both(system, WorldDef{}, ExactDef{});
     State state{0.0, system.x_m, system.y_m};
-    ASSERT_EQ(both.advance_to(1.0, state), Status::kOk);
+    ASSERT_EQ(both.advance_to(1.0, state, test::unstopped), Status::kOk);
     test::ExactRun string_alone(string);
     rope.origin_m = {};
     test::ExactRun rope_alone(rope);

@@ -1,4 +1,5 @@
 #include "corda/sim/exact/string/tension_lcp.hpp"
+#include "support/unstopped.hpp"
 
 #include <gtest/gtest.h>
 
@@ -58,7 +59,7 @@ TEST(TensionLcp, FindsTheOneSolution) {
         RandomProblem problem(links, random);
         TensionLcp& lcp = problem.lcp;
         const std::vector<Side> guess = lcp.side;
-        ASSERT_TRUE(lcp.solve(0.0));
+        ASSERT_TRUE(lcp.solve(0.0, test::unstopped));
         for (std::size_t k = 0; k < links; ++k) {
             ASSERT_EQ(guess[k] == Side::kAbsent, lcp.side[k] == Side::kAbsent);
             EXPECT_GE(lcp.z()[k], 0.0);
@@ -83,7 +84,7 @@ TEST(TensionLcp, KeepsTheGuessWithinRounding) {
         lcp.z_error = {1e-12, 1e-12};
         lcp.right = {1e-14, -1e-14};
         lcp.cosine = {1.0, 1.0};
-        ASSERT_TRUE(lcp.solve(1e-12));
+        ASSERT_TRUE(lcp.solve(1e-12, test::unstopped));
         EXPECT_EQ(lcp.side, std::vector<Side>({guess, guess}));
     }
 }
@@ -92,7 +93,7 @@ TEST(TensionLcp, FailsOnNumbersThatAreNotFinite) {
     TensionLcp lcp({1.0, 1.0});
     lcp.side = {Side::kPulls};
     lcp.right = {std::nan("")};
-    EXPECT_FALSE(lcp.solve(0.0));
+    EXPECT_FALSE(lcp.solve(0.0, test::unstopped));
 }
 
 }  // namespace
