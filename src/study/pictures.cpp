@@ -116,6 +116,7 @@ struct Pictures {
     [[nodiscard]] Scene scene_with(const SolverDef& solver, int reach) const {
         Scene changed = scene;
         changed.solver = solver;
+        changed.body_solvers.clear();
         for (RopeDef& rope : changed.ropes) rope.reach = reach;
         return changed;
     }

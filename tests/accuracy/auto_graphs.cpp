@@ -37,7 +37,7 @@ double largest_error_m(const System& system, const MethodDef& solver, const Meth
 }
 
 void expect_true_bound(const System& system, double tolerance_m, int frames) {
-    const Plan plan = test::plan_of(system, WorldDef{}, tolerance_m, kFrames, frames);
+    const BodyPlan plan = test::plan_of(system, WorldDef{}, tolerance_m, kFrames, frames);
     ASSERT_TRUE(std::holds_alternative<RattleDef>(plan.method));
     ASSERT_FALSE(plan.horizon_s.has_value());
     ASSERT_TRUE(plan.error_bound_m.has_value());
@@ -61,21 +61,15 @@ TEST(AutoGraph, BoundIsTrueForANet) {
     for (const double tolerance_m : {1e-2, 1e-5}) expect_true_bound(system, tolerance_m, 60);
 }
 
-TEST(AutoGraph, ANetBesideARopeIsSolvedWithIt) {
-    const RopeDef rope = reference::straight_rope(5, 1.0, 30.0);
-    const NetDef net = test::leaning_net(3, 3, 0.3);
-    expect_true_bound(build_system({&rope, 1}, {&net, 1}), 1e-3, 30);
-}
-
 TEST(AutoGraph, ANetWhoseBarsComeToLieInLineGetsRelaxationWithoutABound) {
     // A square grid let go by one corner collapses into a line at 0.27 s.
     const Film film(
         parse_scene("schema = 1\n[world]\nduration = 0.5\n[[net]]\n"
                     "grid = { columns = 6, rows = 6, spacing = 0.1, diagonals = false }\npinned = [[0, 0]]\n",
                     "net.toml"));
-    EXPECT_TRUE(std::holds_alternative<RelaxationDef>(film.plan().method));
+    EXPECT_TRUE(std::holds_alternative<RelaxationDef>(film.plan().bodies.front().method));
     EXPECT_FALSE(film.error_bound_px().has_value());
-    EXPECT_EQ(film.plan().reason, PlanReason::kCollapsing);
+    EXPECT_EQ(film.plan().bodies.front().reason, PlanReason::kCollapsing);
 }
 
 TEST(ClosedRope, KeepsItsLengthsItsEnergyAndItsMirrorImage) {

@@ -17,7 +17,7 @@ namespace {
 const FrameRate kFrames(Rational{60, 1});
 
 /// The plan for one rope, which has to be within `tolerance_m` up to a frame.
-Plan plan_of(const RopeDef& rope, double tolerance_m, std::int64_t last_frame) {
+BodyPlan plan_of(const RopeDef& rope, double tolerance_m, std::int64_t last_frame) {
     return test::plan_of(build_system({&rope, 1}), WorldDef{}, tolerance_m, kFrames, last_frame);
 }
 
@@ -29,7 +29,7 @@ TEST_P(AutoBound, IsTrueUnderTheHorizon) {
     const RopeDef rope = reference::released_rope(chain);
     const System system = build_system({&rope, 1});
     const double tolerance_m = tolerance * chain.length_m;
-    const Plan plan = plan_of(rope, tolerance_m, kFrames.last_frame_within(chain.time_s));
+    const BodyPlan plan = plan_of(rope, tolerance_m, kFrames.last_frame_within(chain.time_s));
     EXPECT_LE(plan.error_bound_m.value(), tolerance_m);
     if (plan.horizon_s) return;  // nothing is claimed at the row's time
     Simulation run(system, WorldDef{}, plan.method, kFrames.interval_s());
@@ -60,7 +60,7 @@ TEST(AutoPlan, BoundIsTrueOfAFewSteps) {
         const System system = build_system({&rope, 1});
         for (const double tolerance_m : {1.0, 1e-2, 1e-4, 1e-6}) {
             for (const std::int64_t last_frame : {1, 6, 30}) {
-                const Plan plan = plan_of(rope, tolerance_m, last_frame);
+                const BodyPlan plan = plan_of(rope, tolerance_m, last_frame);
                 if (plan.horizon_s) continue;
                 Simulation run(system, WorldDef{}, plan.method, kFrames.interval_s());
                 Simulation truth(system, WorldDef{}, ExactDef{1e-14}, kFrames.interval_s());
@@ -97,7 +97,7 @@ TEST(AutoPlan, BoundIsTrueOfStiffBodies) {
          {std::tuple{beam, 1e-2, 0.0}, {string, 1e-3, 0.5}, {string, 1.8e-5, 0.5}}) {
         const System system = build_system({&rope, 1});
         const WorldDef world{{0.0, -9.81}, 1.5, drag_1_s};
-        const Plan plan = test::plan_of(system, world, tolerance_m, five, 7);
+        const BodyPlan plan = test::plan_of(system, world, tolerance_m, five, 7);
         ASSERT_FALSE(plan.horizon_s.has_value());
         Simulation run(system, world, plan.method, five.interval_s());
         Simulation truth(system, world, ExactDef{1e-13}, five.interval_s());
@@ -128,7 +128,7 @@ TEST(AutoPlan, FindsNoHorizonWithinTheRegularRowsOfR5) {
 
 TEST(AutoPlan, SaysWhereAChaoticMotionCanNoLongerBePredicted) {
     const RopeDef rope = reference::straight_rope(10, 1.0, 90.0);
-    const Plan plan = plan_of(rope, 1e-4, 600);
+    const BodyPlan plan = plan_of(rope, 1e-4, 600);
     ASSERT_TRUE(plan.horizon_s.has_value());
     EXPECT_GT(*plan.horizon_s, 3.0);  // measured 3.9
     EXPECT_LT(*plan.horizon_s, 5.0);  // R5: a perturbation grows by 1e15 in 5 s
@@ -139,7 +139,7 @@ TEST(AutoBound, IsTrueForTheSourceReportsStart) {
     const RopeDef rope = reference::report_rope(40);
     const System system = build_system({&rope, 1});
     const WorldDef world{{0.0, -9.8}, 10.0, 0.0};
-    const Plan plan = test::plan_of(system, world, 1e-3, kFrames, 600);
+    const BodyPlan plan = test::plan_of(system, world, 1e-3, kFrames, 600);
     ASSERT_FALSE(plan.horizon_s.has_value());
     Simulation run(system, world, plan.method, kFrames.interval_s());
     for (const test::ReportFrame& frame : test::read_report_swing()) {

@@ -90,7 +90,7 @@ TEST(RandomRopes, NeverGainEnergyUnderDrag) {
             const RopeDef rope = random_rope(seed);
             const System system = build_system({&rope, 1});
             const auto solver =
-                make_solver(system, WorldDef{{0.0, -9.81}, 10.0, 1.5}, variant.solver, 1.0 / 60.0);
+                make_solver(system, WorldDef{{0.0, -9.81}, 10.0, 1.5}, {&variant.solver, 1}, 1.0 / 60.0);
             State state{0.0, system.x_m, system.y_m};
             double before_j = solver->energy_j();
             for (int k = 1; k <= 20; ++k) {

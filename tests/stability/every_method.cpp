@@ -106,7 +106,7 @@ TEST(Auto, AgreesAtCommonTimesOfAllFrameRatesWithinItsTolerance) {
     std::vector<State> ends;
     for (const int rate : {24, 30, 60, 120}) {
         const FrameRate frames(Rational{rate, 1});
-        const Plan plan = test::plan_of(system, WorldDef{}, kToleranceM, frames, 2 * rate);
+        const BodyPlan plan = test::plan_of(system, WorldDef{}, kToleranceM, frames, 2 * rate);
         ASSERT_FALSE(plan.horizon_s.has_value());
         Simulation run(system, WorldDef{}, plan.method, frames.interval_s());
         ASSERT_EQ(run.advance_to(2.0), Status::kOk);

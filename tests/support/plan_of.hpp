@@ -5,11 +5,11 @@
 namespace corda::test {
 
 /// The plan of `auto` for a system whose positions have to be within `tolerance_m` up to a frame.
-inline Plan plan_of(const System& system, const WorldDef& world, double tolerance_m, FrameRate frames,
-                    std::int64_t last_frame) {
+inline BodyPlan plan_of(const System& system, const WorldDef& world, double tolerance_m, FrameRate frames,
+                        std::int64_t last_frame) {
     sim::Recording recording(system.particle_count(), 1, 0);
     const auto tolerance = [tolerance_m](const MotionBounds&) { return tolerance_m; };
-    return sim::plan_method(system, world, {tolerance, Timeline(frames, last_frame), {}, {}}, recording);
+    return sim::plan_body(system, world, {tolerance, Timeline(frames, last_frame), {}, {}}, recording);
 }
 
 }  // namespace corda::test

@@ -84,7 +84,7 @@ class SolverRun {
     static std::unique_ptr<S> start(const System& system, const WorldDef& world, const MethodDef& def) {
         constexpr double kFrameSeconds = 1.0 / 60.0;
         if constexpr (std::is_same_v<S, sim::Solver>) {
-            return sim::make_solver(system, world, def, kFrameSeconds);
+            return sim::make_solver(system, world, {&def, 1}, kFrameSeconds);
         } else if constexpr (std::is_same_v<S, sim::Exact>) {
             return std::make_unique<S>(system, world, std::get<ExactDef>(def));
         } else {

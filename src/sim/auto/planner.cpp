@@ -77,23 +77,18 @@ std::size_t next_trial(const BodyPlan& plan, std::size_t failed, std::size_t cou
     return next;
 }
 
-/// Runs the trials, cheapest first, until one proves its error, and makes it or the last one the plan.
-void run_until_one_holds(const System& system, const WorldDef& world, const PlanDef& def,
-                         std::vector<Trial> trials, BodyPlan& plan, Recording& recording) {
-    const double end_s = def.timeline.time_s(def.timeline.size() - 1);
-    for (std::size_t i = 0; i < trials.size(); i = next_trial(plan, i, trials.size(), end_s)) {
-        const TrialKind kind{i == 0, i + 1 == trials.size()};
-        run_trial(system, world, def, kind, trials[i], recording, plan.passes);
-        plan.trials.push_back(trials[i]);
-        const std::size_t count = plan.trials.size();
-        if (trials[i].to_the_end) break;
-        if (count > 1 && give_up_together(plan.trials[count - 2], trials[i])) break;
-    }
-    const Trial& chosen = plan.trials.back();
-    plan.method = chosen.method;
-    plan.error_bound_m = chosen.error_bound_m;
-    if (!chosen.to_the_end) plan.horizon_s = chosen.reached_s;
-    plan.diverges = chosen.diverged;
+/// Whether even the tightest of all trials is not expected to tell a tenth of the motion. A horizon so early
+/// is not worth the tightest method's cost: the one that failed will do, unless it is so loose that energy
+/// is seen to change.
+bool can_tell_little(const BodyPlan& plan, std::size_t failed, std::size_t count, double end_s) {
+    constexpr double kShare = 0.1;
+    constexpr double kLooseTolerance = 1e-6;
+    const std::size_t ran = plan.trials.size();
+    const auto* exact = std::get_if<ExactDef>(&plan.trials.back().method);
+    if (ran < 2 || (exact != nullptr && exact->tolerance > 1.000001 * kLooseTolerance)) return false;
+    const double reached_s = plan.trials[ran - 1].reached_s;
+    const double gained_s = std::max(0.0, reached_s - plan.trials[ran - 2].reached_s);
+    return reached_s + static_cast<double>(count - 1 - failed) * gained_s < kShare * end_s;
 }
 
 /// Records the run of a plan's method.
@@ -116,10 +111,34 @@ void record(const System& system, const WorldDef& world, const PlanDef& def, Bod
     }
 }
 
+/// Runs the trials, cheapest first, until one proves its error, and makes it or the last one the plan.
+void run_until_one_holds(const System& system, const WorldDef& world, const PlanDef& def,
+                         std::vector<Trial> trials, BodyPlan& plan, Recording& recording) {
+    const double end_s = def.timeline.time_s(def.timeline.size() - 1);
+    for (std::size_t i = 0; i < trials.size(); i = next_trial(plan, i, trials.size(), end_s)) {
+        const TrialKind kind{i == 0, i + 1 == trials.size()};
+        run_trial(system, world, def, kind, trials[i], recording, plan.passes);
+        plan.trials.push_back(trials[i]);
+        const std::size_t count = plan.trials.size();
+        if (trials[i].to_the_end) break;
+        if (!kind.is_last && can_tell_little(plan, i, trials.size(), end_s)) {
+            plan.method = trials[i].method;
+            record(system, world, def, plan, recording);
+            break;
+        }
+        if (count > 1 && give_up_together(plan.trials[count - 2], trials[i])) break;
+    }
+    const Trial& chosen = plan.trials.back();
+    plan.method = chosen.method;
+    plan.error_bound_m = chosen.error_bound_m;
+    if (!chosen.to_the_end) plan.horizon_s = chosen.reached_s;
+    plan.diverges = chosen.diverged;
+}
+
 /// Makes `relaxation` the plan, without a bound on its error, with enough sweeps to keep a cloth of some
 /// thirty rows from sagging like rubber.
-void fall_back(const System& system, const WorldDef& world, const PlanDef& def, PlanReason reason, BodyPlan& plan,
-               Recording& recording) {
+void fall_back(const System& system, const WorldDef& world, const PlanDef& def, PlanReason reason,
+               BodyPlan& plan, Recording& recording) {
     constexpr int kSweeps = 8;
     constexpr double kStepsPerFrame = 4.0;
     const double interval_s = def.timeline.fps().interval_s();

@@ -36,8 +36,10 @@ struct PlanDef {
 
 /// The place of a trial among those of a plan.
 struct TrialKind {
-    bool is_first = true;  ///< it has one check; later ones, of motions that are hard to predict, have two
-    bool is_last = true;   ///< its run is what will be drawn: it goes on to the end without its checks
+    /// It has one check. Later ones, of motions that are hard to predict, have two if rounding matters to
+    /// them.
+    bool is_first = true;
+    bool is_last = true;  ///< its run is what will be drawn: it goes on to the end without its checks
 };
 
 /// Runs the trial's method and its checks side by side, the checks in turned coordinates, so that their

@@ -45,7 +45,7 @@ void expect_same_bits(const State& a, const State& b) {
 
 TEST(FilmPasses, AreTwoForAutoWhoseFirstTrialHoldsWhateverIsReadAfterwards) {
     const Film film = film_of(kRope);
-    ASSERT_EQ(film.plan().trials.size(), 1U);
+    ASSERT_EQ(film.plan().bodies.front().trials.size(), 1U);
     EXPECT_EQ(film.simulation_passes(), 2);
     static_cast<void>(film.camera());
     for (const std::int64_t k : {29, 3, 30, 0}) static_cast<void>(film.state(k));
@@ -68,14 +68,14 @@ TEST(FilmPasses, CountTheTrialsThatFailed) {
     const Film film = film_of(
         "schema = 1\n[[rope]]\nhang = { links = 3, length = 1.0, angle_deg = 170.0 }\n"
         "[world]\nduration = 6.0\n[video]\nsize = [96, 64]\nfps = 10\n[solver]\ntolerance_px = 0.001\n");
-    ASSERT_GT(film.plan().trials.size(), 1U);
-    // Two of the first trial, three of each further one, which has two checks.
-    EXPECT_EQ(film.simulation_passes(), 3 * static_cast<int>(film.plan().trials.size()) - 1);
+    ASSERT_GT(film.plan().bodies.front().trials.size(), 1U);
+    // Two of each trial, and three of the tightest, which has two checks.
+    EXPECT_EQ(film.simulation_passes(), 2 * static_cast<int>(film.plan().bodies.front().trials.size()) + 1);
 }
 
 TEST(FilmMotion, IsTheRunThatWasProved) {
     const Film film = film_of(kRope);
-    Simulation again(film.system(), film.scene().world, film.plan().method);
+    Simulation again(film.system(), film.scene().world, film.plan().bodies.front().method);
     for (const std::int64_t k : {0, 11, 30}) {
         ASSERT_EQ(again.advance_to(film.time_s(k)), Status::kOk);
         expect_same_bits(film.state(k), again.state());
@@ -182,6 +182,23 @@ TEST(FilmPlan, FrozenInTheSceneGivesTheSameBytes) {
         }
         EXPECT_EQ(frozen_toml(frozen), frozen_toml(chosen));
     }
+}
+
+TEST(FilmPlan, OfSeveralMethodsFrozenInTheSceneGivesTheSameBytes) {
+    const std::string bodies = kRope +
+                               "[[rope]]\npoints = [[0.5, 0], [0.25, 0.45], [-0.25, 0.45], [-0.5, 0]]\n"
+                               "closed = true\n[[rope]]\nhang = { links = 4, length = 1.0 }\n"
+                               "[[rope]]\npoints = [[0, 0], [0.3, 0.1]]\nstring = true\nlink_length = 0.5\n";
+    const Film chosen = film_of(bodies);
+    const std::string toml = frozen_toml(chosen);
+    EXPECT_THAT(toml, HasSubstr("[[solver.bodies]]\nropes = [1]\nmethod = \"rattle\""));
+    const Film frozen = film_of(bodies + toml);
+    EXPECT_EQ(frozen.simulation_passes(), 0);
+    for (const std::int64_t k : {0, 13, 30}) {
+        expect_same_bits(chosen.state(k), frozen.state(k));
+        EXPECT_TRUE(equal_images(chosen.frame(k), frozen.frame(k))) << toml;
+    }
+    EXPECT_EQ(frozen_toml(frozen), toml);
 }
 
 TEST(FilmPlan, KeepsTheDisplayedErrorWithinTheTolerance) {

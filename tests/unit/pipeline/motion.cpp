@@ -22,7 +22,7 @@ System system_of_a_rope() {
 /// A motion of 1 s at 20 frames per second, with a still between two of them.
 struct Swing {
     explicit Swing(const MethodDef& method = RattleDef{}, std::size_t budget_bytes = kMuch)
-        : motion(system, WorldDef{}, method, Timeline(kFps, 20, {kStillS}), budget_bytes) {}
+        : motion(system, WorldDef{}, {method}, Timeline(kFps, 20, {kStillS}), budget_bytes) {}
 
     System system = system_of_a_rope();
     Motion motion;
@@ -43,7 +43,7 @@ TEST(Motions, BeginWhenTheyAreRead) {
     Swing swing;
     EXPECT_EQ(swing.motion.passes(), 0);
     EXPECT_EQ(swing.motion.recording().size(), 0U);
-    EXPECT_TRUE(std::get<RattleDef>(swing.motion.method()).step_s.has_value());  // filled in
+    EXPECT_TRUE(std::get<RattleDef>(swing.motion.methods().front()).step_s.has_value());  // filled in
     static_cast<void>(swing.motion.at(0.5));
     EXPECT_EQ(swing.motion.passes(), 1);
     EXPECT_EQ(swing.motion.recording().size(), 12U);  // frames 0 .. 10 and the still
@@ -121,16 +121,16 @@ TEST(Motions, ThatDivergeEndEarly) {
 
 TEST(Motions, TakeTheRunThatAPlannerRecords) {
     const System system = system_of_a_rope();
-    Motion motion(system, WorldDef{}, std::nullopt, Timeline(kFps, 20), kMuch);
+    Motion motion(system, WorldDef{}, {}, Timeline(kFps, 20), kMuch);
     const Plan plan = motion.record([&](const Timeline& timeline, sim::Recording& recording) {
         Simulation run(system, WorldDef{}, RattleDef{6}, kFps.interval_s());
         for (std::size_t i = 0; i < timeline.size(); ++i)
             EXPECT_EQ(recording.advance(run, timeline.time_s(i), {}), Status::kOk);
         Plan made;
-        made.method = run.method();
+        made.bodies.emplace_back().method = run.methods().front();
         return made;
     });
-    EXPECT_EQ(plan.method.index(), motion.method().index());
+    EXPECT_EQ(plan.bodies.front().method, motion.methods().front());
     EXPECT_EQ(motion.at(1.0).time_s, 1.0);
     EXPECT_EQ(motion.passes(), 0);
     EXPECT_FALSE(motion.diverges());
@@ -139,7 +139,7 @@ TEST(Motions, TakeTheRunThatAPlannerRecords) {
 TEST(Motions, AskDuringLongStepsAndBeginAnewAfterAnInterruption) {
     const System system = system_of_a_rope();
     const MethodDef method = RelaxationDef{1e-5, 8};
-    Motion motion(system, WorldDef{}, method, Timeline(kFps, 3), kMuch);
+    Motion motion(system, WorldDef{}, {method}, Timeline(kFps, 3), kMuch);
     static_cast<void>(motion.at(kFps.time_s(1)));
     std::int64_t asked_at = 0;
     const OnProgress stop = [&asked_at](std::int64_t done, std::int64_t) {
@@ -149,7 +149,7 @@ TEST(Motions, AskDuringLongStepsAndBeginAnewAfterAnInterruption) {
     const test::Failure failure = failure_of([&] { static_cast<void>(motion.at(kFps.time_s(2), stop)); });
     EXPECT_EQ(failure.code, ExitCode::kInterrupted);
     EXPECT_EQ(asked_at, 2);
-    Motion alone(system, WorldDef{}, method, Timeline(kFps, 3), kMuch);
+    Motion alone(system, WorldDef{}, {method}, Timeline(kFps, 3), kMuch);
     EXPECT_EQ(motion.at(kFps.time_s(3)).x_m, alone.at(kFps.time_s(3)).x_m);
     EXPECT_EQ(motion.recording().size(), 4U);
     EXPECT_EQ(motion.passes(), 2);

@@ -50,6 +50,26 @@ TEST(Recording, KeepsTheBoundsOfStatesBeyondItsBudget) {
     EXPECT_GT(recording.bounds().max_m().x, 0.98);
 }
 
+TEST(Recording, OfBodiesEndsWithTheFirstThatDiverges) {
+    Recording whole(2 * kParticles, 5, 2 * 5 * kBytesPerState);
+    for (const int states : {4, 3}) {
+        Recording body = whole.for_part(kParticles);
+        Simulation run = swing();
+        for (int k = 0; k < states; ++k) ASSERT_EQ(body.advance(run, 0.1 * k, {}), Status::kOk);
+        whole.add_body(body, states == 4 ? 0 : kParticles);
+    }
+    EXPECT_EQ(whole.size(), 3U);
+    EXPECT_TRUE(whole.holds(2));
+    EXPECT_FALSE(whole.holds(3));
+    State state;
+    whole.read(2, state);
+    EXPECT_EQ(state.time_s, 0.2);
+    EXPECT_EQ(state.x_m[1], state.x_m[1 + kParticles]);
+    EXPECT_NE(state.x_m[1], state.x_m[2 + kParticles]);
+    whole.clear();
+    EXPECT_EQ(whole.size(), 0U);
+}
+
 TEST(Recording, AddsNoStateOfARunThatDiverges) {
     RopeDef rope = reference::straight_rope(1, 1.0, 0.0);
     rope.pinned = {};

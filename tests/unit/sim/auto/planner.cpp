@@ -14,7 +14,7 @@ using Reason = Refusal::Reason;
 const FrameRate kFrames(Rational{60, 1});
 
 /// The plan for one rope, which has to be within `tolerance_m` up to a frame.
-Plan plan_of(const RopeDef& rope, double tolerance_m, std::int64_t last_frame) {
+BodyPlan plan_of(const RopeDef& rope, double tolerance_m, std::int64_t last_frame) {
     return test::plan_of(build_system({&rope, 1}), WorldDef{}, tolerance_m, kFrames, last_frame);
 }
 
@@ -30,30 +30,31 @@ std::optional<Reason> refusal_of(const System& system) {
 
 TEST(AutoPlan, TakesALooserMethodForALooserTolerance) {
     const RopeDef rope = reference::straight_rope(20, 1.0, 45.0);
-    const Plan loose = plan_of(rope, 1e-3, 120);
-    const Plan tight = plan_of(rope, 1e-9, 120);
+    const BodyPlan loose = plan_of(rope, 1e-3, 120);
+    const BodyPlan tight = plan_of(rope, 1e-9, 120);
     EXPECT_GT(std::get<ExactDef>(loose.method).tolerance, std::get<ExactDef>(tight.method).tolerance);
     EXPECT_LT(loose.trials.back().steps, tight.trials.back().steps);
 }
 
 TEST(AutoPlan, IsTheSameOnEveryRun) {
     const RopeDef rope = reference::straight_rope(10, 1.0, 90.0);
-    const Plan a = plan_of(rope, 1e-4, 300);
-    const Plan b = plan_of(rope, 1e-4, 300);
+    const BodyPlan a = plan_of(rope, 1e-4, 300);
+    const BodyPlan b = plan_of(rope, 1e-4, 300);
     EXPECT_EQ(std::get<ExactDef>(a.method).tolerance, std::get<ExactDef>(b.method).tolerance);
     EXPECT_EQ(a.error_bound_m, b.error_bound_m);
     EXPECT_EQ(a.horizon_s, b.horizon_s);
 }
 
 TEST(AutoPlan, CountsTheRunsAndTheChecksOfAllTrials) {
-    const Plan plan = plan_of(reference::straight_rope(10, 1.0, 90.0), 1e-4, 300);
+    const BodyPlan plan = plan_of(reference::straight_rope(10, 1.0, 90.0), 1e-4, 300);
     ASSERT_GT(plan.trials.size(), 1U);
-    EXPECT_EQ(plan.simulation_passes, 3 * static_cast<int>(plan.trials.size()) - 1);
+    // Two of each trial, and three of the tightest, which has two checks.
+    EXPECT_EQ(plan.passes, 2 * static_cast<int>(plan.trials.size()) + 1);
     EXPECT_EQ(plan.reason, PlanReason::kExact);
 }
 
 TEST(AutoPlan, GivesRigidBarsOfAGraphRattle) {
-    const Plan plan = plan_of(test::ring(5), 1e-2, 10);
+    const BodyPlan plan = plan_of(test::ring(5), 1e-2, 10);
     EXPECT_TRUE(std::holds_alternative<RattleDef>(plan.method));
     EXPECT_EQ(plan.reason, PlanReason::kGraph);
     EXPECT_LE(plan.error_bound_m.value(), 1e-2);
@@ -61,7 +62,7 @@ TEST(AutoPlan, GivesRigidBarsOfAGraphRattle) {
 
 TEST(AutoPlan, GivesBarsThatDependOnEachOtherRelaxationWithoutABound) {
     const NetDef net = test::leaning_net(6, 5, 0.2, true);
-    const Plan plan = test::plan_of(build_system({}, {&net, 1}), WorldDef{}, 1e-3, kFrames, 60);
+    const BodyPlan plan = test::plan_of(build_system({}, {&net, 1}), WorldDef{}, 1e-3, kFrames, 60);
     EXPECT_TRUE(std::holds_alternative<RelaxationDef>(plan.method));
     EXPECT_FALSE(plan.error_bound_m.has_value());
     EXPECT_EQ(plan.reason, PlanReason::kDependent);
@@ -80,11 +81,89 @@ TEST(AutoPlan, RefusesWhatNoMethodCanTruthfullyRun) {
     EXPECT_EQ(refusal_of(build_system({&ring, 1})), Reason::kBarWithoutLength);
 }
 
+/// A swinging rope, a ring and a cloth, which no single method can move.
+struct Mixed {
+    std::vector<RopeDef> ropes{reference::straight_rope(5, 1.0, 30.0), test::ring(5)};
+    System system = build_system(ropes);
+    Timeline timeline{kFrames, 30};
+    PlanDef def{[](const MotionBounds&) { return 1e-3; }, timeline, {}, {}};
+    Recording recording{system.particle_count(), timeline.size(), std::size_t{1} << 20};
+};
+
+TEST(AutoPlans, ChooseAMethodPerBodyAndRecordWhatTheyMove) {
+    Mixed mixed;
+    const Plan plan = plan_methods(mixed.system, NamedMethods(2), WorldDef{}, mixed.def, mixed.recording);
+    ASSERT_EQ(plan.bodies.size(), 2U);
+    EXPECT_EQ(plan.bodies[0].reason, PlanReason::kExact);
+    EXPECT_EQ(plan.bodies[1].reason, PlanReason::kGraph);
+    EXPECT_EQ(plan.error_bound_m,
+              std::max(plan.bodies[0].error_bound_m.value(), plan.bodies[1].error_bound_m.value()));
+    EXPECT_FALSE(plan.horizon_s.has_value());
+    EXPECT_GE(plan.simulation_passes, 2);
+    const std::vector<MethodDef> methods{plan.bodies[0].method, plan.bodies[1].method};
+    Simulation run(mixed.system, WorldDef{}, methods);
+    ASSERT_EQ(mixed.recording.size(), 31U);
+    State state;
+    for (std::size_t k = 0; k <= 30; ++k) {
+        ASSERT_EQ(run.advance_to(mixed.timeline.time_s(k)), Status::kOk);
+        mixed.recording.read(k, state);
+        EXPECT_EQ(state.x_m, run.state().x_m);
+        EXPECT_EQ(state.y_m, run.state().y_m);
+        EXPECT_EQ(state.time_s, run.state().time_s);
+        // The same sum in another order.
+        EXPECT_NEAR(mixed.recording.figures(k).energy_error.value(), run.figures().energy_error.value(),
+                    1e-15);
+        EXPECT_EQ(mixed.recording.figures(k).strain, run.figures().strain);
+        EXPECT_EQ(mixed.recording.figures(k).loads.value().pin_force_n,
+                  run.figures().loads.value().pin_force_n);
+    }
+    EXPECT_EQ(mixed.recording.diagnostics().steps, run.diagnostics().steps);
+    EXPECT_NEAR(mixed.recording.diagnostics().largest.energy_error.value(),
+                run.diagnostics().largest.energy_error.value(), 1e-15);
+}
+
+TEST(AutoPlans, RunNamedMethodsAsTheyAreAndClaimNoBoundForThem) {
+    Mixed mixed;
+    const NamedMethods named{RelaxationDef{}, std::nullopt};
+    const Plan plan = plan_methods(mixed.system, named, WorldDef{}, mixed.def, mixed.recording);
+    EXPECT_EQ(plan.bodies[0].reason, PlanReason::kNamed);
+    EXPECT_TRUE(std::get<RelaxationDef>(plan.bodies[0].method).step_s.has_value());  // filled in
+    EXPECT_TRUE(plan.bodies[1].error_bound_m.has_value());
+    EXPECT_FALSE(plan.error_bound_m.has_value());
+    EXPECT_EQ(mixed.recording.size(), 31U);
+}
+
+TEST(AutoPlans, NameTheBodyThatNoMethodCanRun) {
+    Mixed mixed;
+    mixed.ropes[0].pinned = {0, 5};
+    mixed.system = build_system(mixed.ropes);
+    try {
+        static_cast<void>(
+            plan_methods(mixed.system, NamedMethods(2), WorldDef{}, mixed.def, mixed.recording));
+        FAIL();
+    } catch (const Refusal& refusal) {
+        EXPECT_EQ(refusal.reason(), Reason::kTautBetweenPins);
+        EXPECT_EQ(std::string(refusal.what()).find("rope 0: "), 0U) << refusal.what();
+    }
+}
+
+TEST(AutoPlans, ReportTheProgressOfAllBodies) {
+    Mixed mixed;
+    std::int64_t last = -1;
+    mixed.def.on_progress = [&](std::int64_t done, std::int64_t total) {
+        EXPECT_EQ(total, 2 * 31);
+        last = done;
+        return true;
+    };
+    static_cast<void>(plan_methods(mixed.system, NamedMethods(2), WorldDef{}, mixed.def, mixed.recording));
+    EXPECT_EQ(last, 61);
+}
+
 TEST(StepCost, GrowsWithTheWork) {
     const RopeDef rope = reference::straight_rope(20, 1.0, 45.0);
     const RopeDef ring = test::ring(21);
-    const System chain = build_system({&rope, 1});
-    const System graph = build_system({&ring, 1});
+    const Body chain = build_system({&rope, 1}).bodies.front();
+    const Body graph = build_system({&ring, 1}).bodies.front();
     EXPECT_GT(step_cost_ns(chain, RattleDef{8}), step_cost_ns(chain, RattleDef{2}));
     EXPECT_GT(step_cost_ns(graph, RattleDef{2}), step_cost_ns(chain, RattleDef{2}));
     EXPECT_EQ(step_cost_ns(chain, RelaxationDef{.sweeps = 5}), 5.0 * step_cost_ns(chain, RelaxationDef{}));

@@ -71,19 +71,6 @@ TEST(Exact, MovesARopePinnedAtItsLastParticleAsItsMirrorImage) {
     }
 }
 
-TEST(Exact, KeepsTwoRopesApart) {
-    const RopeDef ropes[] = {reference::straight_rope(3, 1.0, 60.0), reference::straight_rope(8, 2.0, 20.0)};
-    const System system = build_system(ropes);
-    Exact both(system, WorldDef{}, ExactDef{});
-    State state{0.0, system.x_m, system.y_m};
-    ASSERT_EQ(both.advance_to(2.0, state, test::unstopped), Status::kOk);
-    for (const std::size_t k : {0U, 1U}) {
-        test::ExactRun alone(ropes[k]);
-        ASSERT_TRUE(alone.go(2.0));
-        EXPECT_LT(alone.tip_error_m({state.x_m[k == 0 ? 3 : 12], state.y_m[k == 0 ? 3 : 12]}), 1e-9);
-    }
-}
-
 TEST(Exact, ThrownFreeRopeKeepsMomentum) {
     RopeDef rope = reference::straight_rope(5, 1.0, 30.0);
     rope.pinned = {};

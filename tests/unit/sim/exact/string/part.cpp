@@ -66,25 +66,6 @@ TEST(SlackString, CarriesNoTensionAndFallsFreely) {
     EXPECT_NEAR(run.solver().energy_scale_j(), 9.81 * 2.0 * 2.0, 1e-13);
 }
 
-TEST(StringAndRope, InOneSceneMoveApart) {
-    RopeDef string = test::string_of({{0.0, 0.0}, {0.6, 0.0}}, {1.0});
-    RopeDef rope = reference::straight_rope(5, 1.0, 50.0);
-    rope.origin_m = {3.0, 0.0};
-    const RopeDef ropes[] = {string, rope};
-    const System system = build_system(ropes);
-    Exact both(system, WorldDef{}, ExactDef{});
-    State state{0.0, system.x_m, system.y_m};
-    ASSERT_EQ(both.advance_to(1.0, state, test::unstopped), Status::kOk);
-    test::ExactRun string_alone(string);
-    rope.origin_m = {};
-    test::ExactRun rope_alone(rope);
-    ASSERT_TRUE(string_alone.go(1.0) && rope_alone.go(1.0));
-    EXPECT_EQ(state.x_m[1], string_alone.state().x_m[1]);
-    EXPECT_EQ(state.y_m[1], string_alone.state().y_m[1]);
-    EXPECT_NEAR(state.x_m.back() - 3.0, rope_alone.state().x_m.back(), 1e-14);
-    EXPECT_NEAR(both.energy_j(), string_alone.solver().energy_j() + rope_alone.solver().energy_j(), 1e-12);
-}
-
 TEST(PinnedLinks, OfAStringStay) {
     RopeDef rope = test::string_of({{0.0, 0.0}, {0.5, 0.0}, {1.0, 0.0}}, {1.0, 0.5});
     rope.pinned = {0, 1};
