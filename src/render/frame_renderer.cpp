@@ -94,8 +94,9 @@ PixelRect FrameRenderer::render(const view::DrawList& list, const OnProgress& on
     everything_is_stale_ = true;  // if it fails on the way
     reserve_masks(list.layers.size());
     upload_capsules(list);
-    clear_masks(damage, list.layers.size(), on_progress);
+    const OnProgress nobody;
     const int rows = on_progress ? band_rows(damage, list) : kLargestSidePx;
+    clear_masks(damage, list.layers.size(), rows < damage.height() ? on_progress : nobody);
     for (PixelRect band = damage; band.y0 < damage.y1; band.y0 = band.y1) {
         if (band.y0 > damage.y0) report_progress(on_progress, band.y0 - damage.y0, damage.height());
         band.y1 = std::min(band.y0 - band.y0 % kTilePx + rows, damage.y1);
