@@ -110,7 +110,7 @@ void write_shots(const std::vector<Shot>& shots, const StillOptions& options, co
     try {
         for (const Shot& shot : shots) {
             stop_if_asked();
-            write_png(shot.path, film.still(shot.time_s),
+            write_png(shot.path, film.still(shot.time_s, stopping_if_asked()),
                       describe_shot(shot, film.scene(), options.pixels_per_inch),
                       {.force = options.force, .on_progress = stopping_if_asked()});
             ++written;

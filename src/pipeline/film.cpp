@@ -97,9 +97,13 @@ struct Film::Impl {
     }
 
     /// Requires a pipeline::Stage::Use.
-    PixelRect draw(double time_s) {
+    PixelRect draw(double time_s, const OnProgress& on_progress) {
         const view::Camera map = stage.map_of(find_camera());
-        return stage.draw(at(time_s), map);
+        try {
+            return stage.draw(at(time_s), map, on_progress);
+        } catch (const pipeline::Stage::Overdrawn&) {
+            return stage.draw(at(time_s), map);  // without asking: it would not end
+        }
     }
 
     Scene scene;
@@ -184,13 +188,13 @@ double Film::stepping_s() const {
     return impl_->motion.recording().wall_s();
 }
 
-Image Film::frame(std::int64_t k) const {
-    return still(time_s(k));
+Image Film::frame(std::int64_t k, const OnProgress& on_progress) const {
+    return still(time_s(k), on_progress);
 }
 
-Image Film::still(double time_s) const {
+Image Film::still(double time_s, const OnProgress& on_progress) const {
     const pipeline::Stage::Use use(impl_->stage);
-    impl_->draw(time_s);
+    impl_->draw(time_s, on_progress);
     return impl_->stage.image();
 }
 
@@ -203,10 +207,10 @@ GlInfo Film::gl() const {
 
 FilmPainter::FilmPainter(Film& film) : film_(&film), use_(film.impl_->stage) {}
 
-PixelRect FilmPainter::draw(double time_s) {
+PixelRect FilmPainter::draw(double time_s, const OnProgress& on_progress) {
     pipeline::Stage& stage = film_->impl_->stage;
-    const bool is_next = stage.pictures() == pictures_;
-    const PixelRect damage = film_->impl_->draw(time_s);
+    const PixelRect damage = film_->impl_->draw(time_s, on_progress);
+    const bool is_next = stage.pictures() == pictures_ + 1;
     pictures_ = stage.pictures();
     return is_next ? damage : stage.image().rect();
 }

@@ -89,9 +89,10 @@ class Film {
     [[nodiscard]] double stepping_s() const;
 
     /// Draws frame `k`, 0 .. last_frame(), or the picture at a time in 0 .. world.duration_s: RGBA8, row 0 on
-    /// top. Throws as state(), and kNoGl.
-    [[nodiscard]] Image frame(std::int64_t k) const;
-    [[nodiscard]] Image still(double time_s) const;
+    /// top. Asks `on_progress` again and again if the picture is large. Throws as state(), and kNoGl,
+    /// kInterrupted.
+    [[nodiscard]] Image frame(std::int64_t k, const OnProgress& on_progress = {}) const;
+    [[nodiscard]] Image still(double time_s, const OnProgress& on_progress = {}) const;
     /// What draws. Throws kNoGl.
     [[nodiscard]] GlInfo gl() const;
 
@@ -134,8 +135,8 @@ struct RenderDef {
     bool force = false;  ///< replace an existing file
     std::int64_t first = 0;
     std::optional<std::int64_t> end;  ///< one past the last frame; default Film::frame_count()
-    /// Called after each frame, and again and again while the finished video is copied and verified, then
-    /// with all frames done; returning false stops.
+    /// Called after each frame, and again and again while a large one is drawn and while the finished video
+    /// is copied and verified, then with all frames done; returning false stops.
     OnProgress on_progress;
 };
 

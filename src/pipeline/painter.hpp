@@ -16,8 +16,8 @@ class FilmPainter {
     ~FilmPainter() = default;
 
     /// Draws the picture at a time; returns the pixels that may differ from the last one that this painter
-    /// drew: all, if somebody else has drawn the film since.
-    PixelRect draw(double time_s);
+    /// drew: all, if somebody else has drawn the film since. Asks `on_progress` as Film::still().
+    PixelRect draw(double time_s, const OnProgress& on_progress = {});
     /// The last picture of the film.
     [[nodiscard]] const Image& image() const;
 

@@ -41,9 +41,13 @@ media::VideoMetadata metadata(const Film& film, std::int64_t first) {
 void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProgress& on_progress,
                   media::VideoWriter& writer) {
     FilmPainter painter(film);
-    for (std::int64_t k = first; k < end; ++k) {
+    std::int64_t k = first;
+    const OnProgress ask = [&](std::int64_t, std::int64_t) {
+        return !on_progress || on_progress(k - first, end - first);
+    };
+    for (; k < end; ++k) {
         report_progress(on_progress, k - first, end - first);
-        const PixelRect damage = painter.draw(film.time_s(k));
+        const PixelRect damage = painter.draw(film.time_s(k), ask);
         writer.write(painter.image(), damage);
     }
     report_progress(on_progress, end - first, end - first);

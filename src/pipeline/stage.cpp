@@ -1,5 +1,7 @@
 #include "corda/pipeline/stage.hpp"
 
+#include <functional>
+
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
@@ -61,11 +63,17 @@ void Stage::open() {
     }
 }
 
-PixelRect Stage::draw(const State& state, const view::Camera& map) {
+PixelRect Stage::draw(const State& state, const view::Camera& map, const OnProgress& on_progress) {
     view_.draw(state, map, list_);
     canvas_->context.make_current();  // a callback since open() may have left another one
-    ++pictures_;
-    return canvas_->renderer.render(list_);
+    const std::int64_t picture = ++pictures_;
+    const auto ask = [&](std::int64_t done, std::int64_t total) {
+        if (!on_progress(done, total)) return false;
+        if (pictures_ != picture) throw Overdrawn();
+        canvas_->context.make_current();
+        return true;
+    };
+    return canvas_->renderer.render(list_, on_progress ? OnProgress(std::ref(ask)) : OnProgress());
 }
 
 }  // namespace corda::pipeline

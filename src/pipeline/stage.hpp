@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <memory>
 
+#include "corda/core/basics.hpp"
 #include "corda/gl/context.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/scene/scene.hpp"
@@ -36,8 +38,13 @@ class Stage {
         gl::SavedContext saved_;
     };
 
-    /// Draws a state; returns the pixels that may differ from the last picture. Requires a Use.
-    PixelRect draw(const State& state, const view::Camera& map);
+    /// What draw() throws if `on_progress` itself has drawn this stage: its picture is the last one now.
+    struct Overdrawn : std::exception {};
+
+    /// Draws a state; returns the pixels that may differ from the last picture. Asks `on_progress` again and
+    /// again if the picture is large. Throws Overdrawn, and corda::Error: kNoGl, kInterrupted. Requires a
+    /// Use.
+    PixelRect draw(const State& state, const view::Camera& map, const OnProgress& on_progress = {});
     /// The last picture.
     [[nodiscard]] const Image& image() const { return canvas_->renderer.image(); }
     /// How many pictures were drawn.

@@ -17,6 +17,21 @@ namespace {
 constexpr std::size_t kLayersPerSlice = 4;
 constexpr std::array<float, 4> kNoCoverage{0, 0, 0, 0};
 
+/// llvmpipe draws in tiles of that side; one that is cut in two takes twice as long.
+constexpr int kTilePx = 64;
+
+/// How many rows of the damage are drawn at once, a multiple of kTilePx: as many as llvmpipe draws in a
+/// quarter of a second on one core, or in the time in which it passes over all capsules, as every band does.
+int band_rows(const PixelRect& damage, const view::DrawList& list) {
+    // In units of what a layer of one pixel takes, measured 12 ns.
+    constexpr std::size_t kPixel = 4;
+    constexpr std::size_t kCapsule = 40;
+    constexpr std::size_t kBand = 20'000'000;
+    const std::size_t row = static_cast<std::size_t>(damage.width()) * (kPixel + list.layers.size());
+    const std::size_t rows = std::max(kBand, kCapsule * list.capsules.size()) / row;
+    return kTilePx * static_cast<int>(std::clamp<std::size_t>(rows / kTilePx, 1, kLargestSidePx / kTilePx));
+}
+
 void check_size(int width, int height) {
     GLint largest_texture_px = 0;
     std::array<GLint, 2> largest_viewport_px{};
@@ -69,7 +84,7 @@ FrameRenderer::FrameRenderer(int width, int height)
     gl::check_errors("preparing the renderer");
 }
 
-PixelRect FrameRenderer::render(const view::DrawList& list) {
+PixelRect FrameRenderer::render(const view::DrawList& list, const OnProgress& on_progress) {
     assert(list.width == image_.width() && list.height == image_.height());
     assert(list.layers.size() <= view::kMaxLayers);
     if (!(list.background == last_background_)) everything_is_stale_ = true;
@@ -78,25 +93,63 @@ PixelRect FrameRenderer::render(const view::DrawList& list) {
 
     everything_is_stale_ = true;  // if it fails on the way
     reserve_masks(list.layers.size());
-    set_state(damage);
-    draw_masks(list);
-    composite(list);
-    glReadPixels(damage.x0, damage.y0, damage.width(), damage.height(), GL_RGBA, GL_UNSIGNED_BYTE,
-                 image_.pixel(damage.x0, damage.y0));
-    gl::check_errors("drawing a frame");
+    upload_capsules(list);
+    const OnProgress nobody;
+    const int rows = on_progress ? band_rows(damage, list) : kLargestSidePx;
+    clear_masks(damage, list.layers.size(), rows < damage.height() ? on_progress : nobody);
+    for (PixelRect band = damage; band.y0 < damage.y1; band.y0 = band.y1) {
+        if (band.y0 > damage.y0) report_progress(on_progress, band.y0 - damage.y0, damage.height());
+        band.y1 = std::min(band.y0 - band.y0 % kTilePx + rows, damage.y1);
+        draw_band(list, band);
+    }
     last_bounds_ = list.bounds;
     last_background_ = list.background;
     everything_is_stale_ = false;
     return damage;
 }
 
-void FrameRenderer::set_state(const PixelRect& damage) const {
+void FrameRenderer::upload_capsules(const view::DrawList& list) {
+    glBindBuffer(GL_ARRAY_BUFFER, capsule_buffer_.id());
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(list.capsules.size() * sizeof(view::Capsule)),
+                 list.capsules.data(), GL_STREAM_DRAW);
+}
+
+void FrameRenderer::bind_masks(std::size_t slice) {
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, mask_target_.id());
+    glFramebufferTextureLayer(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, masks_.id(), 0,
+                              static_cast<GLint>(slice));
+    gl::check_framebuffer("drawing a layer's mask");
+}
+
+void FrameRenderer::clear_masks(const PixelRect& damage, std::size_t layer_count,
+                                const OnProgress& on_progress) {
+    set_state(damage);
+    for (std::size_t l = 0; l < layer_count; l += kLayersPerSlice) {
+        bind_masks(l / kLayersPerSlice);
+        glClearBufferfv(GL_COLOR, 0, kNoCoverage.data());
+        if (!on_progress) continue;
+        glFinish();
+        report_progress(on_progress, 0, damage.height());
+    }
+}
+
+void FrameRenderer::draw_band(const view::DrawList& list, const PixelRect& band) {
+    set_state(band);
+    draw_masks(list);
+    composite(list);
+    // Waits until the band is drawn.
+    glReadPixels(band.x0, band.y0, band.width(), band.height(), GL_RGBA, GL_UNSIGNED_BYTE,
+                 image_.pixel(band.x0, band.y0));
+    gl::check_errors("drawing a frame");
+}
+
+void FrameRenderer::set_state(const PixelRect& band) const {
     glDisable(GL_DITHER);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_BLEND);
     glEnable(GL_SCISSOR_TEST);
-    glScissor(damage.x0, damage.y0, damage.width(), damage.height());
+    glScissor(band.x0, band.y0, band.width(), band.height());
     glViewport(0, 0, image_.width(), image_.height());
     glPixelStorei(GL_PACK_ALIGNMENT, 4);
     glPixelStorei(GL_PACK_ROW_LENGTH, image_.width());
@@ -120,23 +173,13 @@ void FrameRenderer::reserve_masks(std::size_t layer_count) {
 }
 
 void FrameRenderer::draw_masks(const view::DrawList& list) {
-    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, mask_target_.id());
     glBindVertexArray(capsule_array_.id());
-    glBindBuffer(GL_ARRAY_BUFFER, capsule_buffer_.id());
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(list.capsules.size() * sizeof(view::Capsule)),
-                 list.capsules.data(), GL_STREAM_DRAW);
     capsule_program_.use();
     glBlendEquation(GL_MAX);
+    glEnable(GL_BLEND);
     for (std::size_t l = 0; l < list.layers.size(); ++l) {
         const std::size_t channel = l % kLayersPerSlice;
-        if (channel == 0) {
-            glFramebufferTextureLayer(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, masks_.id(), 0,
-                                      static_cast<GLint>(l / kLayersPerSlice));
-            gl::check_framebuffer("drawing a layer's mask");
-            glDisable(GL_BLEND);
-            glClearBufferfv(GL_COLOR, 0, kNoCoverage.data());
-            glEnable(GL_BLEND);
-        }
+        if (channel == 0) bind_masks(l / kLayersPerSlice);
         const view::Layer& layer = list.layers[l];
         if (layer.capsule_count == 0) continue;
         std::array<float, kLayersPerSlice> select{};

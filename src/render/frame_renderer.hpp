@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
 #include "corda/gl/object.hpp"
 #include "corda/gl/program.hpp"
@@ -22,16 +23,23 @@ class FrameRenderer {
     FrameRenderer(int width, int height);
 
     /// Draws the next frame; `list` has this renderer's size. Returns the damage: the pixels that may differ
-    /// from the last frame. Throws corda::Error (kNoGl); then the next frame is drawn whole.
-    PixelRect render(const view::DrawList& list);
+    /// from the last frame. A large one is drawn in bands, and `on_progress` is asked between them. Throws
+    /// corda::Error: kNoGl, kInterrupted; then the next frame is drawn whole.
+    PixelRect render(const view::DrawList& list, const OnProgress& on_progress = {});
 
     /// The last frame.
     [[nodiscard]] const Image& image() const { return image_; }
 
   private:
     /// Sets the state that drawing depends on: another renderer may have drawn in this context meanwhile.
-    void set_state(const PixelRect& damage) const;
+    void set_state(const PixelRect& band) const;
     void reserve_masks(std::size_t layer_count);
+    void upload_capsules(const view::DrawList& list);
+    void bind_masks(std::size_t slice);
+    /// All of the damage at once: a part of a frame takes a driver much longer per pixel to clear.
+    void clear_masks(const PixelRect& damage, std::size_t layer_count, const OnProgress& on_progress);
+    /// Draws and reads some rows.
+    void draw_band(const view::DrawList& list, const PixelRect& band);
     void draw_masks(const view::DrawList& list);
     void composite(const view::DrawList& list);
 

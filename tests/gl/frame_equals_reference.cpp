@@ -1,12 +1,15 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include "corda/gl/context.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/render/reference_renderer.hpp"
+#include "corda/view/capsule.hpp"
 #include "support/draw_lists.hpp"
 #include "support/failure.hpp"
 #include "support/image_matchers.hpp"
@@ -38,6 +41,75 @@ INSTANTIATE_TEST_SUITE_P(Sizes, RandomCapsules,
                                     std::to_string(std::get<1>(param.param)) + "_" +
                                     std::to_string(std::get<2>(param.param)) + "_layers";
                          });
+
+void move_down(view::DrawList& list, int rows) {
+    list.bounds = {};
+    for (view::Capsule& capsule : list.capsules) {
+        capsule.ay += static_cast<float>(rows);
+        list.bounds = list.bounds.united(view::capsule_bounds(capsule, list.width, list.height));
+    }
+}
+
+TEST(Bands, EqualTheReferenceByteForByte) {
+    // 16384 x 1000 pixels and 2 layers are 6 bands.
+    constexpr int kWidth = 16384;
+    constexpr int kHeight = 1000;
+    const gl::Context context;
+    render::FrameRenderer renderer(kWidth, kHeight);
+    for (std::uint32_t seed = 1; seed <= 2; ++seed) {
+        view::DrawList list = test::random_draw_list(seed, kWidth, seed == 1 ? kHeight : 600, 2, 60);
+        list.height = kHeight;
+        list.background = {10, 20, 30, 255};
+        if (seed == 2) {  // alone, so that the damage begins in the middle of a tile
+            move_down(list, 333);
+            view::DrawList empty = list;
+            empty.layers.clear();
+            empty.capsules.clear();
+            empty.bounds = {};
+            renderer.render(empty);
+        }
+        std::vector<std::int64_t> asked;
+        const PixelRect damage = renderer.render(list, [&](std::int64_t done, std::int64_t total) {
+            EXPECT_LE(done, total);
+            asked.push_back(done);
+            return true;
+        });
+        EXPECT_EQ(damage.y0 % 64 == 0, seed == 1);
+        EXPECT_GE(asked.size(), 5U);  // measured 6 and 5, the first before the bands
+        EXPECT_TRUE(std::is_sorted(asked.begin(), asked.end()));
+        EXPECT_TRUE(equal_images(renderer.image(), render::render_reference(list))) << "seed " << seed;
+    }
+}
+
+TEST(Bands, StopAndThenTheWholeFrameIsDrawn) {
+    constexpr int kWidth = 16384;
+    constexpr int kHeight = 1000;
+    const gl::Context context;
+    render::FrameRenderer renderer(kWidth, kHeight);
+    renderer.render(test::random_draw_list(1, kWidth, kHeight, 2, 20));
+    view::DrawList list = test::random_draw_list(2, kWidth, kHeight, 2, 20);
+    for (const std::int64_t enough : {0, 1, 400}) {
+        const auto stop = [&](std::int64_t done, std::int64_t) { return done < enough; };
+        EXPECT_EQ(test::failure_of([&] { renderer.render(list, stop); }).code, ExitCode::kInterrupted);
+        list.layers.clear();
+        list.capsules.clear();
+        list.bounds = {};
+        EXPECT_EQ(renderer.render(list), renderer.image().rect());
+        EXPECT_TRUE(equal_images(renderer.image(), render::render_reference(list)));
+        list = test::random_draw_list(3, kWidth, kHeight, 2, 20);
+    }
+}
+
+TEST(Bands, AreNotAskedForSmallFrames) {
+    const gl::Context context;
+    render::FrameRenderer renderer(640, 360);
+    int asked = 0;
+    renderer.render(test::random_draw_list(1, 640, 360, 1, 20), [&](std::int64_t, std::int64_t) {
+        ++asked;
+        return true;
+    });
+    EXPECT_EQ(asked, 0);
+}
 
 TEST(DamagedRedraw, EqualsTheFullRedrawByteForByte) {
     constexpr int kWidth = 320;

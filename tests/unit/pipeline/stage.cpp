@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <memory>
 #include <thread>
+#include <vector>
 
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/painter.hpp"
@@ -109,6 +111,60 @@ TEST(Stages, LeaveNoContextBehindForOtherThreads) {
     const Image here = show.draw();
     std::thread([&] { EXPECT_TRUE(equal_images(show.draw(), here)); }).join();
     EXPECT_TRUE(equal_images(show.draw(), here));
+}
+
+/// A picture that is filled by a rope, and large enough to be drawn in bands.
+Scene large_scene() {
+    Scene scene = scene_of(4096, 2048);
+    scene.camera = {Vec2{0.35, -0.25}, 0.4, 0.0};
+    return scene;
+}
+
+TEST(LargePictures, HaveTheSameBytesWhateverTheirCallbackDraws) {
+    const Image alone = Film(large_scene()).frame(1);
+    const Film film(large_scene());
+    const Film other(scene_of(40, 40));
+    const test::HostContext host;
+    const std::vector<std::function<void()>> callbacks{
+        [&] { static_cast<void>(film.frame(2)); },
+        [&] { static_cast<void>(other.frame(2)); },
+        [&] { host.make_current(); },
+    };
+    for (const auto& callback : callbacks) {
+        int asked = 0;
+        const Image drawn = film.frame(1, [&](std::int64_t done, std::int64_t) {
+            if (done == 0) return true;
+            callback();
+            return ++asked > 0;
+        });
+        EXPECT_TRUE(equal_images(drawn, alone));
+        EXPECT_GE(asked, 1);
+        EXPECT_TRUE(host.is_current());
+        static_cast<void>(film.frame(0));
+    }
+}
+
+TEST(LargePictures, AreStoppedByTheirCallback) {
+    const Film film(large_scene());
+    EXPECT_EQ(test::code_of([&] {
+                  static_cast<void>(film.frame(0, [](std::int64_t done, std::int64_t) { return done == 0; }));
+              }),
+              ExitCode::kInterrupted);
+    EXPECT_TRUE(equal_images(film.frame(0), Film(large_scene()).frame(0)));
+}
+
+TEST(LargePictures, AreWholeForAPainterWhoseCallbackDrawsOthers) {
+    Film film(large_scene());
+    const Image first = film.frame(0);
+    FilmPainter painter(film);
+    painter.draw(0.0);
+    EXPECT_EQ(painter.draw(0.1,
+                           [&](std::int64_t, std::int64_t) {
+                               static_cast<void>(film.frame(2));
+                               return true;
+                           }),
+              first.rect());
+    EXPECT_TRUE(equal_images(painter.image(), Film(large_scene()).still(0.1)));
 }
 
 TEST(Painters, InterleaveAndTellWhatOthersHaveDrawn) {
