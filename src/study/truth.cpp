@@ -127,11 +127,13 @@ void find_truth(Subject& subject) {
 }
 
 double rattle_step_s(const Problem& problem, int order) {
+    take_step();
     const Simulation run(problem.system(), problem.world, RattleDef{order}, problem.fps.interval_s());
     return std::get<RattleDef>(run.method()).step_s.value();
 }
 
 std::string refusal(const Problem& problem, const MethodDef& method) {
+    take_step();
     const auto refused = sim::refusal(problem.system(), problem.world, method, problem.fps.interval_s());
     return refused ? refused->what() : "";
 }
