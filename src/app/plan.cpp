@@ -95,15 +95,18 @@ std::string nets_term(const Scene& scene) {
 }
 
 /// What is modelled, a line per term: what a scene does not ask for is left out.
-std::vector<std::string> list_terms(const Scene& scene, const MethodDef& method) {
-    const auto* relaxation = std::get_if<RelaxationDef>(&method);
+std::vector<std::string> list_terms(const Scene& scene, const Plan& plan) {
+    const RelaxationDef* relaxation = nullptr;
+    bool relaxes_all = true;
+    for (const BodyPlan& body : plan.bodies) {
+        const auto* const def = std::get_if<RelaxationDef>(&body.method);
+        relaxes_all = relaxes_all && def != nullptr;
+        if (def != nullptr) relaxation = def;
+    }
     const Materials materials = list_materials(scene);
     std::vector<std::string> terms{force_term(scene, relaxation), drag_term(scene, materials, relaxation)};
-    if (relaxation != nullptr) {
-        terms.emplace_back("bars that stretch by what the passes leave");
-    } else if (materials.rigid) {
-        terms.emplace_back("links that do not stretch");
-    }
+    if (relaxation != nullptr) terms.emplace_back("bars that stretch by what the passes of relaxation leave");
+    if (!relaxes_all && materials.rigid) terms.emplace_back("links that do not stretch");
     if (!materials.compliance_1_n.empty()) {
         terms.push_back(fmt::format("links that stretch by {} of their length per newton",
                                     materials.compliance_1_n.text()));
@@ -118,16 +121,31 @@ std::vector<std::string> list_terms(const Scene& scene, const MethodDef& method)
     return terms;
 }
 
-/// Steps of the whole run: those of the proved run, or the duration over the step; std::nullopt if only a run
-/// can tell.
-std::optional<double> steps_of_plan(const Film& film) {
-    const Plan& plan = film.plan();
-    if (plan.error_bound_m) return static_cast<double>(plan.trials.back().steps);
+struct Cost {
+    double steps = 0.0;
+    double time_s = 0.0;
+};
+
+/// Of the run alone: its steps are those of the proved run, or the duration over the step; std::nullopt if
+/// only a run can tell.
+std::optional<Cost> cost_of(const Film& film) {
     const double duration_s = film.scene().world.duration_s;
-    if (const auto* rattle = std::get_if<RattleDef>(&plan.method)) return duration_s / rattle->step_s.value();
-    if (const auto* relaxation = std::get_if<RelaxationDef>(&plan.method))
-        return duration_s / relaxation->step_s.value();
-    return std::nullopt;
+    Cost cost;
+    for (std::size_t i = 0; i < film.plan().bodies.size(); ++i) {
+        const BodyPlan& body = film.plan().bodies[i];
+        double steps = 0.0;
+        if (body.error_bound_m)
+            steps = static_cast<double>(body.trials.back().steps);
+        else if (const auto* rattle = std::get_if<RattleDef>(&body.method))
+            steps = duration_s / rattle->step_s.value();
+        else if (const auto* relaxation = std::get_if<RelaxationDef>(&body.method))
+            steps = duration_s / relaxation->step_s.value();
+        else
+            return std::nullopt;
+        cost.steps += steps;
+        cost.time_s += 1e-9 * steps * sim::step_cost_ns(film.system().bodies[i], body.method);
+    }
+    return cost;
 }
 
 nlohmann::json to_json(const Trial& trial) {
@@ -139,19 +157,48 @@ nlohmann::json to_json(const Trial& trial) {
             {"to_the_end", trial.to_the_end}};
 }
 
+nlohmann::json to_json(const Film& film, std::size_t i) {
+    const BodyPlan& body = film.plan().bodies[i];
+    nlohmann::json json = {{"body", body_name(film.system(), i)},
+                           {"method", method_name(body.method)},
+                           {"solver", describe(body.method)},
+                           {"reason", describe(body)},
+                           {"error_bound_m", nullptr},
+                           {"horizon_s", nullptr},
+                           {"trials", nlohmann::json::array()}};
+    if (body.error_bound_m) json["error_bound_m"] = *body.error_bound_m;
+    if (body.horizon_s) json["horizon_s"] = *body.horizon_s;
+    for (const Trial& trial : body.trials) json["trials"].push_back(to_json(trial));
+    return json;
+}
+
+/// The methods, and of each what was tried for the first of its bodies.
+void report_methods(const Console& console, const Film& film) {
+    const std::vector<MethodGroup> groups = groups_of(film.plan());
+    const bool is_one = film.plan().bodies.size() == 1;
+    for (const MethodGroup& group : groups) {
+        const BodyPlan& body = film.plan().bodies[group.bodies.front()];
+        const std::string whose = groups.size() == 1 ? "" : " of " + describe(film.system(), group.bodies);
+        console.result(
+            fmt::format("solver{}: {}, because {}", whose, describe(group.method), describe(body)));
+        const std::string whom =
+            is_one ? "" : fmt::format(" for {}", body_name(film.system(), group.bodies.front()));
+        for (const Trial& trial : body.trials) {
+            console.result(fmt::format("tried{}: {} against {}: {} steps, differ by {:.2g} m up to {:.6g} s",
+                                       whom, describe(trial.method), describe(trial.check), trial.steps,
+                                       trial.largest_difference_m, trial.reached_s));
+        }
+    }
+}
+
 void report_in_words(const Console& console, const Film& film, const std::vector<std::string>& terms) {
-    const Plan& plan = film.plan();
     console.result(fmt::format("{}: {}", film.scene().name, describe(film.system())));
     for (const std::string& term : terms) console.result("modelled: " + term);
-    console.result(fmt::format("solver: {}, because {}", describe(plan.method), describe(plan)));
-    for (const Trial& trial : plan.trials) {
-        console.result(fmt::format("tried: {} against {}: {} steps, differ by {:.2g} m up to {:.6g} s",
-                                   describe(trial.method), describe(trial.check), trial.steps,
-                                   trial.largest_difference_m, trial.reached_s));
-    }
-    if (plan.error_bound_m) {
-        console.result(fmt::format("expected error: at most {}{}", bound_text(film),
-                                   plan.horizon_s ? "; after that the motion cannot be predicted" : ""));
+    report_methods(console, film);
+    if (const auto bound = bound_text(film)) {
+        console.result(
+            fmt::format("expected error: at most {}{}", *bound,
+                        film.plan().horizon_s ? "; after that the motion cannot be predicted" : ""));
     }
 }
 
@@ -167,25 +214,23 @@ ExitCode plan(const Console& console, const PlanOptions& options) {
         console.report({{"schema", 1}, {"toml", toml}});
         return ExitCode::kOk;
     }
-    const std::vector<std::string> terms = list_terms(film.scene(), film.plan().method);
+    const std::vector<std::string> terms = list_terms(film.scene(), film.plan());
     report_in_words(console, film, terms);
     console.result(fmt::format("camera: center ({:.6g}, {:.6g}) m, {:.6g} m high", camera.center_m->x,
                                camera.center_m->y, *camera.height_m));
     nlohmann::json json = film_json(film);
-    json["reason"] = describe(film.plan());
     json["terms"] = terms;
     json["frames"] = film.frame_count();
     json["steps"] = nullptr;
     json["cost_s"] = nullptr;
-    json["trials"] = nlohmann::json::array();
-    for (const Trial& trial : film.plan().trials) json["trials"].push_back(to_json(trial));
-    if (const auto steps = steps_of_plan(film)) {
-        const double cost_s = 1e-9 * *steps * sim::step_cost_ns(film.system(), film.plan().method);
-        json["steps"] = std::llround(*steps);
-        json["cost_s"] = cost_s;
+    json["bodies"] = nlohmann::json::array();
+    for (std::size_t i = 0; i < film.plan().bodies.size(); ++i) json["bodies"].push_back(to_json(film, i));
+    if (const auto cost = cost_of(film)) {
+        json["steps"] = std::llround(cost->steps);
+        json["cost_s"] = cost->time_s;
         console.result(fmt::format("expected cost: {:.0f} steps of {} particles and {} bars, some {:.2g} s",
-                                   *steps, film.system().particle_count(), film.system().bars.size(),
-                                   cost_s));
+                                   cost->steps, film.system().particle_count(), film.system().bars.size(),
+                                   cost->time_s));
     }
     console.report(json);
     return ExitCode::kOk;

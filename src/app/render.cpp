@@ -90,7 +90,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     const std::int64_t count = def.end.value_or(film.frame_count()) - def.first;
     const VideoDef& video = film.scene().video;
     console.info(fmt::format("{}: {}, method {}; {} frames of {}x{} at {} per second", film.scene().name,
-                             describe(film.system()), method_name(film.plan().method), count, video.width_px,
+                             describe(film.system()), method_names(film.plan()), count, video.width_px,
                              video.height_px, video.fps.rational().text()));
     static_cast<void>(film.camera());
     if (options.dry_run) {

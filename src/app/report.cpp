@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <memory>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -22,42 +24,78 @@ OnProgress show_progress(const Console& console, const std::string& what) {
     };
 }
 
-std::string bound_text(const Film& film) {
+namespace {
+
+/// Says of which bodies `auto` can tell nothing.
+void warn_of_unbounded(const Console& console, const Film& film) {
     const Plan& plan = film.plan();
-    std::string text = fmt::format("{:.2g} px, {:.2g} m", *film.error_bound_px(), *plan.error_bound_m);
+    for (const MethodGroup& group : groups_of(plan)) {
+        const BodyPlan& body = plan.bodies[group.bodies.front()];
+        if (body.reason == PlanReason::kNamed || body.error_bound_m) continue;
+        const std::string whose =
+            plan.bodies.size() == 1 ? "" : describe(film.system(), group.bodies) + ": ";
+        console.warning(fmt::format("auto: {}{}: {}", whose, describe(group.method), describe(body)));
+    }
+}
+
+void warn_of_horizon(const Console& console, const Film& film) {
+    const Plan& plan = film.plan();
+    if (!plan.horizon_s) return;
+    const auto is_first = [&](const BodyPlan& body) { return body.horizon_s == plan.horizon_s; };
+    const auto first = std::find_if(plan.bodies.begin(), plan.bodies.end(), is_first);
+    const std::string whose =
+        plan.bodies.size() == 1
+            ? ""
+            : " of " + body_name(film.system(), static_cast<std::size_t>(first - plan.bodies.begin()));
+    if (first->diverges) {
+        console.warning(
+            fmt::format("the simulation{} diverges after {:.6g} s; less speed, force or drag may help", whose,
+                        *plan.horizon_s));
+    } else {
+        console.warning(fmt::format(
+            "predictability{} ends at {:.6g} s: from there two runs of the highest precision differ "
+            "by more than {:g} px, because the motion magnifies the least differences; what is "
+            "drawn after it is one possible motion",
+            whose, *plan.horizon_s, std::get<AutoDef>(film.scene().solver).tolerance_px));
+    }
+}
+
+}  // namespace
+
+std::optional<std::string> bound_text(const Film& film) {
+    const Plan& plan = film.plan();
+    std::optional<double> largest_m;
+    std::vector<std::size_t> unbounded;
+    for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
+        if (plan.bodies[i].error_bound_m)
+            largest_m = std::max(largest_m.value_or(0.0), *plan.bodies[i].error_bound_m);
+        else
+            unbounded.push_back(i);
+    }
+    if (!largest_m) return std::nullopt;
+    const double pixels_per_metre = film.scene().video.height_px / film.camera().height_m.value();
+    std::string text = fmt::format("{:.2g} px, {:.2g} m", pixels_per_metre * *largest_m, *largest_m);
     if (plan.horizon_s) text += fmt::format(", up to {:.6g} s", *plan.horizon_s);
+    if (!unbounded.empty()) text += ", but for " + describe(film.system(), unbounded);
     return text;
 }
 
 void report_plan(const Console& console, const Film& film) {
-    const Plan& plan = film.plan();
-    const auto* automatic = std::get_if<AutoDef>(&film.scene().solver);
-    if (automatic == nullptr) return;
-    if (!plan.error_bound_m) {
-        console.warning(fmt::format("auto: {}: {}", describe(plan.method), describe(plan)));
-        return;
+    if (!std::holds_alternative<AutoDef>(film.scene().solver)) return;
+    if (const auto bound = bound_text(film)) {
+        console.info(fmt::format("auto: {}; displayed error at most {}, shown by tighter runs",
+                                 describe(film.system(), film.plan()), *bound));
     }
-    console.info(fmt::format("auto: {}; displayed error at most {}, shown by a tighter run",
-                             describe(plan.method), bound_text(film)));
-    if (!plan.horizon_s) return;
-    if (plan.diverges) {
-        console.warning(fmt::format(
-            "the simulation diverges after {:.6g} s; less speed, force or drag may help", *plan.horizon_s));
-    } else {
-        console.warning(fmt::format(
-            "predictability ends at {:.6g} s: from there two runs of the highest precision differ "
-            "by more than {:g} px, because the motion magnifies the least differences; what is "
-            "drawn after it is one possible motion",
-            *plan.horizon_s, automatic->tolerance_px));
-    }
+    warn_of_unbounded(console, film);
+    warn_of_horizon(console, film);
 }
 
 nlohmann::json film_json(const Film& film) {
     const Plan& plan = film.plan();
     const System& system = film.system();
     nlohmann::json json = {{"schema", 1},
-                           {"method", method_name(plan.method)},
-                           {"solver", describe(plan.method)},
+                           {"method", method_names(plan)},
+                           {"solver", describe(system, plan)},
                            {"particles", system.particle_count()},
                            {"bars", system.bars.size()},
                            {"links", system.link_count()},

@@ -70,18 +70,24 @@ nlohmann::json report(const Film& film) {
     return json;
 }
 
-/// What the run cost, in the unit in which the method's cost is counted.
+/// What the run cost; where all bodies take the same steps, in the unit in which the method's cost is counted
+/// too.
 std::string cost_text(const Film& film) {
     const System& system = film.system();
-    const auto* relaxation = std::get_if<RelaxationDef>(&film.plan().method);
     const auto steps = static_cast<double>(film.diagnostics().steps);
-    const double pieces = relaxation != nullptr ? static_cast<double>(system.bars.size()) * relaxation->sweeps
-                                                : static_cast<double>(system.particle_count());
     const double wall_s = film.stepping_s();
-    if (steps * pieces == 0.0) return "no steps";
-    return fmt::format("{:.0f} steps in {:.3g} s: {:.4g} steps/s, {:.3g} ns per {}", steps, wall_s,
-                       steps / wall_s, 1e9 * wall_s / (steps * pieces),
-                       relaxation != nullptr ? "bar" : "particle");
+    if (steps == 0.0) return "no steps";
+    std::string text = fmt::format("{:.0f} steps in {:.3g} s: {:.4g} steps/s", steps, wall_s, steps / wall_s);
+    const std::vector<MethodGroup> groups = groups_of(film.plan());
+    const auto* relaxation = std::get_if<RelaxationDef>(&groups.front().method);
+    if (groups.size() == 1 && relaxation != nullptr) {
+        const double bars = static_cast<double>(system.bars.size()) * relaxation->sweeps;
+        text += fmt::format(", {:.3g} ns per bar", 1e9 * wall_s / (steps * bars));
+    } else if (system.bodies.size() == 1) {
+        const auto particles = static_cast<double>(system.particle_count());
+        text += fmt::format(", {:.3g} ns per particle", 1e9 * wall_s / (steps * particles));
+    }
+    return text;
 }
 
 /// Writes the states of all frame times.
@@ -126,7 +132,7 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     const Film film(scene, def);
     report_plan(console, film);
     console.info(fmt::format("{}: {}, method {}", film.scene().name, describe(film.system()),
-                             method_name(film.plan().method)));
+                             method_names(film.plan())));
     if (options.dry_run) {
         console.report(film_json(film));
         return ExitCode::kOk;

@@ -1,9 +1,13 @@
 #include "corda/pipeline/describe.hpp"
 
 #include <algorithm>
+#include <map>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "corda/pipeline/freeze.hpp"
 
 namespace corda {
 namespace {
@@ -68,22 +72,70 @@ std::string describe(const MethodDef& method) {
     return std::visit(InWords{}, method);
 }
 
-std::string describe(const Plan& plan) {
+std::string describe(const BodyPlan& plan) {
     switch (plan.reason) {
         case PlanReason::kNamed:
             return fmt::format("the scene asks for {}", method_name(plan.method));
         case PlanReason::kExact:
-            return "exact moves every body of this scene";
+            return "it moves chains, and bodies that stretch, with the least error";
         case PlanReason::kGraph:
-            return "rattle keeps the bars of closed ropes and nets at their lengths";
+            return "it keeps the bars of closed ropes and nets at their lengths";
         case PlanReason::kDependent:
             return "the bars depend on each other (diagonals, or a row straight between pins), so that no "
-                   "method can tell the true motion; relaxation runs it, without a bound of the error";
+                   "method can tell the true motion; there is no bound of the error";
         case PlanReason::kCollapsing:
             return "bars of a closed rope or a net come into line during the motion: their tensions are then "
-                   "undetermined and rattle stops; relaxation runs it, without a bound of the error";
+                   "undetermined and rattle stops; there is no bound of the error";
     }
     return "";
+}
+
+std::vector<MethodGroup> groups_of(const Plan& plan) {
+    std::vector<MethodGroup> groups;
+    std::map<std::pair<std::string, PlanReason>, std::size_t> group_of;
+    for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
+        const BodyPlan& body = plan.bodies[i];
+        const auto [entry, is_new] =
+            group_of.try_emplace({solver_toml(body.method), body.reason}, groups.size());
+        if (is_new) groups.push_back({body.method, {}});
+        groups[entry->second].bodies.push_back(i);
+    }
+    return groups;
+}
+
+std::string describe(const System& system, const std::vector<std::size_t>& bodies) {
+    std::string text;
+    for (std::size_t i = 0; i < bodies.size();) {
+        std::size_t last = i;
+        while (last + 1 < bodies.size() && bodies[last + 1] == bodies[last] + 1 &&
+               system.bodies[bodies[last + 1]].is_net == system.bodies[bodies[i]].is_net)
+            ++last;
+        if (i > 0) text += ", ";
+        text += body_name(system, bodies[i]);
+        if (last > i) text += " to " + body_name(system, bodies[last]);
+        i = last + 1;
+    }
+    return text;
+}
+
+std::string describe(const System& system, const Plan& plan) {
+    const std::vector<MethodGroup> groups = groups_of(plan);
+    if (groups.size() == 1) return describe(groups.front().method);
+    std::string text;
+    for (const MethodGroup& group : groups) {
+        if (!text.empty()) text += "; ";
+        text += fmt::format("{} ({})", describe(group.method), describe(system, group.bodies));
+    }
+    return text;
+}
+
+std::string method_names(const Plan& plan) {
+    std::vector<std::string_view> names;
+    for (const BodyPlan& body : plan.bodies) {
+        const std::string_view name = method_name(body.method);
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+    return fmt::format("{}", fmt::join(names, ", "));
 }
 
 namespace pipeline {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include "corda/core/basics.hpp"
 #include "corda/sim/refusal.hpp"
@@ -15,8 +17,27 @@ namespace corda {
 /// A method in words: "exact at tolerance 1e-08".
 [[nodiscard]] std::string describe(const MethodDef& method);
 
-/// Why a plan runs its method, as a clause.
-[[nodiscard]] std::string describe(const Plan& plan);
+/// Why a body is moved by its method, as a clause.
+[[nodiscard]] std::string describe(const BodyPlan& plan);
+
+/// Bodies that the same method moves for the same reason.
+struct MethodGroup {
+    MethodDef method;
+    std::vector<std::size_t> bodies;  ///< indices in Plan::bodies, ascending
+};
+
+/// All bodies of a plan; groups in the order of their first bodies.
+[[nodiscard]] std::vector<MethodGroup> groups_of(const Plan& plan);
+
+/// Their names: "ropes 0 to 3, net 1".
+[[nodiscard]] std::string describe(const System& system, const std::vector<std::size_t>& bodies);
+
+/// The methods in words, with the bodies of each if there are several: "exact at tolerance 1e-05 (rope 0);
+/// rattle of order 4, step 0.004 s (net 0)".
+[[nodiscard]] std::string describe(const System& system, const Plan& plan);
+
+/// The methods' names: "exact, rattle".
+[[nodiscard]] std::string method_names(const Plan& plan);
 
 namespace pipeline {
 

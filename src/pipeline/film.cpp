@@ -17,15 +17,29 @@
 namespace corda {
 namespace {
 
-std::optional<MethodDef> named_method(const SolverDef& solver) {
-    return std::visit(
-        [](const auto& def) -> std::optional<MethodDef> {
-            if constexpr (std::is_same_v<std::decay_t<decltype(def)>, AutoDef>)
-                return std::nullopt;
-            else
-                return def;
-        },
-        solver);
+sim::NamedMethods named_methods(const Scene& scene) {
+    sim::NamedMethods named;
+    for (const SolverDef& solver : solvers_of(scene)) {
+        named.push_back(std::visit(
+            [](const auto& def) -> std::optional<MethodDef> {
+                if constexpr (std::is_same_v<std::decay_t<decltype(def)>, AutoDef>)
+                    return std::nullopt;
+                else
+                    return def;
+            },
+            solver));
+    }
+    return named;
+}
+
+/// The methods, if all of them are named; none otherwise.
+std::vector<MethodDef> if_all_named(const sim::NamedMethods& named) {
+    std::vector<MethodDef> methods;
+    for (const auto& method : named) {
+        if (!method) return {};
+        methods.push_back(*method);
+    }
+    return methods;
 }
 
 }  // namespace
@@ -35,25 +49,27 @@ struct Film::Impl {
         : scene(given),
           def(std::move(options)),
           system(system_of(scene)),
+          named(named_methods(scene)),
           stage(scene, system, def.backend, def.require_gpu),
-          motion(system, scene.world, named_method(scene.solver),
+          motion(system, scene.world, if_all_named(named),
                  Timeline(scene.video.fps, pipeline::last_frame_of(scene), def.stills_s),
                  def.motion_budget_bytes) {
-        if (const auto* automatic = std::get_if<AutoDef>(&scene.solver)) {
+        if (motion.methods().empty()) {
             plan = motion.record([&](const Timeline& timeline, sim::Recording& recording) {
-                return plan_within(automatic->tolerance_px, timeline, recording);
+                return plan_within(timeline, recording);
             });
         } else {
-            plan.method = motion.method();
+            for (const MethodDef& method : motion.methods()) plan.bodies.emplace_back().method = method;
         }
     }
 
-    Plan plan_within(double tolerance_px, const Timeline& timeline, sim::Recording& recording) const {
+    Plan plan_within(const Timeline& timeline, sim::Recording& recording) const {
+        const double tolerance_px = std::get<AutoDef>(scene.solver).tolerance_px;
         const auto tolerance_m = [&](const MotionBounds& bounds) {
             return tolerance_px / stage.map_of(stage.fitted(bounds)).pixels_per_metre();
         };
-        return sim::plan_method(system, scene.world, {tolerance_m, timeline, def.on_progress, now_s},
-                                recording);
+        return sim::plan_methods(system, named, scene.world, {tolerance_m, timeline, def.on_progress, now_s},
+                                 recording);
     }
 
     /// The camera, fitted once the whole motion is known.
@@ -89,6 +105,7 @@ struct Film::Impl {
     Scene scene;
     FilmDef def;
     System system;
+    sim::NamedMethods named;
     pipeline::Stage stage;
     pipeline::Motion motion;
     Plan plan;

@@ -1,5 +1,6 @@
 #include "corda/pipeline/motion.hpp"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -10,27 +11,26 @@
 
 namespace corda::pipeline {
 
-Motion::Motion(const System& system, const WorldDef& world, const std::optional<MethodDef>& method,
-               Timeline timeline, std::size_t budget_bytes)
+Motion::Motion(const System& system, const WorldDef& world, std::vector<MethodDef> methods, Timeline timeline,
+               std::size_t budget_bytes)
     : system_(&system),
       world_(world),
+      methods_(std::move(methods)),
       timeline_(std::move(timeline)),
       recording_(system.particle_count(), timeline_.size(), budget_bytes) {
-    if (!method) return;
-    method_ = *method;
-    start();
+    if (!methods_.empty()) start();
 }
 
 Plan Motion::record(const std::function<Plan(const Timeline&, sim::Recording&)>& plan) {
     Plan made = plan(timeline_, recording_);
-    method_ = made.method;
+    for (const BodyPlan& body : made.bodies) methods_.push_back(body.method);
     diverges_ = recording_.size() < timeline_.size();
     return made;
 }
 
 void Motion::start() {
-    run_.emplace(*system_, world_, method_, timeline_.fps().interval_s());
-    method_ = run_->method();
+    run_.emplace(*system_, world_, methods_, timeline_.fps().interval_s());
+    methods_ = run_->methods();
     next_ = 0;
 }
 
@@ -91,7 +91,9 @@ const State& Motion::at(double time_s, const OnProgress& on_progress) {
 
 void Motion::fail_diverged(double time_s) const {
     const double last_s = recording_.size() == 0 ? 0.0 : timeline_.time_s(recording_.size() - 1);
-    const bool has_step = !std::holds_alternative<ExactDef>(method_);
+    const bool has_step = std::any_of(methods_.begin(), methods_.end(), [](const MethodDef& method) {
+        return !std::holds_alternative<ExactDef>(method);
+    });
     throw Error(ExitCode::kDiverged,
                 fmt::format("the simulation diverged before t = {:.6g} s (last good state at {:.6g} s); less "
                             "speed or force may help{}",

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/timeline.hpp"
@@ -16,10 +17,10 @@ namespace corda::pipeline {
 /// same bits.
 class Motion {
   public:
-    /// A motion that has not begun, by a method or by the one that record() will find. `system` must outlive
-    /// it. Throws corda::Refusal if the method cannot run the system.
-    Motion(const System& system, const WorldDef& world, const std::optional<MethodDef>& method,
-           Timeline timeline, std::size_t budget_bytes);
+    /// A motion that has not begun, by a method per body or, if there are none, by those that record() will
+    /// find. `system` must outlive it. Throws corda::Refusal if a method cannot run its body.
+    Motion(const System& system, const WorldDef& world, std::vector<MethodDef> methods, Timeline timeline,
+           std::size_t budget_bytes);
     Motion(const Motion&) = delete;
     Motion& operator=(const Motion&) = delete;
 
@@ -39,8 +40,8 @@ class Motion {
 
     [[nodiscard]] const Timeline& timeline() const { return timeline_; }
     [[nodiscard]] const sim::Recording& recording() const { return recording_; }
-    /// With every default filled in.
-    [[nodiscard]] const MethodDef& method() const { return method_; }
+    /// One per body, with every default filled in.
+    [[nodiscard]] const std::vector<MethodDef>& methods() const { return methods_; }
     /// How many simulations this object has begun to step.
     [[nodiscard]] int passes() const { return passes_; }
     /// Whether the run is known to end before the timeline does.
@@ -56,7 +57,7 @@ class Motion {
 
     const System* system_;
     WorldDef world_;
-    MethodDef method_;
+    std::vector<MethodDef> methods_;
     Timeline timeline_;
     sim::Recording recording_;
     std::optional<Simulation> run_;  ///< started as soon as something has to be simulated

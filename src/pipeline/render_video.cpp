@@ -4,6 +4,7 @@
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
 #include "corda/media/video_writer.hpp"
+#include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/painter.hpp"
 #include "corda/pipeline/validate.hpp"
@@ -16,7 +17,7 @@ media::VideoMetadata metadata(const Film& film, std::int64_t first) {
     const Plan& plan = film.plan();
     const std::string title = printable(film.scene().name);
     nlohmann::json comment = {
-        {"corda", version()},   {"scene", title},           {"method", method_name(plan.method)},
+        {"corda", version()},   {"scene", title},           {"method", method_names(plan)},
         {"first_frame", first}, {"error_bound_m", nullptr}, {"error_bound_px", nullptr},
         {"horizon_s", nullptr}};
     if (plan.error_bound_m) comment["error_bound_m"] = *plan.error_bound_m;

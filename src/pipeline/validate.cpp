@@ -46,6 +46,8 @@ void validate(const Scene& scene, std::span<const double> stills_s) {
     const auto* automatic = std::get_if<AutoDef>(&scene.solver);
     if (automatic != nullptr && !(automatic->tolerance_px > 0.0 && std::isfinite(automatic->tolerance_px)))
         throw Error(ExitCode::kInvalidScene, "solver: tolerance_px is not > 0 and finite");
+    static_cast<void>(solvers_of(scene));
+    for (const BodySolverDef& group : scene.body_solvers) sim::validate(group.method);
     for (const double time_s : stills_s) {
         if (has_time(scene, time_s)) continue;
         throw Error(ExitCode::kUsage,

@@ -14,8 +14,8 @@ namespace corda::pipeline {
 
 /// Checks what a motion is planned by, before anything is computed from it: a scene that is filled in code
 /// has not been checked by the reader of scene files. Its bodies are checked by system_of, what is seen of
-/// them by Stage. Throws corda::Error: kInvalidScene for the scene's world, rate or tolerance, kUsage for a
-/// still outside of its time.
+/// them by Stage. Throws corda::Error: kInvalidScene for the scene's world, rate, tolerance or
+/// body_solvers, kUsage for a still outside of its time.
 void validate(const Scene& scene, std::span<const double> stills_s);
 
 }  // namespace corda::pipeline

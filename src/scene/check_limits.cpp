@@ -42,44 +42,49 @@ bool check_frames(const Sections& sections, const Scene& scene) {
     return problem.empty();
 }
 
-/// Steps that the scene asks for by name; a frame takes one otherwise.
-double step_count(const Scene& scene) {
+/// Steps that the solver asks for by name; a frame takes one otherwise.
+double step_count(const SolverDef& solver, const Scene& scene) {
     std::optional<double> step_s;
-    if (const auto* rattle = std::get_if<RattleDef>(&scene.solver)) step_s = rattle->step_s;
-    if (const auto* relaxation = std::get_if<RelaxationDef>(&scene.solver)) step_s = relaxation->step_s;
+    if (const auto* rattle = std::get_if<RattleDef>(&solver)) step_s = rattle->step_s;
+    if (const auto* relaxation = std::get_if<RelaxationDef>(&solver)) step_s = relaxation->step_s;
     return scene.world.duration_s / step_s.value_or(scene.video.fps.interval_s());
 }
 
-int sweep_count(const Scene& scene) {
-    const auto* relaxation = std::get_if<RelaxationDef>(&scene.solver);
+int sweep_count(const SolverDef& solver) {
+    const auto* relaxation = std::get_if<RelaxationDef>(&solver);
     return relaxation == nullptr ? 1 : relaxation->sweeps;
 }
 
-bool check_steps(const Sections& sections, const Scene& scene) {
-    if (!sections.solver.is_sound("method") || !sections.solver.is_sound("step")) return false;
-    const double steps = step_count(scene);
+bool check_steps(const Sections& sections, const SolverGroup& group, const Scene& scene) {
+    if (!group.table.is_sound("method") || !group.table.is_sound("step")) return false;
+    const double steps = step_count(group.def, scene);
     if (steps <= static_cast<double>(Limits::kSteps)) return true;
     fail_at(
-        sections, {{&sections.solver, "step"}, {&sections.world, "duration"}},
+        sections, {{&group.table, "step"}, {&sections.world, "duration"}},
         fmt::format("{:g} s are {:g} steps, over the limit of {}; give a longer step or a shorter duration",
                     scene.world.duration_s, steps, Limits::kSteps));
     return false;
 }
 
-void check_bar_updates(const Sections& sections, const Scene& scene, std::int64_t bars) {
-    if (!sections.solver.is_sound("sweeps") || !sections.solver.is_sound("reach")) return;
-    const double steps = step_count(scene);
-    const double updates = static_cast<double>(bars) * sweep_count(scene) * steps;
-    if (updates <= Limits::kBarUpdates) return;
+/// Adds a group of that many bars to the bar updates of all. Returns whether they are few enough.
+bool check_bar_updates(const Sections& sections, const SolverGroup& group, const Scene& scene,
+                       std::int64_t bars, double& all_updates) {
+    if (!group.table.is_sound("sweeps")) return false;
+    const double steps = step_count(group.def, scene);
+    const bool is_first = all_updates == 0.0;
+    all_updates += static_cast<double>(bars) * sweep_count(group.def) * steps;
+    if (all_updates <= Limits::kBarUpdates) return true;
     fail_at(
         sections,
-        {{&sections.solver, "sweeps"},
-         {&sections.solver, "step"},
-         {&sections.solver, "reach"},
+        {{&group.table, "sweeps"},
+         {&group.table, "step"},
+         {&group.table, "reach"},
          {&sections.world, "duration"}},
-        fmt::format("{} bars, {} sweeps and {:g} steps are {:g} bar updates, over the limit of {:g}; give "
+        fmt::format("{} bars, {} sweeps and {:g} steps{} are {:g} bar updates, over the limit of {:g}; give "
                     "fewer of one of them",
-                    bars, sweep_count(scene), steps, updates, Limits::kBarUpdates));
+                    bars, sweep_count(group.def), steps, is_first ? "" : ", with those of other methods,",
+                    all_updates, Limits::kBarUpdates));
+    return false;
 }
 
 /// Adds one body to what all ask for together. Returns whether there is memory for them.
@@ -125,10 +130,14 @@ void check_stiffness(const Sections& sections, const Scene& scene, const System&
 }
 
 void check_pace(const Sections& sections, const Scene& scene, const System& system) {
-    if (std::holds_alternative<RelaxationDef>(scene.solver)) return;
+    const std::vector<SolverDef> solvers = solvers_of(scene);
+    const auto is_relaxed = [&](std::size_t i) { return std::holds_alternative<RelaxationDef>(solvers[i]); };
+    std::size_t particles = 0;
+    for (std::size_t i = 0; i < solvers.size(); ++i)
+        particles += is_relaxed(i) ? 0 : system.bodies[i].particle_count;
     const auto updates = [&](double frequency_1_s) {
         return sim::expected_steps(frequency_1_s, scene.video.fps.interval_s()) *
-               static_cast<double>(system.particle_count());
+               static_cast<double>(particles);
     };
     const auto too_fast = [&](double frequency_1_s) {
         return updates(frequency_1_s) > Limits::kFrameUpdates;
@@ -142,6 +151,7 @@ void check_pace(const Sections& sections, const Scene& scene, const System& syst
         fail_at(sections, {{&sections.world, "drag"}},
                 problem("slows down", scene.world.drag_1_s, "less drag"));
     for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+        if (is_relaxed(i)) continue;
         const double turn_1_s = sim::angular_velocity_1_s(system, system.bodies[i]);
         if (too_fast(turn_1_s))
             fail_in_body(sections, i, {"velocity"},
@@ -155,26 +165,40 @@ void check_pace(const Sections& sections, const Scene& scene, const System& syst
 
 }  // namespace
 
-SceneSize count_bodies(const Sections& sections, int reach) {
+SceneSize count_bodies(const Sections& sections, const SolverSection& solver) {
     SceneSize size;
     BodySize all;
-    bool is_known = sections.solver.is_sound("method") && sections.solver.is_sound("reach");
+    size.has_bars = sections.solver.is_sound("method") && sections.solver.is_sound("reach") &&
+                    sections.solver.is_sound("bodies");
     const auto add = [&](const TableReader& body, const std::optional<BodySize>& own,
                          std::string_view fewer_bars) {
         size.bodies.push_back(own);
-        is_known = is_known && own;
+        size.has_bars = size.has_bars && own;
         if (size.fits && own) size.fits = add_size(body, *own, fewer_bars, all);
     };
-    for (const TableReader& rope : sections.ropes)
-        add(rope, read_rope_size(rope, reach), "fewer particles or a smaller solver.reach");
+    for (const TableReader& rope : sections.ropes) {
+        const int reach = solver.group_of(size.bodies.size()).reach;
+        add(rope, read_rope_size(rope, reach), "fewer particles, or the solver a smaller reach");
+    }
     for (const TableReader& net : sections.nets) add(net, read_net_size(net), "fewer");
-    if (is_known && size.fits) size.bars = all.bars;
+    size.has_bars = size.has_bars && size.fits;
     return size;
 }
 
-void check_work(const Sections& sections, const Scene& scene, std::optional<std::int64_t> bars) {
-    if (check_frames(sections, scene) && check_steps(sections, scene) && bars)
-        check_bar_updates(sections, scene, *bars);
+void check_work(const Sections& sections, const SolverSection& solver, const SceneSize& size,
+                const Scene& scene) {
+    if (!check_frames(sections, scene)) return;
+    std::vector<std::optional<std::int64_t>> bars(solver.groups.size());  // empty: it moves no body
+    for (std::size_t i = 0; i < size.bodies.size(); ++i) {
+        auto& sum = bars[solver.group_of_body[i]];
+        sum = sum.value_or(0) + (size.has_bars ? size.bodies[i]->bars : 0);
+    }
+    double updates = 0.0;
+    for (std::size_t g = 0; g < bars.size(); ++g) {
+        const SolverGroup& group = solver.groups[g];
+        if (!bars[g] || !check_steps(sections, group, scene) || !size.has_bars) continue;
+        if (!check_bar_updates(sections, group, scene, *bars[g], updates)) return;
+    }
 }
 
 void check_motion(const Sections& sections, const Scene& scene) {

@@ -160,10 +160,6 @@ class ValueChecker {
     Problems* problems_;
 };
 
-std::string dotted(std::string_view front, std::string_view name) {
-    return front.empty() ? std::string(name) : fmt::format("{}.{}", front, name);
-}
-
 /// Checks tables, each with the tables in it.
 class TableChecker {
   public:
@@ -172,7 +168,7 @@ class TableChecker {
     /// Checks the table at `path`, which has the keys of `section`.
     void check(toml::table& table, std::string_view section, const std::string& path) const {
         refuse_unknown_keys(table, section, path);
-        if (section == "solver") refuse_foreign_keys(table);
+        if (const Key* const method = find_key(section, "method")) refuse_foreign_keys(table, *method, path);
         for (const Key& key : all_keys()) {
             if (key.section != section) continue;
             const std::string key_path = dotted(path, key.name);
@@ -201,18 +197,18 @@ class TableChecker {
     }
 
     /// Refuses keys of other methods, whatever their values. Without a valid method no key is foreign.
-    void refuse_foreign_keys(toml::table& solver) const {
+    void refuse_foreign_keys(toml::table& solver, const Key& method_key, const std::string& path) const {
         const auto has = [](const std::vector<std::string_view>& words, std::string_view word) {
             return std::find(words.begin(), words.end(), word) != words.end();
         };
-        const std::string method = solver.contains("method") ? solver["method"].value_or(std::string())
-                                                             : std::string(solver_name(SolverDef{}));
-        if (!has(find_key("solver", "method")->type.choices, method) || !problems_->is_sound("solver.method"))
-            return;
+        const bool is_default = !solver.contains("method") && !method_key.initial.required;
+        const std::string method =
+            is_default ? std::string(solver_name(SolverDef{})) : solver["method"].value_or(std::string());
+        if (!has(method_key.type.choices, method) || !problems_->is_sound(dotted(path, "method"))) return;
         for (const Key& key : all_keys()) {
-            const toml::node* const node = key.section == "solver" ? solver.get(key.name) : nullptr;
+            const toml::node* const node = key.section == method_key.section ? solver.get(key.name) : nullptr;
             if (node == nullptr || key.methods.empty() || has(key.methods, method)) continue;
-            problems_->add(node->source(), path_of(key),
+            problems_->add(node->source(), dotted(path, key.name),
                            fmt::format("method \"{}\" does not use it, only {}; remove it{}", method,
                                        fmt::join(key.methods, ", "), key.instead));
             solver.erase(key.name);
@@ -221,14 +217,15 @@ class TableChecker {
 
     bool check_value(const Key& key, toml::node& node, const std::string& section,
                      const std::string& path) const {
-        if (key.type.kind == Kind::kTables) return check_tables(key, node, path);
+        if (key.type.kind == Kind::kTables) return check_tables(key, node, section, path);
         if (key.type.kind != Kind::kTable) return ValueChecker(key, *problems_).check(node, path);
         if (!node.is_table()) return fail(key, node, path, "a table");
         check(*node.as_table(), section, path);
         return true;
     }
 
-    bool check_tables(const Key& key, toml::node& node, const std::string& path) const {
+    bool check_tables(const Key& key, toml::node& node, const std::string& section,
+                      const std::string& path) const {
         toml::array* const list = node.as_array();
         if (list == nullptr) return fail(key, node, path, "a list");
         if (list->empty()) {
@@ -239,7 +236,7 @@ class TableChecker {
             toml::node& entry = *list->get(i);
             const std::string entry_path = fmt::format("{}[{}]", path, i);
             if (entry.is_table()) {
-                check(*entry.as_table(), key.name, entry_path);
+                check(*entry.as_table(), section, entry_path);
             } else {
                 fail(key, entry, entry_path, "a table");
             }

@@ -252,9 +252,8 @@ Words order_words() {
     return {words.begin(), words.end()};
 }
 
-std::vector<Key> solver_keys() {
-    const Words methods(kMethodNames.begin(), kMethodNames.end());
-    const Words automatic{AutoDef::kName};
+/// The keys of the methods that a scene names.
+std::vector<Key> method_keys(std::string_view section) {
     const Words exact{ExactDef::kName};
     const Words rattle{RattleDef::kName};
     const Words relaxation{RelaxationDef::kName};
@@ -262,26 +261,54 @@ std::vector<Key> solver_keys() {
     constexpr Range kTolerance{.low = ExactDef::kTightestTolerance, .high = ExactDef::kLoosestTolerance};
     const RelaxationDef def;
     return {
-        {"solver", "method", one_of(methods), "", at(methods, SolverDef{}.index()), "the method"},
-        {"solver", "tolerance_px", number(kAbove0), "px", at(AutoDef{}.tolerance_px),
-         "the bound of the displayed position error", "", automatic},
-        {"solver", "tolerance", number(kTolerance), "", at(ExactDef{}.tolerance),
+        {section, "tolerance", number(kTolerance), "", at(ExactDef{}.tolerance),
          "the position error relative to the length of the rope", "", exact},
-        {"solver", "order", one_of(order_words(), Kind::kInteger), "", at(RattleDef{}.order), "the order", "",
+        {section, "order", one_of(order_words(), Kind::kInteger), "", at(RattleDef{}.order), "the order", "",
          rattle},
-        {"solver", "step", number({.low = 1e-9}), "s", otherwise("one frame; rattle: a stable part of one"),
+        {section, "step", number({.low = 1e-9}), "s", otherwise("one frame; rattle: a stable part of one"),
          "the step", "", stepped},
-        {"solver", "reach", integer(1, kMostParticles), "", at(kDefaultReach), "the reach",
+        {section, "reach", integer(1, kMostParticles), "", at(kDefaultReach), "the reach",
          "ropes have bars to the next 1..reach particles", relaxation,
          ": bars to farther particles make a straight rope a rigid rod, and its equations singular"},
-        {"solver", "sweeps", integer(1, 1e6), "", at(def.sweeps),
+        {section, "sweeps", integer(1, 1e6), "", at(def.sweeps),
          "the number of passes over all bars per step", "", relaxation},
-        {"solver", "delta", number({.low = 0.0, .high = 1.0, .high_open = true}), "", at(def.delta),
+        {section, "delta", number({.low = 0.0, .high = 1.0, .high_open = true}), "", at(def.delta),
          "the share of the velocity lost per step", "", relaxation, ", or give world.drag"},
-        {"solver", "force", pair("[fx, fy]", kAny), "N", otherwise("the weight"),
+        {section, "force", pair("[fx, fy]", kAny), "N", otherwise("the weight"),
          "the force on every particle", "in place of gravity: a light particle accelerates more", relaxation,
          ", or give world.gravity"},
     };
+}
+
+std::vector<Key> solver_keys() {
+    const Words methods(kMethodNames.begin(), kMethodNames.end());
+    const Words automatic{AutoDef::kName};
+    std::vector<Key> keys{
+        {"solver", "method", one_of(methods), "", at(methods, SolverDef{}.index()), "the method"},
+        {"solver", "tolerance_px", number(kAbove0), "px", at(AutoDef{}.tolerance_px),
+         "the bound of the displayed position error", "", automatic},
+    };
+    const std::vector<Key> named = method_keys("solver");
+    keys.insert(keys.end(), named.begin(), named.end());
+    keys.push_back({"solver", "bodies", of(Kind::kTables), "", none(), "bodies that another method moves",
+                    "solver.method moves the rest"});
+    return keys;
+}
+
+std::vector<Key> solver_bodies_keys() {
+    const std::string_view section = "solver.bodies";
+    const Type indices = list(Kind::kInteger, 0);
+    const Words methods(kMethodNames.begin() + 1, kMethodNames.end());  // all but auto
+    std::vector<Key> keys{
+        {section, "ropes", indices, "", at(std::vector<int>{}), "the indices of [[rope]] tables",
+         "from 0; -1 is the last"},
+        {section, "nets", indices, "", at(std::vector<int>{}), "the indices of [[net]] tables",
+         "from 0; -1 is the last"},
+        {section, "method", one_of(methods), "", required(), "the method of these bodies"},
+    };
+    const std::vector<Key> named = method_keys(section);
+    keys.insert(keys.end(), named.begin(), named.end());
+    return keys;
 }
 
 std::vector<Key> video_keys() {
@@ -349,7 +376,7 @@ const std::vector<Key>& all_keys() {
         for (const std::vector<Key>& part :
              {root_keys(), world_keys(), body_keys("rope", rope_shapes(), "style.rope_width_px"), rope_keys(),
               rope_shape_keys(), body_keys("net", net_shapes(), "half of style.rope_width_px"), net_keys(),
-              solver_keys(), video_keys(), style_keys(), camera_keys()}) {
+              solver_keys(), solver_bodies_keys(), video_keys(), style_keys(), camera_keys()}) {
             all.insert(all.end(), part.begin(), part.end());
         }
         return all;
@@ -362,6 +389,12 @@ const Key* find_key(std::string_view section, std::string_view name) {
     const auto found = std::find_if(
         keys.begin(), keys.end(), [&](const Key& key) { return key.section == section && key.name == name; });
     return found == keys.end() ? nullptr : &*found;
+}
+
+const Key* key_of_section(std::string_view section) {
+    const std::size_t dot = section.rfind('.');
+    if (dot == std::string_view::npos) return find_key("", section);
+    return find_key(section.substr(0, dot), section.substr(dot + 1));
 }
 
 std::vector<std::string_view> keys_of(std::string_view section) {

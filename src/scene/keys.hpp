@@ -59,8 +59,14 @@ struct Key {
 /// The key of that name; null if the section has none.
 [[nodiscard]] const Key* find_key(std::string_view section, std::string_view name);
 
+/// The key of the table, or the tables, that a section is; null for the top level.
+[[nodiscard]] const Key* key_of_section(std::string_view section);
+
 /// The names of the keys of one section.
 [[nodiscard]] std::vector<std::string_view> keys_of(std::string_view section);
+
+/// "world.drag", or `name` alone if `front` is empty.
+[[nodiscard]] std::string dotted(std::string_view front, std::string_view name);
 
 /// "rope[].mass": the key as messages and documentation name it.
 [[nodiscard]] std::string path_of(const Key& key);

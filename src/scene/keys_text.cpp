@@ -81,10 +81,10 @@ std::string meaning_text(const Key& key) {
 
 /// "[world]", "[[rope]]", "rope.line": a section as a file writes it.
 std::string heading(std::string_view section) {
-    if (section.empty()) return "Top level";
-    const Key* const table = find_key("", section);
-    if (table == nullptr) return std::string(section);
-    return table->type.kind == Kind::kTables ? fmt::format("[[{}]]", section) : fmt::format("[{}]", section);
+    const Key* const table = key_of_section(section);
+    if (table == nullptr) return "Top level";
+    if (table->type.kind == Kind::kTables) return fmt::format("[[{}]]", section);
+    return table->section.empty() ? fmt::format("[{}]", section) : std::string(section);
 }
 
 std::string text_row(const Key& key) {
@@ -112,16 +112,14 @@ std::string number_text(double value) {
     return scientific.size() < plain.size() ? scientific : plain;
 }
 
+std::string dotted(std::string_view front, std::string_view name) {
+    return front.empty() ? std::string(name) : fmt::format("{}.{}", front, name);
+}
+
 std::string path_of(const Key& key) {
-    std::string path;
-    if (!key.section.empty()) {
-        const std::size_t dot = key.section.find('.');
-        const std::string root(key.section.substr(0, dot));
-        path = root + (find_key("", root)->type.kind == Kind::kTables ? "[]" : "");
-        if (dot != std::string::npos) path += key.section.substr(dot);
-        path += '.';
-    }
-    return path + std::string(key.name);
+    const Key* const table = key_of_section(key.section);
+    if (table == nullptr) return std::string(key.name);
+    return fmt::format("{}{}.{}", path_of(*table), table->type.kind == Kind::kTables ? "[]" : "", key.name);
 }
 
 std::string type_text(const Key& key) {
@@ -151,7 +149,7 @@ std::string remedy(const Key& key) {
             return key.section.empty() ? fmt::format("write [{}]", key.name)
                                        : fmt::format("give {}", key.meaning);
         case Kind::kTables:
-            return fmt::format("give one or more [[{}]]", key.name);
+            return fmt::format("give one or more [[{}]]", path_of(key));
         case Kind::kBoolean:
             return "give true or false";
         case Kind::kColor:

@@ -18,35 +18,6 @@ WorldDef read_world(const TableReader& world) {
     return def;
 }
 
-SolverSection read_solver(const TableReader& solver) {
-    std::string_view method = AutoDef::kName;
-    solver.read("method", method);
-    if (method == ExactDef::kName) {
-        ExactDef def;
-        solver.read("tolerance", def.tolerance);
-        return {def};
-    }
-    if (method == RattleDef::kName) {
-        RattleDef def;
-        solver.read("order", def.order);
-        solver.read("step", def.step_s);
-        return {def};
-    }
-    if (method == RelaxationDef::kName) {
-        RelaxationDef def;
-        int reach = kDefaultReach;
-        solver.read("step", def.step_s);
-        solver.read("reach", reach);
-        solver.read("sweeps", def.sweeps);
-        solver.read("delta", def.delta);
-        solver.read("force", def.force_n);
-        return {def, reach};
-    }
-    AutoDef def;
-    solver.read("tolerance_px", def.tolerance_px);
-    return {def};
-}
-
 VideoDef read_video(const TableReader& video) {
     VideoDef def;
     if (const auto size = video.find("size")) {

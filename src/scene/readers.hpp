@@ -37,14 +37,27 @@ struct Sections {
     std::vector<TableReader> nets;
 };
 
-/// The table [solver].
-struct SolverSection {
+/// A method, and the bodies that it moves: the table [solver], or one of [[solver.bodies]].
+struct SolverGroup {
+    TableReader table;
     SolverDef def;
-    int reach = 1;  ///< of the bars of ropes
+    int reach = 1;  ///< of the bars of its ropes
 };
 
+/// How the bodies of a scene are solved.
+struct SolverSection {
+    std::vector<SolverGroup> groups;         ///< [solver], then [[solver.bodies]]
+    std::vector<std::size_t> group_of_body;  ///< an index of `groups` per body: ropes, then nets
+
+    [[nodiscard]] const SolverGroup& group_of(std::size_t body) const { return groups[group_of_body[body]]; }
+};
+
+/// The solver that runs a named method.
+[[nodiscard]] SolverDef solver_of(const MethodDef& method);
+
 [[nodiscard]] WorldDef read_world(const TableReader& world);
-[[nodiscard]] SolverSection read_solver(const TableReader& solver);
+/// Sets `scene.solver` and `scene.body_solvers` too.
+[[nodiscard]] SolverSection read_solver(const Sections& sections, Scene& scene);
 [[nodiscard]] VideoDef read_video(const TableReader& video);
 [[nodiscard]] StyleDef read_style(const TableReader& style);
 [[nodiscard]] CameraDef read_camera(const TableReader& camera);

@@ -97,8 +97,8 @@ std::string short_bar_problem(std::size_t first, std::size_t last, std::size_t s
     const std::string coincide = fmt::format("points {} and {} coincide", first, last);
     if (stride > 1) {
         return fmt::format(
-            "{}, and solver.reach = {} ties them by a bar, which has no direction; move one, or give a "
-            "reach below {}",
+            "{}, and the solver's reach = {} ties them by a bar, which has no direction; move one, or give "
+            "a reach below {}",
             coincide, reach, stride);
     }
     return coincide + (closes ? "; leave this one out, because closed = true ties the last point to the first"

@@ -1,7 +1,10 @@
 #include "corda/scene/scene.hpp"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 
+#include "corda/core/basics.hpp"
 #include "corda/scene/check_limits.hpp"
 #include "corda/scene/checker.hpp"
 #include "corda/scene/document.hpp"
@@ -21,9 +24,10 @@ Sections sections_of(const toml::table& document, Problems& problems) {
 }
 
 /// Ropes and nets, with their styles.
-void read_bodies(const Sections& sections, const SceneSize& size, int reach, Scene& scene) {
+void read_bodies(const Sections& sections, const SceneSize& size, const SolverSection& solver, Scene& scene) {
     for (const TableReader& rope : sections.ropes) {
-        scene.ropes.push_back(read_rope(rope, size.bodies[scene.body_styles.size()], reach));
+        const std::size_t body = scene.ropes.size();
+        scene.ropes.push_back(read_rope(rope, size.bodies[body], solver.group_of(body).reach));
         scene.body_styles.push_back(read_body_style(rope));
     }
     for (const TableReader& net : sections.nets) {
@@ -50,14 +54,13 @@ Scene parse_scene(std::string_view toml, const std::string& source_name,
     scene.name = std::filesystem::path(source_name).stem().string();
     scene.source = source_name;
     scene.world = read_world(sections.world);
-    const SolverSection solver = read_solver(sections.solver);
-    scene.solver = solver.def;
+    const SolverSection solver = read_solver(sections, scene);
     scene.video = read_video(sections.video);
     scene.style = read_style(sections.style);
     scene.camera = read_camera(sections.camera);
-    const SceneSize size = count_bodies(sections, solver.reach);
-    check_work(sections, scene, size.bars);
-    if (size.fits) read_bodies(sections, size, solver.reach, scene);
+    const SceneSize size = count_bodies(sections, solver);
+    check_work(sections, solver, size, scene);
+    if (size.fits) read_bodies(sections, size, solver, scene);
     problems.throw_if_any();
     check_motion(sections, scene);
     problems.throw_if_any();
@@ -70,6 +73,28 @@ std::string_view solver_name(const SolverDef& solver) {
 
 System system_of(const Scene& scene) {
     return build_system(scene.ropes, scene.nets);
+}
+
+std::vector<SolverDef> solvers_of(const Scene& scene) {
+    std::vector<SolverDef> solvers(scene.ropes.size() + scene.nets.size(), scene.solver);
+    std::vector<bool> is_named(solvers.size());
+    for (std::size_t i = 0; i < scene.body_solvers.size(); ++i) {
+        const BodySolverDef& group = scene.body_solvers[i];
+        const auto fail = [&](const std::string& problem) {
+            throw Error(ExitCode::kInvalidScene, fmt::format("body_solvers[{}]: {}", i, problem));
+        };
+        const auto name = [&](std::uint32_t index, std::size_t first, std::size_t count, const char* what) {
+            if (index >= count) fail(fmt::format("names {} {} of {}", what, index, count));
+            if (is_named[first + index]) fail(fmt::format("names {} {}, which has a method", what, index));
+            is_named[first + index] = true;
+            solvers[first + index] = solver_of(group.method);
+        };
+        if (group.ropes.empty() && group.nets.empty()) fail("names neither a rope nor a net");
+        for (const std::uint32_t index : group.ropes) name(index, 0, scene.ropes.size(), "rope");
+        for (const std::uint32_t index : group.nets)
+            name(index, scene.ropes.size(), scene.nets.size(), "net");
+    }
+    return solvers;
 }
 
 }  // namespace corda

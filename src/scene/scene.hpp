@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,6 +25,13 @@ struct AutoDef {
 /// How a scene is solved: by a method, or by the one that `auto` finds.
 using SolverDef = std::variant<AutoDef, ExactDef, RattleDef, RelaxationDef>;
 
+/// Bodies that a method of their own moves.
+struct BodySolverDef {
+    std::vector<std::uint32_t> ropes;  ///< indices of Scene::ropes; every body at most once in a scene
+    std::vector<std::uint32_t> nets;   ///< indices of Scene::nets; at least one rope or net
+    MethodDef method;
+};
+
 /// The name a scene file uses for it.
 [[nodiscard]] std::string_view solver_name(const SolverDef& solver);
 
@@ -34,8 +42,9 @@ struct Scene {
     WorldDef world;
     std::vector<RopeDef> ropes;
     std::vector<NetDef> nets;
-    std::vector<BodyStyleDef> body_styles;  ///< one per body: ropes, then nets; may be shorter
-    SolverDef solver;
+    std::vector<BodyStyleDef> body_styles;    ///< one per body: ropes, then nets; may be shorter
+    SolverDef solver;                         ///< of the bodies that `body_solvers` does not name
+    std::vector<BodySolverDef> body_solvers;  ///< empty: `solver` moves all
     StyleDef style;
     CameraDef camera;
     VideoDef video;
@@ -56,6 +65,10 @@ using Setting = std::string;
 
 /// The particles and bars of a scene at t = 0: its ropes, then its nets.
 [[nodiscard]] System system_of(const Scene& scene);
+
+/// The solver of every body of a scene, in the order of System::bodies: ropes, then nets. Throws corda::Error
+/// (kInvalidScene) for `body_solvers` that are not what their declaration says.
+[[nodiscard]] std::vector<SolverDef> solvers_of(const Scene& scene);
 
 }  // namespace corda
 #pragma GCC visibility pop

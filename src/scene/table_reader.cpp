@@ -16,8 +16,7 @@ std::optional<Value> TableReader::find(std::string_view key) const {
 TableReader TableReader::table(std::string_view key) const {
     static const toml::table empty;
     const toml::node* const node = table_->get(key);
-    const std::string section = section_.empty() ? std::string(key) : fmt::format("{}.{}", section_, key);
-    return {*problems_, node == nullptr ? empty : *node->as_table(), section, path_of(key)};
+    return {*problems_, node == nullptr ? empty : *node->as_table(), dotted(section_, key), path_of(key)};
 }
 
 std::vector<TableReader> TableReader::tables(std::string_view key) const {
@@ -25,7 +24,8 @@ std::vector<TableReader> TableReader::tables(std::string_view key) const {
     const toml::array* const list = (*table_)[key].as_array();
     for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
         if (const toml::table* const table = list->get(i)->as_table())
-            readers.emplace_back(*problems_, *table, std::string(key), fmt::format("{}[{}]", key, i));
+            readers.emplace_back(*problems_, *table, dotted(section_, key),
+                                 fmt::format("{}[{}]", path_of(key), i));
     }
     return readers;
 }
@@ -37,7 +37,7 @@ void TableReader::add_missing(std::string_view key) const {
 }
 
 std::string TableReader::path_of(std::string_view key) const {
-    return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+    return dotted(path_, key);
 }
 
 }  // namespace corda::scene

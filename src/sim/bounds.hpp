@@ -21,6 +21,10 @@ class MotionBounds {
             max_.y = std::max(max_.y, y_m);
         }
     }
+    void include(const MotionBounds& other) {
+        min_ = {std::min(min_.x, other.min_.x), std::min(min_.y, other.min_.y)};
+        max_ = {std::max(max_.x, other.max_.x), std::max(max_.y, other.max_.y)};
+    }
     [[nodiscard]] bool empty() const { return max_.x < min_.x; }
     [[nodiscard]] Vec2 min_m() const { return min_; }
     [[nodiscard]] Vec2 max_m() const { return max_; }

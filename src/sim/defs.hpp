@@ -106,6 +106,8 @@ struct ExactDef {
     /// Error of the positions after some seconds, relative to the rope's length; kTightestTolerance ..
     /// kLoosestTolerance.
     double tolerance = 1e-9;
+
+    friend bool operator==(const ExactDef&, const ExactDef&) = default;
 };
 
 /// Method `rattle`: RATTLE at a fixed step, composed to a higher order.
@@ -115,6 +117,8 @@ struct RattleDef {
 
     int order = 4;                      ///< one of kOrders
     std::optional<double> step_s = {};  ///< > 0; default: a stable step that divides the frame interval
+
+    friend bool operator==(const RattleDef&, const RattleDef&) = default;
 };
 
 /// Method `relaxation`, that of the source report.
@@ -125,6 +129,8 @@ struct RelaxationDef {
     int sweeps = 1;                     ///< passes over all bars per step; >= 1
     double delta = 0.0;                 ///< share of the velocity lost per step; 0 <= delta < 1
     std::optional<Vec2> force_n = {};   ///< force per particle in place of gravity; finite
+
+    friend bool operator==(const RelaxationDef&, const RelaxationDef&) = default;
 };
 
 /// The method that moves a system, with its parameters.

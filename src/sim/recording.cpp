@@ -2,23 +2,32 @@
 
 #include <algorithm>
 
-namespace corda::sim {
+#include "corda/sim/figures.hpp"
 
+namespace corda::sim {
 Recording::Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes)
     : particle_count_(particle_count),
-      most_states_(std::min(state_count,
-                            budget_bytes / ((2 * particle_count + 1) * sizeof(double) + sizeof(Figures)))) {
-    values_.reserve(most_states_ * (2 * particle_count + 1));
+      most_states_(std::min(state_count, budget_bytes / (state_size() * sizeof(double) + sizeof(Figures)))) {
+    values_.reserve(most_states_ * state_size());
     figures_.reserve(most_states_);
+    energy_change_j_.reserve(state_count);
+}
+
+Recording Recording::for_part(std::size_t particle_count) const {
+    Recording part(particle_count, 0, 0);
+    part.most_states_ = most_states_;
+    return part;
 }
 
 void Recording::clear() {
-    size_ = 0;
     values_.clear();
     figures_.clear();
+    energy_change_j_.clear();
+    energy_scale_j_ = 0.0;
     bounds_ = {};
     diagnostics_ = {};
     wall_s_ = 0.0;
+    bodies_ = 0;
 }
 
 Status Recording::advance(Simulation& run, double time_s, const std::function<double()>& clock_s,
@@ -28,19 +37,62 @@ Status Recording::advance(Simulation& run, double time_s, const std::function<do
     if (clock_s) wall_s_ += clock_s() - start_s;
     if (status == Status::kDiverged) return status;
     const State& state = run.state();
-    ++size_;
     bounds_.include(state);
     diagnostics_ = run.diagnostics();
-    if (size_ > most_states_) return status;
+    energy_change_j_.push_back(run.energy_change_j());
+    energy_scale_j_ = run.energy_scale_j();
+    if (size() > most_states_) return status;
+    figures_.push_back(run.figures());
     values_.push_back(state.time_s);
     values_.insert(values_.end(), state.x_m.begin(), state.x_m.end());
     values_.insert(values_.end(), state.y_m.begin(), state.y_m.end());
-    figures_.push_back(run.figures());
     return status;
 }
 
+void Recording::add_body(const Recording& body, std::size_t first_particle) {
+    if (bodies_++ == 0) {
+        energy_change_j_.assign(body.size(), 0.0);
+        figures_.assign(body.figures_.size(), Figures{0.0, std::nullopt, Loads{}});
+        values_.resize(body.figures_.size() * state_size());
+        diagnostics_.largest.loads = Loads{};
+    }
+    energy_change_j_.resize(std::min(size(), body.size()));
+    figures_.resize(std::min(figures_.size(), body.figures_.size()));
+    values_.resize(figures_.size() * state_size());
+    bounds_.include(body.bounds_);
+    wall_s_ += body.wall_s_;
+    add_figures(body);
+    for (std::size_t i = 0; i < figures_.size(); ++i) {
+        const double* const from = &body.values_[i * body.state_size()];
+        double* const to = &values_[i * state_size()];
+        *to = *from;
+        std::copy_n(from + 1, body.particle_count_, to + 1 + first_particle);
+        std::copy_n(from + 1 + body.particle_count_, body.particle_count_,
+                    to + 1 + particle_count_ + first_particle);
+    }
+}
+
+void Recording::add_figures(const Recording& body) {
+    energy_scale_j_ += body.energy_scale_j_;
+    diagnostics_.steps += body.diagnostics_.steps;
+    Figures& largest = diagnostics_.largest;
+    largest.strain = std::max(largest.strain, body.diagnostics_.largest.strain);
+    largest.loads = loads_of_both(largest.loads, body.diagnostics_.largest.loads);
+    largest.energy_error = std::nullopt;
+    for (std::size_t i = 0; i < size(); ++i) {
+        energy_change_j_[i] += body.energy_change_j_[i];
+        const auto error = energy_error(energy_change_j_[i], energy_scale_j_);
+        if (error) largest.energy_error = std::max(largest.energy_error.value_or(0.0), *error);
+        if (!holds(i)) continue;
+        Figures& figures = figures_[i];
+        figures.strain = std::max(figures.strain, body.figures_[i].strain);
+        figures.loads = loads_of_both(figures.loads, body.figures_[i].loads);
+        figures.energy_error = error;
+    }
+}
+
 void Recording::read(std::size_t i, State& state) const {
-    const auto values = values_.begin() + static_cast<std::ptrdiff_t>(i * (2 * particle_count_ + 1));
+    const auto values = values_.begin() + static_cast<std::ptrdiff_t>(i * state_size());
     const auto middle = values + 1 + static_cast<std::ptrdiff_t>(particle_count_);
     state.time_s = *values;
     state.x_m.assign(values + 1, middle);

@@ -16,19 +16,26 @@ class Recording {
     /// `state_count`: of the timeline. `budget_bytes`: the most memory that states may take.
     Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes);
 
+    /// An empty recording of some of the particles that keeps as many states.
+    [[nodiscard]] Recording for_part(std::size_t particle_count) const;
+
     /// Forgets all states.
     void clear();
     /// Advances a run to the next time and adds its state, unless the run diverges. `clock_s`, if not empty,
     /// measures the stepping. `goes_on`: see Simulation::advance_to.
     Status advance(Simulation& run, double time_s, const std::function<double()>& clock_s,
                    const GoesOn& goes_on = {});
+    /// Adds the recording of a body whose particles begin at `first_particle`, made by for_part(). The states
+    /// are then those that all bodies added so far have.
+    void add_body(const Recording& body, std::size_t first_particle);
 
     /// Number of states added.
-    [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] std::size_t size() const { return energy_change_j_.size(); }
     /// Whether state `i` was added and is kept.
     [[nodiscard]] bool holds(std::size_t i) const { return i < figures_.size(); }
     /// Writes state `i`, which it holds, to `state`.
     void read(std::size_t i, State& state) const;
+    /// Of state `i`, which it holds.
     [[nodiscard]] const Figures& figures(std::size_t i) const { return figures_[i]; }
 
     /// Of all states added.
@@ -40,14 +47,19 @@ class Recording {
     [[nodiscard]] double wall_s() const { return wall_s_; }
 
   private:
+    void add_figures(const Recording& body);
+    [[nodiscard]] std::size_t state_size() const { return 2 * particle_count_ + 1; }
+
     std::size_t particle_count_;
     std::size_t most_states_;
-    std::size_t size_ = 0;
     std::vector<double> values_;  ///< per state: time, then all x, then all y
     std::vector<Figures> figures_;
+    std::vector<double> energy_change_j_;  ///< of all states added; NaN if not known
+    double energy_scale_j_ = 0.0;
     MotionBounds bounds_;
     Diagnostics diagnostics_;
     double wall_s_ = 0.0;
+    std::size_t bodies_ = 0;  ///< added by add_body()
 };
 
 }  // namespace corda::sim

@@ -2,17 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
 #include "corda/core/basics.hpp"
+#include "corda/sim/body_solvers.hpp"
 #include "corda/sim/distance.hpp"
 #include "corda/sim/exact/exact.hpp"
+#include "corda/sim/figures.hpp"
 #include "corda/sim/flush_denormals.hpp"
 #include "corda/sim/rattle/rattle.hpp"
 #include "corda/sim/refusal.hpp"
 #include "corda/sim/relaxation/relaxation.hpp"
 #include "corda/sim/solver.hpp"
+#include "corda/sim/split.hpp"
 #include "corda/sim/validate.hpp"
 
 namespace corda {
@@ -56,10 +60,9 @@ void refuse_bars_without_length(const System& system) {
     }
 }
 
-}  // namespace
-
-std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces, const MethodDef& method,
-                                    double frame_interval_s) {
+/// Of a system that one solver moves.
+std::unique_ptr<Solver> make_one(const System& system, const Forces& forces, const MethodDef& method,
+                                 double frame_interval_s) {
     if (!std::holds_alternative<RelaxationDef>(method)) refuse_bars_without_length(system);
     struct Maker {
         const System& system;
@@ -78,17 +81,51 @@ std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces, 
     return std::visit(Maker{system, forces, frame_interval_s}, method);
 }
 
+}  // namespace
+
+std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces,
+                                    std::span<const MethodDef> methods, double frame_interval_s) {
+    const std::size_t count = system.bodies.size();
+    if (methods.size() != 1 && methods.size() != count) {
+        throw Error(ExitCode::kUsage, std::to_string(methods.size()) + " methods for the " +
+                                          std::to_string(count) +
+                                          " bodies of the system; give one each, or one for all");
+    }
+    // `relaxation` fills the lanes of a processor with several small bodies.
+    const bool relaxes_all = std::all_of(methods.begin(), methods.end(), [&](const MethodDef& method) {
+        return std::holds_alternative<RelaxationDef>(method) && method == methods.front();
+    });
+    if (count == 1 || relaxes_all) return make_one(system, forces, methods.front(), frame_interval_s);
+    std::vector<BodySolvers::Part> parts;
+    for_each_body(system, [&](const System& body, std::size_t i) {
+        const MethodDef& method = methods.size() == 1 ? methods.front() : methods[i];
+        try {
+            parts.push_back({system.bodies[i].first_particle,
+                             make_one(body, forces, method, frame_interval_s),
+                             {0.0, body.x_m, body.y_m}});
+        } catch (const Refusal& refusal) {
+            throw Refusal(refusal.reason(), body_name(system, i) + ": " + refusal.what());
+        }
+    });
+    return std::make_unique<BodySolvers>(std::move(parts));
+}
+
 }  // namespace sim
 
 Simulation::Simulation(System system, const WorldDef& world, const MethodDef& method, double frame_interval_s)
-    : system_(std::move(system)),
-      solver_((sim::validate(world), sim::validate(method),
-               sim::make_solver(system_, world, method, frame_interval_s))),
-      state_{0.0, system_.x_m, system_.y_m},
-      next_(state_),
-      conserves_energy_(solver_->conserves_energy()),
-      initial_energy_j_(solver_->energy_j()),
-      energy_scale_j_(solver_->energy_scale_j()) {
+    : Simulation(std::move(system), world, {&method, 1}, frame_interval_s) {}
+
+Simulation::Simulation(System system, const WorldDef& world, std::span<const MethodDef> methods,
+                       double frame_interval_s)
+    : system_(std::move(system)) {
+    sim::validate(world);
+    for (const MethodDef& method : methods) sim::validate(method);
+    solver_ = sim::make_solver(system_, world, methods, frame_interval_s);
+    state_ = {0.0, system_.x_m, system_.y_m};
+    next_ = state_;
+    conserves_energy_ = solver_->conserves_energy();
+    initial_energy_j_ = solver_->energy_j();
+    energy_scale_j_ = solver_->energy_scale_j();
     if (energy_scale_j_ == 0.0) energy_scale_j_ = std::abs(initial_energy_j_);
 }
 
@@ -116,23 +153,23 @@ Status Simulation::advance_to(double time_s, const GoesOn& goes_on) {
     return Status::kOk;
 }
 
+double Simulation::energy_change_j() const {
+    return conserves_energy_ ? solver_->energy_j() - initial_energy_j_
+                             : std::numeric_limits<double>::quiet_NaN();
+}
+
 void Simulation::observe() {
     const sim::FlushDenormals flush;
     figures_.strain = max_strain(system_, state_);
-    largest_.strain = std::max(largest_.strain, figures_.strain);
-    if (conserves_energy_ && energy_scale_j_ > 0.0) {
-        figures_.energy_error = std::abs(solver_->energy_j() - initial_energy_j_) / energy_scale_j_;
-        largest_.energy_error = std::max(largest_.energy_error.value_or(0.0), *figures_.energy_error);
-    }
+    figures_.energy_error = sim::energy_error(energy_change_j(), energy_scale_j_);
     figures_.loads = solver_->loads();
-    if (!figures_.loads) return;
-    const Loads before = largest_.loads.value_or(Loads{});
-    largest_.loads = Loads{std::max(before.pin_force_n, figures_.loads->pin_force_n),
-                           std::max(before.largest_tension_n, figures_.loads->largest_tension_n)};
+    largest_ = sim::larger_figures(largest_, figures_);
 }
 
-MethodDef Simulation::method() const {
-    return solver_->method();
+std::vector<MethodDef> Simulation::methods() const {
+    std::vector<MethodDef> methods = solver_->methods();
+    methods.resize(system_.bodies.size(), methods.front());
+    return methods;
 }
 
 Diagnostics Simulation::diagnostics() const {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "corda/core/basics.hpp"
@@ -31,13 +32,17 @@ struct Diagnostics {
     Figures largest;
 };
 
-/// A scene in motion: particles and bars, their solver, and figures of every state that it reaches.
+/// A scene in motion: particles and bars, what moves them, and figures of every state that it reaches. Bodies
+/// do not act on each other: each has a solver of its own.
 class Simulation {
   public:
     /// `frame_interval_s`: what a method without a step of its own derives its step from. Throws
     /// corda::Error (kInvalidScene) if the method cannot run the system, or for a field that is not what its
     /// declaration says.
     Simulation(System system, const WorldDef& world, const MethodDef& method,
+               double frame_interval_s = 1.0 / 60.0);
+    /// `methods`: one per body, or one for all. Throws corda::Error (kUsage) for another number of them.
+    Simulation(System system, const WorldDef& world, std::span<const MethodDef> methods,
                double frame_interval_s = 1.0 / 60.0);
 
     Simulation(Simulation&&) noexcept;
@@ -57,8 +62,13 @@ class Simulation {
     /// Of the state alone.
     [[nodiscard]] const Figures& figures() const { return figures_; }
     [[nodiscard]] Diagnostics diagnostics() const;
-    /// The method with every default filled in: given again, it runs with the same bits.
-    [[nodiscard]] MethodDef method() const;
+    /// The method of each body with every default filled in: given again, they run with the same bits.
+    [[nodiscard]] std::vector<MethodDef> methods() const;
+
+    /// E(t) - E(0) of the state, in J; NaN if damping takes energy on purpose.
+    [[nodiscard]] double energy_change_j() const;
+    /// What Figures::energy_error compares it with, in J.
+    [[nodiscard]] double energy_scale_j() const { return energy_scale_j_; }
 
   private:
     void observe();
@@ -89,28 +99,39 @@ struct Trial {
     bool diverged = false;              ///< the run or a check diverged after `reached_s`
 };
 
-/// Why a scene is run by its method.
+/// Why a body is moved by its method.
 enum class PlanReason {
     kNamed,       ///< the scene names the method
-    kExact,       ///< `exact` can move every body
+    kExact,       ///< `exact` can move it
     kGraph,       ///< rigid bars of closed ropes or nets, for which `rattle` is made
     kDependent,   ///< the bars depend on each other, so that no method can tell the true motion
     kCollapsing,  ///< the bars come to depend on each other during the motion
 };
 
-/// The method that runs a scene and, if `auto` chose it, the proof that it is good enough.
-struct Plan {
+/// The method that moves a body and, if `auto` chose it, the proof that it is good enough.
+struct BodyPlan {
     MethodDef method;  ///< with every default filled in: given again, it runs with the same bits
-    /// Bound on the error of any particle's position at any frame time up to the horizon. std::nullopt if no
-    /// method can tell the true motion (its bars depend on each other), or if the scene names the method.
+    PlanReason reason = PlanReason::kNamed;
+    /// Bound on the error of any of its particles' positions at any frame time up to the horizon.
+    /// std::nullopt if no method can tell the true motion, or if the scene names the method.
     std::optional<double> error_bound_m;
     /// The last frame time at which a run and a much tighter one agree within the tolerance: later positions
     /// of no method can be trusted. std::nullopt if the scene ends before.
     std::optional<double> horizon_s;
     bool diverges = false;      ///< at the horizon even the tightest trial diverges
     std::vector<Trial> trials;  ///< all that were run, the chosen one last
-    PlanReason reason = PlanReason::kNamed;
-    int simulation_passes = 0;  ///< how often the motion was integrated, checks and failed trials included
+    int passes = 0;             ///< how often the motion was integrated, checks and failed trials included
+};
+
+/// The methods that run a scene.
+struct Plan {
+    std::vector<BodyPlan> bodies;  ///< one per body of the System
+    /// The largest bound of a body; std::nullopt if one has none.
+    std::optional<double> error_bound_m;
+    std::optional<double> horizon_s;  ///< the earliest of a body
+    /// How often the motion of the whole scene was integrated: that of each body counts by its particles, and
+    /// the sum is rounded up.
+    int simulation_passes = 0;
 };
 
 }  // namespace corda

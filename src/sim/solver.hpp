@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "corda/core/stop_check.hpp"
 #include "corda/sim/defs.hpp"
@@ -39,8 +41,9 @@ class Solver {
     /// Steps taken so far.
     [[nodiscard]] virtual std::uint64_t steps() const = 0;
 
-    /// The method with every default filled in: given again, it runs with the same bits.
-    [[nodiscard]] virtual MethodDef method() const = 0;
+    /// The method of each body, or one for all of them, with every default filled in: given again, they run
+    /// with the same bits.
+    [[nodiscard]] virtual std::vector<MethodDef> methods() const = 0;
 
   protected:
     Solver(double energy_scale_j, bool conserves_energy)
@@ -51,9 +54,10 @@ class Solver {
     bool conserves_energy_;
 };
 
-/// The solver of a method. `system` must outlive it. `frame_interval_s` is what a method derives its step
-/// from if it names none. Throws corda::Refusal if the method cannot run the system.
+/// What moves a system by one method per body, or by one for all of them. `frame_interval_s` is what a method
+/// derives its step from if it names none. Throws corda::Refusal if a method cannot run its body.
 [[nodiscard]] std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces,
-                                                  const MethodDef& method, double frame_interval_s);
+                                                  std::span<const MethodDef> methods,
+                                                  double frame_interval_s);
 
 }  // namespace corda::sim

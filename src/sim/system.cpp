@@ -128,6 +128,14 @@ double largest_length_m(const System& system) {
     return longest_m;
 }
 
+std::string body_name(const System& system, std::size_t body) {
+    const auto& bodies = system.bodies;
+    const auto first_net = std::partition_point(bodies.begin(), bodies.end(),
+                                                [](const Body& other) { return !other.is_net; });
+    const auto ropes = static_cast<std::size_t>(first_net - bodies.begin());
+    return body < ropes ? "rope " + std::to_string(body) : "net " + std::to_string(body - ropes);
+}
+
 std::vector<Bar> rigid_bars(const System& system) {
     std::vector<Bar> rigid;
     for (const Body& body : system.bodies) {

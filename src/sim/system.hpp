@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "corda/sim/defs.hpp"
@@ -67,6 +68,9 @@ struct System {
 
 /// The largest of these sums.
 [[nodiscard]] double largest_length_m(const System& system);
+
+/// "rope 2" or "net 0": what a body of the system is called, its number among its kind.
+[[nodiscard]] std::string body_name(const System& system, std::size_t body);
 
 /// The bars of bodies without compliance, in the system's order.
 [[nodiscard]] std::vector<Bar> rigid_bars(const System& system);

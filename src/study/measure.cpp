@@ -15,10 +15,6 @@
 namespace corda::study {
 namespace {
 
-Simulation start(const Problem& problem, const MethodDef& method) {
-    return {problem.system(), problem.world, method, problem.fps.interval_s()};
-}
-
 /// Compares the particles that the truth knows.
 void compare(const State& state, const State& truth, double length_m, Measurement& result) {
     double largest_m2 = 0.0;
@@ -38,8 +34,8 @@ void compare(const State& state, const State& truth, double length_m, Measuremen
 }
 
 /// Runs all frames, compares those that the reference knows, and notes what the run shows.
-void watch(const Problem& problem, const MethodDef& method, Measurement& result) {
-    Simulation run = start(problem, method);
+void watch(const Problem& problem, std::span<const MethodDef> methods, Measurement& result) {
+    Simulation run(problem.system(), problem.world, methods, problem.fps.interval_s());
     State truth = run.state();
     bool is_compared = false;
     for (std::int64_t k = 1; k <= problem.last_frame(); ++k) {
@@ -73,7 +69,7 @@ double stepping_s(const Problem& problem, const MethodDef& method, const Timing&
         int runs = 0;
         do {
             take_step();
-            const auto solver = sim::make_solver(system, problem.world, method, problem.fps.interval_s());
+            const auto solver = sim::make_solver(system, problem.world, {&method, 1}, problem.fps.interval_s());
             State state{0.0, system.x_m, system.y_m};
             const double from_s = now_s();
             for (std::int64_t k = 1; k <= last_frame; ++k) {
@@ -94,6 +90,12 @@ Problem with_reach(Problem problem, int reach) {
     return problem;
 }
 
+double largest_error(const Problem& problem, std::span<const MethodDef> methods) {
+    Measurement result;
+    watch(problem, methods, result);
+    return result.largest_error;
+}
+
 Measurement measure(const Problem& problem, const MethodDef& method, const std::string& label,
                     double parameter, const Timing& timing) {
     Measurement result;
@@ -101,7 +103,7 @@ Measurement measure(const Problem& problem, const MethodDef& method, const std::
     result.label = label;
     result.parameter = parameter;
     try {
-        watch(problem, method, result);
+        watch(problem, {&method, 1}, result);
         const double simulated_s = problem.fps.time_s(problem.last_frame());
         if (result.failure.empty() && timing.repeats > 0 && simulated_s > 0.0)
             result.ms_per_simulated_s = 1e3 * stepping_s(problem, method, timing) / simulated_s;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,9 @@ struct Timing {
     int repeats = 5;           ///< the shortest counts; 0: not timed
     double shortest_s = 0.05;  ///< a repeat consists of as many runs as take this time
 };
+
+/// Measurement::largest_error of a run by one method per body.
+[[nodiscard]] double largest_error(const Problem& problem, std::span<const MethodDef> methods);
 
 /// Runs a method on the problem, once for its errors and then again for its time.
 [[nodiscard]] Measurement measure(const Problem& problem, const MethodDef& method, const std::string& label,

@@ -162,10 +162,11 @@ void time_film(Film& film, const VideoDef& video, double simulate_s, const std::
 
 /// Largest displayed distance of a particle from the truth, in pixels.
 std::optional<double> error_px(const Pictures& pictures, const Film& film, int reach) {
-    const Problem problem = with_reach(facing(pictures.subject, film.plan().method), reach);
-    const Measurement run = measure(problem, film.plan().method, "", 0.0, Timing{0, 0.0});
+    std::vector<MethodDef> methods;
+    for (const BodyPlan& body : film.plan().bodies) methods.push_back(body.method);
+    const Problem problem = with_reach(facing(pictures.subject, methods.front()), reach);
     const double pixels_per_metre = film.scene().video.height_px / film.camera().height_m.value();
-    return run.largest_error * problem.length_m * pixels_per_metre;
+    return largest_error(problem, methods) * problem.length_m * pixels_per_metre;
 }
 
 void add_solver(const SolverSetting& setting, Pictures& pictures) {
@@ -181,7 +182,7 @@ void add_solver(const SolverSetting& setting, Pictures& pictures) {
             static_cast<void>(film.state(film.frame_count() - 1));
             time_film(film, scene.video, now_s() - start_s, pictures.folder.video(), time);
             if (repeat > 0) continue;
-            if (words.empty()) words = describe(film.plan().method);
+            if (words.empty()) words = describe(film.system(), film.plan());
             error = error_px(pictures, film, setting.reach);
         }
     } catch (const Error& failure) {

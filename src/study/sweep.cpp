@@ -19,7 +19,10 @@ double longest_run_s(bool is_quick) {
 
 /// About how long a run takes, in seconds.
 double forecast_s(const Problem& problem, const MethodDef& method, double step_s) {
-    return 1e-9 * sim::step_cost_ns(problem.system(), method) * problem.world.duration_s / step_s;
+    double step_ns = 0.0;
+    const System system = problem.system();
+    for (const Body& body : system.bodies) step_ns += sim::step_cost_ns(body, method);
+    return 1e-9 * step_ns * problem.world.duration_s / step_s;
 }
 
 void add_relaxation(const Problem& problem, bool is_quick, std::vector<SweepRun>& runs) {

@@ -1,5 +1,6 @@
 #include "corda/study/truth.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -8,8 +9,9 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
-#include "corda/sim/auto/trial.hpp"
 #include "corda/sim/recording.hpp"
+#include "corda/sim/refusal.hpp"
+#include "corda/sim/solver.hpp"
 #include "corda/study/step.hpp"
 
 namespace corda::study {
@@ -129,13 +131,21 @@ void find_truth(Subject& subject) {
 double rattle_step_s(const Problem& problem, int order) {
     take_step();
     const Simulation run(problem.system(), problem.world, RattleDef{order}, problem.fps.interval_s());
-    return std::get<RattleDef>(run.method()).step_s.value();
+    double shortest_s = HUGE_VAL;
+    for (const MethodDef& method : run.methods())
+        shortest_s = std::min(shortest_s, std::get<RattleDef>(method).step_s.value());
+    return shortest_s;
 }
 
 std::string refusal(const Problem& problem, const MethodDef& method) {
     take_step();
-    const auto refused = sim::refusal(problem.system(), problem.world, method, problem.fps.interval_s());
-    return refused ? refused->what() : "";
+    try {
+        static_cast<void>(
+            sim::make_solver(problem.system(), problem.world, {&method, 1}, problem.fps.interval_s()));
+    } catch (const Refusal& refused) {
+        return refused.what();
+    }
+    return "";
 }
 
 }  // namespace corda::study

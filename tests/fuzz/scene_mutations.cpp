@@ -111,6 +111,11 @@ bending = 1e3
 method = "rattle"
 order = 6
 step = 1e-3
+[[solver.bodies]]
+ropes = [1, -1]
+nets = []
+method = "relaxation"
+reach = 2
 )"};
 
 constexpr std::array<std::string_view, 39> kTokens{"9223372036854775807",
@@ -229,10 +234,11 @@ TEST(SceneMutations, GiveASceneOrAnError) {
 
 TEST(SceneMutations, OfSettingsGiveASceneOrAnError) {
     constexpr std::uint32_t kRuns = 3000;
-    constexpr std::array<std::string_view, 11> kKeys{
-        "rope[0].mass",     "world",          "video.size[1]",      "rope[1].line",
-        "solver.step",      "a.b[0].c",       "net[0].grid.rows",   "net[1].bars",
-        "net[0].pinned[1]", "rope[0].string", "rope[0].link_length"};
+    constexpr std::array<std::string_view, 13> kKeys{
+        "rope[0].mass",          "world",          "video.size[1]",       "rope[1].line",
+        "solver.step",           "a.b[0].c",       "net[0].grid.rows",    "net[1].bars",
+        "net[0].pinned[1]",      "rope[0].string", "rope[0].link_length", "solver.bodies",
+        "solver.bodies[0].ropes"};
     for (std::uint32_t seed = 0; seed < kRuns; ++seed) {
         std::mt19937 random(seed);
         std::string setting(kKeys[random() % kKeys.size()]);

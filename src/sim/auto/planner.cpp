@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "corda/sim/rattle/rattle.hpp"
+#include "corda/sim/split.hpp"
 
 namespace corda::sim {
 namespace {
@@ -65,7 +66,7 @@ bool give_up_together(const Trial& a, const Trial& b) {
 /// The trial to run after number `failed`, from the time that it gained on the one that ran before it. Errors
 /// of chaotic motions grow exponentially, so each of the next trials is to gain about as much; those that
 /// would not reach the end are left out.
-std::size_t next_trial(const Plan& plan, std::size_t failed, std::size_t count, double end_s) {
+std::size_t next_trial(const BodyPlan& plan, std::size_t failed, std::size_t count, double end_s) {
     const std::size_t ran = plan.trials.size();
     if (ran < 2) return failed + 1;
     const double reached_s = plan.trials[ran - 1].reached_s;
@@ -78,11 +79,11 @@ std::size_t next_trial(const Plan& plan, std::size_t failed, std::size_t count, 
 
 /// Runs the trials, cheapest first, until one proves its error, and makes it or the last one the plan.
 void run_until_one_holds(const System& system, const WorldDef& world, const PlanDef& def,
-                         std::vector<Trial> trials, Plan& plan, Recording& recording) {
+                         std::vector<Trial> trials, BodyPlan& plan, Recording& recording) {
     const double end_s = def.timeline.time_s(def.timeline.size() - 1);
     for (std::size_t i = 0; i < trials.size(); i = next_trial(plan, i, trials.size(), end_s)) {
         const TrialKind kind{i == 0, i + 1 == trials.size()};
-        run_trial(system, world, def, kind, trials[i], recording, plan.simulation_passes);
+        run_trial(system, world, def, kind, trials[i], recording, plan.passes);
         plan.trials.push_back(trials[i]);
         const std::size_t count = plan.trials.size();
         if (trials[i].to_the_end) break;
@@ -95,21 +96,13 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
     plan.diverges = chosen.diverged;
 }
 
-/// Makes `relaxation` the plan, without a bound on its error, with enough sweeps to keep a cloth of some
-/// thirty rows from sagging like rubber.
-void fall_back(const System& system, const WorldDef& world, const PlanDef& def, PlanReason reason, Plan& plan,
-               Recording& recording) {
-    constexpr int kSweeps = 8;
-    constexpr double kStepsPerFrame = 4.0;
-    const double interval_s = def.timeline.fps().interval_s();
-    plan.method = RelaxationDef{interval_s / kStepsPerFrame, kSweeps};
-    plan.error_bound_m = std::nullopt;
-    plan.horizon_s = std::nullopt;
-    plan.diverges = false;
-    plan.reason = reason;
-    Simulation run(system, world, plan.method, interval_s);
+/// Records the run of a plan's method.
+void record(const System& system, const WorldDef& world, const PlanDef& def, BodyPlan& plan,
+            Recording& recording) {
+    Simulation run(system, world, plan.method, def.timeline.fps().interval_s());
+    plan.method = run.methods().front();
     recording.clear();
-    ++plan.simulation_passes;
+    ++plan.passes;
     const auto total = static_cast<std::int64_t>(def.timeline.size());
     std::int64_t i = 0;
     const GoesOn goes_on = [&] {
@@ -123,33 +116,72 @@ void fall_back(const System& system, const WorldDef& world, const PlanDef& def, 
     }
 }
 
-bool is_chains(const System& system) {
-    return std::all_of(system.bodies.begin(), system.bodies.end(),
-                       [](const Body& body) { return body.is_chain && body.material.compliance_1_n == 0.0; });
+/// Makes `relaxation` the plan, without a bound on its error, with enough sweeps to keep a cloth of some
+/// thirty rows from sagging like rubber.
+void fall_back(const System& system, const WorldDef& world, const PlanDef& def, PlanReason reason, BodyPlan& plan,
+               Recording& recording) {
+    constexpr int kSweeps = 8;
+    constexpr double kStepsPerFrame = 4.0;
+    const double interval_s = def.timeline.fps().interval_s();
+    plan.method = RelaxationDef{interval_s / kStepsPerFrame, kSweeps};
+    plan.error_bound_m = std::nullopt;
+    plan.horizon_s = std::nullopt;
+    plan.diverges = false;
+    plan.reason = reason;
+    record(system, world, def, plan, recording);
+}
+
+bool is_rigid_chain(const Body& body) {
+    return body.is_chain && body.material.compliance_1_n == 0.0;
+}
+
+BodyPlan record_named(const System& system, const WorldDef& world, const PlanDef& def,
+                      const MethodDef& method, Recording& recording) {
+    BodyPlan plan;
+    plan.method = method;
+    record(system, world, def, plan, recording);
+    return plan;
+}
+
+/// The plan of all bodies from those of each, and how often all particles together were integrated.
+void sum_up(const System& system, Plan& plan) {
+    plan.error_bound_m = 0.0;
+    std::size_t integrated = 0;
+    for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
+        const BodyPlan& body = plan.bodies[i];
+        integrated += static_cast<std::size_t>(body.passes) * system.bodies[i].particle_count;
+        if (body.horizon_s) plan.horizon_s = std::min(*body.horizon_s, plan.horizon_s.value_or(HUGE_VAL));
+        if (!body.error_bound_m)
+            plan.error_bound_m = std::nullopt;
+        else if (plan.error_bound_m)
+            plan.error_bound_m = std::max(*plan.error_bound_m, *body.error_bound_m);
+    }
+    const std::size_t particles = system.particle_count();
+    plan.simulation_passes = static_cast<int>((integrated + particles - 1) / particles);
 }
 
 }  // namespace
 
-double step_cost_ns(const System& system, const MethodDef& method) {
+double step_cost_ns(const Body& body, const MethodDef& method) {
     // Per particle and step at 20 to 1000 particles; of `rattle` at orders 2, 4, 6, 8.
     constexpr double kExactCost = 140.0;
     constexpr std::array<double, RattleDef::kOrders.size()> kChainCosts{45.0, 180.0, 330.0, 600.0};
     constexpr double kStageCostInAGraph = 500.0;  // the factorisation of a cloth of 40 x 30
     constexpr double kBarCost = 8.0;              // relaxation, per bar and sweep
-    const auto particles = static_cast<double>(system.particle_count());
+    const auto particles = static_cast<double>(body.particle_count);
     if (const auto* relaxation = std::get_if<RelaxationDef>(&method))
-        return kBarCost * static_cast<double>(system.bars.size()) * relaxation->sweeps;
+        return kBarCost * static_cast<double>(body.bar_count) * relaxation->sweeps;
     if (const auto* rattle = std::get_if<RattleDef>(&method)) {
-        if (is_chains(system))
+        if (is_rigid_chain(body))
             return kChainCosts[static_cast<std::size_t>(rattle->order / 2 - 1)] * particles;
         return kStageCostInAGraph * particles * static_cast<double>(composition(rattle->order).stages.size());
     }
     return kExactCost * particles;
 }
 
-Plan plan_method(const System& system, const WorldDef& world, const PlanDef& def, Recording& recording) {
+BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& def, Recording& recording) {
     const double interval_s = def.timeline.fps().interval_s();
-    Plan plan;
+    BodyPlan plan;
     const auto exact_refusal = refusal(system, world, ExactDef{kLoosestTolerance}, interval_s);
     if (!exact_refusal) {
         plan.reason = PlanReason::kExact;
@@ -159,7 +191,8 @@ Plan plan_method(const System& system, const WorldDef& world, const PlanDef& def
                             recording);
         return plan;
     }
-    if (is_chains(system) || exact_refusal->reason() == Refusal::Reason::kBarWithoutLength)
+    if (is_rigid_chain(system.bodies.front()) ||
+        exact_refusal->reason() == Refusal::Reason::kBarWithoutLength)
         throw Refusal(*exact_refusal);
     const bool can_fall_back = !refusal(system, world, RelaxationDef{}, interval_s);
     if (const auto rattle_refusal = refusal(system, world, RattleDef{}, interval_s)) {
@@ -171,6 +204,40 @@ Plan plan_method(const System& system, const WorldDef& world, const PlanDef& def
     run_until_one_holds(system, world, def, graph_trials(system, world, interval_s), plan, recording);
     if (plan.diverges && can_fall_back)
         fall_back(system, world, def, PlanReason::kCollapsing, plan, recording);
+    return plan;
+}
+
+Plan plan_methods(const System& system, const NamedMethods& named, const WorldDef& world, const PlanDef& def,
+                  Recording& recording) {
+    Plan plan;
+    MotionBounds known;
+    known.include({0.0, system.x_m, system.y_m});
+    const auto count = static_cast<std::int64_t>(system.bodies.size());
+    recording.clear();
+    for_each_body(system, [&](const System& body, std::size_t i) {
+        PlanDef of_body = def;
+        of_body.tolerance_m = [&](const MotionBounds& bounds) {
+            MotionBounds all = known;
+            all.include(bounds);
+            return def.tolerance_m(all);
+        };
+        of_body.on_progress = [&](std::int64_t done, std::int64_t total) {
+            report_progress(def.on_progress, static_cast<std::int64_t>(i) * total + done, count * total);
+            return true;
+        };
+        Recording part = recording.for_part(body.particle_count());
+        Recording& own = count == 1 ? recording : part;
+        try {
+            plan.bodies.push_back(named[i] ? record_named(body, world, of_body, *named[i], own)
+                                           : plan_body(body, world, of_body, own));
+        } catch (const Refusal& refused) {
+            if (count == 1) throw;
+            throw Refusal(refused.reason(), body_name(system, i) + ": " + refused.what());
+        }
+        known.include(own.bounds());
+        if (count > 1) recording.add_body(own, system.bodies[i].first_particle);
+    });
+    sum_up(system, plan);
     return plan;
 }
 

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "corda/sim/auto/trial.hpp"
 
 namespace corda::sim {
 
-/// Finds a method whose positions stay within the tolerance and proves it by tighter runs beside the first.
-/// The states of the proved run are left in `recording`: they are what is drawn.
+/// Finds a method for the only body of `system` whose positions stay within the tolerance, and proves it by
+/// tighter runs beside the first. The states of the proved run are left in `recording`: they are what is
+/// drawn.
 ///
 /// - Chains, and bodies that stretch: `exact` at the loosest sufficient tolerance, checked by a run a hundred
 ///   times tighter.
@@ -18,12 +22,21 @@ namespace corda::sim {
 /// see (section 3.6 of src/sim/README.md). If no trial stays within
 /// the tolerance to the end, the tightest is taken, with a horizon. Decisions depend on counts and positions,
 /// never on a clock: the same scene gives the same plan. Throws corda::Refusal if no method can run the
-/// system, and corda::Error (kInterrupted) if asked to stop.
-[[nodiscard]] Plan plan_method(const System& system, const WorldDef& world, const PlanDef& def,
-                               Recording& recording);
+/// body, and corda::Error (kInterrupted) if asked to stop.
+[[nodiscard]] BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& def,
+                                 Recording& recording);
 
-/// The time that a step of a method takes, in nanoseconds, on the machine on which its constants were
-/// measured: good for a rough forecast.
-[[nodiscard]] double step_cost_ns(const System& system, const MethodDef& method);
+/// What moves each body; std::nullopt: plan_body() is to find it.
+using NamedMethods = std::vector<std::optional<MethodDef>>;
+
+/// Plans the bodies one after the other; those whose method is named are run by it. The tolerance of each is
+/// that for the bounds of its own motion, those of the bodies before it and the start of all. Throws as
+/// plan_body().
+[[nodiscard]] Plan plan_methods(const System& system, const NamedMethods& named, const WorldDef& world,
+                                const PlanDef& def, Recording& recording);
+
+/// The time that a step of a method takes for a body, in nanoseconds, on the machine on which its constants
+/// were measured: good for a rough forecast.
+[[nodiscard]] double step_cost_ns(const Body& body, const MethodDef& method);
 
 }  // namespace corda::sim

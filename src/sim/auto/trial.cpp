@@ -58,7 +58,7 @@ class Check {
             system_.vy_m_s[i] = velocity.y;
         }
         solver_ = make_solver(system_, Forces(ForceTerm{turn_.of(forces.uniform_m_s2()), forces.drag_1_s()}),
-                              method, frame_interval_s);
+                              {&method, 1}, frame_interval_s);
         state_ = {0.0, system_.x_m, system_.y_m};
     }
     Check(const Check&) = delete;
@@ -222,7 +222,7 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
 std::optional<Refusal> refusal(const System& system, const WorldDef& world, const MethodDef& method,
                                double frame_interval_s) {
     try {
-        static_cast<void>(make_solver(system, world, method, frame_interval_s));
+        static_cast<void>(make_solver(system, world, {&method, 1}, frame_interval_s));
     } catch (const Refusal& refused) {
         return refused;
     }

@@ -10,8 +10,7 @@
 
 namespace corda::sim {
 
-/// Method `exact`: each body is integrated by itself, in the coordinates that suit it and with steps of its
-/// own.
+/// Method `exact`: a body is integrated in the coordinates that suit it.
 ///
 /// - Ropes of rigid links in the directions of the links (ChainDynamics), so that lengths are kept whatever
 ///   the error is: by Taylor series in time (ChainPart), or by an adaptive Runge-Kutta method of order 8
@@ -27,23 +26,22 @@ namespace corda::sim {
 /// A rope that stands exactly upright stays so: nothing pushes it off.
 class Exact final : public Solver {
   public:
-    /// Throws corda::Refusal for rigid bars that are imaginary or do not form an open chain, for a rigid rope
+    /// Requires one body. Throws corda::Refusal for rigid bars that are imaginary or do not form an open chain, for a rigid rope
     /// that is taut between two pins, and for what StringPart refuses.
     Exact(const System& system, const Forces& forces, const ExactDef& def);
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
-    [[nodiscard]] double energy_j() const override;
-    [[nodiscard]] std::optional<Loads> loads() const override;
-    /// The sum over all bodies.
-    [[nodiscard]] std::uint64_t steps() const override;
-    [[nodiscard]] MethodDef method() const override { return def_; }
+    [[nodiscard]] double energy_j() const override { return part_->energy_j(); }
+    [[nodiscard]] std::optional<Loads> loads() const override { return part_->loads(); }
+    [[nodiscard]] std::uint64_t steps() const override { return part_->steps(); }
+    [[nodiscard]] std::vector<MethodDef> methods() const override { return {def_}; }
 
     /// Steps that were tried and were too long.
-    [[nodiscard]] std::uint64_t rejected_steps() const;
+    [[nodiscard]] std::uint64_t rejected_steps() const { return part_->rejected_steps(); }
 
   private:
     ExactDef def_;
-    std::vector<std::unique_ptr<ExactPart>> parts_;
+    std::unique_ptr<ExactPart> part_;
 };
 
 }  // namespace corda::sim

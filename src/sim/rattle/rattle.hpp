@@ -47,7 +47,7 @@ class Rattle final : public Solver {
     [[nodiscard]] std::optional<Loads> loads() const override;
     [[nodiscard]] std::uint64_t steps() const override { return step_; }
 
-    [[nodiscard]] MethodDef method() const override { return RattleDef{order_, step_s_}; }
+    [[nodiscard]] std::vector<MethodDef> methods() const override { return {RattleDef{order_, step_s_}}; }
 
     [[nodiscard]] double step_s() const { return step_s_; }
     /// Parts of grid steps taken so far: equal to steps() while no step is divided.

@@ -35,7 +35,7 @@ class Relaxation final : public Solver {
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;
     [[nodiscard]] std::uint64_t steps() const override { return step_; }
-    [[nodiscard]] MethodDef method() const override { return def_; }
+    [[nodiscard]] std::vector<MethodDef> methods() const override { return {def_}; }
 
   private:
     void advance(std::uint64_t steps, StopCheck& stop);

@@ -28,6 +28,19 @@ TEST(ValidScenes, HaveFromOneFrameToTheLimit) {
     EXPECT_EQ(code_of(1.0, {1, -1}), ExitCode::kInvalidScene);
 }
 
+TEST(ValidScenes, NameTheirBodiesOnce) {
+    Scene scene;
+    scene.ropes.resize(2);
+    const auto code_of = [&](const std::vector<BodySolverDef>& groups) {
+        scene.body_solvers = groups;
+        return failure_of([&] { validate(scene, {}); }).code;
+    };
+    EXPECT_EQ(code_of({{{1}, {}, ExactDef{}}}), ExitCode::kOk);
+    EXPECT_EQ(code_of({{{2}, {}, ExactDef{}}}), ExitCode::kInvalidScene);
+    EXPECT_EQ(code_of({{{1}, {}, ExactDef{}}, {{0, 1}, {}, RattleDef{}}}), ExitCode::kInvalidScene);
+    EXPECT_EQ(code_of({{{1}, {}, ExactDef{1.0}}}), ExitCode::kInvalidScene);
+}
+
 TEST(Times, OfASceneGoToItsEndAndItsLastFrame) {
     Scene scene;
     scene.world.duration_s = 0.1;  // rounded down, by 30 per second a bit less than 3 frames

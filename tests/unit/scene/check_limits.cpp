@@ -38,9 +38,9 @@ TEST(SceneLimits, ParticlesOfAllRopesTogether) {
 }
 
 TEST(SceneLimits, Bars) {
-    expect_limit(line_of("1000000") + "[solver]\nmethod = \"relaxation\"\nreach = 21\n",
-                 "swing.toml:2:1: rope[0]: ",
-                 "20999769 bars, over the limit of 20000000; give fewer particles or a smaller solver.reach");
+    expect_limit(
+        line_of("1000000") + "[solver]\nmethod = \"relaxation\"\nreach = 21\n", "swing.toml:2:1: rope[0]: ",
+        "20999769 bars, over the limit of 20000000; give fewer particles, or the solver a smaller reach");
     expect_limit(line_of("1000000") + "[solver]\nmethod = \"relaxation\"\nreach = 1000000\n",
                  "swing.toml:2:1: rope[0]: ", "bars");
 }
@@ -117,6 +117,55 @@ TEST(SceneLimits, BarUpdates) {
         "6999972 bars, 1000000 sweeps and 600 steps are 4.19998e+15 bar updates, over the limit of 1e+13");
     expect_limit(line_of("1000000") + "[solver]\nmethod = \"relaxation\"\nstep = 1e-6\n",
                  "swing.toml:6:8: solver.step: ", "bar updates");
+}
+
+/// A long rope, then a short one that turns too fast for all methods but relaxation.
+std::string two_ropes_with(const std::string& solver) {
+    return line_of("900000") +
+           "[[rope]]\nline = { particles = 3, step = [0, -1] }\nvelocity = [[0, 0], [1e6, 0], [1e6, 0]]\n" +
+           solver;
+}
+
+TEST(SceneLimits, StepsOfEachBodysSolver) {
+    const std::string fine = "[[solver.bodies]]\nropes = [1]\nmethod = \"rattle\"\nstep = 1e-9\n";
+    expect_limit(line_of("3") + line_of("3").substr(11) + fine,
+                 "swing.toml:9:8: solver.bodies[0].step: ", "10 s are 1e+10 steps");
+    // One that moves nothing takes none.
+    EXPECT_NO_THROW(parse_scene(
+        line_of("3") + "[solver]\nmethod = \"rattle\"\nstep = 1e-9\n[[solver.bodies]]\nropes = [0]\n"
+                       "method = \"exact\"\n",
+        "a"));
+}
+
+TEST(SceneLimits, BarUpdatesOfEachBodysSolver) {
+    const std::string relaxation = "method = \"relaxation\"\nreach = 1\n";
+    const std::string sweeps = "sweeps = 1000000\n";
+    const std::string first = "[[solver.bodies]]\nropes = [0]\n" + relaxation;
+    const std::string second = "[[solver.bodies]]\nropes = [1]\n" + relaxation;
+    // 899999 and 2 bars.
+    EXPECT_NO_THROW(parse_scene(two_ropes_with(first + second + sweeps), "a"));
+    expect_limit(two_ropes_with(first + sweeps + second), "swing.toml:11:10: solver.bodies[0].sweeps: ",
+                 "899999 bars, 1000000 sweeps and 600 steps are 5.39999e+14 bar updates");
+    expect_limit(
+        two_ropes_with(first + "sweeps = 18500\n" + second + "step = 2e-8\nsweeps = 5000\n"),
+        "swing.toml:17:10: solver.bodies[1].sweeps: ",
+        "2 bars, 5000 sweeps and 5e+08 steps, with those of other methods, are 1.499e+13 bar updates");
+}
+
+TEST(SceneLimits, ReachOfEachBodysSolver) {
+    const std::string far = "method = \"relaxation\"\nreach = 30\n";
+    expect_limit(two_ropes_with("[[solver.bodies]]\nropes = [0]\n" + far),
+                 "swing.toml:2:1: rope[0]: ", "26999535 bars, over the limit of 20000000");
+    EXPECT_NO_THROW(parse_scene(two_ropes_with("[[solver.bodies]]\nropes = [1]\n" + far), "a"));
+}
+
+TEST(SceneLimits, PaceOfEachBodysSolver) {
+    const std::string relaxation = "method = \"relaxation\"\nreach = 1\n";
+    expect_limit(two_ropes_with(""), "swing.toml:6:12: rope[1].velocity: ", "turns so fast");
+    expect_limit(two_ropes_with("[solver]\n" + relaxation + "[[solver.bodies]]\nropes = [1]\n" +
+                                "method = \"exact\"\n[world]\ndrag = 1e12\n"),
+                 "swing.toml:14:8: world.drag: ", "slows down");
+    EXPECT_NO_THROW(parse_scene(two_ropes_with("[[solver.bodies]]\nropes = [1]\n" + relaxation), "a"));
 }
 
 TEST(SceneLimits, FileSize) {

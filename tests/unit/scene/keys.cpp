@@ -21,14 +21,21 @@ using testing::Not;
 
 /// A scene that has the section of `key`, read with one more setting for that key; "" for none.
 Scene scene_with(const Key& key, const std::string& value) {
-    std::string toml = "schema = 1\n[[rope]]\nline = { particles = 3, step = [0, -1] }\n";
+    const std::string rope = "[[rope]]\nline = { particles = 3, step = [0, -1] }\n";
+    const std::string grid = "[[net]]\ngrid = { columns = 3, rows = 2, spacing = 0.5 }\n";
+    std::string toml = "schema = 1\n" + rope;
     if (key.section == "rope.hang") toml = "schema = 1\n[[rope]]\nhang = { links = 3, length = 1 }\n";
-    if (key.section == "net" || key.section == "net.grid")
-        toml = "schema = 1\n[[net]]\ngrid = { columns = 3, rows = 2, spacing = 0.5 }\n";
+    if (key.section == "net" || key.section == "net.grid") toml = "schema = 1\n" + grid;
+    if (key.section == "solver.bodies") toml += "[[solver.bodies]]\nropes = [0]\nmethod = \"exact\"\n";
+    if (key.section == "solver.bodies" && key.name == "ropes")
+        toml = "schema = 1\n" + grid + rope + "[[solver.bodies]]\nnets = [0]\nmethod = \"exact\"\n";
     std::string path = path_of(key);
     if (const std::size_t list = path.find("[]"); list != std::string::npos) path.insert(list + 1, "0");
     std::vector<Setting> settings;
-    if (!key.methods.empty()) settings.push_back(fmt::format("solver.method={}", key.methods.front()));
+    if (!key.methods.empty()) {
+        const std::string table = path.substr(0, path.rfind('.'));
+        settings.push_back(fmt::format("{}.method={}", table, key.methods.front()));
+    }
     if (!value.empty()) settings.push_back(path + "=" + value);
     return parse_scene(toml, "swing.toml", settings);
 }
@@ -77,6 +84,10 @@ std::string text(const Scene& scene) {
         all += body_text(rope) + text(rope.payload_kg) + text(rope.reach) + text(rope.closed) +
                text(rope.rest_m.size()) + text(rope.bending_n_m2);
     for (const NetDef& net : scene.nets) all += body_text(net) + text(net.bars.size());
+    const auto index_text = [](std::uint32_t i) { return std::to_string(i); };
+    for (const BodySolverDef& group : scene.body_solvers)
+        all += text(group.ropes, index_text) + text(group.nets, index_text) +
+               std::visit([](const auto& def) { return text(SolverDef(def)); }, group.method);
     const VideoDef& video = scene.video;
     all += text(scene.solver) + text(video.width_px) + text(video.height_px) + video.fps.rational().text() +
            video.encoder.codec + video.encoder.preset + text(video.encoder.crf) + text(video.encoder.threads);
@@ -96,6 +107,14 @@ TEST(SceneKeys, AreUniqueInTheirSections) {
         EXPECT_EQ(find_key(key.section, key.name), &key);
     }
     EXPECT_EQ(find_key("world", "gravty"), nullptr);
+}
+
+TEST(SceneKeys, HaveThePathsOfTheirTables) {
+    EXPECT_EQ(path_of(*find_key("world", "drag")), "world.drag");
+    EXPECT_EQ(path_of(*find_key("net.grid", "rows")), "net[].grid.rows");
+    EXPECT_EQ(path_of(*find_key("solver.bodies", "step")), "solver.bodies[].step");
+    EXPECT_EQ(key_of_section("solver.bodies"), find_key("solver", "bodies"));
+    EXPECT_EQ(key_of_section(""), nullptr);
 }
 
 TEST(SceneKeys, HaveAMeaningATypeAndARemedy) {
@@ -154,6 +173,7 @@ TEST(SceneKeys, AreAllInTheHelp) {
     for (const Key& key : all_keys()) EXPECT_THAT(help, HasSubstr(fmt::format("\n  {} ", key.name)));
     EXPECT_THAT(help, HasSubstr("\n[[rope]]\n"));
     EXPECT_THAT(help, HasSubstr("\nnet.grid\n"));
+    EXPECT_THAT(help, HasSubstr("\n[[solver.bodies]]\n"));
     EXPECT_THAT(help, HasSubstr("  margin               number, 0 .. 0.45, default 0.08\n"));
 }
 

@@ -28,6 +28,21 @@ TEST(SceneSettings, MakeMissingTables) {
     EXPECT_EQ(scene_with({"world={duration=2}"}).world.duration_s, 2.0);
 }
 
+TEST(SceneSettings, ReachTheSolversOfBodies) {
+    const Setting group = "solver.bodies=[{ropes=[0],method=\"rattle\"}]";
+    const auto def_with = [&](const Setting& more) {
+        return std::get<RattleDef>(scene_with({group, more}).body_solvers.at(0).method);
+    };
+    EXPECT_EQ(def_with("world.duration=1").order, 4);
+    EXPECT_EQ(def_with("solver.bodies[0].order=8").order, 8);
+    EXPECT_EQ(error_of(rope_with(""), {group, "solver.bodies[0].order=3"}).message,
+              "--set solver.bodies[0].order=3: solver.bodies[0].order: 3 is not allowed; give one of: 2, 4, "
+              "6, 8");
+    EXPECT_EQ(error_of(rope_with(""), {group, "solver.bodies.order=8"}).message,
+              "--set solver.bodies.order=8: solver.bodies: this is a list of tables; give an index: "
+              "solver.bodies[0]");
+}
+
 TEST(SceneSettings, TakeWhatIsNotTomlAsText) {
     EXPECT_EQ(scene_with({"video.fps=30000/1001"}).video.fps.rational(), (Rational{30000, 1001}));
     EXPECT_EQ(scene_with({"video.preset=\"slow\""}).video.encoder.preset, "slow");

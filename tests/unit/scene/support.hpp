@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gmock/gmock.h>
+
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,6 +23,23 @@ inline SceneError error_of(std::string_view toml, const std::vector<Setting>& se
         return {};
     } catch (const Error& error) {
         return {error.code(), error.what()};
+    }
+}
+
+/// A wrong scene, and what its message says.
+struct Case {
+    std::string toml;
+    std::string begin;  ///< of the message: place and key
+    std::string part;   ///< stands in the message
+};
+
+inline void expect_errors(const std::vector<Case>& cases) {
+    for (const Case& wrong : cases) {
+        SCOPED_TRACE(wrong.toml);
+        const SceneError error = error_of(wrong.toml);
+        EXPECT_EQ(error.code, ExitCode::kInvalidScene);
+        EXPECT_THAT(error.message, testing::StartsWith(wrong.begin));
+        EXPECT_THAT(error.message, testing::HasSubstr(wrong.part));
     }
 }
 

@@ -1,0 +1,107 @@
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "corda/scene/readers.hpp"
+
+namespace corda::scene {
+namespace {
+
+/// The method that the table names, with the reach of its ropes; empty if it names none.
+std::optional<MethodDef> read_method(const TableReader& table, int& reach) {
+    std::string_view method;
+    table.read("method", method);
+    if (method == ExactDef::kName) {
+        ExactDef def;
+        table.read("tolerance", def.tolerance);
+        return def;
+    }
+    if (method == RattleDef::kName) {
+        RattleDef def;
+        table.read("order", def.order);
+        table.read("step", def.step_s);
+        return def;
+    }
+    if (method == RelaxationDef::kName) {
+        RelaxationDef def;
+        reach = kDefaultReach;
+        table.read("step", def.step_s);
+        table.read("reach", reach);
+        table.read("sweeps", def.sweeps);
+        table.read("delta", def.delta);
+        table.read("force", def.force_n);
+        return def;
+    }
+    return std::nullopt;
+}
+
+SolverGroup read_common_solver(const TableReader& solver) {
+    int reach = 1;
+    if (const auto method = read_method(solver, reach)) return {solver, solver_of(*method), reach};
+    AutoDef def;
+    solver.read("tolerance_px", def.tolerance_px);
+    return {solver, def};
+}
+
+/// Puts the bodies of one list of a table of [[solver.bodies]] into the last group. The list is of `count`
+/// bodies, the first of which is body `first` of the scene.
+std::vector<std::uint32_t> read_members(const TableReader& table, std::string_view key, std::size_t count,
+                                        std::size_t first, SolverSection& section) {
+    std::vector<std::uint32_t> members;
+    const auto list = table.find(key);
+    for (std::size_t i = 0; list && i < list->size(); ++i) {
+        if (count == 0) {
+            list->add_problem(fmt::format("the scene has no {}; remove it", key));
+            break;
+        }
+        const Value entry = list->at(i);
+        const auto index =
+            read_index(entry, static_cast<std::int64_t>(count), fmt::format("the scene has {}", key));
+        if (!index) continue;
+        std::size_t& group = section.group_of_body[first + *index];
+        if (group != 0)
+            entry.add_problem(
+                fmt::format("{} is named already, by solver.bodies[{}]; remove one", *index, group - 1));
+        group = section.groups.size() - 1;
+        members.push_back(*index);
+    }
+    return members;
+}
+
+BodySolverDef read_body_solver(const TableReader& table, const Sections& sections, SolverSection& section) {
+    int reach = 1;
+    const MethodDef method = read_method(table, reach).value_or(MethodDef{});
+    section.groups.push_back({table, solver_of(method), reach});
+    const auto is_empty = [&](std::string_view key) {
+        const auto list = table.find(key);
+        return table.is_sound(key) && (!list || list->size() == 0);
+    };
+    if (is_empty("ropes") && is_empty("nets"))
+        table.add_problem("names no body; give ropes or nets, the indices of [[rope]] or [[net]] tables");
+    const std::size_t ropes = sections.ropes.size();
+    const std::size_t nets = sections.nets.size();
+    // A list with problems of its own may have lost some of its tables.
+    const Problems& problems = table.problems();
+    BodySolverDef def;
+    if (problems.is_sound("rope")) def.ropes = read_members(table, "ropes", ropes, 0, section);
+    if (problems.is_sound("net")) def.nets = read_members(table, "nets", nets, ropes, section);
+    def.method = method;
+    return def;
+}
+
+}  // namespace
+
+SolverDef solver_of(const MethodDef& method) {
+    return std::visit([](const auto& def) { return SolverDef(def); }, method);
+}
+
+SolverSection read_solver(const Sections& sections, Scene& scene) {
+    SolverSection section{{read_common_solver(sections.solver)},
+                          std::vector<std::size_t>(sections.ropes.size() + sections.nets.size())};
+    scene.solver = section.groups.front().def;
+    for (const TableReader& table : sections.solver.tables("bodies"))
+        scene.body_solvers.push_back(read_body_solver(table, sections, section));
+    return section;
+}
+
+}  // namespace corda::scene

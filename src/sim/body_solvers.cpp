@@ -1,0 +1,63 @@
+#include "corda/sim/body_solvers.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "corda/sim/figures.hpp"
+
+namespace corda::sim {
+namespace {
+
+double sum_of_scales_j(const std::vector<BodySolvers::Part>& parts) {
+    return std::accumulate(
+        parts.begin(), parts.end(), 0.0,
+        [](double sum_j, const BodySolvers::Part& part) { return sum_j + part.solver->energy_scale_j(); });
+}
+
+bool all_conserve_energy(const std::vector<BodySolvers::Part>& parts) {
+    return std::all_of(parts.begin(), parts.end(),
+                       [](const BodySolvers::Part& part) { return part.solver->conserves_energy(); });
+}
+
+}  // namespace
+
+BodySolvers::BodySolvers(std::vector<Part> parts)
+    : Solver(sum_of_scales_j(parts), all_conserve_energy(parts)), parts_(std::move(parts)) {}
+
+Status BodySolvers::advance_to(double time_s, State& state, StopCheck& stop) {
+    for (Part& part : parts_) {
+        if (part.solver->advance_to(time_s, part.state, stop) == Status::kDiverged) return Status::kDiverged;
+        const auto first = static_cast<std::ptrdiff_t>(part.first_particle);
+        std::copy(part.state.x_m.begin(), part.state.x_m.end(), state.x_m.begin() + first);
+        std::copy(part.state.y_m.begin(), part.state.y_m.end(), state.y_m.begin() + first);
+    }
+    state.time_s = time_s;
+    return Status::kOk;
+}
+
+double BodySolvers::energy_j() const {
+    double energy_j = 0.0;
+    for (const Part& part : parts_) energy_j += part.solver->energy_j();
+    return energy_j;
+}
+
+std::optional<Loads> BodySolvers::loads() const {
+    std::optional<Loads> largest = Loads{};
+    for (const Part& part : parts_) largest = loads_of_both(largest, part.solver->loads());
+    return largest;
+}
+
+std::uint64_t BodySolvers::steps() const {
+    std::uint64_t steps = 0;
+    for (const Part& part : parts_) steps += part.solver->steps();
+    return steps;
+}
+
+std::vector<MethodDef> BodySolvers::methods() const {
+    std::vector<MethodDef> methods;
+    for (const Part& part : parts_) methods.push_back(part.solver->methods().front());
+    return methods;
+}
+
+}  // namespace corda::sim
