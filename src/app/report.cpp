@@ -15,10 +15,11 @@ namespace corda::app {
 OnProgress show_progress(const Console& console, const std::string& what) {
     constexpr double kSilentSeconds = 1.0;
     const double start_s = now_s();
-    return [&console, what, start_s, progress = std::shared_ptr<Progress>()](std::int64_t done,
-                                                                             std::int64_t total) mutable {
+    return [&console, what, start_s, progress = std::shared_ptr<Progress>(), last = std::int64_t{0}](
+               std::int64_t done, std::int64_t total) mutable {
         stop_if_asked();
-        if (done == 0 || !progress) progress = std::make_shared<Progress>(console, what, total);
+        if (done < last || !progress) progress = std::make_shared<Progress>(console, what, total);
+        last = done;
         if (now_s() - start_s > kSilentSeconds) progress->update(done);
         return true;
     };
@@ -32,8 +33,7 @@ void warn_of_unbounded(const Console& console, const Film& film) {
     for (const MethodGroup& group : groups_of(plan)) {
         const BodyPlan& body = plan.bodies[group.bodies.front()];
         if (body.reason == PlanReason::kNamed || body.error_bound_m) continue;
-        const std::string whose =
-            plan.bodies.size() == 1 ? "" : describe(film.system(), group.bodies) + ": ";
+        const std::string whose = plan.bodies.size() == 1 ? "" : describe(film.system(), group.bodies) + ": ";
         console.warning(fmt::format("auto: {}{}: {}", whose, describe(group.method), describe(body)));
     }
 }

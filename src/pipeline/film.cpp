@@ -53,7 +53,7 @@ struct Film::Impl {
           stage(scene, system, def.backend, def.require_gpu),
           motion(system, scene.world, if_all_named(named),
                  Timeline(scene.video.fps, pipeline::last_frame_of(scene), def.stills_s),
-                 def.motion_budget_bytes) {
+                 def.motion_budget_bytes, def.on_progress) {
         if (motion.methods().empty()) {
             plan = motion.record([&](const Timeline& timeline, sim::Recording& recording) {
                 return plan_within(timeline, recording);

@@ -12,13 +12,13 @@
 namespace corda::pipeline {
 
 Motion::Motion(const System& system, const WorldDef& world, std::vector<MethodDef> methods, Timeline timeline,
-               std::size_t budget_bytes)
+               std::size_t budget_bytes, const OnProgress& on_progress)
     : system_(&system),
       world_(world),
       methods_(std::move(methods)),
       timeline_(std::move(timeline)),
       recording_(system.particle_count(), timeline_.size(), budget_bytes) {
-    if (!methods_.empty()) start();
+    if (!methods_.empty()) start(on_progress);
 }
 
 Plan Motion::record(const std::function<Plan(const Timeline&, sim::Recording&)>& plan) {
@@ -28,17 +28,23 @@ Plan Motion::record(const std::function<Plan(const Timeline&, sim::Recording&)>&
     return made;
 }
 
-void Motion::start() {
-    run_.emplace(*system_, world_, methods_, timeline_.fps().interval_s());
-    methods_ = run_->methods();
+void Motion::start(const OnProgress& on_progress) {
     next_ = 0;
+    run_.reset();
+    run_.emplace(*system_, world_, methods_, timeline_.fps().interval_s(), asking(on_progress));
+    methods_ = run_->methods();
+}
+
+GoesOn Motion::asking(const OnProgress& on_progress) const {
+    return [this, &on_progress] {
+        report_progress(on_progress, static_cast<std::int64_t>(next_),
+                        static_cast<std::int64_t>(timeline_.size()));
+        return true;
+    };
 }
 
 Status Motion::advance_to(double time_s, bool is_new, const OnProgress& on_progress) {
-    const GoesOn goes_on = [this, &on_progress] {
-        report_progress(on_progress, static_cast<std::int64_t>(next_), std::ssize(timeline_));
-        return true;
-    };
+    const GoesOn goes_on = asking(on_progress);
     try {
         return is_new ? recording_.advance(*run_, time_s, now_s, goes_on) : run_->advance_to(time_s, goes_on);
     } catch (...) {
@@ -63,7 +69,7 @@ bool Motion::step(const OnProgress& on_progress) {
 void Motion::run_to_end(const OnProgress& on_progress) {
     const auto total = static_cast<std::int64_t>(timeline_.size());
     while (recording_.size() < timeline_.size() && !diverges_) {
-        if (!run_ || next_ > recording_.size()) start();
+        if (!run_ || next_ > recording_.size()) start(on_progress);
         report_progress(on_progress, static_cast<std::int64_t>(next_), total);
         static_cast<void>(step(on_progress));
     }
@@ -77,7 +83,7 @@ const State& Motion::at(double time_s, const OnProgress& on_progress) {
         return state_;
     }
     if (index && diverges_ && *index >= recording_.size()) fail_diverged(time_s);
-    if (!run_ || run_->state().time_s > time_s) start();
+    if (!run_ || run_->state().time_s > time_s) start(on_progress);
     while (next_ < timeline_.size() && timeline_.time_s(next_) <= time_s) {
         if (!step(on_progress)) fail_diverged(time_s);
     }

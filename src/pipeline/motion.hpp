@@ -18,9 +18,10 @@ namespace corda::pipeline {
 class Motion {
   public:
     /// A motion that has not begun, by a method per body or, if there are none, by those that record() will
-    /// find. `system` must outlive it. Throws corda::Refusal if a method cannot run its body.
+    /// find. `system` must outlive it. Throws corda::Refusal if a method cannot run its body, and
+    /// corda::Error (kInterrupted) if asked to stop.
     Motion(const System& system, const WorldDef& world, std::vector<MethodDef> methods, Timeline timeline,
-           std::size_t budget_bytes);
+           std::size_t budget_bytes, const OnProgress& on_progress = {});
     Motion(const Motion&) = delete;
     Motion& operator=(const Motion&) = delete;
 
@@ -48,7 +49,9 @@ class Motion {
     [[nodiscard]] bool diverges() const { return diverges_; }
 
   private:
-    void start();
+    void start(const OnProgress& on_progress);
+    /// Tells `on_progress`, which must outlive it, the time that run_ goes to.
+    [[nodiscard]] GoesOn asking(const OnProgress& on_progress) const;
     /// Goes on to the next time of the timeline; false if the run diverges there.
     [[nodiscard]] bool step(const OnProgress& on_progress);
     /// Advances run_, and records the state if it is new.

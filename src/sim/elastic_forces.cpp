@@ -38,10 +38,12 @@ Along along(const double* x_m, const double* y_m, std::uint32_t from, std::uint3
 
 ElasticForces::ElasticForces(const System& system, std::size_t first_particle, std::size_t particle_count)
     : first_particle_(first_particle) {
-    for (const Body& body : system.bodies) {
-        const bool inside = body.first_particle >= first_particle &&
-                            body.first_particle + body.particle_count <= first_particle + particle_count;
-        if (inside && body.material.compliance_1_n > 0.0) add_springs(system, body);
+    const std::size_t end = first_particle + particle_count;
+    auto body = std::partition_point(system.bodies.begin(), system.bodies.end(), [&](const Body& before) {
+        return before.first_particle < first_particle;
+    });
+    for (; body != system.bodies.end() && body->first_particle < end; ++body) {
+        if (body->material.compliance_1_n > 0.0) add_springs(system, *body);
     }
     add_joints(system, particle_count);
     bound_frequencies(system.inverse_mass_1_kg.data() + first_particle, particle_count);
@@ -62,8 +64,11 @@ void ElasticForces::add_springs(const System& system, const Body& body) {
 void ElasticForces::add_joints(const System& system, std::size_t particle_count) {
     const double* const x_m = system.x_m.data();
     const double* const y_m = system.y_m.data();
-    for (const Bend& bend : system.bends) {
-        if (bend.a < first_particle_ || bend.a >= first_particle_ + particle_count) continue;
+    // In the order of bodies, as bars are.
+    auto next = std::partition_point(system.bends.begin(), system.bends.end(),
+                                     [&](const Bend& before) { return before.b < first_particle_; });
+    for (; next != system.bends.end() && next->b < first_particle_ + particle_count; ++next) {
+        const Bend& bend = *next;
         if (system.is_pinned(bend.a) && system.is_pinned(bend.b) && system.is_pinned(bend.c)) continue;
         joints_.push_back({static_cast<std::uint32_t>(bend.a - first_particle_),
                            static_cast<std::uint32_t>(bend.b - first_particle_),

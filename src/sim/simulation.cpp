@@ -60,31 +60,36 @@ void refuse_bars_without_length(const System& system) {
     }
 }
 
+/// A solver takes as long to make as some updates of a StopCheck.
+constexpr std::uint64_t kUpdatesPerBody = 20;
+
 /// Of a system that one solver moves.
 std::unique_ptr<Solver> make_one(const System& system, const Forces& forces, const MethodDef& method,
-                                 double frame_interval_s) {
+                                 double frame_interval_s, const GoesOn& goes_on) {
     if (!std::holds_alternative<RelaxationDef>(method)) refuse_bars_without_length(system);
     struct Maker {
         const System& system;
         const Forces& forces;
         double frame_interval_s;
+        const GoesOn& goes_on;
         std::unique_ptr<Solver> operator()(const ExactDef& def) const {
             return std::make_unique<Exact>(system, forces, def);
         }
         std::unique_ptr<Solver> operator()(const RattleDef& def) const {
-            return std::make_unique<Rattle>(system, forces, def, frame_interval_s);
+            return std::make_unique<Rattle>(system, forces, def, frame_interval_s, goes_on);
         }
         std::unique_ptr<Solver> operator()(const RelaxationDef& def) const {
             return std::make_unique<Relaxation>(system, forces, def, frame_interval_s);
         }
     };
-    return std::visit(Maker{system, forces, frame_interval_s}, method);
+    return std::visit(Maker{system, forces, frame_interval_s, goes_on}, method);
 }
 
 }  // namespace
 
 std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces,
-                                    std::span<const MethodDef> methods, double frame_interval_s) {
+                                    std::span<const MethodDef> methods, double frame_interval_s,
+                                    const GoesOn& goes_on) {
     const std::size_t count = system.bodies.size();
     if (methods.size() != 1 && methods.size() != count) {
         throw Error(ExitCode::kUsage, std::to_string(methods.size()) + " methods for the " +
@@ -95,13 +100,16 @@ std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces,
     const bool relaxes_all = std::all_of(methods.begin(), methods.end(), [&](const MethodDef& method) {
         return std::holds_alternative<RelaxationDef>(method) && method == methods.front();
     });
-    if (count == 1 || relaxes_all) return make_one(system, forces, methods.front(), frame_interval_s);
+    if (count == 1 || relaxes_all)
+        return make_one(system, forces, methods.front(), frame_interval_s, goes_on);
+    StopCheck stop(goes_on);
     std::vector<BodySolvers::Part> parts;
     for_each_body(system, [&](const System& body, std::size_t i) {
+        stop.spend(kUpdatesPerBody + body.particle_count());
         const MethodDef& method = methods.size() == 1 ? methods.front() : methods[i];
         try {
             parts.push_back({system.bodies[i].first_particle,
-                             make_one(body, forces, method, frame_interval_s),
+                             make_one(body, forces, method, frame_interval_s, goes_on),
                              {0.0, body.x_m, body.y_m}});
         } catch (const Refusal& refusal) {
             throw Refusal(refusal.reason(), body_name(system, i) + ": " + refusal.what());
@@ -112,15 +120,16 @@ std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces,
 
 }  // namespace sim
 
-Simulation::Simulation(System system, const WorldDef& world, const MethodDef& method, double frame_interval_s)
-    : Simulation(std::move(system), world, {&method, 1}, frame_interval_s) {}
+Simulation::Simulation(System system, const WorldDef& world, const MethodDef& method, double frame_interval_s,
+                       const GoesOn& goes_on)
+    : Simulation(std::move(system), world, std::span(&method, 1), frame_interval_s, goes_on) {}
 
 Simulation::Simulation(System system, const WorldDef& world, std::span<const MethodDef> methods,
-                       double frame_interval_s)
+                       double frame_interval_s, const GoesOn& goes_on)
     : system_(std::move(system)) {
     sim::validate(world);
     for (const MethodDef& method : methods) sim::validate(method);
-    solver_ = sim::make_solver(system_, world, methods, frame_interval_s);
+    solver_ = sim::make_solver(system_, world, methods, frame_interval_s, goes_on);
     state_ = {0.0, system_.x_m, system_.y_m};
     next_ = state_;
     conserves_energy_ = solver_->conserves_energy();

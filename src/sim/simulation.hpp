@@ -38,12 +38,12 @@ class Simulation {
   public:
     /// `frame_interval_s`: what a method without a step of its own derives its step from. Throws
     /// corda::Error (kInvalidScene) if the method cannot run the system, or for a field that is not what its
-    /// declaration says.
+    /// declaration says. `goes_on` is asked, as by advance_to(), while a large system is prepared.
     Simulation(System system, const WorldDef& world, const MethodDef& method,
-               double frame_interval_s = 1.0 / 60.0);
+               double frame_interval_s = 1.0 / 60.0, const GoesOn& goes_on = {});
     /// `methods`: one per body, or one for all. Throws corda::Error (kUsage) for another number of them.
     Simulation(System system, const WorldDef& world, std::span<const MethodDef> methods,
-               double frame_interval_s = 1.0 / 60.0);
+               double frame_interval_s = 1.0 / 60.0, const GoesOn& goes_on = {});
 
     Simulation(Simulation&&) noexcept;
     Simulation& operator=(Simulation&&) noexcept;

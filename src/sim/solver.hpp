@@ -55,9 +55,10 @@ class Solver {
 };
 
 /// What moves a system by one method per body, or by one for all of them. `frame_interval_s` is what a method
-/// derives its step from if it names none. Throws corda::Refusal if a method cannot run its body.
+/// derives its step from if it names none. Throws corda::Refusal if a method cannot run its body, and as a
+/// StopCheck if `goes_on` ends it: a large net takes seconds.
 [[nodiscard]] std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces,
-                                                  std::span<const MethodDef> methods,
-                                                  double frame_interval_s);
+                                                  std::span<const MethodDef> methods, double frame_interval_s,
+                                                  const GoesOn& goes_on = {});
 
 }  // namespace corda::sim

@@ -69,6 +69,7 @@ Study::Study(const StudyDef& def)
       timing_(study_timing(def.quick)),
       on_step_(def.on_step) {
     check_chapters(def);
+    const HearSteps hear(on_step_);
     if (def.quick) title_ += " (quick: not to quote from)";
     for (const ChapterKind& kind : kChapters) {
         if (!is_wanted(kind, def)) continue;

@@ -134,6 +134,7 @@ void find_truth(Subject& subject) {
 }
 
 double rattle_step_s(const Problem& problem, int order) {
+    take_step();
     const Simulation run(problem.system(), problem.world, RattleDef{order}, problem.fps.interval_s());
     double shortest_s = HUGE_VAL;
     for (const MethodDef& method : run.methods())
@@ -142,6 +143,7 @@ double rattle_step_s(const Problem& problem, int order) {
 }
 
 std::string refusal(const Problem& problem, const MethodDef& method) {
+    take_step();
     try {
         static_cast<void>(
             sim::make_solver(problem.system(), problem.world, {&method, 1}, problem.fps.interval_s()));

@@ -46,10 +46,12 @@ std::vector<Trial> exact_trials(const System& system, double tolerance_m) {
 }
 
 /// Trials of `rattle` for a graph, each checked by the next order (8 by 8) at half its step.
-std::vector<Trial> graph_trials(const System& system, const WorldDef& world, double frame_interval_s) {
+std::vector<Trial> graph_trials(const System& system, const WorldDef& world, double frame_interval_s,
+                                const GoesOn& goes_on) {
     std::vector<Trial> trials;
     for (const Rung& rung : kGraphLadder) {
-        const double stable_s = Rattle(system, world, RattleDef{rung.order}, frame_interval_s).step_s();
+        const double stable_s =
+            Rattle(system, world, RattleDef{rung.order}, frame_interval_s, goes_on).step_s();
         const double step_s = stable_s / static_cast<double>(1 << rung.halvings);
         Trial& trial = trials.emplace_back();
         trial.method = RattleDef{rung.order, step_s};
@@ -94,16 +96,16 @@ bool can_tell_little(const BodyPlan& plan, std::size_t failed, std::size_t count
 /// Records the run of a plan's method.
 void record(const System& system, const WorldDef& world, const PlanDef& def, BodyPlan& plan,
             Recording& recording) {
-    Simulation run(system, world, plan.method, def.timeline.fps().interval_s());
-    plan.method = run.methods().front();
-    recording.clear();
-    ++plan.passes;
     const auto total = static_cast<std::int64_t>(def.timeline.size());
     std::int64_t i = 0;
     const GoesOn goes_on = [&] {
         report_progress(def.on_progress, i, total);
         return true;
     };
+    Simulation run(system, world, plan.method, def.timeline.fps().interval_s(), goes_on);
+    plan.method = run.methods().front();
+    recording.clear();
+    ++plan.passes;
     for (; i < total; ++i) {
         goes_on();
         const double time_s = def.timeline.time_s(static_cast<std::size_t>(i));
@@ -200,8 +202,12 @@ double step_cost_ns(const Body& body, const MethodDef& method) {
 
 BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& def, Recording& recording) {
     const double interval_s = def.timeline.fps().interval_s();
+    const GoesOn goes_on = [&] {
+        report_progress(def.on_progress, 0, static_cast<std::int64_t>(def.timeline.size()));
+        return true;
+    };
     BodyPlan plan;
-    const auto exact_refusal = refusal(system, world, ExactDef{kLoosestTolerance}, interval_s);
+    const auto exact_refusal = refusal(system, world, ExactDef{kLoosestTolerance}, interval_s, goes_on);
     if (!exact_refusal) {
         plan.reason = PlanReason::kExact;
         MotionBounds start;
@@ -213,14 +219,15 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
     if (is_rigid_chain(system.bodies.front()) ||
         exact_refusal->reason() == Refusal::Reason::kBarWithoutLength)
         throw Refusal(*exact_refusal);
-    const bool can_fall_back = !refusal(system, world, RelaxationDef{}, interval_s);
-    if (const auto rattle_refusal = refusal(system, world, RattleDef{}, interval_s)) {
+    const bool can_fall_back = !refusal(system, world, RelaxationDef{}, interval_s, goes_on);
+    if (const auto rattle_refusal = refusal(system, world, RattleDef{}, interval_s, goes_on)) {
         if (!can_fall_back) throw Refusal(*rattle_refusal);
         fall_back(system, world, def, PlanReason::kDependent, plan, recording);
         return plan;
     }
     plan.reason = PlanReason::kGraph;
-    run_until_one_holds(system, world, def, graph_trials(system, world, interval_s), plan, recording);
+    run_until_one_holds(system, world, def, graph_trials(system, world, interval_s, goes_on), plan,
+                        recording);
     if (plan.diverges && can_fall_back)
         fall_back(system, world, def, PlanReason::kCollapsing, plan, recording);
     return plan;

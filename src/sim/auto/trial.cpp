@@ -46,7 +46,7 @@ void move_by_rounding(System& system) {
 class Check {
   public:
     Check(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
-          std::size_t number)
+          std::size_t number, const GoesOn& goes_on)
         : turn_(kTurns[number]), system_(system) {
         if (number > 0) move_by_rounding(system_);
         for (std::size_t i = 0; i < system.particle_count(); ++i) {
@@ -58,7 +58,7 @@ class Check {
             system_.vy_m_s[i] = velocity.y;
         }
         solver_ = make_solver(system_, Forces(ForceTerm{turn_.of(forces.uniform_m_s2()), forces.drag_1_s()}),
-                              {&method, 1}, frame_interval_s);
+                              {&method, 1}, frame_interval_s, goes_on);
         state_ = {0.0, system_.x_m, system_.y_m};
     }
     Check(const Check&) = delete;
@@ -188,21 +188,21 @@ double bound_per_difference(const System& system) {
 void run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial& trial,
                Recording& recording, int& passes) {
     const double interval_s = def.timeline.fps().interval_s();
-    Simulation run(system, world, trial.method, interval_s);
-    std::deque<Check> checks;
-    // What checks differ by at kinks is not rounding.
-    const bool has_one = kind.is_first || has_kinks(system) || is_far_from_rounding(trial.check);
-    for (std::size_t i = 0; i < (has_one ? 1 : kTurns.size()); ++i)
-        checks.emplace_back(system, world, trial.check, interval_s, i);
-    Comparison comparison(bound_per_difference(system), def.tolerance_m);
-    recording.clear();
     const auto total = static_cast<std::int64_t>(def.timeline.size());
-    bool is_checked = true;
     std::int64_t i = 0;
     const GoesOn goes_on = [&] {
         report_progress(def.on_progress, i, total);
         return true;
     };
+    Simulation run(system, world, trial.method, interval_s, goes_on);
+    std::deque<Check> checks;
+    // What checks differ by at kinks is not rounding.
+    const bool has_one = kind.is_first || has_kinks(system) || is_far_from_rounding(trial.check);
+    for (std::size_t number = 0; number < (has_one ? 1 : kTurns.size()); ++number)
+        checks.emplace_back(system, world, trial.check, interval_s, number, goes_on);
+    Comparison comparison(bound_per_difference(system), def.tolerance_m);
+    recording.clear();
+    bool is_checked = true;
     StopCheck stop(goes_on);
     for (; i < total && (is_checked || kind.is_last); ++i) {
         goes_on();
@@ -228,9 +228,9 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
 }
 
 std::optional<Refusal> refusal(const System& system, const WorldDef& world, const MethodDef& method,
-                               double frame_interval_s) {
+                               double frame_interval_s, const GoesOn& goes_on) {
     try {
-        static_cast<void>(make_solver(system, world, {&method, 1}, frame_interval_s));
+        static_cast<void>(make_solver(system, world, {&method, 1}, frame_interval_s, goes_on));
     } catch (const Refusal& refused) {
         return refused;
     }

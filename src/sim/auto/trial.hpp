@@ -52,6 +52,7 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
 
 /// Why a method cannot run a system; std::nullopt if it can.
 [[nodiscard]] std::optional<Refusal> refusal(const System& system, const WorldDef& world,
-                                             const MethodDef& method, double frame_interval_s);
+                                             const MethodDef& method, double frame_interval_s,
+                                             const GoesOn& goes_on = {});
 
 }  // namespace corda::sim

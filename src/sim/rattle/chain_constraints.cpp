@@ -186,8 +186,9 @@ void ChainConstraints::add_total(const Chain& chain, Motion& motion) const {
     }
 }
 
-bool ChainConstraints::move(const Stage& stage, Motion& motion, std::span<double> impulse) {
+bool ChainConstraints::move(const Stage& stage, Motion& motion, std::span<double> impulse, StopCheck& stop) {
     kick(stage, motion);
+    stop.spend(1 + motion.x_m.size());
     for (const Chain& chain : chains_) {
         if (!meet_lengths(chain, stage.span_s, motion, impulse.data() + chain.first_link)) return false;
     }
@@ -195,7 +196,8 @@ bool ChainConstraints::move(const Stage& stage, Motion& motion, std::span<double
     return true;
 }
 
-bool ChainConstraints::solve(const Motion& motion, std::span<double> right) {
+bool ChainConstraints::solve(const Motion& motion, std::span<double> right, StopCheck& stop) {
+    stop.spend(1 + motion.x_m.size());
     bool is_finite = true;
     for (const Chain& chain : chains_) {
         const double* const w = inverse_mass_1_kg_.data() + chain.first_particle;

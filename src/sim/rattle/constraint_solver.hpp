@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "corda/core/stop_check.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/system.hpp"
 
@@ -66,11 +67,12 @@ class ConstraintSolver {
 
     /// Takes one stage. `impulse` has one entry per link: on entry a guess, on return the impulses. False if
     /// Newton's method does not converge; `motion` and `impulse` are then undefined.
-    [[nodiscard]] virtual bool move(const Stage& stage, Motion& motion, std::span<double> impulse) = 0;
+    [[nodiscard]] virtual bool move(const Stage& stage, Motion& motion, std::span<double> impulse,
+                                    StopCheck& stop) = 0;
 
     /// Solves (G W G') z = right in place, where G has the rows d_k . (v_b - v_a) at these positions and W is
     /// the inverse masses. False if the matrix is singular.
-    [[nodiscard]] virtual bool solve(const Motion& motion, std::span<double> right) = 0;
+    [[nodiscard]] virtual bool solve(const Motion& motion, std::span<double> right, StopCheck& stop) = 0;
 
     /// A bound on the square of the largest angular frequency, 1 / s^2, of small motions about a state whose
     /// bars have these multipliers (tension over length, N / m): Gershgorin's, the largest over all particles
@@ -99,7 +101,8 @@ class ConstraintSolver {
 
 /// The solver that suits the rigid bars of a system: ChainConstraints if every bar joins a particle to the
 /// next one, or if there is none; otherwise GraphConstraints. Throws corda::Refusal if the lengths do not
-/// determine the motion.
-[[nodiscard]] std::unique_ptr<ConstraintSolver> make_constraint_solver(const System& system);
+/// determine the motion. `goes_on`: see Rattle.
+[[nodiscard]] std::unique_ptr<ConstraintSolver> make_constraint_solver(const System& system,
+                                                                       const GoesOn& goes_on = {});
 
 }  // namespace corda::sim

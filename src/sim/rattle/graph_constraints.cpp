@@ -19,13 +19,14 @@ constexpr double kDependentPivot = 1e-12;
 
 }  // namespace
 
-GraphConstraints::GraphConstraints(const System& system) : ConstraintSolver(system) {
+GraphConstraints::GraphConstraints(const System& system, const GoesOn& goes_on) : ConstraintSolver(system) {
     dx_m_.assign(links_.size(), 0.0);
     dy_m_.assign(links_.size(), 0.0);
     load_.assign(system.particle_count(), 0.0);
     right_.setZero(static_cast<Eigen::Index>(links_.size()));
     analyse();
-    if (!factorise(Motion::start_of(system))) {
+    StopCheck stop(goes_on);
+    if (!factorise(Motion::start_of(system), stop)) {
         throw Refusal(
             Refusal::Reason::kDependentBars,
             "the lengths of rigid bars depend on each other, so that their tensions are not determined");
@@ -62,25 +63,31 @@ void GraphConstraints::analyse() {
     factors_.analyzePattern(matrix_);
 }
 
-bool GraphConstraints::factorise(const Motion& motion) {
+bool GraphConstraints::factorise(const Motion& motion, StopCheck& stop) {
+    bool is_new = !is_factorised_;
     for (std::size_t k = 0; k < links_.size(); ++k) {
         const auto [a, b, rest_m] = links_[k];
-        dx_m_[k] = (motion.x_m[b] - motion.x_m[a]) + (motion.x_lost_m[b] - motion.x_lost_m[a]);
-        dy_m_[k] = (motion.y_m[b] - motion.y_m[a]) + (motion.y_lost_m[b] - motion.y_lost_m[a]);
+        const double dx_m = (motion.x_m[b] - motion.x_m[a]) + (motion.x_lost_m[b] - motion.x_lost_m[a]);
+        const double dy_m = (motion.y_m[b] - motion.y_m[a]) + (motion.y_lost_m[b] - motion.y_lost_m[a]);
+        is_new = is_new || dx_m != dx_m_[k] || dy_m != dy_m_[k];
+        dx_m_[k] = dx_m;
+        dy_m_[k] = dy_m;
     }
+    if (!is_new) return true;
+    is_factorised_ = false;
     double* const values = matrix_.valuePtr();
     for (std::size_t e = 0; e < entries_.size(); ++e) {
         const auto [row, column, factor] = entries_[e];
         values[e] = factor * (dx_m_[row] * dx_m_[column] + dy_m_[row] * dy_m_[column]);
     }
-    factors_.factorize(matrix_);
-    if (factors_.info() != Eigen::Success) return false;
+    if (!factors_.factorize(matrix_, stop)) return false;
     const auto& order = factors_.permutationP().indices();
     const auto pivots = factors_.vectorD();
     for (Eigen::Index k = 0; k < matrix_.cols(); ++k) {
         // Negated, so that a NaN fails.
         if (!(pivots[order[k]] > kDependentPivot * matrix_.coeff(k, k))) return false;
     }
+    is_factorised_ = true;
     return true;
 }
 
@@ -111,9 +118,9 @@ bool GraphConstraints::correct(double span_s, const Motion& motion) {
     return met;
 }
 
-bool GraphConstraints::move(const Stage& stage, Motion& motion, std::span<double> impulse) {
+bool GraphConstraints::move(const Stage& stage, Motion& motion, std::span<double> impulse, StopCheck& stop) {
     kick(stage, motion);
-    if (!factorise(motion)) return false;
+    if (!factorise(motion, stop)) return false;
     apply(impulse.data(), motion);
     bool met = correct(stage.span_s, motion);
     for (int i = 0; i < kMaxCorrections && !met; ++i) {
@@ -127,8 +134,8 @@ bool GraphConstraints::move(const Stage& stage, Motion& motion, std::span<double
     return true;
 }
 
-bool GraphConstraints::solve(const Motion& motion, std::span<double> right) {
-    if (!factorise(motion)) return false;
+bool GraphConstraints::solve(const Motion& motion, std::span<double> right, StopCheck& stop) {
+    if (!factorise(motion, stop)) return false;
     std::copy(right.begin(), right.end(), right_.data());
     right_ = factors_.solve(right_);
     std::copy_n(right_.data(), right.size(), right.begin());

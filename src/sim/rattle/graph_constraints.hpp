@@ -1,11 +1,10 @@
 #pragma once
 
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
 #include <cstdint>
 #include <vector>
 
 #include "corda/sim/rattle/constraint_solver.hpp"
+#include "corda/sim/rattle/stoppable_ldlt.hpp"
 
 namespace corda::sim {
 
@@ -15,11 +14,12 @@ namespace corda::sim {
 /// about the sine of the angle by which bars turn.
 class GraphConstraints final : public ConstraintSolver {
   public:
-    /// Throws corda::Refusal for bars whose lengths depend on each other.
-    explicit GraphConstraints(const System& system);
+    /// Throws corda::Refusal for bars whose lengths depend on each other. `goes_on`: see Rattle.
+    explicit GraphConstraints(const System& system, const GoesOn& goes_on = {});
 
-    [[nodiscard]] bool move(const Stage& stage, Motion& motion, std::span<double> impulse) override;
-    [[nodiscard]] bool solve(const Motion& motion, std::span<double> right) override;
+    [[nodiscard]] bool move(const Stage& stage, Motion& motion, std::span<double> impulse,
+                            StopCheck& stop) override;
+    [[nodiscard]] bool solve(const Motion& motion, std::span<double> right, StopCheck& stop) override;
     [[nodiscard]] double square_frequency(std::span<const double> multiplier) const override;
     [[nodiscard]] std::vector<double> carried_mass(std::span<const double> mass_kg) const override;
 
@@ -31,14 +31,16 @@ class GraphConstraints final : public ConstraintSolver {
         double factor = 0.0;  ///< sum of the shared particles' inverse masses, signed
     };
     void analyse();
-    [[nodiscard]] bool factorise(const Motion& motion);
+    /// Makes factors_ those at these positions; takes no time if they are already.
+    [[nodiscard]] bool factorise(const Motion& motion, StopCheck& stop);
     void apply(const double* impulse, Motion& motion) const;
     [[nodiscard]] bool correct(double span_s, const Motion& motion);
 
     std::vector<Entry> entries_;
     Eigen::SparseMatrix<double> matrix_;  ///< lower triangle
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors_;
-    std::vector<double> dx_m_;  ///< bar vectors at the start of a stage
+    StoppableLdlt factors_;
+    bool is_factorised_ = false;  ///< factors_ are those of dx_m_ and dy_m_
+    std::vector<double> dx_m_;    ///< bar vectors at the start of a stage
     std::vector<double> dy_m_;
     Eigen::VectorXd right_;
     mutable std::vector<double> load_;  ///< scratch, one entry per particle

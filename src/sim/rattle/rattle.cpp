@@ -46,11 +46,12 @@ double power_of_half(int exponent) {
 
 }  // namespace
 
-Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def, double frame_interval_s)
+Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def, double frame_interval_s,
+               const GoesOn& goes_on)
     : Solver(sim::energy_scale_j(system, forces.on_particles(system)), forces.conserve_energy()),
       order_(def.order),
       composition_(composition(def.order)),
-      constraints_(make_constraint_solver(system)),
+      constraints_(make_constraint_solver(system, goes_on)),
       forces_(forces),
       elastic_(system, 0, system.particle_count()),
       mass_kg_(system.mass_kg),
@@ -65,7 +66,8 @@ Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def,
         force_y_n_.assign(mass_kg_.size(), 0.0);
     }
     history_.multipliers.assign(kHistory * composition_.stages.size() * impulse_.size(), 0.0);
-    if (!complete(grid_) || !find_tensions()) {
+    StopCheck stop(goes_on);
+    if (!complete(grid_, stop) || !find_tensions()) {
         throw Refusal(Refusal::Reason::kDependentBars,
                       "the rigid bars do not determine their tensions at the start");
     }
@@ -107,7 +109,7 @@ Status Rattle::advance_to(double time_s, State& state, StopCheck& stop) {
         if (!advance(time_s - static_cast<double>(step_) * step_s_, between_, nullptr, stop))
             return Status::kDiverged;
     }
-    if (!complete(target.is_on_grid ? grid_ : between_)) return Status::kDiverged;
+    if (!complete(target.is_on_grid ? grid_ : between_, stop)) return Status::kDiverged;
     state.time_s = time_s;
     state.x_m = output_.x_m;
     state.y_m = output_.y_m;
@@ -142,14 +144,13 @@ bool Rattle::advance(double span_s, Trajectory& trajectory, History* history, St
 bool Rattle::take_part(double part_s, Trajectory& trajectory, History* history, StopCheck& stop) {
     if (history != nullptr) history->newest = (history->newest + 1) % kHistory;
     for (std::size_t i = 0; i < composition_.stages.size(); ++i) {
-        stop.spend(1 + mass_kg_.size());
         const double span_s = composition_.stages[i] * part_s;
         const double decay = forces_.decay(0.5 * (trajectory.last_span_s + span_s));
         const double kick_s = 0.5 * (decay * trajectory.last_span_s + span_s);
         guess(i, kick_s, trajectory, history);
         Stage stage{span_s, decay, kick_s * forces_.uniform_m_s2()};
         const double elastic_square = is_elastic() ? push(kick_s, stage, trajectory.motion) : 0.0;
-        if (!constraints_->move(stage, trajectory.motion, impulse_)) return false;
+        if (!constraints_->move(stage, trajectory.motion, impulse_, stop)) return false;
         trajectory.last_span_s = span_s;
         if (std::abs(kick_s) < kShortKick * std::abs(span_s)) continue;
         for (std::size_t k = 0; k < impulse_.size(); ++k) trajectory.multiplier[k] = impulse_[k] / kick_s;
@@ -210,7 +211,7 @@ void Rattle::guess(std::size_t stage, double kick_s, const Trajectory& trajector
     for (std::size_t k = 0; k < count; ++k) impulse_[k] = kick_s * (3.0 * (last[k] - second[k]) + third[k]);
 }
 
-bool Rattle::complete(const Trajectory& trajectory) {
+bool Rattle::complete(const Trajectory& trajectory, StopCheck& stop) {
     output_ = trajectory.motion;
     const double half_s = 0.5 * trajectory.last_span_s;
     const double decay = forces_.decay(half_s);
@@ -237,7 +238,7 @@ bool Rattle::complete(const Trajectory& trajectory) {
         impulse_[k] = d.x * (output_.vx_m_s[link.b] - output_.vx_m_s[link.a]) +
                       d.y * (output_.vy_m_s[link.b] - output_.vy_m_s[link.a]);
     }
-    if (!constraints_->solve(output_, impulse_)) return false;
+    if (!constraints_->solve(output_, impulse_, stop)) return false;
     for (std::size_t k = 0; k < links.size(); ++k) {
         const Link& link = links[k];
         const Vec2 pull = impulse_[k] * along(link);
@@ -273,7 +274,8 @@ bool Rattle::find_tensions() const {
                 (output_.y_m[b] - output_.y_m[a]) * (wb * force_y_n_[b] - wa * force_y_n_[a]);
         }
     }
-    return constraints_->solve(output_, tension_over_length_n_m_);
+    StopCheck nobody;  // complete() has factorised the matrix at output_
+    return constraints_->solve(output_, tension_over_length_n_m_, nobody);
 }
 
 std::optional<Loads> Rattle::loads() const {

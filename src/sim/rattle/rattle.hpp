@@ -38,8 +38,10 @@ class Rattle final : public Solver {
   public:
     /// If `def` names no step, `frame_interval_s` is divided by the smallest whole number that makes a stable
     /// step. Throws corda::Refusal for a rigid rope that is straight between two pins, for rigid bars whose
-    /// lengths depend on each other, and for rigid strings.
-    Rattle(const System& system, const Forces& forces, const RattleDef& def, double frame_interval_s);
+    /// lengths depend on each other, and for rigid strings. `goes_on` can end it: factorising the matrix of a
+    /// large net takes seconds.
+    Rattle(const System& system, const Forces& forces, const RattleDef& def, double frame_interval_s,
+           const GoesOn& goes_on = {});
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;
@@ -83,7 +85,7 @@ class Rattle final : public Solver {
     /// Returns what find_forces() returns.
     double push(double kick_s, Stage& stage, Motion& motion);
     /// Writes a trajectory's state with complete velocities to output_.
-    [[nodiscard]] bool complete(const Trajectory& trajectory);
+    [[nodiscard]] bool complete(const Trajectory& trajectory, StopCheck& stop);
     [[nodiscard]] bool find_tensions() const;
     [[nodiscard]] double expected_frequency(double elastic_square) const;
 

@@ -151,5 +151,21 @@ TEST(Simulation, EndsInEveryMethodOnceItShallNotGoOn) {
     }
 }
 
+TEST(Simulation, IsNotMadeOfALargeNetOnceItShallNotGoOn) {
+    const NetDef net = test::leaning_net(80, 80, 0.1);
+    int left = 2;
+    const GoesOn goes_on = [&left] { return --left > 0; };
+    EXPECT_THROW(Simulation(build_system({}, {&net, 1}), WorldDef{}, RattleDef{4}, 0.01, goes_on), Error);
+    EXPECT_EQ(left, 0);
+}
+
+TEST(Simulation, IsNotMadeOfManyBodiesOnceItShallNotGoOn) {
+    const std::vector<RopeDef> ropes(2000, reference::straight_rope(2, 1.0, 30.0));
+    int left = 2;
+    const GoesOn goes_on = [&left] { return --left > 0; };
+    EXPECT_THROW(Simulation(build_system(ropes), WorldDef{}, ExactDef{}, 0.01, goes_on), Error);
+    EXPECT_EQ(left, 0);
+}
+
 }  // namespace
 }  // namespace corda
