@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "corda/pipeline/film.hpp"
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/simulation.hpp"
 #include "support/nets.hpp"
@@ -65,17 +64,6 @@ TEST(AutoGraph, ANetBesideARopeIsSolvedWithIt) {
     const RopeDef rope = reference::straight_rope(5, 1.0, 30.0);
     const NetDef net = test::leaning_net(3, 3, 0.3);
     expect_true_bound(build_system({&rope, 1}, {&net, 1}), 1e-3, 30);
-}
-
-TEST(AutoGraph, ANetWhoseBarsComeToLieInLineGetsRelaxationWithoutABound) {
-    // A square grid let go by one corner collapses into a line at 0.27 s.
-    const Film film(
-        parse_scene("schema = 1\n[world]\nduration = 0.5\n[[net]]\n"
-                    "grid = { columns = 6, rows = 6, spacing = 0.1, diagonals = false }\npinned = [[0, 0]]\n",
-                    "net.toml"));
-    EXPECT_TRUE(std::holds_alternative<RelaxationDef>(film.plan().method));
-    EXPECT_FALSE(film.error_bound_px().has_value());
-    EXPECT_EQ(film.plan().reason, PlanReason::kCollapsing);
 }
 
 TEST(ClosedRope, KeepsItsLengthsItsEnergyAndItsMirrorImage) {

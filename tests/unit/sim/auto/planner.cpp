@@ -59,9 +59,27 @@ TEST(AutoPlan, GivesRigidBarsOfAGraphRattle) {
     EXPECT_LE(plan.error_bound_m.value(), 1e-2);
 }
 
-TEST(AutoPlan, GivesBarsThatDependOnEachOtherRelaxationWithoutABound) {
+TEST(AutoPlan, GivesANetWithDiagonalsRattle) {
     const NetDef net = test::leaning_net(6, 5, 0.2, true);
     const Plan plan = test::plan_of(build_system({}, {&net, 1}), WorldDef{}, 1e-3, kFrames, 60);
+    EXPECT_TRUE(std::holds_alternative<RattleDef>(plan.method));
+    EXPECT_LE(plan.error_bound_m.value(), 1e-3);
+}
+
+TEST(AutoPlan, TakesTheSameStepAtEveryFrameRate) {
+    const RopeDef ring = test::ring(9);
+    const System system = build_system({&ring, 1});
+    const Plan quick = test::plan_of(system, WorldDef{}, 1e-3, FrameRate(Rational{60, 1}), 30);
+    const Plan slow = test::plan_of(system, WorldDef{}, 1e-3, FrameRate(Rational{7, 1}), 3);
+    EXPECT_EQ(std::get<RattleDef>(quick.method).order, std::get<RattleDef>(slow.method).order);
+    EXPECT_EQ(std::get<RattleDef>(quick.method).step_s, std::get<RattleDef>(slow.method).step_s);
+}
+
+TEST(AutoPlan, GivesBarsThatDependOnEachOtherRelaxationWithoutABound) {
+    // A straight rope whose second bars make it a rod, beside a ring.
+    RopeDef ropes[] = {reference::straight_rope(4, 1.0, 40.0), test::ring(5)};
+    ropes[0].reach = 2;
+    const Plan plan = test::plan_of(build_system(ropes), WorldDef{}, 1e-3, kFrames, 60);
     EXPECT_TRUE(std::holds_alternative<RelaxationDef>(plan.method));
     EXPECT_FALSE(plan.error_bound_m.has_value());
     EXPECT_EQ(plan.reason, PlanReason::kDependent);
