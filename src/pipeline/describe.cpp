@@ -81,8 +81,8 @@ std::string describe(const BodyPlan& plan) {
         case PlanReason::kGraph:
             return "it keeps the bars of closed ropes and nets at their lengths";
         case PlanReason::kDependent:
-            return "the bars depend on each other (diagonals, or a row straight between pins), so that no "
-                   "method can tell the true motion; there is no bound of the error";
+            return "bars depend on each other at the start in such a way that no method can tell the true "
+                   "motion; there is no bound of the error";
         case PlanReason::kCollapsing:
             return "bars of a closed rope or a net come into line during the motion: their tensions are then "
                    "undetermined and rattle stops; there is no bound of the error";

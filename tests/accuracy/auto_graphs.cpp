@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "corda/pipeline/film.hpp"
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/simulation.hpp"
 #include "support/nets.hpp"
@@ -59,17 +58,6 @@ TEST(AutoGraph, BoundIsTrueForANet) {
     const NetDef net = test::leaning_net(6, 5, 0.2);
     const System system = build_system({}, {&net, 1});
     for (const double tolerance_m : {1e-2, 1e-5}) expect_true_bound(system, tolerance_m, 60);
-}
-
-TEST(AutoGraph, ANetWhoseBarsComeToLieInLineGetsRelaxationWithoutABound) {
-    // A square grid let go by one corner collapses into a line at 0.27 s.
-    const Film film(
-        parse_scene("schema = 1\n[world]\nduration = 0.5\n[[net]]\n"
-                    "grid = { columns = 6, rows = 6, spacing = 0.1, diagonals = false }\npinned = [[0, 0]]\n",
-                    "net.toml"));
-    EXPECT_TRUE(std::holds_alternative<RelaxationDef>(film.plan().bodies.front().method));
-    EXPECT_FALSE(film.error_bound_px().has_value());
-    EXPECT_EQ(film.plan().bodies.front().reason, PlanReason::kCollapsing);
 }
 
 TEST(ClosedRope, KeepsItsLengthsItsEnergyAndItsMirrorImage) {

@@ -14,8 +14,8 @@ namespace corda::sim {
 /// - Chains, and bodies that stretch: `exact` at the loosest sufficient tolerance, checked by a run a hundred
 ///   times tighter.
 /// - Nets and closed ropes of rigid bars: orders of `rattle` and halved steps, cheapest first, each checked by
-///   the next order (8 by 8) at half its step.
-/// - Bars whose lengths depend on each other (a net with diagonals), at the start or during the motion:
+///   the next order (8 by 8) at a third of its step.
+/// - Bars that depend on each other at the start alone, or that come into line where `rattle` cannot go on:
 ///   `relaxation`, without a bound on its error.
 ///
 /// The bound is bound_per_difference() times the largest difference of run and checks, and what these cannot

@@ -31,7 +31,8 @@ bool ChainConstraints::suits(std::span<const Bar> bars) {
     return true;
 }
 
-ChainConstraints::ChainConstraints(const System& system) : ConstraintSolver(system) {
+ChainConstraints::ChainConstraints(const System& system)
+    : ConstraintSolver(system, system.inverse_mass_1_kg) {
     assert(suits(rigid_bars(system)));
     std::size_t longest = 0;
     for (std::size_t k = 0; k < links_.size(); ++k) {

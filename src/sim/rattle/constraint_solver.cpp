@@ -1,5 +1,7 @@
 #include "corda/sim/rattle/constraint_solver.hpp"
 
+#include <utility>
+
 #include "corda/sim/rattle/chain_constraints.hpp"
 #include "corda/sim/rattle/graph_constraints.hpp"
 
@@ -10,12 +12,13 @@ Motion Motion::start_of(const System& system) {
     return {system.x_m, system.y_m, system.vx_m_s, system.vy_m_s, none, none, none, none};
 }
 
-ConstraintSolver::ConstraintSolver(const System& system) : inverse_mass_1_kg_(system.inverse_mass_1_kg) {
+ConstraintSolver::ConstraintSolver(const System& system, std::vector<double> inverse_mass_1_kg)
+    : inverse_mass_1_kg_(std::move(inverse_mass_1_kg)) {
     for (std::size_t i = 0; i < system.particle_count(); ++i) {
-        if (system.is_pinned(i)) pinned_.push_back(static_cast<std::uint32_t>(i));
+        if (inverse_mass_1_kg_[i] == 0.0) held_.push_back(static_cast<std::uint32_t>(i));
     }
     for (const Bar& bar : rigid_bars(system)) {
-        if (!system.is_pinned(bar.a) || !system.is_pinned(bar.b))
+        if (inverse_mass_1_kg_[bar.a] > 0.0 || inverse_mass_1_kg_[bar.b] > 0.0)
             links_.push_back({bar.a, bar.b, bar.rest_m});
     }
 }
@@ -30,7 +33,7 @@ void ConstraintSolver::kick(const Stage& stage, Motion& motion) const {
         add_unrounded(vx[i], lost_x[i], slowdown * vx[i] + stage.push_m_s.x);
         add_unrounded(vy[i], lost_y[i], slowdown * vy[i] + stage.push_m_s.y);
     }
-    for (const std::uint32_t i : pinned_) vx[i] = vy[i] = lost_x[i] = lost_y[i] = 0.0;
+    for (const std::uint32_t i : held_) vx[i] = vy[i] = lost_x[i] = lost_y[i] = 0.0;
 }
 
 void ConstraintSolver::drift(double span_s, Motion& motion) {

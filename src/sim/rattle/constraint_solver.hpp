@@ -83,12 +83,19 @@ class ConstraintSolver {
     /// seen from the pin; all mass between two pins, or if it is not known; 0 without a pin.
     [[nodiscard]] virtual std::vector<double> carried_mass(std::span<const double> mass_kg) const = 0;
 
-    /// The bars whose lengths are kept, in the order of `impulse`.
+    /// Whether the forces and the lengths determine every bar's tension. Bars that others imply could share
+    /// the load in any way.
+    [[nodiscard]] virtual bool determines_tensions() const { return true; }
+
+    /// Per particle; 0 if it is held.
+    [[nodiscard]] const std::vector<double>& inverse_mass_1_kg() const { return inverse_mass_1_kg_; }
+
+    /// The bars whose lengths are kept by impulses, in the order of `impulse`.
     [[nodiscard]] std::span<const Link> links() const { return links_; }
 
   protected:
-    /// Of the rigid bars of a system that have a free end.
-    explicit ConstraintSolver(const System& system);
+    /// Of the rigid bars of a system that have an end whose inverse mass is not 0.
+    ConstraintSolver(const System& system, std::vector<double> inverse_mass_1_kg);
 
     /// The first and the last part of a stage: the change of all velocities, and the move.
     void kick(const Stage& stage, Motion& motion) const;
@@ -96,7 +103,7 @@ class ConstraintSolver {
 
     std::vector<Link> links_;
     std::vector<double> inverse_mass_1_kg_;
-    std::vector<std::uint32_t> pinned_;
+    std::vector<std::uint32_t> held_;  ///< the particles of inverse mass 0
 };
 
 /// The solver that suits the rigid bars of a system: ChainConstraints if every bar joins a particle to the

@@ -1,8 +1,10 @@
 #include "corda/sim/rattle/graph_constraints.hpp"
 
+#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 
+#include "corda/sim/rattle/taut_rows.hpp"
 #include "corda/sim/refusal.hpp"
 
 namespace corda::sim {
@@ -13,24 +15,123 @@ namespace {
 constexpr double kExcessTolerance = 4e-15;
 /// Five to ten are normal. If it takes more than forty, the bars turn too far for the matrix.
 constexpr int kMaxCorrections = 40;
-/// Bars are refused as dependent if a pivot is below this share of its diagonal entry. Dependent bars leave
-/// 1e-16 to 1e-14; a net that is only just determined, sagging by a part in 1e5, leaves 1e-10.
+/// Bars depend on each other if a pivot is below this share of its diagonal entry. Dependent bars leave 1e-16
+/// to 1e-14; a net that is only just determined, sagging by a part in 1e5, leaves 1e-10.
 constexpr double kDependentPivot = 1e-12;
+/// Implied bars are found with all diagonal entries raised by this share, so that the elimination can go on
+/// beyond one. A pivot is then this share times 1 + c^2, c being the coefficients by which the others imply
+/// the bar: 2e-14 to 2e-11 in a grid of 200 x 200 with both diagonals, while independent bars leave 3e-9.
+constexpr double kRaise = 1e-14;
+constexpr double kImpliedPivot = 1e-11;
+/// A stage from bars with a pivot below this share may take them across the line in which they depend on each
+/// other, a hundredth of a radian away.
+constexpr double kNearLine = 1e-4;
+/// From such a start, Newton's method proper converges in five steps or not at all.
+constexpr int kMaxCrossingSteps = 10;
+/// In the line two motions branch off, and the true one keeps its velocities. Those of bars may change in the
+/// stage by this share of the fastest; and Newton's corrections have to shrink by kShrink each, as they do
+/// from a start that is ten times nearer to the one branch than to the other.
+constexpr double kCrossingChange = 0.05;
+constexpr double kShrink = 0.1;
+constexpr double kRoundedChange = 1e-11;
+/// By how much of its square the length of an implied bar may be off: rounding, magnified by the others.
+constexpr double kImpliedTolerance = 1e-9;
+/// By how much of the largest squared speed at which a bar turns an implied bar may bend away. Bars that do
+/// not stay implied bend away by a share near 1.
+constexpr double kBendTolerance = 1e-6;
+/// Nothing moves if random velocities of up to 1 m/s leave less than this squared speed, in (m/s)^2.
+constexpr double kNoMotion = 1e-16;
+
+/// Of a bar: its vector times the difference of its ends' velocities, and the square of that difference.
+struct Rates {
+    double along;
+    double square;
+};
+
+Rates rates(const Link& link, const Motion& motion) {
+    const double ux = motion.vx_m_s[link.b] - motion.vx_m_s[link.a];
+    const double uy = motion.vy_m_s[link.b] - motion.vy_m_s[link.a];
+    return {(motion.x_m[link.b] - motion.x_m[link.a]) * ux + (motion.y_m[link.b] - motion.y_m[link.a]) * uy,
+            ux * ux + uy * uy};
+}
 
 }  // namespace
 
-GraphConstraints::GraphConstraints(const System& system, const GoesOn& goes_on) : ConstraintSolver(system) {
-    dx_m_.assign(links_.size(), 0.0);
-    dy_m_.assign(links_.size(), 0.0);
+GraphConstraints::GraphConstraints(const System& system, const GoesOn& goes_on)
+    : ConstraintSolver(system, inverse_masses_with_taut_rows_held(system)),
+      holds_rows_(inverse_mass_1_kg_ != system.inverse_mass_1_kg) {
     load_.assign(system.particle_count(), 0.0);
-    right_.setZero(static_cast<Eigen::Index>(links_.size()));
+    const Motion start = Motion::start_of(system);
     analyse();
     StopCheck stop(goes_on);
-    if (!factorise(Motion::start_of(system), stop)) {
-        throw Refusal(
-            Refusal::Reason::kDependentBars,
-            "the lengths of rigid bars depend on each other, so that their tensions are not determined");
+    if (is_regular(start, stop)) return;
+    // Again without the raise for those with large coefficients, which may hide one another.
+    for (const double raise : {kRaise, 0.0, 0.0}) {
+        leave_out_implied(start, raise, stop);
+        if (is_regular(start, stop) && stay_implied(start, stop)) return;
     }
+    throw Refusal(Refusal::Reason::kDependentBars,
+                  "the lengths of rigid bars depend on each other at the start, but not in the motion that "
+                  "follows");
+}
+
+void GraphConstraints::leave_out_implied(const Motion& start, double raise, StopCheck& stop) {
+    if (!factorise(start, raise, stop)) return;
+    const auto& order = factors_.permutationP().indices();
+    const auto pivots = factors_.vectorD();
+    std::vector<Link> kept;
+    for (std::size_t k = 0; k < links_.size(); ++k) {
+        const auto column = static_cast<Eigen::Index>(k);
+        const bool is_implied = !(pivots[order[column]] > kImpliedPivot * matrix_.coeff(column, column));
+        (is_implied ? implied_ : kept).push_back(links_[k]);
+    }
+    links_ = std::move(kept);
+    analyse();
+}
+
+bool GraphConstraints::stay_implied(Motion motion, StopCheck& stop) {
+    // What an implied bar bends away in a motion that keeps the others to second order is a square of the
+    // velocities: if it is 0 for velocities in no particular direction, it always is.
+    std::uint32_t order = 1;
+    const auto any = [&order](double weight) {
+        order = order * 1664525U + 1013904223U;
+        return weight > 0.0 ? static_cast<double>(order) / 2147483648.0 - 1.0 : 0.0;
+    };
+    for (std::size_t i = 0; i < inverse_mass_1_kg_.size(); ++i) {
+        motion.vx_m_s[i] = any(inverse_mass_1_kg_[i]);
+        motion.vy_m_s[i] = any(inverse_mass_1_kg_[i]);
+    }
+    std::vector<double> pull(links_.size());
+    for (std::size_t k = 0; k < links_.size(); ++k) pull[k] = rates(links_[k], motion).along;
+    if (!solve(motion, pull, stop)) return false;
+    apply(pull.data(), motion);
+    const double largest = largest_square(motion);
+    if (largest < kNoMotion) return true;
+    for (std::size_t k = 0; k < links_.size(); ++k) pull[k] = rates(links_[k], motion).square;
+    std::vector<double> bends;
+    for (const Link& link : implied_) {
+        const auto [along, square] = rates(link, motion);
+        if (!(std::abs(along) <= kBendTolerance * link.rest_m * std::sqrt(largest))) return false;
+        bends.push_back(square);
+    }
+    if (!solve(motion, pull, stop)) return false;
+    std::fill(motion.vx_m_s.begin(), motion.vx_m_s.end(), 0.0);
+    std::fill(motion.vy_m_s.begin(), motion.vy_m_s.end(), 0.0);
+    apply(pull.data(), motion);  // the accelerations
+    for (std::size_t k = 0; k < implied_.size(); ++k) {
+        if (!(std::abs(bends[k] + rates(implied_[k], motion).along) <= kBendTolerance * largest))
+            return false;
+    }
+    return true;
+}
+
+bool GraphConstraints::meet_implied(const Motion& motion) const {
+    return std::all_of(implied_.begin(), implied_.end(), [&motion](const Link& link) {
+        const double dx = motion.x_m[link.b] - motion.x_m[link.a];
+        const double dy = motion.y_m[link.b] - motion.y_m[link.a];
+        const double square = link.rest_m * link.rest_m;
+        return std::abs(dx * dx + dy * dy - square) <= kImpliedTolerance * square;
+    });
 }
 
 void GraphConstraints::analyse() {
@@ -51,6 +152,10 @@ void GraphConstraints::analyse() {
         }
     }
     const auto count = static_cast<Eigen::Index>(links_.size());
+    dx_m_.assign(links_.size(), 0.0);
+    dy_m_.assign(links_.size(), 0.0);
+    right_.setZero(count);
+    entries_.clear();
     matrix_.resize(count, count);
     matrix_.setFromTriplets(triplets.begin(), triplets.end());
     matrix_.makeCompressed();
@@ -61,10 +166,11 @@ void GraphConstraints::analyse() {
         }
     }
     factors_.analyzePattern(matrix_);
+    is_factorised_ = false;
 }
 
-bool GraphConstraints::factorise(const Motion& motion, StopCheck& stop) {
-    bool is_new = !is_factorised_;
+bool GraphConstraints::factorise(const Motion& motion, double raise, StopCheck& stop) {
+    bool is_new = !is_factorised_ || raise != raise_;
     for (std::size_t k = 0; k < links_.size(); ++k) {
         const auto [a, b, rest_m] = links_[k];
         const double dx_m = (motion.x_m[b] - motion.x_m[a]) + (motion.x_lost_m[b] - motion.x_lost_m[a]);
@@ -80,14 +186,24 @@ bool GraphConstraints::factorise(const Motion& motion, StopCheck& stop) {
         const auto [row, column, factor] = entries_[e];
         values[e] = factor * (dx_m_[row] * dx_m_[column] + dy_m_[row] * dy_m_[column]);
     }
+    if (raise > 0.0) matrix_.diagonal() *= 1.0 + raise;
     if (!factors_.factorize(matrix_, stop)) return false;
+    is_factorised_ = true;
+    raise_ = raise;
+    return true;
+}
+
+bool GraphConstraints::is_regular(const Motion& motion, StopCheck& stop) {
+    if (!factorise(motion, 0.0, stop)) return false;
     const auto& order = factors_.permutationP().indices();
     const auto pivots = factors_.vectorD();
+    smallest_pivot_ = 1.0;
     for (Eigen::Index k = 0; k < matrix_.cols(); ++k) {
+        const double diagonal = matrix_.coeff(k, k);
         // Negated, so that a NaN fails.
-        if (!(pivots[order[k]] > kDependentPivot * matrix_.coeff(k, k))) return false;
+        if (!(pivots[order[k]] > kDependentPivot * diagonal)) return false;
+        smallest_pivot_ = std::min(smallest_pivot_, pivots[order[k]] / diagonal);
     }
-    is_factorised_ = true;
     return true;
 }
 
@@ -120,7 +236,9 @@ bool GraphConstraints::correct(double span_s, const Motion& motion) {
 
 bool GraphConstraints::move(const Stage& stage, Motion& motion, std::span<double> impulse, StopCheck& stop) {
     kick(stage, motion);
-    if (!factorise(motion, stop)) return false;
+    if (!is_regular(motion, stop)) return false;
+    const bool is_near_line = smallest_pivot_ < kNearLine;
+    if (is_near_line) kicked_ = motion;
     apply(impulse.data(), motion);
     bool met = correct(stage.span_s, motion);
     for (int i = 0; i < kMaxCorrections && !met; ++i) {
@@ -129,13 +247,61 @@ bool GraphConstraints::move(const Stage& stage, Motion& motion, std::span<double
         apply(right_.data(), motion);
         met = correct(stage.span_s, motion);
     }
-    if (!met) return false;
+    if (!met && !(is_near_line && cross(stage.span_s, motion, impulse))) return false;
     drift(stage.span_s, motion);
-    return true;
+    return meet_implied(motion);
+}
+
+bool GraphConstraints::cross(double span_s, Motion& motion, std::span<double> impulse) {
+    motion = kicked_;
+    std::fill(impulse.begin(), impulse.end(), 0.0);
+    Eigen::SparseLU<Eigen::SparseMatrix<double>> factors;
+    std::vector<Eigen::Triplet<double>> triplets;
+    const auto coupling = [&](std::uint32_t row, std::uint32_t column, double factor) {
+        const auto [a, b, rest_m] = links_[row];
+        const double ex = dx_m_[row] + span_s * (motion.vx_m_s[b] - motion.vx_m_s[a]);
+        const double ey = dy_m_[row] + span_s * (motion.vy_m_s[b] - motion.vy_m_s[a]);
+        triplets.emplace_back(row, column, factor * (ex * dx_m_[column] + ey * dy_m_[column]));
+    };
+    const double fastest = std::sqrt(largest_square(motion));
+    Motion last = motion;
+    double last_change = kCrossingChange / kShrink * fastest;
+    bool met = correct(span_s, motion);
+    for (int i = 0; i < kMaxCrossingSteps && !met; ++i) {
+        triplets.clear();
+        for (const auto& [row, column, factor] : entries_) {
+            coupling(row, column, factor);
+            if (row != column) coupling(column, row, factor);
+        }
+        Eigen::SparseMatrix<double> matrix(matrix_.rows(), matrix_.cols());
+        matrix.setFromTriplets(triplets.begin(), triplets.end());
+        factors.compute(matrix);
+        if (factors.info() != Eigen::Success) return false;
+        right_ = factors.solve(right_);
+        for (std::size_t k = 0; k < impulse.size(); ++k) impulse[k] += right_[static_cast<Eigen::Index>(k)];
+        apply(right_.data(), motion);
+        double change = 0.0;
+        for (const auto& [a, b, rest_m] : links_) {
+            const double ux = (motion.vx_m_s[b] - motion.vx_m_s[a]) - (last.vx_m_s[b] - last.vx_m_s[a]);
+            const double uy = (motion.vy_m_s[b] - motion.vy_m_s[a]) - (last.vy_m_s[b] - last.vy_m_s[a]);
+            change = std::max(change, std::sqrt(ux * ux + uy * uy));
+        }
+        if (!(change <= kShrink * std::max(last_change, kRoundedChange * fastest))) return false;
+        last = motion;
+        last_change = change;
+        met = correct(span_s, motion);
+    }
+    return met;
+}
+
+double GraphConstraints::largest_square(const Motion& motion) const {
+    double largest = 0.0;
+    for (const Link& link : links_) largest = std::max(largest, rates(link, motion).square);
+    return largest;
 }
 
 bool GraphConstraints::solve(const Motion& motion, std::span<double> right, StopCheck& stop) {
-    if (!factorise(motion, stop)) return false;
+    if (!is_regular(motion, stop)) return false;
     std::copy(right.begin(), right.end(), right_.data());
     right_ = factors_.solve(right_);
     std::copy_n(right_.data(), right.size(), right.begin());
@@ -159,7 +325,7 @@ std::vector<double> GraphConstraints::carried_mass(std::span<const double> mass_
     for (std::size_t i = 0; i < mass_kg.size(); ++i) {
         if (inverse_mass_1_kg_[i] > 0.0) all_kg += mass_kg[i];
     }
-    return std::vector<double>(links_.size(), pinned_.empty() ? 0.0 : all_kg);
+    return std::vector<double>(links_.size(), held_.empty() ? 0.0 : all_kg);
 }
 
 }  // namespace corda::sim

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "corda/sim/rattle/constraint_solver.hpp"
@@ -12,9 +13,16 @@ namespace corda::sim {
 /// stage (Eigen's sparse LDL', its pattern and order analysed once) and used for all corrections of the
 /// stage. This is Newton's method with the matrix of a moment ago: each correction multiplies the error by
 /// about the sine of the angle by which bars turn.
+///
+/// If bars depend on each other at the start, those whose pivots vanish are left to the others, which imply
+/// them: the motion is the same, the matrix smaller and regular, and bars that come into line on the way
+/// still show as a vanishing pivot. A stage fails if an implied bar loses its length. (Least-norm multipliers
+/// of all bars, from a matrix with a raised diagonal, would move the net likewise at two to four times the
+/// cost.)
 class GraphConstraints final : public ConstraintSolver {
   public:
-    /// Throws corda::Refusal for bars whose lengths depend on each other. `goes_on`: see Rattle.
+    /// Throws corda::Refusal for bars that depend on each other at the start and do not stay so. `goes_on`:
+    /// see Rattle.
     explicit GraphConstraints(const System& system, const GoesOn& goes_on = {});
 
     [[nodiscard]] bool move(const Stage& stage, Motion& motion, std::span<double> impulse,
@@ -22,6 +30,7 @@ class GraphConstraints final : public ConstraintSolver {
     [[nodiscard]] bool solve(const Motion& motion, std::span<double> right, StopCheck& stop) override;
     [[nodiscard]] double square_frequency(std::span<const double> multiplier) const override;
     [[nodiscard]] std::vector<double> carried_mass(std::span<const double> mass_kg) const override;
+    [[nodiscard]] bool determines_tensions() const override { return implied_.empty() && !holds_rows_; }
 
   private:
     /// An entry factor * (d_row . d_column) of the lower triangle, in the order of the matrix's values.
@@ -31,18 +40,37 @@ class GraphConstraints final : public ConstraintSolver {
         double factor = 0.0;  ///< sum of the shared particles' inverse masses, signed
     };
     void analyse();
-    /// Makes factors_ those at these positions; takes no time if they are already.
-    [[nodiscard]] bool factorise(const Motion& motion, StopCheck& stop);
+    /// Makes factors_ those at these positions, the matrix's diagonal entries raised by a share; takes no time
+    /// if they are already. False if it cannot.
+    [[nodiscard]] bool factorise(const Motion& motion, double raise, StopCheck& stop);
+    /// Factorises it as it is; false also if bars depend on each other.
+    [[nodiscard]] bool is_regular(const Motion& motion, StopCheck& stop);
+    /// Moves the links that others imply to implied_, as far as a factorisation with this raise shows them.
+    void leave_out_implied(const Motion& start, double raise, StopCheck& stop);
+    /// Whether every motion from these positions that keeps the links' lengths keeps those of the implied
+    /// bars, to second order.
+    [[nodiscard]] bool stay_implied(Motion motion, StopCheck& stop);
+    [[nodiscard]] bool meet_implied(const Motion& motion) const;
     void apply(const double* impulse, Motion& motion) const;
     [[nodiscard]] bool correct(double span_s, const Motion& motion);
+    /// Of the differences of velocities of links' ends, the largest square.
+    [[nodiscard]] double largest_square(const Motion& motion) const;
+    /// Takes the stage from kicked_ anew by Newton's method proper, whose matrix follows the bars, on which
+    /// side of their line they may be. False if it does not converge or may have taken the other branch.
+    [[nodiscard]] bool cross(double span_s, Motion& motion, std::span<double> impulse);
 
+    bool holds_rows_;
+    std::vector<Link> implied_;
     std::vector<Entry> entries_;
     Eigen::SparseMatrix<double> matrix_;  ///< lower triangle
     StoppableLdlt factors_;
-    bool is_factorised_ = false;  ///< factors_ are those of dx_m_ and dy_m_
+    bool is_factorised_ = false;  ///< factors_ are those of dx_m_, dy_m_ and raise_
+    double raise_ = 0.0;
     std::vector<double> dx_m_;    ///< bar vectors at the start of a stage
     std::vector<double> dy_m_;
     Eigen::VectorXd right_;
+    double smallest_pivot_ = 1.0;       ///< of the last factorisation, as a share of its diagonal entry
+    Motion kicked_;                     ///< scratch: a stage's start after its kick
     mutable std::vector<double> load_;  ///< scratch, one entry per particle
 };
 

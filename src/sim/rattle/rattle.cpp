@@ -55,7 +55,7 @@ Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def,
       forces_(forces),
       elastic_(system, 0, system.particle_count()),
       mass_kg_(system.mass_kg),
-      inverse_mass_1_kg_(system.inverse_mass_1_kg),
+      inverse_mass_1_kg_(constraints_->inverse_mass_1_kg()),
       impulse_(constraints_->links().size(), 0.0),
       tension_over_length_n_m_(impulse_.size(), 0.0),
       pin_force_n_(mass_kg_.size()) {
@@ -224,9 +224,9 @@ bool Rattle::complete(const Trajectory& trajectory, StopCheck& stop) {
     }
     const Vec2 push_m_s = half_s * forces_.uniform_m_s2();
     for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
-        if (inverse_mass_1_kg_[i] == 0.0) continue;
-        output_.vx_m_s[i] = decay * (output_.vx_m_s[i] + push_m_s.x);
-        output_.vy_m_s[i] = decay * (output_.vy_m_s[i] + push_m_s.y);
+        const bool is_held = inverse_mass_1_kg_[i] == 0.0;
+        output_.vx_m_s[i] = is_held ? 0.0 : decay * (output_.vx_m_s[i] + push_m_s.x);
+        output_.vy_m_s[i] = is_held ? 0.0 : decay * (output_.vy_m_s[i] + push_m_s.y);
     }
     const auto links = constraints_->links();
     const auto along = [&](const Link& link) {
@@ -279,7 +279,7 @@ bool Rattle::find_tensions() const {
 }
 
 std::optional<Loads> Rattle::loads() const {
-    if (!find_tensions()) return std::nullopt;
+    if (!constraints_->determines_tensions() || !find_tensions()) return std::nullopt;
     Loads loads;
     const auto links = constraints_->links();
     std::fill(pin_force_n_.begin(), pin_force_n_.end(), Vec2{});

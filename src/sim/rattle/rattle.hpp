@@ -37,15 +37,16 @@ namespace corda::sim {
 class Rattle final : public Solver {
   public:
     /// If `def` names no step, `frame_interval_s` is divided by the smallest whole number that makes a stable
-    /// step. Throws corda::Refusal for a rigid rope that is straight between two pins, for rigid bars whose
-    /// lengths depend on each other, and for rigid strings. `goes_on` can end it: factorising the matrix of a
-    /// large net takes seconds.
+    /// step. Throws corda::Refusal for a rigid rope that is straight between two pins, for rigid bars that
+    /// depend on each other at the start but not in the motion that follows, and for rigid strings. `goes_on`
+    /// can end it: factorising the matrix of a large net takes seconds.
     Rattle(const System& system, const Forces& forces, const RattleDef& def, double frame_interval_s,
            const GoesOn& goes_on = {});
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;
-    /// From the tensions that keep the second derivatives of the rigid bars' lengths 0.
+    /// From the tensions that keep the second derivatives of the rigid bars' lengths 0. std::nullopt if bars
+    /// depend on each other: they could share the load in any way, and no way is truer than another.
     [[nodiscard]] std::optional<Loads> loads() const override;
     [[nodiscard]] std::uint64_t steps() const override { return step_; }
 
