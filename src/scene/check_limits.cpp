@@ -114,53 +114,52 @@ void fail_in_body(const Sections& sections, std::size_t i, std::initializer_list
     body.add_problem(problem);
 }
 
+/// What following a motion of this angular frequency costs a body, if that is over the limit: the problem
+/// that `what` begins and `remedy` ends. Empty if it is not.
+std::string too_much_work(const Scene& scene, const Body& body, double frequency_1_s, std::string_view what,
+                          std::string_view remedy) {
+    constexpr double kUpdatesPerHour = 2.5e10;
+    const double steps = sim::expected_steps(frequency_1_s, scene.world.duration_s);
+    const double updates = steps * static_cast<double>(body.particle_count);
+    if (updates <= Limits::kParticleUpdates) return {};
+    return fmt::format(
+        "{} so fast that {:g} s take some {:g} steps, {:g} particle updates or {:.0f} hours, over the limit "
+        "of {:g}; give {} or a shorter duration",
+        what, scene.world.duration_s, steps, updates, updates / kUpdatesPerHour, Limits::kParticleUpdates,
+        remedy);
+}
+
 void check_stiffness(const Sections& sections, const Scene& scene, const System& system) {
     for (std::size_t i = 0; i < system.bodies.size(); ++i) {
         const Body& body = system.bodies[i];
-        const double steps =
-            sim::expected_steps(sim::vibration_frequency_1_s(system, body), scene.world.duration_s);
-        const double updates = steps * static_cast<double>(body.particle_count);
-        if (updates <= Limits::kElasticUpdates) continue;
-        fail_in_body(sections, i, {"compliance", "bending"},
-                     fmt::format("vibrates so fast that {:g} s take some {:g} steps, {:g} particle updates, "
-                                 "over the limit of {:g}; give more compliance, less bending, heavier "
-                                 "particles or a shorter duration",
-                                 scene.world.duration_s, steps, updates, Limits::kElasticUpdates));
+        const std::string problem =
+            too_much_work(scene, body, sim::vibration_frequency_1_s(system, body), "vibrates",
+                          "more compliance, less bending, heavier particles");
+        if (!problem.empty()) fail_in_body(sections, i, {"compliance", "bending"}, problem);
     }
 }
 
-void check_pace(const Sections& sections, const Scene& scene, const System& system) {
-    const std::vector<SolverDef> solvers = solvers_of(scene);
-    const auto is_relaxed = [&](std::size_t i) { return std::holds_alternative<RelaxationDef>(solvers[i]); };
-    std::size_t particles = 0;
-    for (std::size_t i = 0; i < solvers.size(); ++i)
-        particles += is_relaxed(i) ? 0 : system.bodies[i].particle_count;
-    const auto updates = [&](double frequency_1_s) {
-        return sim::expected_steps(frequency_1_s, scene.video.fps.interval_s()) *
-               static_cast<double>(particles);
-    };
-    const auto too_fast = [&](double frequency_1_s) {
-        return updates(frequency_1_s) > Limits::kFrameUpdates;
-    };
-    const auto problem = [&](std::string_view what, double frequency_1_s, std::string_view remedy) {
-        return fmt::format(
-            "{} so fast that a frame takes some {:g} particle updates, over the limit of {:g}; give {}", what,
-            updates(frequency_1_s), Limits::kFrameUpdates, remedy);
-    };
-    if (too_fast(scene.world.drag_1_s))
-        fail_at(sections, {{&sections.world, "drag"}},
-                problem("slows down", scene.world.drag_1_s, "less drag"));
-    for (std::size_t i = 0; i < system.bodies.size(); ++i) {
-        if (is_relaxed(i)) continue;
-        const double turn_1_s = sim::angular_velocity_1_s(system, system.bodies[i]);
-        if (too_fast(turn_1_s))
-            fail_in_body(sections, i, {"velocity"},
-                         problem("turns", turn_1_s, "less speed, longer links or more frames per second"));
-        const double swing_1_s = sim::pendulum_frequency_1_s(system, system.bodies[i], scene.world);
-        if (too_fast(swing_1_s))
-            fail_at(sections, {{&sections.world, "gravity"}},
-                    problem("swings", swing_1_s, "less gravity or longer links"));
-    }
+/// Adds at most one problem of a body: each of them is about the same keys.
+void check_pace(const Sections& sections, const Scene& scene, const System& system, std::size_t i) {
+    const Body& body = system.bodies[i];
+    const double drag_1_s = scene.world.drag_1_s;
+    if (const std::string problem = too_much_work(scene, body, drag_1_s, "slows down", "less drag");
+        !problem.empty())
+        return fail_at(sections, {{&sections.world, "drag"}}, problem);
+    const double turn_1_s = sim::angular_velocity_1_s(system, body);
+    if (const std::string problem = too_much_work(scene, body, turn_1_s, "turns", "less speed, longer links");
+        !problem.empty())
+        return fail_in_body(sections, i, {"velocity"}, problem);
+    const double swing_1_s = sim::pendulum_frequency_1_s(system, body, scene.world);
+    if (const std::string problem =
+            too_much_work(scene, body, swing_1_s, "swings", "less gravity, longer links");
+        !problem.empty())
+        return fail_at(sections, {{&sections.world, "gravity"}}, problem);
+    const std::string problem =
+        too_much_work(scene, body, sim::tension_frequency_1_s(system, body, scene.world),
+                      "is pulled so hard that its lightest particles vibrate",
+                      "less unequal masses, less speed or gravity, fewer or longer links");
+    if (!problem.empty()) fail_in_body(sections, i, {"payload", "mass", "velocity"}, problem);
 }
 
 }  // namespace
@@ -204,7 +203,10 @@ void check_work(const Sections& sections, const SolverSection& solver, const Sce
 void check_motion(const Sections& sections, const Scene& scene) {
     const System system = system_of(scene);
     check_stiffness(sections, scene, system);
-    check_pace(sections, scene, system);
+    const std::vector<SolverDef> solvers = solvers_of(scene);
+    for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+        if (!std::holds_alternative<RelaxationDef>(solvers[i])) check_pace(sections, scene, system, i);
+    }
 }
 
 }  // namespace corda::scene

@@ -23,9 +23,9 @@ struct SceneSize {
 void check_work(const Sections& sections, const SolverSection& solver, const SceneSize& size,
                 const Scene& scene);
 
-/// For a scene without problems. Adds one if what stretches or bends vibrates so fast that following it to
-/// the end takes too many steps, or if speed, gravity or drag are such that the bodies of exact, rattle and
-/// auto would take more than Limits::kFrameUpdates for a frame: no signal and no progress in between.
+/// For a scene without problems. Adds one if following a body to the end takes more than
+/// Limits::kParticleUpdates: what stretches or bends vibrates too fast or, for exact, rattle and auto, speed,
+/// gravity, drag or unequal masses do it.
 void check_motion(const Sections& sections, const Scene& scene);
 
 }  // namespace corda::scene

@@ -11,9 +11,8 @@ struct Limits {
     static constexpr std::int64_t kBars = 20'000'000;
     static constexpr std::int64_t kFrames = 10'000'000;
     static constexpr std::int64_t kSteps = 1'000'000'000;
-    static constexpr double kBarUpdates = 1e13;      // about a day
-    static constexpr double kElasticUpdates = 1e11;  // some four hours
-    static constexpr double kFrameUpdates = 1e9;     // some minutes
+    static constexpr double kBarUpdates = 1e13;       // about a day
+    static constexpr double kParticleUpdates = 1e11;  // some four hours
     static constexpr double kCoordinateMetres = 1e9;
 };
 

@@ -18,6 +18,12 @@ namespace corda::sim {
 /// Angular frequency in 1/s at which the body's shortest bar swings.
 [[nodiscard]] double pendulum_frequency_1_s(const System& system, const Body& body, const Forces& forces);
 
+/// Bound on the angular frequency in 1/s at which the tensions at t = 0 make particles of a body without
+/// compliance swing across the links: Gershgorin's, the largest over all particles of 2 w sum of T / l. T
+/// pulls what hangs on the link, of all free mass unless a rope is pinned at its first particle alone, as
+/// fast as gravity and the link that turns fastest together. 0 if no bar turns or leans: then none ever will.
+[[nodiscard]] double tension_frequency_1_s(const System& system, const Body& body, const Forces& forces);
+
 /// Steps that an explicit method of high order takes in `time_s` for a motion of this angular frequency.
 [[nodiscard]] double expected_steps(double frequency_1_s, double time_s);
 

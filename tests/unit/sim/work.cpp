@@ -52,6 +52,35 @@ TEST(Work, OfTheFastestBarAndTheShortestPendulum) {
     EXPECT_DOUBLE_EQ(expected_steps(10.0, 3.0), 2.0 * expected_steps(5.0, 3.0));
 }
 
+TEST(Work, TensionsOfAPayloadMakeLightParticlesVibrate) {
+    RopeDef rope = reference::straight_rope(20, 1.0, 40.0);
+    rope.mass_kg.assign(21, 1e-3);
+    rope.mass_kg.back() = 1e4;
+    const System system = build_system({&rope, 1});
+    const Forces forces{WorldDef{}};
+    const double frequency_1_s = tension_frequency_1_s(system, system.bodies[0], forces);
+    EXPECT_NEAR(frequency_1_s, std::sqrt(4.0 * 1e3 * 1e4 * forces.strength_m_s2() / 0.05),
+                1e-3 * frequency_1_s);
+    // An exact run takes 37189 steps in 1 s; the pendulum's frequency alone would tell 3.
+    EXPECT_NEAR(expected_steps(frequency_1_s, 1.0), 17'700.0, 300.0);
+}
+
+TEST(Work, TensionsOfATurningRopeGrowWithItsSpeed) {
+    const RopeDef slow = reference::spinning_rope(5, 1.0, 10.0);
+    const RopeDef fast = reference::spinning_rope(5, 1.0, 1000.0);
+    const auto frequency_1_s = [](const RopeDef& rope) {
+        const System system = build_system({&rope, 1});
+        return tension_frequency_1_s(system, system.bodies[0], WorldDef{{}, 10.0, 0.0});
+    };
+    EXPECT_NEAR(frequency_1_s(fast) / frequency_1_s(slow), 100.0, 1e-9);
+}
+
+TEST(Work, TensionsOfARopeThatHangsStillMoveNothing) {
+    const RopeDef rope = reference::straight_rope(20, 1.0, 180.0);
+    const System system = build_system({&rope, 1});
+    EXPECT_EQ(tension_frequency_1_s(system, system.bodies[0], WorldDef{}), 0.0);
+}
+
 TEST(Work, OfABodyIsEstimatedWithoutALookAtAllOthers) {
     RopeDef rope = reference::straight_rope(2, 1.0, 0.0);
     rope.bending_n_m2 = 1.0;
