@@ -51,7 +51,8 @@ class ExtendedMotion {
         Real compliance;
         bool is_string;
         bool pulls = true;
-        Real least = 0;  ///< its margin() counts from here
+        Real square = 0;  ///< of its length, if it is rigid and pulls; else 0
+        Real least = 0;   ///< its margin counts from here
     };
     /// What pulls a link's ends together, and how fast they part, in whatever units.
     struct Answer {
@@ -67,7 +68,10 @@ class ExtendedMotion {
     [[nodiscard]] Vector solve(const Vector& y, Vector right);
     void push_along_bars(Vector& slope, const Vector& y, const Vector& multiplier) const;
     void derivative(const Vector& y, Vector& slope);
-    [[nodiscard]] Real extrapolate(Real step, Vector& result);
+    [[nodiscard]] Real extrapolate(Real step, Vector& change);
+    void add(const Vector& change);
+    void project();
+    void remove_stretching(Vector& y, Vector& multiplier);
     [[nodiscard]] bool fail(const char* reason);
 
     // Of strings.
@@ -98,6 +102,7 @@ class ExtendedMotion {
     Real shortest_ = 1;
     Real mass_ = 0;
     Vector y_;
+    Vector rest_;  ///< of y_: what rounding took off
     Real time_ = 0;
     Real step_ = 1e-3L;
     Matrix matrix_;

@@ -74,6 +74,13 @@ bool ExtendedMotion::begin() {
     }
     const Answer error{Vector::Constant(n, kRounding * mass_ * pull), Vector::Constant(n, kRounding * pull)};
     if (!complement(present, error, [&] { return accelerated(); })) return false;
+    // Of links that would be back at once: pushing now and pulling for that long is as much as the snap.
+    Vector impulses;
+    remove_stretching(y_, impulses);
+    for (Link& link : links_) {
+        if (!link.pulls) link.square = 0;
+        if (link.pulls && link.square == 0) link.square = apart(y_, link, 0).squaredNorm();
+    }
     if (!has_strings_) return true;
     const Vector margin = raw_margins(y_);
     for (std::size_t k = 0; k < links_.size(); ++k) {
@@ -112,12 +119,9 @@ bool ExtendedMotion::complement(const std::vector<bool>& present, const Answer& 
 
 /// The impulses of a snap of the links that pull, and the state after it.
 ExtendedMotion::Answer ExtendedMotion::snapped(Vector& after) {
-    Vector multiplier(static_cast<Eigen::Index>(rigid_.size()));
-    for (Eigen::Index k = 0; k < multiplier.size(); ++k)
-        multiplier[k] = -apart(y_, bar(k), 0).dot(apart(y_, bar(k), 2 * count_));
-    multiplier = solve(y_, multiplier);
+    Vector multiplier;
     after = y_;
-    push_along_bars(after, y_, multiplier);
+    remove_stretching(after, multiplier);
     const auto n = static_cast<Eigen::Index>(links_.size());
     Answer answer{Vector::Zero(n), Vector::Zero(n)};
     for (Eigen::Index k = 0; k < multiplier.size(); ++k)
@@ -173,9 +177,9 @@ ExtendedMotion::Vector ExtendedMotion::raw_margins(const Vector& y) {
 }
 
 ExtendedMotion::Vector ExtendedMotion::margins(Real step) {
-    Vector y = y_;
-    if (step > 0) static_cast<void>(extrapolate(step, y));
-    Vector margin = raw_margins(y);
+    Vector change = rest_;
+    if (step > 0) static_cast<void>(extrapolate(step, change));
+    Vector margin = raw_margins(y_ + change);
     for (std::size_t k = 0; k < links_.size(); ++k) margin[static_cast<Eigen::Index>(k)] -= links_[k].least;
     return margin;
 }
