@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -105,6 +106,8 @@ class ExtendedMotion {
     Vector rest_;  ///< of y_: what rounding took off
     Real time_ = 0;
     Real step_ = 1e-3L;
+    Real begun_ = 0;               ///< the time of the last event
+    Real first_step_ = HUGE_VALL;  ///< the longest after it
     Matrix matrix_;
     Vector multiplier_;  ///< of the last derivative()
     int events_ = 0;

@@ -68,9 +68,13 @@ bool ExtendedMotion::begin() {
     y_ = after;
     const Real gravity = std::hypot(Real{world_.gravity_m_s2.x}, Real{world_.gravity_m_s2.y});
     const Real pull = gravity + speed * speed / shortest_;
+    first_step_ = HUGE_VALL;
+    begun_ = time_;
     for (std::size_t k = 0; k < links_.size(); ++k) {
         const Real inward = -found.away[static_cast<Eigen::Index>(k)];
-        if (inward > 0 && inward * inward > 2 * kNoBounce * links_[k].rest * pull) present[k] = false;
+        if (!(inward > 0 && inward * inward > 2 * kNoBounce * links_[k].rest * pull)) continue;
+        if (present[k]) first_step_ = std::min(first_step_, inward / (4 * pull));
+        present[k] = false;
     }
     const Answer error{Vector::Constant(n, kRounding * mass_ * pull), Vector::Constant(n, kRounding * pull)};
     if (!complement(present, error, [&] { return accelerated(); })) return false;
@@ -222,7 +226,8 @@ Real ExtendedMotion::event_before(Real low, Real high) {
     return high;
 }
 
-/// So short that margins have one top in a step.
+/// So short that margins have one top in a step: after an event shorter than any link can need to come back,
+/// then doubled.
 Real ExtendedMotion::longest_step() {
     if (!has_strings_) return HUGE_VALL;
     Vector slope(4 * count_);
@@ -230,7 +235,8 @@ Real ExtendedMotion::longest_step() {
     const Real speed = slope.head(2 * count_).cwiseAbs().maxCoeff();
     const Real acceleration = slope.tail(2 * count_).cwiseAbs().maxCoeff();
     constexpr Real kPart = 0.15L;
-    return kPart * shortest_ / (speed + std::sqrt(acceleration * shortest_) + Real{1e-30L});
+    const Real step = kPart * shortest_ / (speed + std::sqrt(acceleration * shortest_) + Real{1e-30L});
+    return std::min(step, first_step_ + (time_ - begun_));
 }
 
 }  // namespace corda::test
