@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "support/bound_families.hpp"
@@ -142,6 +143,36 @@ INSTANTIATE_TEST_SUITE_P(Of, AutoBoundsFixed,
                                          Fixed{"gen_frames1"}, Fixed{"gen_payload14"}, Fixed{"gen_payload20"},
                                          Fixed{"gen_stringhard34"}, Fixed{"gen_units46"}),
                          kName);
+
+/// A random scene of which a claim was false once.
+struct Found {
+    const char* family;
+    unsigned number;
+};
+
+class AutoBoundsFound : public testing::TestWithParam<Found> {};
+
+TEST_P(AutoBoundsFound, IsTrue) {
+    const Found& found = GetParam();
+    bool is_known = false;
+    for (const auto families : {test::rope_families(), test::other_families()}) {
+        for (const BoundFamily& family : families) {
+            if (family.name != std::string_view(found.family)) continue;
+            is_known = true;
+            const Verdict verdict = test::judge_bound(family.scene(found.number));
+            EXPECT_EQ(verdict.why_no_bound + verdict.why_not_judged, "");
+            expect_true(verdict, "scene " + std::to_string(found.number));
+        }
+    }
+    EXPECT_TRUE(is_known);
+}
+
+// A link that a snap sends inwards slowly and that does not come back.
+INSTANTIATE_TEST_SUITE_P(Of, AutoBoundsFound, testing::Values(Found{"string_many", 97}),
+                         [](const auto& param) {
+                             return param.param.family + std::string("_") +
+                                    std::to_string(param.param.number);
+                         });
 
 }  // namespace
 }  // namespace corda
