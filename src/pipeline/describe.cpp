@@ -48,7 +48,9 @@ std::string_view remedy(Refusal::Reason reason) {
         case Reason::kUndecidedString:
             return "change its points or velocity a little";
         case Reason::kTautBetweenPins:
-            return "move the pins closer together or pin the particles between them too";
+            return "let the rope sag between its pins (other points, or a string with a larger link_length), "
+                   "or "
+                   "pin the particles between them too";
         case Reason::kDependentBars:
             return "leave out bars that others imply (diagonals, bars to second and further neighbours), let "
                    "what is straight between pins sag, or use method relaxation";

@@ -223,7 +223,7 @@ TEST(FilmRefusal, NamesTheFileTheProblemAndWhatToChange) {
         EXPECT_EQ(error.code(), ExitCode::kInvalidScene);
         EXPECT_THAT(error.what(), testing::StartsWith("film.toml: "));
         EXPECT_THAT(error.what(), HasSubstr("two pins"));
-        EXPECT_THAT(error.what(), HasSubstr("move the pins closer together"));
+        EXPECT_THAT(error.what(), HasSubstr("let the rope sag between its pins"));
     }
 }
 

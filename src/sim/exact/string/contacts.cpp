@@ -27,10 +27,13 @@ constexpr double kRounding = 1e-12;
 /// whole string's mass counts.
 constexpr double kLeastShareOfMass = 1e-3;
 
-/// A link that shortens by less than this share of its length and comes back counts as taut all the time. Far
-/// above the rounding of lengths, within which a returning link gains speed, so that bounces might never end;
-/// below any error that could be seen.
-constexpr double kNoBounce = 1e-10;
+/// A link that shortens by less than this share of its length and comes back counts as taut all the time: a
+/// share of the tolerance, because one that does not come back after all goes on from there, and a tighter
+/// run has to show it. Within the limits: far above the rounding of lengths, within which a returning link
+/// gains speed, so that bounces might never end, and below any error that could be seen.
+constexpr double kNoBouncePerTolerance = 1e-2;
+constexpr double kLeastNoBounce = 1e-13;
+constexpr double kMostNoBounce = 1e-10;
 
 /// Tensions accelerate a link by at most this many times what they have to balance.
 constexpr double kMostAcceleration = 100.0;
@@ -45,8 +48,9 @@ double cross(Vec2 a, Vec2 b) {
 
 }  // namespace
 
-StringContacts::StringContacts(const System& string, const Forces& forces)
+StringContacts::StringContacts(const System& string, const Forces& forces, double tolerance)
     : forces_(forces),
+      no_bounce_(std::clamp(kNoBouncePerTolerance * tolerance, kLeastNoBounce, kMostNoBounce)),
       direction_(string.bars.size()),
       inward_m_s_(string.bars.size()),
       lcp_(string.inverse_mass_1_kg) {
@@ -101,7 +105,7 @@ bool StringContacts::find_tensions(const System& string, StopCheck& stop) {
     }
     acceleration_error_m_s2_ = kRounding * largest_m_s2;
     const auto leaves = [&](std::size_t k, double back_m_s2) {
-        return inward_m_s_[k] * inward_m_s_[k] > 2.0 * kNoBounce * rest_m_[k] * back_m_s2;
+        return inward_m_s_[k] * inward_m_s_[k] > 2.0 * no_bounce_ * rest_m_[k] * back_m_s2;
     };
     for (std::size_t k = 0; k < links; ++k) {
         lcp_.z_error[k] = tension_error_n(k);

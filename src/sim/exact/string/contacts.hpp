@@ -14,8 +14,8 @@ namespace corda::sim {
 /// them stay taut.
 class StringContacts {
   public:
-    /// `string`: link k joins particles k and k + 1, and there are no other bars.
-    StringContacts(const System& string, const Forces& forces);
+    /// `string`: link k joins particles k and k + 1, and there are no other bars. `tolerance`: of the motion.
+    StringContacts(const System& string, const Forces& forces, double tolerance);
 
     /// Changes the velocities of `string` by the impulses of a plastic snap of all links at their rest length
     /// whose ends separate: impulses pull and never push, and links that pull have no speed of separation
@@ -26,9 +26,9 @@ class StringContacts {
     /// if it is at its rest length to rounding, or gets there within 1e-11 of the string's time scale: events
     /// that are simultaneous in a symmetric scene must not depend on their order.
     ///
-    /// A link that the snap of another one shortens by less than 1e-10 of its length before it comes back
-    /// counts as taut. Two links that lie on each other shorten each other so in turn, ever more slowly; the
-    /// end of this is what impulses along both at once give.
+    /// A link that the snap of another one shortens by less than a hundredth of the tolerance of its length
+    /// before it comes back counts as taut. Two links that lie on each other shorten each other so in turn,
+    /// ever more slowly; the end of this is what impulses along both at once give.
     [[nodiscard]] bool resolve(System& string, std::vector<std::uint8_t>& is_taut, StopCheck& stop);
 
     // In the state that was resolved last, smaller tensions and changes of length are rounding.
@@ -50,6 +50,7 @@ class StringContacts {
     void find_accelerations(const System& string);
 
     Forces forces_;
+    double no_bounce_;
     std::vector<double> rest_m_;
     double length_m_ = 0.0;                ///< the sum of rest_m_
     std::vector<double> largest_mass_kg_;  ///< one per link; its tension's rounding comes from it

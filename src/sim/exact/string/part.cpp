@@ -111,7 +111,7 @@ StringPart::StringPart(const System& system, const Body& body, const Forces& for
       first_particle_(body.first_particle),
       string_(system_of(system, body)),
       is_taut_(links_at_rest_length(string_)),
-      contacts_(string_, forces),
+      contacts_(string_, forces, tolerance),
       finder_(string_.particle_count()) {
     assert(body.is_chain && body.material.is_string && body.material.compliance_1_n == 0.0);
     refuse_bends(system, body);

@@ -25,7 +25,7 @@ struct Event {
 std::optional<Event> first_event(const RopeDef& rope, std::vector<std::uint8_t> is_taut, double tolerance,
                                  double end_s) {
     System string = build_system({&rope, 1});
-    StringContacts contacts(string, WorldDef{});
+    StringContacts contacts(string, WorldDef{}, 1e-9);
     EXPECT_TRUE(contacts.resolve(string, is_taut, test::unstopped));
     StringDynamics dynamics(string, is_taut, WorldDef{});
     StringEvents events(string.particle_count());

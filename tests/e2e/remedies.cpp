@@ -1,0 +1,386 @@
+// Every message that advises something, provoked, and its advice followed to the letter: it has to work.
+
+#include <gtest/gtest.h>
+
+#include "corda/pipeline/film.hpp"
+#include "support/remedy.hpp"
+
+namespace corda {
+namespace {
+
+using namespace test;
+
+class Remedies : public testing::TestWithParam<Remedy> {};
+
+TEST_P(Remedies, Work) {
+    test::expect_to_work(GetParam());
+}
+
+const std::string kPicture = CORDA_GOLDENS "/stills/plain.png";
+
+const auto kName = [](const auto& param) { return std::string(param.param.name); };
+
+// What a method cannot run.
+INSTANTIATE_TEST_SUITE_P(
+    OfMethods, Remedies,
+    testing::Values(
+        Remedy{"rigid_net_with_diagonals",
+               net_scene(kGrid, method_of("exact")),
+               "simulate SCENE",
+               "set method = \"rattle\", or let the bars stretch by a compliance",
+               {{{"exact", "rattle"}}},
+               "leave out bars that others imply"},
+        Remedy{"net_with_diagonals_to_stretch",
+               net_scene(kGrid, method_of("exact")),
+               "simulate SCENE",
+               "set method = \"rattle\", or let the bars stretch by a compliance",
+               {{{kGrid, kGrid + "compliance = 1e-3\n"}}}},
+        Remedy{"rigid_graph",
+               rope_scene(kRing, method_of("exact")),
+               "simulate SCENE",
+               "set method = \"rattle\", or let the bars stretch by a compliance",
+               {{{"exact", "rattle"}}, {{"closed = true", "closed = true\ncompliance = 1e-3"}}}},
+        Remedy{"rigid_net",
+               net_scene(kSquare + kSides, method_of("exact")),
+               "simulate SCENE",
+               "set method = \"rattle\", or let the bars stretch by a compliance",
+               {{{"exact", "rattle"}}, {{kSides, kSides + "compliance = 1e-3\n"}}}},
+        Remedy{"rigid_string",
+               rope_scene(kHang + "string = true\n", method_of("rattle")),
+               "simulate SCENE",
+               "use method exact, or let the string stretch by a compliance",
+               {{{"rattle", "exact"}}, {{"string = true", "string = true\ncompliance = 1e-3"}}}},
+        Remedy{
+            "taut_between_pins",
+            rope_scene("line = { particles = 5, from = [0, 0], step = [0.25, 0.0] }\npinned = [0, -1]\n"),
+            "simulate SCENE",
+            "let the rope sag between its pins (other points, or a string with a larger link_length), or pin "
+            "the particles between them too",
+            {{{"line = { particles = 5, from = [0, 0], step = [0.25, 0.0] }",
+               "points = [[0, 0], [0.25, -0.1], [0.5, -0.15], [0.75, -0.1], [1, 0]]"}},
+             {{"pinned", "string = true\nlink_length = 0.26\npinned"}},
+             {{"[0, -1]", "[0, 1, 2, 3, 4]"}}}},
+        Remedy{
+            "taut_string_between_pins",
+            rope_scene("points = [[0, 0], [0.5, 0], [1, 0]]\npinned = [0, -1]\nstring = true\n"),
+            "simulate SCENE",
+            "let the rope sag between its pins (other points, or a string with a larger link_length), or pin "
+            "the particles between them too",
+            {{{"[0.5, 0]", "[0.5, -0.1]"}},
+             {{"string = true", "string = true\nlink_length = 0.6"}},
+             {{"[0, -1]", "[0, 1, -1]"}}}},
+        Remedy{"dependent_bars",
+               net_scene(kGrid, method_of("rattle")),
+               "simulate SCENE",
+               "leave out bars that others imply (diagonals, bars to second and further neighbours), let "
+               "what is "
+               "straight between pins sag, or use method relaxation",
+               {{{"diagonals = true", "diagonals = false"}, {"net]]\n", "net]]\npinned = [0]\n"}},
+                {{"rattle", "relaxation"}}}},
+        Remedy{"dependent_bars_between_pins",
+               net_scene("points = [[0, 0], [1, 0], [2, 0], [1, -1]]\nbars = [[0, 1], [1, 2], [1, 3]]\n"
+                         "pinned = [0, 2]\n",
+                         method_of("rattle")),
+               "simulate SCENE",
+               "let what is straight between pins sag",
+               {{{"[1, 0]", "[1, -0.1]"}}}},
+        Remedy{"material",
+               rope_scene(kHang + "compliance = 1e-3\nbending = 1.0\n", method_of("relaxation")),
+               "simulate SCENE",
+               "remove compliance, string and bending, or use method exact",
+               {{{"compliance = 1e-3\nbending = 1.0\n", ""}}, {{"relaxation", "exact"}}}},
+        Remedy{"material_of_a_string",
+               rope_scene(kHang + "string = true\n", method_of("relaxation")),
+               "simulate SCENE",
+               "remove compliance, string and bending, or use method exact",
+               {{{"string = true", ""}}, {{"relaxation", "exact"}}}},
+        Remedy{"material_of_a_net",
+               net_scene(kGrid + "compliance = 1e-3\n", method_of("relaxation")),
+               "simulate SCENE",
+               "remove compliance, string and bending, or use method exact",
+               {{{"compliance = 1e-3", ""}}, {{"relaxation", "exact"}}}},
+        Remedy{"diverges",
+               rope_scene(kHang + "velocity = [1e5, 0]\n",
+                          method_of("relaxation") + "step = 0.03\nforce = [1e300, 0]\n"),
+               "simulate SCENE",
+               "less speed or force may help, or a smaller solver.step",
+               {{{"force = [1e300, 0]", "force = [1, 0]"}}}}),
+    kName);
+
+// How much a scene may ask for.
+INSTANTIATE_TEST_SUITE_P(
+    OfLimits, Remedies,
+    testing::Values(
+        Remedy{"frames",
+               rope_scene(kHang),
+               "plan SCENE --set world.duration=1e6",
+               "give a shorter duration or fewer frames per second",
+               {{{"1e6", "1"}},
+                {{"plan SCENE --set world.duration=1e6", "plan SCENE --fps 1/10 --set world.duration=10"}}}},
+        Remedy{"no_frame",
+               rope_scene(kHang),
+               "plan SCENE --duration 1e-12",
+               "hold no frame; give a longer duration",
+               {{{"1e-12", "0.1"}}}},
+        Remedy{
+            "steps",
+            rope_scene("hang = { links = 1, length = 1 }", method_of("rattle") + "order = 2\nstep = 9e-9\n"),
+            "plan SCENE --duration 9.1",
+            "give a longer step or a shorter duration",
+            {{{"9e-9", "1e-3"}}, {{"--duration 9.1", "--duration 0.004"}}}},
+        Remedy{"bar_updates",
+               rope_scene("hang = { links = 1, length = 1 }",
+                          method_of("relaxation") + "sweeps = 1000000\nstep = 5e-9\n"),
+               "plan SCENE --duration 0.051",
+               "give fewer of one of them",
+               {{{"5e-9", "1e-2"}}, {{"0.051", "0.001"}, {"1000000", "1"}}}},
+        Remedy{
+            "particles",
+            rope_scene("line = { particles = 1000000, step = [0.1, 0] }\n[[rope]]\n" + kHang),
+            "plan SCENE",
+            "the ropes and nets up to this one have 1000005 particles, over the limit of 1000000; give fewer",
+            {{{"1000000", "10"}}}},
+        Remedy{"bars",
+               rope_scene("line = { particles = 100000, step = [0.1, -0.1] }",
+                          method_of("relaxation") + "reach = 1000\n"),
+               "plan SCENE",
+               "give fewer particles or a smaller solver.reach",
+               {{{"100000", "100"}}, {{"1000\n", "1\n"}}}},
+        Remedy{"stiffness",
+               rope_scene(kHang + "mass = 0.1\ncompliance = 1e-25"),
+               "plan SCENE --duration 0.1",
+               "give more compliance, less bending, heavier particles or a shorter duration",
+               {{{"1e-25", "1e-3"}}, {{"--duration 0.1", "--duration 1e-9"}}}},
+        Remedy{"stiff_bending",
+               rope_scene("hang = { links = 4, length = 0.1 }\nmass = 1e-12\nbending = 1e12"),
+               "plan SCENE --duration 0.1",
+               "give more compliance, less bending, heavier particles or a shorter duration",
+               {{{"1e12", "1e-12"}}, {{"--duration 0.1", "--duration 1e-9"}}}},
+        Remedy{"drag",
+               rope_scene(kHang),
+               "plan SCENE --set world.drag=1e12",
+               "give less drag",
+               {{{"1e12", "1"}}}},
+        Remedy{"turns",
+               rope_scene(kHang + "velocity = [[0, 0], [1e12, 0], [0, 0], [0, 0], [0, 0]]"),
+               "plan SCENE",
+               "give less speed, longer links or more frames per second",
+               {{{"1e12", "1"}}}},
+        Remedy{"swings",
+               rope_scene(kHang),
+               "plan SCENE --set world.gravity=1e22",
+               "give less gravity or longer links",
+               {{{"1e22", "1"}}}}),
+    kName);
+
+// Options of commands.
+INSTANTIATE_TEST_SUITE_P(
+    OfCommands, Remedies,
+    testing::Values(
+        Remedy{"setting",
+               rope_scene(kHang),
+               "plan SCENE --set video.fps",
+               "give --set key=value, e.g. --set video.fps=30 or --set rope[0].mass=2",
+               {{{"video.fps", "video.fps=30"}}, {{"video.fps", "rope[0].mass=2"}}}},
+        Remedy{"setting_of_a_list",
+               rope_scene(kHang),
+               "plan SCENE --set rope.mass=2",
+               "give an index: rope[0]",
+               {{{"rope.mass", "rope[0].mass"}}}},
+        Remedy{"setting_out_of_range",
+               rope_scene(kHang),
+               "plan SCENE --set rope[1].mass=2",
+               "index 1 is out of range; the list has 1",
+               {{{"rope[1]", "rope[0]"}}}},
+        Remedy{"size",
+               rope_scene(kHang),
+               "plan SCENE --size 64by64",
+               "write e.g. 1920x1080",
+               {{{"64by64", "1920x1080"}}}},
+        Remedy{"duration_that_is_none",
+               rope_scene(kHang),
+               "plan SCENE --duration nan",
+               "give the duration in s, > 0",
+               {{{"nan", "0.1"}}}},
+        Remedy{"scene_is_missing",
+               rope_scene(kHang),
+               "plan DIR/none.toml",
+               "give the path of a TOML file",
+               {{{"DIR/none.toml", "SCENE"}}}},
+        Remedy{
+            "misspelt_command", rope_scene(kHang), "pla SCENE", "did you mean plan?", {{{"pla ", "plan "}}}},
+        Remedy{"unknown_command", rope_scene(kHang), "zzzzz SCENE", "known are", {{{"zzzzz", "plan"}}}},
+        Remedy{"misspelt_option",
+               rope_scene(kHang),
+               "plan SCENE --duratin 0.1",
+               "did you mean --duration?",
+               {{{"duratin", "duration"}}}},
+        Remedy{"misspelt_help", "", "help rendr", "did you mean render?", {{{"rendr", "render"}}}},
+        Remedy{"usage",
+               rope_scene(kHang),
+               "plan",
+               "see --help",
+               {{{"plan", "plan --help"}}, {{"plan", "plan SCENE"}}}},
+        Remedy{"empty_value",
+               rope_scene(kHang),
+               "plan SCENE --duration EMPTY",
+               "give one, or leave it out",
+               {{{"EMPTY", "0.1"}}, {{"--duration EMPTY", ""}}}},
+        Remedy{"ending_of_states",
+               rope_scene(kHang),
+               "simulate SCENE -o DIR/a.npy",
+               "give such a name, or - for standard output",
+               {{{"DIR/a.npy", "DIR/a.csv"}}, {{"DIR/a.npy", "-"}}}},
+        Remedy{"two_on_standard_output",
+               rope_scene(kHang),
+               "simulate SCENE -o - --json",
+               "give the CSV a file name",
+               {{{"-o -", "-o DIR/a.csv"}}}},
+        Remedy{
+            "ending_of_stills",
+            rope_scene(kHang),
+            "still SCENE --at 0 -o DIR/a.v2 --dry-run",
+            "stills are written as .png; give such a name, or a folder (ending with / if its name has a dot)",
+            {{{"a.v2", "a.png"}}, {{"a.v2", "a"}}, {{"a.v2", "a.v2/"}}}},
+        Remedy{"time_of_a_still",
+               rope_scene(kHang),
+               "still SCENE --at 5 -o DIR/a.png --dry-run",
+               "is not within 0 .. 0.1 s; world.duration sets the end",
+               {{{"--at 5", "--at 0"}},
+                {{"--at 5", "--at 0.1"}},
+                {{"--at 5", "--at 5 --set world.duration=5"}}}},
+        Remedy{"frame_of_a_still",
+               rope_scene(kHang),
+               "still SCENE --frame 99 -o DIR/a.png --dry-run",
+               "is not within 0 .. 2; world.duration sets the end",
+               {{{"--frame 99", "--frame 2"}}, {{"--frame 99", "--frame 99 --set world.duration=5"}}}},
+        Remedy{"same_still_twice",
+               rope_scene(kHang),
+               "still SCENE --at 0,0 -o DIR/a --dry-run",
+               "ask for each time once",
+               {{{"0,0", "0"}}}},
+        Remedy{"one_file_for_two_stills",
+               rope_scene(kHang),
+               "still SCENE --at 0,0.1 -o DIR/a.png --dry-run",
+               "give a folder",
+               {{{"a.png", "a"}}}},
+        Remedy{"odd_size",
+               rope_scene(kHang),
+               "render SCENE --size 65x64 -o DIR/a.mp4 --dry-run",
+               "use a width of 64 or 66",
+               {{{"65x64", "64x64"}}, {{"65x64", "66x64"}}}},
+        Remedy{"ending_of_a_video",
+               rope_scene(kHang),
+               "render SCENE -o DIR/a.txt --dry-run",
+               "use .mp4",
+               {{{"a.txt", "a.mp4"}}}},
+        Remedy{"unknown_preset",
+               rope_scene(kHang),
+               "render SCENE --preset slooow -o DIR/a.mp4 --dry-run",
+               "medium, slow, slower",
+               {{{"slooow", "slow"}}}},
+        Remedy{"crf",
+               rope_scene(kHang),
+               "render SCENE --crf 0 -o DIR/a.mp4 --dry-run",
+               "1 .. 51",
+               {{{"--crf 0", "--crf 1"}}, {{"--crf 0", "--crf 51"}}}},
+        Remedy{"output_folder",
+               rope_scene(kHang),
+               "render SCENE -o DIR/none/a.mp4 --dry-run",
+               "does not exist; make it first",
+               {{{"none/", ""}}}},
+        Remedy{"output_is_a_folder",
+               rope_scene(kHang),
+               "simulate SCENE -o DIR",
+               "give the name of a file, not of a folder",
+               {{{"-o DIR", "-o DIR/a.csv"}}}},
+        Remedy{"backend",
+               rope_scene(kHang),
+               "render SCENE --backend magic -o DIR/a.mp4 --dry-run",
+               "use auto, device, device:N, surfaceless or default",
+               {{{"magic", "auto"}},
+                {{"magic", "device"}},
+                {{"magic", "device:0"}},
+                {{"magic", "surfaceless"}},
+                {{"magic", "default"}}}},
+        Remedy{"difference_picture",
+               rope_scene(kHang),
+               "compare " + kPicture + " " + kPicture + " --diff DIR/c.jpg",
+               "the picture is written as .png; give such a name",
+               {{{"c.jpg", "c.png"}}}}),
+    kName);
+
+/// A scene from code, which the reader of files does not check: what it is refused with.
+void expect_refused(const Scene& scene, const std::string& advice) {
+    try {
+        const Film film(scene);
+        ADD_FAILURE() << "not refused: " << advice;
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find(advice), std::string::npos) << error.what();
+    }
+}
+
+void expect_to_run(const Scene& scene) {
+    const Film film(scene);
+    EXPECT_NO_THROW(static_cast<void>(film.state(film.last_frame())));
+}
+
+Scene scene_in_code(const std::vector<Vec2>& points_m, const SolverDef& solver) {
+    Scene scene;
+    scene.ropes.resize(1);
+    scene.ropes[0].points_m = points_m;
+    scene.solver = solver;
+    scene.world.duration_s = 0.1;
+    return scene;
+}
+
+TEST(RemediesInCode, BarWithoutLength) {
+    Scene scene = scene_in_code({{0.0, 0.0}, {0.5, 0.0}, {0.5, 0.0}}, AutoDef{});
+    expect_refused(scene, "move one, or use method relaxation");
+    scene.solver = RelaxationDef{};
+    expect_to_run(scene);
+    scene.solver = AutoDef{};
+    scene.ropes[0].points_m[2].y = -0.5;
+    expect_to_run(scene);
+}
+
+TEST(RemediesInCode, ImaginaryBars) {
+    Scene scene = scene_in_code({{0.0, 0.0}, {0.5, 0.0}, {1.0, -0.1}}, ExactDef{});
+    scene.ropes[0].reach = 2;
+    expect_refused(scene,
+                   "remove the imaginary bars (solver.reach, net.grid.diagonals) or use method relaxation");
+    scene.solver = RelaxationDef{};
+    expect_to_run(scene);
+    scene.solver = ExactDef{};
+    scene.ropes[0].reach = 1;
+    expect_to_run(scene);
+}
+
+TEST(RemediesInCode, RigidStrings) {
+    Scene scene = scene_in_code({{0.0, 0.0}, {0.5, 0.0}, {0.6, -0.4}}, AutoDef{});
+    RopeDef& rope = scene.ropes[0];
+    rope.material.is_string = true;
+    const auto stretched = [&] {
+        Scene stretching = scene;
+        stretching.ropes[0].material.compliance_1_n = 1e-3;
+        return stretching;
+    };
+    rope.closed = true;
+    scene.solver = ExactDef{};  // auto refuses it for rattle, and advises exact
+    expect_refused(scene, "open it, or let it stretch by a compliance");
+    expect_to_run(stretched());
+    rope.closed = false;
+    expect_to_run(scene);
+    rope.bending_n_m2 = 1.0;
+    expect_refused(scene, "remove bending, or let the string stretch by a compliance");
+    expect_to_run(stretched());
+    rope.bending_n_m2 = 0.0;
+    rope.rest_m = {0.4, 0.4};
+    expect_refused(scene, "give a larger link_length, or a compliance");
+    expect_to_run(stretched());
+    rope.rest_m = {0.5, 0.5};
+    expect_to_run(scene);
+}
+
+}  // namespace
+}  // namespace corda

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+
+#include "support/bound_judge.hpp"
+#include "support/random_system.hpp"
+
+namespace corda::test {
+
+/// Random scenes of one kind.
+struct BoundFamily {
+    const char* name;
+    std::function<BoundCase(Random&)> make;
+
+    /// Scene number `n`, the same in every run.
+    [[nodiscard]] BoundCase scene(unsigned n) const;
+};
+
+/// Families of scenes on which claims of method auto are held against the truth: single ropes of all kinds.
+[[nodiscard]] std::span<const BoundFamily> rope_families();
+/// The same: strings, closed ropes, nets, several bodies, and scales, pictures and places that are unusual.
+[[nodiscard]] std::span<const BoundFamily> other_families();
+
+/// A rope of 1 m from (0, 0) in directions around `angle` from straight down, in radians.
+[[nodiscard]] RopeDef crooked_rope(Random& random, int links, double angle, double spread);
+/// Within -pi .. pi.
+[[nodiscard]] double any_angle(Random& random);
+[[nodiscard]] double pick_log(Random& random, double least, double most);
+/// A scene of that rope with a random size of picture, rate, tolerance and drag.
+[[nodiscard]] BoundCase one_rope(Random& random, RopeDef rope, double duration_s);
+/// Size, rate, tolerance and drag: from stamps to 4K, from slow to quick.
+void add_video(Random& random, Scene& scene);
+
+/// A straight rope as a scene file gives it: its points are rounded.
+[[nodiscard]] BoundCase straight_rope(int links, double length_m, double angle_deg,
+                                      const std::string& more = "");
+
+}  // namespace corda::test

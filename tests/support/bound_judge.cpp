@@ -1,0 +1,102 @@
+#include "support/bound_judge.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "corda/pipeline/film.hpp"
+
+namespace corda::test {
+namespace {
+
+using Real = ExtendedMotion::Real;
+
+class Watch {
+  public:
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+std::string why_no_bound(const Plan& plan) {
+    if (plan.reason == PlanReason::kDependent) return "bars depend on each other";
+    if (plan.reason == PlanReason::kCollapsing) return "bars come into line";
+    return "none claimed";
+}
+
+/// The largest error of a particle's position as it is printed, in m.
+double error_m(const State& state, Vec2 origin_m, const ExtendedMotion& truth) {
+    double largest_m = 0.0;
+    for (std::size_t i = 0; i < state.x_m.size(); ++i) {
+        const Real x_m = Real{origin_m.x + state.x_m[i]} - (Real{origin_m.x} + truth.x_m(i));
+        const Real y_m = Real{origin_m.y + state.y_m[i]} - (Real{origin_m.y} + truth.y_m(i));
+        const auto error_m = static_cast<double>(std::hypot(x_m, y_m));
+        if (!(error_m <= largest_m)) largest_m = error_m;
+    }
+    return largest_m;
+}
+
+/// Whether the truth by other steps, and so with other rounding, is far nearer to the truth than the error.
+bool is_sure(const Film& film, const BoundCase& given, const Verdict& verdict) {
+    ExtendedMotion truth(film.system(), given.scene.world, given.start);
+    ExtendedMotion other(film.system(), given.scene.world, given.start);
+    for (std::int64_t k = 1; k <= film.last_frame() && film.time_s(k) <= verdict.worst_s; ++k) {
+        const double between_s = 0.37 * film.time_s(k - 1) + 0.63 * film.time_s(k);
+        if (!other.advance_to(between_s) || !other.advance_to(film.time_s(k))) return false;
+        if (!truth.advance_to(film.time_s(k))) return false;
+    }
+    Real largest_m = 0;
+    for (std::size_t i = 0; i < film.system().particle_count(); ++i)
+        largest_m = std::max(largest_m, std::hypot(truth.x_m(i) - other.x_m(i), truth.y_m(i) - other.y_m(i)));
+    return largest_m <= 0.1 * *verdict.ratio * verdict.bound_m;
+}
+
+void compare(const Film& film, const BoundCase& given, Verdict& verdict) {
+    ExtendedMotion truth(film.system(), given.scene.world, given.start);
+    verdict.ratio = 0.0;
+    const double until_s = verdict.horizon_s.value_or(given.scene.world.duration_s);
+    for (std::int64_t k = 0; k <= film.last_frame() && film.time_s(k) <= until_s; ++k) {
+        if (!truth.advance_to(film.time_s(k))) {
+            verdict.why_not_judged = truth.failure();
+            if (k == 0) verdict.ratio.reset();
+            return;
+        }
+        const double ratio = error_m(film.state(k), film.system().origin_m, truth) / verdict.bound_m;
+        if (ratio <= *verdict.ratio) continue;
+        verdict.ratio = ratio;
+        verdict.worst_s = film.time_s(k);
+    }
+}
+
+}  // namespace
+
+Verdict judge_bound(const BoundCase& given) {
+    Verdict verdict;
+    const Watch watch;
+    try {
+        const Film film(given.scene);
+        const Plan& plan = film.plan();
+        verdict.plan_s = watch.seconds();
+        verdict.horizon_s = plan.horizon_s;
+        if (plan.error_bound_m) {
+            verdict.bound_m = *plan.error_bound_m;
+            compare(film, given, verdict);
+            if (verdict.ratio > 1.0 && !is_sure(film, given, verdict)) {
+                verdict.ratio.reset();
+                verdict.why_not_judged = "the truth is not sure";
+            }
+            verdict.truth_s = watch.seconds() - verdict.plan_s;
+        } else {
+            verdict.why_no_bound = why_no_bound(plan);
+        }
+    } catch (const Error& error) {
+        const std::string message = error.what();
+        verdict.why_no_bound = "refused: " + message.substr(0, message.find(';'));
+    }
+    return verdict;
+}
+
+}  // namespace corda::test

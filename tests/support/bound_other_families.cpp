@@ -1,0 +1,246 @@
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "support/bound_families.hpp"
+
+namespace corda::test {
+namespace {
+
+void add_velocities(Random& random, RopeDef& rope, double most_m_s) {
+    for (std::size_t i = 0; i < rope.points_m.size(); ++i)
+        rope.velocity_m_s.push_back(
+            {pick_real(random, -most_m_s, most_m_s), pick_real(random, -most_m_s, most_m_s)});
+}
+
+/// Rest lengths: some as the links lie, the others longer.
+void add_slack(Random& random, RopeDef& rope, double most) {
+    for (std::size_t k = 0; k + 1 < rope.points_m.size(); ++k) {
+        const Vec2 link = rope.points_m[k + 1] - rope.points_m[k];
+        const double stretch = pick(random, 0, 2) == 0 ? 1.0 : pick_real(random, 1.01, most);
+        rope.rest_m.push_back(std::hypot(link.x, link.y) * stretch);
+    }
+}
+
+/// Rigid links that go slack and snap.
+RopeDef string_rope(Random& random, int most_links) {
+    RopeDef rope = crooked_rope(random, pick(random, 1, most_links), any_angle(random), 1.5);
+    rope.material.is_string = true;
+    add_slack(random, rope, 1.5);
+    add_velocities(random, rope, 2.0);
+    return rope;
+}
+
+BoundCase string_few(Random& random) {
+    return one_rope(random, string_rope(random, 4), 2.0);
+}
+
+BoundCase string_many(Random& random) {
+    RopeDef rope = string_rope(random, 9);
+    if (pick(random, 0, 1) == 0) {
+        for (std::size_t i = 0; i < rope.points_m.size(); ++i)
+            rope.mass_kg.push_back(pick_log(random, 0.1, 5.0));
+    }
+    return one_rope(random, rope, 2.0);
+}
+
+/// Taut at the start, as a rope of the same shape, and high enough to go slack.
+BoundCase string_swing(Random& random) {
+    const double angle = (pick(random, 0, 1) == 0 ? 1.0 : -1.0) * pick_real(random, 1.2, 2.6);
+    RopeDef rope = crooked_rope(random, pick(random, 1, 4), angle, 0.3);
+    rope.material.is_string = true;
+    return one_rope(random, rope, 3.0);
+}
+
+BoundCase string_thrown(Random& random) {
+    RopeDef rope = string_rope(random, 4);
+    rope.pinned = {};
+    return one_rope(random, rope, 2.0);
+}
+
+RopeDef bungee_rope(Random& random) {
+    RopeDef rope = crooked_rope(random, pick(random, 1, 5), any_angle(random), 1.5);
+    rope.material.is_string = true;
+    rope.material.compliance_1_n = pick_log(random, 1e-5, 1e-2);
+    add_slack(random, rope, 1.3);
+    return rope;
+}
+
+BoundCase bungee(Random& random) {
+    RopeDef rope = bungee_rope(random);
+    if (pick(random, 0, 1) == 0) add_velocities(random, rope, 2.0);
+    return one_rope(random, rope, 2.0);
+}
+
+RopeDef ring_rope(Random& random) {
+    const int links = pick(random, 4, 12);
+    RopeDef rope;
+    const double flat = pick_real(random, 0.5, 0.9);
+    for (int i = 0; i < links; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / links;
+        rope.points_m.push_back(
+            {flat * std::sin(angle), std::cos(angle) + 0.1 * pick_real(random, -1.0, 1.0)});
+    }
+    rope.closed = true;
+    return rope;
+}
+
+BoundCase ring(Random& random) {
+    return one_rope(random, ring_rope(random), 1.0);
+}
+
+BoundCase elastic_ring(Random& random) {
+    RopeDef rope = ring_rope(random);
+    rope.material.compliance_1_n = pick_log(random, 1e-5, 1e-2);
+    rope.material.is_string = pick(random, 0, 2) == 0;
+    return one_rope(random, rope, 1.0);
+}
+
+/// A closed polygon with bars from some particle to others, which leave it movable, rigid, or more than that.
+BoundCase braced(Random& random) {
+    const RopeDef rope = ring_rope(random);
+    const auto count = static_cast<std::uint32_t>(rope.points_m.size());
+    NetDef net;
+    net.points_m = rope.points_m;
+    net.pinned = {0};
+    for (std::uint32_t i = 0; i < count; ++i) net.bars.push_back({i, (i + 1) % count});
+    for (std::uint32_t i = 2; i + 1 < count; ++i) {
+        if (pick(random, 0, 2) != 0) net.bars.push_back({0, i});
+    }
+    BoundCase made;
+    made.scene.nets = {net};
+    made.scene.world.duration_s = 1.0;
+    add_video(random, made.scene);
+    return made;
+}
+
+NetDef grid(Random& random) {
+    const int columns = pick(random, 2, 4);
+    const int rows = pick(random, 2, 4);
+    NetDef net;
+    const auto index = [&](int column, int row) {
+        return static_cast<std::uint32_t>(row * columns + column);
+    };
+    for (int row = 0; row < rows; ++row) {
+        for (int column = 0; column < columns; ++column) {
+            net.points_m.push_back({column + 0.3 * row + 0.1 * pick_real(random, -1.0, 1.0),
+                                    -row + 0.1 * pick_real(random, -1.0, 1.0)});
+            if (column > 0) net.bars.push_back({index(column - 1, row), index(column, row)});
+            if (row > 0) net.bars.push_back({index(column, row - 1), index(column, row)});
+        }
+    }
+    net.pinned = {0};
+    return net;
+}
+
+BoundCase net(Random& random) {
+    BoundCase made;
+    made.scene.nets = {grid(random)};
+    made.scene.world.duration_s = 0.5;
+    add_video(random, made.scene);
+    return made;
+}
+
+BoundCase elastic_net(Random& random) {
+    BoundCase made;
+    NetDef net = grid(random);
+    net.material.compliance_1_n = pick_log(random, 1e-4, 1e-2);
+    net.material.is_string = pick(random, 0, 2) == 0;
+    made.scene.nets = {net};
+    made.scene.world.duration_s = 0.5;
+    add_video(random, made.scene);
+    return made;
+}
+
+/// Some of: a rope, one that stretches, a string, a bungee; and sometimes a ring in place of the string.
+BoundCase several(Random& random) {
+    BoundCase made = one_rope(random, crooked_rope(random, pick(random, 2, 8), any_angle(random), 1.0), 1.0);
+    std::vector<RopeDef>& ropes = made.scene.ropes;
+    if (pick(random, 0, 1) == 0) {
+        ropes.push_back(crooked_rope(random, pick(random, 1, 4), any_angle(random), 1.0));
+        ropes.back().material.compliance_1_n = pick_log(random, 1e-4, 1e-2);
+    }
+    if (pick(random, 0, 1) == 0) ropes.push_back(bungee_rope(random));
+    ropes.push_back(pick(random, 0, 3) == 0 ? ring_rope(random) : string_rope(random, 3));
+    for (RopeDef& rope : ropes) {
+        const Vec2 place{pick_real(random, -3.0, 3.0), pick_real(random, -3.0, 3.0)};
+        for (Vec2& point : rope.points_m) point = point + place;
+    }
+    return made;
+}
+
+/// From micrometres to kilometres, by any gravity, with any masses.
+BoundCase units(Random& random) {
+    RopeDef rope = crooked_rope(random, pick(random, 2, 8), any_angle(random), 1.0);
+    const double scale = pick_log(random, 1e-6, 1e4);
+    const double gravity_m_s2 = pick_log(random, 1e-2, 1e3);
+    for (Vec2& point : rope.points_m) point = scale * point;
+    const double mass_kg = pick_log(random, 1e-6, 1e6);
+    for (std::size_t i = 0; i < rope.points_m.size(); ++i)
+        rope.mass_kg.push_back(mass_kg * pick_log(random, 0.5, 2.0));
+    const double angle = any_angle(random);
+    BoundCase made = one_rope(random, rope, 5.0 * std::sqrt(scale * 9.81 / gravity_m_s2));
+    made.scene.world.gravity_m_s2 = {gravity_m_s2 * std::sin(angle), -gravity_m_s2 * std::cos(angle)};
+    made.scene.world.drag_1_s = 0.0;
+    const auto rate = static_cast<std::int64_t>(60e3 * std::sqrt(gravity_m_s2 / (9.81 * scale)));
+    made.scene.video.fps = FrameRate(Rational{std::clamp<std::int64_t>(rate, 1, 99'999'999), 1000});
+    return made;
+}
+
+BoundCase tiny_frames(Random& random) {
+    BoundCase made = one_rope(random, crooked_rope(random, pick(random, 2, 8), any_angle(random), 1.5),
+                              pick_real(random, 0.5, 6.0));
+    made.scene.video.width_px = 2 * pick(random, 1, 16);
+    made.scene.video.height_px = 2 * pick(random, 1, 16);
+    made.scene.solver = AutoDef{pick_log(random, 1e-3, 50.0)};
+    return made;
+}
+
+BoundCase odd_rates(Random& random) {
+    BoundCase made = one_rope(random, crooked_rope(random, pick(random, 2, 8), any_angle(random), 1.5),
+                              pick_real(random, 0.5, 4.0));
+    made.scene.video.fps = FrameRate(Rational{pick(random, 500, 120'000), pick(random, 900, 1100)});
+    return made;
+}
+
+BoundCase much_drag(Random& random) {
+    RopeDef rope = crooked_rope(random, pick(random, 2, 12), any_angle(random), 1.5);
+    add_velocities(random, rope, 3.0);
+    if (pick(random, 0, 2) == 0) rope.material.compliance_1_n = pick_log(random, 1e-5, 1e-2);
+    BoundCase made = one_rope(random, rope, 5.0);
+    made.scene.world.drag_1_s = pick_log(random, 0.3, 30.0);
+    return made;
+}
+
+/// Points as a file gives them, far from (0, 0).
+BoundCase far_away(Random& random) {
+    RopeDef rope = crooked_rope(random, pick(random, 2, 6), any_angle(random), 1.5);
+    rope.origin_m = {pick_log(random, 10.0, 1e8), -pick_log(random, 10.0, 1e8)};
+    BoundCase made = one_rope(random, rope, 3.0);
+    made.scene.solver = AutoDef{pick_log(random, 1e-7, 1.0)};
+    return made;
+}
+
+}  // namespace
+
+std::span<const BoundFamily> other_families() {
+    static const auto families = std::to_array<BoundFamily>({{"string_few", string_few},
+                                                             {"string_many", string_many},
+                                                             {"string_swing", string_swing},
+                                                             {"string_thrown", string_thrown},
+                                                             {"bungee", bungee},
+                                                             {"ring", ring},
+                                                             {"elastic_ring", elastic_ring},
+                                                             {"braced", braced},
+                                                             {"net", net},
+                                                             {"elastic_net", elastic_net},
+                                                             {"several", several},
+                                                             {"units", units},
+                                                             {"tiny_frames", tiny_frames},
+                                                             {"odd_rates", odd_rates},
+                                                             {"much_drag", much_drag},
+                                                             {"far_away", far_away}});
+    return families;
+}
+
+}  // namespace corda::test

@@ -1,0 +1,248 @@
+#include "support/extended_motion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace corda::test {
+namespace {
+
+using Real = ExtendedMotion::Real;
+
+constexpr int kColumns = 7;
+constexpr Real kShare = 3e-18L;  // of the size of the system: the error of a step
+/// Steps after which a scene is given up: some minutes.
+constexpr long kMostSteps = 300000;
+
+}  // namespace
+
+ExtendedMotion::ExtendedMotion(const System& system, const WorldDef& world, const std::vector<Real>& start)
+    : count_(static_cast<Eigen::Index>(system.particle_count())), world_(world), bends_(system.bends) {
+    y_ = Vector::Zero(4 * count_);
+    rest_ = y_;
+    for (Eigen::Index i = 0; i < count_; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        y_[i] = start.empty() ? Real{system.x_m[k]} : start[k];
+        y_[count_ + i] = start.empty() ? Real{system.y_m[k]} : start[k + system.particle_count()];
+        y_[2 * count_ + i] = system.vx_m_s[k];
+        y_[3 * count_ + i] = system.vy_m_s[k];
+        inverse_mass_.push_back(system.is_pinned(k) ? Real{0} : Real{1} / Real{system.mass_kg[k]});
+        if (!system.is_pinned(k)) mass_ += system.mass_kg[k];
+    }
+    size_ = largest_length_m(system);
+    shortest_ = size_;
+    for (const Body& body : system.bodies) add_links(system, body);
+    if (!begin()) failure_ = "the start is not determined";
+}
+
+void ExtendedMotion::add_links(const System& system, const Body& body) {
+    for (std::size_t k = body.first_bar; k < body.first_bar + body.bar_count; ++k) {
+        const Bar& bar = system.bars[k];
+        if (system.is_pinned(bar.a) && system.is_pinned(bar.b)) continue;
+        links_.push_back({bar.a, bar.b, bar.rest_m, body.material.compliance_1_n, body.material.is_string});
+        Link& link = links_.back();
+        link.pulls = !link.is_string;
+        has_strings_ = has_strings_ || link.is_string;
+        shortest_ = std::min(shortest_, link.rest);
+    }
+}
+
+bool ExtendedMotion::fail(const char* reason) {
+    failure_ = reason;
+    return false;
+}
+
+bool ExtendedMotion::advance_to(double time_s) {
+    if (!failure_.empty()) return false;
+    while (time_ < time_s) {
+        if (++steps_ > kMostSteps) return fail("the truth takes too many steps");
+        const Real left = time_s - time_;
+        const Real step = std::min({step_, left, longest_step()});
+        Vector change;
+        const Real error = extrapolate(step, change);
+        const Real grow = std::pow(kShare / std::max(error, Real{1e-30L}), Real{1} / (2 * kColumns - 1));
+        if (!(error <= kShare)) {
+            step_ = step * std::clamp(Real{0.9L} * grow, Real{0.1L}, Real{0.7L});
+            if (!(step_ > Real{1e-12L} * std::max(time_, Real{1e-6L})))
+                return fail("the truth's steps become too short");
+            continue;
+        }
+        const Real wanted = step * std::clamp(Real{0.9L} * grow, Real{0.5L}, Real{2});
+        if (const auto event = has_strings_ ? event_within(step) : std::nullopt) {
+            static_cast<void>(extrapolate(*event, change));
+            add(change);
+            project();
+            time_ += *event;
+            if (++events_ > 20000) return fail("the truth meets too many events");
+            if (!begin()) return fail("an event has no solution");
+            continue;
+        }
+        add(change);
+        if (has_strings_) project();
+        time_ = step == left ? Real{time_s} : time_ + step;
+        step_ = step < step_ ? std::max(step_, wanted) : wanted;
+    }
+    return true;
+}
+
+ExtendedMotion::Pair ExtendedMotion::apart(const Vector& y, const Link& link, Eigen::Index first) const {
+    const auto i = static_cast<Eigen::Index>(link.a);
+    const auto j = static_cast<Eigen::Index>(link.b);
+    return {y[first + j] - y[first + i], y[first + count_ + j] - y[first + count_ + i]};
+}
+
+/// Adds what a force does to the acceleration of a particle, or an impulse to its velocity.
+void ExtendedMotion::push(Vector& slope, std::size_t i, const Pair& force) const {
+    const auto k = static_cast<Eigen::Index>(i);
+    slope[2 * count_ + k] += inverse_mass_[i] * force[0];
+    slope[3 * count_ + k] += inverse_mass_[i] * force[1];
+}
+
+void ExtendedMotion::add_bends(const Vector& y, Vector& slope) const {
+    for (const Bend& bend : bends_) {
+        const Pair p = apart(y, {bend.a, bend.b, 0, 0, false}, 0);
+        const Pair q = apart(y, {bend.b, bend.c, 0, 0, false}, 0);
+        const Real pp = p.norm();
+        const Real qq = q.norm();
+        const Real cosine = p.dot(q) / (pp * qq);
+        // -dE/dp and -dE/dq of E = -k cosine.
+        const Pair fp = bend.stiffness_n_m * (q / (pp * qq) - cosine / (pp * pp) * p);
+        const Pair fq = bend.stiffness_n_m * (p / (pp * qq) - cosine / (qq * qq) * q);
+        push(slope, bend.a, -fp);
+        push(slope, bend.b, fp - fq);
+        push(slope, bend.c, fq);
+    }
+}
+
+/// How strongly two rigid bars pull at each other's ends.
+Real ExtendedMotion::coupling(const Vector& y, const Link& link, const Link& other) const {
+    const Real weight =
+        (link.a == other.a ? inverse_mass_[link.a] : 0) + (link.b == other.b ? inverse_mass_[link.b] : 0) -
+        (link.a == other.b ? inverse_mass_[link.a] : 0) - (link.b == other.a ? inverse_mass_[link.b] : 0);
+    return weight == 0 ? 0 : weight * apart(y, link, 0).dot(apart(y, other, 0));
+}
+
+/// The multipliers of the rigid bars that pull: solves L D L^T in the profile of the matrix.
+ExtendedMotion::Vector ExtendedMotion::solve(const Vector& y, Vector right) {
+    const Eigen::Index n = right.size();
+    for (Eigen::Index k = 0; k < n; ++k) {
+        const auto row = static_cast<std::size_t>(k);
+        for (Eigen::Index l = first_[row]; l <= k; ++l) {
+            Real sum = coupling(y, bar(k), bar(l));
+            for (Eigen::Index m = std::max(first_[row], first_[static_cast<std::size_t>(l)]); m < l; ++m)
+                sum -= matrix_(k, m) * matrix_(l, m) * matrix_(m, m);
+            matrix_(k, l) = l < k ? sum / matrix_(l, l) : sum;
+        }
+        for (Eigen::Index m = first_[row]; m < k; ++m) right[k] -= matrix_(k, m) * right[m];
+    }
+    for (Eigen::Index k = 0; k < n; ++k) right[k] /= matrix_(k, k);
+    for (Eigen::Index k = n; k-- > 0;) {
+        for (Eigen::Index m = first_[static_cast<std::size_t>(k)]; m < k; ++m)
+            right[m] -= matrix_(k, m) * right[k];
+    }
+    return right;
+}
+
+/// Forces or impulses of the rigid bars at `y`: each bar's multiplier times what leads from `a` to `b`, on
+/// `b`.
+void ExtendedMotion::push_along_bars(Vector& slope, const Vector& y, const Vector& multiplier) const {
+    for (Eigen::Index k = 0; k < multiplier.size(); ++k) {
+        const Pair force = multiplier[k] * apart(y, bar(k), 0);
+        push(slope, bar(k).a, -force);
+        push(slope, bar(k).b, force);
+    }
+}
+
+void ExtendedMotion::derivative(const Vector& y, Vector& slope) {
+    slope.head(2 * count_) = y.tail(2 * count_);
+    for (Eigen::Index i = 0; i < count_; ++i) {
+        const Real falls = inverse_mass_[static_cast<std::size_t>(i)] > 0 ? 1 : 0;
+        slope[2 * count_ + i] = falls * world_.gravity_m_s2.x - world_.drag_1_s * y[2 * count_ + i];
+        slope[3 * count_ + i] = falls * world_.gravity_m_s2.y - world_.drag_1_s * y[3 * count_ + i];
+    }
+    for (const Link& link : links_) {
+        if (link.compliance == 0 || !link.pulls) continue;
+        const Pair d = apart(y, link, 0);
+        const Real now = d.norm();
+        const Pair pull = (now / link.rest - 1) / link.compliance / now * d;
+        push(slope, link.a, pull);
+        push(slope, link.b, -pull);
+    }
+    add_bends(y, slope);
+    multiplier_.resize(static_cast<Eigen::Index>(rigid_.size()));
+    if (rigid_.empty()) return;
+    for (Eigen::Index k = 0; k < multiplier_.size(); ++k) {
+        multiplier_[k] = -apart(y, bar(k), 2 * count_).squaredNorm() -
+                         apart(y, bar(k), 0).dot(apart(slope, bar(k), 2 * count_));
+    }
+    multiplier_ = solve(y, multiplier_);
+    push_along_bars(slope, y, multiplier_);
+}
+
+/// One step; returns the estimate of the positions' largest error in parts of the size, or of how far away
+/// the system is. Ends early if few columns do, as in the short steps that strings need. What is extrapolated
+/// is the change: extrapolation magnifies rounding by some tens.
+Real ExtendedMotion::extrapolate(Real step, Vector& change) {
+    std::array<Vector, kColumns> row;
+    Vector slope(4 * count_);
+    Vector start_slope(4 * count_);
+    derivative(y_, start_slope);
+    const Real size = std::max(size_, y_.head(2 * count_).cwiseAbs().maxCoeff());
+    Real error = 1;
+    for (int j = 0; j < kColumns && !(error <= Real{1e-3L} * kShare); ++j) {
+        const int parts = 2 * (j + 1);
+        const Real h = step / parts;
+        Vector before = rest_;
+        Vector now = rest_ + h * start_slope;
+        for (int m = 1; m < parts; ++m) {
+            derivative(y_ + now, slope);
+            before += 2 * h * slope;
+            before.swap(now);
+        }
+        derivative(y_ + now, slope);
+        change = (before + now + h * slope) / 2;
+        for (int l = 0; l < j; ++l) {
+            const Real ratio = Real(parts) / Real(2 * (j - l));
+            const Vector finer = change + (change - row[static_cast<std::size_t>(l)]) / (ratio * ratio - 1);
+            row[static_cast<std::size_t>(l)] = change;
+            change = finer;
+        }
+        if (j > 0) {
+            error = (change - row[static_cast<std::size_t>(j - 1)]).head(2 * count_).cwiseAbs().maxCoeff();
+            error = std::isfinite(error) ? error / size : 1;
+        }
+        row[static_cast<std::size_t>(j)] = change;
+    }
+    return error;
+}
+
+/// Adds a change to the state, and keeps what rounding takes off.
+void ExtendedMotion::add(const Vector& change) {
+    const Vector before = y_;
+    y_ += change;
+    rest_ = change - (y_ - before);
+}
+
+/// Puts the rigid bars that pull back to their lengths, from which errors let them drift. Not after each step
+/// of what has no strings: rounding of the lengths shakes light particles that hang in line above a heavy
+/// one.
+void ExtendedMotion::project() {
+    Vector multiplier(static_cast<Eigen::Index>(rigid_.size()));
+    for (Eigen::Index k = 0; k < multiplier.size(); ++k)
+        multiplier[k] = (bar(k).square - apart(y_, bar(k), 0).squaredNorm()) / 2;
+    Vector moved = Vector::Zero(4 * count_);
+    push_along_bars(moved, y_, solve(y_, multiplier));
+    y_.head(2 * count_) += moved.tail(2 * count_);
+    remove_stretching(y_, multiplier);
+}
+
+/// Takes the speeds at which the rigid bars that pull would stretch from the velocities.
+void ExtendedMotion::remove_stretching(Vector& y, Vector& multiplier) {
+    multiplier.resize(static_cast<Eigen::Index>(rigid_.size()));
+    for (Eigen::Index k = 0; k < multiplier.size(); ++k)
+        multiplier[k] = -apart(y, bar(k), 0).dot(apart(y, bar(k), 2 * count_));
+    multiplier = solve(y, multiplier);
+    push_along_bars(y, y, multiplier);
+}
+
+}  // namespace corda::test
