@@ -49,8 +49,7 @@ std::string_view remedy(Refusal::Reason reason) {
             return "change its points or velocity a little";
         case Reason::kTautBetweenPins:
             return "let the rope sag between its pins (other points, or a string with a larger link_length), "
-                   "or "
-                   "pin the particles between them too";
+                   "or pin the particles between them too";
         case Reason::kDependentBars:
             return "leave out bars that others imply (diagonals, bars to second and further neighbours), let "
                    "what is straight between pins sag, or use method relaxation";

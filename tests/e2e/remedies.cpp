@@ -73,8 +73,7 @@ INSTANTIATE_TEST_SUITE_P(
                net_scene(kGrid, method_of("rattle")),
                "simulate SCENE",
                "leave out bars that others imply (diagonals, bars to second and further neighbours), let "
-               "what is "
-               "straight between pins sag, or use method relaxation",
+               "what is straight between pins sag, or use method relaxation",
                {{{"diagonals = true", "diagonals = false"}, {"net]]\n", "net]]\npinned = [0]\n"}},
                 {{"rattle", "relaxation"}}}},
         Remedy{"dependent_bars_between_pins",
