@@ -51,8 +51,8 @@ std::string_view remedy(Refusal::Reason reason) {
             return "let the rope sag between its pins (other points, or a string with a larger link_length), "
                    "or pin the particles between them too";
         case Reason::kDependentBars:
-            return "leave out bars that others imply (diagonals, bars to second and further neighbours), let "
-                   "what is straight between pins sag, or use method relaxation";
+            return "bend what is in line a little, leave out bars that others imply, or use method "
+                   "relaxation";
         case Reason::kMaterial:
             return "remove compliance, string and bending, or use method exact";
     }

@@ -16,10 +16,10 @@ namespace {
 media::VideoMetadata metadata(const Film& film, std::int64_t first) {
     const Plan& plan = film.plan();
     const std::string title = printable(film.scene().name);
-    nlohmann::json comment = {
-        {"corda", version()},   {"scene", title},           {"method", method_names(plan)},
-        {"first_frame", first}, {"error_bound_m", nullptr}, {"error_bound_px", nullptr},
-        {"horizon_s", nullptr}};
+    nlohmann::json comment = {{"corda", version()},           {"scene", title},
+                              {"method", method_names(plan)}, {"first_frame", first},
+                              {"error_bound_m", nullptr},     {"error_bound_px", nullptr},
+                              {"horizon_s", nullptr}};
     if (plan.error_bound_m) comment["error_bound_m"] = *plan.error_bound_m;
     if (const auto bound_px = film.error_bound_px()) comment["error_bound_px"] = *bound_px;
     if (plan.horizon_s) comment["horizon_s"] = *plan.horizon_s;

@@ -10,9 +10,9 @@ namespace corda::sim {
 namespace {
 
 double sum_of_scales_j(const std::vector<BodySolvers::Part>& parts) {
-    return std::accumulate(
-        parts.begin(), parts.end(), 0.0,
-        [](double sum_j, const BodySolvers::Part& part) { return sum_j + part.solver->energy_scale_j(); });
+    return std::accumulate(parts.begin(), parts.end(), 0.0, [](double sum_j, const BodySolvers::Part& part) {
+        return sum_j + part.solver->energy_scale_j();
+    });
 }
 
 bool all_conserve_energy(const std::vector<BodySolvers::Part>& parts) {

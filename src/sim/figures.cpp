@@ -17,8 +17,7 @@ Figures larger_figures(const Figures& a, const Figures& b) {
     larger.strain = std::max(a.strain, b.strain);
     if (a.energy_error || b.energy_error)
         larger.energy_error = std::max(a.energy_error.value_or(0.0), b.energy_error.value_or(0.0));
-    if (a.loads || b.loads)
-        larger.loads = larger_loads(a.loads.value_or(Loads{}), b.loads.value_or(Loads{}));
+    if (a.loads || b.loads) larger.loads = larger_loads(a.loads.value_or(Loads{}), b.loads.value_or(Loads{}));
     return larger;
 }
 

@@ -13,7 +13,8 @@ namespace corda::sim {
 [[nodiscard]] std::optional<Loads> loads_of_both(const std::optional<Loads>& a,
                                                  const std::optional<Loads>& b);
 
-/// Figures::energy_error; std::nullopt if the change is NaN, which is not known, or there is nothing to compare it with.
+/// Figures::energy_error; std::nullopt if the change is NaN, which is not known, or there is nothing to
+/// compare it with.
 [[nodiscard]] std::optional<double> energy_error(double change_j, double scale_j);
 
 }  // namespace corda::sim

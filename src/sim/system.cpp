@@ -130,8 +130,8 @@ double largest_length_m(const System& system) {
 
 std::string body_name(const System& system, std::size_t body) {
     const auto& bodies = system.bodies;
-    const auto first_net = std::partition_point(bodies.begin(), bodies.end(),
-                                                [](const Body& other) { return !other.is_net; });
+    const auto first_net =
+        std::partition_point(bodies.begin(), bodies.end(), [](const Body& other) { return !other.is_net; });
     const auto ropes = static_cast<std::size_t>(first_net - bodies.begin());
     return body < ropes ? "rope " + std::to_string(body) : "net " + std::to_string(body - ropes);
 }

@@ -232,7 +232,7 @@ TEST(BarsInLine, AutoClaimsATrueBoundBeyondOrNone) {
     constexpr double kDurationSeconds = 0.5;
     for (const auto& [size, spacing_m] : {std::pair(3, 0.3), std::pair(4, 0.2), std::pair(6, 0.1)}) {
         const Film film(grid_scene(size, spacing_m, kDurationSeconds));
-        const Plan& plan = film.plan();
+        const BodyPlan& plan = film.plan().bodies.front();
         if (!plan.error_bound_m) {
             std::printf("%d x %d: no claim\n", size, size);
             EXPECT_EQ(plan.reason, PlanReason::kCollapsing);

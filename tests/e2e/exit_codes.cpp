@@ -317,8 +317,9 @@ TEST_F(ExitCodes, EightForADivergedSimulationKeepingWhatWasGood) {
 
 #if !defined(__SANITIZE_ADDRESS__)  // which reserves more memory than any limit
 TEST_F(ExitCodes, SeventyFiveWithoutMemory) {
-    const std::string many = folder_.write(
-        "many.toml", "schema = 1\n[[rope]]\nline = { particles = 900000, step = [0.001, 0.0] }\n");
+    const std::string many = folder_.write("many.toml",
+                                           "schema = 1\n[[rope]]\nline = { particles = 900000, step = "
+                                           "[0.001, 0.0] }\n[world]\nduration = 0.1\n");
     const auto result = run_shell("ulimit -v 400000; " + test::quoted(CORDA_PROGRAM) + " simulate " + many);
     EXPECT_EQ(result.exit_code, 75) << result.err;
     EXPECT_THAT(result.err, HasSubstr("out of memory"));

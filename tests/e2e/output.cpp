@@ -176,22 +176,6 @@ TEST_F(Output, ErrorsAreJsonWithJson) {
     EXPECT_THAT(failure({"plan", "--json"}, 2), HasSubstr("SCENE"));
 }
 
-TEST_F(Output, SaysOfADivergenceThatItIsOne) {
-    // A rigid grid that folds into a line, which only relaxation could go on with, beside an elastic rope.
-    const std::string folding = folder_.write("folding.toml", R"(schema = 1
-[world]
-duration = 0.5
-[[net]]
-grid = { columns = 4, rows = 4, spacing = 0.1, diagonals = false }
-pinned = [[0, 0]]
-[[rope]]
-hang = { links = 2, length = 1.0, angle_deg = 30.0 }
-compliance = 0.001
-)");
-    const auto result = run_corda({"plan", folding});
-    EXPECT_THAT(result.err, HasSubstr("the simulation diverges after 0.1")) << result.out;
-}
-
 TEST_F(Output, PlanDoesNotPromiseThatRelaxationKeepsEnergy) {
     const auto plain = run_corda({"plan", scene_, "--set", "solver.method=relaxation"});
     EXPECT_THAT(plain.out, HasSubstr("modelled: no drag; the passes lose energy"));

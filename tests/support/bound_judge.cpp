@@ -22,8 +22,10 @@ class Watch {
 };
 
 std::string why_no_bound(const Plan& plan) {
-    if (plan.reason == PlanReason::kDependent) return "bars depend on each other";
-    if (plan.reason == PlanReason::kCollapsing) return "bars come into line";
+    for (const BodyPlan& body : plan.bodies) {
+        if (body.reason == PlanReason::kDependent) return "bars depend on each other";
+        if (body.reason == PlanReason::kCollapsing) return "bars come into line";
+    }
     return "none claimed";
 }
 

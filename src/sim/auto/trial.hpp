@@ -36,10 +36,8 @@ struct PlanDef {
 
 /// The place of a trial among those of a plan.
 struct TrialKind {
-    /// It has one check. Later ones, of motions that are hard to predict, have two if rounding matters to
-    /// them.
-    bool is_first = true;
-    bool is_last = true;  ///< its run is what will be drawn: it goes on to the end without its checks
+    bool is_first = true;  ///< if of `rattle`, it has one check
+    bool is_last = true;   ///< its run is what will be drawn: it goes on to the end without its checks
 };
 
 /// Runs the trial's method and its checks side by side, the checks in turned coordinates, so that their

@@ -26,8 +26,8 @@ namespace corda::sim {
 /// A rope that stands exactly upright stays so: nothing pushes it off.
 class Exact final : public Solver {
   public:
-    /// Requires one body. Throws corda::Refusal for rigid bars that are imaginary or do not form an open chain, for a rigid rope
-    /// that is taut between two pins, and for what StringPart refuses.
+    /// Requires one body. Throws corda::Refusal for rigid bars that are imaginary or do not form an open
+    /// chain, for a rigid rope that is taut between two pins, and for what StringPart refuses.
     Exact(const System& system, const Forces& forces, const ExactDef& def);
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;

@@ -40,8 +40,8 @@ class GraphConstraints final : public ConstraintSolver {
         double factor = 0.0;  ///< sum of the shared particles' inverse masses, signed
     };
     void analyse();
-    /// Makes factors_ those at these positions, the matrix's diagonal entries raised by a share; takes no time
-    /// if they are already. False if it cannot.
+    /// Makes factors_ those at these positions, the matrix's diagonal entries raised by a share; takes no
+    /// time if they are already. False if it cannot.
     [[nodiscard]] bool factorise(const Motion& motion, double raise, StopCheck& stop);
     /// Factorises it as it is; false also if bars depend on each other.
     [[nodiscard]] bool is_regular(const Motion& motion, StopCheck& stop);
@@ -66,7 +66,7 @@ class GraphConstraints final : public ConstraintSolver {
     StoppableLdlt factors_;
     bool is_factorised_ = false;  ///< factors_ are those of dx_m_, dy_m_ and raise_
     double raise_ = 0.0;
-    std::vector<double> dx_m_;    ///< bar vectors at the start of a stage
+    std::vector<double> dx_m_;  ///< bar vectors at the start of a stage
     std::vector<double> dy_m_;
     Eigen::VectorXd right_;
     double smallest_pivot_ = 1.0;       ///< of the last factorisation, as a share of its diagonal entry

@@ -48,7 +48,7 @@ TEST(Trial, EndsWhereTheTwoPartUnlessItsRunIsWhatWillBeDrawn) {
     const RopeDef rope = reference::straight_rope(5, 1.0, 60.0);
     const MethodDef coarse = RattleDef{2, 1.0 / 60.0};
     for (const bool is_last : {false, true}) {
-        const Outcome outcome = outcome_of(rope, coarse, ExactDef{1e-12}, 1e-6, {true, is_last});
+        const Outcome outcome = outcome_of(rope, coarse, ExactDef{1e-10}, 1e-6, {true, is_last});
         EXPECT_FALSE(outcome.trial.to_the_end);
         EXPECT_LT(outcome.trial.reached_s, 0.5);
         EXPECT_LE(3.0 * outcome.trial.largest_difference_m, 1e-6);
@@ -57,11 +57,14 @@ TEST(Trial, EndsWhereTheTwoPartUnlessItsRunIsWhatWillBeDrawn) {
     }
 }
 
-TEST(Trial, AfterTheFirstHasTwoChecksAndCountsWhatTheyDifferBy) {
-    // Both checks round at 1e-12; the second one's start is rounded otherwise, too.
+TEST(Trial, HasTwoChecksWhereRoundingMatters) {
     const RopeDef rope = reference::straight_rope(5, 1.0, 120.0);
-    const Outcome first = outcome_of(rope, ExactDef{1e-10}, ExactDef{1e-12}, 1e-3, {true, false});
-    const Outcome later = outcome_of(rope, ExactDef{1e-10}, ExactDef{1e-12}, 1e-3, {false, false});
+    EXPECT_EQ(outcome_of(rope, ExactDef{1e-8}, ExactDef{1e-10}, 1e-3).passes, 2);
+    // These round at 1e-12; the second one's start is rounded otherwise, too.
+    EXPECT_EQ(outcome_of(rope, ExactDef{1e-10}, ExactDef{1e-12}, 1e-3).passes, 3);
+    const MethodDef rattle = RattleDef{8, 0.01};
+    const Outcome first = outcome_of(rope, rattle, rattle, 1e-3, {true, false});
+    const Outcome later = outcome_of(rope, rattle, rattle, 1e-3, {false, false});
     EXPECT_EQ(first.passes, 2);
     EXPECT_EQ(later.passes, 3);
     EXPECT_GT(later.trial.largest_difference_m, first.trial.largest_difference_m);

@@ -65,7 +65,7 @@ TEST(GraphConstraints, MoveImpliedBarsToTheirLengthsToo) {
     GraphConstraints constraints(system);
     Motion motion = Motion::start_of(system);
     std::vector<double> impulse(constraints.links().size(), 0.0);
-    ASSERT_TRUE(constraints.move({0.01, 0.9, {0.02, -0.05}}, motion, impulse));
+    ASSERT_TRUE(constraints.move({0.01, 0.9, {0.02, -0.05}}, motion, impulse, test::unstopped));
     for (const Bar& bar : system.bars) {
         const double length_m =
             std::hypot(motion.x_m[bar.b] - motion.x_m[bar.a], motion.y_m[bar.b] - motion.y_m[bar.a]);
