@@ -113,7 +113,8 @@ void add_auto_row(const AccuracyRow& named, const Problem& problem, const Timing
         take_step();
         return true;
     };
-    const BodyPlan plan = sim::plan_body(system, problem.world, {tolerance_m, timeline, on_frame, {}}, unread);
+    const BodyPlan plan =
+        sim::plan_body(system, problem.world, {tolerance_m, timeline, on_frame, {}}, unread);
     add_problem_row(named, problem, {"auto", plan.method}, timing, rows);
     AccuracyRow& row = rows.back();
     row.title += fmt::format(" (auto chose {})", method_name(plan.method));

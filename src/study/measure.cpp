@@ -69,7 +69,8 @@ double stepping_s(const Problem& problem, const MethodDef& method, const Timing&
         int runs = 0;
         do {
             take_step();
-            const auto solver = sim::make_solver(system, problem.world, {&method, 1}, problem.fps.interval_s());
+            const auto solver =
+                sim::make_solver(system, problem.world, {&method, 1}, problem.fps.interval_s());
             State state{0.0, system.x_m, system.y_m};
             const double from_s = now_s();
             for (std::int64_t k = 1; k <= last_frame; ++k) {

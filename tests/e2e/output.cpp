@@ -176,6 +176,18 @@ TEST_F(Output, ErrorsAreJsonWithJson) {
     EXPECT_THAT(failure({"plan", "--json"}, 2), HasSubstr("SCENE"));
 }
 
+TEST_F(Output, WarnsOfANetThatItsBarsKeepFromMovingUntilItsAdviceIsTaken) {
+    const std::string plate = folder_.write(
+        "plate.toml",
+        "schema = 1\n[[net]]\ngrid = { columns = 5, rows = 4, spacing = 0.1 }\n[world]\nduration = 0.2\n");
+    EXPECT_THAT(run_corda({"plan", plate}).err, HasSubstr("net 0 stands still: its bars make it a plate"));
+    for (const char* advice : {"net[0].pinned=[0]", "net[0].compliance=1e-3", "solver.method=relaxation"}) {
+        const auto result = run_corda({"plan", plate, "--set", advice});
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_THAT(result.err, Not(HasSubstr("stands still"))) << advice;
+    }
+}
+
 TEST_F(Output, PlanDoesNotPromiseThatRelaxationKeepsEnergy) {
     const auto plain = run_corda({"plan", scene_, "--set", "solver.method=relaxation"});
     EXPECT_THAT(plain.out, HasSubstr("modelled: no drag; the passes lose energy"));

@@ -106,7 +106,8 @@ bool GraphConstraints::stay_implied(Motion motion, StopCheck& stop) {
     if (!solve(motion, pull, stop)) return false;
     apply(pull.data(), motion);
     const double largest = largest_square(motion);
-    if (largest < kNoMotion) return true;
+    moves_ = largest >= kNoMotion;
+    if (!moves_) return true;
     for (std::size_t k = 0; k < links_.size(); ++k) pull[k] = rates(links_[k], motion).square;
     std::vector<double> bends;
     for (const Link& link : implied_) {
@@ -309,6 +310,7 @@ bool GraphConstraints::solve(const Motion& motion, std::span<double> right, Stop
 }
 
 double GraphConstraints::square_frequency(std::span<const double> multiplier) const {
+    if (!moves_) return 0.0;
     std::fill(load_.begin(), load_.end(), 0.0);
     for (std::size_t k = 0; k < links_.size(); ++k) {
         load_[links_[k].a] += std::abs(multiplier[k]);

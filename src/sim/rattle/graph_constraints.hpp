@@ -60,6 +60,7 @@ class GraphConstraints final : public ConstraintSolver {
     [[nodiscard]] bool cross(double span_s, Motion& motion, std::span<double> impulse);
 
     bool holds_rows_;
+    bool moves_ = true;  ///< false if pins and implied bars make it a plate that nothing moves
     std::vector<Link> implied_;
     std::vector<Entry> entries_;
     Eigen::SparseMatrix<double> matrix_;  ///< lower triangle
