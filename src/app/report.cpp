@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -39,36 +38,14 @@ void warn_of_unbounded(const Console& console, const Film& film) {
     }
 }
 
-/// How far any particle of a body is from its start at a time, in m.
-double largest_move_m(const Film& film, const Body& body, std::int64_t frame) {
-    const State& state = film.state(frame);
-    const System& system = film.system();
-    double largest_m = 0.0;
-    for (std::size_t k = body.first_particle; k < body.first_particle + body.particle_count; ++k) {
-        largest_m = std::max(
-            {largest_m, std::abs(state.x_m[k] - system.x_m[k]), std::abs(state.y_m[k] - system.y_m[k])});
-    }
-    return largest_m;
-}
-
 /// Says of which nets the pictures are all the same, which their author will not have meant.
 void warn_of_plates(const Console& console, const Film& film) {
-    constexpr double kStill = 1e-9;  // of the length
-    const System& system = film.system();
-    for (std::size_t i = 0; i < system.bodies.size(); ++i) {
-        const Body& body = system.bodies[i];
-        const BodyPlan& plan = film.plan().bodies[i];
-        const bool is_plate =
-            body.is_net && body.bar_count + 3 >= 2 * body.particle_count;  // Maxwell's count
-        if (!is_plate || plan.reason != PlanReason::kGraph || !plan.error_bound_m) continue;
-        const double still_m = kStill * links_length_m(system, body);
-        const std::int64_t last = film.last_frame();
-        if (largest_move_m(film, body, last) > still_m || largest_move_m(film, body, last / 2) > still_m)
-            continue;
+    for (std::size_t i = 0; i < film.plan().bodies.size(); ++i) {
+        if (!film.plan().bodies[i].stands_still) continue;
         console.warning(
             fmt::format("{} stands still: its bars make it a plate, and its pins hold it; pin one particle "
                         "alone, let it stretch by a compliance, or use method relaxation",
-                        body_name(system, i)));
+                        body_name(film.system(), i)));
     }
 }
 
@@ -86,11 +63,11 @@ void warn_of_horizon(const Console& console, const Film& film) {
             fmt::format("the simulation{} diverges after {:.6g} s; less speed, force or drag may help", whose,
                         *plan.horizon_s));
     } else {
-        console.warning(fmt::format(
-            "predictability{} ends at {:.6g} s: from there two runs of the highest precision differ "
-            "by more than {:g} px, because the motion magnifies the least differences; what is "
-            "drawn after it is one possible motion",
-            whose, *plan.horizon_s, std::get<AutoDef>(film.scene().solver).tolerance_px));
+        console.warning(
+            fmt::format("predictability{} ends at {:.6g} s: from there two runs of high precision differ "
+                        "by more than {:g} px, because the motion magnifies the least differences; what is "
+                        "drawn after it is one possible motion",
+                        whose, *plan.horizon_s, std::get<AutoDef>(film.scene().solver).tolerance_px));
     }
 }
 

@@ -93,12 +93,14 @@ ExitCode study_command(const Console& console, StudyOptions options) {
         throw Error(ExitCode::kUsage, "--set changes a scene; name its file");
     }
     options.gl.apply_to(options.def.film);
-    options.def.on_step = [] { stop_if_asked(kSomethingWritten); };
+    bool has_folder = false;
+    options.def.on_step = [&has_folder] { stop_if_asked(has_folder ? kSomethingWritten : kNothingWritten); };
     study::Study study(options.def);
     prepare_folder(options.output, options.force);
     report::check_gnuplot();
     report::ReportFolder folder(
         options.output, {.force = options.force, .on_progress = stopping_if_asked(kSomethingWritten)});
+    has_folder = true;
     measure(console, study, folder);
     const std::vector<std::string>& paths = folder.paths();
     console.info(fmt::format("{} files in {:.3g} s", paths.size(), now_s() - start_s));

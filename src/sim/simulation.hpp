@@ -104,7 +104,7 @@ enum class PlanReason {
     kNamed,       ///< the scene names the method
     kExact,       ///< `exact` can move it
     kGraph,       ///< rigid bars of closed ropes or nets, for which `rattle` is made
-    kDependent,   ///< the bars depend on each other, so that no method can tell the true motion
+    kDependent,   ///< the bars depend on each other at the start, in a way that no method can follow
     kCollapsing,  ///< the bars come to depend on each other during the motion
 };
 
@@ -116,9 +116,10 @@ struct BodyPlan {
     /// std::nullopt if no method can tell the true motion, or if the scene names the method.
     std::optional<double> error_bound_m;
     /// The last frame time at which a run and a much tighter one agree within the tolerance: later positions
-    /// of no method can be trusted. std::nullopt if the scene ends before.
+    /// are those of one possible motion. std::nullopt if the scene ends before.
     std::optional<double> horizon_s;
-    bool diverges = false;      ///< at the horizon even the tightest trial diverges
+    bool diverges = false;      ///< the run ends before the scene does
+    bool stands_still = false;  ///< a net that its bars make a plate, which its pins hold
     std::vector<Trial> trials;  ///< all that were run, the chosen one last
     int passes = 0;             ///< how often the motion was integrated, checks and failed trials included
 };

@@ -35,6 +35,9 @@ preset = "ultrafast"
 /// When the program has a handler for SIGINT, signal 2: its bit is the second in the last digit of the mask.
 const char* const kIsListening = "grep -q '^SigCgt:.*[2367abef]$' /proc/$pid/status 2>/dev/null";
 
+/// A second on a quiet machine, where all take less than half of it; a busy one runs others meanwhile.
+constexpr int kMostMs = 5000;
+
 /// How a command ended, and how long after the signal.
 struct Interrupted {
     test::CommandResult result;
@@ -72,7 +75,7 @@ TEST_F(Signals, EndTheWaitForAPipe) {
             const Interrupted end = interrupt(arguments, signal, kIsListening);
             EXPECT_EQ(end.result.exit_code, exit_code) << arguments << end.result.err;
             // Measured 4 .. 18, and up to 100 more if the wait begins after the signal.
-            EXPECT_LT(end.ms, 1000) << arguments;
+            EXPECT_LT(end.ms, kMostMs) << arguments;
         }
     }
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"pipe", "scene.toml"}));
@@ -111,7 +114,7 @@ TEST_F(Signals, EndAComparison) {
         interrupt("compare " + pictures + " --diff " + folder_.file("d.png"), "INT", kIsListening);
     EXPECT_EQ(end.result.exit_code, 130) << end.result.err;
     EXPECT_THAT(end.result.err, HasSubstr("interrupted; nothing was written"));
-    EXPECT_LT(end.ms, 1000);  // measured 20 .. 130
+    EXPECT_LT(end.ms, kMostMs);  // measured 20 .. 130
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"a.png", "scene.toml"}));
 }
 
@@ -123,7 +126,7 @@ TEST_F(Signals, EndTheLastCopyOfAVideoKeepingItsFrames) {
     EXPECT_EQ(end.result.exit_code, 143) << end.result.err;
     EXPECT_THAT(end.result.err, HasSubstr("interrupted: frames 0..1199 of 1200 are in " + video +
                                           ".part, which plays; " + video + " was not written"));
-    EXPECT_LT(end.ms, 1000);  // measured 21
+    EXPECT_LT(end.ms, kMostMs);  // measured 21
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"a.mp4.part", "scene.toml"}));
     EXPECT_EQ(media::recover_part(video + ".part", folder_.file("b.mp4")).frames, 1200);
 }
@@ -134,7 +137,7 @@ TEST_F(Signals, EndAStill) {
         "still " + scene_ + " --at 0,3e5 --duration 3e5 -o " + folder_.file("stills"), "INT", kIsListening);
     EXPECT_EQ(end.result.exit_code, 130) << end.result.err;
     EXPECT_THAT(end.result.err, HasSubstr("interrupted; nothing was written"));
-    EXPECT_LT(end.ms, 1000);  // measured 4
+    EXPECT_LT(end.ms, kMostMs);  // measured 4
 }
 
 TEST_F(Signals, EndTheDrawingOfALargeStill) {
@@ -144,7 +147,7 @@ TEST_F(Signals, EndTheDrawingOfALargeStill) {
                   "awk '/^VmRSS/ { exit $2 < 860000 }' /proc/$pid/status");
     EXPECT_EQ(end.result.exit_code, 143) << end.result.err;
     EXPECT_THAT(end.result.err, HasSubstr("interrupted; nothing was written"));
-    EXPECT_LT(end.ms, 1000);  // measured 340 .. 470 on a busy machine; 7500 in one piece
+    EXPECT_LT(end.ms, kMostMs);  // measured 340 .. 470 on a busy machine; 7500 in one piece
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"scene.toml"}));
 }
 
@@ -153,7 +156,7 @@ TEST_F(Signals, EndAStudy) {
     const Interrupted end = interrupt("study -q -o " + folder_.file("report"), "INT", kIsListening);
     EXPECT_EQ(end.result.exit_code, 130) << end.result.err;
     EXPECT_THAT(end.result.err, HasSubstr("interrupted; nothing was written"));
-    EXPECT_LT(end.ms, 1000);  // measured 60 .. 230
+    EXPECT_LT(end.ms, kMostMs);  // measured 60 .. 230
 }
 
 /// A scene of which one frame takes minutes, or whose plan does.
@@ -214,7 +217,7 @@ TEST_F(Signals, EndEveryCommandInTheMiddleOfAFrame) {
             EXPECT_TRUE(end.result.exit_code == 130 || end.result.exit_code == 143)
                 << heavy.name << ", " << arguments << " after " << wait_s << " s: " << end.result.err;
             // Measured 28 .. 331 on a busy machine.
-            EXPECT_LT(end.ms, 1000) << heavy.name << ", " << arguments << " after " << wait_s << " s";
+            EXPECT_LT(end.ms, kMostMs) << heavy.name << ", " << arguments << " after " << wait_s << " s";
             std::filesystem::remove(folder_.file("a.csv.part"));
         }
     }

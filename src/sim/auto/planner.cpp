@@ -90,9 +90,12 @@ std::size_t next_trial(const BodyPlan& plan, std::size_t failed, std::size_t cou
 bool can_tell_little(const BodyPlan& plan, std::size_t failed, std::size_t count, double end_s) {
     constexpr double kShare = 0.1;
     constexpr double kLooseTolerance = 1e-6;
+    constexpr std::size_t kRungs = 3;  // of `rattle`: orders 2 and 4 say little of 6 and 8
     const std::size_t ran = plan.trials.size();
     const auto* exact = std::get_if<ExactDef>(&plan.trials.back().method);
-    if (ran < 2 || (exact != nullptr && exact->tolerance > 1.000001 * kLooseTolerance)) return false;
+    if (ran < (exact == nullptr ? kRungs : 2) ||
+        (exact != nullptr && exact->tolerance > 1.000001 * kLooseTolerance))
+        return false;
     const double reached_s = plan.trials[ran - 1].reached_s;
     const double gained_s = std::max(0.0, reached_s - plan.trials[ran - 2].reached_s);
     return reached_s + static_cast<double>(count - 1 - failed) * gained_s < kShare * end_s;
@@ -124,22 +127,22 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
     const double end_s = def.timeline.time_s(def.timeline.size() - 1);
     for (std::size_t i = 0; i < trials.size(); i = next_trial(plan, i, trials.size(), end_s)) {
         const TrialKind kind{i == 0, i + 1 == trials.size()};
+        plan.method = trials[i].method;
         run_trial(system, world, def, kind, trials[i], recording, plan.passes);
         plan.trials.push_back(trials[i]);
         const std::size_t count = plan.trials.size();
         if (trials[i].to_the_end) break;
-        if (!kind.is_last && can_tell_little(plan, i, trials.size(), end_s)) {
-            plan.method = trials[i].method;
-            record(system, world, def, plan, recording);
-            break;
-        }
-        if (count > 1 && give_up_together(plan.trials[count - 2], trials[i])) break;
+        const bool gives_up = can_tell_little(plan, i, trials.size(), end_s) ||
+                              (count > 1 && give_up_together(plan.trials[count - 2], trials[i]));
+        if (kind.is_last || !gives_up) continue;
+        record(system, world, def, plan, recording);
+        plan.trials.back().steps = recording.diagnostics().steps;
+        break;
     }
     const Trial& chosen = plan.trials.back();
-    plan.method = chosen.method;
     plan.error_bound_m = chosen.error_bound_m;
     if (!chosen.to_the_end) plan.horizon_s = chosen.reached_s;
-    plan.diverges = chosen.diverged;
+    plan.diverges = recording.size() < def.timeline.size();
 }
 
 /// Makes `relaxation` the plan, without a bound on its error, with enough sweeps to keep a cloth of some
@@ -166,6 +169,22 @@ BodyPlan record_named(const System& system, const WorldDef& world, const PlanDef
     plan.method = method;
     record(system, world, def, plan, recording);
     return plan;
+}
+
+/// Whether nothing of a recorded body ever moves because it is a plate, by Maxwell's count of its bars, that
+/// its pins hold.
+bool stands_still(const System& system, const Recording& recording) {
+    constexpr double kStill = 1e-9;  // of the length
+    const Body& body = system.bodies.front();
+    const auto pins = std::count(system.inverse_mass_1_kg.begin(), system.inverse_mass_1_kg.end(), 0.0);
+    if (!body.is_net || body.bar_count + 3 < 2 * body.particle_count || pins < 2) return false;
+    MotionBounds start;
+    start.include({0.0, system.x_m, system.y_m});
+    const double still_m = kStill * links_length_m(system, body);
+    const auto near = [still_m](Vec2 a, Vec2 b) {
+        return std::abs(a.x - b.x) <= still_m && std::abs(a.y - b.y) <= still_m;
+    };
+    return near(start.min_m(), recording.bounds().min_m()) && near(start.max_m(), recording.bounds().max_m());
 }
 
 /// The plan of all bodies from those of each, and how often all particles together were integrated.
@@ -231,9 +250,6 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
     }
     plan.reason = PlanReason::kGraph;
     run_until_one_holds(system, world, def, graph_trials(system, world, goes_on), plan, recording);
-    // If only a check diverged, the run goes on to the end beyond its horizon; after the checks it may
-    // diverge.
-    plan.diverges = recording.size() < def.timeline.size();
     if (plan.diverges && can_fall_back)
         fall_back(system, world, def, PlanReason::kCollapsing, plan, recording);
     return plan;
@@ -266,6 +282,8 @@ Plan plan_methods(const System& system, const NamedMethods& named, const WorldDe
             if (count == 1) throw;
             throw Refusal(refused.reason(), body_name(system, i) + ": " + refused.what());
         }
+        BodyPlan& made = plan.bodies.back();
+        made.stands_still = made.reason == PlanReason::kGraph && stands_still(body, own);
         known.include(own.bounds());
         if (count > 1) recording.add_body(own, system.bodies[i].first_particle);
     });

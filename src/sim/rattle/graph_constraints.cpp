@@ -248,12 +248,12 @@ bool GraphConstraints::move(const Stage& stage, Motion& motion, std::span<double
         apply(right_.data(), motion);
         met = correct(stage.span_s, motion);
     }
-    if (!met && !(is_near_line && cross(stage.span_s, motion, impulse))) return false;
+    if (!met && !(is_near_line && cross(stage.span_s, motion, impulse, stop))) return false;
     drift(stage.span_s, motion);
     return meet_implied(motion);
 }
 
-bool GraphConstraints::cross(double span_s, Motion& motion, std::span<double> impulse) {
+bool GraphConstraints::cross(double span_s, Motion& motion, std::span<double> impulse, StopCheck& stop) {
     motion = kicked_;
     std::fill(impulse.begin(), impulse.end(), 0.0);
     Eigen::SparseLU<Eigen::SparseMatrix<double>> factors;
@@ -269,6 +269,7 @@ bool GraphConstraints::cross(double span_s, Motion& motion, std::span<double> im
     double last_change = kCrossingChange / kShrink * fastest;
     bool met = correct(span_s, motion);
     for (int i = 0; i < kMaxCrossingSteps && !met; ++i) {
+        stop.spend(StopCheck::kUpdates);
         triplets.clear();
         for (const auto& [row, column, factor] : entries_) {
             coupling(row, column, factor);

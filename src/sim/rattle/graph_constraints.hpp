@@ -57,7 +57,7 @@ class GraphConstraints final : public ConstraintSolver {
     [[nodiscard]] double largest_square(const Motion& motion) const;
     /// Takes the stage from kicked_ anew by Newton's method proper, whose matrix follows the bars, on which
     /// side of their line they may be. False if it does not converge or may have taken the other branch.
-    [[nodiscard]] bool cross(double span_s, Motion& motion, std::span<double> impulse);
+    [[nodiscard]] bool cross(double span_s, Motion& motion, std::span<double> impulse, StopCheck& stop);
 
     bool holds_rows_;
     bool moves_ = true;  ///< false if pins and implied bars make it a plate that nothing moves

@@ -1,7 +1,9 @@
 #include "corda/sim/rattle/taut_rows.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -13,6 +15,8 @@ namespace {
 /// A row is straight if its bars are longer than the distance of its ends by no more than this share of it,
 /// which is rounding: sagging by a part in 1e7 would take twice as much.
 constexpr double kSlack = 1e-14;
+/// Of the coordinates and, where a check moves its start by rounding, of all lengths together.
+constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
 /// The sine of the angle by which a bar of a straight row may turn from the one before, far above what kSlack
 /// leaves and rounding.
 constexpr double kSameDirection = 1e-5;
@@ -27,6 +31,10 @@ class Rows {
   public:
     explicit Rows(const System& system)
         : system_(system), bars_at_(system.particle_count()), inverse_mass_1_kg_(system.inverse_mass_1_kg) {
+        double farthest_m = 0.0;
+        for (std::size_t i = 0; i < system.particle_count(); ++i)
+            farthest_m = std::max({farthest_m, std::abs(system.x_m[i]), std::abs(system.y_m[i])});
+        rounding_m_ = kRounding * (farthest_m + largest_length_m(system));
         for (const Bar& bar : rigid_bars(system)) {
             bars_at_[bar.a].push_back({bar.b, bar.rest_m});
             bars_at_[bar.b].push_back({bar.a, bar.rest_m});
@@ -87,13 +95,14 @@ class Rows {
             end = *onward;
         }
         const Vec2 all = along(from, end.particle);
-        return !row_.empty() && length_m <= (1.0 + kSlack) * length(all.x, all.y);
+        return !row_.empty() && length_m <= (1.0 + kSlack) * length(all.x, all.y) + rounding_m_;
     }
 
     const System& system_;
     std::vector<std::vector<End>> bars_at_;
     std::vector<double> inverse_mass_1_kg_;
     std::vector<std::uint32_t> row_;
+    double rounding_m_ = 0.0;
 };
 
 }  // namespace

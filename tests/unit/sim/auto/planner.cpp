@@ -100,7 +100,7 @@ TEST(AutoPlan, RefusesWhatNoMethodCanTruthfullyRun) {
     EXPECT_EQ(refusal_of(build_system({&ring, 1})), Reason::kBarWithoutLength);
 }
 
-/// A swinging rope, a ring and a cloth, which no single method can move.
+/// A swinging rope and a ring.
 struct Mixed {
     std::vector<RopeDef> ropes{reference::straight_rope(5, 1.0, 30.0), test::ring(5)};
     System system = build_system(ropes);
@@ -176,6 +176,20 @@ TEST(AutoPlans, ReportTheProgressOfAllBodies) {
     };
     static_cast<void>(plan_methods(mixed.system, NamedMethods(2), WorldDef{}, mixed.def, mixed.recording));
     EXPECT_EQ(last, 61);
+}
+
+TEST(AutoPlans, KnowANetThatItsBarsAndPinsHold) {
+    NetDef net = test::cloth(5, 4, 0.1);
+    for (const bool is_held : {true, false}) {
+        if (!is_held) net.pinned = {0};
+        const System system = build_system({}, {&net, 1});
+        const Timeline timeline(kFrames, 10);
+        Recording recording(system.particle_count(), timeline.size(), 0);
+        const PlanDef def{[](const MotionBounds&) { return 1e-3; }, timeline, {}, {}};
+        const Plan plan = plan_methods(system, NamedMethods(1), WorldDef{}, def, recording);
+        EXPECT_EQ(plan.bodies.front().stands_still, is_held);
+        EXPECT_TRUE(plan.error_bound_m.has_value());
+    }
 }
 
 TEST(StepCost, GrowsWithTheWork) {
