@@ -249,7 +249,14 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
         return plan;
     }
     plan.reason = PlanReason::kGraph;
-    run_until_one_holds(system, world, def, graph_trials(system, world, goes_on), plan, recording);
+    try {
+        run_until_one_holds(system, world, def, graph_trials(system, world, goes_on), plan, recording);
+    } catch (const Refusal&) {
+        // A check, whose start is turned, may take bars to depend on each other that the run does not.
+        if (!can_fall_back) throw;
+        fall_back(system, world, def, PlanReason::kDependent, plan, recording);
+        return plan;
+    }
     if (plan.diverges && can_fall_back)
         fall_back(system, world, def, PlanReason::kCollapsing, plan, recording);
     return plan;
