@@ -62,8 +62,7 @@ std::string_view remedy(Refusal::Reason reason) {
 }  // namespace
 
 std::string describe(const System& system) {
-    const auto nets = std::count_if(system.bodies.begin(), system.bodies.end(),
-                                    [](const Body& body) { return body.is_net; });
+    const std::size_t nets = system.bodies.size() - rope_count(system);
     const std::string what = nets == 0 ? "" : fmt::format("{} net{}: ", nets, nets == 1 ? "" : "s");
     return what + fmt::format("{} particles, {} bars ({} real)", system.particle_count(), system.bars.size(),
                               system.link_count());

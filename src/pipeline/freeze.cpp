@@ -55,8 +55,7 @@ std::string lines_of(const System& system, const MethodGroup& group) {
 }
 
 std::string bodies_toml(const System& system, const MethodGroup& group) {
-    const auto first_net = static_cast<std::size_t>(std::count_if(
-        system.bodies.begin(), system.bodies.end(), [](const Body& body) { return !body.is_net; }));
+    const std::size_t first_net = rope_count(system);
     std::vector<std::size_t> ropes;
     std::vector<std::size_t> nets;
     for (const std::size_t i : group.bodies) {

@@ -5,6 +5,7 @@
 #include "corda/sim/figures.hpp"
 
 namespace corda::sim {
+
 Recording::Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes)
     : particle_count_(particle_count),
       most_states_(std::min(state_count, budget_bytes / (state_size() * sizeof(double) + sizeof(Figures)))) {

@@ -107,13 +107,9 @@ std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces,
     for_each_body(system, [&](const System& body, std::size_t i) {
         stop.spend(kUpdatesPerBody + body.particle_count());
         const MethodDef& method = methods.size() == 1 ? methods.front() : methods[i];
-        try {
-            parts.push_back({system.bodies[i].first_particle,
-                             make_one(body, forces, method, frame_interval_s, goes_on),
-                             {0.0, body.x_m, body.y_m}});
-        } catch (const Refusal& refusal) {
-            throw Refusal(refusal.reason(), body_name(system, i) + ": " + refusal.what());
-        }
+        parts.push_back({system.bodies[i].first_particle,
+                         make_one(body, forces, method, frame_interval_s, goes_on),
+                         {0.0, body.x_m, body.y_m}});
     });
     return std::make_unique<BodySolvers>(std::move(parts));
 }

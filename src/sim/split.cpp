@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "corda/sim/refusal.hpp"
+
 namespace corda::sim {
 namespace {
 
@@ -47,7 +49,12 @@ void for_each_body(const System& system, const std::function<void(const System&,
         const auto shift = static_cast<std::uint32_t>(body.first_particle);
         for (; bend != system.bends.end() && bend->b < body.first_particle + body.particle_count; ++bend)
             part.bends.push_back({bend->a - shift, bend->b - shift, bend->c - shift, bend->stiffness_n_m});
-        use(part, i);
+        try {
+            use(part, i);
+        } catch (const Refusal& refused) {
+            if (system.bodies.size() == 1) throw;
+            throw Refusal(refused.reason(), body_name(system, i) + ": " + refused.what());
+        }
     }
 }
 

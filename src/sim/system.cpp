@@ -128,11 +128,14 @@ double largest_length_m(const System& system) {
     return longest_m;
 }
 
+std::size_t rope_count(const System& system) {
+    const auto first_net = std::partition_point(system.bodies.begin(), system.bodies.end(),
+                                                [](const Body& body) { return !body.is_net; });
+    return static_cast<std::size_t>(first_net - system.bodies.begin());
+}
+
 std::string body_name(const System& system, std::size_t body) {
-    const auto& bodies = system.bodies;
-    const auto first_net =
-        std::partition_point(bodies.begin(), bodies.end(), [](const Body& other) { return !other.is_net; });
-    const auto ropes = static_cast<std::size_t>(first_net - bodies.begin());
+    const std::size_t ropes = rope_count(system);
     return body < ropes ? "rope " + std::to_string(body) : "net " + std::to_string(body - ropes);
 }
 

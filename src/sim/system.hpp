@@ -69,6 +69,9 @@ struct System {
 /// The largest of these sums.
 [[nodiscard]] double largest_length_m(const System& system);
 
+/// How many of its bodies are ropes: they come before the nets.
+[[nodiscard]] std::size_t rope_count(const System& system);
+
 /// "rope 2" or "net 0": what a body of the system is called, its number among its kind.
 [[nodiscard]] std::string body_name(const System& system, std::size_t body);
 

@@ -9,9 +9,8 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/sim/auto/trial.hpp"
 #include "corda/sim/recording.hpp"
-#include "corda/sim/refusal.hpp"
-#include "corda/sim/solver.hpp"
 #include "corda/study/step.hpp"
 
 namespace corda::study {
@@ -143,14 +142,9 @@ double rattle_step_s(const Problem& problem, int order) {
 }
 
 std::string refusal(const Problem& problem, const MethodDef& method) {
-    take_step();
-    try {
-        static_cast<void>(
-            sim::make_solver(problem.system(), problem.world, {&method, 1}, problem.fps.interval_s()));
-    } catch (const Refusal& refused) {
-        return refused.what();
-    }
-    return "";
+    const auto refused =
+        sim::refusal(problem.system(), problem.world, method, problem.fps.interval_s(), take_step);
+    return refused ? refused->what() : "";
 }
 
 }  // namespace corda::study

@@ -54,9 +54,13 @@ std::vector<Trial> exact_trials(const System& system, double tolerance_m) {
 /// Trials of `rattle` for a graph, each checked by the next order (8 by 8) at kCheckStep of its step.
 std::vector<Trial> graph_trials(const System& system, const WorldDef& world, const GoesOn& goes_on) {
     std::vector<Trial> trials;
+    int order = 0;
+    double stable_s = 0.0;
     for (const Rung& rung : kGraphLadder) {
-        const double stable_s =
-            Rattle(system, world, RattleDef{rung.order}, kNominalIntervalSeconds, goes_on).step_s();
+        if (rung.order != order) {  // a large net takes seconds to prepare
+            order = rung.order;
+            stable_s = Rattle(system, world, RattleDef{order}, kNominalIntervalSeconds, goes_on).step_s();
+        }
         const double step_s = stable_s / static_cast<double>(1 << rung.halvings);
         Trial& trial = trials.emplace_back();
         trial.method = RattleDef{rung.order, step_s};
@@ -106,10 +110,7 @@ void record(const System& system, const WorldDef& world, const PlanDef& def, Bod
             Recording& recording) {
     const auto total = static_cast<std::int64_t>(def.timeline.size());
     std::int64_t i = 0;
-    const GoesOn goes_on = [&] {
-        report_progress(def.on_progress, i, total);
-        return true;
-    };
+    const GoesOn goes_on = reporting(def, i);
     Simulation run(system, world, plan.method, def.timeline.fps().interval_s(), goes_on);
     plan.method = run.methods().front();
     recording.clear();
@@ -225,10 +226,8 @@ double step_cost_ns(const Body& body, const MethodDef& method) {
 
 BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& def, Recording& recording) {
     const double interval_s = def.timeline.fps().interval_s();
-    const GoesOn goes_on = [&] {
-        report_progress(def.on_progress, 0, static_cast<std::int64_t>(def.timeline.size()));
-        return true;
-    };
+    const std::int64_t none_done = 0;
+    const GoesOn goes_on = reporting(def, none_done);
     BodyPlan plan;
     const auto exact_refusal = refusal(system, world, ExactDef{kLoosestTolerance}, interval_s, goes_on);
     if (!exact_refusal) {
@@ -282,14 +281,9 @@ Plan plan_methods(const System& system, const NamedMethods& named, const WorldDe
         };
         Recording part = recording.for_part(body.particle_count());
         Recording& own = count == 1 ? recording : part;
-        try {
-            plan.bodies.push_back(named[i] ? record_named(body, world, of_body, *named[i], own)
-                                           : plan_body(body, world, of_body, own));
-        } catch (const Refusal& refused) {
-            if (count == 1) throw;
-            throw Refusal(refused.reason(), body_name(system, i) + ": " + refused.what());
-        }
-        BodyPlan& made = plan.bodies.back();
+        BodyPlan& made =
+            plan.bodies.emplace_back(named[i] ? record_named(body, world, of_body, *named[i], own)
+                                              : plan_body(body, world, of_body, own));
         made.stands_still = made.reason == PlanReason::kGraph && stands_still(body, own);
         known.include(own.bounds());
         if (count > 1) recording.add_body(own, system.bodies[i].first_particle);

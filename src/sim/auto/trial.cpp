@@ -176,6 +176,13 @@ double rounding_m(const System& system, const MotionBounds& bounds) {
 
 }  // namespace
 
+GoesOn reporting(const PlanDef& def, const std::int64_t& frames_done) {
+    return [&def, &frames_done] {
+        report_progress(def.on_progress, frames_done, static_cast<std::int64_t>(def.timeline.size()));
+        return true;
+    };
+}
+
 bool has_kinks(const System& system) {
     return std::any_of(system.bodies.begin(), system.bodies.end(), [](const Body& body) {
         return body.material.is_string && body.material.compliance_1_n > 0.0;
@@ -193,10 +200,7 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
     const double interval_s = def.timeline.fps().interval_s();
     const auto total = static_cast<std::int64_t>(def.timeline.size());
     std::int64_t i = 0;
-    const GoesOn goes_on = [&] {
-        report_progress(def.on_progress, i, total);
-        return true;
-    };
+    const GoesOn goes_on = reporting(def, i);
     Simulation run(system, world, trial.method, interval_s, goes_on);
     std::deque<Check> checks;
     // What checks differ by at kinks is not rounding.

@@ -25,6 +25,9 @@ struct PlanDef {
     std::function<double()> clock_s;  ///< measures the stepping of each run; empty: not measured
 };
 
+/// Tells on_progress that `frames_done` of the timeline are done. Both must outlive it.
+[[nodiscard]] GoesOn reporting(const PlanDef& def, const std::int64_t& frames_done);
+
 /// Whether forces of the system have kinks: where a string that stretches comes taut.
 [[nodiscard]] bool has_kinks(const System& system);
 
