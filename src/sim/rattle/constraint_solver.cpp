@@ -1,5 +1,7 @@
 #include "corda/sim/rattle/constraint_solver.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "corda/sim/rattle/chain_constraints.hpp"
@@ -21,6 +23,16 @@ ConstraintSolver::ConstraintSolver(const System& system, std::vector<double> inv
         if (inverse_mass_1_kg_[bar.a] > 0.0 || inverse_mass_1_kg_[bar.b] > 0.0)
             links_.push_back({bar.a, bar.b, bar.rest_m});
     }
+}
+
+double ConstraintSolver::expected_square_frequency(const System& system, double acceleration_m_s2,
+                                                   std::span<const double> multiplier) const {
+    std::vector<double> expected = carried_mass(system.mass_kg);
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+        expected[k] =
+            std::max(acceleration_m_s2 * expected[k] / links_[k].rest_m, 2.0 * std::abs(multiplier[k]));
+    }
+    return square_frequency(expected);
 }
 
 void ConstraintSolver::kick(const Stage& stage, Motion& motion) const {

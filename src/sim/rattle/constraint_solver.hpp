@@ -74,10 +74,15 @@ class ConstraintSolver {
     /// the inverse masses. False if the matrix is singular.
     [[nodiscard]] virtual bool solve(const Motion& motion, std::span<double> right, StopCheck& stop) = 0;
 
-    /// A bound on the square of the largest angular frequency, 1 / s^2, of small motions about a state whose
-    /// bars have these multipliers (tension over length, N / m): Gershgorin's, the largest over all particles
-    /// of 2 w sum |multiplier|.
+    /// The square of the largest angular frequency, 1 / s^2, of small motions about a state whose bars have
+    /// these multipliers (tension over length, N / m), or a bound on it: Gershgorin's, the largest over all
+    /// particles of 2 w sum |multiplier|.
     [[nodiscard]] virtual double square_frequency(std::span<const double> multiplier) const = 0;
+
+    /// The same of the states to expect: those in which each bar carries this acceleration times the mass
+    /// that may hang on it, and those with twice these multipliers.
+    [[nodiscard]] virtual double expected_square_frequency(const System& system, double acceleration_m_s2,
+                                                           std::span<const double> multiplier) const;
 
     /// The most mass in kg that hangs on each link when the system hangs down: the mass beyond the link as
     /// seen from the pin; all mass between two pins, or if it is not known; 0 without a pin.

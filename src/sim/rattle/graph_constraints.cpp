@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "corda/sim/distance.hpp"
 #include "corda/sim/rattle/taut_rows.hpp"
 #include "corda/sim/refusal.hpp"
 
@@ -38,9 +39,7 @@ constexpr double kRoundedChange = 1e-11;
 constexpr double kImpliedTolerance = 1e-9;
 /// By how much of the largest squared speed at which a bar turns an implied bar may bend away. Bars that do
 /// not stay implied bend away by a share near 1.
-constexpr double kBendTolerance = 1e-6;
-/// Nothing moves if random velocities of up to 1 m/s leave less than this squared speed, in (m/s)^2.
-constexpr double kNoMotion = 1e-16;
+constexpr double kBendTolerance = 1e-5;
 
 /// Of a bar: its vector times the difference of its ends' velocities, and the square of that difference.
 struct Rates {
@@ -64,11 +63,16 @@ GraphConstraints::GraphConstraints(const System& system, const GoesOn& goes_on)
     const Motion start = Motion::start_of(system);
     analyse();
     StopCheck stop(goes_on);
-    if (is_regular(start, stop)) return;
+    bool determined = is_regular(start, stop);
     // Again without the raise for those with large coefficients, which may hide one another.
     for (const double raise : {kRaise, 0.0, 0.0}) {
+        if (determined) break;
         leave_out_implied(start, raise, stop);
-        if (is_regular(start, stop) && stay_implied(start, stop)) return;
+        determined = is_regular(start, stop) && (is_rigid() || stay_implied(start, stop));
+    }
+    if (determined) {
+        if (is_rigid()) plate_ = plate_of(system);
+        return;
     }
     throw Refusal(Refusal::Reason::kDependentBars,
                   "the lengths of rigid bars depend on each other at the start, but not in the motion that "
@@ -89,6 +93,31 @@ void GraphConstraints::leave_out_implied(const Motion& start, double raise, Stop
     analyse();
 }
 
+bool GraphConstraints::is_rigid() const {
+    const std::size_t freedoms = 2 * (inverse_mass_1_kg_.size() - held_.size()) - links_.size();
+    return freedoms == (held_.empty() ? 3 : held_.size() == 1 ? 1 : 0);
+}
+
+GraphConstraints::Plate GraphConstraints::plate_of(const System& system) const {
+    const std::size_t count = system.particle_count();
+    Plate plate;
+    double mass_kg = 0.0;
+    Vec2 moment;
+    for (std::size_t i = 0; i < count; ++i) {
+        mass_kg += system.mass_kg[i];
+        moment = moment + system.mass_kg[i] * Vec2{system.x_m[i], system.y_m[i]};
+    }
+    const Vec2 center = (1.0 / mass_kg) * moment;
+    const Vec2 pivot = held_.empty() ? center : Vec2{system.x_m[held_.front()], system.y_m[held_.front()]};
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec2 arm = Vec2{system.x_m[i], system.y_m[i]} - pivot;
+        plate.inertia_kg_m2 += system.mass_kg[i] * dot(arm, arm);
+    }
+    const Vec2 lever = center - pivot;
+    plate.lever_kg_m = mass_kg * length(lever.x, lever.y);
+    return plate;
+}
+
 bool GraphConstraints::stay_implied(Motion motion, StopCheck& stop) {
     // What an implied bar bends away in a motion that keeps the others to second order is a square of the
     // velocities: if it is 0 for velocities in no particular direction, it always is.
@@ -101,24 +130,32 @@ bool GraphConstraints::stay_implied(Motion motion, StopCheck& stop) {
         motion.vx_m_s[i] = any(inverse_mass_1_kg_[i]);
         motion.vy_m_s[i] = any(inverse_mass_1_kg_[i]);
     }
+    // Changes them so that no link turns into `along`, twice to remove the rounding of the first time: a
+    // large plate leaves next to nothing of them.
+    std::vector<double> along(links_.size(), 0.0);
     std::vector<double> pull(links_.size());
-    for (std::size_t k = 0; k < links_.size(); ++k) pull[k] = rates(links_[k], motion).along;
-    if (!solve(motion, pull, stop)) return false;
-    apply(pull.data(), motion);
+    const auto meet = [&] {
+        for (int i = 0; i < 2; ++i) {
+            for (std::size_t k = 0; k < links_.size(); ++k)
+                pull[k] = rates(links_[k], motion).along - along[k];
+            if (!solve(motion, pull, stop)) return false;
+            apply(pull.data(), motion);
+        }
+        return true;
+    };
+    if (!meet()) return false;
     const double largest = largest_square(motion);
-    moves_ = largest >= kNoMotion;
-    if (!moves_) return true;
-    for (std::size_t k = 0; k < links_.size(); ++k) pull[k] = rates(links_[k], motion).square;
+    for (std::size_t k = 0; k < links_.size(); ++k) along[k] = -rates(links_[k], motion).square;
     std::vector<double> bends;
     for (const Link& link : implied_) {
-        const auto [along, square] = rates(link, motion);
-        if (!(std::abs(along) <= kBendTolerance * link.rest_m * std::sqrt(largest))) return false;
+        const auto [turn, square] = rates(link, motion);
+        if (!(std::abs(turn) <= kBendTolerance * link.rest_m * std::sqrt(largest))) return false;
         bends.push_back(square);
     }
-    if (!solve(motion, pull, stop)) return false;
+    // From here on accelerations in the place of velocities.
     std::fill(motion.vx_m_s.begin(), motion.vx_m_s.end(), 0.0);
     std::fill(motion.vy_m_s.begin(), motion.vy_m_s.end(), 0.0);
-    apply(pull.data(), motion);  // the accelerations
+    if (!meet()) return false;
     for (std::size_t k = 0; k < implied_.size(); ++k) {
         if (!(std::abs(bends[k] + rates(implied_[k], motion).along) <= kBendTolerance * largest))
             return false;
@@ -311,7 +348,12 @@ bool GraphConstraints::solve(const Motion& motion, std::span<double> right, Stop
 }
 
 double GraphConstraints::square_frequency(std::span<const double> multiplier) const {
-    if (!moves_) return 0.0;
+    if (plate_) {
+        double pull_j = 0.0;
+        for (std::size_t k = 0; k < links_.size(); ++k)
+            pull_j += multiplier[k] * links_[k].rest_m * links_[k].rest_m;
+        return held_.size() > 1 ? 0.0 : std::abs(pull_j) / plate_->inertia_kg_m2;
+    }
     std::fill(load_.begin(), load_.end(), 0.0);
     for (std::size_t k = 0; k < links_.size(); ++k) {
         load_[links_[k].a] += std::abs(multiplier[k]);
@@ -321,6 +363,14 @@ double GraphConstraints::square_frequency(std::span<const double> multiplier) co
     for (std::size_t i = 0; i < load_.size(); ++i)
         largest = std::max(largest, inverse_mass_1_kg_[i] * load_[i]);
     return 2.0 * largest;
+}
+
+double GraphConstraints::expected_square_frequency(const System& system, double acceleration_m_s2,
+                                                   std::span<const double> multiplier) const {
+    if (!plate_) return ConstraintSolver::expected_square_frequency(system, acceleration_m_s2, multiplier);
+    const double hanging =
+        held_.size() > 1 ? 0.0 : acceleration_m_s2 * plate_->lever_kg_m / plate_->inertia_kg_m2;
+    return std::max(hanging, 2.0 * square_frequency(multiplier));
 }
 
 std::vector<double> GraphConstraints::carried_mass(std::span<const double> mass_kg) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,8 +30,10 @@ class GraphConstraints final : public ConstraintSolver {
                             StopCheck& stop) override;
     [[nodiscard]] bool solve(const Motion& motion, std::span<double> right, StopCheck& stop) override;
     [[nodiscard]] double square_frequency(std::span<const double> multiplier) const override;
-    [[nodiscard]] std::vector<double> carried_mass(std::span<const double> mass_kg) const override;
+    [[nodiscard]] double expected_square_frequency(const System& system, double acceleration_m_s2,
+                                                   std::span<const double> multiplier) const override;
     [[nodiscard]] bool determines_tensions() const override { return implied_.empty() && !holds_rows_; }
+    [[nodiscard]] std::vector<double> carried_mass(std::span<const double> mass_kg) const override;
 
   private:
     /// An entry factor * (d_row . d_column) of the lower triangle, in the order of the matrix's values.
@@ -38,6 +41,11 @@ class GraphConstraints final : public ConstraintSolver {
         std::uint32_t row = 0;
         std::uint32_t column = 0;
         double factor = 0.0;  ///< sum of the shared particles' inverse masses, signed
+    };
+    /// Of a system that can only move as a rigid body, about its pin or its centre of mass.
+    struct Plate {
+        double inertia_kg_m2 = 0.0;
+        double lever_kg_m = 0.0;  ///< mass times the distance of the centre of mass
     };
     void analyse();
     /// Makes factors_ those at these positions, the matrix's diagonal entries raised by a share; takes no
@@ -47,6 +55,9 @@ class GraphConstraints final : public ConstraintSolver {
     [[nodiscard]] bool is_regular(const Motion& motion, StopCheck& stop);
     /// Moves the links that others imply to implied_, as far as a factorisation with this raise shows them.
     void leave_out_implied(const Motion& start, double raise, StopCheck& stop);
+    /// Whether regular links leave only the motions of a rigid body.
+    [[nodiscard]] bool is_rigid() const;
+    [[nodiscard]] Plate plate_of(const System& system) const;
     /// Whether every motion from these positions that keeps the links' lengths keeps those of the implied
     /// bars, to second order.
     [[nodiscard]] bool stay_implied(Motion motion, StopCheck& stop);
@@ -60,7 +71,7 @@ class GraphConstraints final : public ConstraintSolver {
     [[nodiscard]] bool cross(double span_s, Motion& motion, std::span<double> impulse, StopCheck& stop);
 
     bool holds_rows_;
-    bool moves_ = true;  ///< false if pins and implied bars make it a plate that nothing moves
+    std::optional<Plate> plate_;
     std::vector<Link> implied_;
     std::vector<Entry> entries_;
     Eigen::SparseMatrix<double> matrix_;  ///< lower triangle

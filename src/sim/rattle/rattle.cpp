@@ -78,22 +78,13 @@ Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def,
     if (def.step_s) {
         step_s_ = *def.step_s;
     } else {
-        const double stable_s =
-            kGuardShare * composition_.stable_omega_h / expected_frequency(elastic_square);
+        const double expected_square = constraints_->expected_square_frequency(
+                                           system, kLoadFactor * forces_.strength_m_s2(), grid_.multiplier) +
+                                       std::max(elastic_square, elastic_.common_square_frequency());
+        const double stable_s = kGuardShare * composition_.stable_omega_h / std::sqrt(expected_square);
         step_s_ = frame_interval_s / std::max(1.0, std::ceil(frame_interval_s / stable_s));
     }
     assert(step_s_ > 0.0);
-}
-
-double Rattle::expected_frequency(double elastic_square) const {
-    std::vector<double> multiplier = constraints_->carried_mass(mass_kg_);
-    for (std::size_t k = 0; k < multiplier.size(); ++k) {
-        multiplier[k] =
-            std::max(kLoadFactor * forces_.strength_m_s2() * multiplier[k] / constraints_->links()[k].rest_m,
-                     2.0 * std::abs(grid_.multiplier[k]));
-    }
-    return std::sqrt(constraints_->square_frequency(multiplier) +
-                     std::max(elastic_square, elastic_.common_square_frequency()));
 }
 
 Status Rattle::advance_to(double time_s, State& state, StopCheck& stop) {

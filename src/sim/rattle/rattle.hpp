@@ -88,7 +88,6 @@ class Rattle final : public Solver {
     /// Writes a trajectory's state with complete velocities to output_.
     [[nodiscard]] bool complete(const Trajectory& trajectory, StopCheck& stop);
     [[nodiscard]] bool find_tensions() const;
-    [[nodiscard]] double expected_frequency(double elastic_square) const;
 
     int order_;
     const Composition& composition_;
