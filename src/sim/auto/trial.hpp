@@ -28,15 +28,6 @@ struct PlanDef {
 /// Tells on_progress that `frames_done` of the timeline are done. Both must outlive it.
 [[nodiscard]] GoesOn reporting(const PlanDef& def, const std::int64_t& frames_done);
 
-/// Whether forces of the system have kinks: where a string that stretches comes taut.
-[[nodiscard]] bool has_kinks(const System& system);
-
-/// The factor between the bound on an error and the difference to a tighter run. The error may exceed the
-/// difference by the tighter run's own error, a hundredth of it as a rule and a sixth near the limit of
-/// double precision: 3 leaves room. If a string stretches it is 30, because its force has a kink that the
-/// error estimates of both runs may miss.
-[[nodiscard]] double bound_per_difference(const System& system);
-
 /// The place of a trial among those of a plan.
 struct TrialKind {
     bool is_first = true;  ///< if of `rattle`, it has one check

@@ -108,17 +108,6 @@ TEST(Trial, CanBeStopped) {
     }
 }
 
-TEST(BoundPerDifference, IsLargerForForcesWithKinks) {
-    RopeDef rope = reference::straight_rope(3, 1.0, 60.0);
-    EXPECT_EQ(bound_per_difference(build_system({&rope, 1})), 3.0);
-    rope.material = {1e-3, false};
-    EXPECT_EQ(bound_per_difference(build_system({&rope, 1})), 3.0);
-    rope.material = {1e-3, true};
-    EXPECT_EQ(bound_per_difference(build_system({&rope, 1})), 30.0);
-    rope.material = {0.0, true};
-    EXPECT_EQ(bound_per_difference(build_system({&rope, 1})), 3.0);
-}
-
 TEST(RefusalOfAMethod, HasItsReason) {
     const RopeDef ring = test::ring(5);
     const System system = build_system({&ring, 1});
