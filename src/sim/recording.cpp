@@ -31,14 +31,14 @@ void Recording::clear() {
     bodies_ = 0;
 }
 
-Status Recording::advance(Simulation& run, double time_s, const std::function<double()>& clock_s,
+Status Recording::advance(Simulation& run, const Timeline& timeline, const std::function<double()>& clock_s,
                           const GoesOn& goes_on) {
     const double start_s = clock_s ? clock_s() : 0.0;
-    const Status status = run.advance_to(time_s, goes_on);
+    const Status status = run.advance_to(timeline.time_s(size()), goes_on);
     if (clock_s) wall_s_ += clock_s() - start_s;
     if (status == Status::kDiverged) return status;
     const State& state = run.state();
-    bounds_.include(state);
+    if (timeline.is_frame(size())) bounds_.include(state);
     diagnostics_ = run.diagnostics();
     energy_change_j_.push_back(run.energy_change_j());
     energy_scale_j_ = run.energy_scale_j();

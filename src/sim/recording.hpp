@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "corda/core/timeline.hpp"
 #include "corda/sim/bounds.hpp"
 #include "corda/sim/simulation.hpp"
 
@@ -21,9 +22,9 @@ class Recording {
 
     /// Forgets all states.
     void clear();
-    /// Advances a run to the next time and adds its state, unless the run diverges. `clock_s`, if not empty,
-    /// measures the stepping. `goes_on`: see Simulation::advance_to.
-    Status advance(Simulation& run, double time_s, const std::function<double()>& clock_s,
+    /// Advances a run to time size() of a timeline and adds its state, unless the run diverges. `clock_s`, if
+    /// not empty, measures the stepping. `goes_on`: see Simulation::advance_to.
+    Status advance(Simulation& run, const Timeline& timeline, const std::function<double()>& clock_s,
                    const GoesOn& goes_on = {});
     /// Adds the recording of a body whose particles begin at `first_particle`, made by for_part(). The states
     /// are then those that all bodies added so far have.
@@ -38,7 +39,7 @@ class Recording {
     /// Of state `i`, which it holds.
     [[nodiscard]] const Figures& figures(std::size_t i) const { return figures_[i]; }
 
-    /// Of all states added.
+    /// Of all states added at frame times: stills between frames do not move the camera.
     [[nodiscard]] const MotionBounds& bounds() const { return bounds_; }
     /// Of the run up to the last state added.
     [[nodiscard]] const Diagnostics& diagnostics() const { return diagnostics_; }

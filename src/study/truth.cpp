@@ -24,13 +24,12 @@ using SharedRecording = std::shared_ptr<const sim::Recording>;
 /// The states at all frames, up to where the run diverges.
 SharedRecording record(const Problem& problem, const MethodDef& method) {
     Simulation run(problem.system(), problem.world, method, problem.fps.interval_s());
-    const std::int64_t last_frame = problem.last_frame();
+    const Timeline timeline(problem.fps, problem.last_frame());
     constexpr std::size_t kNoBudget = std::numeric_limits<std::size_t>::max();
-    auto frames = std::make_shared<sim::Recording>(run.system().particle_count(),
-                                                   static_cast<std::size_t>(last_frame + 1), kNoBudget);
-    for (std::int64_t k = 0; k <= last_frame; ++k) {
+    auto frames = std::make_shared<sim::Recording>(run.system().particle_count(), timeline.size(), kNoBudget);
+    while (frames->size() < timeline.size()) {
         take_step();
-        if (frames->advance(run, problem.fps.time_s(k), {}, take_step) == Status::kDiverged) break;
+        if (frames->advance(run, timeline, {}, take_step) == Status::kDiverged) break;
     }
     return frames;
 }

@@ -98,7 +98,7 @@ double difference_m(const State& state, const std::deque<Check>& checks) {
 }
 
 /// Between the bound on an error and the difference from a check. The error may exceed the difference by the
-/// check's own error, a hundredth of it as a rule and a sixth near rounding: 3 leaves room.
+/// check's own error, little as a rule and a sixth near rounding: 3 leaves room.
 constexpr double kBoundPerDifference = 3.0;
 
 /// The difference of two runs over time. The tolerance follows from the bounds of the whole motion and is
@@ -148,15 +148,20 @@ class Comparison {
 /// a run and its check damp quick ones alike. Their amplitude is then less than the check's tolerance, or its
 /// error estimates would have shortened the steps.
 double hidden_m(const System& system, const Trial& trial) {
-    // If the tolerance limits the steps, a hundredth of it is 1.78 times as many at order 8.
-    constexpr double kResolved = 1.6;
+    constexpr double kResolved = 0.9;
+    constexpr double kOrder = 8.0;
+    const auto* run = std::get_if<ExactDef>(&trial.method);
     const auto* check = std::get_if<ExactDef>(&trial.check);
     const bool vibrates = !system.bends.empty() ||
                           std::any_of(system.bodies.begin(), system.bodies.end(),
                                       [](const Body& body) { return body.material.compliance_1_n > 0.0; });
-    if (check == nullptr || !vibrates) return 0.0;
-    if (static_cast<double>(trial.check_steps) >= kResolved * static_cast<double>(trial.steps)) return 0.0;
-    return check->tolerance * largest_length_m(system);
+    if (run == nullptr || check == nullptr || !vibrates) return 0.0;
+    // As many as it takes if the tolerance limits the steps.
+    const double steps =
+        std::pow(run->tolerance / check->tolerance, 1.0 / kOrder) * static_cast<double>(trial.steps);
+    return static_cast<double>(trial.check_steps) >= kResolved * steps
+               ? 0.0
+               : check->tolerance * largest_length_m(system);
 }
 
 /// Whether rounding, which moves a chain about as much as a tolerance of 1e-12, is small beside a check's own
@@ -207,7 +212,7 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
         goes_on();
         const double time_s = def.timeline.time_s(static_cast<std::size_t>(i));
         if (i == 0) ++passes;
-        if (recording.advance(run, time_s, def.clock_s, goes_on) == Status::kDiverged) {
+        if (recording.advance(run, def.timeline, def.clock_s, goes_on) == Status::kDiverged) {
             trial.diverged = is_checked;
             break;
         }

@@ -125,7 +125,7 @@ TEST(Motions, TakeTheRunThatAPlannerRecords) {
     const Plan plan = motion.record([&](const Timeline& timeline, sim::Recording& recording) {
         Simulation run(system, WorldDef{}, RattleDef{6}, kFps.interval_s());
         for (std::size_t i = 0; i < timeline.size(); ++i)
-            EXPECT_EQ(recording.advance(run, timeline.time_s(i), {}), Status::kOk);
+            EXPECT_EQ(recording.advance(run, timeline, {}), Status::kOk);
         Plan made;
         made.bodies.emplace_back().method = run.methods().front();
         return made;

@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t kParticles = 3;
 constexpr std::size_t kBytesPerState = (2 * kParticles + 1) * sizeof(double) + sizeof(Figures);
+const Timeline kTimes(FrameRate(Rational{10, 1}), 5);
 
 Simulation swing() {
     return test::simulate(reference::straight_rope(2, 1.0, 80.0), WorldDef{}, ExactDef{});
@@ -20,7 +21,7 @@ TEST(Recording, GivesBackTheStatesOfTheRun) {
     Recording recording(kParticles, 5, 1 << 20);
     std::vector<State> states;
     for (int k = 0; k < 5; ++k) {
-        ASSERT_EQ(recording.advance(run, 0.1 * k, {}), Status::kOk);
+        ASSERT_EQ(recording.advance(run, kTimes, {}), Status::kOk);
         states.push_back(run.state());
     }
     EXPECT_EQ(recording.size(), 5U);
@@ -41,7 +42,8 @@ TEST(Recording, GivesBackTheStatesOfTheRun) {
 TEST(Recording, KeepsTheBoundsOfStatesBeyondItsBudget) {
     Recording recording(kParticles, 100, 3 * kBytesPerState);
     Simulation run = swing();
-    for (int k = 0; k <= 50; ++k) ASSERT_EQ(recording.advance(run, 0.02 * k, {}), Status::kOk);
+    const Timeline timeline(FrameRate(Rational{50, 1}), 50);
+    for (int k = 0; k <= 50; ++k) ASSERT_EQ(recording.advance(run, timeline, {}), Status::kOk);
     EXPECT_EQ(recording.size(), 51U);
     EXPECT_TRUE(recording.holds(2));
     EXPECT_FALSE(recording.holds(3));
@@ -50,12 +52,24 @@ TEST(Recording, KeepsTheBoundsOfStatesBeyondItsBudget) {
     EXPECT_GT(recording.bounds().max_m().x, 0.98);
 }
 
+TEST(Recording, BoundsFramesAlone) {
+    // At 1.14 s it is at the other end, at 2 s almost back.
+    const Timeline timeline(FrameRate(Rational{1, 2}), 1, {1.14});
+    Recording recording(kParticles, timeline.size(), 1 << 20);
+    Simulation run = swing();
+    while (recording.size() < timeline.size()) ASSERT_EQ(recording.advance(run, timeline, {}), Status::kOk);
+    State still;
+    recording.read(1, still);
+    EXPECT_LT(still.x_m.back(), -0.9);
+    EXPECT_EQ(recording.bounds().min_m().x, 0.0);
+}
+
 TEST(Recording, OfBodiesEndsWithTheFirstThatDiverges) {
     Recording whole(2 * kParticles, 5, 2 * 5 * kBytesPerState);
     for (const int states : {4, 3}) {
         Recording body = whole.for_part(kParticles);
         Simulation run = swing();
-        for (int k = 0; k < states; ++k) ASSERT_EQ(body.advance(run, 0.1 * k, {}), Status::kOk);
+        for (int k = 0; k < states; ++k) ASSERT_EQ(body.advance(run, kTimes, {}), Status::kOk);
         whole.add_body(body, states == 4 ? 0 : kParticles);
     }
     EXPECT_EQ(whole.size(), 3U);
@@ -77,8 +91,9 @@ TEST(Recording, AddsNoStateOfARunThatDiverges) {
     thrown.force_n = Vec2{1e11, 0.0};
     Simulation run = test::simulate(rope, WorldDef{}, thrown);
     Recording recording(2, 3, 1 << 20);
-    EXPECT_EQ(recording.advance(run, 0.0, {}), Status::kOk);
-    EXPECT_EQ(recording.advance(run, 100.0, {}), Status::kDiverged);
+    const Timeline timeline(FrameRate(Rational{1, 100}), 2);
+    EXPECT_EQ(recording.advance(run, timeline, {}), Status::kOk);
+    EXPECT_EQ(recording.advance(run, timeline, {}), Status::kDiverged);
     EXPECT_EQ(recording.size(), 1U);
     EXPECT_FALSE(recording.holds(1));
     EXPECT_EQ(recording.bounds().max_m().x, 0.0);
@@ -89,9 +104,9 @@ TEST(Recording, MeasuresTheSteppingAloneAndForgetsItWithTheStates) {
     const auto clock_s = [&now_s] { return now_s += 0.25; };
     Simulation run = swing();
     Recording recording(kParticles, 3, 1 << 20);
-    ASSERT_EQ(recording.advance(run, 0.1, clock_s), Status::kOk);
+    ASSERT_EQ(recording.advance(run, kTimes, clock_s), Status::kOk);
     now_s += 100.0;
-    ASSERT_EQ(recording.advance(run, 0.2, clock_s), Status::kOk);
+    ASSERT_EQ(recording.advance(run, kTimes, clock_s), Status::kOk);
     EXPECT_EQ(recording.wall_s(), 0.5);
     recording.clear();
     EXPECT_EQ(recording.wall_s(), 0.0);
