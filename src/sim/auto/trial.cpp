@@ -20,12 +20,11 @@ struct Turn {
     double sine;
     [[nodiscard]] Vec2 of(Vec2 v) const { return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y}; }
 };
-constexpr std::array<Turn, 2> kTurns{{{0.8, 0.6}, {5.0 / 13.0, 12.0 / 13.0}}};
+constexpr std::array<Turn, 3> kTurns{{{0.8, 0.6}, {5.0 / 13.0, 12.0 / 13.0}, {24.0 / 25.0, 7.0 / 25.0}}};
 
-/// Moves the free particles of a start by about as much as it is rounded, in directions of no order. Strings
-/// stay: whether a link is taut must not change.
-void move_by_rounding(System& system) {
-    std::uint32_t order = 1;
+/// Moves the free particles of a start by about as much as it is rounded, in directions of no order, others
+/// for each seed. Strings stay: whether a link is taut must not change.
+void move_by_rounding(System& system, std::uint32_t order) {
     const auto moved = [&order](double x_m, double length_m) {
         order = order * 1664525U + 1013904223U;
         const double sign = (order >> 31U) == 0U ? 1.0 : -1.0;
@@ -48,7 +47,7 @@ class Check {
     Check(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
           std::size_t number, const GoesOn& goes_on)
         : turn_(kTurns[number]), system_(system) {
-        if (number > 0) move_by_rounding(system_);
+        if (number > 0) move_by_rounding(system_, static_cast<std::uint32_t>(number));
         for (std::size_t i = 0; i < system.particle_count(); ++i) {
             const Vec2 position = turn_.of({system_.x_m[i], system_.y_m[i]});
             const Vec2 velocity = turn_.of({system_.vx_m_s[i], system_.vy_m_s[i]});
@@ -79,19 +78,24 @@ class Check {
 };
 
 /// How far a run is from its checks: the largest distance of a particle from its positions there, and if
-/// there are two, three times what these differ by. That is rounding; if the run were no better, it could be
-/// near both by chance and far from the truth. Infinite for a NaN.
+/// there are several, twice what these differ by. That is rounding; if the run were no better, it could be
+/// near them by chance and far from the truth. Infinite for a NaN.
 double difference_m(const State& state, const std::deque<Check>& checks) {
-    constexpr double kPerRounding = 3.0;
+    constexpr double kPerRounding = 2.0;
     double largest_m = 0.0;
     for (std::size_t i = 0; i < state.x_m.size(); ++i) {
         double distance_m = 0.0;
-        for (const Check& check : checks) {
-            const Vec2 apart = check.position_m(i) - Vec2{state.x_m[i], state.y_m[i]};
+        double rounding_m = 0.0;
+        for (std::size_t a = 0; a < checks.size(); ++a) {
+            const Vec2 at = checks[a].position_m(i);
+            const Vec2 apart = at - Vec2{state.x_m[i], state.y_m[i]};
             distance_m = std::max(length(apart.x, apart.y), distance_m);
+            for (std::size_t b = 0; b < a; ++b) {
+                const Vec2 differ = at - checks[b].position_m(i);
+                rounding_m = std::max(length(differ.x, differ.y), rounding_m);
+            }
         }
-        const Vec2 rounding = checks.front().position_m(i) - checks.back().position_m(i);
-        distance_m += kPerRounding * length(rounding.x, rounding.y);
+        distance_m += kPerRounding * rounding_m;
         if (!(distance_m <= largest_m)) largest_m = std::isnan(distance_m) ? HUGE_VAL : distance_m;
     }
     return largest_m;
@@ -164,12 +168,12 @@ double hidden_m(const System& system, const Trial& trial) {
                : check->tolerance * largest_length_m(system);
 }
 
-/// Whether rounding, which moves a chain about as much as a tolerance of 1e-12, is small beside a check's own
+/// Whether rounding, which moves a chain about as much as a tolerance of 1e-12, is small beside a run's
 /// error.
-bool is_far_from_rounding(const MethodDef& check) {
-    constexpr double kRounding = 1e-11;
-    const auto* exact = std::get_if<ExactDef>(&check);
-    return exact != nullptr && exact->tolerance > kRounding;
+bool is_far_from_rounding(const MethodDef& run) {
+    constexpr double kNear = 2e-9;
+    const auto* exact = std::get_if<ExactDef>(&run);
+    return exact != nullptr && exact->tolerance > kNear;
 }
 
 /// Of positions in the scene's coordinates, as files give them; and of the start and the lengths of bars,
@@ -200,8 +204,8 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
     const GoesOn goes_on = reporting(def, i);
     Simulation run(system, world, trial.method, interval_s, goes_on);
     std::deque<Check> checks;
-    const bool has_one = is_far_from_rounding(trial.check) ||
-                         (kind.is_first && std::holds_alternative<RattleDef>(trial.check));
+    const bool has_one = is_far_from_rounding(trial.method) ||
+                         (kind.is_first && std::holds_alternative<RattleDef>(trial.method));
     for (std::size_t number = 0; number < (has_one ? 1 : kTurns.size()); ++number)
         checks.emplace_back(system, world, trial.check, interval_s, number, goes_on);
     Comparison comparison(def.tolerance_m);

@@ -35,10 +35,10 @@ struct TrialKind {
 };
 
 /// Runs the trial's method and its checks side by side, the checks in turned coordinates, so that their
-/// rounding differs from the start on, and records in `trial` how far they agree. What two checks differ by
-/// counts three times. `recording` is cleared and receives the run's states. Once the difference is too large
-/// for good, the checks end. Each that begins to move adds one to `passes`. Throws corda::Refusal, and
-/// corda::Error (kInterrupted) if asked to stop.
+/// rounding differs from the start on, and records in `trial` how far they agree. A run whose error is not
+/// far above rounding has three checks, and what these differ by counts twice. `recording` is cleared and
+/// receives the run's states. Once the difference is too large for good, the checks end. Each that begins to
+/// move adds one to `passes`. Throws corda::Refusal, and corda::Error (kInterrupted) if asked to stop.
 void run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial& trial,
                Recording& recording, int& passes);
 

@@ -48,8 +48,8 @@ TEST(AutoPlan, IsTheSameOnEveryRun) {
 TEST(AutoPlan, CountsTheRunsAndTheChecksOfAllTrials) {
     const BodyPlan plan = plan_of(reference::straight_rope(10, 1.0, 90.0), 1e-4, 300);
     ASSERT_GT(plan.trials.size(), 1U);
-    // Two of each trial, and three of the tightest, which has two checks.
-    EXPECT_EQ(plan.passes, 2 * static_cast<int>(plan.trials.size()) + 1);
+    // Two of each trial, and four of the tightest, which has three checks.
+    EXPECT_EQ(plan.passes, 2 * static_cast<int>(plan.trials.size()) + 2);
     EXPECT_EQ(plan.reason, PlanReason::kExact);
 }
 
