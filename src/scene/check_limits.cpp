@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -87,10 +88,32 @@ bool check_bar_updates(const Sections& sections, const SolverGroup& group, const
     return false;
 }
 
-/// Adds one body to what all ask for together. Returns whether there is memory for them.
-bool add_size(const TableReader& body, const BodySize& size, std::string_view fewer_bars, BodySize& all) {
+/// What all bodies so far ask for together.
+struct Demand {
+    std::int64_t particles = 0;
+    std::int64_t bars = 0;
+    double bytes = 0.0;
+};
+
+/// About the most memory in bytes that simulating a body takes: measured with 20 000 ropes of two particles,
+/// chains of 1e5, relaxation at reach 20, and by rattle, whose factors fill in, nets of 40 x 40 to 320 x 320.
+double expected_bytes(const BodySize& size, const SolverDef& solver, bool is_net) {
+    constexpr double kPerBody = 9e3;
+    constexpr double kPerParticle = 1.7e3;
+    constexpr double kPerBar = 140.0;
+    constexpr double kPerFill = 500.0;
+    const auto particles = static_cast<double>(size.particles);
+    const bool fills = is_net && !std::holds_alternative<RelaxationDef>(solver);
+    return kPerBody + (kPerParticle + (fills ? kPerFill * std::log2(particles) : 0.0)) * particles +
+           kPerBar * static_cast<double>(size.bars);
+}
+
+/// Adds one body to what all ask for together. Returns whether that is within the limits.
+bool add_size(const TableReader& body, const BodySize& size, double bytes, std::string_view fewer_bars,
+              Demand& all) {
     all.particles += size.particles;
     all.bars += size.bars;
+    all.bytes += bytes;
     const auto too_many = [&](std::string_view what, std::int64_t count, std::int64_t limit,
                               std::string_view fewer) {
         if (count <= limit) return false;
@@ -99,8 +122,17 @@ bool add_size(const TableReader& body, const BodySize& size, std::string_view fe
                         what, limit, fewer));
         return true;
     };
-    return !too_many("particles", all.particles, Limits::kParticles, "fewer") &&
-           !too_many("bars", all.bars, Limits::kBars, fewer_bars);
+    if (too_many("particles", all.particles, Limits::kParticles, "fewer") ||
+        too_many("bars", all.bars, Limits::kBars, fewer_bars))
+        return false;
+    const double gibibytes = all.bytes / static_cast<double>(1 << 30);
+    if (gibibytes <= Limits::kGibibytes) return true;
+    body.add_problem(
+        fmt::format("the ropes and nets up to this one take some {:.0f} GiB of memory, over the limit of "
+                    "{:g}; give fewer "
+                    "particles, or method relaxation, which takes less",
+                    gibibytes, Limits::kGibibytes));
+    return false;
 }
 
 /// Adds a problem at the first of the keys that body `i` of the scene has, otherwise at the body.
@@ -166,20 +198,22 @@ void check_pace(const Sections& sections, const Scene& scene, const System& syst
 
 SceneSize count_bodies(const Sections& sections, const SolverSection& solver) {
     SceneSize size;
-    BodySize all;
+    Demand all;
     size.has_bars = sections.solver.is_sound("method") && sections.solver.is_sound("reach") &&
                     sections.solver.is_sound("bodies");
     const auto add = [&](const TableReader& body, const std::optional<BodySize>& own,
-                         std::string_view fewer_bars) {
+                         std::string_view fewer_bars, bool is_net) {
+        const SolverDef& method = solver.group_of(size.bodies.size()).def;
         size.bodies.push_back(own);
         size.has_bars = size.has_bars && own;
-        if (size.fits && own) size.fits = add_size(body, *own, fewer_bars, all);
+        if (size.fits && own)
+            size.fits = add_size(body, *own, expected_bytes(*own, method, is_net), fewer_bars, all);
     };
     for (const TableReader& rope : sections.ropes) {
         const int reach = solver.group_of(size.bodies.size()).reach;
-        add(rope, read_rope_size(rope, reach), "fewer particles, or the solver a smaller reach");
+        add(rope, read_rope_size(rope, reach), "fewer particles, or the solver a smaller reach", false);
     }
-    for (const TableReader& net : sections.nets) add(net, read_net_size(net), "fewer");
+    for (const TableReader& net : sections.nets) add(net, read_net_size(net), "fewer", true);
     size.has_bars = size.has_bars && size.fits;
     return size;
 }

@@ -9,6 +9,7 @@ struct Limits {
     static constexpr std::int64_t kFileBytes = 16 << 20;
     static constexpr std::int64_t kParticles = 1'000'000;
     static constexpr std::int64_t kBars = 20'000'000;
+    static constexpr double kGibibytes = 8.0;  // of memory to simulate it
     static constexpr std::int64_t kFrames = 10'000'000;
     static constexpr std::int64_t kSteps = 1'000'000'000;
     static constexpr double kBarUpdates = 1e13;       // about a day

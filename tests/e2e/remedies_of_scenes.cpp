@@ -39,6 +39,12 @@ INSTANTIATE_TEST_SUITE_P(
                "plan SCENE",
                "the rope has 2 shapes (hang, points); keep one of them",
                {{{kHang, ""}}, {{"points = [[0, 0], [1, 0]]", ""}}}},
+        Remedy{"net_beyond_the_memory",
+               scene_of("[[net]]\ngrid = { columns = 1000, rows = 900, spacing = 0.1 }\npinned = []\n"
+                        "[solver]\nmethod = \"rattle\""),
+               "plan SCENE",
+               "give fewer particles, or method relaxation",
+               {{{"1000, rows = 900", "20, rows = 10"}}}},
         Remedy{"rope_beyond_the_limit",
                rope_scene("hang = { links = 4, length = 2e9 }"),
                "plan SCENE",

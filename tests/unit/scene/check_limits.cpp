@@ -77,10 +77,16 @@ TEST(SceneLimits, BarUpdatesOfNets) {
         "3994002 bars, 1000000 sweeps and 600 steps are 2.3964e+15 bar updates");
 }
 
+TEST(SceneLimits, MemoryOfWhatFactorsOfANetFillIn) {
+    const std::string net = "schema = 1\n[[net]]\ngrid = { columns = 1000, rows = 1000, spacing = 0.001 }\n";
+    expect_limit(net, "swing.toml:2:1: net[0]: ", "take some 11 GiB of memory, over the limit of 8");
+    EXPECT_NO_THROW(static_cast<void>(parse_scene(net + "[solver]\nmethod = \"relaxation\"\n", "a")));
+}
+
 TEST(SceneLimits, ASceneOfNetsAloneFailsAtTheFirst) {
     expect_limit(
         "schema = 1\n[[net]]\ngrid = { columns = 1000, rows = 1000, spacing = 0.001 }\n"
-        "[[net]]\ngrid = { columns = 2, rows = 1, spacing = 1 }\n",
+        "[[net]]\ngrid = { columns = 2, rows = 1, spacing = 1 }\n[solver]\nmethod = \"relaxation\"\n",
         "swing.toml:4:1: net[1]: ", "1000002 particles, over the limit");
 }
 
