@@ -86,7 +86,9 @@ std::optional<std::string> bound_text(const Film& film) {
     if (!largest_m) return std::nullopt;
     const double pixels_per_metre = film.scene().video.height_px / film.camera().height_m.value();
     std::string text = fmt::format("{:.2g} px, {:.2g} m", pixels_per_metre * *largest_m, *largest_m);
-    if (plan.horizon_s) text += fmt::format(", up to {:.6g} s", *plan.horizon_s);
+    if (plan.horizon_s)
+        text +=
+            *plan.horizon_s > 0.0 ? fmt::format(", up to {:.6g} s", *plan.horizon_s) : ", at the start alone";
     if (!unbounded.empty()) text += ", but for " + describe(film.system(), unbounded);
     return text;
 }

@@ -67,7 +67,7 @@ const std::map<std::string, std::uint64_t> kHashes{
 
 /// What a method refuses, with the reason in the message.
 const std::map<std::string, std::string> kRefused{
-    {"materials by rattle", "use method exact"},  // its string
+    {"materials by rattle", "use method auto or exact"},  // its string
 };
 
 /// The methods that a scene is run by besides its own: all of them where its bodies are chains.
