@@ -2,6 +2,7 @@
 // the rope cover?
 // Usage: example_frames SCENE.toml
 
+#include <algorithm>
 #include <corda/corda.hpp>
 #include <cstdio>
 
@@ -10,15 +11,11 @@ int main(int argc, char** argv) try {
     corda::Scene scene = corda::load_scene(argv[1]);
     scene.video.width_px = 320;
     scene.video.height_px = 180;
+    scene.style.theme = corda::Theme::kPaper;
+    scene.style.background.reset();
     const corda::Film film(scene);
     corda::Image background(320, 180);
-    for (int y = 0; y < 180; ++y) {
-        for (int x = 0; x < 320; ++x) {
-            const corda::Color& color = scene.style.background;
-            std::uint8_t* const pixel = background.pixel(x, y);
-            pixel[0] = color.r, pixel[1] = color.g, pixel[2] = color.b, pixel[3] = 255;
-        }
-    }
+    std::fill_n(background.data(), background.size_bytes(), 255);  // white
     for (std::int64_t k = 0; k < film.frame_count(); k += 60) {
         const corda::Difference covered = corda::compare(film.frame(k), background);
         std::printf("t = %4.1f s: %.2f %% of the picture\n", film.time_s(k), 100.0 * covered.share);

@@ -1,13 +1,22 @@
-#version 420 core
-// Coverage of one pixel by one capsule, as k/255 in the layer's channel. The same steps as capsule_coverage() in
-// src/render/coverage.hpp: only operations that IEEE 754 fixes to the last bit. Change both together.
+#version 450 core
+// Coverage of one pixel by one capsule and by its halo, as k/255. The same steps as segment_distance_px() and
+// coverage_within() in src/render/coverage.hpp: only operations that IEEE 754 fixes to the last bit. Change both
+// together.
 
 flat in vec4 capsule_axis;
-flat in vec2 capsule_extent;
+flat in vec3 capsule_extent;
 
-uniform vec4 channel; // 1 in the layer's channel, 0 elsewhere
+out vec2 mask; // capsule, halo
 
-out vec4 mask;
+float coverage_within(float radius, float distance_px) {
+    precise float inner = min(distance_px + 0.5, radius);
+    precise float outer = max(distance_px - 0.5, -radius);
+    precise float overlap = inner - outer;
+    precise float coverage = min(max(overlap, 0.0), 1.0);
+    precise float scaled = coverage * 255.0;
+    precise float rounded = scaled + 0.5;
+    return floor(rounded) * (1.0 / 255.0);
+}
 
 void main() {
     precise float dx = gl_FragCoord.x - capsule_axis.x;
@@ -36,11 +45,5 @@ void main() {
         }
         distance_px = squared * inverse;
     }
-    precise float inner = min(distance_px + 0.5, capsule_extent.y);
-    precise float outer = max(distance_px - 0.5, -capsule_extent.y);
-    precise float overlap = inner - outer;
-    precise float coverage = min(max(overlap, 0.0), 1.0);
-    precise float scaled = coverage * 255.0;
-    precise float rounded = scaled + 0.5;
-    mask = channel * (floor(rounded) * (1.0 / 255.0));
+    mask = vec2(coverage_within(capsule_extent.y, distance_px), coverage_within(capsule_extent.z, distance_px));
 }

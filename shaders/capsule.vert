@@ -1,18 +1,18 @@
-#version 420 core
+#version 450 core
 // One quad per capsule. It extends beyond the capsule's edge by a margin, so that the rounding of these positions
 // and the driver's raster rules never decide a pixel.
 
 layout(location = 0) in vec4 axis;   // a.x, a.y, u.x, u.y in pixels, y down
-layout(location = 1) in vec2 extent; // length, radius
+layout(location = 1) in vec3 extent; // length, radius, radius of the halo
 
 uniform vec2 frame_size;
 uniform float edge_margin;
 
 flat out vec4 capsule_axis;
-flat out vec2 capsule_extent;
+flat out vec3 capsule_extent;
 
 void main() {
-    float margin = extent.y + edge_margin;
+    float margin = max(extent.y, extent.z) + edge_margin;
     float along = (gl_VertexID & 1) == 0 ? -margin : extent.x + margin;
     float across = (gl_VertexID & 2) == 0 ? -margin : margin;
     vec2 u = axis.zw;

@@ -37,7 +37,7 @@ struct Attempt {
     std::string failure;
 };
 
-/// An OpenGL 4.3 core context without a window. It is current on the thread that created it.
+/// An OpenGL 4.5 core context without a window. It is current on the thread that created it.
 class Context {
   public:
     /// Tries EGL devices (GPUs first), Mesa's surfaceless platform and the default display, in this order, or

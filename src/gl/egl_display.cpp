@@ -15,7 +15,7 @@ namespace corda::gl {
 namespace {
 
 constexpr int kMajor = 4;
-constexpr int kMinor = 3;
+constexpr int kMinor = 5;
 
 std::string egl_error_text() {
     switch (const EGLint error = eglGetError()) {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <cstdlib>
 
 namespace corda::media {
 namespace {
@@ -11,8 +11,12 @@ constexpr std::size_t kPatchCount = 5;
 // Deblocking changes 3 pixels, the chroma filter reads 1, and an 8x8 transform block spreads over 8.
 constexpr int kMargin = 8;
 
-bool same_rgb(const std::uint8_t* a, const std::uint8_t* b) {
-    return std::memcmp(a, b, 3) == 0;
+/// How much a channel of one colour may vary: a dithered ground that changes slowly is one colour too.
+constexpr int kLevels = 4;
+
+bool like_rgb(const std::uint8_t* a, const std::uint8_t* b) {
+    return std::abs(a[0] - b[0]) <= kLevels && std::abs(a[1] - b[1]) <= kLevels &&
+           std::abs(a[2] - b[2]) <= kLevels;
 }
 
 bool is_uniform(const Image& frame, int x, int y) {
@@ -22,10 +26,21 @@ bool is_uniform(const Image& frame, int x, int y) {
     const std::uint8_t* first = frame.pixel(x, y);
     for (int row = block.y0; row < block.y1; ++row) {
         for (int column = block.x0; column < block.x1; ++column) {
-            if (!same_rgb(first, frame.pixel(column, row))) return false;
+            if (!like_rgb(first, frame.pixel(column, row))) return false;
         }
     }
     return true;
+}
+
+std::array<std::uint8_t, 3> mean_rgb(const Image& frame, int x, int y) {
+    constexpr int kPixels = kPatchSide * kPatchSide;
+    std::array<int, 3> sums{};
+    for (int i = 0; i < kPixels; ++i) {
+        const std::uint8_t* pixel = frame.pixel(x + i % kPatchSide, y + i / kPatchSide);
+        for (std::size_t c = 0; c < sums.size(); ++c) sums[c] += pixel[c];
+    }
+    const auto mean = [](int sum) { return static_cast<std::uint8_t>((sum + kPixels / 2) / kPixels); };
+    return {mean(sums[0]), mean(sums[1]), mean(sums[2])};
 }
 
 /// Block-aligned positions, those most likely to differ in colour first: corners, centre, middles of the
@@ -63,8 +78,7 @@ std::vector<ColorPatch> choose_patches(const Image& frame) {
     std::vector<ColorPatch> chosen;
     std::vector<ColorPatch> spare;  // further places with a colour that is already chosen
     for (const auto& [x, y] : positions(frame)) {
-        const std::uint8_t* pixel = frame.pixel(x, y);
-        const ColorPatch patch{x, y, {pixel[0], pixel[1], pixel[2]}};
+        const ColorPatch patch{x, y, mean_rgb(frame, x, y)};
         const bool new_color = !has_color(chosen, patch);
         if (!new_color && spare.size() >= kPatchCount) continue;
         if (has_place(chosen, patch) || has_place(spare, patch) || !is_uniform(frame, x, y)) continue;

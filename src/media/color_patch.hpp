@@ -11,7 +11,8 @@ namespace corda::media {
 /// Side of a colour patch in pixels: one macroblock.
 inline constexpr int kPatchSide = 16;
 
-/// Up to five blocks of `frame`, at multiples of 16, each of one colour that also fills the 8 pixels around
+/// Up to five blocks of `frame`, at multiples of 16, each of one colour, give or take 4 levels,
+/// that also fills the 8 pixels around
 /// it (as far as the frame goes), so that neither deblocking nor the chroma filter mixes in another colour.
 /// Blocks of different colours are preferred; then corners, centre and edges.
 [[nodiscard]] std::vector<ColorPatch> choose_patches(const Image& frame);

@@ -42,6 +42,13 @@ std::vector<MethodDef> if_all_named(const sim::NamedMethods& named) {
     return methods;
 }
 
+/// Of each particle.
+std::vector<MotionBounds> bounds_of_start(const System& system) {
+    std::vector<MotionBounds> bounds(system.particle_count());
+    for (std::size_t i = 0; i < bounds.size(); ++i) bounds[i].include(system.x_m[i], system.y_m[i]);
+    return bounds;
+}
+
 }  // namespace
 
 struct Film::Impl {
@@ -66,24 +73,19 @@ struct Film::Impl {
     Plan plan_within(const Timeline& timeline, sim::Recording& recording) const {
         const double tolerance_px = std::get<AutoDef>(scene.solver).tolerance_px;
         const auto tolerance_m = [&](const MotionBounds& bounds) {
-            return tolerance_px / stage.map_of(stage.fitted(bounds)).pixels_per_metre();
+            return tolerance_px / stage.largest_pixels_per_metre(bounds);
         };
         return sim::plan_methods(system, named, scene.world, {tolerance_m, timeline, def.on_progress, now_s},
                                  recording);
     }
 
-    /// The camera, fitted once the whole motion is known.
+    /// The camera, fitted once the motion is known as far as it needs it.
     const CameraDef& find_camera() {
         if (camera) return *camera;
-        if (view::needs_motion(scene.camera)) {
-            motion.run_to_end(def.on_progress);
-            MotionBounds bounds = motion.recording().bounds();
-            // The start is there even if the first step diverges.
-            if (bounds.empty()) bounds.include({0.0, system.x_m, system.y_m});
-            camera = stage.fitted(bounds);
-        } else {
-            camera = scene.camera;
-        }
+        if (stage.needs_motion()) motion.run_to_end(def.on_progress);
+        // The start is there even if the first step diverges.
+        camera = stage.fit(motion.recording().size() > 0 ? motion.recording().particle_bounds()
+                                                         : bounds_of_start(system));
         return *camera;
     }
 
@@ -222,9 +224,7 @@ const Image& FilmPainter::image() const {
 struct Renderer::Impl {
     Impl(const Scene& given, const std::string& backend)
         : scene(given), system(system_of(scene)), stage(scene, system, backend, false) {
-        MotionBounds bounds;
-        bounds.include({0.0, system.x_m, system.y_m});
-        camera = stage.fitted(bounds);
+        camera = stage.fit(bounds_of_start(system));
     }
     Scene scene;
     System system;

@@ -1,5 +1,6 @@
 #include "corda/pipeline/stage.hpp"
 
+#include <array>
 #include <functional>
 
 #include <fmt/format.h>
@@ -28,7 +29,8 @@ Stage::Stage(const Scene& scene, const System& system, const std::string& backen
     : scene_(&drawable(scene)),
       system_(&system),
       gl_(gl::ContextDef::parse(backend)),
-      view_(system, scene.style, scene.body_styles, scene.video.width_px, scene.video.height_px) {
+      view_(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, scene.video.width_px,
+            scene.video.height_px) {
     gl_.require_gpu = require_gpu;
 }
 
@@ -46,9 +48,21 @@ Stage::~Stage() {
     canvas_.reset();
 }
 
-CameraDef Stage::fitted(const MotionBounds& bounds) const {
-    return view::fit_camera(scene_->camera, system_->origin_m, bounds,
-                            {scene_->video.width_px, scene_->video.height_px, view_.clearance_px()});
+bool Stage::needs_motion() const {
+    return view::needs_motion(scene_->camera) || view_.needs_motion();
+}
+
+CameraDef Stage::fit(std::span<const MotionBounds> motion) {
+    view_.set_motion(motion);
+    return view::fit_camera(scene_->camera, system_->origin_m, view_.drawn(motion), scene_->video.width_px,
+                            scene_->video.height_px);
+}
+
+double Stage::largest_pixels_per_metre(const MotionBounds& bounds) const {
+    const std::array<view::Drawn, 1> lines{{{.bounds = bounds}}};
+    return map_of(view::fit_camera(scene_->camera, system_->origin_m, lines, scene_->video.width_px,
+                                   scene_->video.height_px))
+        .pixels_per_metre();
 }
 
 view::Camera Stage::map_of(const CameraDef& camera) const {

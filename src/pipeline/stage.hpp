@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <span>
 
 #include "corda/core/basics.hpp"
 #include "corda/gl/context.hpp"
@@ -23,8 +24,13 @@ class Stage {
     Stage& operator=(const Stage&) = delete;
     ~Stage();
 
-    /// The scene's camera with center and height filled in, so that a motion within `bounds` is in view.
-    [[nodiscard]] CameraDef fitted(const MotionBounds& bounds) const;
+    /// Whether pictures depend on the whole motion: by the camera, or by what pins hang from.
+    [[nodiscard]] bool needs_motion() const;
+    /// Fits what follows from the motion to the bounds of each particle. Returns the scene's camera with
+    /// center and height filled in, so that all is in view.
+    CameraDef fit(std::span<const MotionBounds> motion);
+    /// At least the scale of the camera that fit() will return for a motion within `bounds`.
+    [[nodiscard]] double largest_pixels_per_metre(const MotionBounds& bounds) const;
     /// The map to pixels of a camera with center and height.
     [[nodiscard]] view::Camera map_of(const CameraDef& camera) const;
 

@@ -14,31 +14,40 @@ namespace corda::render {
 // them together. Allowed are +, - and * in single precision with one rounding each, comparisons and integers:
 // what IEEE 754 fixes to the last bit on every driver.
 
-/// Coverage by a capsule of the pixel with centre (center_x, center_y), 0 .. 255.
+/// Distance of the pixel with centre (center_x, center_y) from a capsule's segment, in pixels.
 ///
-/// It is the overlap of the capsule's width with a box one pixel wide across the edge, which is right for
-/// lines thinner than a pixel too. The distance to a cap needs a square root: three Newton steps for 1 / sqrt
-/// from the well-known integer first guess (relative error below 1e-6, far less than 1/255 of a pixel).
-[[nodiscard]] inline std::uint32_t capsule_coverage(const view::Capsule& capsule, float center_x,
-                                                    float center_y) {
+/// The distance to a cap needs a square root: three Newton steps for 1 / sqrt from the well-known integer
+/// first guess (relative error below 1e-6, far less than 1/255 of a pixel).
+[[nodiscard]] inline float segment_distance_px(const view::Capsule& capsule, float center_x, float center_y) {
     const float dx = center_x - capsule.ax;
     const float dy = center_y - capsule.ay;
     const float along = dx * capsule.ux + dy * capsule.uy;
     const float across = dx * capsule.uy - dy * capsule.ux;
     const float past_end = along - capsule.length;
     const float beyond = along < 0.0F ? along : (past_end > 0.0F ? past_end : 0.0F);
-    float distance_px = std::abs(across);
-    if (beyond != 0.0F) {
-        const float squared = across * across + beyond * beyond;
-        const float half_squared = 0.5F * squared;
-        float inverse = std::bit_cast<float>(0x5f3759dfU - (std::bit_cast<std::uint32_t>(squared) >> 1U));
-        for (int i = 0; i < 3; ++i) inverse = inverse * (1.5F - half_squared * inverse * inverse);
-        distance_px = squared * inverse;
-    }
-    const float inner = std::min(distance_px + 0.5F, capsule.radius);
-    const float outer = std::max(distance_px - 0.5F, -capsule.radius);
+    if (beyond == 0.0F) return std::abs(across);
+    const float squared = across * across + beyond * beyond;
+    const float half_squared = 0.5F * squared;
+    float inverse = std::bit_cast<float>(0x5f3759dfU - (std::bit_cast<std::uint32_t>(squared) >> 1U));
+    for (int i = 0; i < 3; ++i) inverse = inverse * (1.5F - half_squared * inverse * inverse);
+    return squared * inverse;
+}
+
+/// Coverage of a pixel by all that is within `radius` of a segment, 0 .. 255; `radius` 0 covers nothing.
+///
+/// It is the overlap of the capsule's width with a box one pixel wide across the edge, which is right for
+/// lines thinner than a pixel too.
+[[nodiscard]] inline std::uint32_t coverage_within(float radius, float distance_px) {
+    const float inner = std::min(distance_px + 0.5F, radius);
+    const float outer = std::max(distance_px - 0.5F, -radius);
     const float coverage = std::min(std::max(inner - outer, 0.0F), 1.0F);
     return static_cast<std::uint32_t>(coverage * 255.0F + 0.5F);
+}
+
+/// Coverage by a capsule without its halo of the pixel with centre (center_x, center_y).
+[[nodiscard]] inline std::uint32_t capsule_coverage(const view::Capsule& capsule, float center_x,
+                                                    float center_y) {
+    return coverage_within(capsule.radius, segment_distance_px(capsule, center_x, center_y));
 }
 
 /// v / 255, rounded to the nearest integer, for 0 <= v <= 255 * 255.
@@ -47,8 +56,9 @@ namespace corda::render {
     return (t + (t >> 8U)) >> 8U;
 }
 
-/// One channel of a layer's colour, painted over `below`. The layer covers `coverage` / 255 of the pixel.
-/// In gamma space: 8-bit sRGB, alpha not premultiplied.
+/// One channel of a colour of that alpha, painted over `below` where it covers `coverage` / 255 of the pixel.
+/// In gamma space: 8-bit sRGB, alpha not premultiplied. A layer paints its halo in the colour of the ground,
+/// with the layer's alpha, and then itself.
 [[nodiscard]] inline std::uint32_t paint_over(std::uint32_t below, std::uint32_t channel,
                                               std::uint32_t layer_alpha, std::uint32_t coverage) {
     const std::uint32_t alpha = over_255(coverage * layer_alpha);

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
 #include "corda/gl/object.hpp"
 #include "corda/gl/program.hpp"
+#include "corda/render/tiles.hpp"
 #include "corda/view/draw_list.hpp"
 
 namespace corda::render {
@@ -13,9 +15,9 @@ namespace corda::render {
 /// Draws draw lists with OpenGL into a picture in memory. Every frame equals that of render_reference() byte
 /// for byte.
 ///
-/// The capsules of a layer are united in a mask, by GL_MAX of values that are exactly k/255; a texture slice
-/// holds four masks. Then one pass paints all layers in integers. Only the damage, what may differ from the
-/// last frame, is cleared, drawn and read back.
+/// Layer by layer, or many at once if no tile has two of them: the capsules and halos of a layer are united
+/// in two masks, by GL_MAX of values that are exactly k/255; then a pass over its tiles paints it in
+/// integers. Only the damage, what may differ from the last frame, is drawn and read back.
 class FrameRenderer {
   public:
     /// A gl::Context must be current and outlive this. Throws corda::Error (kNoGl) if the driver cannot draw
@@ -31,35 +33,35 @@ class FrameRenderer {
     [[nodiscard]] const Image& image() const { return image_; }
 
   private:
+    void make_textures();
+    void describe_capsules();
+    void describe_tiles();
+    void set_uniforms();
     /// Sets the state that drawing depends on: another renderer may have drawn in this context meanwhile.
     void set_state(const PixelRect& band) const;
-    void reserve_masks(std::size_t layer_count);
-    void upload_capsules(const view::DrawList& list);
-    void bind_masks(std::size_t slice);
-    /// All of the damage at once: a part of a frame takes a driver much longer per pixel to clear.
-    void clear_masks(const PixelRect& damage, std::size_t layer_count, const OnProgress& on_progress);
+    void upload(const view::DrawList& list);
+    void upload_ground(const Ground& ground, const OnProgress& on_progress);
+    void empty_masks() const;
     /// Draws and reads some rows.
-    void draw_band(const view::DrawList& list, const PixelRect& band);
-    void draw_masks(const view::DrawList& list);
-    void composite(const view::DrawList& list);
+    void draw_band(const PixelRect& band);
+    void draw_masks(const Batch& batch) const;
+    void paint(const Batch& batch) const;
 
     Image image_;
+    Tiles tiles_;
     gl::Program capsule_program_;
-    gl::Program composite_program_;
+    gl::Program paint_program_;
     gl::VertexArray capsule_array_;
-    gl::VertexArray empty_array_;
+    gl::VertexArray tile_array_;
     gl::Buffer capsule_buffer_;
+    gl::Buffer tile_buffer_;
+    gl::Texture ground_;
     gl::Texture masks_;
-    gl::Texture color_;
+    gl::Texture frame_;
     gl::Framebuffer mask_target_;
-    gl::Framebuffer color_target_;
-    GLint channel_uniform_ = -1;
-    GLint background_uniform_ = -1;
-    GLint layer_count_uniform_ = -1;
-    GLint layer_color_uniform_ = -1;
-    std::size_t mask_slices_ = 0;
+    gl::Framebuffer frame_target_;
     PixelRect last_bounds_;
-    Color last_background_;
+    std::optional<Ground> last_ground_;  ///< that of ground_
     bool everything_is_stale_ = true;
 };
 

@@ -3,43 +3,49 @@
 #include <vector>
 
 #include "corda/render/coverage.hpp"
+#include "corda/render/ground.hpp"
 #include "corda/view/capsule.hpp"
 
 namespace corda::render {
 namespace {
 
-void fill(const Color& color, Image& image) {
-    for (int y = 0; y < image.height(); ++y) {
-        for (int x = 0; x < image.width(); ++x) {
-            std::uint8_t* pixel = image.pixel(x, y);
-            pixel[0] = color.r;
-            pixel[1] = color.g;
-            pixel[2] = color.b;
-            pixel[3] = 255;
+/// How much of every pixel a layer covers, 0 .. 255.
+struct Mask {
+    std::vector<std::uint8_t> line;
+    std::vector<std::uint8_t> halo;
+};
+
+void unite(const view::Capsule& capsule, const PixelRect& box, int width, Mask& mask) {
+    for (int y = box.y0; y < box.y1; ++y) {
+        for (int x = box.x0; x < box.x1; ++x) {
+            const float distance_px =
+                segment_distance_px(capsule, static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+            const std::size_t i = static_cast<std::size_t>(y) * width + x;
+            const auto add = [distance_px](std::uint8_t& united, float radius) {
+                united = std::max(united, static_cast<std::uint8_t>(coverage_within(radius, distance_px)));
+            };
+            add(mask.line[i], capsule.radius);
+            add(mask.halo[i], capsule.halo_radius);
         }
     }
 }
 
-void unite(const view::Capsule& capsule, int width, int height, std::vector<std::uint8_t>& mask) {
-    const PixelRect box = view::capsule_bounds(capsule, width, height);
+/// Paints a layer, and empties its mask.
+void paint(const Color& color, const PixelRect& box, const Image& ground, Mask& mask, Image& image) {
     for (int y = box.y0; y < box.y1; ++y) {
         for (int x = box.x0; x < box.x1; ++x) {
-            const std::uint32_t coverage =
-                capsule_coverage(capsule, static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
-            std::uint8_t& united = mask[static_cast<std::size_t>(y) * width + x];
-            united = std::max(united, static_cast<std::uint8_t>(coverage));
-        }
-    }
-}
-
-void paint(const Color& color, const std::vector<std::uint8_t>& mask, const PixelRect& box, Image& image) {
-    for (int y = box.y0; y < box.y1; ++y) {
-        for (int x = box.x0; x < box.x1; ++x) {
-            const std::uint32_t coverage = mask[static_cast<std::size_t>(y) * image.width() + x];
+            const std::size_t i = static_cast<std::size_t>(y) * image.width() + x;
             std::uint8_t* pixel = image.pixel(x, y);
-            pixel[0] = static_cast<std::uint8_t>(paint_over(pixel[0], color.r, color.a, coverage));
-            pixel[1] = static_cast<std::uint8_t>(paint_over(pixel[1], color.g, color.a, coverage));
-            pixel[2] = static_cast<std::uint8_t>(paint_over(pixel[2], color.b, color.a, coverage));
+            const std::uint8_t* bare = ground.pixel(x, y);
+            const auto channel = [&](int c, std::uint8_t own) {
+                const std::uint32_t below = paint_over(pixel[c], bare[c], color.a, mask.halo[i]);
+                pixel[c] = static_cast<std::uint8_t>(paint_over(below, own, color.a, mask.line[i]));
+            };
+            channel(0, color.r);
+            channel(1, color.g);
+            channel(2, color.b);
+            mask.line[i] = 0;
+            mask.halo[i] = 0;
         }
     }
 }
@@ -47,15 +53,21 @@ void paint(const Color& color, const std::vector<std::uint8_t>& mask, const Pixe
 }  // namespace
 
 Image render_reference(const view::DrawList& list) {
-    Image image(list.width, list.height);
-    fill(list.background, image);
-    std::vector<std::uint8_t> mask(static_cast<std::size_t>(list.width) * list.height);
+    Image ground(list.width, list.height);
+    for (int y = 0; y < list.height; ++y)
+        write_ground_row(list.ground, y, list.width, list.height, ground.pixel(0, y));
+    Image image = ground;
+    const std::size_t pixels = static_cast<std::size_t>(list.width) * list.height;
+    Mask mask{std::vector<std::uint8_t>(pixels), std::vector<std::uint8_t>(pixels)};
     for (const view::Layer& layer : list.layers) {
-        std::fill(mask.begin(), mask.end(), std::uint8_t{0});
+        PixelRect touched;
         for (std::size_t i = 0; i < layer.capsule_count; ++i) {
-            unite(list.capsules[layer.first_capsule + i], list.width, list.height, mask);
+            const view::Capsule& capsule = list.capsules[layer.first_capsule + i];
+            const PixelRect box = view::capsule_bounds(capsule, list.width, list.height);
+            unite(capsule, box, list.width, mask);
+            touched = touched.united(box);
         }
-        paint(layer.color, mask, image.rect(), image);
+        paint(layer.color, touched, ground, mask, image);
     }
     return image;
 }

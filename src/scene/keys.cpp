@@ -76,10 +76,6 @@ std::string toml_of(const std::string& value) {
     return fmt::format("\"{}\"", value);
 }
 
-std::string toml_of(const Color& value) {
-    return toml_of(value.text());
-}
-
 std::string toml_of(Vec2 value) {
     return fmt::format("[{}, {}]", number_text(value.x), number_text(value.y));
 }
@@ -335,25 +331,38 @@ std::vector<Key> video_keys() {
 
 std::vector<Key> style_keys() {
     const StyleDef def;
+    const Type boolean = of(Kind::kBoolean);
     const Type color = of(Kind::kColor);
+    const Words themes{"dark", "paper"};
     const Words markers{"none", "pinned", "all"};
     const Words bars{"none", "real", "all"};
+    const Default of_theme = otherwise("the theme's");
     return {
-        {"style", "background", of(Kind::kOpaqueColor), "", at(def.background), "the background"},
-        {"style", "palette", list(Kind::kColor, 1, 64), "", at(def.palette),
+        {"style", "theme", one_of(themes), "", at(themes, def.theme), "the colours",
+         "every one below overrides it"},
+        {"style", "background", or_pair(of(Kind::kOpaqueColor), "[top, bottom]"), "", of_theme,
+         "the background"},
+        {"style", "palette", list(Kind::kColor, 1, 64), "", of_theme,
          "the colours that ropes, then nets take in turn"},
-        {"style", "rope_width_px", number(kWidthPx), "px", otherwise("grows with the height"),
+        {"style", "rope_width_px", number(kWidthPx), "px", otherwise("shorter side / 120, at least 2"),
          "the width of ropes"},
+        {"style", "net_width_px", number(kWidthPx), "px", otherwise("half of ropes, at least 2"),
+         "the width of the threads of nets"},
+        {"style", "payload", boolean, "", at(def.payload), "payloads are balls",
+         "and so is every mass of ropes of up to 3 links"},
+        {"style", "supports", boolean, "", at(def.supports), "pinned particles hang from plates",
+         "from rings if something rises above them"},
+        {"style", "halo", boolean, "", at(def.halo), "a gap parts crossing bodies"},
         {"style", "markers", one_of(markers), "", at(markers, def.markers), "the particles with a marker"},
         {"style", "marker_radius_px", number(kWidthPx), "px", otherwise("grows with the width of the rope"),
          "the radius of markers"},
-        {"style", "pinned_color", color, "", at(def.pinned_color), "the markers of pinned particles"},
-        {"style", "free_color", color, "", at(def.free_color), "the markers of free particles"},
+        {"style", "pinned_color", color, "", of_theme, "the markers of pinned particles"},
+        {"style", "free_color", color, "", of_theme, "the markers of free particles"},
         {"style", "bars", one_of(bars), "", at(bars, def.bars), "the bars that are drawn apart"},
         {"style", "bar_width_px", number(kWidthPx), "px", otherwise("a quarter of the width of ropes"),
          "the width of bars"},
-        {"style", "real_bar_color", color, "", at(def.real_bar_color), "the bars between neighbours"},
-        {"style", "imaginary_bar_color", color, "", at(def.imaginary_bar_color), "the longer bars"},
+        {"style", "real_bar_color", color, "", of_theme, "the bars between neighbours"},
+        {"style", "imaginary_bar_color", color, "", of_theme, "the longer bars"},
     };
 }
 
@@ -375,7 +384,7 @@ const std::vector<Key>& all_keys() {
         std::vector<Key> all;
         for (const std::vector<Key>& part :
              {root_keys(), world_keys(), body_keys("rope", rope_shapes(), "style.rope_width_px"), rope_keys(),
-              rope_shape_keys(), body_keys("net", net_shapes(), "half of style.rope_width_px"), net_keys(),
+              rope_shape_keys(), body_keys("net", net_shapes(), "style.net_width_px"), net_keys(),
               solver_keys(), solver_bodies_keys(), video_keys(), style_keys(), camera_keys()}) {
             all.insert(all.end(), part.begin(), part.end());
         }

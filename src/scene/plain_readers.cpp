@@ -38,12 +38,20 @@ VideoDef read_video(const TableReader& video) {
 
 StyleDef read_style(const TableReader& style) {
     StyleDef def;
-    style.read("background", def.background);
+    style.read("theme", def.theme);
+    if (const auto ground = style.find("background")) {
+        const bool is_pair = ground->is_list();
+        def.background = Ground{(is_pair ? ground->at(0) : *ground).as<Color>(),
+                                (is_pair ? ground->at(1) : *ground).as<Color>()};
+    }
     if (const auto palette = style.find("palette")) {
-        def.palette.clear();
         for (std::size_t i = 0; i < palette->size(); ++i) def.palette.push_back(palette->at(i).as<Color>());
     }
     style.read("rope_width_px", def.rope_width_px);
+    style.read("net_width_px", def.net_width_px);
+    style.read("payload", def.payload);
+    style.read("supports", def.supports);
+    style.read("halo", def.halo);
     style.read("markers", def.markers);
     style.read("marker_radius_px", def.marker_radius_px);
     style.read("pinned_color", def.pinned_color);

@@ -11,6 +11,10 @@ namespace corda {
 /// origin. Empty at first.
 class MotionBounds {
   public:
+    void include(double x_m, double y_m) {
+        min_ = {std::min(min_.x, x_m), std::min(min_.y, y_m)};
+        max_ = {std::max(max_.x, x_m), std::max(max_.y, y_m)};
+    }
     void include(const State& state) {
         for (const double x_m : state.x_m) {
             min_.x = std::min(min_.x, x_m);

@@ -9,6 +9,7 @@ namespace corda::sim {
 Recording::Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes)
     : particle_count_(particle_count),
       most_states_(std::min(state_count, budget_bytes / (state_size() * sizeof(double) + sizeof(Figures)))) {
+    particle_bounds_.resize(particle_count);
     values_.reserve(most_states_ * state_size());
     figures_.reserve(most_states_);
     energy_change_j_.reserve(state_count);
@@ -26,6 +27,7 @@ void Recording::clear() {
     energy_change_j_.clear();
     energy_scale_j_ = 0.0;
     bounds_ = {};
+    particle_bounds_.assign(particle_count_, {});
     diagnostics_ = {};
     wall_s_ = 0.0;
     bodies_ = 0;
@@ -38,7 +40,11 @@ Status Recording::advance(Simulation& run, const Timeline& timeline, const std::
     if (clock_s) wall_s_ += clock_s() - start_s;
     if (status == Status::kDiverged) return status;
     const State& state = run.state();
-    if (timeline.is_frame(size())) bounds_.include(state);
+    if (timeline.is_frame(size())) {
+        bounds_.include(state);
+        for (std::size_t i = 0; i < particle_count_; ++i)
+            particle_bounds_[i].include(state.x_m[i], state.y_m[i]);
+    }
     diagnostics_ = run.diagnostics();
     energy_change_j_.push_back(run.energy_change_j());
     energy_scale_j_ = run.energy_scale_j();
@@ -61,6 +67,8 @@ void Recording::add_body(const Recording& body, std::size_t first_particle) {
     figures_.resize(std::min(figures_.size(), body.figures_.size()));
     values_.resize(figures_.size() * state_size());
     bounds_.include(body.bounds_);
+    std::copy(body.particle_bounds_.begin(), body.particle_bounds_.end(),
+              particle_bounds_.begin() + static_cast<std::ptrdiff_t>(first_particle));
     wall_s_ += body.wall_s_;
     add_figures(body);
     for (std::size_t i = 0; i < figures_.size(); ++i) {

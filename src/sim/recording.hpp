@@ -41,6 +41,8 @@ class Recording {
 
     /// Of all states added at frame times: stills between frames do not move the camera.
     [[nodiscard]] const MotionBounds& bounds() const { return bounds_; }
+    /// The same for each particle; all empty before the first state.
+    [[nodiscard]] const std::vector<MotionBounds>& particle_bounds() const { return particle_bounds_; }
     /// Of the run up to the last state added.
     [[nodiscard]] const Diagnostics& diagnostics() const { return diagnostics_; }
 
@@ -58,6 +60,7 @@ class Recording {
     std::vector<double> energy_change_j_;  ///< of all states added; NaN if not known
     double energy_scale_j_ = 0.0;
     MotionBounds bounds_;
+    std::vector<MotionBounds> particle_bounds_;
     Diagnostics diagnostics_;
     double wall_s_ = 0.0;
     std::size_t bodies_ = 0;  ///< added by add_body()

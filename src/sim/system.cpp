@@ -72,6 +72,7 @@ void append_bars(const RopeDef& rope, Body& body, System& system) {
     body.bar_count = system.bars.size() - body.first_bar;
     body.link_count = bars_of_reach(count, 1, rope.closed);
     body.is_chain = !rope.closed;
+    body.payload_kg = rope.payload_kg;
 }
 
 void append_bends(const RopeDef& rope, const Body& body, System& system) {

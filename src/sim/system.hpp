@@ -20,6 +20,7 @@ struct Body {
     std::size_t link_count = 0;  ///< real bars; they come first
     bool is_chain = true;        ///< link k joins particles k and k + 1, and there are no other links
     bool is_net = false;         ///< made from a NetDef
+    double payload_kg = 0.0;     ///< share of the last particle's mass
     MaterialDef material;
 };
 

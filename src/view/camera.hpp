@@ -1,24 +1,30 @@
 #pragma once
 
+#include <span>
+
 #include "corda/sim/bounds.hpp"
 #include "corda/view/defs.hpp"
 
 namespace corda::view {
 
-/// The picture that a motion is fitted into.
-struct PictureSize {
-    int width_px = 0;
-    int height_px = 0;
-    double clearance_px = 0.0;  ///< how far lines and markers extend around a particle's centre
+/// Something that is drawn around a point, or around several, and where these go during the motion.
+struct Drawn {
+    MotionBounds bounds;
+    // How far it extends around each point.
+    double left_px = 0.0;
+    double right_px = 0.0;
+    double up_px = 0.0;
+    double down_px = 0.0;
 };
 
 /// Whether `def` leaves the centre or the height open, so that they follow from the motion.
 [[nodiscard]] bool needs_motion(const CameraDef& def);
 
-/// Returns `def` with centre and height filled in, such that a motion within `bounds` is in the picture. What
-/// `def` gives is kept. `origin_m` is that of the system. If needs_motion(def), `bounds` must not be empty.
-[[nodiscard]] CameraDef fit_camera(const CameraDef& def, Vec2 origin_m, const MotionBounds& bounds,
-                                   const PictureSize& size);
+/// Returns `def` with centre and height filled in, such that all that is drawn is in a picture of this size,
+/// and in its middle. What `def` gives is kept. `origin_m` is that of the system. If needs_motion(def),
+/// something must be drawn.
+[[nodiscard]] CameraDef fit_camera(const CameraDef& def, Vec2 origin_m, std::span<const Drawn> drawn,
+                                   int width_px, int height_px);
 
 /// The map from metres (relative to the system's origin, y up) to pixels (y down).
 class Camera {

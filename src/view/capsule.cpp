@@ -29,12 +29,13 @@ bool cut(double a, double b, double low, double high, double& t0, double& t1) {
 
 }  // namespace
 
-std::optional<Capsule> make_capsule(PixelPoint a, PixelPoint b, double radius_px, int width, int height) {
+std::optional<Capsule> make_capsule(PixelPoint a, PixelPoint b, double radius_px, int width, int height,
+                                    double halo_px) {
     if (std::isnan(a.x) || std::isnan(a.y) || std::isnan(b.x) || std::isnan(b.y)) return std::nullopt;
     for (double* coordinate : {&a.x, &a.y, &b.x, &b.y})
         *coordinate = std::clamp(*coordinate, -kFarthestPx, kFarthestPx);
     // Twice what the capsule extends around its segment, so that the cap at a cut stays outside the frame.
-    const double margin = 2.0 * (radius_px + static_cast<double>(kEdgeMargin));
+    const double margin = 2.0 * (radius_px + halo_px + static_cast<double>(kEdgeMargin));
     double t0 = 0.0;
     double t1 = 1.0;
     if (!cut(a.x, b.x, -margin, width + margin, t0, t1)) return std::nullopt;
@@ -54,6 +55,7 @@ std::optional<Capsule> make_capsule(PixelPoint a, PixelPoint b, double radius_px
     capsule.ax = static_cast<float>(from.x);
     capsule.ay = static_cast<float>(from.y);
     capsule.radius = static_cast<float>(radius_px);
+    if (halo_px > 0.0) capsule.halo_radius = static_cast<float>(radius_px + halo_px);
     if (length > 0.0) {
         capsule.ux = static_cast<float>(dx / length);
         capsule.uy = static_cast<float>(dy / length);
@@ -65,7 +67,7 @@ std::optional<Capsule> make_capsule(PixelPoint a, PixelPoint b, double radius_px
 PixelRect capsule_bounds(const Capsule& capsule, int width, int height) {
     const float bx = capsule.ax + capsule.ux * capsule.length;
     const float by = capsule.ay + capsule.uy * capsule.length;
-    const float extent = capsule.radius + kEdgeMargin;
+    const float extent = std::max(capsule.radius, capsule.halo_radius) + kEdgeMargin;
     const PixelRect box{static_cast<int>(std::floor(std::min(capsule.ax, bx) - extent)),
                         static_cast<int>(std::floor(std::min(capsule.ay, by) - extent)),
                         static_cast<int>(std::ceil(std::max(capsule.ax, bx) + extent)),

@@ -1,12 +1,18 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "corda/core/image.hpp"
+#include "corda/view/defs.hpp"
 
 namespace corda::view {
+
+/// A point in pixels, y down. It may lie outside the frame.
+struct PixelPoint {
+    double x = 0;
+    double y = 0;
+};
 
 /// A line with round caps: all points within `radius` of a segment. A disc if `length` is 0.
 ///
@@ -20,31 +26,38 @@ struct Capsule {
     float uy = 0;
     float length = 0;
     float radius = 0;
+    /// Within this distance of the segment the ground shows in place of the layers below; 0: they stay.
+    float halo_radius = 0;
 };
 
 /// Capsules of one colour. They are united before they are painted, so that the joints and crossings of a
-/// transparent or smooth-edged line do not darken.
+/// transparent or smooth-edged line do not darken, and so are their halos.
 struct Layer {
     Color color;
     std::size_t first_capsule = 0;
     std::size_t capsule_count = 0;
 };
 
-/// One frame as plain data: layers painted in order over a background.
+/// One frame as plain data: layers painted in order over a ground.
 struct DrawList {
     int width = 0;
     int height = 0;
-    Color background;  ///< opaque
+    Ground ground;
     std::vector<Capsule> capsules;
     std::vector<Layer> layers;  ///< contiguous and in the order of `capsules`
-    PixelRect bounds;           ///< contains every pixel that differs from the background; within the frame
+    PixelRect bounds;           ///< contains every pixel that differs from the ground; within the frame
+
+    /// Removes the layers, but keeps their memory.
+    void clear();
+    /// Adds an empty layer on top of the others.
+    void add_layer(Color color);
+    /// Adds the capsule around the segment from `a` to `b` to the last layer, if it can touch the frame. Its
+    /// halo extends `halo_px` beyond `radius_px`.
+    void add_capsule(PixelPoint a, PixelPoint b, double radius_px, double halo_px = 0.0);
 };
 
-/// How far beyond `radius` a capsule can still touch a pixel, in pixels: half a pixel of smooth edge, and
+/// How far beyond its radii a capsule can still touch a pixel, in pixels: half a pixel of smooth edge, and
 /// slack for rounding.
 inline constexpr float kEdgeMargin = 2.0F;
-
-/// The most layers that a frame may have. The renderer keeps one mask per layer.
-inline constexpr std::size_t kMaxLayers = 64;
 
 }  // namespace corda::view

@@ -1,114 +1,198 @@
 #include "corda/view/scene_view.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <string>
 
-#include "corda/core/basics.hpp"
-#include "corda/view/capsule.hpp"
+#include "corda/view/slack.hpp"
 #include "corda/view/validate.hpp"
 
 namespace corda::view {
 namespace {
 
-constexpr double kHeightPerRopeWidth = 216.0;
-constexpr double kThinnestRopePx = 1.5;
-constexpr double kNetWidthPerRopeWidth = 0.5;  // so that the cells of a cloth stay open
-constexpr double kHeightPerPinnedRim = 150.0;  // rim: how far a marker extends beyond the line
-constexpr double kHeightPerFreeRim = 400.0;
+// Sizes as shares of the frame's shorter side.
+constexpr double kRopeWidth = 1.0 / 120.0;
+constexpr double kNetWidth = 1.0 / 240.0;   // so that the cells of a cloth stay open
+constexpr double kPinnedRim = 1.0 / 150.0;  // rim: how far a marker extends beyond the line
+constexpr double kFreeRim = 1.0 / 400.0;
+constexpr double kOutlineWidth = 1.0 / 400.0;
+constexpr double kSmallestBall = 0.018;
+constexpr double kLargestBall = 0.055;
+
+constexpr double kThinnestLinePx = 2.0;
+constexpr double kNetWidthPerRopeWidth = 0.5;
+constexpr double kHaloPerWidth = 0.35;
 constexpr double kBarWidthPerRopeWidth = 0.25;
 constexpr double kThinnestBarPx = 1.0;
+constexpr double kThinnestOutlinePx = 1.0;
+
+/// Ropes of so few links are pendulums: their masses are what swings.
+constexpr std::size_t kLinksOfPendulum = 3;
+
+/// The cube root of a number from 1 to 1000, by Newton's method: libraries differ in the last bit of cbrt.
+double cube_root(double value) {
+    double root = 10.0;
+    for (int i = 0; i < 20; ++i) root -= (root - value / (root * root)) / 3.0;
+    return root;
+}
+
+/// A payload as a ball of even density: its radius grows with the cube root of its mass.
+double ball_radius(double mass_kg, double rope_kg) {
+    constexpr double kLargestRatio = 1000.0;
+    const double ratio = std::clamp(mass_kg / rope_kg, 1.0, kLargestRatio);
+    return std::min(kSmallestBall * cube_root(ratio), kLargestBall);
+}
+
+Drawn around(const MotionBounds& bounds, double radius_px) {
+    return {bounds, radius_px, radius_px, radius_px, radius_px};
+}
 
 }  // namespace
 
-SceneView::SceneView(const System& system, const StyleDef& style,
+SceneView::SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& style,
                      const std::vector<BodyStyleDef>& body_styles, int width, int height)
     : system_(&system),
-      background_(style.background),
+      gravity_m_s2_(gravity_m_s2),
+      style_((validate(style, body_styles), style)),
+      look_(look_of(style)),
       width_(width),
       height_(height),
-      rope_width_px_(style.rope_width_px.value_or(std::max(kThinnestRopePx, height / kHeightPerRopeWidth))) {
-    validate(style, body_styles);
-    if (style.bars == Bars::kAll) add_bars(style, false);
-    add_bodies(style, body_styles);
-    if (style.bars != Bars::kNone) add_bars(style, true);
-    if (style.markers == Markers::kAll) add_markers(style, false);
-    if (style.markers != Markers::kNone) add_markers(style, true);
-    std::erase_if(layers_, [](const ItemLayer& layer) { return layer.items.empty(); });
-    if (layers_.size() > kMaxLayers) {
-        throw Error(ExitCode::kInvalidScene,
-                    "the scene needs " + std::to_string(layers_.size()) + " layers of colour, the limit is " +
-                        std::to_string(kMaxLayers) + "; give more ropes or nets the same colour");
-    }
-    for (const ItemLayer& layer : layers_) {
-        for (const Item& item : layer.items) clearance_px_ = std::max(clearance_px_, item.radius_px);
-    }
-}
-
-SceneView::ItemLayer& SceneView::layer_of(Color color, std::size_t first_layer) {
-    for (std::size_t i = first_layer; i < layers_.size(); ++i) {
-        if (layers_[i].color == color) return layers_[i];
-    }
-    return layers_.emplace_back(ItemLayer{color, {}});
-}
-
-void SceneView::add_bodies(const StyleDef& style, const std::vector<BodyStyleDef>& body_styles) {
-    const std::size_t first_layer = layers_.size();
+      side_px_(std::min(width, height)),
+      rope_width_px_(style.rope_width_px.value_or(std::max(kThinnestLinePx, kRopeWidth * side_px_))) {
+    const double net_width_px =
+        style.net_width_px.value_or(style.rope_width_px ? kNetWidthPerRopeWidth * rope_width_px_
+                                                        : std::max(kThinnestLinePx, kNetWidth * side_px_));
     std::size_t next_color = 0;
-    for (std::size_t i = 0; i < system_->bodies.size(); ++i) {
-        const Body& body = system_->bodies[i];
+    for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+        const Body& body = system.bodies[i];
         const BodyStyleDef own = i < body_styles.size() ? body_styles[i] : BodyStyleDef{};
-        const Color color = own.color ? *own.color : style.palette[next_color++ % style.palette.size()];
-        const double default_width_px = (body.is_net ? kNetWidthPerRopeWidth : 1.0) * rope_width_px_;
-        const double radius_px = 0.5 * own.width_px.value_or(default_width_px);
-        body_radius_px_.push_back(radius_px);
-        ItemLayer& layer = layer_of(color, first_layer);
-        for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k)
-            layer.items.push_back({system_->bars[k].a, system_->bars[k].b, radius_px});
+        const double width_px = own.width_px.value_or(body.is_net ? net_width_px : rope_width_px_);
+        bodies_.push_back({own.color ? *own.color : look_.palette[next_color++ % look_.palette.size()],
+                           0.5 * width_px, balls_of(body)});
     }
 }
 
-void SceneView::add_bars(const StyleDef& style, bool real) {
-    const double width_px =
-        style.bar_width_px.value_or(std::max(kThinnestBarPx, kBarWidthPerRopeWidth * rope_width_px_));
-    ItemLayer layer{real ? style.real_bar_color : style.imaginary_bar_color, {}};
-    for (const Bar& bar : system_->bars) {
-        if ((bar.reach == 1) == real) layer.items.push_back({bar.a, bar.b, 0.5 * width_px});
+std::vector<SceneView::Ball> SceneView::balls_of(const Body& body) const {
+    std::vector<Ball> balls;
+    if (!style_.payload || body.is_net) return balls;
+    const std::size_t last = body.first_particle + body.particle_count - 1;
+    double rope_kg = -body.payload_kg;
+    for (std::size_t i = body.first_particle; i <= last; ++i) rope_kg += system_->mass_kg[i];
+    for (std::size_t i = body.first_particle; i <= last; ++i) {
+        const bool is_bob = body.link_count <= kLinksOfPendulum;
+        const bool has_payload = i == last && body.payload_kg > 0.0;
+        if (system_->is_pinned(i) || !(is_bob || has_payload)) continue;
+        const double mass_kg = is_bob ? system_->mass_kg[i] : body.payload_kg;
+        const double radius_px = ball_radius(mass_kg, rope_kg) * side_px_;
+        balls.push_back({i, std::max(radius_px, kThinnestLinePx)});
     }
-    layers_.push_back(std::move(layer));
+    return balls;
 }
 
-void SceneView::add_markers(const StyleDef& style, bool pinned) {
-    const double rim_px = height_ / (pinned ? kHeightPerPinnedRim : kHeightPerFreeRim);
-    ItemLayer layer{pinned ? style.pinned_color : style.free_color, {}};
-    for (std::size_t b = 0; b < system_->bodies.size(); ++b) {
+bool SceneView::needs_motion() const {
+    const auto& inverse = system_->inverse_mass_1_kg;
+    return style_.supports && std::find(inverse.begin(), inverse.end(), 0.0) != inverse.end();
+}
+
+void SceneView::set_motion(std::span<const MotionBounds> motion) {
+    if (style_.supports) supports_ = Supports(*system_, gravity_m_s2_, motion, side_px_);
+}
+
+double SceneView::marker_radius_px(std::size_t body, bool pinned) const {
+    const double rim = pinned ? kPinnedRim : kFreeRim;
+    return style_.marker_radius_px.value_or(bodies_[body].radius_px + rim * side_px_);
+}
+
+std::vector<Drawn> SceneView::drawn(std::span<const MotionBounds> motion) const {
+    std::vector<Drawn> all;
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
         const Body& body = system_->bodies[b];
-        const double radius_px = style.marker_radius_px.value_or(body_radius_px_[b] + rim_px);
-        for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
-            if (system_->is_pinned(i) == pinned) layer.items.push_back({i, i, radius_px});
-        }
+        MotionBounds bounds;
+        for (std::size_t i = 0; i < body.particle_count; ++i) bounds.include(motion[body.first_particle + i]);
+        double radius_px = bodies_[b].radius_px;
+        if (style_.markers != Markers::kNone) radius_px = std::max(radius_px, marker_radius_px(b, true));
+        all.push_back(around(bounds, radius_px));
+        for (const Ball& ball : bodies_[b].balls)
+            all.push_back(around(motion[ball.particle], ball.radius_px));
     }
-    layers_.push_back(std::move(layer));
+    supports_.list(all);
+    return all;
 }
 
 void SceneView::draw(const State& state, const Camera& camera, DrawList& list) const {
     list.width = width_;
     list.height = height_;
-    list.background = background_;
-    list.capsules.clear();
-    list.layers.clear();
-    list.bounds = {};
-    for (const ItemLayer& layer : layers_) {
-        const std::size_t first = list.capsules.size();
-        for (const Item& item : layer.items) {
-            const PixelPoint a{camera.x_px(state.x_m[item.a]), camera.y_px(state.y_m[item.a])};
-            const PixelPoint b{camera.x_px(state.x_m[item.b]), camera.y_px(state.y_m[item.b])};
-            const auto capsule = make_capsule(a, b, item.radius_px, width_, height_);
-            if (!capsule) continue;
-            list.bounds = list.bounds.united(capsule_bounds(*capsule, width_, height_));
-            list.capsules.push_back(*capsule);
+    list.ground = look_.ground;
+    list.clear();
+    const Positions positions(state, camera);
+    if (style_.bars == Bars::kAll) draw_bars(false, positions, list);
+    for (std::size_t i = 0; i < bodies_.size(); ++i) draw_body(i, positions, list);
+    if (style_.bars != Bars::kNone) draw_bars(true, positions, list);
+    if (style_.markers == Markers::kAll) draw_markers(false, positions, list);
+    list.add_layer(look_.support);
+    supports_.draw(camera, list);
+    if (style_.markers != Markers::kNone) draw_markers(true, positions, list);
+}
+
+void SceneView::draw_body(std::size_t i, const Positions& positions, DrawList& list) const {
+    const Body& body = system_->bodies[i];
+    const BodyLook& look = bodies_[i];
+    // What is behind the first body is the ground.
+    const double halo_px = style_.halo && i > 0 ? kHaloPerWidth * 2.0 * look.radius_px : 0.0;
+    list.add_layer(look.color);
+    for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k) {
+        const Bar& link = system_->bars[k];
+        if (body.material.is_string && positions.distance_m(link) < link.rest_m)
+            draw_slack(link, look.radius_px, halo_px, positions, list);
+        else
+            list.add_capsule(positions.px(link.a), positions.px(link.b), look.radius_px, halo_px);
+    }
+    if (look.balls.empty()) return;
+    for (const Ball& ball : look.balls)
+        list.add_capsule(positions.px(ball.particle), positions.px(ball.particle), ball.radius_px, halo_px);
+    list.add_layer(look_.outline);
+    for (const Ball& ball : look.balls)
+        list.add_capsule(positions.px(ball.particle), positions.px(ball.particle), ball.radius_px);
+    list.add_layer(look.color);
+    const double outline_px = std::max(kThinnestOutlinePx, kOutlineWidth * side_px_);
+    for (const Ball& ball : look.balls) {
+        const double inner_px = ball.radius_px - outline_px;
+        if (inner_px > 0.0)
+            list.add_capsule(positions.px(ball.particle), positions.px(ball.particle), inner_px);
+    }
+}
+
+void SceneView::draw_slack(const Bar& link, double radius_px, double halo_px, const Positions& positions,
+                           DrawList& list) const {
+    const PixelPoint a = positions.px(link.a);
+    const PixelPoint b = positions.px(link.b);
+    // Without gravity it bends to the left, seen from a.
+    Vec2 down{b.y - a.y, a.x - b.x};
+    if (gravity_m_s2_ != Vec2{}) down = {gravity_m_s2_.x, -gravity_m_s2_.y};
+    const double length = std::max(sim::length(down.x, down.y), 1e-300);
+    const Arc arc =
+        hang_slack(a, b, link.rest_m * positions.pixels_per_metre(), {down.x / length, down.y / length});
+    for (std::size_t k = 0; k + 1 < arc.count; ++k)
+        list.add_capsule(arc.points[k], arc.points[k + 1], radius_px, halo_px);
+}
+
+void SceneView::draw_bars(bool real, const Positions& positions, DrawList& list) const {
+    const double width_px =
+        style_.bar_width_px.value_or(std::max(kThinnestBarPx, kBarWidthPerRopeWidth * rope_width_px_));
+    list.add_layer(real ? look_.real_bar : look_.imaginary_bar);
+    for (const Bar& bar : system_->bars) {
+        if ((bar.reach == 1) == real)
+            list.add_capsule(positions.px(bar.a), positions.px(bar.b), 0.5 * width_px);
+    }
+}
+
+void SceneView::draw_markers(bool pinned, const Positions& positions, DrawList& list) const {
+    list.add_layer(pinned ? look_.pinned : look_.free);
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+        const Body& body = system_->bodies[b];
+        const double radius_px = marker_radius_px(b, pinned);
+        for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
+            if (system_->is_pinned(i) == pinned)
+                list.add_capsule(positions.px(i), positions.px(i), radius_px);
         }
-        list.layers.push_back({layer.color, first, list.capsules.size() - first});
     }
 }
 

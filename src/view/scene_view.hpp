@@ -1,60 +1,88 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
-#include "corda/sim/solver.hpp"
+#include "corda/sim/bounds.hpp"
+#include "corda/sim/distance.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/camera.hpp"
 #include "corda/view/defs.hpp"
 #include "corda/view/draw_list.hpp"
+#include "corda/view/look.hpp"
+#include "corda/view/supports.hpp"
 
 namespace corda::view {
 
 /// Turns states into draw lists. Construction decides what is drawn and in which layer; each frame decides
 /// where.
 ///
-/// From back to front: imaginary bars, the links of ropes and nets (one layer per colour), real bars, free
-/// particles, pinned particles.
+/// From back to front: imaginary bars; each body, its links and then its balls; real bars, markers of free
+/// particles, supports, markers of pinned particles.
 class SceneView {
   public:
     /// `body_styles` has an entry per body of `system`; one that is missing overrides nothing. `system` must
-    /// outlive this. Throws corda::Error (kInvalidScene) for a style that validate() refuses, and if the
-    /// scene needs more than kMaxLayers layers.
-    SceneView(const System& system, const StyleDef& style, const std::vector<BodyStyleDef>& body_styles,
-              int width, int height);
+    /// outlive this. Throws corda::Error (kInvalidScene) for a style that validate() refuses.
+    SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& style,
+              const std::vector<BodyStyleDef>& body_styles, int width, int height);
 
-    /// Half of the widest line or marker: how far a drawn thing extends around a particle, in pixels.
-    [[nodiscard]] double clearance_px() const { return clearance_px_; }
+    /// Whether pictures depend on where the particles go during the motion, whatever the camera.
+    [[nodiscard]] bool needs_motion() const;
+    /// Chooses the supports by the bounds of each particle. Before, there are none.
+    void set_motion(std::span<const MotionBounds> motion);
+    /// All that is drawn of particles that stay within `motion`.
+    [[nodiscard]] std::vector<Drawn> drawn(std::span<const MotionBounds> motion) const;
 
     /// Writes the frame of `state` to `list`. Memory that `list` holds is reused.
     void draw(const State& state, const Camera& camera, DrawList& list) const;
 
   private:
-    /// A line from particle a to particle b; a disc if they are the same.
-    struct Item {
-        std::size_t a;
-        std::size_t b;
+    struct Ball {
+        std::size_t particle;
         double radius_px;
     };
-    struct ItemLayer {
+    struct BodyLook {
         Color color;
-        std::vector<Item> items;
+        double radius_px;  ///< of its links
+        std::vector<Ball> balls;
+    };
+    /// A state as the camera sees it.
+    class Positions {
+      public:
+        Positions(const State& state, const Camera& camera) : state_(&state), camera_(&camera) {}
+        [[nodiscard]] PixelPoint px(std::size_t particle) const {
+            return {camera_->x_px(state_->x_m[particle]), camera_->y_px(state_->y_m[particle])};
+        }
+        [[nodiscard]] double distance_m(const Bar& bar) const {
+            return sim::length(state_->x_m[bar.b] - state_->x_m[bar.a],
+                               state_->y_m[bar.b] - state_->y_m[bar.a]);
+        }
+        [[nodiscard]] double pixels_per_metre() const { return camera_->pixels_per_metre(); }
+
+      private:
+        const State* state_;
+        const Camera* camera_;
     };
 
-    void add_bars(const StyleDef& style, bool real);
-    void add_bodies(const StyleDef& style, const std::vector<BodyStyleDef>& body_styles);
-    void add_markers(const StyleDef& style, bool pinned);
-    ItemLayer& layer_of(Color color, std::size_t first_layer);
+    [[nodiscard]] std::vector<Ball> balls_of(const Body& body) const;
+    [[nodiscard]] double marker_radius_px(std::size_t body, bool pinned) const;
+    void draw_body(std::size_t i, const Positions& positions, DrawList& list) const;
+    void draw_slack(const Bar& link, double radius_px, double halo_px, const Positions& positions,
+                    DrawList& list) const;
+    void draw_bars(bool real, const Positions& positions, DrawList& list) const;
+    void draw_markers(bool pinned, const Positions& positions, DrawList& list) const;
 
     const System* system_;
-    Color background_;
+    Vec2 gravity_m_s2_;
+    StyleDef style_;
+    Look look_;
     int width_;
     int height_;
+    double side_px_;  ///< the shorter one
     double rope_width_px_;
-    std::vector<double> body_radius_px_;  // per body
-    double clearance_px_ = 0.0;
-    std::vector<ItemLayer> layers_;
+    std::vector<BodyLook> bodies_;
+    Supports supports_;
 };
 
 }  // namespace corda::view

@@ -25,11 +25,11 @@ void validate_width(const std::optional<double>& width_px, const std::string& fi
 
 void validate(const StyleDef& style, const std::vector<BodyStyleDef>& body_styles) {
     validate_width(style.rope_width_px, "style: rope_width_px");
+    validate_width(style.net_width_px, "style: net_width_px");
     validate_width(style.marker_radius_px, "style: marker_radius_px");
     validate_width(style.bar_width_px, "style: bar_width_px");
     for (std::size_t i = 0; i < body_styles.size(); ++i)
         validate_width(body_styles[i].width_px, "body_styles " + std::to_string(i) + ": width_px");
-    if (style.palette.empty()) throw Error(ExitCode::kInvalidScene, "style.palette is empty; give a colour");
 }
 
 void validate(const CameraDef& camera) {

@@ -55,7 +55,12 @@ margin = 0.1
     R"(schema = 1 # comment
 rope = [{ line = { particles = 2, step = [1, 0] } }]
 [style]
-background = "#101010"
+theme = "paper"
+background = ["#101010", "#202020"]
+payload = false
+supports = true
+halo = true
+net_width_px = 2.5
 palette = ["#ff0000", '#00ff00']
 rope_width_px = 4
 markers = "all"

@@ -22,10 +22,10 @@ TEST_P(Examples, EqualTheReferenceByteForByte) {
     const Film film(load_scene(GetParam()));  // sizes and widths share its motion
     const double end_s = film.scene().world.duration_s;
     std::vector<State> states;
-    MotionBounds bounds;
+    std::vector<MotionBounds> motion;
     for (const double time_s : {0.0, 0.37 * end_s, end_s}) {
         states.push_back(film.state_at(time_s));
-        bounds.include(states.back());
+        test::include(states.back(), motion);
     }
     for (const char* size : {"[64,64]", "[641,359]", "[1920,1080]", "[3840,2160]"}) {
         for (const char* width : {"", "0.5", "60"}) {
@@ -34,11 +34,11 @@ TEST_P(Examples, EqualTheReferenceByteForByte) {
             const Scene scene = load_scene(GetParam(), settings);
             pipeline::Stage stage(scene, film.system(), "auto", false);
             const pipeline::Stage::Use use(stage);
-            const CameraDef camera = stage.fitted(bounds);
+            const CameraDef camera = stage.fit(motion);
             for (const State& state : states) {
                 stage.draw(state, stage.map_of(camera));
                 const Image expected =
-                    render::render_reference(test::draw_list_of(scene, film.system(), camera, state));
+                    render::render_reference(test::draw_list_of(scene, film.system(), camera, state, motion));
                 EXPECT_TRUE(test::equal_images(stage.image(), expected))
                     << size << ", rope width \"" << width << "\" at " << state.time_s << " s";
             }

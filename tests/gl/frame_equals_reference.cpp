@@ -34,7 +34,7 @@ TEST_P(RandomCapsules, EqualTheReferenceByteForByte) {
 
 INSTANTIATE_TEST_SUITE_P(Sizes, RandomCapsules,
                          testing::Values(std::tuple{64, 64, 1}, std::tuple{641, 359, 4},
-                                         std::tuple{1920, 1080, 5}, std::tuple{333, 77, 64},
+                                         std::tuple{1920, 1080, 5}, std::tuple{333, 77, 300},
                                          std::tuple{1, 1, 2}),
                          [](const auto& param) {
                              return std::to_string(std::get<0>(param.param)) + "x" +
@@ -51,7 +51,7 @@ void move_down(view::DrawList& list, int rows) {
 }
 
 TEST(Bands, EqualTheReferenceByteForByte) {
-    // 16384 x 1000 pixels and 2 layers are 6 bands.
+    // 16384 x 1000 pixels and 2 layers are 3 bands.
     constexpr int kWidth = 16384;
     constexpr int kHeight = 1000;
     const gl::Context context;
@@ -59,7 +59,7 @@ TEST(Bands, EqualTheReferenceByteForByte) {
     for (std::uint32_t seed = 1; seed <= 2; ++seed) {
         view::DrawList list = test::random_draw_list(seed, kWidth, seed == 1 ? kHeight : 600, 2, 60);
         list.height = kHeight;
-        list.background = {10, 20, 30, 255};
+        list.ground = {{10, 20, 30}, {90, 20, 0}};
         if (seed == 2) {  // alone, so that the damage begins in the middle of a tile
             move_down(list, 333);
             view::DrawList empty = list;
@@ -75,7 +75,7 @@ TEST(Bands, EqualTheReferenceByteForByte) {
             return true;
         });
         EXPECT_EQ(damage.y0 % 64 == 0, seed == 1);
-        EXPECT_GE(asked.size(), 5U);  // measured 6 and 5, the first before the bands
+        EXPECT_GE(asked.size(), 1U);  // measured 2 and 1
         EXPECT_TRUE(std::is_sorted(asked.begin(), asked.end()));
         EXPECT_TRUE(equal_images(renderer.image(), render::render_reference(list))) << "seed " << seed;
     }
@@ -119,7 +119,7 @@ TEST(DamagedRedraw, EqualsTheFullRedrawByteForByte) {
     for (std::uint32_t seed = 1; seed <= 20; ++seed) {
         // A few capsules, so that frames leave most of the picture alone; every fifth frame is empty.
         view::DrawList list = test::random_draw_list(seed, kWidth, kHeight, 3, seed % 5 == 0 ? 0 : 2);
-        list.background = {10, 20, 30, 255};
+        list.ground = {{10, 20, 30}, {90, 20, 0}};
         const PixelRect damage = damaged.render(list);
         render::FrameRenderer full(kWidth, kHeight);
         EXPECT_EQ(full.render(list), damaged.image().rect());
@@ -135,22 +135,22 @@ TEST(DamagedRedraw, LeavesAnUnchangedFrameAlone) {
     view::DrawList list = test::random_draw_list(1, 64, 64, 1, 0);
     EXPECT_EQ(renderer.render(list), (PixelRect{0, 0, 64, 64}));
     EXPECT_TRUE(renderer.render(list).empty());
-    list.background.r ^= 1U;
+    list.ground.bottom.r ^= 1U;
     EXPECT_EQ(renderer.render(list), (PixelRect{0, 0, 64, 64}));
 }
 
 TEST(DamagedRedraw, AfterAFailureDrawsTheWholeFrame) {
     const auto list_of = [](std::uint32_t seed, std::size_t layers, std::size_t capsules) {
         view::DrawList list = test::random_draw_list(seed, 64, 64, layers, capsules);
-        list.background = {10, 20, 30, 255};
+        list.ground = {{10, 20, 30}, {90, 20, 0}};
         return list;
     };
     const gl::Context context;
     render::FrameRenderer renderer(64, 64);
     renderer.render(list_of(1, 1, 20));
-    glEnable(GL_NONE);  // what OpenGL reports next: when the masks for a fifth layer have been made
-    EXPECT_EQ(test::failure_of([&] { renderer.render(list_of(2, 5, 1)); }).code, ExitCode::kNoGl);
-    const view::DrawList list = list_of(3, 5, 0);
+    glEnable(GL_NONE);  // what OpenGL reports next: when the frame has been drawn
+    EXPECT_EQ(test::failure_of([&] { renderer.render(list_of(2, 1, 5)); }).code, ExitCode::kNoGl);
+    const view::DrawList list = list_of(3, 1, 0);
     EXPECT_EQ(renderer.render(list), renderer.image().rect());
     EXPECT_TRUE(equal_images(renderer.image(), render::render_reference(list)));
 }

@@ -1,17 +1,28 @@
 #pragma once
 
+#include <vector>
+
 #include "corda/pipeline/film.hpp"
+#include "corda/sim/bounds.hpp"
 #include "corda/view/camera.hpp"
 #include "corda/view/scene_view.hpp"
 
 namespace corda::test {
 
+/// Puts a state into the bounds of each particle.
+inline void include(const State& state, std::vector<MotionBounds>& motion) {
+    motion.resize(state.x_m.size());
+    for (std::size_t i = 0; i < motion.size(); ++i) motion[i].include(state.x_m[i], state.y_m[i]);
+}
+
 /// What a scene draws at a state, made apart from Film: what the reference renderer is to draw too.
 inline view::DrawList draw_list_of(const Scene& scene, const System& system, const CameraDef& camera,
-                                   const State& state) {
+                                   const State& state, const std::vector<MotionBounds>& motion) {
     const int width_px = scene.video.width_px;
     const int height_px = scene.video.height_px;
-    const view::SceneView scene_view(system, scene.style, scene.body_styles, width_px, height_px);
+    view::SceneView scene_view(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, width_px,
+                               height_px);
+    scene_view.set_motion(motion);
     view::DrawList list;
     scene_view.draw(state, view::Camera(camera, system.origin_m, width_px, height_px), list);
     return list;
@@ -19,7 +30,9 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
 
 /// What a film draws at a time.
 inline view::DrawList draw_list_of(const Film& film, double time_s) {
-    return draw_list_of(film.scene(), film.system(), film.camera(), film.state_at(time_s));
+    std::vector<MotionBounds> motion;
+    for (std::int64_t k = 0; k <= film.last_frame(); ++k) include(film.state(k), motion);
+    return draw_list_of(film.scene(), film.system(), film.camera(), film.state_at(time_s), motion);
 }
 
 }  // namespace corda::test

@@ -2,9 +2,6 @@
 
 #include <cmath>
 #include <random>
-
-#include "corda/view/capsule.hpp"
-
 namespace corda::test {
 namespace {
 
@@ -30,23 +27,21 @@ view::DrawList random_draw_list(std::uint32_t seed, int width, int height, std::
     view::DrawList list;
     list.width = width;
     list.height = height;
-    list.background = {numbers.byte(), numbers.byte(), numbers.byte(), 255};
+    const auto opaque = [&numbers] { return Color{numbers.byte(), numbers.byte(), numbers.byte(), 255}; };
+    list.ground.top = opaque();
+    list.ground.bottom = opaque();
     for (std::size_t l = 0; l < layer_count; ++l) {
-        const Color color{numbers.byte(), numbers.byte(), numbers.byte(),
-                          l % 2 == 0 ? std::uint8_t{255} : numbers.byte()};
-        const std::size_t first = list.capsules.size();
+        Color color = opaque();
+        if (l % 2 == 1) color.a = numbers.byte();
+        list.add_layer(color);
         for (std::size_t i = 0; i < capsules_per_layer; ++i) {
             const view::PixelPoint a{numbers.between(-0.2, 1.2) * width, numbers.between(-0.2, 1.2) * height};
             const double reach = i % 7 == 0 ? 1000.0 : 40.0;
             view::PixelPoint b{a.x + numbers.between(-reach, reach), a.y + numbers.between(-reach, reach)};
             if (i % 5 == 0) b = a;
             const double radius_px = 0.1 * std::pow(600.0, numbers.between(0.0, i % 3 == 0 ? 1.0 : 0.5));
-            const auto capsule = view::make_capsule(a, b, radius_px, width, height);
-            if (!capsule) continue;
-            list.bounds = list.bounds.united(view::capsule_bounds(*capsule, width, height));
-            list.capsules.push_back(*capsule);
+            list.add_capsule(a, b, radius_px, i % 4 == 0 ? 0.0 : numbers.between(0.0, 9.0));
         }
-        list.layers.push_back({color, first, list.capsules.size() - first});
     }
     return list;
 }

@@ -50,9 +50,11 @@ TEST(ColorPatches, StayAwayFromOtherColours) {
     Image image(32, 32);
     fill(image, image.rect(), {50, 50, 50});
     EXPECT_EQ(choose_patches(image).size(), 4U);
-    image.pixel(24, 24)[0] = 51;  // 9 pixels from the blocks above and to the left
+    image.pixel(24, 24)[0] = 55;  // 9 pixels from the blocks above and to the left
     EXPECT_THAT(choose_patches(image), testing::SizeIs(3));
-    image.pixel(23, 23)[0] = 51;  // 8 pixels from them
+    image.pixel(23, 23)[0] = 54;  // dithered
+    EXPECT_THAT(choose_patches(image), testing::SizeIs(3));
+    image.pixel(23, 23)[0] = 55;  // 8 pixels from them
     EXPECT_THAT(choose_patches(image), testing::IsEmpty());
     EXPECT_THAT(choose_patches(Image(15, 100)), testing::IsEmpty());
 }

@@ -293,7 +293,7 @@ TEST(FilmOfABuiltScene, RefusesFieldsThatAreNotWhatTheyAreDeclared) {
         {[](Scene& s) { s.solver = RelaxationDef{.step_s = 0.0}; }, "step_s"},
         {[](Scene& s) { s.video.width_px = 0; }, "video.size"},
         {[](Scene& s) { s.video.width_px = s.video.height_px = 16384; }, "video.size"},
-        {[](Scene& s) { s.style.palette.clear(); }, "palette"},
+        {[](Scene& s) { s.style.net_width_px = 0.0; }, "net_width_px"},
         {[](Scene& s) { s.world.duration_s = std::nan(""); }, "duration_s"},
         {[](Scene& s) { s.world.duration_s = -1.0; }, "duration_s"},
         {[](Scene& s) { s.world.duration_s = 1e300; }, "duration_s"},

@@ -425,6 +425,10 @@ TEST(SceneErrors, StyleAndCamera) {
     expect_errors({
         {style("background = \"#00000080\""),
          "swing.toml:4:14: style.background: ", "\"#00000080\" is not opaque"},
+        {style("background = [\"#000000\"]"), "swing.toml:4:14: style.background: ", "[top, bottom]"},
+        {style("background = [\"#000000\", \"#00000080\"]"),
+         "swing.toml:4:26: style.background[1]: ", "is not opaque"},
+        {style("theme = \"light\""), "swing.toml:4:9: style.theme: ", "give one of: dark, paper"},
         {style("palette = []"), "swing.toml:4:11: style.palette: ", "the list is empty"},
         {style("palette = [\"#000000\", \"blue\"]"), "swing.toml:4:23: style.palette[1]: ", "not a colour"},
         {style("rope_width_px = 1001"), "swing.toml:4:17: style.rope_width_px: ", "1001 is not <= 1000"},

@@ -92,11 +92,10 @@ std::string text(const Scene& scene) {
     all += text(scene.solver) + text(video.width_px) + text(video.height_px) + video.fps.rational().text() +
            video.encoder.codec + video.encoder.preset + text(video.encoder.crf) + text(video.encoder.threads);
     const StyleDef& style = scene.style;
-    for (const Color color : {style.background, style.pinned_color, style.free_color, style.real_bar_color,
-                              style.imaginary_bar_color})
-        all += color.text();
-    return all + text(style.palette, [](Color color) { return color.text(); }) +
-           text(static_cast<int>(style.markers)) + text(static_cast<int>(style.bars)) +
+    for (const int choice : {static_cast<int>(style.theme), static_cast<int>(style.payload),
+                             static_cast<int>(style.supports), static_cast<int>(style.halo)})
+        all += text(choice);
+    return all + text(static_cast<int>(style.markers)) + text(static_cast<int>(style.bars)) +
            text(scene.camera.margin);
 }
 

@@ -35,8 +35,9 @@ TEST(SceneReader, MinimalFileHasAllDefaults) {
     EXPECT_EQ(scene.video.height_px, 1080);
     EXPECT_EQ(scene.video.fps.rational(), (Rational{60, 1}));
     EXPECT_EQ(scene.video.encoder.preset, "medium");
-    EXPECT_EQ(scene.style.background, StyleDef{}.background);
-    EXPECT_EQ(scene.style.palette, StyleDef{}.palette);
+    EXPECT_EQ(scene.style.theme, Theme::kDark);
+    EXPECT_FALSE(scene.style.background);
+    EXPECT_TRUE(scene.style.palette.empty());
     EXPECT_FALSE(scene.camera.center_m);
     EXPECT_EQ(scene.camera.margin, 0.08);
 }
@@ -133,7 +134,7 @@ TEST(SceneReader, Style) {
              "imaginary_bar_color = \"#44444444\"\n"),
         "a");
     const StyleDef& style = scene.style;
-    EXPECT_EQ(style.background, (Color{1, 2, 3, 255}));
+    EXPECT_EQ(style.background, (Ground{{1, 2, 3}, {1, 2, 3}}));
     EXPECT_THAT(style.palette, ElementsAre(Color{255, 0, 0, 255}, Color{0, 255, 0, 128}));
     EXPECT_EQ(style.rope_width_px, 3.0);
     EXPECT_EQ(style.markers, Markers::kAll);
@@ -144,6 +145,16 @@ TEST(SceneReader, Style) {
     EXPECT_EQ(style.bar_width_px, 1.5);
     EXPECT_EQ(style.real_bar_color, (Color{0x33, 0x33, 0x33, 255}));
     EXPECT_EQ(style.imaginary_bar_color, (Color{0x44, 0x44, 0x44, 0x44}));
+    EXPECT_TRUE(style.payload && style.supports && style.halo);
+    const StyleDef other =
+        parse_scene(with("[style]\ntheme = \"paper\"\nbackground = [\"#010203\", \"#040506\"]\n"
+                         "net_width_px = 7\npayload = false\nsupports = false\nhalo = false"),
+                    "a")
+            .style;
+    EXPECT_EQ(other.theme, Theme::kPaper);
+    EXPECT_EQ(other.background, (Ground{{1, 2, 3}, {4, 5, 6}}));
+    EXPECT_EQ(other.net_width_px, 7.0);
+    EXPECT_FALSE(other.payload || other.supports || other.halo);
     EXPECT_EQ(parse_scene(with("style.markers = \"none\""), "a").style.markers, Markers::kNone);
     EXPECT_EQ(parse_scene(with("style.markers = \"pinned\""), "a").style.markers, Markers::kPinned);
     EXPECT_EQ(parse_scene(with("style.bars = \"none\""), "a").style.bars, Bars::kNone);

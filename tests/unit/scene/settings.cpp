@@ -47,7 +47,7 @@ TEST(SceneSettings, TakeWhatIsNotTomlAsText) {
     EXPECT_EQ(scene_with({"video.fps=30000/1001"}).video.fps.rational(), (Rational{30000, 1001}));
     EXPECT_EQ(scene_with({"video.preset=\"slow\""}).video.encoder.preset, "slow");
     EXPECT_EQ(scene_with({"video.preset=slow"}).video.encoder.preset, "slow");
-    EXPECT_EQ(scene_with({"style.background=#102030"}).style.background, (Color{0x10, 0x20, 0x30, 255}));
+    EXPECT_EQ(scene_with({"style.background=#102030"}).style.background->top, (Color{0x10, 0x20, 0x30}));
     const SceneError two = error_of(rope_with(""), {"video.crf=20\nother=3"});
     EXPECT_EQ(two.message,
               "--set video.crf=20\\x0aother=3: video.crf: \"20\\x0aother=3\" is a string, not an integer; "

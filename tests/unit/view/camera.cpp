@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 namespace corda::view {
 namespace {
 
@@ -11,15 +13,20 @@ MotionBounds box(double x0, double y0, double x1, double y1) {
     return bounds;
 }
 
-Camera fitted_camera(const CameraDef& def, Vec2 origin_m, const MotionBounds& bounds,
-                     const PictureSize& size) {
-    return {fit_camera(def, origin_m, bounds, size), origin_m, size.width_px, size.height_px};
+/// What extends so far around points within `bounds`.
+Drawn drawn(const MotionBounds& bounds, double extent_px) {
+    return {bounds, extent_px, extent_px, extent_px, extent_px};
+}
+
+Camera fitted_camera(const CameraDef& def, Vec2 origin_m, const std::vector<Drawn>& all, int width_px,
+                     int height_px) {
+    return {fit_camera(def, origin_m, all, width_px, height_px), origin_m, width_px, height_px};
 }
 
 TEST(Camera, FitsTheMotionAndCentresIt) {
     CameraDef def;
     def.margin = 0.1;
-    const Camera camera = fitted_camera(def, {}, box(-1.0, -4.0, 3.0, 0.0), {800, 400, 10.0});
+    const Camera camera = fitted_camera(def, {}, {drawn(box(-1.0, -4.0, 3.0, 0.0), 10.0)}, 800, 400);
     // 4 m in 400 px less 2 * (40 + 10) px
     EXPECT_DOUBLE_EQ(camera.pixels_per_metre(), 75.0);
     EXPECT_DOUBLE_EQ(camera.x_px(1.0), 400.0);
@@ -27,12 +34,39 @@ TEST(Camera, FitsTheMotionAndCentresIt) {
     EXPECT_DOUBLE_EQ(camera.y_px(0.0), 50.0);  // y up in metres, down in pixels
 }
 
+TEST(Camera, CentresWhatIsDrawnNotTheMotion) {
+    // A line of 2 m from a plate of 20 px above it to a ball of 50 px radius, which swings out by 1 m.
+    CameraDef def;
+    def.margin = 0.05;
+    const std::vector<Drawn> all{drawn(box(-1.0, -2.0, 1.0, 0.0), 2.0),
+                                 {box(0.0, 0.0, 0.0, 0.0), 9.0, 9.0, 20.0},
+                                 drawn(box(-1.0, -2.0, 1.0, -1.5), 50.0)};
+    const Camera camera = fitted_camera(def, {}, all, 1000, 400);
+    EXPECT_DOUBLE_EQ(camera.y_px(0.0) - 20.0, 20.0);
+    EXPECT_DOUBLE_EQ(camera.y_px(-2.0) + 50.0, 380.0);
+    EXPECT_DOUBLE_EQ(camera.pixels_per_metre(), 145.0);
+    EXPECT_DOUBLE_EQ(camera.x_px(0.0), 500.0);
+    // Upright, the width decides, and the border is a share of it too.
+    const Camera upright = fitted_camera(def, {}, all, 400, 1000);
+    EXPECT_DOUBLE_EQ(upright.x_px(1.0) + 50.0, 380.0);
+    EXPECT_DOUBLE_EQ(upright.y_px(0.0) - 20.0, 1000.0 - (upright.y_px(-2.0) + 50.0));
+}
+
+TEST(Camera, FitsWhatReachesFarthestAtItsOwnScale) {
+    // At a small scale the ball decides, at a large one the line.
+    CameraDef def;
+    def.margin = 0.0;
+    const std::vector<Drawn> all{drawn(box(-2.0, 0.0, 2.0, 0.0), 0.0), drawn(box(0.0, 0.0, 1.0, 0.0), 100.0)};
+    EXPECT_DOUBLE_EQ(fitted_camera(def, {}, all, 1000, 1000).pixels_per_metre(), 250.0);
+    EXPECT_DOUBLE_EQ(fitted_camera(def, {}, all, 300, 300).pixels_per_metre(), 200.0 / 3.0);
+}
+
 TEST(Camera, AFixedOneIgnoresTheMotionAndCountsFromTheWorldsOrigin) {
     CameraDef def;
     def.center_m = Vec2{105.0, 50.0};
     def.height_m = 10.0;
     EXPECT_FALSE(needs_motion(def));
-    const Camera camera = fitted_camera(def, {100.0, 50.0}, MotionBounds{}, {640, 480, 0.0});
+    const Camera camera = fitted_camera(def, {100.0, 50.0}, {}, 640, 480);
     EXPECT_DOUBLE_EQ(camera.pixels_per_metre(), 48.0);
     EXPECT_DOUBLE_EQ(camera.x_px(5.0), 320.0);
     EXPECT_DOUBLE_EQ(camera.y_px(0.0), 240.0);
@@ -43,23 +77,28 @@ TEST(Camera, AFixedCentreStillFitsTheMotion) {
     def.center_m = Vec2{0.0, 0.0};
     def.margin = 0.0;
     EXPECT_TRUE(needs_motion(def));
-    const Camera camera = fitted_camera(def, {}, box(-1.0, -1.0, 4.0, 1.0), {400, 400, 0.0});
-    EXPECT_DOUBLE_EQ(camera.pixels_per_metre(), 50.0);
+    const MotionBounds bounds = box(-1.0, -1.0, 4.0, 1.0);
+    EXPECT_DOUBLE_EQ(fitted_camera(def, {}, {drawn(bounds, 0.0)}, 400, 400).pixels_per_metre(), 50.0);
+    EXPECT_DOUBLE_EQ(fitted_camera(def, {}, {drawn(bounds, 20.0)}, 400, 400).pixels_per_metre(), 45.0);
 }
 
 TEST(Camera, APointWithoutExtentAndATinyPictureAreFinite) {
-    const Camera point = fitted_camera({}, {}, box(2.0, 2.0, 2.0, 2.0), {100, 100, 3.0});
+    const Camera point = fitted_camera({}, {}, {drawn(box(2.0, 2.0, 2.0, 2.0), 3.0)}, 100, 100);
     EXPECT_DOUBLE_EQ(point.x_px(2.0), 50.0);
     EXPECT_GT(point.pixels_per_metre(), 0.0);
-    const Camera tiny = fitted_camera({}, {}, box(0.0, 0.0, 1.0, 1.0), {1, 1, 30.0});
+    const Camera tiny = fitted_camera({}, {}, {drawn(box(0.0, 0.0, 1.0, 1.0), 30.0)}, 1, 1);
     EXPECT_GT(tiny.pixels_per_metre(), 0.0);
+    const Camera corner = fitted_camera({Vec2{0.0, 0.0}, std::nullopt}, {}, {drawn(box(0.0, 0.0, 1.0, 1.0), 30.0)}, 1, 1);
+    EXPECT_GT(corner.pixels_per_metre(), 0.0);
 }
 
 TEST(Camera, AFittedOneGivenAgainIsTheSame) {
     const Vec2 origin_m{0.1, 1e6};
-    const CameraDef fitted = fit_camera({}, origin_m, box(-0.3, -1.7, 2.9, 0.1), {1280, 720, 3.0});
+    const CameraDef fitted =
+        fit_camera({}, origin_m, std::vector{drawn(box(-0.3, -1.7, 2.9, 0.1), 3.0)}, 1280, 720);
     EXPECT_FALSE(needs_motion(fitted));
-    const CameraDef again = fit_camera(fitted, origin_m, box(0.0, 0.0, 9.0, 9.0), {1280, 720, 3.0});
+    const CameraDef again =
+        fit_camera(fitted, origin_m, std::vector{drawn(box(0.0, 0.0, 9.0, 9.0), 3.0)}, 1280, 720);
     EXPECT_EQ(again.center_m, fitted.center_m);
     EXPECT_EQ(again.height_m, fitted.height_m);
 }

@@ -2,81 +2,168 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
+#include <algorithm>
+#include <utility>
+#include <vector>
 
-#include "corda/core/basics.hpp"
 #include "corda/reference/ropes.hpp"
+#include "support/draw_list_of.hpp"
 
 namespace corda::view {
 namespace {
 
-struct Drawn {
-    DrawList list;
-    double clearance_px = 0.0;
-};
+constexpr int kWidth = 200;
+constexpr int kHeight = 100;
 
-Drawn draw(std::vector<RopeDef> ropes, const StyleDef& style, std::vector<BodyStyleDef> styles = {},
-           const std::vector<NetDef>& nets = {}) {
-    for (RopeDef& rope : ropes) rope.reach = 3;
+/// What is drawn of ropes and nets at their start, by a camera that is fitted to it.
+DrawList draw(std::vector<RopeDef> ropes, const StyleDef& style, std::vector<BodyStyleDef> styles = {},
+              const std::vector<NetDef>& nets = {}, Vec2 gravity_m_s2 = {0.0, -9.81}) {
+    for (RopeDef& rope : ropes) rope.reach = rope.material.is_string ? 1 : 3;
     const System system = build_system(ropes, nets);
     styles.resize(ropes.size() + nets.size());
-    const SceneView view(system, style, styles, 200, 100);
+    SceneView view(system, gravity_m_s2, style, styles, kWidth, kHeight);
     const State state{0.0, system.x_m, system.y_m};
-    MotionBounds bounds;
-    bounds.include(state);
-    const CameraDef fitted = fit_camera({}, system.origin_m, bounds, {200, 100, view.clearance_px()});
-    const Camera camera(fitted, system.origin_m, 200, 100);
-    Drawn drawn;
-    drawn.clearance_px = view.clearance_px();
-    view.draw(state, camera, drawn.list);
-    return drawn;
+    std::vector<MotionBounds> motion;
+    test::include(state, motion);
+    view.set_motion(motion);
+    const CameraDef fitted = fit_camera({}, system.origin_m, view.drawn(motion), kWidth, kHeight);
+    DrawList list;
+    view.draw(state, Camera(fitted, system.origin_m, kWidth, kHeight), list);
+    std::erase_if(list.layers, [](const Layer& layer) { return layer.capsule_count == 0; });
+    return list;
 }
 
+/// Links alone, 4 pixels wide.
 const StyleDef& plain() {
     static const StyleDef kPlain = [] {
         StyleDef style;
-        style.markers = Markers::kNone;
         style.rope_width_px = 4.0;
+        style.payload = style.supports = style.halo = false;
         return style;
     }();
     return kPlain;
 }
 
 TEST(SceneView, APlainRopeIsOneLayerOfItsLinks) {
-    const Drawn drawn = draw({reference::straight_rope(5, 1.0, 30.0)}, plain());
-    ASSERT_EQ(drawn.list.layers.size(), 1U);
-    EXPECT_EQ(drawn.list.layers[0].capsule_count, 5U);
-    EXPECT_EQ(drawn.list.capsules[0].radius, 2.0F);
-    EXPECT_EQ(drawn.clearance_px, 2.0);
+    const DrawList list = draw({reference::straight_rope(5, 1.0, 30.0)}, plain());
+    ASSERT_EQ(list.layers.size(), 1U);
+    EXPECT_EQ(list.layers[0].capsule_count, 5U);
+    EXPECT_EQ(list.capsules[0].radius, 2.0F);
+    EXPECT_EQ(list.capsules[0].halo_radius, 0.0F);
 }
 
-TEST(SceneView, RopesOfOneColourShareALayer) {
+TEST(SceneView, EveryBodyIsOneLayerOfItsColour) {
     StyleDef style = plain();
     style.palette = {Color{1, 2, 3, 255}, Color{4, 5, 6, 255}};
     const std::vector<RopeDef> ropes(4, reference::straight_rope(2, 1.0, 30.0));
-    EXPECT_EQ(draw(ropes, style).list.layers.size(), 2U);
     // A rope of its own colour uses none of the palette up.
     std::vector<BodyStyleDef> styles(4);
     styles[0].color = Color{9, 9, 9, 255};
-    const Drawn drawn = draw(ropes, style, styles);
-    ASSERT_EQ(drawn.list.layers.size(), 3U);
-    EXPECT_EQ(drawn.list.layers[1].color, (Color{1, 2, 3, 255}));
-    EXPECT_EQ(drawn.list.layers[1].capsule_count, 4U);
+    const DrawList list = draw(ropes, style, styles);
+    ASSERT_EQ(list.layers.size(), 4U);
+    EXPECT_EQ(list.layers[0].color, (Color{9, 9, 9, 255}));
+    EXPECT_EQ(list.layers[1].color, (Color{1, 2, 3, 255}));
+    EXPECT_EQ(list.layers[2].color, (Color{4, 5, 6, 255}));
+    EXPECT_EQ(list.layers[3].color, (Color{1, 2, 3, 255}));
+}
+
+TEST(SceneView, AnyNumberOfColoursIsDrawn) {
+    const std::vector<RopeDef> ropes(100, reference::straight_rope(1, 1.0, 0.0));
+    std::vector<BodyStyleDef> styles(ropes.size());
+    for (std::size_t i = 0; i < styles.size(); ++i)
+        styles[i].color = Color{static_cast<std::uint8_t>(i), 0, 0, 255};
+    EXPECT_EQ(draw(ropes, plain(), styles).layers.size(), ropes.size());
+}
+
+TEST(SceneView, LinesAreAShareOfTheShorterSideAndNeverThinnerThanTwoPixels) {
+    StyleDef style = plain();
+    style.rope_width_px = std::nullopt;
+    const System system = build_system({{reference::straight_rope(1, 1.0, 0.0)}}, {});
+    const auto width_px = [&](int width, int height) {
+        const SceneView view(system, {}, style, {}, width, height);
+        return 2.0 * view.drawn(std::vector<MotionBounds>(2))[0].up_px;
+    };
+    EXPECT_DOUBLE_EQ(width_px(1920, 1080), 9.0);
+    EXPECT_DOUBLE_EQ(width_px(1080, 1920), 9.0);
+    EXPECT_DOUBLE_EQ(width_px(168, 94), 2.0);
+}
+
+TEST(SceneView, AllButTheFirstBodyHaveHalos) {
+    StyleDef style = plain();
+    style.halo = true;
+    const DrawList list = draw(std::vector<RopeDef>(2, reference::straight_rope(1, 1.0, 30.0)), style);
+    EXPECT_EQ(list.capsules[0].halo_radius, 0.0F);
+    EXPECT_FLOAT_EQ(list.capsules[1].halo_radius, 2.0F + 0.35F * 4.0F);
+}
+
+TEST(SceneView, APayloadIsABallThatGrowsWithItsMass) {
+    StyleDef style = plain();
+    style.payload = true;
+    RopeDef rope = reference::straight_rope(9, 1.0, 30.0);  // 10 kg
+    EXPECT_EQ(draw({rope}, style).layers.size(), 1U);
+    for (const auto& [mass_kg, radius] :
+         {std::pair{1.0, 1.8F}, {10.0, 1.8F * 1.0F}, {80.0, 1.8F * 2.0F}, {1e9, 5.5F}}) {
+        rope.payload_kg = mass_kg;
+        const DrawList list = draw({rope}, style);
+        ASSERT_EQ(list.layers.size(), 3U);  // rope and ball, outline, inside
+        const Capsule& ball = list.capsules[list.layers[1].first_capsule];
+        EXPECT_FLOAT_EQ(ball.radius, std::max(radius, 2.0F)) << mass_kg;
+        EXPECT_EQ(ball.length, 0.0F);
+        EXPECT_EQ(list.layers[2].color, list.layers[0].color);
+        EXPECT_LT(list.capsules[list.layers[2].first_capsule].radius, ball.radius);
+    }
+    style.payload = false;
+    EXPECT_EQ(draw({rope}, style).layers.size(), 1U);
+}
+
+TEST(SceneView, RopesOfUpToThreeLinksHaveABobOnEveryFreeMass) {
+    StyleDef style = plain();
+    style.payload = true;
+    const DrawList three = draw({reference::straight_rope(3, 1.0, 30.0)}, style);
+    ASSERT_EQ(three.layers.size(), 3U);
+    EXPECT_EQ(three.layers[1].capsule_count, 3U);
+    EXPECT_EQ(draw({reference::straight_rope(4, 1.0, 30.0)}, style).layers.size(), 1U);
+}
+
+RopeDef slack_string(std::vector<Vec2> points_m, std::vector<double> rest_m) {
+    RopeDef rope;
+    rope.points_m = std::move(points_m);
+    rope.rest_m = std::move(rest_m);
+    rope.material.is_string = true;
+    return rope;
+}
+
+TEST(SceneView, ASlackLinkHangsAsAnArcOfItsLength) {
+    const DrawList list = draw({slack_string({{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.0}}, {1.0, 1.5})}, plain());
+    ASSERT_GT(list.capsules.size(), 5U);
+    const double metre_px = static_cast<double>(list.capsules[0].length);  // the taut one is straight
+    double arc_px = 0.0;
+    double lowest_px = 0.0;
+    for (std::size_t i = 1; i < list.capsules.size(); ++i) {
+        arc_px += static_cast<double>(list.capsules[i].length);
+        lowest_px = std::max(lowest_px, static_cast<double>(list.capsules[i].ay - list.capsules[0].ay));
+    }
+    EXPECT_NEAR(arc_px / metre_px, 1.5, 1e-3);
+    EXPECT_GT(lowest_px, 0.3 * metre_px);
+    // Without gravity it bends to its left, which is up.
+    const DrawList weightless =
+        draw({slack_string({{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.0}}, {1.0, 1.5})}, plain(), {}, {}, {});
+    EXPECT_LT(weightless.capsules[3].ay, weightless.capsules[0].ay);
 }
 
 TEST(SceneView, BarsAndMarkersHaveLayersOfTheirOwn) {
     StyleDef style = plain();
     style.markers = Markers::kAll;
     style.bars = Bars::kAll;
-    const Drawn drawn = draw({reference::straight_rope(5, 1.0, 30.0)}, style);
-    ASSERT_EQ(drawn.list.layers.size(), 5U);
-    EXPECT_EQ(drawn.list.layers[0].color, style.imaginary_bar_color);
-    EXPECT_EQ(drawn.list.layers[0].capsule_count, 4U + 3U);  // reach 2 and 3 among 6 particles
-    EXPECT_EQ(drawn.list.layers[2].color, style.real_bar_color);
-    EXPECT_EQ(drawn.list.layers[2].capsule_count, 5U);
-    EXPECT_EQ(drawn.list.layers[3].capsule_count, 5U);  // free particles
-    EXPECT_EQ(drawn.list.layers[4].capsule_count, 1U);  // the pinned one on top
-    EXPECT_EQ(drawn.list.layers[4].color, style.pinned_color);
+    const DrawList list = draw({reference::straight_rope(5, 1.0, 30.0)}, style);
+    ASSERT_EQ(list.layers.size(), 5U);
+    EXPECT_EQ(list.layers[0].color, look_of(style).imaginary_bar);
+    EXPECT_EQ(list.layers[0].capsule_count, 4U + 3U);  // reach 2 and 3 among 6 particles
+    EXPECT_EQ(list.layers[2].color, look_of(style).real_bar);
+    EXPECT_EQ(list.layers[2].capsule_count, 5U);
+    EXPECT_EQ(list.layers[3].capsule_count, 5U);  // free particles
+    EXPECT_EQ(list.layers[4].capsule_count, 1U);  // the pinned one on top
+    EXPECT_EQ(list.layers[4].color, look_of(style).pinned);
 }
 
 /// A unit square of four particles with one imaginary bar across it.
@@ -91,65 +178,63 @@ NetDef square_net() {
 }
 
 TEST(SceneView, ANetIsItsRealBarsHalfAsWideAsARope) {
-    const Drawn drawn = draw({}, plain(), {}, {square_net()});
-    ASSERT_EQ(drawn.list.layers.size(), 1U);
-    ASSERT_EQ(drawn.list.layers[0].capsule_count, 4U);
+    const DrawList list = draw({}, plain(), {}, {square_net()});
+    ASSERT_EQ(list.layers.size(), 1U);
+    ASSERT_EQ(list.layers[0].capsule_count, 4U);
     // Two sides across, two down: all of them, and of one length.
-    for (const Capsule& capsule : drawn.list.capsules) {
+    for (const Capsule& capsule : list.capsules) {
         EXPECT_EQ(capsule.radius, 1.0F);
-        EXPECT_NEAR(capsule.length, drawn.list.capsules[0].length, 2e-3);  // ends are rounded to 1/1024
+        EXPECT_NEAR(capsule.length, list.capsules[0].length, 2e-3);  // ends are rounded to 1/1024
     }
     std::vector<BodyStyleDef> own(1);
     own[0].width_px = 7.0;
-    EXPECT_EQ(draw({}, plain(), own, {square_net()}).list.capsules[0].radius, 3.5F);
+    EXPECT_EQ(draw({}, plain(), own, {square_net()}).capsules[0].radius, 3.5F);
 }
 
 TEST(SceneView, NetsTakeThePaletteAfterTheRopes) {
     const StyleDef style = plain();
-    const Drawn drawn = draw({reference::straight_rope(3, 1.0, 30.0)}, style, {}, {square_net()});
-    ASSERT_EQ(drawn.list.layers.size(), 2U);
-    EXPECT_EQ(drawn.list.layers[0].color, style.palette[0]);
-    EXPECT_EQ(drawn.list.layers[0].capsule_count, 3U);
-    EXPECT_EQ(drawn.list.layers[1].color, style.palette[1]);
-    EXPECT_EQ(drawn.list.layers[1].capsule_count, 4U);
+    const DrawList list = draw({reference::straight_rope(3, 1.0, 30.0)}, style, {}, {square_net()});
+    ASSERT_EQ(list.layers.size(), 2U);
+    EXPECT_EQ(list.layers[0].color, look_of(style).palette[0]);
+    EXPECT_EQ(list.layers[0].capsule_count, 3U);
+    EXPECT_EQ(list.layers[1].color, look_of(style).palette[1]);
+    EXPECT_EQ(list.layers[1].capsule_count, 4U);
 }
 
 TEST(SceneView, ANetHasItsBarsAndMarkersInTheCommonLayers) {
     StyleDef style = plain();
     style.markers = Markers::kAll;
     style.bars = Bars::kAll;
-    const Drawn drawn = draw({}, style, {}, {square_net()});
-    ASSERT_EQ(drawn.list.layers.size(), 5U);
-    EXPECT_EQ(drawn.list.layers[0].color, style.imaginary_bar_color);
-    EXPECT_EQ(drawn.list.layers[0].capsule_count, 1U);
-    EXPECT_EQ(drawn.list.layers[2].color, style.real_bar_color);
-    EXPECT_EQ(drawn.list.layers[2].capsule_count, 4U);
-    EXPECT_EQ(drawn.list.layers[3].capsule_count, 2U);
-    EXPECT_EQ(drawn.list.layers[4].capsule_count, 2U);
+    const DrawList list = draw({}, style, {}, {square_net()});
+    ASSERT_EQ(list.layers.size(), 5U);
+    EXPECT_EQ(list.layers[0].color, look_of(style).imaginary_bar);
+    EXPECT_EQ(list.layers[0].capsule_count, 1U);
+    EXPECT_EQ(list.layers[2].color, look_of(style).real_bar);
+    EXPECT_EQ(list.layers[2].capsule_count, 4U);
+    EXPECT_EQ(list.layers[3].capsule_count, 2U);
+    EXPECT_EQ(list.layers[4].capsule_count, 2U);
 }
 
 TEST(SceneView, AClosedRopeHasItsLastLink) {
     std::vector<RopeDef> ropes(1, reference::straight_rope(2, 1.0, 30.0));
     ropes[0].points_m[2].x += 1.0;
-    EXPECT_EQ(draw(ropes, plain()).list.capsules.size(), 2U);
+    EXPECT_EQ(draw(ropes, plain()).capsules.size(), 2U);
     ropes[0].closed = true;
-    EXPECT_EQ(draw(ropes, plain()).list.capsules.size(), 3U);
+    EXPECT_EQ(draw(ropes, plain()).capsules.size(), 3U);
 }
 
-TEST(SceneView, TheRopesStayInsideThePicture) {
-    const Drawn drawn = draw({reference::straight_rope(5, 1.0, 30.0)}, plain());
-    EXPECT_GT(drawn.list.bounds.x0, 0);
-    EXPECT_GT(drawn.list.bounds.y0, 0);
-    EXPECT_LT(drawn.list.bounds.x1, 200);
-    EXPECT_LT(drawn.list.bounds.y1, 100);
-}
-
-TEST(SceneView, RefusesMoreColoursThanLayers) {
-    const std::vector<RopeDef> ropes(kMaxLayers + 1, reference::straight_rope(1, 1.0, 0.0));
-    std::vector<BodyStyleDef> styles(ropes.size());
-    for (std::size_t i = 0; i < styles.size(); ++i)
-        styles[i].color = Color{static_cast<std::uint8_t>(i), 0, 0, 255};
-    EXPECT_THROW(draw(ropes, plain(), styles), Error);
+TEST(SceneView, AllThatIsDrawnStaysInsideThePicture) {
+    StyleDef style;
+    style.markers = Markers::kPinned;
+    RopeDef rope = reference::straight_rope(5, 1.0, 30.0);
+    rope.payload_kg = 1000.0;
+    for (const Vec2 gravity_m_s2 : {Vec2{0.0, -1.0}, {0.0, 1.0}, {1.0, 0.0}, {-1.0, 0.0}, {}}) {
+        const DrawList list = draw({rope}, style, {}, {}, gravity_m_s2);
+        EXPECT_GE(list.bounds.x0, 5);  // a margin of 8 pixels, less what a capsule's bounds have to spare
+        EXPECT_GE(list.bounds.y0, 5);
+        EXPECT_LE(list.bounds.x1, kWidth - 5);
+        EXPECT_LE(list.bounds.y1, kHeight - 5);
+    }
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ CameraDef camera_at(Vec2 center_m) {
 TEST(ValidStyles, HaveWidthsWithinTheirRange) {
     for (const double width_px : {0.1, 3.0, 1000.0}) {
         StyleDef style = kPlain;
-        style.rope_width_px = style.marker_radius_px = style.bar_width_px = width_px;
+        style.rope_width_px = style.net_width_px = style.marker_radius_px = style.bar_width_px = width_px;
         validate(style, second_of(width_px));
     }
     for (const double width_px : {0.0, 0.09, -1.0, 1001.0, kNone, kInfinity}) {
@@ -45,17 +45,14 @@ TEST(ValidStyles, HaveWidthsWithinTheirRange) {
         expect_refused([&] { validate(style, second_of(width_px)); }, "body_styles 1: width_px");
         style.bar_width_px = width_px;
         expect_refused([&] { validate(style, {}); }, "bar_width_px");
+        style.net_width_px = width_px;
+        expect_refused([&] { validate(style, {}); }, "net_width_px");
+        style.net_width_px = std::nullopt;
         style.marker_radius_px = width_px;
         expect_refused([&] { validate(style, {}); }, "marker_radius_px");
         style.rope_width_px = width_px;
         expect_refused([&] { validate(style, {}); }, "rope_width_px");
     }
-}
-
-TEST(ValidStyles, HaveAColor) {
-    StyleDef style = kPlain;
-    style.palette.clear();
-    expect_refused([&] { validate(style, {}); }, "palette");
 }
 
 TEST(ValidCameras, HaveSidesMarginsAndAPlace) {

@@ -1,0 +1,39 @@
+#include "corda/render/ground.hpp"
+
+#include <array>
+
+namespace corda::render {
+namespace {
+
+/// The colour in the middle of row `y`, in 1/256 of a level.
+std::uint32_t level_256(std::uint8_t top, std::uint8_t bottom, int y, int height) {
+    const std::int64_t halves = 2 * std::int64_t{height};  // of rows
+    const std::int64_t below = 2 * std::int64_t{y} + 1;
+    return static_cast<std::uint32_t>(256 * (top * (halves - below) + bottom * below) / halves);
+}
+
+/// Bayer's threshold of a pixel, 2 .. 254: the bits of x ^ y and y, interleaved from the lowest on.
+std::uint32_t threshold_256(unsigned x, unsigned y) {
+    std::uint32_t rank = 0;
+    for (unsigned bit = 0; bit < 3; ++bit)
+        rank = rank << 2U | (((x ^ y) >> bit) & 1U) << 1U | ((y >> bit) & 1U);
+    return 4 * rank + 2;
+}
+
+}  // namespace
+
+void write_ground_row(const Ground& ground, int y, int width, int height, std::uint8_t* rgba) {
+    const std::array<std::uint32_t, 3> levels{level_256(ground.top.r, ground.bottom.r, y, height),
+                                              level_256(ground.top.g, ground.bottom.g, y, height),
+                                              level_256(ground.top.b, ground.bottom.b, y, height)};
+    std::array<std::uint32_t, 8> thresholds{};
+    for (unsigned x = 0; x < thresholds.size(); ++x)
+        thresholds[x] = threshold_256(x, static_cast<unsigned>(y));
+    for (int x = 0; x < width; ++x) {
+        for (const std::uint32_t level : levels)
+            *rgba++ = static_cast<std::uint8_t>((level + thresholds[x & 7]) >> 8U);
+        *rgba++ = 255;
+    }
+}
+
+}  // namespace corda::render

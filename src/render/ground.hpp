@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstdint>
+
+#include "corda/view/defs.hpp"
+
+namespace corda::render {
+
+/// Writes row `y` of a ground, `width` pixels of RGBA, in a frame of `height` rows. In integers: a colour
+/// between two levels is a fixed pattern of both, an ordered dither of 8 x 8 pixels.
+void write_ground_row(const Ground& ground, int y, int width, int height, std::uint8_t* rgba);
+
+}  // namespace corda::render

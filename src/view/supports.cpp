@@ -1,0 +1,138 @@
+#include "corda/view/supports.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace corda::view {
+namespace {
+
+// Sizes as shares of the frame's shorter side.
+constexpr double kPlateLength = 0.09;
+constexpr double kPlateWidth = 1.0 / 240.0;
+constexpr double kHatchHeight = 0.02;
+constexpr double kHatchWidth = 1.0 / 400.0;
+constexpr double kRingRadius = 1.0 / 72.0;
+constexpr double kRingWidth = 1.0 / 270.0;
+constexpr double kThinnestStrokePx = 1.0;
+
+constexpr int kStrokes = 7;  // of one plate
+
+/// How far above a pin a particle may rise, as a share of the length of its body: the plate still hides it.
+constexpr double kHidden = 0.01;
+
+Vec2 axis_against(Vec2 gravity_m_s2) {
+    const Vec2 g = gravity_m_s2;
+    if (g.x == 0.0 && g.y == 0.0) return {};
+    if (std::abs(g.y) >= std::abs(g.x)) return {0.0, g.y < 0.0 ? 1.0 : -1.0};
+    return {g.x < 0.0 ? 1.0 : -1.0, 0.0};
+}
+
+double width_px(double share, double side_px) {
+    return std::max(kThinnestStrokePx, share * side_px);
+}
+
+}  // namespace
+
+Supports::Supports(const System& system, Vec2 gravity_m_s2, std::span<const MotionBounds> motion,
+                   double side_px)
+    : side_px_(side_px), up_(axis_against(gravity_m_s2)) {
+    for (const Body& body : system.bodies) add_pins(system, body, motion);
+    std::sort(plates_m_.begin(), plates_m_.end(), [this](Vec2 a, Vec2 b) {
+        const Local first = local(a);
+        const Local second = local(b);
+        return first.up != second.up ? first.up < second.up : first.along < second.along;
+    });
+}
+
+void Supports::add_pins(const System& system, const Body& body, std::span<const MotionBounds> motion) {
+    MotionBounds bounds;
+    const std::size_t end = body.first_particle + body.particle_count;
+    for (std::size_t i = body.first_particle; i < end; ++i) bounds.include(motion[i]);
+    const double top_m = std::max(local(bounds.min_m()).up, local(bounds.max_m()).up);
+    const double hidden_m = kHidden * links_length_m(system, body);
+    for (std::size_t i = body.first_particle; i < end; ++i) {
+        // What is pinned beside a pin of a rope is clamped by it.
+        const bool is_clamped = !body.is_net && i > body.first_particle && system.is_pinned(i - 1);
+        if (!system.is_pinned(i) || is_clamped) continue;
+        const Vec2 pin_m{system.x_m[i], system.y_m[i]};
+        const bool has_plate = up_ != Vec2{} && top_m <= local(pin_m).up + hidden_m;
+        (has_plate ? plates_m_ : rings_m_).push_back(pin_m);
+    }
+}
+
+void Supports::list(std::vector<Drawn>& drawn) const {
+    const auto at = [](Vec2 point_m) {
+        Drawn support;
+        support.bounds.include(point_m.x, point_m.y);
+        return support;
+    };
+    const double half_px = 0.5 * kPlateLength * side_px_;
+    const double above_px = (kPlateWidth + kHatchHeight + kHatchWidth) * side_px_;
+    for (const Vec2 pin_m : plates_m_) {
+        Drawn plate = at(pin_m);
+        plate.left_px = up_.x < 0.0 ? above_px : up_.x > 0.0 ? 0.0 : half_px;
+        plate.right_px = up_.x > 0.0 ? above_px : up_.x < 0.0 ? 0.0 : half_px;
+        plate.up_px = up_.y > 0.0 ? above_px : up_.y < 0.0 ? 0.0 : half_px;
+        plate.down_px = up_.y < 0.0 ? above_px : up_.y > 0.0 ? 0.0 : half_px;
+        drawn.push_back(plate);
+    }
+    for (const Vec2 pin_m : rings_m_) {
+        Drawn ring = at(pin_m);
+        ring.left_px = ring.right_px = ring.up_px = ring.down_px = kRingRadius * side_px_;
+        drawn.push_back(ring);
+    }
+}
+
+void Supports::draw(const Camera& camera, DrawList& list) const {
+    const double length_px = kPlateLength * side_px_;
+    const auto at_px = [&](Vec2 v) { return PixelPoint{camera.x_px(v.x), camera.y_px(v.y)}; };
+    for (std::size_t i = 0; i < plates_m_.size();) {
+        const std::size_t first = i;
+        const auto to_next_px = [&] {
+            return (local(plates_m_[i + 1]).along - local(plates_m_[i]).along) * camera.pixels_per_metre();
+        };
+        while (i + 1 < plates_m_.size() && local(plates_m_[i + 1]).up == local(plates_m_[first]).up &&
+               to_next_px() <= length_px)
+            ++i;
+        const double span_m = local(plates_m_[i]).along - local(plates_m_[first]).along;
+        draw_plate(at_px(plates_m_[first]), span_m * camera.pixels_per_metre() + length_px, list);
+        ++i;
+    }
+    for (const Vec2 pin_m : rings_m_) draw_ring(at_px(pin_m), list);
+}
+
+void Supports::draw_plate(PixelPoint first, double length_px, DrawList& list) const {
+    const double plate_px = width_px(kPlateWidth, side_px_);
+    const double hatch_px = width_px(kHatchWidth, side_px_);
+    const double height_px = kHatchHeight * side_px_;
+    // Pixels count y downwards.
+    const auto at = [&](double along, double up) {
+        const Vec2 right = -1.0 * left_of(up_);
+        return PixelPoint{first.x + along * right.x + up * up_.x, first.y - along * right.y - up * up_.y};
+    };
+    const double left = -0.5 * kPlateLength * side_px_;
+    const double inset = 0.5 * plate_px;  // of round caps
+    list.add_capsule(at(left + inset, inset), at(left + length_px - inset, inset), 0.5 * plate_px);
+    const double step_px = (kPlateLength * side_px_ - height_px) / (kStrokes - 1);
+    const auto strokes = static_cast<int>(std::round((length_px - height_px) / step_px)) + 1;
+    for (int k = 0; k < strokes; ++k) {
+        const double x = left + k * (length_px - height_px) / (strokes - 1);
+        list.add_capsule(at(x, plate_px), at(x + height_px, plate_px + height_px), 0.5 * hatch_px);
+    }
+}
+
+void Supports::draw_ring(PixelPoint center, DrawList& list) const {
+    constexpr int kSides = 32;
+    constexpr double kCosine = 0.98078528040323044913;  // of 2 pi / 32
+    constexpr double kSine = 0.19509032201612826785;
+    const double ring_px = width_px(kRingWidth, side_px_);
+    Vec2 spoke{kRingRadius * side_px_ - 0.5 * ring_px, 0.0};
+    for (int k = 0; k < kSides; ++k) {
+        const Vec2 next{kCosine * spoke.x - kSine * spoke.y, kSine * spoke.x + kCosine * spoke.y};
+        list.add_capsule({center.x + spoke.x, center.y + spoke.y}, {center.x + next.x, center.y + next.y},
+                         0.5 * ring_px);
+        spoke = next;
+    }
+}
+
+}  // namespace corda::view

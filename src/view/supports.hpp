@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "corda/sim/bounds.hpp"
+#include "corda/sim/system.hpp"
+#include "corda/view/camera.hpp"
+#include "corda/view/draw_list.hpp"
+
+namespace corda::view {
+
+/// What pinned particles hang from: a hatched plate if nothing of the body ever rises above the pin, else a
+/// ring. "Above" is the direction along an axis that is closest to that against gravity; without gravity all
+/// are rings. Plates that touch are one.
+class Supports {
+  public:
+    /// None.
+    Supports() = default;
+    /// `side_px`: the shorter side of the frame. `motion`: the bounds of each particle.
+    Supports(const System& system, Vec2 gravity_m_s2, std::span<const MotionBounds> motion, double side_px);
+
+    /// Adds where they are.
+    void list(std::vector<Drawn>& drawn) const;
+    /// Draws into the last layer of `list`.
+    void draw(const Camera& camera, DrawList& list) const;
+
+  private:
+    /// Along the plate to the right, and upwards from it.
+    struct Local {
+        double along = 0.0;
+        double up = 0.0;
+    };
+
+    void add_pins(const System& system, const Body& body, std::span<const MotionBounds> motion);
+    [[nodiscard]] Local local(Vec2 v) const { return {dot(v, left_of(up_)) * -1.0, dot(v, up_)}; }
+    void draw_plate(PixelPoint first, double length_px, DrawList& list) const;
+    void draw_ring(PixelPoint center, DrawList& list) const;
+
+    double side_px_ = 0.0;
+    Vec2 up_;                     ///< a unit vector along an axis, y up; 0 without gravity
+    std::vector<Vec2> plates_m_;  ///< positions of pins, plate by plate from left to right
+    std::vector<Vec2> rings_m_;
+};
+
+}  // namespace corda::view

@@ -1,0 +1,84 @@
+#include "corda/render/tiles.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+#include "corda/render/coverage.hpp"
+#include "support/draw_lists.hpp"
+
+namespace corda::render {
+namespace {
+
+bool holds(const Tiles& tiles, const Batch& batch, int x, int y) {
+    for (std::size_t i = batch.first_tile; i < batch.first_tile + batch.tile_count; ++i) {
+        const Tile& tile = tiles.tiles()[i];
+        if (static_cast<float>(x) >= tile.x0 && static_cast<float>(x) < tile.x1 &&
+            static_cast<float>(y) >= tile.y0 && static_cast<float>(y) < tile.y1)
+            return true;
+    }
+    return false;
+}
+
+TEST(Tiles, HoldAllThatTheirCapsulesTouch) {
+    constexpr int kWidth = 700;
+    constexpr int kHeight = 300;
+    for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+        const view::DrawList list = test::random_draw_list(seed, kWidth, kHeight, 1, 3);
+        Tiles tiles;
+        tiles.plan(list);
+        if (list.capsules.empty()) continue;
+        ASSERT_EQ(tiles.batches().size(), 1U);
+        for (const view::Capsule& capsule : list.capsules) {
+            for (int y = 0; y < kHeight; ++y) {
+                for (int x = 0; x < kWidth; ++x) {
+                    const float distance_px = segment_distance_px(capsule, static_cast<float>(x) + 0.5F,
+                                                                  static_cast<float>(y) + 0.5F);
+                    const float radius = std::max(capsule.radius, capsule.halo_radius);
+                    if (coverage_within(radius, distance_px) == 0) continue;
+                    ASSERT_TRUE(holds(tiles, tiles.batches()[0], x, y)) << seed << ": " << x << ',' << y;
+                }
+            }
+        }
+    }
+}
+
+TEST(Tiles, AreFewAlongALine) {
+    view::DrawList list;
+    list.width = 1024;
+    list.height = 1024;
+    list.add_layer({});
+    list.add_capsule({0.0, 0.0}, {1024.0, 1024.0}, 2.0);
+    Tiles tiles;
+    tiles.plan(list);
+    EXPECT_EQ(tiles.tiles().size(), 16U + 15U + 15U);  // of 256
+    EXPECT_EQ(tiles.tiles().back().x1, 1024.0F);
+}
+
+TEST(Tiles, OfLayersThatDoNotMeetAreOneBatch) {
+    view::DrawList list;
+    list.width = 640;
+    list.height = 64;
+    const auto add = [&list](double x) {
+        list.add_layer({static_cast<std::uint8_t>(x), 0, 0});
+        list.add_capsule({x, 32.0}, {x, 32.0}, 5.0);
+    };
+    add(32.0);
+    add(96.0);
+    list.add_layer({});  // empty
+    add(160.0);
+    add(97.0);  // meets the second
+    add(33.0);  // meets the first, of the batch before
+    Tiles tiles;
+    tiles.plan(list);
+    ASSERT_EQ(tiles.batches().size(), 2U);
+    EXPECT_EQ(tiles.batches()[0].capsule_count, 3U);
+    EXPECT_EQ(tiles.batches()[0].tile_count, 3U);
+    EXPECT_EQ(tiles.batches()[1].first_capsule, 3U);
+    EXPECT_EQ(tiles.batches()[1].capsule_count, 2U);
+    EXPECT_EQ(tiles.batches()[1].first_tile, 3U);
+    EXPECT_EQ(tiles.tiles()[3].color.r, 97);
+}
+
+}  // namespace
+}  // namespace corda::render
