@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json_fwd.hpp>
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -81,6 +82,18 @@ void report_plan(const Console& console, const Film& film);
 /// What every report on a film begins with: method, size, proof, camera and passes; null for what a film does
 /// not have. Simulates what has not been yet.
 [[nodiscard]] nlohmann::json film_json(const Film& film);
+
+/// Pictures in which nothing is in view.
+struct EmptyPictures {
+    bool are_failures = false;
+    std::int64_t count = 0;
+    double first_s = 0.0;
+
+    /// `--fail-empty`.
+    void add_to(CLI::App& command);
+    /// Warns of them; returns the exit code. `all`: how many pictures there are.
+    [[nodiscard]] ExitCode report(const Console& console, std::int64_t all) const;
+};
 
 /// Says with -v what draws, and how it was reached.
 void report_gl(const Console& console, const GlInfo& gl);

@@ -18,6 +18,7 @@ namespace {
 struct RenderOptions {
     SceneOptions scene;
     GlOptions gl;
+    EmptyPictures empty;
     std::string output;
     std::string frames;
     bool force = false;
@@ -68,6 +69,7 @@ nlohmann::json report(const Film& film, const RenderOptions& options, const Rend
     json["wall_s"] = wall_s;
     json["frames_per_wall_s"] = static_cast<double>(rendered.frames) / wall_s;
     json["encoder"] = rendered.encoder;
+    json["empty_frames"] = rendered.empty_frames;
     json["gl_renderer"] = gl_renderer;
     return json;
 }
@@ -113,7 +115,8 @@ ExitCode render(const Console& console, const RenderOptions& options) {
                              static_cast<double>(rendered.frames) / wall_s));
     console.result(options.output);
     console.report(report(film, options, rendered, wall_s, gl.renderer));
-    return ExitCode::kOk;
+    const EmptyPictures empty{options.empty.are_failures, rendered.empty_frames, rendered.first_empty_s};
+    return empty.report(console, rendered.frames);
 }
 
 }  // namespace
@@ -132,6 +135,7 @@ void add_render(CLI::App& app, Action& action) {
     options->scene.add_shortcut(*command, "--threads", "video.threads", "threads of the encoder");
     command->add_option("--frames", options->frames, "only frames FIRST <= k < END")->type_name("FIRST:END");
     options->gl.add_to(*command);
+    options->empty.add_to(*command);
     command->add_flag("--force", options->force, "replace an existing output");
     command->add_flag("--dry-run", options->dry_run, "check everything and write nothing");
     command->callback([options, &action] {

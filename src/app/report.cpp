@@ -104,6 +104,22 @@ void report_plan(const Console& console, const Film& film) {
     warn_of_horizon(console, film);
 }
 
+void EmptyPictures::add_to(CLI::App& command) {
+    command.add_flag("--fail-empty", are_failures, "exit 7 if nothing is in view in a picture");
+}
+
+ExitCode EmptyPictures::report(const Console& console, std::int64_t all) const {
+    if (count == 0) return ExitCode::kOk;
+    const std::string which =
+        all == 1 ? fmt::format("the picture at {:.6g} s is empty", first_s)
+                 : fmt::format("{} of {} pictures are empty, the first at {:.6g} s", count, all, first_s);
+    console.warning(
+        fmt::format("{}: nothing is in view of the camera; change camera.center and "
+                    "camera.height, or leave them out, and all is in view",
+                    which));
+    return are_failures ? ExitCode::kMismatch : ExitCode::kOk;
+}
+
 nlohmann::json film_json(const Film& film) {
     const Plan& plan = film.plan();
     const System& system = film.system();

@@ -22,6 +22,7 @@ namespace {
 struct StillOptions {
     SceneOptions scene;
     GlOptions gl;
+    EmptyPictures empty;
     std::vector<double> times_s;
     std::vector<std::int64_t> frames;
     std::string output;
@@ -104,8 +105,10 @@ PngInfo describe_shot(const Shot& shot, const Scene& scene, double pixels_per_in
     return info;
 }
 
-/// Draws and writes the stills. If interrupted, the message says how many were written.
-void write_shots(const std::vector<Shot>& shots, const StillOptions& options, const Film& film) {
+/// Draws and writes the stills, and counts the empty ones. If interrupted, the message says how many were
+/// written.
+void write_shots(const std::vector<Shot>& shots, const StillOptions& options, const Film& film,
+                 EmptyPictures& empty) {
     std::size_t written = 0;
     try {
         for (const Shot& shot : shots) {
@@ -114,6 +117,7 @@ void write_shots(const std::vector<Shot>& shots, const StillOptions& options, co
                       describe_shot(shot, film.scene(), options.pixels_per_inch),
                       {.force = options.force, .on_progress = stopping_if_asked()});
             ++written;
+            if (film.shows_nothing() && empty.count++ == 0) empty.first_s = shot.time_s;
         }
     } catch (const Error& error) {
         if (written == 0 || error.code() != interruption()) throw;
@@ -134,9 +138,10 @@ ExitCode still(const Console& console, const StillOptions& options) {
     report_plan(console, film);
     console.detail(fmt::format("{}: {}", film.scene().name, describe(film.system())));
     static_cast<void>(film.camera());
+    EmptyPictures empty = options.empty;
     if (!options.dry_run) {
         report_gl(console, film.gl());
-        write_shots(shots, options, film);
+        write_shots(shots, options, film, empty);
     }
     nlohmann::json json = film_json(film);
     json["outputs"] = nlohmann::json::array();
@@ -147,8 +152,9 @@ ExitCode still(const Console& console, const StillOptions& options) {
     }
     json["width"] = film.scene().video.width_px;
     json["height"] = film.scene().video.height_px;
+    json["empty"] = empty.count;
     console.report(json);
-    return ExitCode::kOk;
+    return empty.report(console, static_cast<std::int64_t>(shots.size()));
 }
 
 }  // namespace
@@ -171,6 +177,7 @@ void add_still(CLI::App& app, Action& action) {
     command->add_option("--ppi", options->pixels_per_inch, "pixels per inch, for the size in print")
         ->check(within(1.0, 10000.0));
     options->gl.add_to(*command);
+    options->empty.add_to(*command);
     command->add_flag("--force", options->force, "replace existing files");
     command->add_flag("--dry-run", options->dry_run, "check everything and write nothing");
     command->callback([options, &action] {

@@ -200,6 +200,10 @@ Image Film::still(double time_s, const OnProgress& on_progress) const {
     return impl_->stage.image();
 }
 
+bool Film::shows_nothing() const {
+    return impl_->stage.shows_nothing();
+}
+
 GlInfo Film::gl() const {
     const pipeline::Stage::Use use(impl_->stage);
     const gl::Context& context = impl_->stage.context();

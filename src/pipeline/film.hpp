@@ -93,6 +93,8 @@ class Film {
     /// kInterrupted.
     [[nodiscard]] Image frame(std::int64_t k, const OnProgress& on_progress = {}) const;
     [[nodiscard]] Image still(double time_s, const OnProgress& on_progress = {}) const;
+    /// Whether nothing is in view in the last picture that was drawn.
+    [[nodiscard]] bool shows_nothing() const;
     /// What draws. Throws kNoGl.
     [[nodiscard]] GlInfo gl() const;
 
@@ -146,6 +148,8 @@ struct Rendered {
     bool complete = true;   ///< false if on_progress asked to stop
     std::string kept_part;  ///< where the frames so far are if it is not complete; empty if there are none
     std::string encoder;
+    std::int64_t empty_frames = 0;  ///< in which nothing is in view
+    double first_empty_s = 0.0;     ///< the time of the first of them
 };
 
 /// Refuses a video of `scene` that render_video would refuse, before there is a film. Throws corda::Error:

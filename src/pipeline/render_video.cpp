@@ -37,9 +37,9 @@ media::VideoMetadata metadata(const Film& film, std::int64_t first) {
                             error.what(), first, first + frames - 1, kept, path));
 }
 
-/// Draws and encodes frames first <= k < end.
+/// Draws and encodes frames first <= k < end; counts the empty ones.
 void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProgress& on_progress,
-                  media::VideoWriter& writer) {
+                  media::VideoWriter& writer, Rendered& result) {
     FilmPainter painter(film);
     std::int64_t k = first;
     const OnProgress ask = [&](std::int64_t, std::int64_t) {
@@ -48,6 +48,7 @@ void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProg
     for (; k < end; ++k) {
         report_progress(on_progress, k - first, end - first);
         const PixelRect damage = painter.draw(film.time_s(k), ask);
+        if (film.shows_nothing() && result.empty_frames++ == 0) result.first_empty_s = film.time_s(k);
         writer.write(painter.image(), damage);
     }
     report_progress(on_progress, end - first, end - first);
@@ -83,7 +84,7 @@ Rendered render_video(Film& film, const std::string& path, const RenderDef& def)
     Rendered result;
     result.encoder = film.scene().video.encoder.codec;
     try {
-        write_frames(film, def.first, end, def.on_progress, writer);
+        write_frames(film, def.first, end, def.on_progress, writer, result);
         writer.finish();
     } catch (const Error& error) {
         if (error.code() == ExitCode::kDiverged) keep_diverged(error, path, def.first, writer);

@@ -53,6 +53,8 @@ class Stage {
     PixelRect draw(const State& state, const view::Camera& map, const OnProgress& on_progress = {});
     /// The last picture.
     [[nodiscard]] const Image& image() const { return canvas_->renderer.image(); }
+    /// Whether nothing was to be drawn on it but the ground.
+    [[nodiscard]] bool shows_nothing() const { return list_.shows_nothing(); }
     /// How many pictures were drawn.
     [[nodiscard]] std::int64_t pictures() const { return pictures_; }
     /// Requires a Use.

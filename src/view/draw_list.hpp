@@ -47,6 +47,8 @@ struct DrawList {
     std::vector<Layer> layers;  ///< contiguous and in the order of `capsules`
     PixelRect bounds;           ///< contains every pixel that differs from the ground; within the frame
 
+    /// Whether all of it is outside of the frame, or there is nothing.
+    [[nodiscard]] bool shows_nothing() const;
     /// Removes the layers, but keeps their memory.
     void clear();
     /// Adds an empty layer on top of the others.

@@ -19,10 +19,10 @@ constexpr double kLargestBall = 0.055;
 
 constexpr double kThinnestLinePx = 2.0;
 constexpr double kNetWidthPerRopeWidth = 0.5;
+constexpr double kBallPerLine = 1.6;  // radius, at least
 constexpr double kHaloPerWidth = 0.35;
 constexpr double kBarWidthPerRopeWidth = 0.25;
 constexpr double kThinnestBarPx = 1.0;
-constexpr double kThinnestOutlinePx = 1.0;
 
 /// Ropes of so few links are pendulums: their masses are what swings.
 constexpr std::size_t kLinksOfPendulum = 3;
@@ -66,11 +66,11 @@ SceneView::SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& st
         const BodyStyleDef own = i < body_styles.size() ? body_styles[i] : BodyStyleDef{};
         const double width_px = own.width_px.value_or(body.is_net ? net_width_px : rope_width_px_);
         bodies_.push_back({own.color ? *own.color : look_.palette[next_color++ % look_.palette.size()],
-                           0.5 * width_px, balls_of(body)});
+                           0.5 * width_px, balls_of(body, 0.5 * width_px)});
     }
 }
 
-std::vector<SceneView::Ball> SceneView::balls_of(const Body& body) const {
+std::vector<SceneView::Ball> SceneView::balls_of(const Body& body, double line_px) const {
     std::vector<Ball> balls;
     if (!style_.payload || body.is_net) return balls;
     const std::size_t last = body.first_particle + body.particle_count - 1;
@@ -82,7 +82,7 @@ std::vector<SceneView::Ball> SceneView::balls_of(const Body& body) const {
         if (system_->is_pinned(i) || !(is_bob || has_payload)) continue;
         const double mass_kg = is_bob ? system_->mass_kg[i] : body.payload_kg;
         const double radius_px = ball_radius(mass_kg, rope_kg) * side_px_;
-        balls.push_back({i, std::max(radius_px, kThinnestLinePx)});
+        balls.push_back({i, std::max(radius_px, kBallPerLine * line_px)});
     }
     return balls;
 }
@@ -93,7 +93,10 @@ bool SceneView::needs_motion() const {
 }
 
 void SceneView::set_motion(std::span<const MotionBounds> motion) {
-    if (style_.supports) supports_ = Supports(*system_, gravity_m_s2_, motion, side_px_);
+    if (!style_.supports) return;
+    std::vector<double> line_px;
+    for (const BodyLook& body : bodies_) line_px.push_back(body.radius_px);
+    supports_ = Supports(*system_, gravity_m_s2_, motion, side_px_, line_px);
 }
 
 double SceneView::marker_radius_px(std::size_t body, bool pinned) const {
@@ -107,6 +110,7 @@ std::vector<Drawn> SceneView::drawn(std::span<const MotionBounds> motion) const 
         const Body& body = system_->bodies[b];
         MotionBounds bounds;
         for (std::size_t i = 0; i < body.particle_count; ++i) bounds.include(motion[body.first_particle + i]);
+        if (body.material.is_string) include_slack(body, motion, bounds);
         double radius_px = bodies_[b].radius_px;
         if (style_.markers != Markers::kNone) radius_px = std::max(radius_px, marker_radius_px(b, true));
         all.push_back(around(bounds, radius_px));
@@ -115,6 +119,26 @@ std::vector<Drawn> SceneView::drawn(std::span<const MotionBounds> motion) const 
     }
     supports_.list(all);
     return all;
+}
+
+void SceneView::include_slack(const Body& body, std::span<const MotionBounds> motion,
+                              MotionBounds& bounds) const {
+    // Along any axis, twice the coordinate of a point of the arc is at most the sum of those of its ends and
+    // the length. That is what a string reaches anyway, if it ever hangs taut.
+    const Vec2 g = gravity_m_s2_;
+    const bool anywhere = g == Vec2{};
+    for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k) {
+        const Bar& link = system_->bars[k];
+        const MotionBounds& a = motion[link.a];
+        const MotionBounds& b = motion[link.b];
+        const Vec2 reach{0.5 * link.rest_m, 0.5 * link.rest_m};
+        const Vec2 low = 0.5 * (a.min_m() + b.min_m()) - reach;
+        const Vec2 high = 0.5 * (a.max_m() + b.max_m()) + reach;
+        bounds.include(anywhere || g.x < 0.0 ? low.x : a.min_m().x,
+                       anywhere || g.y < 0.0 ? low.y : a.min_m().y);
+        bounds.include(anywhere || g.x > 0.0 ? high.x : a.max_m().x,
+                       anywhere || g.y > 0.0 ? high.y : a.max_m().y);
+    }
 }
 
 void SceneView::draw(const State& state, const Camera& camera, DrawList& list) const {
@@ -152,7 +176,7 @@ void SceneView::draw_body(std::size_t i, const Positions& positions, DrawList& l
     for (const Ball& ball : look.balls)
         list.add_capsule(positions.px(ball.particle), positions.px(ball.particle), ball.radius_px);
     list.add_layer(look.color);
-    const double outline_px = std::max(kThinnestOutlinePx, kOutlineWidth * side_px_);
+    const double outline_px = kOutlineWidth * side_px_;
     for (const Ball& ball : look.balls) {
         const double inner_px = ball.radius_px - outline_px;
         if (inner_px > 0.0)

@@ -65,8 +65,10 @@ class SceneView {
         const Camera* camera_;
     };
 
-    [[nodiscard]] std::vector<Ball> balls_of(const Body& body) const;
+    [[nodiscard]] std::vector<Ball> balls_of(const Body& body, double line_px) const;
     [[nodiscard]] double marker_radius_px(std::size_t body, bool pinned) const;
+    /// Adds where slack links of a string may hang.
+    void include_slack(const Body& body, std::span<const MotionBounds> motion, MotionBounds& bounds) const;
     void draw_body(std::size_t i, const Positions& positions, DrawList& list) const;
     void draw_slack(const Bar& link, double radius_px, double halo_px, const Positions& positions,
                     DrawList& list) const;

@@ -15,7 +15,9 @@ constexpr double kRingRadius = 1.0 / 72.0;
 constexpr double kRingWidth = 1.0 / 270.0;
 constexpr double kThinnestStrokePx = 1.0;
 
-constexpr int kStrokes = 7;  // of one plate
+constexpr int kStrokes = 7;             // of one plate, in a frame that is large enough
+constexpr double kStepPerStroke = 3.0;  // at least, so that there are gaps
+constexpr double kRingPerLine = 1.6;    // radius, at least, so that it shows on a wide line
 
 /// How far above a pin a particle may rise, as a share of the length of its body: the plate still hides it.
 constexpr double kHidden = 0.01;
@@ -34,9 +36,10 @@ double width_px(double share, double side_px) {
 }  // namespace
 
 Supports::Supports(const System& system, Vec2 gravity_m_s2, std::span<const MotionBounds> motion,
-                   double side_px)
+                   double side_px, std::span<const double> line_px)
     : side_px_(side_px), up_(axis_against(gravity_m_s2)) {
-    for (const Body& body : system.bodies) add_pins(system, body, motion);
+    for (std::size_t i = 0; i < system.bodies.size(); ++i)
+        add_pins(system, system.bodies[i], motion, line_px[i]);
     std::sort(plates_m_.begin(), plates_m_.end(), [this](Vec2 a, Vec2 b) {
         const Local first = local(a);
         const Local second = local(b);
@@ -44,7 +47,8 @@ Supports::Supports(const System& system, Vec2 gravity_m_s2, std::span<const Moti
     });
 }
 
-void Supports::add_pins(const System& system, const Body& body, std::span<const MotionBounds> motion) {
+void Supports::add_pins(const System& system, const Body& body, std::span<const MotionBounds> motion,
+                        double line_px) {
     MotionBounds bounds;
     const std::size_t end = body.first_particle + body.particle_count;
     for (std::size_t i = body.first_particle; i < end; ++i) bounds.include(motion[i]);
@@ -56,7 +60,10 @@ void Supports::add_pins(const System& system, const Body& body, std::span<const 
         if (!system.is_pinned(i) || is_clamped) continue;
         const Vec2 pin_m{system.x_m[i], system.y_m[i]};
         const bool has_plate = up_ != Vec2{} && top_m <= local(pin_m).up + hidden_m;
-        (has_plate ? plates_m_ : rings_m_).push_back(pin_m);
+        if (has_plate)
+            plates_m_.push_back(pin_m);
+        else
+            rings_.push_back({pin_m, std::max(kRingRadius * side_px_, kRingPerLine * line_px)});
     }
 }
 
@@ -76,10 +83,10 @@ void Supports::list(std::vector<Drawn>& drawn) const {
         plate.down_px = up_.y < 0.0 ? above_px : up_.y > 0.0 ? 0.0 : half_px;
         drawn.push_back(plate);
     }
-    for (const Vec2 pin_m : rings_m_) {
-        Drawn ring = at(pin_m);
-        ring.left_px = ring.right_px = ring.up_px = ring.down_px = kRingRadius * side_px_;
-        drawn.push_back(ring);
+    for (const Ring& ring : rings_) {
+        Drawn circle = at(ring.center_m);
+        circle.left_px = circle.right_px = circle.up_px = circle.down_px = ring.radius_px;
+        drawn.push_back(circle);
     }
 }
 
@@ -98,7 +105,7 @@ void Supports::draw(const Camera& camera, DrawList& list) const {
         draw_plate(at_px(plates_m_[first]), span_m * camera.pixels_per_metre() + length_px, list);
         ++i;
     }
-    for (const Vec2 pin_m : rings_m_) draw_ring(at_px(pin_m), list);
+    for (const Ring& ring : rings_) draw_ring(at_px(ring.center_m), ring.radius_px, list);
 }
 
 void Supports::draw_plate(PixelPoint first, double length_px, DrawList& list) const {
@@ -113,20 +120,21 @@ void Supports::draw_plate(PixelPoint first, double length_px, DrawList& list) co
     const double left = -0.5 * kPlateLength * side_px_;
     const double inset = 0.5 * plate_px;  // of round caps
     list.add_capsule(at(left + inset, inset), at(left + length_px - inset, inset), 0.5 * plate_px);
-    const double step_px = (kPlateLength * side_px_ - height_px) / (kStrokes - 1);
-    const auto strokes = static_cast<int>(std::round((length_px - height_px) / step_px)) + 1;
+    const double step_px =
+        std::max((kPlateLength * side_px_ - height_px) / (kStrokes - 1), kStepPerStroke * hatch_px);
+    const int strokes = std::max(static_cast<int>(std::round((length_px - height_px) / step_px)), 1) + 1;
     for (int k = 0; k < strokes; ++k) {
         const double x = left + k * (length_px - height_px) / (strokes - 1);
         list.add_capsule(at(x, plate_px), at(x + height_px, plate_px + height_px), 0.5 * hatch_px);
     }
 }
 
-void Supports::draw_ring(PixelPoint center, DrawList& list) const {
+void Supports::draw_ring(PixelPoint center, double radius_px, DrawList& list) const {
     constexpr int kSides = 32;
     constexpr double kCosine = 0.98078528040323044913;  // of 2 pi / 32
     constexpr double kSine = 0.19509032201612826785;
     const double ring_px = width_px(kRingWidth, side_px_);
-    Vec2 spoke{kRingRadius * side_px_ - 0.5 * ring_px, 0.0};
+    Vec2 spoke{radius_px - 0.5 * ring_px, 0.0};
     for (int k = 0; k < kSides; ++k) {
         const Vec2 next{kCosine * spoke.x - kSine * spoke.y, kSine * spoke.x + kCosine * spoke.y};
         list.add_capsule({center.x + spoke.x, center.y + spoke.y}, {center.x + next.x, center.y + next.y},

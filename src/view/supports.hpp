@@ -18,8 +18,10 @@ class Supports {
   public:
     /// None.
     Supports() = default;
-    /// `side_px`: the shorter side of the frame. `motion`: the bounds of each particle.
-    Supports(const System& system, Vec2 gravity_m_s2, std::span<const MotionBounds> motion, double side_px);
+    /// `motion`: the bounds of each particle. `side_px`: the shorter side of the frame. `line_px`: the radius
+    /// of the lines of each body.
+    Supports(const System& system, Vec2 gravity_m_s2, std::span<const MotionBounds> motion, double side_px,
+             std::span<const double> line_px);
 
     /// Adds where they are.
     void list(std::vector<Drawn>& drawn) const;
@@ -33,15 +35,21 @@ class Supports {
         double up = 0.0;
     };
 
-    void add_pins(const System& system, const Body& body, std::span<const MotionBounds> motion);
+    struct Ring {
+        Vec2 center_m;
+        double radius_px;
+    };
+
+    void add_pins(const System& system, const Body& body, std::span<const MotionBounds> motion,
+                  double line_px);
     [[nodiscard]] Local local(Vec2 v) const { return {dot(v, left_of(up_)) * -1.0, dot(v, up_)}; }
     void draw_plate(PixelPoint first, double length_px, DrawList& list) const;
-    void draw_ring(PixelPoint center, DrawList& list) const;
+    void draw_ring(PixelPoint center, double radius_px, DrawList& list) const;
 
     double side_px_ = 0.0;
     Vec2 up_;                     ///< a unit vector along an axis, y up; 0 without gravity
     std::vector<Vec2> plates_m_;  ///< positions of pins, plate by plate from left to right
-    std::vector<Vec2> rings_m_;
+    std::vector<Ring> rings_;
 };
 
 }  // namespace corda::view

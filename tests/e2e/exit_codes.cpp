@@ -62,6 +62,31 @@ TEST_F(ExitCodes, TwoForUsage) {
     EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--set", "nonsense"}).exit_code, 2);
 }
 
+TEST_F(ExitCodes, SevenForEmptyPicturesIfTheyAreFailures) {
+    const std::vector<std::string> away{"--set", "camera.center=[100, 0]", "--set", "camera.height=2"};
+    const auto run = [&](std::vector<std::string> arguments, const std::vector<std::string>& more) {
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        arguments.insert(arguments.end(), {"--json", "--force"});
+        return run_corda(arguments);
+    };
+    const std::vector<std::string> still{"still", scene_, "--at", "0", "-o", folder_.file("a.png")};
+    const std::vector<std::string> render{"render", scene_, "-o", video_, "--size", "64x64"};
+    for (const auto& command : {still, render}) {
+        const auto fitted = run(command, {"--fail-empty"});
+        EXPECT_EQ(fitted.exit_code, 0) << fitted.err;
+        EXPECT_THAT(fitted.err, testing::Not(HasSubstr("empty")));
+        const auto warned = run(command, away);
+        EXPECT_EQ(warned.exit_code, 0);
+        EXPECT_THAT(warned.err, HasSubstr("nothing is in view of the camera"));
+        auto failing = away;
+        failing.emplace_back("--fail-empty");
+        EXPECT_EQ(run(command, failing).exit_code, 7);
+    }
+    EXPECT_THAT(run(still, away).out, HasSubstr("\"empty\": 1"));
+    EXPECT_THAT(run(still, away).err, HasSubstr("the picture at 0 s is empty"));
+    EXPECT_THAT(run(render, away).err, HasSubstr("pictures are empty, the first at 0 s"));
+}
+
 TEST_F(ExitCodes, TwoForANumberThatIsNone) {
     struct Option {
         std::vector<std::string> arguments;

@@ -88,7 +88,8 @@ TEST(Camera, APointWithoutExtentAndATinyPictureAreFinite) {
     EXPECT_GT(point.pixels_per_metre(), 0.0);
     const Camera tiny = fitted_camera({}, {}, {drawn(box(0.0, 0.0, 1.0, 1.0), 30.0)}, 1, 1);
     EXPECT_GT(tiny.pixels_per_metre(), 0.0);
-    const Camera corner = fitted_camera({Vec2{0.0, 0.0}, std::nullopt}, {}, {drawn(box(0.0, 0.0, 1.0, 1.0), 30.0)}, 1, 1);
+    const Camera corner =
+        fitted_camera({Vec2{0.0, 0.0}, std::nullopt}, {}, {drawn(box(0.0, 0.0, 1.0, 1.0), 30.0)}, 1, 1);
     EXPECT_GT(corner.pixels_per_metre(), 0.0);
 }
 

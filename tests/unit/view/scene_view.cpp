@@ -107,7 +107,7 @@ TEST(SceneView, APayloadIsABallThatGrowsWithItsMass) {
         const DrawList list = draw({rope}, style);
         ASSERT_EQ(list.layers.size(), 3U);  // rope and ball, outline, inside
         const Capsule& ball = list.capsules[list.layers[1].first_capsule];
-        EXPECT_FLOAT_EQ(ball.radius, std::max(radius, 2.0F)) << mass_kg;
+        EXPECT_FLOAT_EQ(ball.radius, std::max(radius, 3.2F)) << mass_kg;
         EXPECT_EQ(ball.length, 0.0F);
         EXPECT_EQ(list.layers[2].color, list.layers[0].color);
         EXPECT_LT(list.capsules[list.layers[2].first_capsule].radius, ball.radius);
@@ -221,6 +221,24 @@ TEST(SceneView, AClosedRopeHasItsLastLink) {
     EXPECT_EQ(draw(ropes, plain()).capsules.size(), 2U);
     ropes[0].closed = true;
     EXPECT_EQ(draw(ropes, plain()).capsules.size(), 3U);
+}
+
+TEST(SceneView, ASlackLinkStaysInsideThePictureAndATautOneNeedsNoRoom) {
+    const std::vector<Vec2> points_m{{0.0, 0.0}, {0.5, 0.1}};
+    for (const Vec2 gravity_m_s2 : {Vec2{0.0, -1.0}, {0.0, 1.0}, {1.0, 0.0}, {-1.0, 0.5}, {}}) {
+        const DrawList list = draw({slack_string(points_m, {2.0})}, plain(), {}, {}, gravity_m_s2);
+        EXPECT_GE(list.bounds.x0, 4);
+        EXPECT_GE(list.bounds.y0, 4);
+        EXPECT_LE(list.bounds.x1, kWidth - 4);
+        EXPECT_LE(list.bounds.y1, kHeight - 4);
+    }
+    const System system =
+        build_system({{slack_string({{0.0, 0.0}, {0.0, -1.0}, {0.0, -2.0}}, {1.0, 1.0})}}, {});
+    const SceneView view(system, {0.0, -1.0}, plain(), {}, kWidth, kHeight);
+    std::vector<MotionBounds> motion;
+    test::include({0.0, system.x_m, system.y_m}, motion);
+    EXPECT_EQ(view.drawn(motion)[0].bounds.min_m(), (Vec2{0.0, -2.0}));
+    EXPECT_EQ(view.drawn(motion)[0].bounds.max_m(), (Vec2{0.0, 0.0}));
 }
 
 TEST(SceneView, AllThatIsDrawnStaysInsideThePicture) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "corda/reference/ropes.hpp"
 #include "support/draw_list_of.hpp"
 
@@ -9,6 +11,7 @@ namespace corda::view {
 namespace {
 
 constexpr double kSidePx = 1000.0;
+constexpr std::array<double, 1> kLines{4.0};
 constexpr std::size_t kPlateCapsules = 1 + 7;
 constexpr std::size_t kRingCapsules = 32;
 
@@ -26,7 +29,7 @@ DrawList draw(const System& system, Vec2 gravity_m_s2, double higher_m = 0.0) {
     list.width = 1000;
     list.height = 1000;
     list.add_layer({});
-    Supports(system, gravity_m_s2, motion, kSidePx)
+    Supports(system, gravity_m_s2, motion, kSidePx, kLines)
         .draw(Camera({Vec2{0.0, 0.0}, 10.0}, {}, 1000, 1000), list);
     return list;
 }
@@ -91,7 +94,7 @@ TEST(Supports, AreInTheListOfWhatIsDrawn) {
     std::vector<MotionBounds> motion;
     test::include({0.0, system.x_m, system.y_m}, motion);
     std::vector<Drawn> drawn;
-    Supports(system, {0.0, -9.81}, motion, kSidePx).list(drawn);
+    Supports(system, {0.0, -9.81}, motion, kSidePx, kLines).list(drawn);
     ASSERT_EQ(drawn.size(), 1U);
     EXPECT_DOUBLE_EQ(drawn[0].left_px, 45.0);
     EXPECT_DOUBLE_EQ(drawn[0].right_px, 45.0);

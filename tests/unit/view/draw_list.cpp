@@ -1,0 +1,46 @@
+#include "corda/view/draw_list.hpp"
+
+#include <gtest/gtest.h>
+
+namespace corda::view {
+namespace {
+
+/// A list with one capsule.
+DrawList list_of(PixelPoint a, PixelPoint b, double radius_px) {
+    DrawList list;
+    list.width = 100;
+    list.height = 50;
+    list.add_layer({});
+    list.add_capsule(a, b, radius_px);
+    return list;
+}
+
+TEST(DrawLists, ShowNothingIfAllIsOutsideTheFrame) {
+    EXPECT_TRUE(DrawList{}.shows_nothing());
+    EXPECT_FALSE(list_of({50.0, 25.0}, {50.0, 25.0}, 0.1).shows_nothing());
+    EXPECT_FALSE(list_of({-50.0, 25.0}, {150.0, 25.0}, 2.0).shows_nothing());
+    EXPECT_TRUE(list_of({-500.0, 25.0}, {-100.0, 25.0}, 2.0).shows_nothing());
+    // Near enough to be in the list.
+    EXPECT_TRUE(list_of({-3.0, 25.0}, {-3.0, 25.0}, 2.0).shows_nothing());
+    EXPECT_TRUE(list_of({103.0, 25.0}, {103.0, 25.0}, 2.0).shows_nothing());
+    EXPECT_TRUE(list_of({50.0, -3.0}, {50.0, -3.0}, 2.0).shows_nothing());
+    EXPECT_TRUE(list_of({50.0, 53.0}, {90.0, 53.0}, 2.0).shows_nothing());
+    EXPECT_FALSE(list_of({50.0, 51.0}, {90.0, 51.0}, 2.0).shows_nothing());
+}
+
+TEST(DrawLists, ContainTheirCapsulesWithTheirHalos) {
+    DrawList list = list_of({50.0, 25.0}, {60.0, 25.0}, 2.0);
+    EXPECT_EQ(list.bounds.x0, 46);
+    list.add_layer({1, 2, 3});
+    list.add_capsule({50.0, 25.0}, {60.0, 25.0}, 2.0, 5.0);
+    EXPECT_EQ(list.bounds.x0, 41);
+    EXPECT_EQ(list.capsules[1].halo_radius, 7.0F);
+    ASSERT_EQ(list.layers.size(), 2U);
+    EXPECT_EQ(list.layers[1].first_capsule, 1U);
+    EXPECT_EQ(list.layers[1].capsule_count, 1U);
+    list.clear();
+    EXPECT_TRUE(list.layers.empty() && list.capsules.empty() && list.bounds.empty());
+}
+
+}  // namespace
+}  // namespace corda::view
