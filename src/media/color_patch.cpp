@@ -11,7 +11,8 @@ constexpr std::size_t kPatchCount = 5;
 // Deblocking changes 3 pixels, the chroma filter reads 1, and an 8x8 transform block spreads over 8.
 constexpr int kMargin = 8;
 
-/// How much a channel of one colour may vary: a dithered ground that changes slowly is one colour too.
+/// How much a channel may change from one pixel to the next: a dithered ground that changes slowly is no
+/// edge.
 constexpr int kLevels = 4;
 
 bool like_rgb(const std::uint8_t* a, const std::uint8_t* b) {
@@ -19,14 +20,15 @@ bool like_rgb(const std::uint8_t* a, const std::uint8_t* b) {
            std::abs(a[2] - b[2]) <= kLevels;
 }
 
-bool is_uniform(const Image& frame, int x, int y) {
+bool is_even(const Image& frame, int x, int y) {
     const PixelRect block =
         PixelRect{x - kMargin, y - kMargin, x + kPatchSide + kMargin, y + kPatchSide + kMargin}.intersected(
             frame.rect());
-    const std::uint8_t* first = frame.pixel(x, y);
     for (int row = block.y0; row < block.y1; ++row) {
         for (int column = block.x0; column < block.x1; ++column) {
-            if (!like_rgb(first, frame.pixel(column, row))) return false;
+            const std::uint8_t* pixel = frame.pixel(column, row);
+            if (column > block.x0 && !like_rgb(pixel, frame.pixel(column - 1, row))) return false;
+            if (row > block.y0 && !like_rgb(pixel, frame.pixel(column, row - 1))) return false;
         }
     }
     return true;
@@ -81,7 +83,7 @@ std::vector<ColorPatch> choose_patches(const Image& frame) {
         const ColorPatch patch{x, y, mean_rgb(frame, x, y)};
         const bool new_color = !has_color(chosen, patch);
         if (!new_color && spare.size() >= kPatchCount) continue;
-        if (has_place(chosen, patch) || has_place(spare, patch) || !is_uniform(frame, x, y)) continue;
+        if (has_place(chosen, patch) || has_place(spare, patch) || !is_even(frame, x, y)) continue;
         (new_color ? chosen : spare).push_back(patch);
         if (chosen.size() == kPatchCount) return chosen;
     }

@@ -47,9 +47,9 @@ struct GlInfo {
 /// A Film may be used from any thread, but only by one at a time. Films of any sizes work side by side.
 class Film {
   public:
-    /// Plans a scene of method `auto`, which simulates it; a scene that names its method is simulated as far
-    /// as it is asked for. Throws corda::Error: kInvalidScene if no method can run the scene or a field of
-    /// it is not what it is declared to be, kUsage for an unknown backend or a still outside of the scene,
+    /// Plans a scene of method `auto`, which simulates it; another is simulated as far as it is asked for,
+    /// for pictures mostly to its end. Throws corda::Error: kInvalidScene if no method can run it or a field
+    /// of it is not what it is declared to be, kUsage for an unknown backend or a still outside of the scene,
     /// kInterrupted if on_progress asks to stop.
     explicit Film(const Scene& scene, FilmDef def = {});
     Film(Film&&) noexcept;
@@ -71,7 +71,7 @@ class Film {
     /// Bound on the displayed position error in pixels; std::nullopt if the plan has none.
     [[nodiscard]] std::optional<double> error_bound_px() const;
     /// The camera with center and height filled in: given again, it draws the same bytes. Simulates what has
-    /// not been yet, unless the scene gives both.
+    /// not been yet, unless the scene gives both and has no supports.
     [[nodiscard]] const CameraDef& camera() const;
     /// How often the whole motion has been integrated so far, counted by the code that integrates.
     [[nodiscard]] int simulation_passes() const;

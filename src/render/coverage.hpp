@@ -10,7 +10,7 @@
 
 namespace corda::render {
 
-// The arithmetic of a pixel. shaders/capsule.frag and shaders/composite.frag do the same steps, so change
+// The arithmetic of a pixel. shaders/capsule.frag and shaders/paint.frag do the same steps, so change
 // them together. Allowed are +, - and * in single precision with one rounding each, comparisons and integers:
 // what IEEE 754 fixes to the last bit on every driver.
 

@@ -32,10 +32,10 @@ constexpr GLuint kMaskUnit = 2;
 /// cut in two takes twice as long: as many as llvmpipe draws in a tenth of a second on one core, or in the
 /// time in which it passes over all capsules, as every band does.
 int band_rows(const PixelRect& damage, const view::DrawList& list, const Tiles& tiles) {
-    // In units of what a pixel of a layer, or one of the ground that is copied and read, takes: up to 12 ns.
+    // In units of what a pixel of the ground takes to copy and to read, at most 12 ns.
+    constexpr std::size_t kTile = 2 * std::size_t{Tiles::kSidePx} * Tiles::kSidePx;
     constexpr std::size_t kCapsule = 40;
     constexpr std::size_t kBand = 8'000'000;
-    constexpr std::size_t kTile = std::size_t{Tiles::kSidePx} * Tiles::kSidePx;
     const std::size_t row = static_cast<std::size_t>(damage.width()) +
                             tiles.tiles().size() * kTile / static_cast<std::size_t>(damage.height());
     const std::size_t rows = std::max(kBand, kCapsule * list.capsules.size()) / row;

@@ -89,7 +89,8 @@ std::vector<SceneView::Ball> SceneView::balls_of(const Body& body, double line_p
 
 bool SceneView::needs_motion() const {
     const auto& inverse = system_->inverse_mass_1_kg;
-    return style_.supports && std::find(inverse.begin(), inverse.end(), 0.0) != inverse.end();
+    return style_.supports && gravity_m_s2_ != Vec2{} &&
+           std::find(inverse.begin(), inverse.end(), 0.0) != inverse.end();
 }
 
 void SceneView::set_motion(std::span<const MotionBounds> motion) {

@@ -15,9 +15,13 @@ constexpr double kRingRadius = 1.0 / 72.0;
 constexpr double kRingWidth = 1.0 / 270.0;
 constexpr double kThinnestStrokePx = 1.0;
 
+constexpr double kWidestPlate = 3.0;    // of these widths
 constexpr int kStrokes = 7;             // of one plate, in a frame that is large enough
 constexpr double kStepPerStroke = 3.0;  // at least, so that there are gaps
 constexpr double kRingPerLine = 1.6;    // radius, at least, so that it shows on a wide line
+
+/// More would hide what hangs from them; they are dots.
+constexpr std::size_t kMostSupports = 1000;
 
 /// How far above a pin a particle may rise, as a share of the length of its body: the plate still hides it.
 constexpr double kHidden = 0.01;
@@ -40,9 +44,9 @@ Supports::Supports(const System& system, Vec2 gravity_m_s2, std::span<const Moti
     : side_px_(side_px), up_(axis_against(gravity_m_s2)) {
     for (std::size_t i = 0; i < system.bodies.size(); ++i)
         add_pins(system, system.bodies[i], motion, line_px[i]);
-    std::sort(plates_m_.begin(), plates_m_.end(), [this](Vec2 a, Vec2 b) {
-        const Local first = local(a);
-        const Local second = local(b);
+    std::sort(plates_.begin(), plates_.end(), [this](const Plate& a, const Plate& b) {
+        const Local first = local(a.pin_m);
+        const Local second = local(b.pin_m);
         return first.up != second.up ? first.up < second.up : first.along < second.along;
     });
 }
@@ -61,7 +65,8 @@ void Supports::add_pins(const System& system, const Body& body, std::span<const 
         const Vec2 pin_m{system.x_m[i], system.y_m[i]};
         const bool has_plate = up_ != Vec2{} && top_m <= local(pin_m).up + hidden_m;
         if (has_plate)
-            plates_m_.push_back(pin_m);
+            plates_.push_back({pin_m, std::clamp(line_px, width_px(kPlateWidth, side_px_),
+                                                 kWidestPlate * width_px(kPlateWidth, side_px_))});
         else
             rings_.push_back({pin_m, std::max(kRingRadius * side_px_, kRingPerLine * line_px)});
     }
@@ -74,9 +79,9 @@ void Supports::list(std::vector<Drawn>& drawn) const {
         return support;
     };
     const double half_px = 0.5 * kPlateLength * side_px_;
-    const double above_px = (kPlateWidth + kHatchHeight + kHatchWidth) * side_px_;
-    for (const Vec2 pin_m : plates_m_) {
-        Drawn plate = at(pin_m);
+    for (const Plate& hatched : plates_) {
+        const double above_px = hatched.width_px + (kHatchHeight + kHatchWidth) * side_px_;
+        Drawn plate = at(hatched.pin_m);
         plate.left_px = up_.x < 0.0 ? above_px : up_.x > 0.0 ? 0.0 : half_px;
         plate.right_px = up_.x > 0.0 ? above_px : up_.x < 0.0 ? 0.0 : half_px;
         plate.up_px = up_.y > 0.0 ? above_px : up_.y < 0.0 ? 0.0 : half_px;
@@ -93,23 +98,30 @@ void Supports::list(std::vector<Drawn>& drawn) const {
 void Supports::draw(const Camera& camera, DrawList& list) const {
     const double length_px = kPlateLength * side_px_;
     const auto at_px = [&](Vec2 v) { return PixelPoint{camera.x_px(v.x), camera.y_px(v.y)}; };
-    for (std::size_t i = 0; i < plates_m_.size();) {
+    if (plates_.size() + rings_.size() > kMostSupports) {
+        const auto dot = [&](PixelPoint at) { list.add_capsule(at, at, width_px(kRingWidth, side_px_)); };
+        for (const Plate& plate : plates_) dot(at_px(plate.pin_m));
+        for (const Ring& ring : rings_) dot(at_px(ring.center_m));
+        return;
+    }
+    for (std::size_t i = 0; i < plates_.size();) {
         const std::size_t first = i;
-        const auto to_next_px = [&] {
-            return (local(plates_m_[i + 1]).along - local(plates_m_[i]).along) * camera.pixels_per_metre();
+        double plate_px = plates_[first].width_px;
+        const auto touches_next = [&] {
+            const Local here = local(plates_[i].pin_m);
+            const Local next = local(plates_[i + 1].pin_m);
+            return next.up == here.up && (next.along - here.along) * camera.pixels_per_metre() <= length_px;
         };
-        while (i + 1 < plates_m_.size() && local(plates_m_[i + 1]).up == local(plates_m_[first]).up &&
-               to_next_px() <= length_px)
-            ++i;
-        const double span_m = local(plates_m_[i]).along - local(plates_m_[first]).along;
-        draw_plate(at_px(plates_m_[first]), span_m * camera.pixels_per_metre() + length_px, list);
+        while (i + 1 < plates_.size() && touches_next()) plate_px = std::max(plate_px, plates_[++i].width_px);
+        const double span_m = local(plates_[i].pin_m).along - local(plates_[first].pin_m).along;
+        draw_plate(at_px(plates_[first].pin_m), span_m * camera.pixels_per_metre() + length_px, plate_px,
+                   list);
         ++i;
     }
     for (const Ring& ring : rings_) draw_ring(at_px(ring.center_m), ring.radius_px, list);
 }
 
-void Supports::draw_plate(PixelPoint first, double length_px, DrawList& list) const {
-    const double plate_px = width_px(kPlateWidth, side_px_);
+void Supports::draw_plate(PixelPoint first, double length_px, double plate_px, DrawList& list) const {
     const double hatch_px = width_px(kHatchWidth, side_px_);
     const double height_px = kHatchHeight * side_px_;
     // Pixels count y downwards.

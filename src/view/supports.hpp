@@ -35,6 +35,10 @@ class Supports {
         double up = 0.0;
     };
 
+    struct Plate {
+        Vec2 pin_m;
+        double width_px;  ///< it hides the round end of a line
+    };
     struct Ring {
         Vec2 center_m;
         double radius_px;
@@ -43,12 +47,12 @@ class Supports {
     void add_pins(const System& system, const Body& body, std::span<const MotionBounds> motion,
                   double line_px);
     [[nodiscard]] Local local(Vec2 v) const { return {dot(v, left_of(up_)) * -1.0, dot(v, up_)}; }
-    void draw_plate(PixelPoint first, double length_px, DrawList& list) const;
+    void draw_plate(PixelPoint first, double length_px, double plate_px, DrawList& list) const;
     void draw_ring(PixelPoint center, double radius_px, DrawList& list) const;
 
     double side_px_ = 0.0;
-    Vec2 up_;                     ///< a unit vector along an axis, y up; 0 without gravity
-    std::vector<Vec2> plates_m_;  ///< positions of pins, plate by plate from left to right
+    Vec2 up_;                    ///< a unit vector along an axis, y up; 0 without gravity
+    std::vector<Plate> plates_;  ///< in the order in which they may touch
     std::vector<Ring> rings_;
 };
 

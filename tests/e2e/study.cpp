@@ -85,10 +85,11 @@ TEST_F(Study, PicturesHaveTheirErrorsAndTimes) {
     const json& presets = chapter["tables"][1]["rows"];
     ASSERT_EQ(presets.size(), 6U);
     for (const json& row : presets) {
-        EXPECT_GT(row["psnr_db"], 50.0) << row;         // measured 60.6 .. 69.8
-        EXPECT_LT(row["one_minus_ssim"], 2e-4) << row;  // measured 6.0e-6 .. 4.7e-5
+        // The codec smooths the dithered ground.
+        EXPECT_GT(row["psnr_db"], 50.0) << row;         // measured 53.6 .. 57.1
+        EXPECT_LT(row["one_minus_ssim"], 1e-2) << row;  // measured 1.7e-3 .. 3.7e-3
     }
-    EXPECT_GT(presets[0]["bytes"], presets[5]["bytes"]);  // ultrafast 18702, slow 4160
+    EXPECT_GT(presets[0]["bytes"], presets[5]["bytes"]);  // ultrafast 39933, slow 8299
     expect_files_of(report, out_);
 }
 

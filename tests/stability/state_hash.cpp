@@ -62,12 +62,19 @@ const std::map<std::string, std::uint64_t> kHashes{
     {"ring by rattle", 0x49aafdfe7a35c3f0U},       {"ring by auto", 0x49aafdfe7a35c3f0U},
     {"cloth by rattle", 0x2c9261994cac0f08U},      {"cloth by auto", 0xfd4a5dc8cb37ce6bU},
     {"materials as it is", 0x159b5cae9b46db56U},   {"materials by auto", 0x159b5cae9b46db56U},
-    {"materials by exact", 0xcd7ac8f61e43d823U},
+    {"materials by exact", 0xcd7ac8f61e43d823U},   {"bare as it is", 0x728f58973f35f733U},
+    {"bare by auto", 0x728f58973f35f733U},         {"bare by rattle", 0x60ff7bf9742172e9U},
+    {"paper as it is", 0x566355ed19aa7d19U},       {"paper by auto", 0x28eba35e1c217a6dU},
+    {"paper by rattle", 0x87cf9cba05dd20c0U},      {"pendulums as it is", 0x5a1d32230bf0c263U},
+    {"pendulums by auto", 0x5a1d32230bf0c263U},    {"pendulums by exact", 0x5c98b7c12179b864U},
+    {"pendulums by rattle", 0xfd6fe7fd266fe4c3U},  {"slack as it is", 0x01963fc93f43e408U},
+    {"slack by auto", 0x01963fc93f43e408U},        {"slack by exact", 0x8d96cf8bec8989e9U},
 };
 
 /// What a method refuses, with the reason in the message.
 const std::map<std::string, std::string> kRefused{
     {"materials by rattle", "use method auto or exact"},  // its string
+    {"slack by rattle", "use method auto or exact"},
 };
 
 /// The methods that a scene is run by besides its own: all of them where its bodies are chains.

@@ -117,6 +117,7 @@ TEST(Stages, LeaveNoContextBehindForOtherThreads) {
 Scene large_scene() {
     Scene scene = scene_of(4096, 2048);
     scene.camera = {Vec2{0.35, -0.25}, 0.4, 0.0};
+    scene.style.rope_width_px = 1000.0;
     return scene;
 }
 

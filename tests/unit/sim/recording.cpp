@@ -50,6 +50,12 @@ TEST(Recording, KeepsTheBoundsOfStatesBeyondItsBudget) {
     EXPECT_LT(recording.bounds().min_m().x, 0.0);  // it has swung to the other side
     EXPECT_LT(recording.bounds().min_m().y, -0.9);
     EXPECT_GT(recording.bounds().max_m().x, 0.98);
+    ASSERT_EQ(recording.particle_bounds().size(), kParticles);
+    MotionBounds all;
+    for (const MotionBounds& particle : recording.particle_bounds()) all.include(particle);
+    EXPECT_EQ(all.min_m(), recording.bounds().min_m());
+    EXPECT_EQ(all.max_m(), recording.bounds().max_m());
+    EXPECT_EQ(recording.particle_bounds()[0].min_m(), recording.particle_bounds()[0].max_m());  // pinned
 }
 
 TEST(Recording, BoundsFramesAlone) {
@@ -80,7 +86,10 @@ TEST(Recording, OfBodiesEndsWithTheFirstThatDiverges) {
     EXPECT_EQ(state.time_s, 0.2);
     EXPECT_EQ(state.x_m[1], state.x_m[1 + kParticles]);
     EXPECT_NE(state.x_m[1], state.x_m[2 + kParticles]);
+    const MotionBounds& last = whole.particle_bounds().back();
+    EXPECT_TRUE(last.min_m().x <= state.x_m.back() && state.x_m.back() <= last.max_m().x);
     whole.clear();
+    EXPECT_TRUE(whole.particle_bounds().front().empty());
     EXPECT_EQ(whole.size(), 0U);
 }
 
@@ -113,6 +122,7 @@ TEST(Recording, MeasuresTheSteppingAloneAndForgetsItWithTheStates) {
     EXPECT_EQ(recording.size(), 0U);
     EXPECT_FALSE(recording.holds(0));
     EXPECT_TRUE(recording.bounds().empty());
+    EXPECT_TRUE(recording.particle_bounds().front().empty());
     EXPECT_EQ(recording.diagnostics().steps, 0U);
 }
 

@@ -69,6 +69,8 @@ TEST(System, SharesItsArraysAmongRopes) {
     EXPECT_EQ(system.bodies[1].first_particle, 4U);
     EXPECT_EQ(system.bars[3].a, 4U);
     EXPECT_EQ(system.mass_kg[6], 6.0);
+    EXPECT_EQ(system.bodies[0].payload_kg, 0.0);
+    EXPECT_EQ(system.bodies[1].payload_kg, 5.0);
     EXPECT_TRUE(system.is_pinned(5));
     EXPECT_EQ(system.vx_m_s[5], 0.0);  // a pinned particle has no velocity
     EXPECT_EQ(system.vy_m_s[6], 6.0);

@@ -241,6 +241,19 @@ TEST(SceneView, ASlackLinkStaysInsideThePictureAndATautOneNeedsNoRoom) {
     EXPECT_EQ(view.drawn(motion)[0].bounds.max_m(), (Vec2{0.0, 0.0}));
 }
 
+TEST(SceneView, NeedsTheMotionForSupportsThatMayBePlates) {
+    RopeDef rope = reference::straight_rope(1, 1.0, 0.0);
+    const auto needs = [&rope](Vec2 gravity_m_s2, const StyleDef& style) {
+        const System system = build_system({{rope}}, {});
+        return SceneView(system, gravity_m_s2, style, {}, kWidth, kHeight).needs_motion();
+    };
+    EXPECT_TRUE(needs({0.0, -1.0}, StyleDef{}));
+    EXPECT_FALSE(needs({}, StyleDef{}));
+    EXPECT_FALSE(needs({0.0, -1.0}, plain()));
+    rope.pinned = {};
+    EXPECT_FALSE(needs({0.0, -1.0}, StyleDef{}));
+}
+
 TEST(SceneView, AllThatIsDrawnStaysInsideThePicture) {
     StyleDef style;
     style.markers = Markers::kPinned;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <utility>
 
 #include "corda/reference/ropes.hpp"
 #include "support/draw_list_of.hpp"
@@ -11,13 +12,12 @@ namespace corda::view {
 namespace {
 
 constexpr double kSidePx = 1000.0;
-constexpr std::array<double, 1> kLines{4.0};
 constexpr std::size_t kPlateCapsules = 1 + 7;
 constexpr std::size_t kRingCapsules = 32;
 
 /// The supports of a system whose particles go from their start to `higher_m` above it, at 100 pixels per
 /// metre.
-DrawList draw(const System& system, Vec2 gravity_m_s2, double higher_m = 0.0) {
+DrawList draw(const System& system, Vec2 gravity_m_s2, double higher_m = 0.0, double line_px = 4.0) {
     std::vector<MotionBounds> motion;
     State state{0.0, system.x_m, system.y_m};
     test::include(state, motion);
@@ -29,7 +29,7 @@ DrawList draw(const System& system, Vec2 gravity_m_s2, double higher_m = 0.0) {
     list.width = 1000;
     list.height = 1000;
     list.add_layer({});
-    Supports(system, gravity_m_s2, motion, kSidePx, kLines)
+    Supports(system, gravity_m_s2, motion, kSidePx, std::array{line_px})
         .draw(Camera({Vec2{0.0, 0.0}, 10.0}, {}, 1000, 1000), list);
     return list;
 }
@@ -84,9 +84,29 @@ TEST(Supports, ThatTouchAreOnePlate) {
     EXPECT_NEAR(joined.capsules[0].length, 160.0F - 1000.0F / 240.0F, 1e-2);
 }
 
+TEST(Supports, HideTheRoundEndsOfWideLines) {
+    const System system = rope_of({{0.0, 0.0}, {0.3, -1.0}}, {0});
+    for (const auto& [line_px, plate_px] : {std::pair{4.0, 1000.0 / 240.0}, {8.0, 8.0}, {60.0, 12.5}}) {
+        EXPECT_FLOAT_EQ(draw(system, {0.0, -9.81}, 0.0, line_px).capsules[0].radius,
+                        static_cast<float>(0.5 * plate_px));
+    }
+    const DrawList ring = draw(system, {}, 0.0, 60.0);
+    EXPECT_GT(ring.bounds.width(), 120);
+}
+
 TEST(Supports, OfAClampAreOne) {
     const System system = rope_of({{0.0, 0.0}, {0.1, -0.1}, {0.2, -0.5}}, {0, 1});
     EXPECT_EQ(draw(system, {0.0, -9.81}).capsules.size(), kPlateCapsules);
+}
+
+TEST(Supports, OfThousandsOfPinsAreDots) {
+    NetDef net;
+    for (std::uint32_t i = 0; i <= 1000; ++i) {
+        net.points_m.push_back({0.0, -0.001 * i});
+        net.pinned.push_back(i);
+        if (i > 0) net.bars.push_back({i - 1, i});
+    }
+    EXPECT_EQ(draw(build_system({}, {{net}}), {0.0, -9.81}).capsules.size(), 1001U);
 }
 
 TEST(Supports, AreInTheListOfWhatIsDrawn) {
@@ -94,7 +114,7 @@ TEST(Supports, AreInTheListOfWhatIsDrawn) {
     std::vector<MotionBounds> motion;
     test::include({0.0, system.x_m, system.y_m}, motion);
     std::vector<Drawn> drawn;
-    Supports(system, {0.0, -9.81}, motion, kSidePx, kLines).list(drawn);
+    Supports(system, {0.0, -9.81}, motion, kSidePx, std::array{4.0}).list(drawn);
     ASSERT_EQ(drawn.size(), 1U);
     EXPECT_DOUBLE_EQ(drawn[0].left_px, 45.0);
     EXPECT_DOUBLE_EQ(drawn[0].right_px, 45.0);
