@@ -249,7 +249,6 @@ void FrameRenderer::paint(const Batch& batch) const {
     glTextureBarrier();  // it reads what it draws on
     glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.tile_count),
                                       static_cast<GLuint>(batch.first_tile));
-    glTextureBarrier();
 }
 
 }  // namespace corda::render

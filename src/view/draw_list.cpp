@@ -35,4 +35,18 @@ void DrawList::add_capsule(PixelPoint a, PixelPoint b, double radius_px, double 
     ++layers.back().capsule_count;
 }
 
+void DrawList::add_ring(PixelPoint center, double radius_px, double width_px) {
+    constexpr int kSides = 64;
+    // Of 2 pi / 64; C libraries differ in their last bits.
+    constexpr double kCosine = 0.99518472667219688624;
+    constexpr double kSine = 0.09801714032956060199;
+    Vec2 spoke{radius_px, 0.0};
+    for (int k = 0; k < kSides; ++k) {
+        const Vec2 next{kCosine * spoke.x - kSine * spoke.y, kSine * spoke.x + kCosine * spoke.y};
+        add_capsule({center.x + spoke.x, center.y + spoke.y}, {center.x + next.x, center.y + next.y},
+                    0.5 * width_px);
+        spoke = next;
+    }
+}
+
 }  // namespace corda::view

@@ -56,6 +56,8 @@ struct DrawList {
     /// Adds the capsule around the segment from `a` to `b` to the last layer, if it can touch the frame. Its
     /// halo extends `halo_px` beyond `radius_px`.
     void add_capsule(PixelPoint a, PixelPoint b, double radius_px, double halo_px = 0.0);
+    /// Adds a circle of that radius, drawn with a pen of `width_px`, as a polygon.
+    void add_ring(PixelPoint center, double radius_px, double width_px);
 };
 
 /// How far beyond its radii a capsule can still touch a pixel, in pixels: half a pixel of smooth edge, and

@@ -24,6 +24,9 @@ constexpr double kHaloPerWidth = 0.35;
 constexpr double kBarWidthPerRopeWidth = 0.25;
 constexpr double kThinnestBarPx = 1.0;
 
+/// More balls than that have no outlines, which are many capsules each.
+constexpr std::size_t kMostOutlines = 1000;
+
 /// Ropes of so few links are pendulums: their masses are what swings.
 constexpr std::size_t kLinksOfPendulum = 3;
 
@@ -67,6 +70,7 @@ SceneView::SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& st
         const double width_px = own.width_px.value_or(body.is_net ? net_width_px : rope_width_px_);
         bodies_.push_back({own.color ? *own.color : look_.palette[next_color++ % look_.palette.size()],
                            0.5 * width_px, balls_of(body, 0.5 * width_px)});
+        ball_count_ += bodies_.back().balls.size();
     }
 }
 
@@ -171,18 +175,14 @@ void SceneView::draw_body(std::size_t i, const Positions& positions, DrawList& l
             list.add_capsule(positions.px(link.a), positions.px(link.b), look.radius_px, halo_px);
     }
     if (look.balls.empty()) return;
+    const double outline_px = kOutlineWidth * side_px_;
+    const auto inside_px = [&](const Ball& ball) { return ball.radius_px - 0.5 * outline_px; };
     for (const Ball& ball : look.balls)
-        list.add_capsule(positions.px(ball.particle), positions.px(ball.particle), ball.radius_px, halo_px);
+        list.add_capsule(positions.px(ball.particle), positions.px(ball.particle), inside_px(ball), halo_px);
+    if (ball_count_ > kMostOutlines) return;
     list.add_layer(look_.outline);
     for (const Ball& ball : look.balls)
-        list.add_capsule(positions.px(ball.particle), positions.px(ball.particle), ball.radius_px);
-    list.add_layer(look.color);
-    const double outline_px = kOutlineWidth * side_px_;
-    for (const Ball& ball : look.balls) {
-        const double inner_px = ball.radius_px - outline_px;
-        if (inner_px > 0.0)
-            list.add_capsule(positions.px(ball.particle), positions.px(ball.particle), inner_px);
-    }
+        list.add_ring(positions.px(ball.particle), inside_px(ball), outline_px);
 }
 
 void SceneView::draw_slack(const Bar& link, double radius_px, double halo_px, const Positions& positions,

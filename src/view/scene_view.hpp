@@ -84,6 +84,7 @@ class SceneView {
     double side_px_;  ///< the shorter one
     double rope_width_px_;
     std::vector<BodyLook> bodies_;
+    std::size_t ball_count_ = 0;
     Supports supports_;
 };
 

@@ -118,7 +118,9 @@ void Supports::draw(const Camera& camera, DrawList& list) const {
                    list);
         ++i;
     }
-    for (const Ring& ring : rings_) draw_ring(at_px(ring.center_m), ring.radius_px, list);
+    const double ring_px = width_px(kRingWidth, side_px_);
+    for (const Ring& ring : rings_)
+        list.add_ring(at_px(ring.center_m), ring.radius_px - 0.5 * ring_px, ring_px);
 }
 
 void Supports::draw_plate(PixelPoint first, double length_px, double plate_px, DrawList& list) const {
@@ -138,20 +140,6 @@ void Supports::draw_plate(PixelPoint first, double length_px, double plate_px, D
     for (int k = 0; k < strokes; ++k) {
         const double x = left + k * (length_px - height_px) / (strokes - 1);
         list.add_capsule(at(x, plate_px), at(x + height_px, plate_px + height_px), 0.5 * hatch_px);
-    }
-}
-
-void Supports::draw_ring(PixelPoint center, double radius_px, DrawList& list) const {
-    constexpr int kSides = 32;
-    constexpr double kCosine = 0.98078528040323044913;  // of 2 pi / 32
-    constexpr double kSine = 0.19509032201612826785;
-    const double ring_px = width_px(kRingWidth, side_px_);
-    Vec2 spoke{radius_px - 0.5 * ring_px, 0.0};
-    for (int k = 0; k < kSides; ++k) {
-        const Vec2 next{kCosine * spoke.x - kSine * spoke.y, kSine * spoke.x + kCosine * spoke.y};
-        list.add_capsule({center.x + spoke.x, center.y + spoke.y}, {center.x + next.x, center.y + next.y},
-                         0.5 * ring_px);
-        spoke = next;
     }
 }
 

@@ -48,7 +48,6 @@ class Supports {
                   double line_px);
     [[nodiscard]] Local local(Vec2 v) const { return {dot(v, left_of(up_)) * -1.0, dot(v, up_)}; }
     void draw_plate(PixelPoint first, double length_px, double plate_px, DrawList& list) const;
-    void draw_ring(PixelPoint center, double radius_px, DrawList& list) const;
 
     double side_px_ = 0.0;
     Vec2 up_;                    ///< a unit vector along an axis, y up; 0 without gravity

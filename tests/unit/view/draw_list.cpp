@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace corda::view {
 namespace {
 
@@ -40,6 +42,20 @@ TEST(DrawLists, ContainTheirCapsulesWithTheirHalos) {
     EXPECT_EQ(list.layers[1].capsule_count, 1U);
     list.clear();
     EXPECT_TRUE(list.layers.empty() && list.capsules.empty() && list.bounds.empty());
+}
+
+TEST(DrawLists, HaveRingsThatClose) {
+    DrawList list = list_of({50.0, 25.0}, {50.0, 25.0}, 1.0);
+    list.add_ring({50.0, 25.0}, 20.0, 3.0);
+    ASSERT_EQ(list.capsules.size(), 1U + 64U);
+    for (std::size_t i = 1; i < list.capsules.size(); ++i) {
+        const Capsule& side = list.capsules[i];
+        EXPECT_EQ(side.radius, 1.5F);
+        EXPECT_NEAR(std::hypot(side.ax - 50.0F, side.ay - 25.0F), 20.0F, 1e-3);  // ends are rounded to 1/1024
+    }
+    const Capsule& last = list.capsules.back();
+    EXPECT_NEAR(last.ax + last.length * last.ux, 70.0F, 1e-3);
+    EXPECT_NEAR(last.ay + last.length * last.uy, 25.0F, 2e-3);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSidePx = 1000.0;
 constexpr std::size_t kPlateCapsules = 1 + 7;
-constexpr std::size_t kRingCapsules = 32;
+constexpr std::size_t kRingCapsules = 64;
 
 /// The supports of a system whose particles go from their start to `higher_m` above it, at 100 pixels per
 /// metre.
