@@ -6,8 +6,8 @@
 
 namespace corda::render {
 
-/// Writes row `y` of a ground, `width` pixels of RGBA, in a frame of `height` rows. In integers: a colour
-/// between two levels is a fixed pattern of both, an ordered dither of 8 x 8 pixels.
+/// Writes row `y` of a ground, `width` pixels of RGBA, in a frame of `height` rows. In integers: where a
+/// colour goes from one level to the next, a fixed pattern of 8 x 8 pixels mixes both.
 void write_ground_row(const Ground& ground, int y, int width, int height, std::uint8_t* rgba);
 
 }  // namespace corda::render

@@ -44,16 +44,17 @@ TEST(Grounds, ChangeEvenlyFromTopToBottom) {
     }
 }
 
-TEST(Grounds, AreAFixedPatternOfTwoLevels) {
+TEST(Grounds, MixTwoLevelsInAnEighthOfTheRows) {
     const auto high = [](int y) {
-        const auto rgba = row({{10, 0, 0}, {11, 0, 0}}, y, 8, 8);
+        const auto rgba = row({{10, 0, 0}, {11, 0, 0}}, y, 8, 32);
         int count = 0;
         for (int x = 0; x < 8; ++x) count += rgba[4 * x] - 10;
         return count;
     };
-    EXPECT_EQ(high(0), 0);
-    EXPECT_EQ(high(3), 4);
-    EXPECT_EQ(high(7), 8);
+    for (int y = 0; y < 14; ++y) EXPECT_EQ(high(y), 0) << y;
+    EXPECT_GT(high(15), 0);
+    EXPECT_LT(high(15), 8);
+    for (int y = 18; y < 32; ++y) EXPECT_EQ(high(y), 8) << y;
 }
 
 }  // namespace
