@@ -46,7 +46,8 @@ GoesOn Motion::asking(const OnProgress& on_progress) const {
 Status Motion::advance_to(double time_s, bool is_new, const OnProgress& on_progress) {
     const GoesOn goes_on = asking(on_progress);
     try {
-        return is_new ? recording_.advance(*run_, timeline_, now_s, goes_on) : run_->advance_to(time_s, goes_on);
+        return is_new ? recording_.advance(*run_, timeline_, now_s, goes_on)
+                      : run_->advance_to(time_s, goes_on);
     } catch (...) {
         run_.reset();  // it must not be used further; the next that is asked for starts anew
         throw;

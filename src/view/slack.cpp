@@ -9,8 +9,8 @@ namespace {
 /// An arc of a few pixels needs few steps.
 int step_count(double length_px) {
     constexpr double kPixelsPerStep = 5.0;
-    constexpr double kMost = (Arc::kMostPoints - 1) / 2;
-    return 2 * static_cast<int>(std::clamp(length_px / (2.0 * kPixelsPerStep), 3.0, kMost));
+    constexpr int kMostPairs = (Arc::kMostPoints - 1) / 2;
+    return 2 * std::clamp(static_cast<int>(std::min(length_px / (2.0 * kPixelsPerStep), 1e6)), 3, kMostPairs);
 }
 
 }  // namespace
