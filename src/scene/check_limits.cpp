@@ -129,8 +129,7 @@ bool add_size(const TableReader& body, const BodySize& size, double bytes, std::
     if (gibibytes <= Limits::kGibibytes) return true;
     body.add_problem(
         fmt::format("the ropes and nets up to this one take some {:.0f} GiB of memory, over the limit of "
-                    "{:g}; give fewer "
-                    "particles, or method relaxation, which takes less",
+                    "{:g}; give fewer particles, or method relaxation, which takes less",
                     gibibytes, Limits::kGibibytes));
     return false;
 }
