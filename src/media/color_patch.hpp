@@ -11,10 +11,10 @@ namespace corda::media {
 /// Side of a colour patch in pixels: one macroblock.
 inline constexpr int kPatchSide = 16;
 
-/// Up to five blocks of `frame`, at multiples of 16, each without an edge, as are the 8
-/// pixels around it (as far as the frame goes), so that neither deblocking nor the chroma filter mixes in
-/// another colour. A ground that changes slowly has no edges. Blocks of different colours are preferred; then
-/// corners, centre and edges.
+/// Up to five blocks of `frame`, at multiples of 16, without an edge in them or in the 8 pixels around them
+/// (as far as the frame goes), so that neither deblocking nor the chroma filter mixes in another colour. A
+/// ground that changes slowly has no edges. Blocks of different colours are preferred; then those in corners,
+/// in the centre and at the sides.
 [[nodiscard]] std::vector<ColorPatch> choose_patches(const Image& frame);
 
 /// R'G'B' (0 .. 255, not clipped) of BT.709 limited range Y'CbCr: the inverse of convert_to_yuv420.

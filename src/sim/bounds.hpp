@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 
 #include "corda/sim/defs.hpp"
 #include "corda/sim/system.hpp"
@@ -16,14 +17,7 @@ class MotionBounds {
         max_ = {std::max(max_.x, x_m), std::max(max_.y, y_m)};
     }
     void include(const State& state) {
-        for (const double x_m : state.x_m) {
-            min_.x = std::min(min_.x, x_m);
-            max_.x = std::max(max_.x, x_m);
-        }
-        for (const double y_m : state.y_m) {
-            min_.y = std::min(min_.y, y_m);
-            max_.y = std::max(max_.y, y_m);
-        }
+        for (std::size_t i = 0; i < state.x_m.size(); ++i) include(state.x_m[i], state.y_m[i]);
     }
     void include(const MotionBounds& other) {
         min_ = {std::min(min_.x, other.min_.x), std::min(min_.y, other.min_.y)};

@@ -64,14 +64,18 @@ std::optional<Capsule> make_capsule(PixelPoint a, PixelPoint b, double radius_px
     return capsule;
 }
 
-PixelRect capsule_bounds(const Capsule& capsule, int width, int height) {
+Surroundings surroundings(const Capsule& capsule, float extent) {
     const float bx = capsule.ax + capsule.ux * capsule.length;
     const float by = capsule.ay + capsule.uy * capsule.length;
-    const float extent = std::max(capsule.radius, capsule.halo_radius) + kEdgeMargin;
-    const PixelRect box{static_cast<int>(std::floor(std::min(capsule.ax, bx) - extent)),
-                        static_cast<int>(std::floor(std::min(capsule.ay, by) - extent)),
-                        static_cast<int>(std::ceil(std::max(capsule.ax, bx) + extent)),
-                        static_cast<int>(std::ceil(std::max(capsule.ay, by) + extent))};
+    return {std::min(capsule.ax, bx) - extent, std::min(capsule.ay, by) - extent,
+            std::max(capsule.ax, bx) + extent, std::max(capsule.ay, by) + extent};
+}
+
+PixelRect capsule_bounds(const Capsule& capsule, int width, int height) {
+    const auto [x0, y0, x1, y1] =
+        surroundings(capsule, std::max(capsule.radius, capsule.halo_radius) + kEdgeMargin);
+    const PixelRect box{static_cast<int>(std::floor(x0)), static_cast<int>(std::floor(y0)),
+                        static_cast<int>(std::ceil(x1)), static_cast<int>(std::ceil(y1))};
     return box.intersected({0, 0, width, height});
 }
 

@@ -14,6 +14,15 @@ namespace corda::view {
 [[nodiscard]] std::optional<Capsule> make_capsule(PixelPoint a, PixelPoint b, double radius_px, int width,
                                                   int height, double halo_px = 0.0);
 
+/// The upright box around all that is within `extent` of the capsule's segment, in pixels.
+struct Surroundings {
+    float x0;
+    float y0;
+    float x1;
+    float y1;
+};
+[[nodiscard]] Surroundings surroundings(const Capsule& capsule, float extent);
+
 /// The part of the frame that the capsule may touch.
 [[nodiscard]] PixelRect capsule_bounds(const Capsule& capsule, int width, int height);
 

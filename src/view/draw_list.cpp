@@ -8,12 +8,9 @@ namespace corda::view {
 
 bool DrawList::shows_nothing() const {
     return std::all_of(capsules.begin(), capsules.end(), [this](const Capsule& capsule) {
-        const float bx = capsule.ax + capsule.ux * capsule.length;
-        const float by = capsule.ay + capsule.uy * capsule.length;
-        return std::max(capsule.ax, bx) + capsule.radius <= 0.0F ||
-               std::max(capsule.ay, by) + capsule.radius <= 0.0F ||
-               std::min(capsule.ax, bx) - capsule.radius >= static_cast<float>(width) ||
-               std::min(capsule.ay, by) - capsule.radius >= static_cast<float>(height);
+        const Surroundings box = surroundings(capsule, capsule.radius);
+        return box.x1 <= 0.0F || box.y1 <= 0.0F || box.x0 >= static_cast<float>(width) ||
+               box.y0 >= static_cast<float>(height);
     });
 }
 

@@ -82,10 +82,11 @@ void Supports::list(std::vector<Drawn>& drawn) const {
     for (const Plate& hatched : plates_) {
         const double above_px = hatched.width_px + (kHatchHeight + kHatchWidth) * side_px_;
         Drawn plate = at(hatched.pin_m);
-        plate.left_px = up_.x < 0.0 ? above_px : up_.x > 0.0 ? 0.0 : half_px;
-        plate.right_px = up_.x > 0.0 ? above_px : up_.x < 0.0 ? 0.0 : half_px;
-        plate.up_px = up_.y > 0.0 ? above_px : up_.y < 0.0 ? 0.0 : half_px;
-        plate.down_px = up_.y < 0.0 ? above_px : up_.y > 0.0 ? 0.0 : half_px;
+        const auto extent_px = [&](double up) { return up > 0.0 ? above_px : up < 0.0 ? 0.0 : half_px; };
+        plate.left_px = extent_px(-up_.x);
+        plate.right_px = extent_px(up_.x);
+        plate.up_px = extent_px(up_.y);
+        plate.down_px = extent_px(-up_.y);
         drawn.push_back(plate);
     }
     for (const Ring& ring : rings_) {

@@ -99,6 +99,7 @@ bool GraphConstraints::is_rigid() const {
 }
 
 GraphConstraints::Plate GraphConstraints::plate_of(const System& system) const {
+    if (held_.size() > 1) return {HUGE_VAL, 0.0};  // nothing turns it
     const std::size_t count = system.particle_count();
     Plate plate;
     double mass_kg = 0.0;
@@ -352,7 +353,7 @@ double GraphConstraints::square_frequency(std::span<const double> multiplier) co
         double pull_j = 0.0;
         for (std::size_t k = 0; k < links_.size(); ++k)
             pull_j += multiplier[k] * links_[k].rest_m * links_[k].rest_m;
-        return held_.size() > 1 ? 0.0 : std::abs(pull_j) / plate_->inertia_kg_m2;
+        return std::abs(pull_j) / plate_->inertia_kg_m2;
     }
     std::fill(load_.begin(), load_.end(), 0.0);
     for (std::size_t k = 0; k < links_.size(); ++k) {
@@ -368,8 +369,7 @@ double GraphConstraints::square_frequency(std::span<const double> multiplier) co
 double GraphConstraints::expected_square_frequency(const System& system, double acceleration_m_s2,
                                                    std::span<const double> multiplier) const {
     if (!plate_) return ConstraintSolver::expected_square_frequency(system, acceleration_m_s2, multiplier);
-    const double hanging =
-        held_.size() > 1 ? 0.0 : acceleration_m_s2 * plate_->lever_kg_m / plate_->inertia_kg_m2;
+    const double hanging = acceleration_m_s2 * plate_->lever_kg_m / plate_->inertia_kg_m2;
     return std::max(hanging, 2.0 * square_frequency(multiplier));
 }
 
