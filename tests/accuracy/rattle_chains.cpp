@@ -35,7 +35,7 @@ TEST(SwingingChainsR5, HaveTheTipsOfTheReference) {
     }
 }
 
-TEST(ReportRopeR11, StaysOnTheReference) {
+TEST(RattleOnR11, StaysOnTheReference) {
     test::RattleRun run(reference::report_rope(40), WorldDef{{0.0, -9.8}, 10.0, 0.0}, 8, 1.0 / 600.0);
     double largest_m = 0.0;
     for (const test::ReportFrame& frame : test::read_report_swing()) {

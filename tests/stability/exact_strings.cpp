@@ -153,7 +153,7 @@ TEST(FreeFall, OfARopeWithoutTensionIsNoEvent) {
     EXPECT_EQ(string.part().events(), 0U);
 }
 
-TEST(Bits, AreTheSameWhateverTimesAreAskedFor) {
+TEST(StringBits, AreTheSameWhateverTimesAreAskedFor) {
     RopeDef rope = slack_rope(12);
     WatchedString one(rope);
     ASSERT_TRUE(one.run(1.5, 2));
