@@ -78,6 +78,8 @@ struct GlOptions {
 
 /// Says what method `auto` became and how far it can be trusted.
 void report_plan(const Console& console, const Film& film);
+/// Warns if a method that the scene names took one of several ways. To be called when the motion is known.
+void warn_of_branch(const Console& console, const Film& film);
 
 /// What every report on a film begins with: method, size, proof, camera and passes; null for what a film does
 /// not have. Simulates what has not been yet.

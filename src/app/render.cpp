@@ -113,6 +113,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     const double wall_s = now_s() - start_s;
     console.info(fmt::format("{} frames in {:.3g} s, {:.1f} per second; verified", rendered.frames, wall_s,
                              static_cast<double>(rendered.frames) / wall_s));
+    warn_of_branch(console, film);
     console.result(options.output);
     console.report(report(film, options, rendered, wall_s, gl.renderer));
     const EmptyPictures empty{options.empty.are_failures, rendered.empty_frames, rendered.first_empty_s};

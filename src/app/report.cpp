@@ -65,9 +65,10 @@ void warn_of_horizon(const Console& console, const Film& film) {
     } else {
         console.warning(
             fmt::format("predictability{} ends at {:.6g} s: from there two runs of high precision differ "
-                        "by more than {:g} px, because the motion magnifies the least differences; what is "
-                        "drawn after it is one possible motion",
-                        whose, *plan.horizon_s, std::get<AutoDef>(film.scene().solver).tolerance_px));
+                        "by more than {:g} px, because the motion magnifies the least differences{}; what "
+                        "is drawn after it is one possible motion",
+                        whose, *plan.horizon_s, std::get<AutoDef>(film.scene().solver).tolerance_px,
+                        first->reason == PlanReason::kGraph ? " or bars come into line" : ""));
     }
 }
 
@@ -102,6 +103,16 @@ void report_plan(const Console& console, const Film& film) {
     warn_of_unbounded(console, film);
     warn_of_plates(console, film);
     warn_of_horizon(console, film);
+}
+
+void warn_of_branch(const Console& console, const Film& film) {
+    const std::optional<double> branched_s = film.diagnostics().branched_s;
+    if (!branched_s || std::holds_alternative<AutoDef>(film.scene().solver)) return;
+    console.warning(fmt::format(
+        "before {:.6g} s bars of a net lay in line, from where it could go on in several ways; what is drawn "
+        "after it is one of them; another solver.step may pass, and method auto says how far its own is "
+        "right",
+        *branched_s));
 }
 
 void EmptyPictures::add_to(CLI::App& command) {

@@ -157,6 +157,7 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     if (csv) csv->commit();
     console.info(
         fmt::format("{}; largest strain {:.3g}", cost_text(film), film.diagnostics().largest.strain));
+    warn_of_branch(console, film);
     if (to_file) console.result(options.output);
     console.report(report(film));
     return ExitCode::kOk;

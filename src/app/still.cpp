@@ -142,6 +142,7 @@ ExitCode still(const Console& console, const StillOptions& options) {
     if (!options.dry_run) {
         report_gl(console, film.gl());
         write_shots(shots, options, film, empty);
+        warn_of_branch(console, film);
     }
     nlohmann::json json = film_json(film);
     json["outputs"] = nlohmann::json::array();

@@ -83,9 +83,6 @@ std::string describe(const BodyPlan& plan) {
         case PlanReason::kDependent:
             return "bars depend on each other at the start in such a way that no method can tell the true "
                    "motion; there is no bound of the error";
-        case PlanReason::kCollapsing:
-            return "bars of a closed rope or a net come into line during the motion: their tensions are then "
-                   "undetermined and rattle stops; there is no bound of the error";
     }
     return "";
 }

@@ -42,6 +42,11 @@ double BodySolvers::energy_j() const {
     return energy_j;
 }
 
+bool BodySolvers::has_branched() const {
+    return std::any_of(parts_.begin(), parts_.end(),
+                       [](const Part& part) { return part.solver->has_branched(); });
+}
+
 std::optional<Loads> BodySolvers::loads() const {
     std::optional<Loads> largest = Loads{};
     for (const Part& part : parts_) largest = loads_of_both(largest, part.solver->loads());

@@ -24,6 +24,7 @@ class BodySolvers final : public Solver {
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;
+    [[nodiscard]] bool has_branched() const override;
     [[nodiscard]] std::optional<Loads> loads() const override;
     /// The sum over all bodies.
     [[nodiscard]] std::uint64_t steps() const override;

@@ -87,6 +87,10 @@ void Recording::add_figures(const Recording& body) {
     Figures& largest = diagnostics_.largest;
     largest.strain = std::max(largest.strain, body.diagnostics_.largest.strain);
     largest.loads = loads_of_both(largest.loads, body.diagnostics_.largest.loads);
+    if (body.diagnostics_.branched_s) {
+        diagnostics_.branched_s =
+            std::min(*body.diagnostics_.branched_s, diagnostics_.branched_s.value_or(HUGE_VAL));
+    }
     largest.energy_error = std::nullopt;
     for (std::size_t i = 0; i < size(); ++i) {
         energy_change_j_[i] += body.energy_change_j_[i];

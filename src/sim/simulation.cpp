@@ -169,6 +169,7 @@ void Simulation::observe() {
     figures_.energy_error = sim::energy_error(energy_change_j(), energy_scale_j_);
     figures_.loads = solver_->loads();
     largest_ = sim::larger_figures(largest_, figures_);
+    if (!branched_s_ && solver_->has_branched()) branched_s_ = state_.time_s;
 }
 
 std::vector<MethodDef> Simulation::methods() const {
@@ -178,7 +179,7 @@ std::vector<MethodDef> Simulation::methods() const {
 }
 
 Diagnostics Simulation::diagnostics() const {
-    return {solver_->steps(), largest_};
+    return {solver_->steps(), largest_, branched_s_};
 }
 
 }  // namespace corda

@@ -30,6 +30,9 @@ struct Figures {
 struct Diagnostics {
     std::uint64_t steps = 0;
     Figures largest;
+    /// The first time at which the run had passed a point from which the motion could go on in several ways,
+    /// rigid bars of a net that lay in line: from there it is one of them. std::nullopt if there was none.
+    std::optional<double> branched_s;
 };
 
 /// A scene in motion: particles and bars, what moves them, and figures of every state that it reaches. Bodies
@@ -84,6 +87,7 @@ class Simulation {
     double energy_scale_j_ = 0.0;
     Figures figures_;
     Figures largest_;
+    std::optional<double> branched_s_;
 };
 
 /// A method that was tried, and how far its positions differ from those of a tighter run.
@@ -96,16 +100,15 @@ struct Trial {
     double error_bound_m = 0.0;         ///< up to `reached_s`
     double reached_s = 0.0;             ///< the last frame time up to which it was within the tolerance
     bool to_the_end = false;            ///< within the tolerance at all frame times
-    bool diverged = false;              ///< the run or a check diverged after `reached_s`
+    bool diverged = false;              ///< the run or a check diverged or branched after `reached_s`
 };
 
 /// Why a body is moved by its method.
 enum class PlanReason {
-    kNamed,       ///< the scene names the method
-    kExact,       ///< `exact` can move it
-    kGraph,       ///< rigid bars of closed ropes or nets, for which `rattle` is made
-    kDependent,   ///< the bars depend on each other at the start, in a way that no method can follow
-    kCollapsing,  ///< the bars come to depend on each other during the motion
+    kNamed,      ///< the scene names the method
+    kExact,      ///< `exact` can move it
+    kGraph,      ///< rigid bars of closed ropes or nets, for which `rattle` is made
+    kDependent,  ///< the bars depend on each other at the start, in a way that no method can follow
 };
 
 /// The method that moves a body and, if `auto` chose it, the proof that it is good enough.

@@ -29,6 +29,9 @@ class Solver {
     /// Kinetic plus potential energy in joules at the solver's own time nearest to the last `advance_to`.
     [[nodiscard]] virtual double energy_j() const = 0;
 
+    /// Whether the run has passed a point from which the motion could go on in several ways: see Diagnostics.
+    [[nodiscard]] virtual bool has_branched() const { return false; }
+
     /// What an energy error is compared with, in joules; see the function of that name in forces.hpp.
     [[nodiscard]] double energy_scale_j() const { return energy_scale_j_; }
 

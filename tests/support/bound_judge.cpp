@@ -24,7 +24,6 @@ class Watch {
 std::string why_no_bound(const Plan& plan) {
     for (const BodyPlan& body : plan.bodies) {
         if (body.reason == PlanReason::kDependent) return "bars depend on each other";
-        if (body.reason == PlanReason::kCollapsing) return "bars come into line";
     }
     return "none claimed";
 }

@@ -165,15 +165,15 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
 
 /// Makes `relaxation` the plan, without a bound on its error, with enough sweeps to keep a cloth of some
 /// thirty rows from sagging like rubber.
-void fall_back(const System& system, const WorldDef& world, const PlanDef& def, PlanReason reason,
-               BodyPlan& plan, Recording& recording) {
+void fall_back(const System& system, const WorldDef& world, const PlanDef& def, BodyPlan& plan,
+               Recording& recording) {
     constexpr int kSweeps = 8;
     constexpr double kSteps = 4.0;  // in the nominal interval
     plan.method = RelaxationDef{kNominalIntervalSeconds / kSteps, kSweeps};
     plan.error_bound_m = std::nullopt;
     plan.horizon_s = std::nullopt;
     plan.diverges = false;
-    plan.reason = reason;
+    plan.reason = PlanReason::kDependent;
     record(system, world, def, plan, recording);
 }
 
@@ -261,7 +261,7 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
     const bool can_fall_back = !refusal(system, world, RelaxationDef{}, interval_s, goes_on);
     if (const auto rattle_refusal = refusal(system, world, RattleDef{}, interval_s, goes_on)) {
         if (!can_fall_back) throw Refusal(*rattle_refusal);
-        fall_back(system, world, def, PlanReason::kDependent, plan, recording);
+        fall_back(system, world, def, plan, recording);
         return plan;
     }
     plan.reason = PlanReason::kGraph;
@@ -270,11 +270,8 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
     } catch (const Refusal&) {
         // A check, whose start is turned, may take bars to depend on each other that the run does not.
         if (!can_fall_back) throw;
-        fall_back(system, world, def, PlanReason::kDependent, plan, recording);
-        return plan;
+        fall_back(system, world, def, plan, recording);
     }
-    if (plan.diverges && can_fall_back)
-        fall_back(system, world, def, PlanReason::kCollapsing, plan, recording);
     return plan;
 }
 

@@ -64,6 +64,7 @@ class Check {
     Check& operator=(const Check&) = delete;
 
     Status advance_to(double time_s, StopCheck& stop) { return solver_->advance_to(time_s, state_, stop); }
+    [[nodiscard]] bool has_branched() const { return solver_->has_branched(); }
     [[nodiscard]] std::uint64_t steps() const { return solver_->steps(); }
     /// Where it has a particle, in the scene's directions.
     [[nodiscard]] Vec2 position_m(std::size_t i) const {
@@ -220,10 +221,12 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
             trial.diverged = is_checked;
             break;
         }
+        if (is_checked && run.diagnostics().branched_s) trial.diverged = true;
         if (!is_checked || !def.timeline.is_frame(static_cast<std::size_t>(i))) continue;
         for (Check& check : checks) {
             if (i == 0) ++passes;
-            trial.diverged = trial.diverged || check.advance_to(time_s, stop) == Status::kDiverged;
+            trial.diverged =
+                trial.diverged || check.advance_to(time_s, stop) == Status::kDiverged || check.has_branched();
         }
         if (!trial.diverged) comparison.add(time_s, difference_m(run.state(), checks), recording.bounds());
         is_checked = !trial.diverged && !comparison.has_parted();

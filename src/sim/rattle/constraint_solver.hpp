@@ -70,8 +70,21 @@ class ConstraintSolver {
     [[nodiscard]] virtual bool move(const Stage& stage, Motion& motion, std::span<double> impulse,
                                     StopCheck& stop) = 0;
 
+    /// Moves on by `span_s` from where bars have come to depend on each other, so that move() finds no way:
+    /// to the positions nearest to x + span v, weighted with the masses, at which the bars have their
+    /// lengths, and with the part of v that turns no bar into its length there. Of first order. False if
+    /// there are none near. Whether the impulses of the last move() tell the tensions. Those of bars near the
+    /// line in which they depend on each other are finite, but differences of the squares of a stage's angles
+    /// over that of the line.
+    [[nodiscard]] virtual bool tells_tensions() const { return true; }
+    [[nodiscard]] virtual bool leap(double span_s, Motion& motion, StopCheck& stop) {
+        static_cast<void>(span_s), static_cast<void>(motion), static_cast<void>(stop);
+        return false;
+    }
+
     /// Solves (G W G') z = right in place, where G has the rows d_k . (v_b - v_a) at these positions and W is
-    /// the inverse masses. False if the matrix is singular.
+    /// the inverse masses. If bars depend on each other there, of least size in the directions left open.
+    /// False if it cannot.
     [[nodiscard]] virtual bool solve(const Motion& motion, std::span<double> right, StopCheck& stop) = 0;
 
     /// The square of the largest angular frequency, 1 / s^2, of small motions about a state whose bars have

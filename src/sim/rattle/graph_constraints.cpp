@@ -1,6 +1,5 @@
 #include "corda/sim/rattle/graph_constraints.hpp"
 
-#include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
 
@@ -24,9 +23,9 @@ constexpr double kDependentPivot = 1e-12;
 /// the bar: 2e-14 to 2e-11 in a grid of 200 x 200 with both diagonals, while independent bars leave 3e-9.
 constexpr double kRaise = 1e-14;
 constexpr double kImpliedPivot = 1e-11;
-/// A stage from bars with a pivot below this share may take them across the line in which they depend on each
-/// other, a hundredth of a radian away.
-constexpr double kNearLine = 1e-4;
+/// Bars whose smallest pivot is below this share of that at the start are near a line in which they depend on
+/// each other: some hundredth of a radian.
+constexpr double kNearLine = 1e-3;
 /// From such a start, Newton's method proper converges in five steps or not at all.
 constexpr int kMaxCrossingSteps = 10;
 /// In the line two motions branch off, and the true one keeps its velocities. Those of bars may change in the
@@ -35,6 +34,9 @@ constexpr int kMaxCrossingSteps = 10;
 constexpr double kCrossingChange = 0.05;
 constexpr double kShrink = 0.1;
 constexpr double kRoundedChange = 1e-11;
+/// In a leap, the share by which all diagonal entries are raised, so that what the bars leave undetermined
+/// stays as it is.
+constexpr double kLeapRaise = 1e-10;
 /// By how much of its square the length of an implied bar may be off: rounding, magnified by the others.
 constexpr double kImpliedTolerance = 1e-9;
 /// By how much of the largest squared speed at which a bar turns an implied bar may bend away. Bars that do
@@ -54,6 +56,11 @@ Rates rates(const Link& link, const Motion& motion) {
             ux * ux + uy * uy};
 }
 
+void stand_still(Motion& motion) {
+    for (auto* part : {&motion.vx_m_s, &motion.vy_m_s, &motion.vx_lost_m_s, &motion.vy_lost_m_s})
+        std::fill(part->begin(), part->end(), 0.0);
+}
+
 }  // namespace
 
 GraphConstraints::GraphConstraints(const System& system, const GoesOn& goes_on)
@@ -71,6 +78,7 @@ GraphConstraints::GraphConstraints(const System& system, const GoesOn& goes_on)
         determined = is_regular(start, stop) && (is_rigid() || stay_implied(start, stop));
     }
     if (determined) {
+        near_line_ = kNearLine * smallest_pivot_;
         if (is_rigid()) plate_ = plate_of(system);
         return;
     }
@@ -153,9 +161,7 @@ bool GraphConstraints::stay_implied(Motion motion, StopCheck& stop) {
         if (!(std::abs(turn) <= kBendTolerance * link.rest_m * std::sqrt(largest))) return false;
         bends.push_back(square);
     }
-    // From here on accelerations in the place of velocities.
-    std::fill(motion.vx_m_s.begin(), motion.vx_m_s.end(), 0.0);
-    std::fill(motion.vy_m_s.begin(), motion.vy_m_s.end(), 0.0);
+    stand_still(motion);  // from here on accelerations in the place of velocities
     if (!meet()) return false;
     for (std::size_t k = 0; k < implied_.size(); ++k) {
         if (!(std::abs(bends[k] + rates(implied_[k], motion).along) <= kBendTolerance * largest))
@@ -206,6 +212,7 @@ void GraphConstraints::analyse() {
     }
     factors_.analyzePattern(matrix_);
     is_factorised_ = false;
+    crossing_.resize(0, 0);
 }
 
 bool GraphConstraints::factorise(const Motion& motion, double raise, StopCheck& stop) {
@@ -236,13 +243,14 @@ bool GraphConstraints::is_regular(const Motion& motion, StopCheck& stop) {
     if (!factorise(motion, 0.0, stop)) return false;
     const auto& order = factors_.permutationP().indices();
     const auto pivots = factors_.vectorD();
-    smallest_pivot_ = 1.0;
+    double smallest = 1.0;
+    smallest_pivot_ = 0.0;
     for (Eigen::Index k = 0; k < matrix_.cols(); ++k) {
-        const double diagonal = matrix_.coeff(k, k);
-        // Negated, so that a NaN fails.
-        if (!(pivots[order[k]] > kDependentPivot * diagonal)) return false;
-        smallest_pivot_ = std::min(smallest_pivot_, pivots[order[k]] / diagonal);
+        const double pivot = pivots[order[k]] / matrix_.coeff(k, k);
+        if (!(pivot > kDependentPivot)) return false;  // negated, so that a NaN fails
+        smallest = std::min(smallest, pivot);
     }
+    smallest_pivot_ = smallest;
     return true;
 }
 
@@ -275,32 +283,39 @@ bool GraphConstraints::correct(double span_s, const Motion& motion) {
 
 bool GraphConstraints::move(const Stage& stage, Motion& motion, std::span<double> impulse, StopCheck& stop) {
     kick(stage, motion);
-    if (!is_regular(motion, stop)) return false;
-    const bool is_near_line = smallest_pivot_ < kNearLine;
-    if (is_near_line) kicked_ = motion;
-    apply(impulse.data(), motion);
-    bool met = correct(stage.span_s, motion);
-    for (int i = 0; i < kMaxCorrections && !met; ++i) {
-        right_ = factors_.solve(right_);
-        for (std::size_t k = 0; k < impulse.size(); ++k) impulse[k] += right_[static_cast<Eigen::Index>(k)];
-        apply(right_.data(), motion);
-        met = correct(stage.span_s, motion);
+    if (!is_regular(motion, stop) || smallest_pivot_ < near_line_) {
+        if (!cross(stage.span_s, motion, impulse, stop)) return false;
+    } else {
+        apply(impulse.data(), motion);
+        bool met = correct(stage.span_s, motion);
+        for (int i = 0; i < kMaxCorrections && !met; ++i) {
+            right_ = factors_.solve(right_);
+            for (std::size_t k = 0; k < impulse.size(); ++k)
+                impulse[k] += right_[static_cast<Eigen::Index>(k)];
+            apply(right_.data(), motion);
+            met = correct(stage.span_s, motion);
+        }
+        if (!met) return false;
     }
-    if (!met && !(is_near_line && cross(stage.span_s, motion, impulse, stop))) return false;
     drift(stage.span_s, motion);
     return meet_implied(motion);
 }
 
+bool GraphConstraints::tells_tensions() const {
+    return smallest_pivot_ >= near_line_;
+}
+
 bool GraphConstraints::cross(double span_s, Motion& motion, std::span<double> impulse, StopCheck& stop) {
-    motion = kicked_;
     std::fill(impulse.begin(), impulse.end(), 0.0);
-    Eigen::SparseLU<Eigen::SparseMatrix<double>> factors;
-    std::vector<Eigen::Triplet<double>> triplets;
-    const auto coupling = [&](std::uint32_t row, std::uint32_t column, double factor) {
+    if (crossing_.rows() == 0) {
+        crossing_ = matrix_.selfadjointView<Eigen::Lower>();
+        crossing_factors_.analyzePattern(crossing_);
+    }
+    const auto couple = [&](std::uint32_t row, std::uint32_t column, double factor) {
         const auto [a, b, rest_m] = links_[row];
         const double ex = dx_m_[row] + span_s * (motion.vx_m_s[b] - motion.vx_m_s[a]);
         const double ey = dy_m_[row] + span_s * (motion.vy_m_s[b] - motion.vy_m_s[a]);
-        triplets.emplace_back(row, column, factor * (ex * dx_m_[column] + ey * dy_m_[column]));
+        crossing_.coeffRef(row, column) = factor * (ex * dx_m_[column] + ey * dy_m_[column]);
     };
     const double fastest = std::sqrt(largest_square(motion));
     Motion last = motion;
@@ -308,16 +323,13 @@ bool GraphConstraints::cross(double span_s, Motion& motion, std::span<double> im
     bool met = correct(span_s, motion);
     for (int i = 0; i < kMaxCrossingSteps && !met; ++i) {
         stop.spend(StopCheck::kUpdates);
-        triplets.clear();
         for (const auto& [row, column, factor] : entries_) {
-            coupling(row, column, factor);
-            if (row != column) coupling(column, row, factor);
+            couple(row, column, factor);
+            if (row != column) couple(column, row, factor);
         }
-        Eigen::SparseMatrix<double> matrix(matrix_.rows(), matrix_.cols());
-        matrix.setFromTriplets(triplets.begin(), triplets.end());
-        factors.compute(matrix);
-        if (factors.info() != Eigen::Success) return false;
-        right_ = factors.solve(right_);
+        crossing_factors_.factorize(crossing_);
+        if (crossing_factors_.info() != Eigen::Success) return false;
+        right_ = crossing_factors_.solve(right_);
         for (std::size_t k = 0; k < impulse.size(); ++k) impulse[k] += right_[static_cast<Eigen::Index>(k)];
         apply(right_.data(), motion);
         double change = 0.0;
@@ -334,6 +346,38 @@ bool GraphConstraints::cross(double span_s, Motion& motion, std::span<double> im
     return met;
 }
 
+bool GraphConstraints::leap(double span_s, Motion& motion, StopCheck& stop) {
+    drift(span_s, motion);
+    const Motion ahead = motion;
+    double largest = HUGE_VAL;
+    for (int i = 0; i < kMaxCorrections && largest > kExcessTolerance; ++i) {
+        if (!factorise(motion, kLeapRaise, stop)) return false;
+        largest = 0.0;
+        for (std::size_t k = 0; k < links_.size(); ++k) {
+            const double square = links_[k].rest_m * links_[k].rest_m;
+            const double excess = dx_m_[k] * dx_m_[k] + dy_m_[k] * dy_m_[k] - square;
+            right_[static_cast<Eigen::Index>(k)] = 0.5 * excess;
+            largest = std::max(largest, std::abs(excess) / square);
+        }
+        right_ = factors_.solve(right_);
+        stand_still(motion);
+        apply(right_.data(), motion);
+        drift(1.0, motion);
+    }
+    // Negated, so that a NaN fails.
+    if (!(largest <= kImpliedTolerance) || !meet_implied(motion)) return false;
+    motion.vx_m_s = ahead.vx_m_s;
+    motion.vy_m_s = ahead.vy_m_s;
+    motion.vx_lost_m_s = ahead.vx_lost_m_s;
+    motion.vy_lost_m_s = ahead.vy_lost_m_s;
+    if (!factorise(motion, kLeapRaise, stop)) return false;
+    for (std::size_t k = 0; k < links_.size(); ++k)
+        right_[static_cast<Eigen::Index>(k)] = rates(links_[k], motion).along;
+    right_ = factors_.solve(right_);
+    apply(right_.data(), motion);
+    return right_.allFinite();
+}
+
 double GraphConstraints::largest_square(const Motion& motion) const {
     double largest = 0.0;
     for (const Link& link : links_) largest = std::max(largest, rates(link, motion).square);
@@ -341,7 +385,7 @@ double GraphConstraints::largest_square(const Motion& motion) const {
 }
 
 bool GraphConstraints::solve(const Motion& motion, std::span<double> right, StopCheck& stop) {
-    if (!is_regular(motion, stop)) return false;
+    if (!is_regular(motion, stop) && !factorise(motion, kLeapRaise, stop)) return false;
     std::copy(right.begin(), right.end(), right_.data());
     right_ = factors_.solve(right_);
     std::copy_n(right_.data(), right.size(), right.begin());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/SparseLU>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -28,6 +29,8 @@ class GraphConstraints final : public ConstraintSolver {
 
     [[nodiscard]] bool move(const Stage& stage, Motion& motion, std::span<double> impulse,
                             StopCheck& stop) override;
+    [[nodiscard]] bool tells_tensions() const override;
+    [[nodiscard]] bool leap(double span_s, Motion& motion, StopCheck& stop) override;
     [[nodiscard]] bool solve(const Motion& motion, std::span<double> right, StopCheck& stop) override;
     [[nodiscard]] double square_frequency(std::span<const double> multiplier) const override;
     [[nodiscard]] double expected_square_frequency(const System& system, double acceleration_m_s2,
@@ -66,8 +69,8 @@ class GraphConstraints final : public ConstraintSolver {
     [[nodiscard]] bool correct(double span_s, const Motion& motion);
     /// Of the differences of velocities of links' ends, the largest square.
     [[nodiscard]] double largest_square(const Motion& motion) const;
-    /// Takes the stage from kicked_ anew by Newton's method proper, whose matrix follows the bars, on which
-    /// side of their line they may be. False if it does not converge or may have taken the other branch.
+    /// Takes the stage after its kick by Newton's method proper, whose matrix follows the bars, on which side
+    /// of their line they may be. False if it does not converge or may have taken the other branch.
     [[nodiscard]] bool cross(double span_s, Motion& motion, std::span<double> impulse, StopCheck& stop);
 
     bool holds_rows_;
@@ -81,8 +84,10 @@ class GraphConstraints final : public ConstraintSolver {
     std::vector<double> dx_m_;  ///< bar vectors at the start of a stage
     std::vector<double> dy_m_;
     Eigen::VectorXd right_;
-    double smallest_pivot_ = 1.0;       ///< of the last factorisation, as a share of its diagonal entry
-    Motion kicked_;                     ///< scratch: a stage's start after its kick
+    double smallest_pivot_ = 1.0;           ///< of the last factorisation, as a share of its diagonal entry
+    double near_line_ = 0.0;                ///< of smallest_pivot_
+    Eigen::SparseMatrix<double> crossing_;  ///< that of cross(); empty until it is needed
+    Eigen::SparseLU<Eigen::SparseMatrix<double>> crossing_factors_;
     mutable std::vector<double> load_;  ///< scratch, one entry per particle
 };
 

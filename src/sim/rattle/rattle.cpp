@@ -123,9 +123,14 @@ bool Rattle::advance(double span_s, Trajectory& trajectory, History* history, St
             if (!joins) continue;
             --trajectory.level;
         } else {
-            if (trajectory.level == kMaxLevel) return false;
             if (stable) std::swap(trajectory, part_start_);
-            ++trajectory.level;
+            if (trajectory.level == kMaxLevel) {
+                const auto rest = static_cast<double>(kSmallestParts - done);
+                if (!leap(span_s * power_of_half(kMaxLevel) * rest, trajectory, stop)) return false;
+                done = kSmallestParts;
+            } else {
+                ++trajectory.level;
+            }
         }
         if (history != nullptr) history->count = 0;
     }
@@ -144,7 +149,9 @@ bool Rattle::take_part(double part_s, Trajectory& trajectory, History* history, 
         if (!constraints_->move(stage, trajectory.motion, impulse_, stop)) return false;
         trajectory.last_span_s = span_s;
         if (std::abs(kick_s) < kShortKick * std::abs(span_s)) continue;
-        for (std::size_t k = 0; k < impulse_.size(); ++k) trajectory.multiplier[k] = impulse_[k] / kick_s;
+        if (constraints_->tells_tensions()) {
+            for (std::size_t k = 0; k < impulse_.size(); ++k) trajectory.multiplier[k] = impulse_[k] / kick_s;
+        }
         if (history != nullptr)
             std::copy(trajectory.multiplier.begin(), trajectory.multiplier.end(),
                       multipliers(*history, i, 0));
@@ -154,6 +161,30 @@ bool Rattle::take_part(double part_s, Trajectory& trajectory, History* history, 
         if (!(trajectory.frequency_1_s * part_s <= kGuardShare * composition_.stable_omega_h)) return false;
     }
     if (history != nullptr) history->count = std::min(history->count + 1, kHistory);
+    return true;
+}
+
+bool Rattle::leap(double span_s, Trajectory& trajectory, StopCheck& stop) {
+    has_branched_ = true;
+    if (!complete(trajectory, stop)) return false;
+    const double decay = forces_.decay(span_s);
+    for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
+        if (inverse_mass_1_kg_[i] == 0.0) continue;
+        Vec2 push_m_s = span_s * forces_.uniform_m_s2();
+        if (is_elastic())
+            push_m_s = push_m_s + span_s * inverse_mass_1_kg_[i] * Vec2{force_x_n_[i], force_y_n_[i]};
+        output_.vx_m_s[i] = decay * (output_.vx_m_s[i] + push_m_s.x);
+        output_.vy_m_s[i] = decay * (output_.vy_m_s[i] + push_m_s.y);
+    }
+    if (!constraints_->leap(span_s, output_, stop)) return false;
+    const double elastic_square = is_elastic() ? find_forces(output_) : 0.0;
+    if (!find_tensions()) return false;
+    trajectory.motion = output_;
+    trajectory.last_span_s = 0.0;
+    trajectory.multiplier = tension_over_length_n_m_;
+    trajectory.level = 0;
+    trajectory.frequency_1_s =
+        std::sqrt(constraints_->square_frequency(trajectory.multiplier) + elastic_square);
     return true;
 }
 

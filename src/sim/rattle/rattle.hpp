@@ -33,7 +33,9 @@ namespace corda::sim {
 ///
 /// A grid step is taken in 2, 4, 8, ... parts if it is unstable (step times a bound on the largest frequency,
 /// which follows from the tensions and the elastic stiffness), if a bar turns by more than about 60 degrees
-/// in a stage, or if Newton's method does not converge. If 2^24 parts are not enough, the run has diverged.
+/// in a stage, or if Newton's method does not converge. If 2^24 parts are not enough, bars of a net have
+/// come into line: the rest of the step is one leap (ConstraintSolver::leap); if there is none, the run has
+/// diverged.
 class Rattle final : public Solver {
   public:
     /// If `def` names no step, `frame_interval_s` is divided by the smallest whole number that makes a stable
@@ -49,6 +51,7 @@ class Rattle final : public Solver {
     /// depend on each other: they could share the load in any way, and no way is truer than another.
     [[nodiscard]] std::optional<Loads> loads() const override;
     [[nodiscard]] std::uint64_t steps() const override { return step_; }
+    [[nodiscard]] bool has_branched() const override { return has_branched_; }
 
     [[nodiscard]] std::vector<MethodDef> methods() const override { return {RattleDef{order_, step_s_}}; }
 
@@ -76,6 +79,8 @@ class Rattle final : public Solver {
     /// Advances by `span_s` in as many parts as are needed.
     [[nodiscard]] bool advance(double span_s, Trajectory& trajectory, History* history, StopCheck& stop);
     [[nodiscard]] bool take_part(double part_s, Trajectory& trajectory, History* history, StopCheck& stop);
+    /// Takes the rest of a step from where its parts find no way.
+    [[nodiscard]] bool leap(double span_s, Trajectory& trajectory, StopCheck& stop);
     [[nodiscard]] double* multipliers(History& history, std::size_t stage, int age) const;
     void guess(std::size_t stage, double kick_s, const Trajectory& trajectory, History* history);
     [[nodiscard]] bool is_elastic() const { return !elastic_.empty(); }
@@ -97,6 +102,7 @@ class Rattle final : public Solver {
     double step_s_ = 0.0;
     std::uint64_t step_ = 0;
     std::uint64_t parts_ = 0;
+    bool has_branched_ = false;
     std::vector<double> mass_kg_;
     std::vector<double> inverse_mass_1_kg_;
     Trajectory grid_;        ///< at step_ * step_s_
