@@ -117,6 +117,11 @@ struct RattleDef {
 
     int order = 4;                      ///< one of kOrders
     std::optional<double> step_s = {};  ///< > 0; default: a stable step that divides the frame interval
+    /// Largest frequency times step over what is stable, 0 < guard <= 1: steps are divided to stay below it.
+    /// Stability ends at 1, but energy changes long before when a free end whips: N=50 from the horizontal,
+    /// 60 s, order 8, energy error over m g L 7e-2 at 0.9, 2e-3 at 0.5, 6e-5 at 0.3, 3e-6 at 0.2, 1e-8 at
+    /// 0.1.
+    double guard = 0.2;
 
     friend bool operator==(const RattleDef&, const RattleDef&) = default;
 };

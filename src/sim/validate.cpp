@@ -101,6 +101,7 @@ void validate(const MethodDef& method) {
         require(std::find(orders.begin(), orders.end(), rattle->order) != orders.end(), what,
                 "order is none that there is");
         require(is_step(rattle->step_s), what, "step_s is not > 0");
+        require(rattle->guard > 0.0 && rattle->guard <= 1.0, what, "guard is not within 0 .. 1");
     } else if (const auto* relaxation = std::get_if<RelaxationDef>(&method)) {
         require(is_step(relaxation->step_s), what, "step_s is not > 0");
         require(relaxation->sweeps >= 1, what, "sweeps is not >= 1");

@@ -14,7 +14,7 @@ namespace corda::sim {
 /// - Chains, and bodies that stretch: `exact` at the loosest sufficient tolerance, checked by runs ten
 ///   thousand times tighter, as far as rounding lets them be.
 /// - Nets and closed ropes of rigid bars: orders of `rattle` and halved steps, cheapest first, each checked by
-///   the next order (8 by 8) at a third of its step.
+///   the next order (8 by 8) at a third of its step and guard.
 /// - Bars that depend on each other at the start alone: `relaxation`, without a bound on its error.
 ///
 /// The bound is three times the largest difference of run and checks, and what these cannot see (section 3.6

@@ -13,15 +13,10 @@
 namespace corda::sim {
 namespace {
 
-/// Largest frequency times step, as a share of what is stable. Stability ends at 1, but energy changes long
-/// before when a free end whips: N=50 from the horizontal, 60 s, order 8, energy error over m g L 7e-2 at
-/// 0.9, 2e-3 at 0.5, 6e-5 at 0.3, 3e-6 at 0.2, 1e-8 at 0.1. The bound on the frequency is itself some 7 % too
-/// large.
-constexpr double kGuardShare = 0.2;
-/// Two parts are joined again if the doubled span stays below this share. Less than kGuardShare, because
+/// Two parts are joined again if the doubled span stays below this share of the guard. Below 1, because
 /// otherwise parts would change with every ripple, and each change costs some energy.
-constexpr double kJoinShare = 0.16;
-/// A step that no scene names stays within kGuardShare under this many times the weight that hangs below each
+constexpr double kJoinShare = 0.8;
+/// A step that no scene names stays within the guard under this many times the weight that hangs below each
 /// link: the tension that a pendulum released from the horizontal reaches.
 constexpr double kLoadFactor = 3.0;
 /// A step is divided into at most 2^24 parts, so that a step of 1 s can follow frequencies of 1e7 / s.
@@ -50,6 +45,7 @@ Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def,
                const GoesOn& goes_on)
     : Solver(sim::energy_scale_j(system, forces.on_particles(system)), forces.conserve_energy()),
       order_(def.order),
+      guard_(def.guard),
       composition_(composition(def.order)),
       constraints_(make_constraint_solver(system, goes_on)),
       forces_(forces),
@@ -81,7 +77,7 @@ Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def,
         const double expected_square = constraints_->expected_square_frequency(
                                            system, kLoadFactor * forces_.strength_m_s2(), grid_.multiplier) +
                                        std::max(elastic_square, elastic_.common_square_frequency());
-        const double stable_s = kGuardShare * composition_.stable_omega_h / std::sqrt(expected_square);
+        const double stable_s = guard_ * composition_.stable_omega_h / std::sqrt(expected_square);
         step_s_ = frame_interval_s / std::max(1.0, std::ceil(frame_interval_s / stable_s));
     }
     assert(step_s_ > 0.0);
@@ -108,12 +104,12 @@ Status Rattle::advance_to(double time_s, State& state, StopCheck& stop) {
 }
 
 bool Rattle::advance(double span_s, Trajectory& trajectory, History* history, StopCheck& stop) {
-    const double limit = composition_.stable_omega_h;
+    const double limit = guard_ * composition_.stable_omega_h;
     std::uint64_t done = 0;
     while (done < kSmallestParts) {
         const std::uint64_t part = kSmallestParts >> trajectory.level;
         const double part_s = span_s * power_of_half(trajectory.level);
-        const bool stable = trajectory.frequency_1_s * part_s <= kGuardShare * limit;
+        const bool stable = trajectory.frequency_1_s * part_s <= limit;
         if (stable) part_start_ = trajectory;
         if (stable && take_part(part_s, trajectory, history, stop)) {
             done += part;
@@ -158,7 +154,7 @@ bool Rattle::take_part(double part_s, Trajectory& trajectory, History* history, 
         trajectory.frequency_1_s =
             std::sqrt(constraints_->square_frequency(trajectory.multiplier) + elastic_square);
         // Negated, so that a NaN fails.
-        if (!(trajectory.frequency_1_s * part_s <= kGuardShare * composition_.stable_omega_h)) return false;
+        if (!(trajectory.frequency_1_s * part_s <= guard_ * composition_.stable_omega_h)) return false;
     }
     if (history != nullptr) history->count = std::min(history->count + 1, kHistory);
     return true;

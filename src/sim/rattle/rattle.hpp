@@ -32,10 +32,10 @@ namespace corda::sim {
 /// depend on the times that are asked for.
 ///
 /// A grid step is taken in 2, 4, 8, ... parts if it is unstable (step times a bound on the largest frequency,
-/// which follows from the tensions and the elastic stiffness), if a bar turns by more than about 60 degrees
-/// in a stage, or if Newton's method does not converge. If 2^24 parts are not enough, bars of a net have
-/// come into line: the rest of the step is one leap (ConstraintSolver::leap); if there is none, the run has
-/// diverged.
+/// some 7 % too large, which follows from the tensions and the elastic stiffness), if a bar turns by more
+/// than about 60 degrees in a stage, or if Newton's method does not converge. If 2^24 parts are not enough,
+/// bars of a net have come into line: the rest of the step is one leap (ConstraintSolver::leap); if there is
+/// none, the run has diverged.
 class Rattle final : public Solver {
   public:
     /// If `def` names no step, `frame_interval_s` is divided by the smallest whole number that makes a stable
@@ -53,7 +53,9 @@ class Rattle final : public Solver {
     [[nodiscard]] std::uint64_t steps() const override { return step_; }
     [[nodiscard]] bool has_branched() const override { return has_branched_; }
 
-    [[nodiscard]] std::vector<MethodDef> methods() const override { return {RattleDef{order_, step_s_}}; }
+    [[nodiscard]] std::vector<MethodDef> methods() const override {
+        return {RattleDef{order_, step_s_, guard_}};
+    }
 
     [[nodiscard]] double step_s() const { return step_s_; }
     /// Parts of grid steps taken so far: equal to steps() while no step is divided.
@@ -95,6 +97,7 @@ class Rattle final : public Solver {
     [[nodiscard]] bool find_tensions() const;
 
     int order_;
+    double guard_;
     const Composition& composition_;
     std::unique_ptr<ConstraintSolver> constraints_;
     Forces forces_;

@@ -289,6 +289,10 @@ TEST(FilmOfABuiltScene, RefusesFieldsThatAreNotWhatTheyAreDeclared) {
         {[](Scene& s) { s.world.duration_s = 0.0; }, "duration_s"},
         {[](Scene& s) { s.world.drag_1_s = -1.0; }, "drag_1_s"},
         {[](Scene& s) { s.solver = RattleDef{3}; }, "order"},
+        {[](Scene& s) {
+             s.solver = RattleDef{4, 0.01, 0.0};
+         },
+         "guard"},
         {[](Scene& s) { s.solver = ExactDef{0.0}; }, "tolerance"},
         {[](Scene& s) { s.solver = RelaxationDef{.step_s = 0.0}; }, "step_s"},
         {[](Scene& s) { s.video.width_px = 0; }, "video.size"},
