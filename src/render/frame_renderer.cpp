@@ -13,6 +13,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/gl/check.hpp"
+#include "corda/render/coverage.hpp"
 #include "corda/render/ground.hpp"
 #include "embedded_shaders.hpp"
 
@@ -208,6 +209,9 @@ void FrameRenderer::draw_band(const PixelRect& band) {
     glReadPixels(band.x0, band.y0, band.width(), band.height(), GL_RGBA, GL_UNSIGNED_BYTE,
                  image_.pixel(band.x0, band.y0));
     gl::check_errors("drawing a frame");
+    for (int y = band.y0; y < band.y1 && !last_ground_->is_opaque(); ++y) {
+        for (int x = band.x0; x < band.x1; ++x) straighten(image_.pixel(x, y));
+    }
 }
 
 void FrameRenderer::set_state(const PixelRect& band) const {

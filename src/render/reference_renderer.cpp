@@ -44,6 +44,7 @@ void paint(const Color& color, const PixelRect& box, const Image& ground, Mask& 
             channel(0, color.r);
             channel(1, color.g);
             channel(2, color.b);
+            channel(3, 255);
             mask.line[i] = 0;
             mask.halo[i] = 0;
         }
@@ -68,6 +69,9 @@ Image render_reference(const view::DrawList& list) {
             touched = touched.united(box);
         }
         paint(layer.color, touched, ground, mask, image);
+    }
+    for (int y = 0; y < list.height && !list.ground.is_opaque(); ++y) {
+        for (int x = 0; x < list.width; ++x) straighten(image.pixel(x, y));
     }
     return image;
 }

@@ -126,10 +126,7 @@ class ValueChecker {
     }
 
     bool check_color(const std::string& text, const toml::node& node, const std::string& path) const {
-        const auto color = Color::parse(text);
-        if (!color) return fail(node, path, fmt::format("\"{}\" is not a colour", excerpt(text)));
-        const bool good = key_->type.kind != Kind::kOpaqueColor || color->a == 255;
-        return good || fail(node, path, fmt::format("\"{}\" is not opaque", text));
+        return Color::parse(text) || fail(node, path, fmt::format("\"{}\" is not a colour", excerpt(text)));
     }
 
     [[nodiscard]] std::string_view one_words() const {

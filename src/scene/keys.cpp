@@ -340,8 +340,8 @@ std::vector<Key> style_keys() {
     return {
         {"style", "theme", one_of(themes), "", at(themes, def.theme), "the colours",
          "every one below overrides it"},
-        {"style", "background", or_pair(of(Kind::kOpaqueColor), "[top, bottom]"), "", of_theme,
-         "the background"},
+        {"style", "background", or_pair(of(Kind::kColor), "[top, bottom]"), "", of_theme, "the background",
+         "with alpha for .png, .svg and .pdf"},
         {"style", "palette", list(Kind::kColor, 1, 64), "", of_theme,
          "the colours that ropes, then nets take in turn"},
         {"style", "rope_width_px", number(kWidthPx), "px", otherwise("shorter side / 120, at least 2"),

@@ -14,8 +14,11 @@ enum class Theme { kDark, kPaper };
 
 /// What is behind everything: a colour, or one that changes evenly from the top of the picture to the bottom.
 struct Ground {
-    Color top;  ///< opaque
+    Color top;
     Color bottom;
+
+    /// Whether nothing behind the picture shows through.
+    [[nodiscard]] bool is_opaque() const { return top.a == 255 && bottom.a == 255; }
 
     friend bool operator==(const Ground&, const Ground&) = default;
 };

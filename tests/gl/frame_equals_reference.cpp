@@ -42,6 +42,22 @@ INSTANTIATE_TEST_SUITE_P(Sizes, RandomCapsules,
                                     std::to_string(std::get<2>(param.param)) + "_layers";
                          });
 
+TEST(TransparentGrounds, EqualTheReferenceByteForByte) {
+    const gl::Context context;
+    render::FrameRenderer renderer(333, 177);
+    for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+        view::DrawList list = test::random_draw_list(seed, 333, 177, 5, seed % 2 == 0 ? 3 : 40);
+        list.ground.top.a = seed < 3 ? 0 : 130;
+        list.ground.bottom.a = seed % 3 == 0 ? 255 : list.ground.top.a;
+        renderer.render(list);
+        EXPECT_TRUE(equal_images(renderer.image(), render::render_reference(list))) << "seed " << seed;
+        list.layers.pop_back();  // a damage that is less than the frame
+        list.capsules.resize(list.layers.back().first_capsule + list.layers.back().capsule_count);
+        renderer.render(list);
+        EXPECT_TRUE(equal_images(renderer.image(), render::render_reference(list))) << "seed " << seed;
+    }
+}
+
 void move_down(view::DrawList& list, int rows) {
     list.bounds = {};
     for (view::Capsule& capsule : list.capsules) {
