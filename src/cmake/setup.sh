@@ -16,6 +16,7 @@ packages=(
     libavformat-dev         # the MP4 muxer and demuxer
     libavutil-dev           # frames and error texts of the two above
     libeigen3-dev           # sparse factorisation for nets of bars
+    libcairo2-dev           # stills as PDF
     libpng-dev              # stills and golden images, with their sRGB, pHYs and text chunks
     libcli11-dev            # the command line
     libtomlplusplus-dev     # scene files, with line and column of every value
@@ -31,6 +32,8 @@ if [[ "${1:-build}" == test ]]; then
         clang-format        # the style check
         clang-tidy          # the static checks
         ffmpeg              # a second opinion on the videos: ffprobe
+        librsvg2-bin        # a second opinion on SVG: rsvg-convert
+        poppler-utils       # a second opinion on PDF: pdftoppm
     )
 fi
 

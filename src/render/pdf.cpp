@@ -1,0 +1,176 @@
+#include <cairo-pdf.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "corda/core/basics.hpp"
+#include "corda/render/ground.hpp"
+#include "corda/render/strokes.hpp"
+#include "corda/render/vector.hpp"
+
+namespace corda::render {
+namespace {
+
+struct CairoDeleter {
+    void operator()(cairo_t* context) const noexcept { cairo_destroy(context); }
+    void operator()(cairo_surface_t* surface) const noexcept { cairo_surface_destroy(surface); }
+    void operator()(cairo_pattern_t* pattern) const noexcept { cairo_pattern_destroy(pattern); }
+};
+using Pattern = std::unique_ptr<cairo_pattern_t, CairoDeleter>;
+
+constexpr double kPointsPerMm = 72.0 / 25.4;
+
+cairo_status_t append_bytes(void* file, const unsigned char* bytes, unsigned count) {
+    try {
+        static_cast<std::string*>(file)->append(reinterpret_cast<const char*>(bytes), count);
+        return CAIRO_STATUS_SUCCESS;
+    } catch (...) {
+        return CAIRO_STATUS_NO_MEMORY;  // an exception must not pass through cairo, which is C
+    }
+}
+
+void check(cairo_status_t status) {
+    if (status == CAIRO_STATUS_SUCCESS) return;
+    if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
+    throw Error(ExitCode::kInternal,
+                fmt::format("cairo cannot draw the PDF: {}", cairo_status_to_string(status)));
+}
+
+Pattern solid(const Color& color) {
+    return Pattern(
+        cairo_pattern_create_rgba(color.r / 255.0, color.g / 255.0, color.b / 255.0, color.a / 255.0));
+}
+
+Pattern pattern_of(const Ground& ground, int height) {
+    if (ground.top == ground.bottom) return solid(ground.top);
+    const auto [top, bottom] = straight_ends(ground);
+    Pattern pattern(cairo_pattern_create_linear(0.0, 0.0, 0.0, height));
+    const auto add_stop = [&](double offset, const Color& color) {
+        cairo_pattern_add_color_stop_rgba(pattern.get(), offset, color.r / 255.0, color.g / 255.0,
+                                          color.b / 255.0, color.a / 255.0);
+    };
+    add_stop(0.0, top);
+    add_stop(1.0, bottom);
+    return pattern;
+}
+
+class Pdf : public VectorPage {
+  public:
+    explicit Pdf(const PageDef& def) {
+        const double width_pt = def.width_mm * kPointsPerMm;
+        const double scale = width_pt / def.width_px;
+        surface_.reset(
+            cairo_pdf_surface_create_for_stream(append_bytes, &bytes_, width_pt, scale * def.height_px));
+        cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_TITLE, def.title.c_str());
+        cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_CREATOR, "corda");
+        // Otherwise it is the time of day, and no two files are the same.
+        cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_CREATE_DATE,
+                                       "2000-01-01T00:00:00Z");
+        cairo_.reset(cairo_create(surface_.get()));
+        cairo_scale(cairo_.get(), scale, scale);
+        cairo_set_line_cap(cairo_.get(), CAIRO_LINE_CAP_ROUND);
+        cairo_set_line_join(cairo_.get(), CAIRO_LINE_JOIN_ROUND);
+        check(cairo_status(cairo_.get()));
+    }
+
+    void fill(const Color& color) override {
+        cairo_set_source(cairo_.get(), solid(color).get());
+        cairo_paint(cairo_.get());
+    }
+
+    void draw(const view::DrawList& list, int x_px, int y_px) override {
+        cairo_t* const cairo = cairo_.get();
+        cairo_save(cairo);
+        cairo_translate(cairo, x_px, y_px);
+        cairo_rectangle(cairo, 0.0, 0.0, list.width, list.height);
+        cairo_clip(cairo);
+        const Pattern ground = pattern_of(list.ground, list.height);
+        cairo_set_source(cairo, ground.get());
+        if (list.ground.top.a != 0 || list.ground.bottom.a != 0) cairo_paint(cairo);
+        const bool is_opaque = list.ground.is_opaque();
+        if (!is_opaque) cairo_push_group(cairo);
+        for (const view::Layer& layer : list.layers) {
+            const LayerStrokes strokes = strokes_of(list, layer);
+            if (is_opaque)
+                stroke(strokes.halos, ground.get(), layer.color.a);
+            else if (!strokes.halos.empty())
+                cut_out(list, layer);
+            stroke(strokes.lines, solid({layer.color.r, layer.color.g, layer.color.b}).get(), layer.color.a);
+        }
+        if (!is_opaque) {
+            cairo_pop_group_to_source(cairo);
+            cairo_paint(cairo);
+        }
+        cairo_restore(cairo);
+        check(cairo_status(cairo));
+    }
+
+    [[nodiscard]] std::string finish() override {
+        cairo_show_page(cairo_.get());
+        check(cairo_status(cairo_.get()));
+        cairo_surface_finish(surface_.get());
+        check(cairo_surface_status(surface_.get()));
+        return std::move(bytes_);
+    }
+
+  private:
+    /// Unites the strokes, then paints them.
+    void stroke(const std::vector<Stroke>& strokes, cairo_pattern_t* paint, std::uint8_t alpha) {
+        if (strokes.empty() || alpha == 0) return;
+        cairo_t* const cairo = cairo_.get();
+        if (alpha < 255) cairo_push_group(cairo);
+        cairo_set_source(cairo, paint);
+        for (const Stroke& stroke : strokes) {
+            cairo_set_line_width(cairo, stroke.width_px);
+            for (const auto& line : stroke.lines) {
+                cairo_move_to(cairo, line.front().x, line.front().y);
+                for (std::size_t i = 1; i < line.size(); ++i) cairo_line_to(cairo, line[i].x, line[i].y);
+            }
+            cairo_stroke(cairo);
+        }
+        if (alpha == 255) return;
+        cairo_pop_group_to_source(cairo);
+        cairo_paint_with_alpha(cairo, alpha / 255.0);
+    }
+
+    /// Removes what was drawn below the halos of a layer. PDF has no operator that erases, so all is drawn
+    /// again where no halo is; that of a transparent layer removes as much as that of an opaque one.
+    void cut_out(const view::DrawList& list, const view::Layer& layer) {
+        cairo_t* const cairo = cairo_.get();
+        const Pattern below(cairo_pop_group(cairo));
+        cairo_push_group(cairo);
+        cairo_save(cairo);
+        cairo_set_fill_rule(cairo, CAIRO_FILL_RULE_EVEN_ODD);
+        for (std::size_t i = layer.first_capsule; i < layer.first_capsule + layer.capsule_count; ++i) {
+            const view::Capsule& capsule = list.capsules[i];
+            if (capsule.halo_radius <= 0.0F) continue;
+            const double bx = capsule.ax + static_cast<double>(capsule.ux) * capsule.length;
+            const double by = capsule.ay + static_cast<double>(capsule.uy) * capsule.length;
+            const double right = std::atan2(capsule.uy, capsule.ux) - 0.5 * std::numbers::pi;
+            cairo_rectangle(cairo, 0.0, 0.0, list.width, list.height);
+            cairo_new_sub_path(cairo);
+            cairo_arc(cairo, bx, by, capsule.halo_radius, right, right + std::numbers::pi);
+            cairo_arc(cairo, capsule.ax, capsule.ay, capsule.halo_radius, right + std::numbers::pi,
+                      right + 2.0 * std::numbers::pi);
+            cairo_close_path(cairo);
+            cairo_clip(cairo);
+        }
+        cairo_set_source(cairo, below.get());
+        cairo_paint(cairo);
+        cairo_restore(cairo);
+    }
+
+    // The surface writes into the bytes until it dies.
+    std::string bytes_;
+    std::unique_ptr<cairo_surface_t, CairoDeleter> surface_;
+    std::unique_ptr<cairo_t, CairoDeleter> cairo_;
+};
+
+}  // namespace
+
+std::unique_ptr<VectorPage> make_pdf(const PageDef& def) {
+    return std::make_unique<Pdf>(def);
+}
+
+}  // namespace corda::render
