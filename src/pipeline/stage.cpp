@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -79,6 +80,15 @@ void Stage::open() {
 
 PixelRect Stage::draw(const State& state, const view::Camera& map, const OnProgress& on_progress) {
     view_.draw(state, map, list_);
+    return paint(on_progress);
+}
+
+PixelRect Stage::draw(view::DrawList list, const OnProgress& on_progress) {
+    list_ = std::move(list);
+    return paint(on_progress);
+}
+
+PixelRect Stage::paint(const OnProgress& on_progress) {
     canvas_->context.make_current();  // a callback since open() may have left another one
     const std::int64_t picture = ++pictures_;
     const auto ask = [&](std::int64_t done, std::int64_t total) {

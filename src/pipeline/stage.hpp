@@ -51,6 +51,9 @@ class Stage {
     /// again if the picture is large. Throws Overdrawn, and corda::Error: kNoGl, kInterrupted. Requires a
     /// Use.
     PixelRect draw(const State& state, const view::Camera& map, const OnProgress& on_progress = {});
+    /// Draws a list of this stage's size, in the same way.
+    PixelRect draw(view::DrawList list, const OnProgress& on_progress = {});
+    [[nodiscard]] const view::SceneView& view() const { return view_; }
     /// The last picture.
     [[nodiscard]] const Image& image() const { return canvas_->renderer.image(); }
     /// Whether nothing was to be drawn on it but the ground.
@@ -70,6 +73,7 @@ class Stage {
     };
 
     void open();
+    PixelRect paint(const OnProgress& on_progress);
 
     const Scene* scene_;
     const System* system_;

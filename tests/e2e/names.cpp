@@ -96,7 +96,7 @@ TEST_F(Names, NeverReachTheTerminalRaw) {
         {"render", scene, "-o", nasty + ".mp4", "--frames", nasty},
         {"render", scene, "-o", nasty + ".mp4", "--backend", nasty},
         {"still", scene, "--at", nasty, "-o", folder_.path()},
-        {"still", scene, "--at", "0", "-o", nasty + ".pdf"},
+        {"still", scene, "--at", "0", "-o", nasty + ".eps"},
         {"study", scene, "-o", folder_.path()},
         {"study", "-o", folder_.file("report"), "--chapter", nasty},
         {"compare", nasty, nasty, "--max", nasty},
