@@ -132,7 +132,7 @@ Image draw(const Film& film, const FigureDef& def, const OnProgress& on_progress
     check(film, def);
     if (def.columns > 0) return draw_sheet(film, def, on_progress, empty_s);
     FilmPainter painter(film);
-    painter.draw(FilmPainter::poses(film, def.times_s), on_progress);
+    painter.draw(FilmPainter::poses(film, def.times_s, on_progress), on_progress);
     if (film.shows_nothing()) empty_s.push_back(def.times_s.front());
     return painter.image();
 }
@@ -143,12 +143,13 @@ std::string ending_of(const std::string& path) {
 
 /// The bytes of an SVG or a PDF.
 std::string describe_lines(const std::string& ending, const Film& film, const FigureDef& def,
-                           const PngInfo& info, std::vector<double>& empty_s) {
+                           const PngInfo& info, const OnProgress& on_progress, std::vector<double>& empty_s) {
     check(film, def);
     const VideoDef& video = film.scene().video;
     const bool is_sheet = def.columns > 0;
     render::PageDef page_def{.width_px = is_sheet ? def.width_px : video.width_px,
                              .height_px = is_sheet ? def.height_px : video.height_px};
+    page_def.on_progress = on_progress;
     constexpr double kMmPerInch = 25.4;
     page_def.width_mm = page_def.width_px * kMmPerInch / info.pixels_per_inch;
     for (const auto& [keyword, text] : info.text) {
@@ -156,7 +157,7 @@ std::string describe_lines(const std::string& ending, const Film& film, const Fi
     }
     const auto page = ending == ".svg" ? render::make_svg(page_def) : render::make_pdf(page_def);
     const auto add = [&](std::span<const double> times_s, int x, int y) {
-        const view::DrawList list = FilmPainter::poses(film, times_s);
+        const view::DrawList list = FilmPainter::poses(film, times_s, on_progress);
         if (list.shows_nothing()) empty_s.push_back(times_s.front());
         page->draw(list, x, y);
     };
@@ -211,7 +212,7 @@ std::vector<double> write_figure(const std::string& path, const Film& film, cons
         write_png(path, draw(film, def, options.on_progress, empty_s), info, options);
         return empty_s;
     }
-    const std::string bytes = describe_lines(ending, film, def, info, empty_s);
+    const std::string bytes = describe_lines(ending, film, def, info, options.on_progress, empty_s);
     OutputFile file(path, options);
     file.write(bytes);
     file.commit();

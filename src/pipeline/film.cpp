@@ -111,12 +111,14 @@ struct Film::Impl {
         return motion.at(time_s, def.on_progress);
     }
 
-    view::DrawList poses(std::span<const double> times_s) {
+    view::DrawList poses(std::span<const double> times_s, const OnProgress& on_progress) {
         const view::Camera map = stage.map_of(find_camera());
         const view::SceneView& view = stage.view();
         view::DrawList list;
         view.start(list);
         for (std::size_t k = 0; k < times_s.size(); ++k) {
+            report_progress(on_progress, static_cast<std::int64_t>(k),
+                            static_cast<std::int64_t>(times_s.size()));
             const std::size_t first_layer = list.layers.size();
             view.draw_pose(at(times_s[k]), map, list);
             const double opacity = pose_opacity(k, times_s.size());
@@ -267,8 +269,9 @@ void FilmPainter::draw(view::DrawList list, const OnProgress& on_progress) {
     pictures_ = -1;
 }
 
-view::DrawList FilmPainter::poses(const Film& film, std::span<const double> times_s) {
-    return film.impl_->poses(times_s);
+view::DrawList FilmPainter::poses(const Film& film, std::span<const double> times_s,
+                                  const OnProgress& on_progress) {
+    return film.impl_->poses(times_s, on_progress);
 }
 
 const Image& FilmPainter::image() const {

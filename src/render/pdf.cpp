@@ -57,7 +57,7 @@ Pattern pattern_of(const Ground& ground, int height) {
 
 class Pdf : public VectorPage {
   public:
-    explicit Pdf(const PageDef& def) {
+    explicit Pdf(const PageDef& def) : on_progress_(def.on_progress) {
         const double width_pt = def.width_mm * kPointsPerMm;
         const double scale = width_pt / def.width_px;
         surface_.reset(
@@ -90,7 +90,10 @@ class Pdf : public VectorPage {
         if (list.ground.top.a != 0 || list.ground.bottom.a != 0) cairo_paint(cairo);
         const bool is_opaque = list.ground.is_opaque();
         if (!is_opaque) cairo_push_group(cairo);
-        for (const view::Layer& layer : list.layers) {
+        for (std::size_t l = 0; l < list.layers.size(); ++l) {
+            report_progress(on_progress_, static_cast<std::int64_t>(l),
+                            static_cast<std::int64_t>(list.layers.size()));
+            const view::Layer& layer = list.layers[l];
             const LayerStrokes strokes = strokes_of(list, layer);
             if (is_opaque)
                 stroke(strokes.halos, ground.get(), layer.color.a);
@@ -161,6 +164,7 @@ class Pdf : public VectorPage {
         cairo_restore(cairo);
     }
 
+    OnProgress on_progress_;
     // The surface writes into the bytes until it dies.
     std::string bytes_;
     std::unique_ptr<cairo_surface_t, CairoDeleter> surface_;

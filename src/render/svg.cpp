@@ -2,6 +2,7 @@
 
 #include <iterator>
 
+#include "corda/core/basics.hpp"
 #include "corda/render/ground.hpp"
 #include "corda/render/strokes.hpp"
 #include "corda/render/vector.hpp"
@@ -82,7 +83,10 @@ class Svg : public VectorPage {
                  "\n";
         const std::string ground = draw_ground(list);
         std::string layers;
-        for (const view::Layer& layer : list.layers) {
+        for (std::size_t l = 0; l < list.layers.size(); ++l) {
+            report_progress(def_.on_progress, static_cast<std::int64_t>(l),
+                            static_cast<std::int64_t>(list.layers.size()));
+            const view::Layer& layer = list.layers[l];
             const LayerStrokes strokes = strokes_of(list, layer);
             if (!strokes.halos.empty()) {
                 if (list.ground.is_opaque())

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "corda/core/basics.hpp"
 #include "corda/view/draw_list.hpp"
 
 namespace corda::render {
@@ -12,7 +13,8 @@ struct PageDef {
     int width_px = 0;  ///< of the coordinates; 1 px is width_mm / width_px
     int height_px = 0;
     double width_mm = 0.0;
-    std::string title = {};  ///< UTF-8
+    std::string title = {};       ///< UTF-8
+    OnProgress on_progress = {};  ///< asked at each layer
 };
 
 /// A page of vector graphics. The same calls give the same bytes.
@@ -26,7 +28,7 @@ class VectorPage {
     /// Fills all of the page.
     virtual void fill(const Color& color) = 0;
     /// Draws a list, ground and all, with its top left corner at (x_px, y_px), and cuts off what is outside
-    /// of it.
+    /// of it. Throws corda::Error (kInterrupted) if asked to stop.
     virtual void draw(const view::DrawList& list, int x_px, int y_px) = 0;
     /// Ends the page; returns the bytes of the file.
     [[nodiscard]] virtual std::string finish() = 0;

@@ -116,6 +116,7 @@ class Figures : public testing::Test {
         const std::string svg = test::quoted(folder_.file("a.svg"));
         const std::string pdf = test::quoted(folder_.file("a.pdf"));
         const std::string b = test::quoted(folder_.file("b"));
+        EXPECT_EQ(test::run_shell("pdfimages -list " + pdf + " | tail -n +3").out, "");  // lines, not pixels
         const Image of_svg = drawn(fmt::format("rsvg-convert -w {} -h {} {} -o {}.png",
                                                kFiner * image.width(), kFiner * image.height(), svg, b));
         const Image of_pdf =

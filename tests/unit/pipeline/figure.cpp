@@ -5,6 +5,7 @@
 #include <string>
 
 #include "corda/scene/scene.hpp"
+#include "support/command.hpp"
 #include "support/failure.hpp"
 #include "support/image_matchers.hpp"
 
@@ -139,6 +140,23 @@ TEST(ContactSheet, RefusesWhatHasNoRoom) {
     for (const FigureDef& def : {FigureDef{{0.0}, -1, 160, 120}, FigureDef{{0.0, 0.1}, 2, 319, 120},
                                  FigureDef{{0.0, 0.1}, 1, 160, 239}, FigureDef{{0.0}, 1, 99999, 120}})
         EXPECT_EQ(code_of(film, def), ExitCode::kUsage);
+}
+
+TEST(FigureFiles, AreNotWrittenIfAskedToStop) {
+    const test::ScratchFolder folder;
+    const Film film(scene_of());
+    for (const char* const name : {"a.png", "a.svg", "a.pdf"}) {
+        for (const int enough : {0, 1, 4}) {
+            int asked = 0;
+            OutputOptions options;
+            options.on_progress = [&](std::int64_t, std::int64_t) { return asked++ < enough; };
+            const auto write = [&] {
+                write_figure(folder.file(name), film, {.times_s = {0.0, 0.1, 0.2}}, {}, options);
+            };
+            EXPECT_EQ(test::code_of(write), ExitCode::kInterrupted) << name << ' ' << enough;
+        }
+    }
+    EXPECT_TRUE(folder.files().empty());
 }
 
 TEST(FigureFiles, RefuseOtherEndings) {
