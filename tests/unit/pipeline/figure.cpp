@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "corda/pipeline/painter.hpp"
+#include "corda/render/reference_renderer.hpp"
 #include "corda/scene/scene.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"
@@ -65,6 +67,15 @@ TEST(Strobe, ShowsTheLastPoseInFullAndTheOthersFainter) {
     }
     EXPECT_EQ(faintest, 51);  // 0.2
     EXPECT_EQ(fainter, 166);  // 0.65
+}
+
+TEST(Strobe, EqualsTheReferenceByteForByte) {
+    for (const char* const ground : {"#203040", "transparent"}) {
+        const Film film(scene_of(std::string("[style]\nbackground = \"") + ground + "\"\n"));
+        const std::vector<double> times_s{0.0, 0.2, 0.4};
+        EXPECT_TRUE(equal_images(draw_figure(film, {.times_s = times_s}),
+                                 render::render_reference(FilmPainter::poses(film, times_s))));
+    }
 }
 
 TEST(Strobe, OfTenThousandPosesIsDrawn) {
