@@ -16,6 +16,8 @@ packages=(
     libavformat-dev         # the MP4 muxer and demuxer
     libavutil-dev           # frames and error texts of the two above
     libeigen3-dev           # sparse factorisation for nets of bars
+    libfreetype-dev         # glyphs of text in pictures
+    fonts-dejavu-core       # their font, which becomes part of the program
     libpng-dev              # stills and golden images, with their sRGB, pHYs and text chunks
     libcli11-dev            # the command line
     libtomlplusplus-dev     # scene files, with line and column of every value
