@@ -17,6 +17,8 @@ packages=(
     libavutil-dev           # frames and error texts of the two above
     libeigen3-dev           # sparse factorisation for nets of bars
     libcairo2-dev           # stills as PDF
+    libfreetype-dev         # glyphs of text in pictures
+    fonts-dejavu-core       # their font, which becomes part of the program
     libpng-dev              # stills and golden images, with their sRGB, pHYs and text chunks
     libcli11-dev            # the command line
     libtomlplusplus-dev     # scene files, with line and column of every value
