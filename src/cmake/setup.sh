@@ -34,6 +34,7 @@ if [[ "${1:-build}" == test ]]; then
         clang-format        # the style check
         clang-tidy          # the static checks
         ffmpeg              # a second opinion on the videos: ffprobe
+        libxml2-utils       # whether pages and SVG are well formed: xmllint
         librsvg2-bin        # a second opinion on SVG: rsvg-convert
         poppler-utils       # a second opinion on PDF: pdftoppm
     )

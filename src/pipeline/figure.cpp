@@ -10,17 +10,24 @@
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/pipeline/painter.hpp"
+#include "corda/render/reference_renderer.hpp"
 #include "corda/render/vector.hpp"
+#include "corda/view/font.hpp"
 #include "corda/view/look.hpp"
 
 namespace corda {
 namespace {
 
-constexpr int kSmallestCellPx = 16;
+constexpr int kSmallestCellPx = 40;
 constexpr double kGapPerSide = 1.0 / 90.0;  // of the sheet's shorter side
 constexpr double kBlankCell = 3.0;
+constexpr double kTextPerSide = 1.0 / 20.0;  // of the shorter side of a cell and its caption
+constexpr int kSmallestTextPx = 8;
+constexpr int kLargestTextPx = 60;
+constexpr double kLinePerText = 1.6;
+constexpr double kCapitalPerText = 0.73;  // of DejaVu Sans
 
-/// Where the cells of a contact sheet are.
+/// Where the cells of a contact sheet are, each with a line of text below it.
 class Sheet {
   public:
     Sheet(int width_px, int height_px, int columns, int count)
@@ -31,16 +38,26 @@ class Sheet {
           gap_px_(std::max(1, static_cast<int>(kGapPerSide * std::min(width_px, height_px)))) {}
 
     [[nodiscard]] int cell_width_px() const { return (width_px_ - (columns_ + 1) * gap_px_) / columns_; }
-    [[nodiscard]] int cell_height_px() const { return (height_px_ - (rows_ + 1) * gap_px_) / rows_; }
+    [[nodiscard]] int cell_height_px() const { return row_height_px() - caption_px(); }
+    [[nodiscard]] int text_px() const {
+        return std::clamp(static_cast<int>(kTextPerSide * std::min(cell_width_px(), row_height_px())),
+                          kSmallestTextPx, kLargestTextPx);
+    }
+    [[nodiscard]] int caption_px() const { return static_cast<int>(kLinePerText * text_px()); }
     [[nodiscard]] bool has_room() const {
         return std::min(cell_width_px(), cell_height_px()) >= kSmallestCellPx;
     }
-    /// What division leaves is shared out among the gaps.
+    /// The upper left corner of cell `i` of that size. What division leaves is shared out among the gaps.
     [[nodiscard]] int x_px(int i, int cell_px) const {
         return edge(i % columns_, columns_, cell_px, width_px_);
     }
     [[nodiscard]] int y_px(int i, int cell_px) const {
-        return edge(i / columns_, rows_, cell_px, height_px_);
+        return edge(i / columns_, rows_, cell_px + caption_px(), height_px_);
+    }
+    /// Whether cells of that size have room.
+    [[nodiscard]] bool holds(int cell_width_px, int cell_height_px) const {
+        return std::int64_t{cell_width_px} * columns_ <= width_px_ &&
+               std::int64_t{cell_height_px + caption_px()} * rows_ <= height_px_;
     }
 
     /// How far it is from square cells and no blank ones.
@@ -51,6 +68,7 @@ class Sheet {
     }
 
   private:
+    [[nodiscard]] int row_height_px() const { return (height_px_ - (rows_ + 1) * gap_px_) / rows_; }
     static int edge(int k, int cells, int cell_px, int side_px) {
         return k * cell_px + (k + 1) * (side_px - cells * cell_px) / (cells + 1);
     }
@@ -72,17 +90,19 @@ int best_columns(int width_px, int height_px, int count) {
     return best;
 }
 
+Sheet sheet_of(const FigureDef& def) {
+    return {def.width_px, def.height_px, def.columns, static_cast<int>(def.times_s.size())};
+}
+
 void check(const Film& film, const FigureDef& def) {
     if (def.times_s.empty()) throw Error(ExitCode::kUsage, "a figure of no times; give one or more");
     if (!std::is_sorted(def.times_s.begin(), def.times_s.end()))
         throw Error(ExitCode::kUsage, "the times of a figure do not increase; sort them");
     if (def.columns == 0) return;
     const VideoDef& video = film.scene().video;
-    const std::int64_t rows =
-        (static_cast<std::int64_t>(def.times_s.size()) - 1) / std::max(def.columns, 1) + 1;
-    const bool has_room = def.columns > 0 && std::int64_t{video.width_px} * def.columns <= def.width_px &&
-                          video.height_px * rows <= def.height_px;
-    if (has_room && is_picture_size(def.width_px, def.height_px)) return;
+    if (is_picture_size(def.width_px, def.height_px) && def.columns > 0 &&
+        sheet_of(def).holds(video.width_px, video.height_px))
+        return;
     throw Error(ExitCode::kUsage,
                 fmt::format("{} cells of {}x{} pixels in {} columns do not fit into a contact sheet of {}x{}",
                             def.times_s.size(), video.width_px, video.height_px, def.columns, def.width_px,
@@ -90,8 +110,7 @@ void check(const Film& film, const FigureDef& def) {
 }
 
 /// Between the cells: the ground, a little towards the colour of supports.
-Color gap_color(const StyleDef& style) {
-    const view::Look look = view::look_of(style);
+Color gap_color(const view::Look& look) {
     if (!look.ground.is_opaque()) return {0, 0, 0, 0};
     const auto mixed = [](int ground, int line) {
         return static_cast<std::uint8_t>((5 * ground + line + 3) / 6);
@@ -101,10 +120,70 @@ Color gap_color(const StyleDef& style) {
             mixed(ground.b, look.support.b)};
 }
 
+/// One that can be read on `ground`.
+Color text_color(const Color& ground, const view::Look& look) {
+    if (ground.a == 0) return look.outline;
+    const bool is_light = 299 * ground.r + 587 * ground.g + 114 * ground.b > 128'000;
+    return is_light ? Color{0x1c, 0x1f, 0x26} : Color{0xf4, 0xf1, 0xe8};
+}
+
+/// "t = 0.25 s" for each time, all with as many digits as it takes to tell them exactly, if these are few, or
+/// at least apart.
+std::vector<std::string> captions_of(const std::vector<double>& times_s) {
+    constexpr int kFewDigits = 3;
+    constexpr int kMostDigits = 9;
+    std::vector<std::string> captions;
+    for (int digits = 1; digits <= kMostDigits; ++digits) {
+        captions.clear();
+        bool is_exact = true;
+        for (const double time_s : times_s) {
+            captions.push_back(fmt::format("t = {:.{}f} s", time_s, digits));
+            is_exact &= std::abs(std::stod(captions.back().substr(4)) - time_s) < 1e-9;
+        }
+        const bool are_apart = std::adjacent_find(captions.begin(), captions.end()) == captions.end();
+        if (is_exact || (digits >= kFewDigits && are_apart)) break;
+    }
+    return captions;
+}
+
+/// A contact sheet without its cells.
+view::DrawList list_captions(const Film& film, const FigureDef& def) {
+    const view::Look look = view::look_of(film.scene().style);
+    const Color gap = gap_color(look);
+    const Sheet sheet = sheet_of(def);
+    const VideoDef& video = film.scene().video;
+    view::DrawList list;
+    list.width = def.width_px;
+    list.height = def.height_px;
+    list.ground = {gap, gap};
+    view::Font font;
+    const std::vector<std::string> captions = captions_of(def.times_s);
+    int size_px = sheet.text_px();
+    const auto widest_px = [&] {
+        int widest = 0;
+        for (const std::string& caption : captions)
+            widest = std::max(widest, font.width_px(caption, size_px));
+        return widest;
+    };
+    while (size_px > kSmallestTextPx && widest_px() > video.width_px) --size_px;
+    for (int i = 0; i < static_cast<int>(captions.size()); ++i) {
+        const int middle_px = sheet.x_px(i, video.width_px) + video.width_px / 2;
+        const int bottom_px = sheet.y_px(i, video.height_px) + video.height_px;
+        font.write(
+            {.x_px = middle_px - font.width_px(captions[i], size_px) / 2,
+             .y_px = bottom_px + static_cast<int>(0.5 * (sheet.caption_px() + kCapitalPerText * size_px)),
+             .size_px = size_px,
+             .color = text_color(gap, look),
+             .utf8 = captions[i]},
+            list);
+    }
+    return list;
+}
+
 /// Calls `visit(time, x, y)` for each cell of a contact sheet.
 void for_each_cell(const Film& film, const FigureDef& def,
                    const std::function<void(double, int, int)>& visit) {
-    const Sheet sheet(def.width_px, def.height_px, def.columns, static_cast<int>(def.times_s.size()));
+    const Sheet sheet = sheet_of(def);
     const VideoDef& video = film.scene().video;
     for (int i = 0; i < static_cast<int>(def.times_s.size()); ++i)
         visit(def.times_s[i], sheet.x_px(i, video.width_px), sheet.y_px(i, video.height_px));
@@ -112,12 +191,7 @@ void for_each_cell(const Film& film, const FigureDef& def,
 
 Image draw_sheet(const Film& film, const FigureDef& def, const OnProgress& on_progress,
                  std::vector<double>& empty_s) {
-    Image image(def.width_px, def.height_px);
-    const Color gap = gap_color(film.scene().style);
-    for (std::size_t i = 0; i < image.size_bytes(); i += 4) {
-        const std::uint8_t rgba[]{gap.r, gap.g, gap.b, gap.a};
-        std::copy(std::begin(rgba), std::end(rgba), image.data() + i);
-    }
+    Image image = render::render_reference(list_captions(film, def));
     for_each_cell(film, def, [&](double time_s, int x, int y) {
         const Image cell = film.still(time_s, on_progress);
         if (film.shows_nothing()) empty_s.push_back(time_s);
@@ -162,7 +236,7 @@ std::string describe_lines(const std::string& ending, const Film& film, const Fi
         page->draw(list, x, y);
     };
     if (is_sheet) {
-        page->fill(gap_color(film.scene().style));
+        page->draw(list_captions(film, def), 0, 0);
         for_each_cell(film, def, [&](double time_s, int x, int y) { add({&time_s, 1}, x, y); });
     } else {
         add(def.times_s, 0, 0);

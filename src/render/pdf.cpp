@@ -1,13 +1,18 @@
+#include <cairo-ft.h>
 #include <cairo-pdf.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 #include "corda/render/ground.hpp"
 #include "corda/render/strokes.hpp"
 #include "corda/render/vector.hpp"
+#include "corda/view/font.hpp"
+#include "corda/view/font_data.hpp"
 
 namespace corda::render {
 namespace {
@@ -15,8 +20,10 @@ namespace {
 struct CairoDeleter {
     void operator()(cairo_t* context) const noexcept { cairo_destroy(context); }
     void operator()(cairo_surface_t* surface) const noexcept { cairo_surface_destroy(surface); }
+    void operator()(cairo_font_face_t* face) const noexcept { cairo_font_face_destroy(face); }
     void operator()(cairo_pattern_t* pattern) const noexcept { cairo_pattern_destroy(pattern); }
 };
+using FontFace = std::unique_ptr<cairo_font_face_t, CairoDeleter>;
 using Pattern = std::unique_ptr<cairo_pattern_t, CairoDeleter>;
 
 constexpr double kPointsPerMm = 72.0 / 25.4;
@@ -55,6 +62,39 @@ Pattern pattern_of(const Ground& ground, int height) {
     return pattern;
 }
 
+/// The font that the program carries with it, for cairo, which may keep it longer than a page lives.
+class FontFile {
+  public:
+    FontFile() {
+        if (FT_Init_FreeType(&library_) != 0 ||
+            FT_New_Memory_Face(library_, view::font_begin(), static_cast<FT_Long>(view::font_bytes()), 0,
+                               &face_) != 0)
+            throw Error(ExitCode::kInternal, "the font cannot be read");
+    }
+    FontFile(const FontFile&) = delete;
+    FontFile& operator=(const FontFile&) = delete;
+    ~FontFile() {
+        FT_Done_Face(face_);
+        FT_Done_FreeType(library_);
+    }
+    [[nodiscard]] FT_Face face() const { return face_; }
+
+  private:
+    FT_Library library_ = nullptr;
+    FT_Face face_ = nullptr;
+};
+
+/// The font's file dies with the face.
+FontFace make_font_face() {
+    static const cairo_user_data_key_t key{};
+    auto file = std::make_unique<FontFile>();
+    FontFace face(cairo_ft_font_face_create_for_ft_face(file->face(), FT_LOAD_NO_HINTING));
+    check(cairo_font_face_set_user_data(face.get(), &key, file.get(),
+                                        [](void* kept) { delete static_cast<FontFile*>(kept); }));
+    static_cast<void>(file.release());
+    return face;
+}
+
 class Pdf : public VectorPage {
   public:
     explicit Pdf(const PageDef& def) : on_progress_(def.on_progress) {
@@ -72,11 +112,6 @@ class Pdf : public VectorPage {
         cairo_set_line_cap(cairo_.get(), CAIRO_LINE_CAP_ROUND);
         cairo_set_line_join(cairo_.get(), CAIRO_LINE_JOIN_ROUND);
         check(cairo_status(cairo_.get()));
-    }
-
-    void fill(const Color& color) override {
-        cairo_set_source(cairo_.get(), solid(color).get());
-        cairo_paint(cairo_.get());
     }
 
     void draw(const view::DrawList& list, int x_px, int y_px) override {
@@ -105,6 +140,10 @@ class Pdf : public VectorPage {
             cairo_pop_group_to_source(cairo);
             cairo_paint(cairo);
         }
+        for (const view::Stamp& stamp : list.stamps) {
+            if (stamp.first_coverage == view::Stamp::kSolid) fill_box(stamp);
+        }
+        for (const view::Text& text : list.texts) write(text);
         cairo_restore(cairo);
         check(cairo_status(cairo));
     }
@@ -137,6 +176,39 @@ class Pdf : public VectorPage {
         cairo_paint_with_alpha(cairo, alpha / 255.0);
     }
 
+    void fill_box(const view::Stamp& stamp) {
+        cairo_set_source(cairo_.get(), solid(stamp.color).get());
+        cairo_rectangle(cairo_.get(), stamp.box.x0, stamp.box.y0, stamp.box.width(), stamp.box.height());
+        cairo_fill(cairo_.get());
+    }
+
+    /// Writes glyphs where Font::write() puts them, as text that can be searched and copied.
+    void write(const view::Text& text) {
+        cairo_t* const cairo = cairo_.get();
+        const std::string utf8 = printable(text.utf8);
+        const auto bytes = static_cast<int>(utf8.size());
+        cairo_set_font_face(cairo, font_face_.get());
+        cairo_set_font_size(cairo, text.size_px);
+        cairo_set_source(cairo, solid(text.color).get());
+        cairo_glyph_t* glyphs = nullptr;
+        cairo_text_cluster_t* clusters = nullptr;
+        int glyph_count = 0;
+        int cluster_count = 0;
+        cairo_text_cluster_flags_t flags{};
+        check(cairo_scaled_font_text_to_glyphs(cairo_get_scaled_font(cairo), text.x_px, text.y_px,
+                                               utf8.data(), bytes, &glyphs, &glyph_count, &clusters,
+                                               &cluster_count, &flags));
+        std::size_t done = 0;
+        for (int i = 0; i < std::min(glyph_count, cluster_count); ++i) {
+            glyphs[i].x = text.x_px + font_.width_px(std::string_view(utf8).substr(0, done), text.size_px);
+            done += static_cast<std::size_t>(clusters[i].num_bytes);
+        }
+        cairo_show_text_glyphs(cairo, utf8.data(), bytes, glyphs, glyph_count, clusters, cluster_count,
+                               flags);
+        cairo_glyph_free(glyphs);
+        cairo_text_cluster_free(clusters);
+    }
+
     /// Removes what was drawn below the halos of a layer. PDF has no operator that erases, so all is drawn
     /// again where no halo is; that of a transparent layer removes as much as that of an opaque one.
     void cut_out(const view::DrawList& list, const view::Layer& layer) {
@@ -165,6 +237,8 @@ class Pdf : public VectorPage {
     }
 
     OnProgress on_progress_;
+    view::Font font_;
+    FontFace font_face_ = make_font_face();
     // The surface writes into the bytes until it dies.
     std::string bytes_;
     std::unique_ptr<cairo_surface_t, CairoDeleter> surface_;

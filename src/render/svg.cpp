@@ -3,9 +3,11 @@
 #include <iterator>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 #include "corda/render/ground.hpp"
 #include "corda/render/strokes.hpp"
 #include "corda/render/vector.hpp"
+#include "corda/view/font.hpp"
 
 namespace corda::render {
 namespace {
@@ -70,12 +72,6 @@ class Svg : public VectorPage {
                             def.width_px, def.height_px, xml_text(def.title));
     }
 
-    void fill(const Color& color) override {
-        text_ += fmt::format(R"(<rect width="{}" height="{}" fill="{}"{}/>)", def_.width_px, def_.height_px,
-                             opaque_text(color), opacity("fill-opacity", color)) +
-                 "\n";
-    }
-
     void draw(const view::DrawList& list, int x_px, int y_px) override {
         // An svg element in another one cuts off what is outside of it.
         text_ += fmt::format(R"(<svg x="{}" y="{}" width="{}" height="{}">)", x_px, y_px, list.width,
@@ -97,7 +93,9 @@ class Svg : public VectorPage {
             if (!strokes.lines.empty())
                 append_group(opaque_text(layer.color), layer.color, strokes.lines, layers);
         }
-        text_ += layers + "</svg>\n";
+        text_ += layers;
+        append_stamps(list);
+        text_ += "</svg>\n";
     }
 
     [[nodiscard]] std::string finish() override { return std::move(text_) + "</g>\n</svg>\n"; }
@@ -145,7 +143,32 @@ class Svg : public VectorPage {
         layers = mask + fmt::format("</mask>\n<g mask=\"url(#{})\">\n", id) + layers + "</g>\n";
     }
 
+    void append_stamps(const view::DrawList& list) {
+        const auto out = std::back_inserter(text_);
+        for (const view::Stamp& stamp : list.stamps) {
+            if (stamp.first_coverage != view::Stamp::kSolid) continue;
+            fmt::format_to(out, R"(<rect x="{}" y="{}" width="{}" height="{}" fill="{}"{}/>)", stamp.box.x0,
+                           stamp.box.y0, stamp.box.width(), stamp.box.height(), opaque_text(stamp.color),
+                           opacity("fill-opacity", stamp.color));
+            text_ += "\n";
+        }
+        for (const view::Text& text : list.texts) {
+            // Another font, if a reader does not have this one, takes as much room; one that does not know
+            // textLength errs to both sides alike.
+            const int width_px = font_.width_px(text.utf8, text.size_px);
+            fmt::format_to(out,
+                           R"(<text x="{}" y="{}" text-anchor="middle" textLength="{}" )"
+                           R"(font-family="DejaVu Sans, sans-serif" font-size="{}" fill="{}"{} )"
+                           R"(xml:space="preserve">{}</text>)",
+                           number(text.x_px + 0.5 * width_px), text.y_px, width_px, text.size_px,
+                           opaque_text(text.color), opacity("fill-opacity", text.color),
+                           xml_text(printable(text.utf8)));
+            text_ += "\n";
+        }
+    }
+
     PageDef def_;
+    view::Font font_;
     std::string text_;
     int ids_ = 0;
 };

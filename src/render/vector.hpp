@@ -25,8 +25,6 @@ class VectorPage {
     VectorPage& operator=(const VectorPage&) = delete;
     virtual ~VectorPage() = default;
 
-    /// Fills all of the page.
-    virtual void fill(const Color& color) = 0;
     /// Draws a list, ground and all, with its top left corner at (x_px, y_px), and cuts off what is outside
     /// of it. Throws corda::Error (kInterrupted) if asked to stop.
     virtual void draw(const view::DrawList& list, int x_px, int y_px) = 0;

@@ -125,8 +125,8 @@ class Figures : public testing::Test {
         const Image paper = on_white(image);
         EXPECT_LE(largest_excess(paper, of_svg), excess);
         EXPECT_LE(largest_excess(paper, of_pdf), excess);
-        EXPECT_LT(compare(paper, of_svg).mean, 0.10);  // measured 0.067
-        EXPECT_LT(compare(paper, of_pdf).mean, 0.20);  // measured 0.14
+        EXPECT_LT(compare(paper, of_svg).mean, 0.20);  // measured 0.13
+        EXPECT_LT(compare(paper, of_pdf).mean, 0.20);  // measured 0.16
     }
 
     ScratchFolder folder_;
@@ -139,9 +139,9 @@ TEST_F(Figures, AreTheSameAsPixelsAndAsLines) {
     expect_same_pictures({"strobe", "--at", "0,0.1,0.2,0.3", "--set", "style.theme=paper", "--set",
                           "style.background=#ffeedd"},
                          14);
-    // Measured 30 and 33: the hatch of small supports has overlapping edges, whose coverages Corda does not
-    // add.
-    expect_same_pictures({"sheet", "--at", "0,0.1,0.2,0.3", "--columns", "3"}, 40);
+    // Measured 51 and 33: rsvg-convert does not know textLength, and the hatch of small supports has
+    // overlapping edges, whose coverages Corda does not add.
+    expect_same_pictures({"sheet", "--at", "0,0.1,0.2,0.3", "--columns", "3"}, 60);
 }
 
 TEST_F(Figures, AreTheSameOnTransparentGrounds) {
@@ -151,6 +151,28 @@ TEST_F(Figures, AreTheSameOnTransparentGrounds) {
     std::vector<std::string> command{"still", "--at", "0.4"};
     command.insert(command.end(), clear.begin(), clear.end());
     expect_same_pictures(command, 14);
+}
+
+TEST_F(Figures, HaveTextAsText) {
+    const auto text_of = [&](const std::string& times) {
+        for (const char* const name : {"a.svg", "a.pdf"}) {
+            const auto result =
+                run_corda({"sheet", scene_, "--at", times, "-o", folder_.file(name), "--force"});
+            EXPECT_EQ(result.exit_code, 0) << result.err;
+        }
+        const auto svg = test::run_shell("xmllint --xpath \"//*[local-name()='text']/text()\" " +
+                                         test::quoted(folder_.file("a.svg")));
+        const auto pdf = test::run_shell("pdftotext " + test::quoted(folder_.file("a.pdf")) +
+                                         " - | tr -d '\\f' | grep . || true");
+        EXPECT_EQ(svg.out, pdf.out);
+        return svg.out;
+    };
+    EXPECT_EQ(text_of("0,0.3,0.6"), "t = 0.0 s\nt = 0.3 s\nt = 0.6 s\n");
+    EXPECT_EQ(text_of("0,0.125,0.6"), "t = 0.000 s\nt = 0.125 s\nt = 0.600 s\n");
+    EXPECT_EQ(text_of("0,0.3333333333"), "t = 0.000 s\nt = 0.333 s\n");
+    EXPECT_EQ(text_of("0.5,0.50001"), "t = 0.50000 s\nt = 0.50001 s\n");
+    const auto fonts = test::run_shell("pdffonts " + test::quoted(folder_.file("a.pdf")));
+    EXPECT_THAT(fonts.out, HasSubstr("+DejaVuSans"));  // embedded
 }
 
 TEST_F(Figures, HaveTheSameBytesOnEveryRun) {

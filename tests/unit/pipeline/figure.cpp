@@ -111,7 +111,7 @@ TEST(ContactSheet, HasTheStillsInItsCells) {
     const FigureDef def = contact_sheet(scene, {0.0, 0.2, 0.4, 0.6, 0.8}, 3);
     EXPECT_EQ(def.columns, 3);
     EXPECT_EQ(scene.video.width_px, (500 - 4 * 3) / 3);
-    EXPECT_EQ(scene.video.height_px, (301 - 3 * 3) / 2);
+    EXPECT_EQ(scene.video.height_px, (301 - 3 * 3) / 2 - 12);  // 12 for the time
     const Film film(scene);
     const Image sheet = draw_figure(film, def);
     EXPECT_EQ(sheet.width(), 500);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "corda/render/vector.hpp"
+#include "corda/view/font.hpp"
 
 namespace corda::render {
 namespace {
@@ -48,6 +49,18 @@ TEST(Svg, CutsHalosOutOverATransparentGround) {
     const std::string svg = svg_of(crossing({{0, 0, 0, 0}, {0, 0, 0, 0}}));
     EXPECT_THAT(svg, Not(HasSubstr("<rect width=\"100\" height=\"50\" fill=\"#000000\"")));
     EXPECT_THAT(svg, HasSubstr("<g mask=\"url(#halo0)\">\n<g stroke=\"#ff0000\">"));
+}
+
+TEST(Svg, WritesTextOverTheLayers) {
+    view::DrawList list = crossing({{255, 255, 255}, {255, 255, 255}});
+    list.add_box({10, 5, 20, 9}, {1, 2, 3, 51});
+    view::Font().write({.x_px = 10, .y_px = 40, .size_px = 12, .color = {4, 5, 6}, .utf8 = "a < b\x1b"},
+                       list);
+    const std::string svg = svg_of(list);
+    EXPECT_THAT(svg,
+                HasSubstr(R"(<rect x="10" y="5" width="10" height="4" fill="#010203" fill-opacity="0.2"/>)"));
+    EXPECT_THAT(svg, HasSubstr(R"(font-size="12" fill="#040506" xml:space="preserve">a &lt; b\x1b</text>)"));
+    EXPECT_LT(svg.find("<path"), svg.find("<text"));
 }
 
 TEST(Svg, DoesNotDarkenAGroundThatFadesAway) {
