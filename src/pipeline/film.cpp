@@ -102,10 +102,18 @@ struct Film::Impl {
     PixelRect draw(double time_s, const OnProgress& on_progress) {
         const view::Camera map = stage.map_of(find_camera());
         try {
-            return stage.draw(at(time_s), map, on_progress);
+            return draw(time_s, map, on_progress);
         } catch (const pipeline::Stage::Overdrawn&) {
-            return stage.draw(at(time_s), map);  // without asking: it would not end
+            return draw(time_s, map, {});  // without asking: it would not end
         }
+    }
+
+    PixelRect draw(double time_s, const view::Camera& map, const OnProgress& on_progress) {
+        const State& state = at(time_s);
+        std::optional<double> bound_px;
+        if (plan.error_bound_m) bound_px = *plan.error_bound_m * map.pixels_per_metre();
+        const view::Caption caption{time_s, motion.figures().energy_error, method_caption(plan, bound_px)};
+        return stage.draw(state, map, caption, on_progress);
     }
 
     Scene scene;

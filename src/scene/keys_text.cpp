@@ -30,6 +30,8 @@ std::string kind_text(Kind kind) {
             return "colour";
         case Kind::kOpaqueColor:
             return "opaque colour";
+        case Kind::kText:
+            return "text";
         case Kind::kFrameRate:
             return "integer or fraction as text";
     }
@@ -158,6 +160,8 @@ std::string remedy(const Key& key) {
                        : fmt::format("give a colour {}", kColorWords);
         case Kind::kOpaqueColor:
             return R"(give an opaque colour such as "#e8c07d")";
+        case Kind::kText:
+            return fmt::format("give {} as one line of text in quotes", key.meaning);
         case Kind::kFrameRate:
             return fmt::format(
                 R"(give {}, {}, as an integer or as a fraction in quotes such as "30000/1001")", key.meaning,
