@@ -132,18 +132,37 @@ struct Film::Impl {
                                         k + 1, times_s.size(), kMostPoseCapsules));
             }
         }
-        view.draw_supports(at(times_s.back()), map, list);
+        const State& last = at(times_s.back());
+        view.draw_supports(last, map, list);
+        view::Caption caption = caption_of(last, map);
+        if (times_s.size() > 1) {  // it is of no one time
+            caption.time_s.reset();
+            caption.energy_error.reset();
+        }
+        stage.annotate(caption, map, list);
         return list;
+    }
+
+    /// What there is to say of the last state that at() returned.
+    view::Caption caption_of(const State& state, const view::Camera& map) const {
+        std::optional<double> bound_px;
+        if (plan.error_bound_m) bound_px = *plan.error_bound_m * map.pixels_per_metre();
+        return {state.time_s, motion.figures().energy_error, method_caption(plan, bound_px)};
     }
 
     /// Requires a pipeline::Stage::Use.
     PixelRect draw(double time_s, const OnProgress& on_progress) {
         const view::Camera map = stage.map_of(find_camera());
         try {
-            return stage.draw(at(time_s), map, on_progress);
+            return draw(time_s, map, on_progress);
         } catch (const pipeline::Stage::Overdrawn&) {
-            return stage.draw(at(time_s), map);  // without asking: it would not end
+            return draw(time_s, map, {});  // without asking: it would not end
         }
+    }
+
+    PixelRect draw(double time_s, const view::Camera& map, const OnProgress& on_progress) {
+        const State& state = at(time_s);
+        return stage.draw(state, map, caption_of(state, map), on_progress);
     }
 
     Scene scene;

@@ -420,6 +420,17 @@ TEST(SceneErrors, Video) {
     });
 }
 
+TEST(SceneErrors, Overlay) {
+    const auto overlay = [](const std::string& keys) { return with("[overlay]\n" + keys); };
+    expect_errors({
+        {overlay("time = 1"), "swing.toml:4:8: overlay.time: ", "give true or false"},
+        {overlay("tittle = \"a\""), "swing.toml:4:1: overlay.tittle: ", "did you mean \"title\"?"},
+        {overlay("title = 3"),
+         "swing.toml:4:9: overlay.title: ", "give the title, at the upper left as one line"},
+        {overlay("title = \"a\\nb\""), "swing.toml:4:9: overlay.title: ", "has a control character"},
+    });
+}
+
 TEST(SceneErrors, StyleAndCamera) {
     const auto style = [](const std::string& keys) { return with("[style]\n" + keys); };
     const auto camera = [](const std::string& keys) { return with("[camera]\n" + keys); };
