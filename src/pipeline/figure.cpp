@@ -120,13 +120,6 @@ Color gap_color(const view::Look& look) {
             mixed(ground.b, look.support.b)};
 }
 
-/// One that can be read on `ground`.
-Color text_color(const Color& ground, const view::Look& look) {
-    if (ground.a == 0) return look.outline;
-    const bool is_light = 299 * ground.r + 587 * ground.g + 114 * ground.b > 128'000;
-    return is_light ? Color{0x1c, 0x1f, 0x26} : Color{0xf4, 0xf1, 0xe8};
-}
-
 /// "t = 0.25 s" for each time, all with as many digits as it takes to tell them exactly, if these are few, or
 /// at least apart.
 std::vector<std::string> captions_of(const std::vector<double>& times_s) {
@@ -173,7 +166,7 @@ view::DrawList list_captions(const Film& film, const FigureDef& def) {
             {.x_px = middle_px - font.width_px(captions[i], size_px) / 2,
              .y_px = bottom_px + static_cast<int>(0.5 * (sheet.caption_px() + kCapitalPerText * size_px)),
              .size_px = size_px,
-             .color = text_color(gap, look),
+             .color = text_color(look),
              .utf8 = captions[i]},
             list);
     }

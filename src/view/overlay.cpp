@@ -39,15 +39,6 @@ constexpr int kMostDecimals = 9;
 /// U+2007, as wide as a digit.
 constexpr const char* kFigureSpace = "\u2007";
 
-Color text_color(const Ground& ground) {
-    const auto lightness = [](Color c) {
-        return 299 * c.r + 587 * c.g + 114 * c.b;
-    };  // of Y', in thousandths
-    constexpr int kMiddle = 128'000;
-    const bool is_light = lightness(ground.top) + lightness(ground.bottom) > 2 * kMiddle;
-    return is_light ? Color{0x2a, 0x2f, 0x3a} : Color{0xd5, 0xdb, 0xe6};
-}
-
 int rounded(double px) {
     return static_cast<int>(std::lround(px));
 }
@@ -104,13 +95,11 @@ Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int he
                  double end_s)
     : def_(def), width_(width), height_(height) {
     const int side_px = std::min(width, height);
-    const Ground ground = look_of(style).ground;
-    constexpr int kOpaque = 255;
-    const bool by_default =
-        side_px >= kSmallestSidePx && ground.top.a == kOpaque && ground.bottom.a == kOpaque;
+    const Look look = look_of(style);
+    const bool by_default = side_px >= kSmallestSidePx && look.ground.is_opaque();
     time_ = def.time.value_or(by_default);
     scale_bar_ = def.scale_bar.value_or(by_default);
-    color_ = text_color(ground);
+    color_ = text_color(look);
     em_px_ = em_of(side_px);
     edge_px_ = rounded(std::max(kEdge * side_px, kEdgePerEm * em_px_));
     while (decimals_ < kMostDecimals && interval_s * power_of_10(decimals_) < 1.0) ++decimals_;

@@ -125,8 +125,8 @@ class Figures : public testing::Test {
         const Image paper = on_white(image);
         EXPECT_LE(largest_excess(paper, of_svg), excess);
         EXPECT_LE(largest_excess(paper, of_pdf), excess);
-        EXPECT_LT(compare(paper, of_svg).mean, 0.20);  // measured 0.13
-        EXPECT_LT(compare(paper, of_pdf).mean, 0.20);  // measured 0.17
+        EXPECT_LT(compare(paper, of_svg).mean, 0.25);  // measured 0.21
+        EXPECT_LT(compare(paper, of_pdf).mean, 0.25);  // measured 0.21
     }
 
     ScratchFolder folder_;
@@ -135,13 +135,16 @@ class Figures : public testing::Test {
 
 TEST_F(Figures, AreTheSameAsPixelsAndAsLines) {
     // Measured 8 levels as SVG and 11 as PDF.
-    expect_same_pictures({"still", "--at", "0.4"}, 14);
+    const std::string no_text = "overlay={time=false,scale_bar=false}";
+    expect_same_pictures({"still", "--at", "0.4", "--set", no_text}, 14);
     expect_same_pictures({"strobe", "--at", "0,0.1,0.2,0.3", "--set", "style.theme=paper", "--set",
-                          "style.background=#ffeedd"},
+                          "style.background=#ffeedd", "--set", no_text},
                          14);
+    // Measured 47: other programs place and smooth glyphs in their own way.
+    expect_same_pictures({"still", "--at", "0.4"}, 60);
     // Measured 51 and 33: rsvg-convert does not know textLength, and the hatch of small supports has
     // overlapping edges, whose coverages Corda does not add.
-    expect_same_pictures({"sheet", "--at", "0,0.1,0.2,0.3", "--columns", "3"}, 60);
+    expect_same_pictures({"sheet", "--at", "0,0.1,0.2,0.3", "--columns", "3"}, 70);
 }
 
 TEST_F(Figures, AreTheSameOnTransparentGrounds) {
@@ -156,8 +159,8 @@ TEST_F(Figures, AreTheSameOnTransparentGrounds) {
 TEST_F(Figures, HaveTextAsText) {
     const auto text_of = [&](const std::string& times) {
         for (const char* const name : {"a.svg", "a.pdf"}) {
-            const auto result =
-                run_corda({"sheet", scene_, "--at", times, "-o", folder_.file(name), "--force"});
+            const auto result = run_corda({"sheet", scene_, "--at", times, "-o", folder_.file(name),
+                                           "--force", "--set", "overlay.scale_bar=false"});
             EXPECT_EQ(result.exit_code, 0) << result.err;
         }
         const auto svg = test::run_shell("xmllint --xpath \"//*[local-name()='text']/text()\" " +
@@ -186,7 +189,7 @@ TEST_F(Figures, HaveTheSameBytesOnEveryRun) {
         }
         EXPECT_EQ(bytes[0], bytes[1]);
         EXPECT_GT(bytes[0].size(), 1000U);
-        EXPECT_LT(bytes[0].size(), 20'000U);  // measured
+        EXPECT_LT(bytes[0].size(), 30'000U);  // measured 8296 and 10941
     }
 }
 
