@@ -191,8 +191,8 @@ TEST_F(ExitCodes, TwoForMorePicturesThanAFolderIsFor) {
 }
 
 TEST_F(ExitCodes, TwoForAnUnknownCommandNamingTheNearest) {
-    for (const auto& [command, remedy] :
-         {std::pair{"rendr", "did you mean render?"}, {"foo", "known are render, still, simulate"}}) {
+    for (const auto& [command, remedy] : {std::pair{"rendr", "did you mean render?"},
+                                          {"foo", "known are render, still, strobe, sheet, simulate"}}) {
         const auto result = run_corda({command, "--help"});
         EXPECT_EQ(result.exit_code, 2);
         EXPECT_THAT(result.err, HasSubstr("corda: error: there is no command"));
