@@ -23,6 +23,8 @@ using Action = std::function<ExitCode(const Console&)>;
 // Each adds one subcommand to `app`; parsing it sets `action`.
 void add_render(CLI::App& app, Action& action);
 void add_still(CLI::App& app, Action& action);
+void add_strobe(CLI::App& app, Action& action);
+void add_sheet(CLI::App& app, Action& action);
 void add_simulate(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);

@@ -113,6 +113,8 @@ int run(int argc, char** argv) {
     ConsoleDef console_def;
     add_render(app, action);
     add_still(app, action);
+    add_strobe(app, action);
+    add_sheet(app, action);
     add_simulate(app, action);
     add_compare(app, action);
     add_verify(app, action);

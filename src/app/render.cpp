@@ -1,4 +1,3 @@
-#include <charconv>
 #include <memory>
 #include <string_view>
 
@@ -11,6 +10,7 @@
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
 #include "interrupt.hpp"
+#include "shots.hpp"
 
 namespace corda::app {
 namespace {
@@ -25,23 +25,14 @@ struct RenderOptions {
     bool dry_run = false;
 };
 
-/// Reads a whole number into `frame`; false for any other text.
-template <typename Frame>
-bool parse_frame(std::string_view text, Frame& frame) {
-    std::int64_t value = 0;
-    const auto [stop, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-    frame = value;
-    return status == std::errc{} && stop == text.data() + text.size();
-}
-
 /// Puts "FIRST:END" into `def`, either of which may be left out.
 void parse_range(std::string_view text, RenderDef& def) {
     if (text.empty()) return;
-    const auto colon = text.find(':');
-    const bool is_range = colon != std::string_view::npos &&
-                          (colon == 0 || parse_frame(text.substr(0, colon), def.first)) &&
-                          (colon + 1 == text.size() || parse_frame(text.substr(colon + 1), def.end));
-    if (is_range) return;
+    if (const auto range = parse_frame_range(text)) {
+        def.first = range->first;
+        def.end = range->end;
+        return;
+    }
     throw Error(ExitCode::kUsage,
                 fmt::format("--frames {}: is not FIRST:END, two frame numbers (END is not drawn)", text));
 }

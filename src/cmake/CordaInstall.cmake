@@ -9,12 +9,12 @@ corda_add_public_library(
         core/basics.hpp core/image.hpp core/rational.hpp
         golden/compare.hpp
         media/defs.hpp
-        pipeline/film.hpp
+        pipeline/figure.hpp pipeline/film.hpp
         scene/scene.hpp
         sim/defs.hpp sim/simulation.hpp sim/system.hpp
         view/defs.hpp
     PRIVATE Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json PNG::PNG
-        PkgConfig::EPOXY PkgConfig::LIBAV PkgConfig::TOMLPLUSPLUS)
+        PkgConfig::CAIRO PkgConfig::EPOXY PkgConfig::FREETYPE PkgConfig::LIBAV PkgConfig::TOMLPLUSPLUS)
 
 install(TARGETS corda_library EXPORT corda_targets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})

@@ -16,6 +16,9 @@ packages=(
     libavformat-dev         # the MP4 muxer and demuxer
     libavutil-dev           # frames and error texts of the two above
     libeigen3-dev           # sparse factorisation for nets of bars
+    libcairo2-dev           # stills as PDF
+    libfreetype-dev         # glyphs of text in pictures
+    fonts-dejavu-core       # their font, which becomes part of the program
     libpng-dev              # stills and golden images, with their sRGB, pHYs and text chunks
     libcli11-dev            # the command line
     libtomlplusplus-dev     # scene files, with line and column of every value
@@ -31,6 +34,9 @@ if [[ "${1:-build}" == test ]]; then
         clang-format        # the style check
         clang-tidy          # the static checks
         ffmpeg              # a second opinion on the videos: ffprobe
+        libxml2-utils       # whether pages and SVG are well formed: xmllint
+        librsvg2-bin        # a second opinion on SVG: rsvg-convert
+        poppler-utils       # a second opinion on PDF: pdftoppm
     )
 fi
 

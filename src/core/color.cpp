@@ -7,6 +7,7 @@
 namespace corda {
 
 std::optional<Color> Color::parse(std::string_view text) {
+    if (text == "transparent") return Color{0, 0, 0, 0};
     if ((text.size() != 7 && text.size() != 9) || text.front() != '#') return std::nullopt;
     std::array<std::uint8_t, 4> channels{0, 0, 0, 255};
     for (std::size_t i = 0; 2 * i + 1 < text.size(); ++i) {

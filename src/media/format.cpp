@@ -18,7 +18,7 @@ namespace corda::media {
 namespace {
 
 constexpr std::array<Format, 1> kFormats{{
-    {".mp4", "mp4", "libx264", "yuv420p", &check_h264, &make_h264_encoder},
+    {".mp4", "mp4", "libx264", "yuv420p", false, &check_h264, &make_h264_encoder},
 }};
 
 template <typename... Args>

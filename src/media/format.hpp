@@ -19,6 +19,7 @@ struct Format {
     const char* container;     ///< libav's name of the muxer
     const char* codec;         ///< libav's name of the encoder
     const char* pixel_format;  ///< libav's name of the pixel format that the encoder is given
+    bool has_alpha;            ///< whether it keeps what is transparent
 
     /// Checks the fields of a def that mean something to this encoder alone. Throws corda::Error (kUsage).
     void (*check)(const VideoDef& def);

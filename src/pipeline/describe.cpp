@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "corda/pipeline/freeze.hpp"
+#include "corda/view/overlay.hpp"
 
 namespace corda {
 namespace {
@@ -133,6 +134,15 @@ std::string method_names(const Plan& plan) {
         if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
     return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string method_caption(const Plan& plan, const std::optional<double>& error_bound_px) {
+    const std::string names = method_names(plan);
+    if (!error_bound_px) return names;
+    constexpr double kSmallest = 1e-3;  // with decimals
+    if (*error_bound_px < kSmallest)
+        return fmt::format("{}, error below {} px", names, view::power_text(*error_bound_px));
+    return fmt::format("{}, error below {:g} px", names, view::rounded_up(*error_bound_px));
 }
 
 namespace pipeline {

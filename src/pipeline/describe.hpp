@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,9 @@ struct MethodGroup {
 
 /// The methods' names: "exact, rattle".
 [[nodiscard]] std::string method_names(const Plan& plan);
+
+/// The same with the bound of the displayed error: "exact, error below 0.031 px".
+[[nodiscard]] std::string method_caption(const Plan& plan, const std::optional<double>& error_bound_px);
 
 namespace pipeline {
 

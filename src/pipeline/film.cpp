@@ -42,6 +42,19 @@ std::vector<MethodDef> if_all_named(const sim::NamedMethods& named) {
     return methods;
 }
 
+/// More capsules of several poses are refused: they would take hundreds of megabytes, and nobody could tell
+/// them apart.
+constexpr std::size_t kMostPoseCapsules = 5'000'000;
+
+/// How much of pose `k` of `count` shows: of the last one all, of earlier ones the less the earlier.
+double pose_opacity(std::size_t k, std::size_t count) {
+    constexpr double kFirst = 0.2;
+    constexpr double kSecondLast = 0.65;
+    if (k + 1 == count) return 1.0;
+    const double age = count < 3 ? 1.0 : static_cast<double>(k) / static_cast<double>(count - 2);
+    return kFirst + (kSecondLast - kFirst) * age;
+}
+
 /// Of each particle.
 std::vector<MotionBounds> bounds_of_start(const System& system) {
     std::vector<MotionBounds> bounds(system.particle_count());
@@ -98,14 +111,58 @@ struct Film::Impl {
         return motion.at(time_s, def.on_progress);
     }
 
+    view::DrawList poses(std::span<const double> times_s, const OnProgress& on_progress) {
+        const view::Camera map = stage.map_of(find_camera());
+        const view::SceneView& view = stage.view();
+        view::DrawList list;
+        view.start(list);
+        for (std::size_t k = 0; k < times_s.size(); ++k) {
+            report_progress(on_progress, static_cast<std::int64_t>(k),
+                            static_cast<std::int64_t>(times_s.size()));
+            const std::size_t first_layer = list.layers.size();
+            view.draw_pose(at(times_s[k]), map, list);
+            const double opacity = pose_opacity(k, times_s.size());
+            for (std::size_t l = first_layer; l < list.layers.size(); ++l) {
+                Color& color = list.layers[l].color;
+                color.a = static_cast<std::uint8_t>(std::lround(opacity * color.a));
+            }
+            if (k > 0 && list.capsules.size() > kMostPoseCapsules) {
+                throw Error(ExitCode::kUsage,
+                            fmt::format("{} of {} poses have over {} lines in all; ask for fewer times",
+                                        k + 1, times_s.size(), kMostPoseCapsules));
+            }
+        }
+        const State& last = at(times_s.back());
+        view.draw_supports(last, map, list);
+        view::Caption caption = caption_of(last, map);
+        if (times_s.size() > 1) {  // it is of no one time
+            caption.time_s.reset();
+            caption.energy_error.reset();
+        }
+        stage.annotate(caption, map, list);
+        return list;
+    }
+
+    /// What there is to say of the last state that at() returned.
+    view::Caption caption_of(const State& state, const view::Camera& map) const {
+        std::optional<double> bound_px;
+        if (plan.error_bound_m) bound_px = *plan.error_bound_m * map.pixels_per_metre();
+        return {state.time_s, motion.figures().energy_error, method_caption(plan, bound_px)};
+    }
+
     /// Requires a pipeline::Stage::Use.
     PixelRect draw(double time_s, const OnProgress& on_progress) {
         const view::Camera map = stage.map_of(find_camera());
         try {
-            return stage.draw(at(time_s), map, on_progress);
+            return draw(time_s, map, on_progress);
         } catch (const pipeline::Stage::Overdrawn&) {
-            return stage.draw(at(time_s), map);  // without asking: it would not end
+            return draw(time_s, map, {});  // without asking: it would not end
         }
+    }
+
+    PixelRect draw(double time_s, const view::Camera& map, const OnProgress& on_progress) {
+        const State& state = at(time_s);
+        return stage.draw(state, map, caption_of(state, map), on_progress);
     }
 
     Scene scene;
@@ -211,7 +268,7 @@ GlInfo Film::gl() const {
             context.platform()};
 }
 
-FilmPainter::FilmPainter(Film& film) : film_(&film), use_(film.impl_->stage) {}
+FilmPainter::FilmPainter(const Film& film) : film_(&film), use_(film.impl_->stage) {}
 
 PixelRect FilmPainter::draw(double time_s, const OnProgress& on_progress) {
     pipeline::Stage& stage = film_->impl_->stage;
@@ -219,6 +276,21 @@ PixelRect FilmPainter::draw(double time_s, const OnProgress& on_progress) {
     const bool is_next = stage.pictures() == pictures_ + 1;
     pictures_ = stage.pictures();
     return is_next ? damage : stage.image().rect();
+}
+
+void FilmPainter::draw(view::DrawList list, const OnProgress& on_progress) {
+    pipeline::Stage& stage = film_->impl_->stage;
+    try {
+        stage.draw(list, on_progress);
+    } catch (const pipeline::Stage::Overdrawn&) {
+        stage.draw(std::move(list));  // without asking: it would not end
+    }
+    pictures_ = -1;
+}
+
+view::DrawList FilmPainter::poses(const Film& film, std::span<const double> times_s,
+                                  const OnProgress& on_progress) {
+    return film.impl_->poses(times_s, on_progress);
 }
 
 const Image& FilmPainter::image() const {

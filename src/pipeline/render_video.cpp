@@ -3,11 +3,13 @@
 
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
+#include "corda/media/format.hpp"
 #include "corda/media/video_writer.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/painter.hpp"
 #include "corda/pipeline/validate.hpp"
+#include "corda/view/look.hpp"
 
 namespace corda {
 namespace {
@@ -54,6 +56,19 @@ void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProg
     report_progress(on_progress, end - first, end - first);
 }
 
+/// A transparent ground would become black without a word.
+void check_ground(const Scene& scene, const std::string& path) {
+    const Ground ground = view::look_of(scene.style).ground;
+    const media::Format& format = media::find_format(path, scene.video.encoder.codec);
+    if (ground.is_opaque() || format.has_alpha) return;
+    const Color clear = ground.top.a < 255 ? ground.top : ground.bottom;
+    throw Error(
+        ExitCode::kUsage,
+        fmt::format("style.background: \"{}\" is transparent, and {} cannot be; give an opaque colour "
+                    "(--set style.background=#ffffff), or draw stills as .png",
+                    clear.text(), format.ending));
+}
+
 bool is_interruption(const Error& error) {
     return error.code() == ExitCode::kInterrupted || error.code() == ExitCode::kTerminated;
 }
@@ -72,6 +87,7 @@ void check_render(const Scene& scene, const std::string& path, const RenderDef& 
                         def.first, end, count));
     }
     media::check_video_output(path, scene.video, input, def.force);
+    check_ground(scene, path);
 }
 
 Rendered render_video(Film& film, const std::string& path, const RenderDef& def) {

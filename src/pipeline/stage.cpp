@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -30,7 +31,9 @@ Stage::Stage(const Scene& scene, const System& system, const std::string& backen
       system_(&system),
       gl_(gl::ContextDef::parse(backend)),
       view_(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, scene.video.width_px,
-            scene.video.height_px) {
+            scene.video.height_px),
+      overlay_(scene.overlay, scene.style, scene.video.width_px, scene.video.height_px,
+               scene.video.fps.interval_s(), scene.world.duration_s) {
     gl_.require_gpu = require_gpu;
 }
 
@@ -55,13 +58,13 @@ bool Stage::needs_motion() const {
 CameraDef Stage::fit(std::span<const MotionBounds> motion) {
     view_.set_motion(motion);
     return view::fit_camera(scene_->camera, system_->origin_m, view_.drawn(motion), scene_->video.width_px,
-                            scene_->video.height_px);
+                            scene_->video.height_px, overlay_.insets());
 }
 
 double Stage::largest_pixels_per_metre(const MotionBounds& bounds) const {
     const std::array<view::Drawn, 1> lines{{{.bounds = bounds}}};
     return map_of(view::fit_camera(scene_->camera, system_->origin_m, lines, scene_->video.width_px,
-                                   scene_->video.height_px))
+                                   scene_->video.height_px, overlay_.insets()))
         .pixels_per_metre();
 }
 
@@ -77,8 +80,19 @@ void Stage::open() {
     }
 }
 
-PixelRect Stage::draw(const State& state, const view::Camera& map, const OnProgress& on_progress) {
+PixelRect Stage::draw(const State& state, const view::Camera& map, const view::Caption& caption,
+                      const OnProgress& on_progress) {
     view_.draw(state, map, list_);
+    annotate(caption, map, list_);
+    return paint(on_progress);
+}
+
+PixelRect Stage::draw(view::DrawList list, const OnProgress& on_progress) {
+    list_ = std::move(list);
+    return paint(on_progress);
+}
+
+PixelRect Stage::paint(const OnProgress& on_progress) {
     canvas_->context.make_current();  // a callback since open() may have left another one
     const std::int64_t picture = ++pictures_;
     const auto ask = [&](std::int64_t done, std::int64_t total) {

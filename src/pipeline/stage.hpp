@@ -10,6 +10,7 @@
 #include "corda/render/frame_renderer.hpp"
 #include "corda/scene/scene.hpp"
 #include "corda/view/camera.hpp"
+#include "corda/view/overlay.hpp"
 #include "corda/view/scene_view.hpp"
 
 namespace corda::pipeline {
@@ -47,10 +48,18 @@ class Stage {
     /// What draw() throws if `on_progress` itself has drawn this stage: its picture is the last one now.
     struct Overdrawn : std::exception {};
 
-    /// Draws a state; returns the pixels that may differ from the last picture. Asks `on_progress` again and
-    /// again if the picture is large. Throws Overdrawn, and corda::Error: kNoGl, kInterrupted. Requires a
-    /// Use.
-    PixelRect draw(const State& state, const view::Camera& map, const OnProgress& on_progress = {});
+    /// Draws a state, with what the overlay says of it; returns the pixels that may differ from the last
+    /// picture. Asks `on_progress` again and again if the picture is large. Throws Overdrawn, and
+    /// corda::Error: kNoGl, kInterrupted. Requires a Use.
+    PixelRect draw(const State& state, const view::Camera& map, const view::Caption& caption = {},
+                   const OnProgress& on_progress = {});
+    /// Draws a list of this stage's size, in the same way.
+    PixelRect draw(view::DrawList list, const OnProgress& on_progress = {});
+    /// Adds what the overlay says to a list.
+    void annotate(const view::Caption& caption, const view::Camera& map, view::DrawList& list) {
+        overlay_.draw(caption, map.pixels_per_metre(), list);
+    }
+    [[nodiscard]] const view::SceneView& view() const { return view_; }
     /// The last picture.
     [[nodiscard]] const Image& image() const { return canvas_->renderer.image(); }
     /// Whether nothing was to be drawn on it but the ground.
@@ -70,11 +79,13 @@ class Stage {
     };
 
     void open();
+    PixelRect paint(const OnProgress& on_progress);
 
     const Scene* scene_;
     const System* system_;
     gl::ContextDef gl_;
     view::SceneView view_;
+    view::Overlay overlay_;
     view::DrawList list_;
     std::unique_ptr<Canvas> canvas_;
     std::int64_t pictures_ = 0;

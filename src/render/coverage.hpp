@@ -56,13 +56,20 @@ namespace corda::render {
     return (t + (t >> 8U)) >> 8U;
 }
 
-/// One channel of a colour of that alpha, painted over `below` where it covers `coverage` / 255 of the pixel.
-/// In gamma space: 8-bit sRGB, alpha not premultiplied. A layer paints its halo in the colour of the ground,
-/// with the layer's alpha, and then itself.
+/// One channel of what a layer of that alpha paints over `below` where it covers `coverage` / 255 of the
+/// pixel. In gamma space: 8-bit sRGB times the pixel's alpha, and that alpha itself, the fourth channel, in
+/// the same way. A layer paints its halo as the ground is, with the layer's alpha, and then itself, opaque.
 [[nodiscard]] inline std::uint32_t paint_over(std::uint32_t below, std::uint32_t channel,
                                               std::uint32_t layer_alpha, std::uint32_t coverage) {
     const std::uint32_t alpha = over_255(coverage * layer_alpha);
     return over_255(below * (255 - alpha) + channel * alpha);
+}
+
+/// Divides a pixel's colours by its alpha, which no painting does.
+inline void straighten(std::uint8_t* rgba) {
+    const std::uint32_t alpha = rgba[3];
+    if (alpha == 0 || alpha == 255) return;
+    for (int c = 0; c < 3; ++c) rgba[c] = static_cast<std::uint8_t>((rgba[c] * 255U + alpha / 2) / alpha);
 }
 
 }  // namespace corda::render

@@ -13,6 +13,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/gl/check.hpp"
+#include "corda/render/coverage.hpp"
 #include "corda/render/ground.hpp"
 #include "embedded_shaders.hpp"
 
@@ -27,6 +28,18 @@ constexpr int kAskingRows = 1024;
 constexpr GLuint kFrameUnit = 0;
 constexpr GLuint kGroundUnit = 1;
 constexpr GLuint kMaskUnit = 2;
+constexpr GLuint kCoverageUnit = 3;
+
+/// Whether two stamps look the same, each with the coverage of its own list.
+bool same_look(const view::Stamp& a, const std::vector<std::uint8_t>& a_coverage, const view::Stamp& b,
+               const std::vector<std::uint8_t>& b_coverage) {
+    const bool a_is_solid = a.first_coverage == view::Stamp::kSolid;
+    const bool b_is_solid = b.first_coverage == view::Stamp::kSolid;
+    if (a.box != b.box || a.color != b.color || a_is_solid != b_is_solid) return false;
+    const std::size_t count = static_cast<std::size_t>(a.box.width()) * a.box.height();
+    return a_is_solid || std::equal(&a_coverage[a.first_coverage], &a_coverage[a.first_coverage] + count,
+                                    &b_coverage[b.first_coverage]);
+}
 
 /// How many rows of the damage are drawn at once, a multiple of the side of llvmpipe's tiles, as one that is
 /// cut in two takes twice as long: as many as llvmpipe draws in a tenth of a second on one core, or in the
@@ -62,6 +75,7 @@ void check_size(int width, int height) {
 FrameRenderer::FrameRenderer(int width, int height)
     : image_((check_size(width, height), Image(width, height))),
       capsule_program_("capsule", shaders::kCapsuleVert, shaders::kCapsuleFrag),
+      stamp_program_("stamp", shaders::kStampVert, shaders::kStampFrag),
       paint_program_("paint", shaders::kPaintVert, shaders::kPaintFrag) {
     make_textures();
     describe_capsules();
@@ -109,17 +123,21 @@ void FrameRenderer::describe_capsules() {
 }
 
 void FrameRenderer::describe_tiles() {
-    static_assert(std::is_standard_layout_v<Tile> && sizeof(Tile) == 4 * sizeof(float) + sizeof(Color));
+    static_assert(std::is_standard_layout_v<Tile> && sizeof(Tile) == 6 * sizeof(float));
     glBindVertexArray(tile_array_.id());
     glBindBuffer(GL_ARRAY_BUFFER, tile_buffer_.id());
     glBindVertexBuffer(0, tile_buffer_.id(), 0, sizeof(Tile));
     glVertexBindingDivisor(0, 1);
-    for (const GLuint attribute : {0U, 1U}) {
+    for (const GLuint attribute : {0U, 1U, 2U}) {
         glEnableVertexAttribArray(attribute);
         glVertexAttribBinding(attribute, 0);
     }
     glVertexAttribFormat(0, 4, GL_FLOAT, GL_FALSE, offsetof(Tile, x0));
     glVertexAttribIFormat(1, 4, GL_UNSIGNED_BYTE, offsetof(Tile, color));
+    glVertexAttribIFormat(2, 1, GL_INT, offsetof(Tile, first_coverage));
+    glBindBuffer(GL_TEXTURE_BUFFER, coverage_buffer_.id());
+    glBindTexture(GL_TEXTURE_BUFFER, coverage_.id());
+    glTexBuffer(GL_TEXTURE_BUFFER, GL_R8UI, coverage_buffer_.id());
 }
 
 void FrameRenderer::set_uniforms() {
@@ -128,6 +146,9 @@ void FrameRenderer::set_uniforms() {
     capsule_program_.use();
     glUniform2f(capsule_program_.uniform("frame_size"), width, height);
     glUniform1f(capsule_program_.uniform("edge_margin"), view::kEdgeMargin);
+    stamp_program_.use();
+    glUniform2f(stamp_program_.uniform("frame_size"), width, height);
+    glUniform1i(stamp_program_.uniform("coverage"), kCoverageUnit);
     paint_program_.use();
     glUniform2f(paint_program_.uniform("frame_size"), width, height);
     glUniform1i(paint_program_.uniform("frame"), kFrameUnit);
@@ -135,10 +156,24 @@ void FrameRenderer::set_uniforms() {
     glUniform1i(paint_program_.uniform("masks"), kMaskUnit);
 }
 
+PixelRect FrameRenderer::damage_of(const view::DrawList& list) const {
+    if (everything_is_stale_) return image_.rect();
+    PixelRect damage = last_bounds_.united(list.bounds);
+    for (std::size_t i = 0; i < std::max(list.stamps.size(), last_stamps_.size()); ++i) {
+        const bool is_old = i < last_stamps_.size();
+        const bool is_new = i < list.stamps.size();
+        if (is_old && is_new && same_look(last_stamps_[i], last_coverage_, list.stamps[i], list.coverage))
+            continue;
+        if (is_old) damage = damage.united(last_stamps_[i].box);
+        if (is_new) damage = damage.united(list.stamps[i].box);
+    }
+    return damage;
+}
+
 PixelRect FrameRenderer::render(const view::DrawList& list, const OnProgress& on_progress) {
     assert(list.width == image_.width() && list.height == image_.height());
     if (last_ground_ != list.ground) everything_is_stale_ = true;
-    const PixelRect damage = everything_is_stale_ ? image_.rect() : last_bounds_.united(list.bounds);
+    const PixelRect damage = damage_of(list);
     if (damage.empty()) return damage;
 
     const bool starts_anew = std::exchange(everything_is_stale_, true);  // if it fails on the way
@@ -155,6 +190,8 @@ PixelRect FrameRenderer::render(const view::DrawList& list, const OnProgress& on
         draw_band(band);
     }
     last_bounds_ = list.bounds;
+    last_stamps_ = list.stamps;
+    last_coverage_ = list.coverage;
     everything_is_stale_ = false;
     return damage;
 }
@@ -167,6 +204,7 @@ void FrameRenderer::upload(const view::DrawList& list) {
     };
     fill(capsule_buffer_, list.capsules);
     fill(tile_buffer_, tiles_.tiles());
+    fill(coverage_buffer_, list.coverage);
 }
 
 void FrameRenderer::upload_ground(const Ground& ground, const OnProgress& on_progress) {
@@ -208,6 +246,9 @@ void FrameRenderer::draw_band(const PixelRect& band) {
     glReadPixels(band.x0, band.y0, band.width(), band.height(), GL_RGBA, GL_UNSIGNED_BYTE,
                  image_.pixel(band.x0, band.y0));
     gl::check_errors("drawing a frame");
+    for (int y = band.y0; y < band.y1 && !last_ground_->is_opaque(); ++y) {
+        for (int x = band.x0; x < band.x1; ++x) straighten(image_.pixel(x, y));
+    }
 }
 
 void FrameRenderer::set_state(const PixelRect& band) const {
@@ -230,15 +271,24 @@ void FrameRenderer::set_state(const PixelRect& band) const {
     bind(kFrameUnit, frame_);
     bind(kGroundUnit, ground_);
     bind(kMaskUnit, masks_);
+    glActiveTexture(GL_TEXTURE0 + kCoverageUnit);
+    glBindTexture(GL_TEXTURE_BUFFER, coverage_.id());
 }
 
 void FrameRenderer::draw_masks(const Batch& batch) const {
     glBindFramebuffer(GL_FRAMEBUFFER, mask_target_.id());
-    glBindVertexArray(capsule_array_.id());
-    capsule_program_.use();
     glEnable(GL_BLEND);
-    glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.capsule_count),
-                                      static_cast<GLuint>(batch.first_capsule));
+    if (batch.is_stamps) {
+        glBindVertexArray(tile_array_.id());
+        stamp_program_.use();
+        glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.tile_count),
+                                          static_cast<GLuint>(batch.first_tile));
+    } else {
+        glBindVertexArray(capsule_array_.id());
+        capsule_program_.use();
+        glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.capsule_count),
+                                          static_cast<GLuint>(batch.first_capsule));
+    }
     glDisable(GL_BLEND);
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
@@ -17,7 +19,7 @@ namespace corda::render {
 ///
 /// Layer by layer, or many at once if no tile has two of them: the capsules and halos of a layer are united
 /// in two masks, by GL_MAX of values that are exactly k/255; then a pass over its tiles paints it in
-/// integers. Only the damage, what may differ from the last frame, is drawn and read back.
+/// integers. So are stamps. Only the damage, what may differ from the last frame, is drawn and read back.
 class FrameRenderer {
   public:
     /// A gl::Context must be current and outlive this. Throws corda::Error (kNoGl) if the driver cannot draw
@@ -39,6 +41,7 @@ class FrameRenderer {
     void set_uniforms();
     /// Sets the state that drawing depends on: another renderer may have drawn in this context meanwhile.
     void set_state(const PixelRect& band) const;
+    [[nodiscard]] PixelRect damage_of(const view::DrawList& list) const;
     void upload(const view::DrawList& list);
     void upload_ground(const Ground& ground, const OnProgress& on_progress);
     void empty_masks() const;
@@ -50,17 +53,22 @@ class FrameRenderer {
     Image image_;
     Tiles tiles_;
     gl::Program capsule_program_;
+    gl::Program stamp_program_;
     gl::Program paint_program_;
     gl::VertexArray capsule_array_;
     gl::VertexArray tile_array_;
     gl::Buffer capsule_buffer_;
+    gl::Buffer coverage_buffer_;
     gl::Buffer tile_buffer_;
     gl::Texture ground_;
     gl::Texture masks_;
+    gl::Texture coverage_;
     gl::Texture frame_;
     gl::Framebuffer mask_target_;
     gl::Framebuffer frame_target_;
     PixelRect last_bounds_;
+    std::vector<view::Stamp> last_stamps_;
+    std::vector<std::uint8_t> last_coverage_;
     std::optional<Ground> last_ground_;  ///< that of ground_
     bool everything_is_stale_ = true;
 };

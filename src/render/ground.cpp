@@ -5,11 +5,12 @@
 namespace corda::render {
 namespace {
 
-/// The colour in the middle of row `y`, in 1/256 of a level.
-std::uint32_t level_256(std::uint8_t top, std::uint8_t bottom, int y, int height) {
+/// What is `top` and `bottom`, in 1/255 of a level, at the edges of the frame, in the middle of row `y`, in
+/// 1/256 of a level.
+std::uint32_t level_256(int top, int bottom, int y, int height) {
     const std::int64_t halves = 2 * std::int64_t{height};  // of rows
     const std::int64_t below = 2 * std::int64_t{y} + 1;
-    return static_cast<std::uint32_t>(256 * (top * (halves - below) + bottom * below) / halves);
+    return static_cast<std::uint32_t>(256 * (top * (halves - below) + bottom * below) / (255 * halves));
 }
 
 /// The threshold of a pixel, 112 .. 143, in Bayer's order: the bits of x ^ y and y, interleaved from the
@@ -25,17 +26,25 @@ std::uint32_t threshold_256(unsigned x, unsigned y) {
 }  // namespace
 
 void write_ground_row(const Ground& ground, int y, int width, int height, std::uint8_t* rgba) {
-    const std::array<std::uint32_t, 3> levels{level_256(ground.top.r, ground.bottom.r, y, height),
-                                              level_256(ground.top.g, ground.bottom.g, y, height),
-                                              level_256(ground.top.b, ground.bottom.b, y, height)};
+    const auto& [top, bottom] = ground;
+    const std::array<std::uint32_t, 4> levels{level_256(top.r * top.a, bottom.r * bottom.a, y, height),
+                                              level_256(top.g * top.a, bottom.g * bottom.a, y, height),
+                                              level_256(top.b * top.a, bottom.b * bottom.a, y, height),
+                                              level_256(255 * top.a, 255 * bottom.a, y, height)};
     std::array<std::uint32_t, 8> thresholds{};
     for (unsigned x = 0; x < thresholds.size(); ++x)
         thresholds[x] = threshold_256(x, static_cast<unsigned>(y));
     for (int x = 0; x < width; ++x) {
         for (const std::uint32_t level : levels)
             *rgba++ = static_cast<std::uint8_t>((level + thresholds[x & 7]) >> 8U);
-        *rgba++ = 255;
     }
+}
+
+Ground straight_ends(const Ground& ground) {
+    auto [top, bottom] = ground;
+    if (top.a == 0) top = {bottom.r, bottom.g, bottom.b, 0};
+    if (bottom.a == 0) bottom = {top.r, top.g, top.b, 0};
+    return {top, bottom};
 }
 
 }  // namespace corda::render

@@ -30,7 +30,17 @@ void unite(const view::Capsule& capsule, const PixelRect& box, int width, Mask& 
     }
 }
 
-/// Paints a layer, and empties its mask.
+void put(const view::Stamp& stamp, const std::vector<std::uint8_t>& coverage, int width, Mask& mask) {
+    std::size_t i = stamp.first_coverage;
+    for (int y = stamp.box.y0; y < stamp.box.y1; ++y) {
+        for (int x = stamp.box.x0; x < stamp.box.x1; ++x) {
+            mask.line[static_cast<std::size_t>(y) * width + x] =
+                stamp.first_coverage == view::Stamp::kSolid ? 255 : coverage[i++];
+        }
+    }
+}
+
+/// Paints a layer or a stamp, and empties its mask.
 void paint(const Color& color, const PixelRect& box, const Image& ground, Mask& mask, Image& image) {
     for (int y = box.y0; y < box.y1; ++y) {
         for (int x = box.x0; x < box.x1; ++x) {
@@ -44,6 +54,7 @@ void paint(const Color& color, const PixelRect& box, const Image& ground, Mask& 
             channel(0, color.r);
             channel(1, color.g);
             channel(2, color.b);
+            channel(3, 255);
             mask.line[i] = 0;
             mask.halo[i] = 0;
         }
@@ -68,6 +79,13 @@ Image render_reference(const view::DrawList& list) {
             touched = touched.united(box);
         }
         paint(layer.color, touched, ground, mask, image);
+    }
+    for (const view::Stamp& stamp : list.stamps) {
+        put(stamp, list.coverage, list.width, mask);
+        paint(stamp.color, stamp.box, ground, mask, image);
+    }
+    for (int y = 0; y < list.height && !list.ground.is_opaque(); ++y) {
+        for (int x = 0; x < list.width; ++x) straighten(image.pixel(x, y));
     }
     return image;
 }

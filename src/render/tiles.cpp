@@ -52,7 +52,7 @@ void Tiles::plan(const view::DrawList& list) {
             });
         }
         if (overlaps) {
-            batches_.push_back({layer.first_capsule, 0, tiles_.size(), 0});
+            batches_.push_back({.first_capsule = layer.first_capsule, .first_tile = tiles_.size()});
             first_layer = l;
         }
         Batch& batch = batches_.back();
@@ -63,8 +63,28 @@ void Tiles::plan(const view::DrawList& list) {
             const int y0 = static_cast<int>(tile) / columns_ * kSidePx;
             tiles_.push_back({static_cast<float>(x0), static_cast<float>(y0),
                               static_cast<float>(std::min(x0 + kSidePx, list.width)),
-                              static_cast<float>(std::min(y0 + kSidePx, list.height)), layer.color});
+                              static_cast<float>(std::min(y0 + kSidePx, list.height)), layer.color, -1});
         }
+    }
+    plan_stamps(list);
+}
+
+void Tiles::plan_stamps(const view::DrawList& list) {
+    std::size_t first = 0;  // of the batch
+    for (std::size_t i = 0; i < list.stamps.size(); ++i) {
+        const view::Stamp& stamp = list.stamps[i];
+        const PixelRect& box = stamp.box;
+        const auto meets = [&](const view::Stamp& other) { return !other.box.intersected(box).empty(); };
+        if (i == 0 || std::any_of(&list.stamps[first], &list.stamps[i], meets)) {
+            first = i;
+            batches_.push_back({.first_tile = tiles_.size(), .is_stamps = true});
+        }
+        ++batches_.back().tile_count;
+        tiles_.push_back({static_cast<float>(box.x0), static_cast<float>(box.y0), static_cast<float>(box.x1),
+                          static_cast<float>(box.y1), stamp.color,
+                          stamp.first_coverage == view::Stamp::kSolid
+                              ? -1
+                              : static_cast<std::int32_t>(stamp.first_coverage)});
     }
 }
 

@@ -9,25 +9,27 @@
 
 namespace corda::render {
 
-/// The part of a frame in which one layer is painted.
+/// The part of a frame in which one layer or stamp is painted.
 struct Tile {
     float x0 = 0;
     float y0 = 0;
     float x1 = 0;
     float y1 = 0;
     Color color;
+    std::int32_t first_coverage = -1;  ///< of a stamp: see view::Stamp; -1: all of it is covered
 };
 
-/// Layers that can be painted at once, because no two of them have a tile in common.
+/// Layers, or stamps, that can be painted at once, because no two of them have a tile in common.
 struct Batch {
     std::size_t first_capsule = 0;
     std::size_t capsule_count = 0;
     std::size_t first_tile = 0;
     std::size_t tile_count = 0;
+    bool is_stamps = false;  ///< one per tile
 };
 
-/// Where the layers of a draw list are painted, in what order. A layer is painted only in the tiles that its
-/// capsules may touch.
+/// Where the layers and stamps of a draw list are painted, in what order. A layer is painted only in the
+/// tiles that its capsules may touch; the box of a stamp is a tile.
 class Tiles {
   public:
     /// Side of a tile in pixels: that of those in which llvmpipe draws.
@@ -42,6 +44,7 @@ class Tiles {
     [[nodiscard]] const std::vector<Batch>& batches() const { return batches_; }
 
   private:
+    void plan_stamps(const view::DrawList& list);
     /// Calls `visit` with the index of every tile that the capsule may touch.
     template <class Visit>
     void for_each_tile(const view::Capsule& capsule, const view::DrawList& list, const Visit& visit) const;

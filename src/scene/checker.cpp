@@ -8,6 +8,7 @@
 
 #include "corda/core/image.hpp"
 #include "corda/core/nearest.hpp"
+#include "corda/core/text.hpp"
 #include "corda/scene/keys.hpp"
 #include "corda/scene/rate.hpp"
 #include "corda/scene/readers.hpp"
@@ -77,6 +78,7 @@ class ValueChecker {
         if (!node.is_string()) return fail_type(node, path, one_words());
         const std::string& text = node.as_string()->get();
         if (key_->type.kind == Kind::kFrameRate) return check_rate(node, path);
+        if (key_->type.kind == Kind::kText) return check_text(text, node, path);
         return key_->type.kind == Kind::kChoice ? check_choice(text, node, path)
                                                 : check_color(text, node, path);
     }
@@ -125,11 +127,13 @@ class ValueChecker {
         return false;
     }
 
+    bool check_text(const std::string& text, const toml::node& node, const std::string& path) const {
+        return printable(text) == text ||
+               fail(node, path, fmt::format("\"{}\" has a control character", excerpt(text)));
+    }
+
     bool check_color(const std::string& text, const toml::node& node, const std::string& path) const {
-        const auto color = Color::parse(text);
-        if (!color) return fail(node, path, fmt::format("\"{}\" is not a colour", excerpt(text)));
-        const bool good = key_->type.kind != Kind::kOpaqueColor || color->a == 255;
-        return good || fail(node, path, fmt::format("\"{}\" is not opaque", text));
+        return Color::parse(text) || fail(node, path, fmt::format("\"{}\" is not a colour", excerpt(text)));
     }
 
     [[nodiscard]] std::string_view one_words() const {

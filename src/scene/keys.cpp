@@ -126,6 +126,7 @@ std::vector<Key> root_keys() {
         {"", "solver", table, "", none(), "how the motion is computed"},
         {"", "video", table, "", none(), "picture size, frame rate and encoder"},
         {"", "style", table, "", none(), "how it looks"},
+        {"", "overlay", table, "", none(), "words and a scale bar at the edges of the picture"},
         {"", "camera", table, "", none(), "where the camera looks"},
     };
 }
@@ -340,8 +341,8 @@ std::vector<Key> style_keys() {
     return {
         {"style", "theme", one_of(themes), "", at(themes, def.theme), "the colours",
          "every one below overrides it"},
-        {"style", "background", or_pair(of(Kind::kOpaqueColor), "[top, bottom]"), "", of_theme,
-         "the background"},
+        {"style", "background", or_pair(of(Kind::kColor), "[top, bottom]"), "", of_theme, "the background",
+         "with alpha for .png, .svg and .pdf"},
         {"style", "palette", list(Kind::kColor, 1, 64), "", of_theme,
          "the colours that ropes, then nets take in turn"},
         {"style", "rope_width_px", number(kWidthPx), "px", otherwise("shorter side / 120, at least 2"),
@@ -366,6 +367,22 @@ std::vector<Key> style_keys() {
     };
 }
 
+std::vector<Key> overlay_keys() {
+    const OverlayDef def;
+    const Type boolean = of(Kind::kBoolean);
+    const Default if_large = otherwise("true on an opaque background, from a shorter side of 160 px on");
+    return {
+        {"overlay", "time", boolean, "", if_large, "the time, at the lower left"},
+        {"overlay", "scale_bar", boolean, "", if_large, "a scale bar, at the lower right"},
+        {"overlay", "title", of(Kind::kText), "", at(def.title), "the title, at the upper left",
+         "shortened if it is too long"},
+        {"overlay", "energy", boolean, "", at(def.energy), "the error of the energy, beside the time",
+         "left out if there is no room"},
+        {"overlay", "method", boolean, "", at(def.method),
+         "the method and the bound of the displayed error, below the title"},
+    };
+}
+
 std::vector<Key> camera_keys() {
     return {
         {"camera", "center", pair("[x, y]", kCoordinate), "m", otherwise("fits the whole motion"),
@@ -385,7 +402,8 @@ const std::vector<Key>& all_keys() {
         for (const std::vector<Key>& part :
              {root_keys(), world_keys(), body_keys("rope", rope_shapes(), "style.rope_width_px"), rope_keys(),
               rope_shape_keys(), body_keys("net", net_shapes(), "style.net_width_px"), net_keys(),
-              solver_keys(), solver_bodies_keys(), video_keys(), style_keys(), camera_keys()}) {
+              solver_keys(), solver_bodies_keys(), video_keys(), style_keys(), overlay_keys(),
+              camera_keys()}) {
             all.insert(all.end(), part.begin(), part.end());
         }
         return all;

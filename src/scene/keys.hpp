@@ -7,8 +7,9 @@
 
 namespace corda::scene {
 
-/// The type of a value. A choice is one word of a list; a frame rate is an integer, or a fraction as text.
-enum class Kind { kTable, kTables, kBoolean, kInteger, kNumber, kChoice, kColor, kOpaqueColor, kFrameRate };
+/// The type of a value. A choice is one word of a list; text is one line; a frame rate is an integer, or a
+/// fraction as text.
+enum class Kind { kTable, kTables, kBoolean, kInteger, kNumber, kChoice, kColor, kText, kFrameRate };
 
 /// Whether a key takes one value, a pair, a list of values or a list of pairs; the sum of those it takes.
 enum Form : unsigned { kOne = 1, kPair = 2, kList = 4, kPairs = 8 };

@@ -10,7 +10,7 @@
 namespace corda::scene {
 namespace {
 
-constexpr std::string_view kColorWords = R"(such as "#e8c07d" or, with alpha, "#e8c07d80")";
+constexpr std::string_view kColorWords = R"(such as "#e8c07d", "#e8c07d80" (with alpha) or "transparent")";
 
 std::string kind_text(Kind kind) {
     switch (kind) {
@@ -28,8 +28,8 @@ std::string kind_text(Kind kind) {
             return "text";
         case Kind::kColor:
             return "colour";
-        case Kind::kOpaqueColor:
-            return "opaque colour";
+        case Kind::kText:
+            return "text";
         case Kind::kFrameRate:
             return "integer or fraction as text";
     }
@@ -156,8 +156,8 @@ std::string remedy(const Key& key) {
             return (key.type.forms & kList) != 0
                        ? fmt::format("give a list of {} colours {}", entries_text(key), kColorWords)
                        : fmt::format("give a colour {}", kColorWords);
-        case Kind::kOpaqueColor:
-            return R"(give an opaque colour such as "#e8c07d")";
+        case Kind::kText:
+            return fmt::format("give {} as one line of text in quotes", key.meaning);
         case Kind::kFrameRate:
             return fmt::format(
                 R"(give {}, {}, as an integer or as a fraction in quotes such as "30000/1001")", key.meaning,

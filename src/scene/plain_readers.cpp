@@ -63,6 +63,16 @@ StyleDef read_style(const TableReader& style) {
     return def;
 }
 
+OverlayDef read_overlay(const TableReader& overlay) {
+    OverlayDef def;
+    overlay.read("time", def.time);
+    overlay.read("scale_bar", def.scale_bar);
+    overlay.read("title", def.title);
+    overlay.read("energy", def.energy);
+    overlay.read("method", def.method);
+    return def;
+}
+
 CameraDef read_camera(const TableReader& camera) {
     CameraDef def;
     camera.read("center", def.center_m);

@@ -32,6 +32,7 @@ struct Sections {
     TableReader solver;
     TableReader video;
     TableReader style;
+    TableReader overlay;
     TableReader camera;
     std::vector<TableReader> ropes;
     std::vector<TableReader> nets;
@@ -60,6 +61,7 @@ struct SolverSection {
 [[nodiscard]] SolverSection read_solver(const Sections& sections, Scene& scene);
 [[nodiscard]] VideoDef read_video(const TableReader& video);
 [[nodiscard]] StyleDef read_style(const TableReader& style);
+[[nodiscard]] OverlayDef read_overlay(const TableReader& overlay);
 [[nodiscard]] CameraDef read_camera(const TableReader& camera);
 [[nodiscard]] BodyStyleDef read_body_style(const TableReader& body);
 

@@ -19,8 +19,8 @@ namespace {
 
 Sections sections_of(const toml::table& document, Problems& problems) {
     const TableReader root(problems, document, "", "");
-    return {root.table("world"),  root.table("solver"), root.table("video"), root.table("style"),
-            root.table("camera"), root.tables("rope"),  root.tables("net")};
+    return {root.table("world"),   root.table("solver"), root.table("video"), root.table("style"),
+            root.table("overlay"), root.table("camera"), root.tables("rope"), root.tables("net")};
 }
 
 /// Ropes and nets, with their styles.
@@ -57,6 +57,7 @@ Scene parse_scene(std::string_view toml, const std::string& source_name,
     const SolverSection solver = read_solver(sections, scene);
     scene.video = read_video(sections.video);
     scene.style = read_style(sections.style);
+    scene.overlay = read_overlay(sections.overlay);
     scene.camera = read_camera(sections.camera);
     const SceneSize size = count_bodies(sections, solver);
     check_work(sections, solver, size, scene);

@@ -46,6 +46,7 @@ struct Scene {
     SolverDef solver;                         ///< of the bodies that `body_solvers` does not name
     std::vector<BodySolverDef> body_solvers;  ///< empty: `solver` moves all
     StyleDef style;
+    OverlayDef overlay;
     CameraDef camera;
     VideoDef video;
 };

@@ -101,7 +101,7 @@ bool needs_motion(const CameraDef& def) {
 }
 
 CameraDef fit_camera(const CameraDef& def, Vec2 origin_m, std::span<const Drawn> drawn, int width_px,
-                     int height_px) {
+                     int height_px, const Insets& insets) {
     if (!needs_motion(def)) return def;
     assert(!drawn.empty());
     std::vector<Span> across;
@@ -113,10 +113,13 @@ CameraDef fit_camera(const CameraDef& def, Vec2 origin_m, std::span<const Drawn>
     const Axis x(std::move(across));
     const Axis y(std::move(upwards));
     CameraDef fitted = def;
+    const double border_px = def.margin * std::min(width_px, height_px);
+    const double top_px = std::max(border_px, insets.top_px);
+    const double bottom_px = std::max(border_px, insets.bottom_px);
     if (!def.height_m) {
-        const double border_px = def.margin * std::min(width_px, height_px);
         const double room_x_px = width_px - 2.0 * border_px;
-        const double room_y_px = height_px - 2.0 * border_px;
+        const double room_y_px =
+            height_px - (def.center_m ? 2.0 * std::max(top_px, bottom_px) : top_px + bottom_px);
         const Vec2 center = def.center_m.value_or(Vec2{}) - origin_m;
         const double scale = def.center_m
                                  ? std::min(x.scale(room_x_px, center.x), y.scale(room_y_px, center.y))
@@ -124,7 +127,8 @@ CameraDef fit_camera(const CameraDef& def, Vec2 origin_m, std::span<const Drawn>
         fitted.height_m = height_px / scale;
     }
     const double scale = height_px / *fitted.height_m;
-    if (!def.center_m) fitted.center_m = origin_m + Vec2{x.middle_m(scale), y.middle_m(scale)};
+    const double shift_m = 0.5 * (top_px - bottom_px) / scale;
+    if (!def.center_m) fitted.center_m = origin_m + Vec2{x.middle_m(scale), y.middle_m(scale) + shift_m};
     return fitted;
 }
 

@@ -17,14 +17,20 @@ struct Drawn {
     double down_px = 0.0;
 };
 
+/// What is to stay free at the upper and the lower edge, at least.
+struct Insets {
+    double top_px = 0.0;
+    double bottom_px = 0.0;
+};
+
 /// Whether `def` leaves the centre or the height open, so that they follow from the motion.
 [[nodiscard]] bool needs_motion(const CameraDef& def);
 
 /// Returns `def` with centre and height filled in, such that all that is drawn is in a picture of this size,
-/// and in its middle. What `def` gives is kept. `origin_m` is that of the system. If needs_motion(def),
-/// something must be drawn.
+/// and in the middle of what `insets` leave of it. What `def` gives is kept. `origin_m` is that of the
+/// system. If needs_motion(def), something must be drawn.
 [[nodiscard]] CameraDef fit_camera(const CameraDef& def, Vec2 origin_m, std::span<const Drawn> drawn,
-                                   int width_px, int height_px);
+                                   int width_px, int height_px, const Insets& insets = {});
 
 /// The map from metres (relative to the system's origin, y up) to pixels (y down).
 class Camera {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "corda/core/image.hpp"
@@ -14,8 +15,11 @@ enum class Theme { kDark, kPaper };
 
 /// What is behind everything: a colour, or one that changes evenly from the top of the picture to the bottom.
 struct Ground {
-    Color top;  ///< opaque
+    Color top;
     Color bottom;
+
+    /// Whether nothing behind the picture shows through.
+    [[nodiscard]] bool is_opaque() const { return top.a == 255 && bottom.a == 255; }
 
     friend bool operator==(const Ground&, const Ground&) = default;
 };
@@ -54,6 +58,16 @@ struct StyleDef {
 struct BodyStyleDef {
     std::optional<Color> color;
     std::optional<double> width_px;  ///< 0.1 .. 1000; default: rope_width_px, or net_width_px for a net
+};
+
+/// What stands in words at the edges of a picture.
+struct OverlayDef {
+    /// The time; default: on an opaque ground, if the shorter side has at least 160 px.
+    std::optional<bool> time;
+    std::optional<bool> scale_bar;  ///< a length of 1, 2 or 5 times a power of 10; default: as `time`
+    std::string title;              ///< UTF-8; empty: none
+    bool energy = false;            ///< the error of the energy (Figures::energy_error)
+    bool method = false;            ///< the methods, and the bound of the displayed error
 };
 
 /// Where the camera looks. What is not given is fitted to the whole motion.

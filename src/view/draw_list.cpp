@@ -18,6 +18,9 @@ void DrawList::clear() {
     capsules.clear();
     layers.clear();
     bounds = {};
+    stamps.clear();
+    coverage.clear();
+    texts.clear();
 }
 
 void DrawList::add_layer(Color color) {
@@ -44,6 +47,11 @@ void DrawList::add_ring(PixelPoint center, double radius_px, double width_px) {
                     0.5 * width_px);
         spoke = next;
     }
+}
+
+void DrawList::add_box(const PixelRect& box, Color color) {
+    const PixelRect visible = box.intersected({0, 0, width, height});
+    if (!visible.empty()) stamps.push_back({visible, color});
 }
 
 }  // namespace corda::view

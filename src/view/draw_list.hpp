@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "corda/core/image.hpp"
@@ -38,18 +40,41 @@ struct Layer {
     std::size_t capsule_count = 0;
 };
 
-/// One frame as plain data: layers painted in order over a ground.
+/// A line of text. Font::write() adds it to a draw list.
+struct Text {
+    /// Left end of the baseline, in whole pixels, y down.
+    int x_px = 0;
+    int y_px = 0;
+    int size_px = 16;  ///< of the font's em
+    Color color;
+    std::string utf8;
+};
+
+/// What is painted over the layers: a filled rectangle, or the glyphs of a text.
+struct Stamp {
+    static constexpr std::size_t kSolid = static_cast<std::size_t>(-1);
+
+    PixelRect box;  ///< within the frame, not empty
+    Color color;
+    /// Where DrawList::coverage has the coverage of the box, row by row; kSolid: all of it is covered.
+    std::size_t first_coverage = kSolid;
+};
+
+/// One frame as plain data: layers painted in order over a ground, and stamps over them.
 struct DrawList {
     int width = 0;
     int height = 0;
     Ground ground;
     std::vector<Capsule> capsules;
     std::vector<Layer> layers;  ///< contiguous and in the order of `capsules`
-    PixelRect bounds;           ///< contains every pixel that differs from the ground; within the frame
+    PixelRect bounds;           ///< contains every pixel that the layers change; within the frame
+    std::vector<Stamp> stamps;
+    std::vector<std::uint8_t> coverage;  ///< of the stamps, 0 .. 255
+    std::vector<Text> texts;             ///< what the stamps that are not solid say
 
-    /// Whether all of it is outside of the frame, or there is nothing.
+    /// Whether all capsules are outside of the frame, or there are none.
     [[nodiscard]] bool shows_nothing() const;
-    /// Removes the layers, but keeps their memory.
+    /// Removes layers and stamps, but keeps their memory.
     void clear();
     /// Adds an empty layer on top of the others.
     void add_layer(Color color);
@@ -58,6 +83,8 @@ struct DrawList {
     void add_capsule(PixelPoint a, PixelPoint b, double radius_px, double halo_px = 0.0);
     /// Adds a circle of that radius, drawn with a pen of `width_px`, as a polygon.
     void add_ring(PixelPoint center, double radius_px, double width_px);
+    /// Adds the part of a filled rectangle that is in the frame on top of the other stamps.
+    void add_box(const PixelRect& box, Color color);
 };
 
 /// How far beyond its radii a capsule can still touch a pixel, in pixels: half a pixel of smooth edge, and

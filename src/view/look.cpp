@@ -51,4 +51,14 @@ Look look_of(const StyleDef& style) {
     return look;
 }
 
+Color text_color(const Look& look) {
+    if (!look.ground.is_opaque()) return look.outline;
+    const auto lightness = [](const Color& c) {
+        return 299 * c.r + 587 * c.g + 114 * c.b;
+    };  // Y', thousandths
+    constexpr int kMiddle = 128'000;
+    const bool is_light = lightness(look.ground.top) + lightness(look.ground.bottom) > 2 * kMiddle;
+    return is_light ? Color{0x2a, 0x2f, 0x3a} : Color{0xd5, 0xdb, 0xe6};
+}
+
 }  // namespace corda::view

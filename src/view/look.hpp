@@ -20,4 +20,7 @@ struct Look {
 
 [[nodiscard]] Look look_of(const StyleDef& style);
 
+/// One that can be read on the ground; on what shows through a ground, the theme's.
+[[nodiscard]] Color text_color(const Look& look);
+
 }  // namespace corda::view

@@ -147,18 +147,30 @@ void SceneView::include_slack(const Body& body, std::span<const MotionBounds> mo
 }
 
 void SceneView::draw(const State& state, const Camera& camera, DrawList& list) const {
+    start(list);
+    draw_pose(state, camera, list);
+    draw_supports(state, camera, list);
+}
+
+void SceneView::start(DrawList& list) const {
     list.width = width_;
     list.height = height_;
     list.ground = look_.ground;
     list.clear();
+}
+
+void SceneView::draw_pose(const State& state, const Camera& camera, DrawList& list) const {
     const Positions positions(state, camera);
     if (style_.bars == Bars::kAll) draw_bars(false, positions, list);
     for (std::size_t i = 0; i < bodies_.size(); ++i) draw_body(i, positions, list);
     if (style_.bars != Bars::kNone) draw_bars(true, positions, list);
     if (style_.markers == Markers::kAll) draw_markers(false, positions, list);
+}
+
+void SceneView::draw_supports(const State& state, const Camera& camera, DrawList& list) const {
     list.add_layer(look_.support);
     supports_.draw(camera, list);
-    if (style_.markers != Markers::kNone) draw_markers(true, positions, list);
+    if (style_.markers != Markers::kNone) draw_markers(true, Positions(state, camera), list);
 }
 
 void SceneView::draw_body(std::size_t i, const Positions& positions, DrawList& list) const {

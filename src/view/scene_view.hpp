@@ -37,6 +37,12 @@ class SceneView {
     /// Writes the frame of `state` to `list`. Memory that `list` holds is reused.
     void draw(const State& state, const Camera& camera, DrawList& list) const;
 
+    // The steps of draw(), for several poses in one picture: once, for each pose, once.
+    void start(DrawList& list) const;
+    void draw_pose(const State& state, const Camera& camera, DrawList& list) const;
+    /// What never moves; `state` is any.
+    void draw_supports(const State& state, const Camera& camera, DrawList& list) const;
+
   private:
     struct Ball {
         std::size_t particle;

@@ -155,7 +155,7 @@ TEST_F(ExitCodes, TwoForAnEmptyValue) {
 }
 
 TEST_F(ExitCodes, TwoForAnEndingThatCannotBeWritten) {
-    for (const char* const name : {"x.svg", "x.pdf", "x.jpg", "-"}) {
+    for (const char* const name : {"x.eps", "x.jpg", "-"}) {
         const std::string output = *name == '-' ? name : folder_.file(name);
         const auto result = run_corda({"still", scene_, "--at", "0", "-o", output});
         EXPECT_EQ(result.exit_code, 2) << name;
@@ -176,11 +176,23 @@ TEST_F(ExitCodes, TwoForAFrameThatTheVideoDoesNotHave) {
     const auto result = run_corda({"still", scene_, "--frame", "6", "-o", folder_.file("b.png")});
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_THAT(result.err, HasSubstr("0 .. 5"));
+    for (const char* const range : {"4:7", "3:3", "5:4", "-1:2", "6:", "1:2:3", "0,x", "1.5", ":-1"}) {
+        const auto refused = run_corda({"still", scene_, "--frame", range, "-o", folder_.path()});
+        EXPECT_EQ(refused.exit_code, 2) << range;
+        EXPECT_THAT(refused.err, HasSubstr("--frame")) << range;
+    }
+}
+
+TEST_F(ExitCodes, TwoForMorePicturesThanAFolderIsFor) {
+    const auto result = run_corda({"still", scene_, "--duration", "10000", "--frame", ":100001", "-o",
+                                   folder_.file("many"), "--dry-run"});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr("corda render"));
 }
 
 TEST_F(ExitCodes, TwoForAnUnknownCommandNamingTheNearest) {
-    for (const auto& [command, remedy] :
-         {std::pair{"rendr", "did you mean render?"}, {"foo", "known are render, still, simulate"}}) {
+    for (const auto& [command, remedy] : {std::pair{"rendr", "did you mean render?"},
+                                          {"foo", "known are render, still, strobe, sheet, simulate"}}) {
         const auto result = run_corda({command, "--help"});
         EXPECT_EQ(result.exit_code, 2);
         EXPECT_THAT(result.err, HasSubstr("corda: error: there is no command"));
@@ -307,8 +319,8 @@ TEST_F(ExitCodes, SixForTheSecondOfTwoRendersToOneName) {
 
 TEST_F(ExitCodes, SevenForADifferenceOrAProblem) {
     ASSERT_EQ(run_corda({"still", scene_, "--at", "0,0.2", "-o", folder_.file("stills")}).exit_code, 0);
-    const std::string a = folder_.file("stills/scene_t0000.000000.png");
-    const std::string b = folder_.file("stills/scene_t0000.200000.png");
+    const std::string a = folder_.file("stills/scene_t0000_000000.png");
+    const std::string b = folder_.file("stills/scene_t0000_200000.png");
     EXPECT_EQ(run_corda({"compare", a, a}).exit_code, 0);
     EXPECT_EQ(run_corda({"compare", a, b}).exit_code, 7);
     EXPECT_EQ(run_corda({"compare", a, b, "--max", "255"}).exit_code, 0);

@@ -36,7 +36,8 @@ TEST(Help, OfAnUnknownTopicNamesTheNearest) {
     const auto near = run_corda({"help", "scen"});
     EXPECT_EQ(near.exit_code, 2);
     EXPECT_THAT(near.err, HasSubstr("there is no help on \"scen\"; did you mean scene?"));
-    EXPECT_THAT(run_corda({"help", "magic"}).err, HasSubstr("known are render, still, simulate"));
+    EXPECT_THAT(run_corda({"help", "magic"}).err,
+                HasSubstr("known are render, still, strobe, sheet, simulate"));
 }
 
 }  // namespace

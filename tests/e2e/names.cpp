@@ -48,7 +48,7 @@ TEST_F(Names, AreBytesAsFilesAndEscapedElsewhere) {
     EXPECT_EQ(title.out, "caf\\xe9\\x1b[31m\n");
 
     const auto still = run_corda({"still", scene, "--at", "0", "-o", folder_.path()});
-    const std::string picture = folder_.file("caf\xe9\x1b[31m_t0000.000000.png");
+    const std::string picture = folder_.file("caf\xe9\x1b[31m_t0000_000000.png");
     EXPECT_EQ(still.out, picture + "\n");  // a script wants the name as it is
     EXPECT_EQ(read_png_info(picture).text[1],
               std::pair(std::string("Title"), std::string("caf\\xe9\\x1b[31m")));
@@ -96,7 +96,7 @@ TEST_F(Names, NeverReachTheTerminalRaw) {
         {"render", scene, "-o", nasty + ".mp4", "--frames", nasty},
         {"render", scene, "-o", nasty + ".mp4", "--backend", nasty},
         {"still", scene, "--at", nasty, "-o", folder_.path()},
-        {"still", scene, "--at", "0", "-o", nasty + ".pdf"},
+        {"still", scene, "--at", "0", "-o", nasty + ".eps"},
         {"study", scene, "-o", folder_.path()},
         {"study", "-o", folder_.file("report"), "--chapter", nasty},
         {"compare", nasty, nasty, "--max", nasty},

@@ -208,7 +208,7 @@ TEST_F(Video, StillsAreTheFramesBeforeEncodingByteForByte) {
     Film film(load_scene(scene_));
     FilmPainter painter(film);
     const std::map<int, std::string> stills{
-        {0, "0000.000000"}, {3, "0000.100000"}, {15, "0000.500000"}, {22, "0000.733333"}};
+        {0, "0000_000000"}, {3, "0000_100000"}, {15, "0000_500000"}, {22, "0000_733333"}};
     for (int k = 0; k <= 22; ++k) {
         painter.draw(film.time_s(k));
         if (!stills.contains(k)) continue;
@@ -216,6 +216,29 @@ TEST_F(Video, StillsAreTheFramesBeforeEncodingByteForByte) {
         EXPECT_TRUE(test::equal_images(read_png(path), painter.image())) << path;
     }
     EXPECT_TRUE(test::equal_images(read_png(folder_.file("frame.png")), painter.image()));
+}
+
+TEST_F(Video, StillsTakeRangesOfFrames) {
+    const std::string stills = folder_.file("v1.2");  // a folder whose name has a dot
+    const auto result =
+        run_corda({"still", scene_, "--frame", ":2,9,20:", "-o", stills + "/", "--size", "32x32", "--json"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    std::vector<std::string> wanted;
+    for (const int k : {0, 1, 9, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29})
+        wanted.push_back(fmt::format("{}/scene_f{:06}.png", stills, k));
+    std::vector<std::string> written;
+    const json report = json::parse(result.out);
+    for (const json& output : report["outputs"]) {
+        written.push_back(output["path"]);
+        EXPECT_NE(test::read_file(written.back()), "");
+    }
+    EXPECT_EQ(written, wanted);
+}
+
+TEST_F(Video, StillsHaveNamesWithOneDot) {
+    const std::string scene = folder_.write("my.scene.v2.toml", test::read_file(scene_));
+    const auto result = run_corda({"still", scene, "--at", "0.25", "-o", folder_.path(), "--size", "32x32"});
+    EXPECT_EQ(result.out, folder_.file("my_scene_v2_t0000_250000.png") + "\n");
 }
 
 TEST_F(Video, StillsSayWhatTheyShow) {

@@ -69,6 +69,9 @@ pinned_color = """#ff5d5d"""
 bars = "real"
 bar_width_px = 1.0
 imaginary_bar_color = "#54d6c270"
+[overlay]
+time = true
+title = "t"
 [video]
 fps = 25
 codec = "libx264"

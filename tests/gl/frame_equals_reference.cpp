@@ -10,6 +10,7 @@
 #include "corda/render/frame_renderer.hpp"
 #include "corda/render/reference_renderer.hpp"
 #include "corda/view/capsule.hpp"
+#include "corda/view/font.hpp"
 #include "support/draw_lists.hpp"
 #include "support/failure.hpp"
 #include "support/image_matchers.hpp"
@@ -26,7 +27,7 @@ TEST_P(RandomCapsules, EqualTheReferenceByteForByte) {
     const gl::Context context;
     render::FrameRenderer renderer(width, height);
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
-        const view::DrawList list = test::random_draw_list(seed, width, height, layers, 60);
+        const view::DrawList list = test::random_draw_list(seed, width, height, layers, 60, 12);
         renderer.render(list);
         EXPECT_TRUE(equal_images(renderer.image(), render::render_reference(list))) << "seed " << seed;
     }
@@ -41,6 +42,22 @@ INSTANTIATE_TEST_SUITE_P(Sizes, RandomCapsules,
                                     std::to_string(std::get<1>(param.param)) + "_" +
                                     std::to_string(std::get<2>(param.param)) + "_layers";
                          });
+
+TEST(TransparentGrounds, EqualTheReferenceByteForByte) {
+    const gl::Context context;
+    render::FrameRenderer renderer(333, 177);
+    for (std::uint32_t seed = 1; seed <= 6; ++seed) {
+        view::DrawList list = test::random_draw_list(seed, 333, 177, 5, seed % 2 == 0 ? 3 : 40);
+        list.ground.top.a = seed < 3 ? 0 : 130;
+        list.ground.bottom.a = seed % 3 == 0 ? 255 : list.ground.top.a;
+        renderer.render(list);
+        EXPECT_TRUE(equal_images(renderer.image(), render::render_reference(list))) << "seed " << seed;
+        list.layers.pop_back();  // a damage that is less than the frame
+        list.capsules.resize(list.layers.back().first_capsule + list.layers.back().capsule_count);
+        renderer.render(list);
+        EXPECT_TRUE(equal_images(renderer.image(), render::render_reference(list))) << "seed " << seed;
+    }
+}
 
 void move_down(view::DrawList& list, int rows) {
     list.bounds = {};
@@ -127,6 +144,44 @@ TEST(DamagedRedraw, EqualsTheFullRedrawByteForByte) {
             << "frame " << seed << " damage " << damage.x0 << ',' << damage.y0 << ' ' << damage.x1 << ','
             << damage.y1;
     }
+}
+
+TEST(DamagedRedraw, EqualsTheFullRedrawOfStampsThatChange) {
+    constexpr int kWidth = 320;
+    constexpr int kHeight = 200;
+    const gl::Context context;
+    render::FrameRenderer damaged(kWidth, kHeight);
+    for (std::uint32_t seed = 1; seed <= 20; ++seed) {
+        view::DrawList list = test::random_draw_list(seed, kWidth, kHeight, 1, 1, seed % 4);
+        list.ground = {{10, 20, 30}, {90, 20, 0}};
+        damaged.render(list);
+        EXPECT_TRUE(equal_images(damaged.image(), render::render_reference(list))) << "frame " << seed;
+    }
+}
+
+TEST(DamagedRedraw, IsOfTheStampsThatDiffer) {
+    const gl::Context context;
+    render::FrameRenderer renderer(200, 100);
+    view::Font font;
+    const auto list_of = [&font](const char* changing, Color color) {
+        view::DrawList list;
+        list.width = 200;
+        list.height = 100;
+        font.write({10, 30, 16, {}, "stays"}, list);
+        font.write({10, 90, 16, {}, changing}, list);
+        list.add_box({150, 10, 190, 20}, color);
+        return list;
+    };
+    const view::DrawList first = list_of("1.20 s", {1, 2, 3});
+    renderer.render(first);
+    EXPECT_TRUE(renderer.render(first).empty());
+    // A text of the same box: its digits are equally wide and high.
+    const view::DrawList second = list_of("1.80 s", {1, 2, 3});
+    EXPECT_EQ(renderer.render(second), first.stamps[1].box);
+    EXPECT_EQ(renderer.render(list_of("1.80 s", {1, 2, 4})), (PixelRect{150, 10, 190, 20}));
+    const PixelRect gone = renderer.render(list_of("", {1, 2, 4}));
+    EXPECT_EQ(gone.united(first.stamps[1].box), gone);
+    EXPECT_TRUE(equal_images(renderer.image(), render::render_reference(list_of("", {1, 2, 4}))));
 }
 
 TEST(DamagedRedraw, LeavesAnUnchangedFrameAlone) {

@@ -69,6 +69,8 @@ const std::map<std::string, std::uint64_t> kHashes{
     {"pendulums by auto", 0x5a1d32230bf0c263U},    {"pendulums by exact", 0x5c98b7c12179b864U},
     {"pendulums by rattle", 0xfd6fe7fd266fe4c3U},  {"slack as it is", 0x01963fc93f43e408U},
     {"slack by auto", 0x01963fc93f43e408U},        {"slack by exact", 0x8d96cf8bec8989e9U},
+    {"transparent as it is", 0xbb47ec42b6305c98U}, {"transparent by auto", 0x8c5a205ff6b57332U},
+    {"transparent by exact", 0x6c930b9527c70921U}, {"transparent by rattle", 0xc325a0e8ccd851d9U},
 };
 
 /// What a method refuses, with the reason in the message.

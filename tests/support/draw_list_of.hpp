@@ -2,9 +2,11 @@
 
 #include <vector>
 
+#include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/sim/bounds.hpp"
 #include "corda/view/camera.hpp"
+#include "corda/view/overlay.hpp"
 #include "corda/view/scene_view.hpp"
 
 namespace corda::test {
@@ -17,14 +19,19 @@ inline void include(const State& state, std::vector<MotionBounds>& motion) {
 
 /// What a scene draws at a state, made apart from Film: what the reference renderer is to draw too.
 inline view::DrawList draw_list_of(const Scene& scene, const System& system, const CameraDef& camera,
-                                   const State& state, const std::vector<MotionBounds>& motion) {
+                                   const State& state, const std::vector<MotionBounds>& motion,
+                                   const view::Caption& caption = {}) {
     const int width_px = scene.video.width_px;
     const int height_px = scene.video.height_px;
     view::SceneView scene_view(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, width_px,
                                height_px);
     scene_view.set_motion(motion);
     view::DrawList list;
-    scene_view.draw(state, view::Camera(camera, system.origin_m, width_px, height_px), list);
+    const view::Camera map(camera, system.origin_m, width_px, height_px);
+    scene_view.draw(state, map, list);
+    view::Overlay(scene.overlay, scene.style, width_px, height_px, scene.video.fps.interval_s(),
+                  scene.world.duration_s)
+        .draw(caption, map.pixels_per_metre(), list);
     return list;
 }
 
@@ -32,7 +39,10 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
 inline view::DrawList draw_list_of(const Film& film, double time_s) {
     std::vector<MotionBounds> motion;
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) include(film.state(k), motion);
-    return draw_list_of(film.scene(), film.system(), film.camera(), film.state_at(time_s), motion);
+    const State& state = film.state_at(time_s);
+    const view::Caption caption{time_s, film.figures().energy_error,
+                                method_caption(film.plan(), film.error_bound_px())};
+    return draw_list_of(film.scene(), film.system(), film.camera(), state, motion, caption);
 }
 
 }  // namespace corda::test

@@ -2,6 +2,9 @@
 
 #include <cmath>
 #include <random>
+
+#include "corda/view/font.hpp"
+
 namespace corda::test {
 namespace {
 
@@ -22,7 +25,7 @@ class Numbers {
 }  // namespace
 
 view::DrawList random_draw_list(std::uint32_t seed, int width, int height, std::size_t layer_count,
-                                std::size_t capsules_per_layer) {
+                                std::size_t capsules_per_layer, std::size_t stamps) {
     Numbers numbers(seed);
     view::DrawList list;
     list.width = width;
@@ -42,6 +45,18 @@ view::DrawList random_draw_list(std::uint32_t seed, int width, int height, std::
             const double radius_px = 0.1 * std::pow(600.0, numbers.between(0.0, i % 3 == 0 ? 1.0 : 0.5));
             list.add_capsule(a, b, radius_px, i % 4 == 0 ? 0.0 : numbers.between(0.0, 9.0));
         }
+    }
+    view::Font font;
+    for (std::size_t i = 0; i < stamps; ++i) {
+        const int x = static_cast<int>(numbers.between(-0.2, 1.0) * width);
+        const int y = static_cast<int>(numbers.between(0.0, 1.2) * height);
+        Color color = opaque();
+        if (i % 2 == 1) color.a = numbers.byte();
+        if (i % 3 == 0)
+            list.add_box({x, y, x + 1 + numbers.byte() / 4, y + 1 + numbers.byte() / 8}, color);
+        else
+            font.write({x, y, 5 + numbers.byte() / 5, color, "t = 1.20 s, \u2212\u00b5\u00b2 Schw\u00fcnge"},
+                       list);
     }
     return list;
 }

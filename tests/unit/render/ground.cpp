@@ -24,6 +24,14 @@ TEST(Grounds, OfOneColourAreThatColour) {
     }
 }
 
+TEST(Grounds, HoldTheirColoursTimesTheirAlpha) {
+    const auto rgba = row({{255, 128, 0, 0}, {255, 128, 0, 128}}, 15, 8, 16);
+    EXPECT_EQ(rgba[3], 124);
+    EXPECT_EQ(rgba[0], rgba[3]);
+    EXPECT_NEAR(rgba[1], 62, 1);
+    EXPECT_EQ(rgba[2], 0);
+}
+
 TEST(Grounds, ChangeEvenlyFromTopToBottom) {
     const Ground ground{{14, 19, 200}, {27, 36, 56}};
     constexpr int kHeight = 1080;

@@ -68,7 +68,8 @@ TEST(SceneErrors, DeepDottedKeysAreRefusedBeforeTheParserRecurses) {
     const std::string dots(100, '.');
     EXPECT_EQ(error_of("# " + dots + "\n" + rope_with("color = \"" + dots + "\"")).message,
               "swing.toml:5:9: rope[0].color: \"" + dots.substr(0, 60) +
-                  "...\" is not a colour; give a colour such as \"#e8c07d\" or, with alpha, \"#e8c07d80\"");
+                  "...\" is not a colour; give a colour such as \"#e8c07d\", \"#e8c07d80\" (with alpha) or "
+                  "\"transparent\"");
 }
 
 TEST(SceneErrors, Types) {
@@ -419,15 +420,26 @@ TEST(SceneErrors, Video) {
     });
 }
 
+TEST(SceneErrors, Overlay) {
+    const auto overlay = [](const std::string& keys) { return with("[overlay]\n" + keys); };
+    expect_errors({
+        {overlay("time = 1"), "swing.toml:4:8: overlay.time: ", "give true or false"},
+        {overlay("tittle = \"a\""), "swing.toml:4:1: overlay.tittle: ", "did you mean \"title\"?"},
+        {overlay("title = 3"),
+         "swing.toml:4:9: overlay.title: ", "give the title, at the upper left as one line"},
+        {overlay("title = \"a\\nb\""), "swing.toml:4:9: overlay.title: ", "has a control character"},
+    });
+}
+
 TEST(SceneErrors, StyleAndCamera) {
     const auto style = [](const std::string& keys) { return with("[style]\n" + keys); };
     const auto camera = [](const std::string& keys) { return with("[camera]\n" + keys); };
     expect_errors({
-        {style("background = \"#00000080\""),
-         "swing.toml:4:14: style.background: ", "\"#00000080\" is not opaque"},
+        {style("background = \"clear\""),
+         "swing.toml:4:14: style.background: ", "\"clear\" is not a colour; give a colour such as"},
         {style("background = [\"#000000\"]"), "swing.toml:4:14: style.background: ", "[top, bottom]"},
-        {style("background = [\"#000000\", \"#00000080\"]"),
-         "swing.toml:4:26: style.background[1]: ", "is not opaque"},
+        {style("background = [\"#000000\", \"#0000\"]"),
+         "swing.toml:4:26: style.background[1]: ", "is not a colour"},
         {style("theme = \"light\""), "swing.toml:4:9: style.theme: ", "give one of: dark, paper"},
         {style("palette = []"), "swing.toml:4:11: style.palette: ", "the list is empty"},
         {style("palette = [\"#000000\", \"blue\"]"), "swing.toml:4:23: style.palette[1]: ", "not a colour"},

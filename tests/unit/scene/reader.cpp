@@ -125,6 +125,21 @@ TEST(SceneReader, FrameRates) {
     EXPECT_EQ(rate("100000"), (Rational{100000, 1}));
 }
 
+TEST(SceneReader, Overlay) {
+    const OverlayDef by_default = parse_scene(with(""), "a").overlay;
+    EXPECT_FALSE(by_default.time || by_default.scale_bar);
+    EXPECT_TRUE(by_default.title.empty() && !by_default.energy && !by_default.method);
+    const OverlayDef overlay =
+        parse_scene(with("[overlay]\ntime = false\nscale_bar = true\ntitle = \"Schwünge µ\"\nenergy = true\n"
+                         "method = true\n"),
+                    "a")
+            .overlay;
+    EXPECT_EQ(overlay.time, false);
+    EXPECT_EQ(overlay.scale_bar, true);
+    EXPECT_EQ(overlay.title, "Schwünge µ");
+    EXPECT_TRUE(overlay.energy && overlay.method);
+}
+
 TEST(SceneReader, Style) {
     const Scene scene = parse_scene(
         with("[style]\nbackground = \"#010203\"\npalette = [\"#ff0000\", \"#00ff0080\"]\nrope_width_px = 3\n"

@@ -34,6 +34,20 @@ TEST(Camera, FitsTheMotionAndCentresIt) {
     EXPECT_DOUBLE_EQ(camera.y_px(0.0), 50.0);  // y up in metres, down in pixels
 }
 
+TEST(Camera, LeavesTheInsetsFree) {
+    CameraDef def;
+    def.margin = 0.05;
+    const std::vector<Drawn> all{drawn(box(-1.0, -2.0, 1.0, 0.0), 5.0)};
+    const Camera camera{fit_camera(def, {}, all, 800, 400, {90.0, 10.0}), {}, 800, 400};
+    EXPECT_DOUBLE_EQ(camera.y_px(0.0) - 5.0, 90.0);
+    EXPECT_DOUBLE_EQ(camera.y_px(-2.0) + 5.0, 380.0);  // the margin is more than the inset
+    EXPECT_DOUBLE_EQ(camera.x_px(0.0), 400.0);
+    def.center_m = Vec2{0.0, -1.0};
+    const Camera centred{fit_camera(def, {}, all, 800, 400, {90.0, 10.0}), {}, 800, 400};
+    EXPECT_DOUBLE_EQ(centred.y_px(-1.0), 200.0);
+    EXPECT_DOUBLE_EQ(centred.y_px(0.0) - 5.0, 90.0);
+}
+
 TEST(Camera, CentresWhatIsDrawnNotTheMotion) {
     // A line of 2 m from a plate of 20 px above it to a ball of 50 px radius, which swings out by 1 m.
     CameraDef def;

@@ -1,0 +1,30 @@
+#include <memory>
+
+#include "commands.hpp"
+#include "figure_options.hpp"
+
+namespace corda::app {
+namespace {
+
+ExitCode write_strobe(const Console& console, const FigureOptions& options) {
+    const Scene scene = options.load();
+    const std::vector<Shot> shots = options.shots.list(scene);
+    FigureDef def;
+    for (const Shot& shot : shots) def.times_s.push_back(shot.time_s);
+    return options.write_one(console, scene, shots, def);
+}
+
+}  // namespace
+
+void add_strobe(CLI::App& app, Action& action) {
+    auto options = std::make_shared<FigureOptions>();
+    CLI::App* command =
+        app.add_subcommand("strobe", "draw several poses in one picture, the fainter the earlier");
+    options->add_to(*command, "picture: .png, .svg or .pdf");
+    command->callback([options, &action] {
+        options->shots.require();
+        action = [options](const Console& console) { return write_strobe(console, *options); };
+    });
+}
+
+}  // namespace corda::app

@@ -1,0 +1,290 @@
+#include "corda/pipeline/figure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+
+#include <fmt/format.h>
+
+#include "corda/core/output_file.hpp"
+#include "corda/core/text.hpp"
+#include "corda/pipeline/painter.hpp"
+#include "corda/render/reference_renderer.hpp"
+#include "corda/render/vector.hpp"
+#include "corda/view/font.hpp"
+#include "corda/view/look.hpp"
+
+namespace corda {
+namespace {
+
+constexpr int kSmallestCellPx = 40;
+constexpr double kGapPerSide = 1.0 / 90.0;  // of the sheet's shorter side
+constexpr double kBlankCell = 3.0;
+constexpr double kTextPerSide = 1.0 / 20.0;  // of the shorter side of a cell and its caption
+constexpr int kSmallestTextPx = 8;
+constexpr int kLargestTextPx = 60;
+constexpr double kLinePerText = 1.6;
+constexpr double kCapitalPerText = 0.73;  // of DejaVu Sans
+
+/// Where the cells of a contact sheet are, each with a line of text below it.
+class Sheet {
+  public:
+    Sheet(int width_px, int height_px, int columns, int count)
+        : width_px_(width_px),
+          height_px_(height_px),
+          columns_(columns),
+          rows_((count + columns - 1) / columns),
+          gap_px_(std::max(1, static_cast<int>(kGapPerSide * std::min(width_px, height_px)))) {}
+
+    [[nodiscard]] int cell_width_px() const { return (width_px_ - (columns_ + 1) * gap_px_) / columns_; }
+    [[nodiscard]] int cell_height_px() const { return row_height_px() - caption_px(); }
+    [[nodiscard]] int text_px() const {
+        return std::clamp(static_cast<int>(kTextPerSide * std::min(cell_width_px(), row_height_px())),
+                          kSmallestTextPx, kLargestTextPx);
+    }
+    [[nodiscard]] int caption_px() const { return static_cast<int>(kLinePerText * text_px()); }
+    [[nodiscard]] bool has_room() const {
+        return std::min(cell_width_px(), cell_height_px()) >= kSmallestCellPx;
+    }
+    /// The upper left corner of cell `i` of that size. What division leaves is shared out among the gaps.
+    [[nodiscard]] int x_px(int i, int cell_px) const {
+        return edge(i % columns_, columns_, cell_px, width_px_);
+    }
+    [[nodiscard]] int y_px(int i, int cell_px) const {
+        return edge(i / columns_, rows_, cell_px + caption_px(), height_px_);
+    }
+    /// Whether cells of that size have room.
+    [[nodiscard]] bool holds(int cell_width_px, int cell_height_px) const {
+        return std::int64_t{cell_width_px} * columns_ <= width_px_ &&
+               std::int64_t{cell_height_px + caption_px()} * rows_ <= height_px_;
+    }
+
+    /// How far it is from square cells and no blank ones.
+    [[nodiscard]] double badness(int count) const {
+        if (!has_room()) return 1e9;
+        const double ratio = static_cast<double>(cell_width_px()) / cell_height_px();
+        return std::abs(std::log(ratio)) + kBlankCell * (columns_ * rows_ - count) / count;
+    }
+
+  private:
+    [[nodiscard]] int row_height_px() const { return (height_px_ - (rows_ + 1) * gap_px_) / rows_; }
+    static int edge(int k, int cells, int cell_px, int side_px) {
+        return k * cell_px + (k + 1) * (side_px - cells * cell_px) / (cells + 1);
+    }
+
+    int width_px_;
+    int height_px_;
+    int columns_;
+    int rows_;
+    int gap_px_;
+};
+
+int best_columns(int width_px, int height_px, int count) {
+    int best = 1;
+    for (int columns = 2; columns <= std::min(count, width_px); ++columns) {
+        if (Sheet(width_px, height_px, columns, count).badness(count) <
+            Sheet(width_px, height_px, best, count).badness(count))
+            best = columns;
+    }
+    return best;
+}
+
+Sheet sheet_of(const FigureDef& def) {
+    return {def.width_px, def.height_px, def.columns, static_cast<int>(def.times_s.size())};
+}
+
+void check(const Film& film, const FigureDef& def) {
+    if (def.times_s.empty()) throw Error(ExitCode::kUsage, "a figure of no times; give one or more");
+    if (!std::is_sorted(def.times_s.begin(), def.times_s.end()))
+        throw Error(ExitCode::kUsage, "the times of a figure do not increase; sort them");
+    if (def.columns == 0) return;
+    const VideoDef& video = film.scene().video;
+    if (is_picture_size(def.width_px, def.height_px) && def.columns > 0 &&
+        sheet_of(def).holds(video.width_px, video.height_px))
+        return;
+    throw Error(ExitCode::kUsage,
+                fmt::format("{} cells of {}x{} pixels in {} columns do not fit into a contact sheet of {}x{}",
+                            def.times_s.size(), video.width_px, video.height_px, def.columns, def.width_px,
+                            def.height_px));
+}
+
+/// Between the cells: the ground, a little towards the colour of supports.
+Color gap_color(const view::Look& look) {
+    if (!look.ground.is_opaque()) return {0, 0, 0, 0};
+    const auto mixed = [](int ground, int line) {
+        return static_cast<std::uint8_t>((5 * ground + line + 3) / 6);
+    };
+    const Color& ground = look.ground.bottom;
+    return {mixed(ground.r, look.support.r), mixed(ground.g, look.support.g),
+            mixed(ground.b, look.support.b)};
+}
+
+/// "t = 0.25 s" for each time, all with as many digits as it takes to tell them exactly, if these are few, or
+/// at least apart.
+std::vector<std::string> captions_of(const std::vector<double>& times_s) {
+    constexpr int kFewDigits = 3;
+    constexpr int kMostDigits = 9;
+    std::vector<std::string> captions;
+    for (int digits = 1; digits <= kMostDigits; ++digits) {
+        captions.clear();
+        bool is_exact = true;
+        for (const double time_s : times_s) {
+            captions.push_back(fmt::format("t = {:.{}f} s", time_s, digits));
+            is_exact &= std::abs(std::stod(captions.back().substr(4)) - time_s) < 1e-9;
+        }
+        const bool are_apart = std::adjacent_find(captions.begin(), captions.end()) == captions.end();
+        if (is_exact || (digits >= kFewDigits && are_apart)) break;
+    }
+    return captions;
+}
+
+/// A contact sheet without its cells.
+view::DrawList list_captions(const Film& film, const FigureDef& def) {
+    const view::Look look = view::look_of(film.scene().style);
+    const Color gap = gap_color(look);
+    const Sheet sheet = sheet_of(def);
+    const VideoDef& video = film.scene().video;
+    view::DrawList list;
+    list.width = def.width_px;
+    list.height = def.height_px;
+    list.ground = {gap, gap};
+    view::Font font;
+    const std::vector<std::string> captions = captions_of(def.times_s);
+    int size_px = sheet.text_px();
+    const auto widest_px = [&] {
+        int widest = 0;
+        for (const std::string& caption : captions)
+            widest = std::max(widest, font.width_px(caption, size_px));
+        return widest;
+    };
+    while (size_px > kSmallestTextPx && widest_px() > video.width_px) --size_px;
+    for (int i = 0; i < static_cast<int>(captions.size()); ++i) {
+        const int middle_px = sheet.x_px(i, video.width_px) + video.width_px / 2;
+        const int bottom_px = sheet.y_px(i, video.height_px) + video.height_px;
+        font.write(
+            {.x_px = middle_px - font.width_px(captions[i], size_px) / 2,
+             .y_px = bottom_px + static_cast<int>(0.5 * (sheet.caption_px() + kCapitalPerText * size_px)),
+             .size_px = size_px,
+             .color = text_color(look),
+             .utf8 = captions[i]},
+            list);
+    }
+    return list;
+}
+
+/// Calls `visit(time, x, y)` for each cell of a contact sheet.
+void for_each_cell(const Film& film, const FigureDef& def,
+                   const std::function<void(double, int, int)>& visit) {
+    const Sheet sheet = sheet_of(def);
+    const VideoDef& video = film.scene().video;
+    for (int i = 0; i < static_cast<int>(def.times_s.size()); ++i)
+        visit(def.times_s[i], sheet.x_px(i, video.width_px), sheet.y_px(i, video.height_px));
+}
+
+Image draw_sheet(const Film& film, const FigureDef& def, const OnProgress& on_progress,
+                 std::vector<double>& empty_s) {
+    Image image = render::render_reference(list_captions(film, def));
+    for_each_cell(film, def, [&](double time_s, int x, int y) {
+        const Image cell = film.still(time_s, on_progress);
+        if (film.shows_nothing()) empty_s.push_back(time_s);
+        for (int row = 0; row < cell.height(); ++row)
+            std::copy_n(cell.pixel(0, row), cell.row_bytes(), image.pixel(x, y + row));
+    });
+    return image;
+}
+
+Image draw(const Film& film, const FigureDef& def, const OnProgress& on_progress,
+           std::vector<double>& empty_s) {
+    check(film, def);
+    if (def.columns > 0) return draw_sheet(film, def, on_progress, empty_s);
+    FilmPainter painter(film);
+    painter.draw(FilmPainter::poses(film, def.times_s, on_progress), on_progress);
+    if (film.shows_nothing()) empty_s.push_back(def.times_s.front());
+    return painter.image();
+}
+
+std::string ending_of(const std::string& path) {
+    return std::filesystem::path(path).extension().string();
+}
+
+/// The bytes of an SVG or a PDF.
+std::string describe_lines(const std::string& ending, const Film& film, const FigureDef& def,
+                           const PngInfo& info, const OnProgress& on_progress, std::vector<double>& empty_s) {
+    check(film, def);
+    const VideoDef& video = film.scene().video;
+    const bool is_sheet = def.columns > 0;
+    render::PageDef page_def{.width_px = is_sheet ? def.width_px : video.width_px,
+                             .height_px = is_sheet ? def.height_px : video.height_px};
+    page_def.on_progress = on_progress;
+    constexpr double kMmPerInch = 25.4;
+    page_def.width_mm = page_def.width_px * kMmPerInch / info.pixels_per_inch;
+    for (const auto& [keyword, text] : info.text) {
+        if (keyword == "Title") page_def.title = utf8(text);
+    }
+    const auto page = ending == ".svg" ? render::make_svg(page_def) : render::make_pdf(page_def);
+    const auto add = [&](std::span<const double> times_s, int x, int y) {
+        const view::DrawList list = FilmPainter::poses(film, times_s, on_progress);
+        if (list.shows_nothing()) empty_s.push_back(times_s.front());
+        page->draw(list, x, y);
+    };
+    if (is_sheet) {
+        page->draw(list_captions(film, def), 0, 0);
+        for_each_cell(film, def, [&](double time_s, int x, int y) { add({&time_s, 1}, x, y); });
+    } else {
+        add(def.times_s, 0, 0);
+    }
+    return page->finish();
+}
+
+}  // namespace
+
+FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns) {
+    VideoDef& video = scene.video;
+    const int count = static_cast<int>(std::max<std::size_t>(times_s.size(), 1));
+    if (columns == 0) columns = best_columns(video.width_px, video.height_px, count);
+    FigureDef def{std::move(times_s), columns, video.width_px, video.height_px};
+    const Sheet sheet(video.width_px, video.height_px, std::max(columns, 1), count);
+    if (columns < 1 || !sheet.has_room()) {
+        throw Error(
+            ExitCode::kUsage,
+            fmt::format("{} cells in {} columns have no room in a contact sheet of {}x{} pixels (each "
+                        "takes {} at least); ask for fewer times or a larger size",
+                        count, columns, video.width_px, video.height_px, kSmallestCellPx));
+    }
+    if (!scene.overlay.time) scene.overlay.time = false;  // it stands below the cell
+    video.width_px = sheet.cell_width_px();
+    video.height_px = sheet.cell_height_px();
+    return def;
+}
+
+Image draw_figure(const Film& film, const FigureDef& def, const OnProgress& on_progress) {
+    std::vector<double> ignored;
+    return draw(film, def, on_progress, ignored);
+}
+
+bool is_figure_path(const std::string& path) {
+    const std::string ending = ending_of(path);
+    return ending == ".png" || ending == ".svg" || ending == ".pdf";
+}
+
+std::vector<double> write_figure(const std::string& path, const Film& film, const FigureDef& def,
+                                 const PngInfo& info, const OutputOptions& options) {
+    if (!is_figure_path(path)) {
+        throw Error(ExitCode::kUsage,
+                    fmt::format("'{}': figures are written as .png, .svg or .pdf; give such a name", path));
+    }
+    std::vector<double> empty_s;
+    const std::string ending = ending_of(path);
+    if (ending == ".png") {
+        write_png(path, draw(film, def, options.on_progress, empty_s), info, options);
+        return empty_s;
+    }
+    const std::string bytes = describe_lines(ending, film, def, info, options.on_progress, empty_s);
+    OutputFile file(path, options);
+    file.write(bytes);
+    file.commit();
+    return empty_s;
+}
+
+}  // namespace corda

@@ -1,0 +1,254 @@
+#include <cairo-ft.h>
+#include <cairo-pdf.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
+#include "corda/render/ground.hpp"
+#include "corda/render/strokes.hpp"
+#include "corda/render/vector.hpp"
+#include "corda/view/font.hpp"
+#include "corda/view/font_data.hpp"
+
+namespace corda::render {
+namespace {
+
+struct CairoDeleter {
+    void operator()(cairo_t* context) const noexcept { cairo_destroy(context); }
+    void operator()(cairo_surface_t* surface) const noexcept { cairo_surface_destroy(surface); }
+    void operator()(cairo_font_face_t* face) const noexcept { cairo_font_face_destroy(face); }
+    void operator()(cairo_pattern_t* pattern) const noexcept { cairo_pattern_destroy(pattern); }
+};
+using FontFace = std::unique_ptr<cairo_font_face_t, CairoDeleter>;
+using Pattern = std::unique_ptr<cairo_pattern_t, CairoDeleter>;
+
+constexpr double kPointsPerMm = 72.0 / 25.4;
+
+cairo_status_t append_bytes(void* file, const unsigned char* bytes, unsigned count) {
+    try {
+        static_cast<std::string*>(file)->append(reinterpret_cast<const char*>(bytes), count);
+        return CAIRO_STATUS_SUCCESS;
+    } catch (...) {
+        return CAIRO_STATUS_NO_MEMORY;  // an exception must not pass through cairo, which is C
+    }
+}
+
+void check(cairo_status_t status) {
+    if (status == CAIRO_STATUS_SUCCESS) return;
+    if (status == CAIRO_STATUS_NO_MEMORY) throw std::bad_alloc();
+    throw Error(ExitCode::kInternal,
+                fmt::format("cairo cannot draw the PDF: {}", cairo_status_to_string(status)));
+}
+
+Pattern solid(const Color& color) {
+    return Pattern(
+        cairo_pattern_create_rgba(color.r / 255.0, color.g / 255.0, color.b / 255.0, color.a / 255.0));
+}
+
+Pattern pattern_of(const Ground& ground, int height) {
+    if (ground.top == ground.bottom) return solid(ground.top);
+    const auto [top, bottom] = straight_ends(ground);
+    Pattern pattern(cairo_pattern_create_linear(0.0, 0.0, 0.0, height));
+    const auto add_stop = [&](double offset, const Color& color) {
+        cairo_pattern_add_color_stop_rgba(pattern.get(), offset, color.r / 255.0, color.g / 255.0,
+                                          color.b / 255.0, color.a / 255.0);
+    };
+    add_stop(0.0, top);
+    add_stop(1.0, bottom);
+    return pattern;
+}
+
+/// The font that the program carries with it, for cairo, which may keep it longer than a page lives.
+class FontFile {
+  public:
+    FontFile() {
+        if (FT_Init_FreeType(&library_) != 0 ||
+            FT_New_Memory_Face(library_, view::font_begin(), static_cast<FT_Long>(view::font_bytes()), 0,
+                               &face_) != 0)
+            throw Error(ExitCode::kInternal, "the font cannot be read");
+    }
+    FontFile(const FontFile&) = delete;
+    FontFile& operator=(const FontFile&) = delete;
+    ~FontFile() {
+        FT_Done_Face(face_);
+        FT_Done_FreeType(library_);
+    }
+    [[nodiscard]] FT_Face face() const { return face_; }
+
+  private:
+    FT_Library library_ = nullptr;
+    FT_Face face_ = nullptr;
+};
+
+/// The font's file dies with the face.
+FontFace make_font_face() {
+    static const cairo_user_data_key_t key{};
+    auto file = std::make_unique<FontFile>();
+    FontFace face(cairo_ft_font_face_create_for_ft_face(file->face(), FT_LOAD_NO_HINTING));
+    check(cairo_font_face_set_user_data(face.get(), &key, file.get(),
+                                        [](void* kept) { delete static_cast<FontFile*>(kept); }));
+    static_cast<void>(file.release());
+    return face;
+}
+
+class Pdf : public VectorPage {
+  public:
+    explicit Pdf(const PageDef& def) : on_progress_(def.on_progress) {
+        const double width_pt = def.width_mm * kPointsPerMm;
+        const double scale = width_pt / def.width_px;
+        surface_.reset(
+            cairo_pdf_surface_create_for_stream(append_bytes, &bytes_, width_pt, scale * def.height_px));
+        cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_TITLE, def.title.c_str());
+        cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_CREATOR, "corda");
+        // Otherwise it is the time of day, and no two files are the same.
+        cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_CREATE_DATE,
+                                       "2000-01-01T00:00:00Z");
+        cairo_.reset(cairo_create(surface_.get()));
+        cairo_scale(cairo_.get(), scale, scale);
+        cairo_set_line_cap(cairo_.get(), CAIRO_LINE_CAP_ROUND);
+        cairo_set_line_join(cairo_.get(), CAIRO_LINE_JOIN_ROUND);
+        check(cairo_status(cairo_.get()));
+    }
+
+    void draw(const view::DrawList& list, int x_px, int y_px) override {
+        cairo_t* const cairo = cairo_.get();
+        cairo_save(cairo);
+        cairo_translate(cairo, x_px, y_px);
+        cairo_rectangle(cairo, 0.0, 0.0, list.width, list.height);
+        cairo_clip(cairo);
+        const Pattern ground = pattern_of(list.ground, list.height);
+        cairo_set_source(cairo, ground.get());
+        if (list.ground.top.a != 0 || list.ground.bottom.a != 0) cairo_paint(cairo);
+        const bool is_opaque = list.ground.is_opaque();
+        if (!is_opaque) cairo_push_group(cairo);
+        for (std::size_t l = 0; l < list.layers.size(); ++l) {
+            report_progress(on_progress_, static_cast<std::int64_t>(l),
+                            static_cast<std::int64_t>(list.layers.size()));
+            const view::Layer& layer = list.layers[l];
+            const LayerStrokes strokes = strokes_of(list, layer);
+            if (is_opaque)
+                stroke(strokes.halos, ground.get(), layer.color.a);
+            else if (!strokes.halos.empty())
+                cut_out(list, layer);
+            stroke(strokes.lines, solid({layer.color.r, layer.color.g, layer.color.b}).get(), layer.color.a);
+        }
+        if (!is_opaque) {
+            cairo_pop_group_to_source(cairo);
+            cairo_paint(cairo);
+        }
+        for (const view::Stamp& stamp : list.stamps) {
+            if (stamp.first_coverage == view::Stamp::kSolid) fill_box(stamp);
+        }
+        for (const view::Text& text : list.texts) write(text);
+        cairo_restore(cairo);
+        check(cairo_status(cairo));
+    }
+
+    [[nodiscard]] std::string finish() override {
+        cairo_show_page(cairo_.get());
+        check(cairo_status(cairo_.get()));
+        cairo_surface_finish(surface_.get());
+        check(cairo_surface_status(surface_.get()));
+        return std::move(bytes_);
+    }
+
+  private:
+    /// Unites the strokes, then paints them.
+    void stroke(const std::vector<Stroke>& strokes, cairo_pattern_t* paint, std::uint8_t alpha) {
+        if (strokes.empty() || alpha == 0) return;
+        cairo_t* const cairo = cairo_.get();
+        if (alpha < 255) cairo_push_group(cairo);
+        cairo_set_source(cairo, paint);
+        for (const Stroke& stroke : strokes) {
+            cairo_set_line_width(cairo, stroke.width_px);
+            for (const auto& line : stroke.lines) {
+                cairo_move_to(cairo, line.front().x, line.front().y);
+                for (std::size_t i = 1; i < line.size(); ++i) cairo_line_to(cairo, line[i].x, line[i].y);
+            }
+            cairo_stroke(cairo);
+        }
+        if (alpha == 255) return;
+        cairo_pop_group_to_source(cairo);
+        cairo_paint_with_alpha(cairo, alpha / 255.0);
+    }
+
+    void fill_box(const view::Stamp& stamp) {
+        cairo_set_source(cairo_.get(), solid(stamp.color).get());
+        cairo_rectangle(cairo_.get(), stamp.box.x0, stamp.box.y0, stamp.box.width(), stamp.box.height());
+        cairo_fill(cairo_.get());
+    }
+
+    /// Writes glyphs where Font::write() puts them, as text that can be searched and copied.
+    void write(const view::Text& text) {
+        cairo_t* const cairo = cairo_.get();
+        const std::string utf8 = printable(text.utf8);
+        const auto bytes = static_cast<int>(utf8.size());
+        cairo_set_font_face(cairo, font_face_.get());
+        cairo_set_font_size(cairo, text.size_px);
+        cairo_set_source(cairo, solid(text.color).get());
+        cairo_glyph_t* glyphs = nullptr;
+        cairo_text_cluster_t* clusters = nullptr;
+        int glyph_count = 0;
+        int cluster_count = 0;
+        cairo_text_cluster_flags_t flags{};
+        check(cairo_scaled_font_text_to_glyphs(cairo_get_scaled_font(cairo), text.x_px, text.y_px,
+                                               utf8.data(), bytes, &glyphs, &glyph_count, &clusters,
+                                               &cluster_count, &flags));
+        std::size_t done = 0;
+        for (int i = 0; i < std::min(glyph_count, cluster_count); ++i) {
+            glyphs[i].x = text.x_px + font_.width_px(std::string_view(utf8).substr(0, done), text.size_px);
+            done += static_cast<std::size_t>(clusters[i].num_bytes);
+        }
+        cairo_show_text_glyphs(cairo, utf8.data(), bytes, glyphs, glyph_count, clusters, cluster_count,
+                               flags);
+        cairo_glyph_free(glyphs);
+        cairo_text_cluster_free(clusters);
+    }
+
+    /// Removes what was drawn below the halos of a layer. PDF has no operator that erases, so all is drawn
+    /// again where no halo is; that of a transparent layer removes as much as that of an opaque one.
+    void cut_out(const view::DrawList& list, const view::Layer& layer) {
+        cairo_t* const cairo = cairo_.get();
+        const Pattern below(cairo_pop_group(cairo));
+        cairo_push_group(cairo);
+        cairo_save(cairo);
+        cairo_set_fill_rule(cairo, CAIRO_FILL_RULE_EVEN_ODD);
+        for (std::size_t i = layer.first_capsule; i < layer.first_capsule + layer.capsule_count; ++i) {
+            const view::Capsule& capsule = list.capsules[i];
+            if (capsule.halo_radius <= 0.0F) continue;
+            const double bx = capsule.ax + static_cast<double>(capsule.ux) * capsule.length;
+            const double by = capsule.ay + static_cast<double>(capsule.uy) * capsule.length;
+            const double right = std::atan2(capsule.uy, capsule.ux) - 0.5 * std::numbers::pi;
+            cairo_rectangle(cairo, 0.0, 0.0, list.width, list.height);
+            cairo_new_sub_path(cairo);
+            cairo_arc(cairo, bx, by, capsule.halo_radius, right, right + std::numbers::pi);
+            cairo_arc(cairo, capsule.ax, capsule.ay, capsule.halo_radius, right + std::numbers::pi,
+                      right + 2.0 * std::numbers::pi);
+            cairo_close_path(cairo);
+            cairo_clip(cairo);
+        }
+        cairo_set_source(cairo, below.get());
+        cairo_paint(cairo);
+        cairo_restore(cairo);
+    }
+
+    OnProgress on_progress_;
+    view::Font font_;
+    FontFace font_face_ = make_font_face();
+    // The surface writes into the bytes until it dies.
+    std::string bytes_;
+    std::unique_ptr<cairo_surface_t, CairoDeleter> surface_;
+    std::unique_ptr<cairo_t, CairoDeleter> cairo_;
+};
+
+}  // namespace
+
+std::unique_ptr<VectorPage> make_pdf(const PageDef& def) {
+    return std::make_unique<Pdf>(def);
+}
+
+}  // namespace corda::render

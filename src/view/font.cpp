@@ -1,0 +1,153 @@
+#include "corda/view/font.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <ft2build.h>
+#include FT_FREETYPE_H
+
+#include "corda/core/basics.hpp"
+#include "corda/view/font_data.hpp"
+
+namespace corda::view {
+namespace {
+
+/// Takes the first character off `rest`; U+FFFD for a byte that is not part of one.
+char32_t take_character(std::string_view& rest) {
+    constexpr char32_t kNone = 0xfffd;
+    const auto byte = [&rest](std::size_t i) { return static_cast<unsigned char>(rest[i]); };
+    const unsigned first = byte(0);
+    const std::size_t length = first < 0x80        ? 1
+                               : first >> 5U == 6  ? 2
+                               : first >> 4U == 14 ? 3
+                               : first >> 3U == 30 ? 4
+                                                   : 0;
+    bool is_whole = length > 0 && length <= rest.size();
+    char32_t character = length == 1 ? first : first & (0x7fU >> length);
+    for (std::size_t i = 1; is_whole && i < length; ++i) {
+        is_whole = byte(i) >> 6U == 2;
+        character = character << 6U | (byte(i) & 0x3fU);
+    }
+    rest.remove_prefix(is_whole ? length : 1);
+    return is_whole ? character : kNone;
+}
+
+void check_font(FT_Error error) {
+    if (error != 0)
+        throw Error(ExitCode::kInternal, "FreeType: the font cannot be read: error " + std::to_string(error));
+}
+
+}  // namespace
+
+struct Font::Impl {
+    /// One character at one size, as FreeType renders it.
+    struct Glyph {
+        int left_px = 0;  ///< of the box, from the pen
+        int top_px = 0;   ///< of the box, above the baseline
+        int width_px = 0;
+        int height_px = 0;
+        int advance_px = 0;
+        std::vector<std::uint8_t> coverage;  ///< row by row, 0 .. 255
+    };
+
+    Impl() {
+        check_font(FT_Init_FreeType(&library));
+        const FT_Error error =
+            FT_New_Memory_Face(library, font_begin(), static_cast<FT_Long>(font_bytes()), 0, &face);
+        if (error != 0) FT_Done_FreeType(library);
+        check_font(error);
+    }
+    Impl(const Impl&) = delete;
+    Impl& operator=(const Impl&) = delete;
+    ~Impl() {
+        FT_Done_Face(face);
+        FT_Done_FreeType(library);
+    }
+
+    const Glyph& glyph(char32_t character, int size_px) {
+        const auto [entry, is_new] = glyphs.try_emplace({size_px, character});
+        if (is_new) entry->second = load(character, size_px);
+        return entry->second;
+    }
+
+    Glyph load(char32_t character, int size_px) {
+        check_font(FT_Set_Pixel_Sizes(face, 0, static_cast<FT_UInt>(size_px)));
+        check_font(FT_Load_Char(face, character, FT_LOAD_RENDER | FT_LOAD_TARGET_LIGHT));
+        const FT_GlyphSlot slot = face->glyph;
+        const FT_Bitmap& bitmap = slot->bitmap;
+        Glyph glyph;
+        glyph.left_px = slot->bitmap_left;
+        glyph.top_px = slot->bitmap_top;
+        glyph.width_px = static_cast<int>(bitmap.width);
+        glyph.height_px = static_cast<int>(bitmap.rows);
+        glyph.advance_px = static_cast<int>(slot->advance.x >> 6);
+        for (int y = 0; y < glyph.height_px; ++y) {
+            const unsigned char* row = bitmap.buffer + static_cast<std::ptrdiff_t>(y) * bitmap.pitch;
+            glyph.coverage.insert(glyph.coverage.end(), row, row + bitmap.width);
+        }
+        return glyph;
+    }
+
+    /// Calls `visit` with every glyph and where its box is; returns where the pen ends.
+    template <class Visit>
+    int for_each_glyph(std::string_view utf8, int x_px, int y_px, int size_px, const Visit& visit) {
+        while (!utf8.empty()) {
+            const Glyph& next = glyph(take_character(utf8), size_px);
+            const int x0 = x_px + next.left_px;
+            const int y0 = y_px - next.top_px;
+            if (!next.coverage.empty())
+                visit(next, PixelRect{x0, y0, x0 + next.width_px, y0 + next.height_px});
+            x_px += next.advance_px;
+        }
+        return x_px;
+    }
+
+    FT_Library library = nullptr;
+    FT_Face face = nullptr;
+    std::map<std::pair<int, char32_t>, Glyph> glyphs;
+};
+
+Font::Font() : impl_(std::make_unique<Impl>()) {}
+Font::Font(Font&&) noexcept = default;
+Font& Font::operator=(Font&&) noexcept = default;
+Font::~Font() = default;
+
+int Font::width_px(std::string_view utf8, int size_px) {
+    return impl_->for_each_glyph(utf8, 0, 0, size_px, [](const Impl::Glyph&, const PixelRect&) {});
+}
+
+PixelRect Font::ink(const Text& text) {
+    PixelRect ink;
+    impl_->for_each_glyph(text.utf8, text.x_px, text.y_px, text.size_px,
+                          [&ink](const Impl::Glyph&, const PixelRect& box) { ink = ink.united(box); });
+    return ink;
+}
+
+void Font::write(const Text& text, DrawList& list) {
+    const PixelRect box = ink(text).intersected({0, 0, list.width, list.height});
+    if (box.empty()) return;
+    const std::size_t first = list.coverage.size();
+    list.coverage.resize(first + static_cast<std::size_t>(box.width()) * box.height());
+    impl_->for_each_glyph(
+        text.utf8, text.x_px, text.y_px, text.size_px, [&](const Impl::Glyph& glyph, const PixelRect& at) {
+            const PixelRect seen = at.intersected(box);
+            for (int y = seen.y0; y < seen.y1; ++y) {
+                for (int x = seen.x0; x < seen.x1; ++x) {
+                    std::uint8_t& united =
+                        list.coverage[first + static_cast<std::size_t>(y - box.y0) * box.width() +
+                                      (x - box.x0)];
+                    united = std::max(
+                        united,
+                        glyph.coverage[static_cast<std::size_t>(y - at.y0) * glyph.width_px + (x - at.x0)]);
+                }
+            }
+        });
+    list.stamps.push_back({box, text.color, first});
+    list.texts.push_back(text);
+}
+
+}  // namespace corda::view

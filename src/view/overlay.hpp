@@ -1,0 +1,71 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "corda/view/camera.hpp"
+#include "corda/view/defs.hpp"
+#include "corda/view/draw_list.hpp"
+#include "corda/view/font.hpp"
+
+namespace corda::view {
+
+/// What an overlay says of one picture.
+struct Caption {
+    std::optional<double> time_s;  ///< std::nullopt: no time is shown
+    std::optional<double> energy_error;
+    std::string method;
+};
+
+/// The words and the scale bar at the edges of a picture. Time and energy stand at the lower left, the scale
+/// bar at the lower right, title and method at the upper left. A title or a method that is too long is
+/// shortened; what else has no room is left out.
+class Overlay {
+  public:
+    /// `interval_s`: between frames; so many decimals has the time. `end_s`: of the scene; the time always
+    /// has the width of that of the last frame before it.
+    Overlay(const OverlayDef& def, const StyleDef& style, int width, int height, double interval_s,
+            double end_s);
+
+    /// What the camera is to keep clear of what it fits.
+    [[nodiscard]] Insets insets() const;
+    /// Adds the stamps of a picture of that scale.
+    void draw(const Caption& caption, double pixels_per_metre, DrawList& list);
+
+  private:
+    [[nodiscard]] bool has_bottom() const { return time_ || scale_bar_ || def_.energy; }
+    [[nodiscard]] int title_px() const;
+    /// The baselines from the upper edge.
+    [[nodiscard]] int title_baseline_px() const;
+    [[nodiscard]] int method_baseline_px() const;
+    [[nodiscard]] std::string time_text(double time_s) const;
+    /// Writes a text at the left end of the lower baseline if it ends before `end_px`; returns where the next
+    /// may begin.
+    int write_bottom(const std::string& text, int x_px, int end_px, DrawList& list);
+    /// The same for the scale bar, from the right; returns where it begins.
+    int draw_scale_bar(double pixels_per_metre, int begin_px, DrawList& list);
+    void write_top(std::string text, int baseline_px, int size_px, Color color, DrawList& list);
+
+    OverlayDef def_;
+    bool time_;
+    bool scale_bar_;
+    Color color_;
+    int width_;
+    int height_;
+    int em_px_;
+    int edge_px_;  ///< from the edges of the frame to the texts
+    int decimals_ = 2;
+    std::size_t time_digits_ = 0;  ///< with the decimal point
+    Font font_;
+};
+
+/// A positive number, rounded up to two digits.
+[[nodiscard]] double rounded_up(double value);
+
+/// "3.1·10⁻¹²": two digits, rounded up.
+[[nodiscard]] std::string power_text(double value);
+
+/// "20 cm": `digit` times 10 to the power of `exponent` metres.
+[[nodiscard]] std::string length_text(int digit, int exponent);
+
+}  // namespace corda::view

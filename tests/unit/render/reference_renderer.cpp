@@ -1,0 +1,86 @@
+#include "corda/render/reference_renderer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "support/draw_lists.hpp"
+#include "support/image_matchers.hpp"
+
+namespace corda::render {
+namespace {
+
+/// What a viewer shows of a picture on a ground of that level.
+std::uint8_t over(const std::uint8_t* rgba, int channel, int level) {
+    return static_cast<std::uint8_t>((rgba[channel] * rgba[3] + level * (255 - rgba[3]) + 127) / 255);
+}
+
+/// The largest difference, in levels, of a picture with alpha, put on a ground of that level, from the same
+/// list drawn on that ground.
+int largest_difference(view::DrawList list, int level) {
+    const Image clear = render_reference(list);
+    for (Color* color : {&list.ground.top, &list.ground.bottom}) {
+        const std::uint8_t rgba[]{color->r, color->g, color->b, color->a};
+        *color = {over(rgba, 0, level), over(rgba, 1, level), over(rgba, 2, level)};
+    }
+    const Image opaque = render_reference(list);
+    int largest = 0;
+    for (int y = 0; y < list.height; ++y) {
+        for (int x = 0; x < list.width; ++x) {
+            for (int c = 0; c < 3; ++c)
+                largest =
+                    std::max(largest, std::abs(over(clear.pixel(x, y), c, level) - opaque.pixel(x, y)[c]));
+        }
+    }
+    return largest;
+}
+
+TEST(TransparentGround, LooksLikeAnOpaqueOneOnBlackAndOnWhite) {
+    for (const Color& ground : {Color{0, 0, 0, 0}, {255, 255, 255, 0}, {200, 60, 10, 100}}) {
+        for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+            // A halo and a line, each rounded once, and the alpha of the file.
+            view::DrawList list = test::random_draw_list(seed, 160, 120, 1, 12);
+            list.ground = {ground, ground};
+            for (const int level : {0, 255, 99}) EXPECT_LE(largest_difference(list, level), 2);  // measured 2
+            list = test::random_draw_list(seed, 160, 120, 8, 12);
+            list.ground = {ground, ground};
+            // Each layer rounds once more.
+            for (const int level : {0, 255, 99}) EXPECT_LE(largest_difference(list, level), 3);  // measured 3
+        }
+    }
+}
+
+TEST(TransparentGround, KeepsTheColourAndTheCoverageOfALine) {
+    view::DrawList list;
+    list.width = 40;
+    list.height = 20;
+    list.ground = {{0, 0, 0, 0}, {0, 0, 0, 0}};
+    list.add_layer({200, 100, 50});
+    list.add_capsule({5.0, 10.25}, {35.0, 10.25}, 3.0);
+    const Image image = render_reference(list);
+    const std::uint8_t* const edge = image.pixel(20, 7);  // from 7 to 8, covered from 7.25 on
+    EXPECT_EQ(edge[3], 191);
+    EXPECT_NEAR(edge[0], 200, 1);
+    EXPECT_NEAR(edge[1], 100, 1);
+    EXPECT_EQ(image.pixel(20, 10)[3], 255);
+    EXPECT_EQ(image.pixel(20, 2)[3], 0);
+}
+
+TEST(TransparentGround, ShowsInAHalo) {
+    view::DrawList list;
+    list.width = 40;
+    list.height = 40;
+    list.ground = {{10, 20, 30, 0}, {10, 20, 30, 0}};
+    list.add_layer({255, 0, 0});
+    list.add_capsule({0.0, 20.0}, {40.0, 20.0}, 8.0);
+    list.add_layer({0, 0, 255});
+    list.add_capsule({20.0, 0.0}, {20.0, 40.0}, 3.0, 4.0);
+    const Image image = render_reference(list);
+    EXPECT_EQ(image.pixel(5, 20)[3], 255);
+    EXPECT_EQ(image.pixel(14, 20)[3], 0);  // 5.5 px from the axis: within the halo
+    EXPECT_EQ(image.pixel(20, 20)[3], 255);
+    EXPECT_EQ(image.pixel(20, 20)[2], 255);
+}
+
+}  // namespace
+}  // namespace corda::render

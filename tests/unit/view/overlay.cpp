@@ -1,0 +1,167 @@
+#include "corda/view/overlay.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace corda::view {
+namespace {
+
+constexpr double kFrameS = 1.0 / 60.0;
+
+DrawList drawn(const OverlayDef& def, const Caption& caption, int width, int height,
+               double pixels_per_metre = 100.0, double end_s = 10.0, const StyleDef& style = {}) {
+    DrawList list;
+    list.width = width;
+    list.height = height;
+    Overlay(def, style, width, height, kFrameS, end_s).draw(caption, pixels_per_metre, list);
+    return list;
+}
+
+using Words = std::vector<std::string>;
+
+Words words(const DrawList& list) {
+    Words all;
+    for (const Text& text : list.texts) all.push_back(text.utf8);
+    return all;
+}
+
+/// With everything but a scale bar off.
+OverlayDef bar_alone() {
+    OverlayDef def;
+    def.time = false;
+    return def;
+}
+
+TEST(Overlays, ShowTimeAndScaleByDefaultInFramesThatAreLargeEnough) {
+    const Caption caption{1.2, {}, {}};
+    EXPECT_EQ(words(drawn({}, caption, 640, 360)), (Words{"t = 1.20 s", "1 m"}));
+    EXPECT_EQ(words(drawn({}, caption, 160, 160)), (Words{"t = 1.20 s", "20 cm"}));
+    EXPECT_TRUE(words(drawn({}, caption, 320, 159)).empty());
+    OverlayDef always;
+    always.time = true;
+    EXPECT_EQ(words(drawn(always, caption, 100, 50)), Words{"t = 1.20 s"});
+    EXPECT_EQ(words(drawn(bar_alone(), caption, 640, 360)), Words{"1 m"});
+    EXPECT_EQ(words(drawn({}, {}, 640, 360)), Words{"1 m"});  // a caption without a time
+}
+
+TEST(Overlays, AreOffOnATransparentGroundUnlessAskedFor) {
+    StyleDef style;
+    style.background = Ground{{0, 0, 0, 255}, {0, 0, 0, 0}};
+    const Caption caption{1.2, {}, {}};
+    EXPECT_TRUE(words(drawn({}, caption, 640, 360, 100.0, 10.0, style)).empty());
+    OverlayDef always;
+    always.scale_bar = true;
+    EXPECT_EQ(words(drawn(always, caption, 640, 360, 100.0, 10.0, style)), Words{"1 m"});
+}
+
+TEST(Overlays, HaveATimeWhoseDigitsStay) {
+    const auto time = [](double time_s, double end_s) {
+        return drawn({}, {time_s, {}, {}}, 640, 360, 100.0, end_s).texts[0].utf8;
+    };
+    EXPECT_EQ(time(9.5, 10.0), "t = 9.50 s");
+    EXPECT_EQ(time(9.5, 100.0), "t = \u20079.50 s");
+    EXPECT_EQ(time(99.5, 100.0), "t = 99.50 s");
+    Font font;
+    EXPECT_EQ(font.width_px(time(9.5, 100.0), 12), font.width_px(time(99.5, 100.0), 12));
+    DrawList list;
+    list.width = list.height = 400;
+    Overlay({}, {}, 400, 400, 1.0 / 1500.0, 1.0).draw({0.25, {}, {}}, 100.0, list);
+    EXPECT_EQ(list.texts[0].utf8, "t = 0.2500 s");
+}
+
+TEST(Overlays, HaveAScaleBarOfItsLength) {
+    for (const auto& [scale, label, length_px] : {std::tuple{100.0, "1 m", 100},
+                                                  {33.0, "2 m", 66},
+                                                  {0.01, "10 km", 100},
+                                                  {7e4, "1 mm", 70},
+                                                  {1e10, "10 nm", 100},
+                                                  {216.0, "50 cm", 108}}) {
+        const DrawList list = drawn(bar_alone(), {}, 640, 360, scale);
+        EXPECT_EQ(words(list), Words{label}) << scale;
+        PixelRect bar;
+        for (const Stamp& stamp : list.stamps) {
+            if (stamp.first_coverage == Stamp::kSolid) bar = bar.united(stamp.box);
+        }
+        EXPECT_EQ(bar.width(), length_px) << scale;
+        EXPECT_EQ(bar.x1, 640 - 11);
+    }
+}
+
+/// With the longest strings, in frames of all shapes.
+TEST(Overlays, AreNeverCutAndNeverMeet) {
+    OverlayDef all;
+    all.time = all.scale_bar = all.energy = all.method = true;
+    all.title = "Ein Seil schwingt, Ägäis, und der Titel hört nicht auf: 中文 \u2212\u00b2 gjpqy";
+    const Caption caption{123456.789, 1.23e-100, "exact, rattle, relaxation, error below 3.1·10⁻¹² px"};
+    for (const auto& [width, height] : {std::pair{1920, 1080},
+                                        {1080, 1920},
+                                        {640, 360},
+                                        {168, 94},
+                                        {64, 64},
+                                        {30, 200},
+                                        {16, 16},
+                                        {1, 1}}) {
+        SCOPED_TRACE(std::to_string(width) + "x" + std::to_string(height));
+        const DrawList list = drawn(all, caption, width, height, 0.37, 200000.0);
+        Font font;
+        for (const Text& text : list.texts) {
+            const PixelRect ink = font.ink(text);
+            EXPECT_EQ(ink.intersected({0, 0, width, height}), ink) << text.utf8;
+        }
+        for (std::size_t i = 0; i < list.stamps.size(); ++i) {
+            for (std::size_t k = 0; k < i; ++k)
+                EXPECT_TRUE(list.stamps[i].box.intersected(list.stamps[k].box).empty()) << i << ", " << k;
+        }
+        EXPECT_TRUE(width < 640 || list.texts.size() == 5U) << list.texts.size();
+        // What the camera fits is clear of them.
+        const Insets insets = Overlay(all, {}, width, height, kFrameS, 10.0).insets();
+        EXPECT_LE(insets.top_px + insets.bottom_px, 0.5 * height + 1e-9);
+        if (height < 200) continue;
+        for (const Stamp& stamp : list.stamps)
+            EXPECT_TRUE(stamp.box.y1 <= insets.top_px || stamp.box.y0 >= height - insets.bottom_px);
+    }
+}
+
+TEST(Overlays, StandOutFromTheirGround) {
+    for (const auto& [ground, is_dark] :
+         {std::pair{Color{0xff, 0xff, 0xf0}, true}, {Color{0x10, 0x10, 0x30}, false}}) {
+        StyleDef style;
+        style.background = Ground{ground, ground};
+        const DrawList list = drawn(bar_alone(), {}, 640, 360, 100.0, 10.0, style);
+        EXPECT_EQ(list.texts[0].color.g < 128, is_dark);
+    }
+}
+
+TEST(OverlayNumbers, AreRoundedUpToTwoDigits) {
+    EXPECT_EQ(rounded_up(0.031), 0.031);
+    EXPECT_EQ(rounded_up(0.0311), 0.032);
+    EXPECT_EQ(rounded_up(9.91), 10.0);
+    EXPECT_EQ(rounded_up(1.001), 1.1);
+    EXPECT_EQ(rounded_up(5.449), 5.5);
+    EXPECT_EQ(power_text(3.1e-12), "3.1·10⁻¹²");
+    EXPECT_EQ(power_text(3.11e-12), "3.2·10⁻¹²");
+    EXPECT_EQ(power_text(2e45), "2.0·10⁴⁵");
+    EXPECT_EQ(power_text(0.0), "0");
+}
+
+TEST(OverlayNumbers, HaveAUnitThatFits) {
+    for (const auto& [digit, exponent, text] : {std::tuple{1, 0, "1 m"},
+                                                {5, 2, "500 m"},
+                                                {2, 3, "2 km"},
+                                                {1, 8, "100000 km"},
+                                                {2, -1, "20 cm"},
+                                                {5, -2, "5 cm"},
+                                                {1, -3, "1 mm"},
+                                                {2, -4, "200 µm"},
+                                                {5, -9, "5 nm"},
+                                                {2, -10, "0.2 nm"}})
+        EXPECT_EQ(length_text(digit, exponent), text);
+}
+
+}  // namespace
+}  // namespace corda::view
