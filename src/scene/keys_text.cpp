@@ -10,7 +10,7 @@
 namespace corda::scene {
 namespace {
 
-constexpr std::string_view kColorWords = R"(such as "#e8c07d" or, with alpha, "#e8c07d80")";
+constexpr std::string_view kColorWords = R"(such as "tomato", "#e8c07d" or, with alpha, "#e8c07d80")";
 
 std::string kind_text(Kind kind) {
     switch (kind) {
