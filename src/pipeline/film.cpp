@@ -10,6 +10,7 @@
 #include "corda/pipeline/motion.hpp"
 #include "corda/pipeline/painter.hpp"
 #include "corda/pipeline/stage.hpp"
+#include "corda/pipeline/tracks.hpp"
 #include "corda/pipeline/validate.hpp"
 #include "corda/sim/auto/planner.hpp"
 #include "corda/view/camera.hpp"
@@ -60,7 +61,8 @@ struct Film::Impl {
           stage(scene, system, def.backend, def.require_gpu),
           motion(system, scene.world, if_all_named(named),
                  Timeline(scene.video.fps, pipeline::last_frame_of(scene), def.stills_s),
-                 def.motion_budget_bytes, def.on_progress) {
+                 def.motion_budget_bytes, def.on_progress),
+          tracks(stage.traced(), scene.style.trail_s, scene.video.fps) {
         if (motion.methods().empty()) {
             plan = motion.record([&](const Timeline& timeline, sim::Recording& recording) {
                 return plan_within(timeline, recording);
@@ -109,11 +111,12 @@ struct Film::Impl {
     }
 
     PixelRect draw(double time_s, const view::Camera& map, const OnProgress& on_progress) {
+        tracks.read(motion, time_s, def.on_progress);
         const State& state = at(time_s);
         std::optional<double> bound_px;
         if (plan.error_bound_m) bound_px = *plan.error_bound_m * map.pixels_per_metre();
         const view::Caption caption{time_s, motion.figures().energy_error, method_caption(plan, bound_px)};
-        return stage.draw(state, map, caption, on_progress);
+        return stage.draw(state, map, caption, tracks.to(state), on_progress);
     }
 
     Scene scene;
@@ -122,6 +125,7 @@ struct Film::Impl {
     sim::NamedMethods named;
     pipeline::Stage stage;
     pipeline::Motion motion;
+    pipeline::Tracks tracks;
     Plan plan;
     std::optional<CameraDef> camera;
 };

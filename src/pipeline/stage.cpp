@@ -80,8 +80,8 @@ void Stage::open() {
 }
 
 PixelRect Stage::draw(const State& state, const view::Camera& map, const view::Caption& caption,
-                      const OnProgress& on_progress) {
-    view_.draw(state, map, list_);
+                      std::span<const view::Trail> trails, const OnProgress& on_progress) {
+    view_.draw(state, map, list_, trails);
     overlay_.draw(caption, map.pixels_per_metre(), list_);
     canvas_->context.make_current();  // a callback since open() may have left another one
     const std::int64_t picture = ++pictures_;

@@ -173,7 +173,8 @@ TEST(SceneErrors, Particles) {
         {rope_with("pinned = [-4]"), "swing.toml:4:11: rope[0].pinned[0]: ", "-4 is out of range"},
         {rope_with("pinned = [2, 0, -1]"),
          "swing.toml:4:17: rope[0].pinned[2]: ", "particle 2 is given twice"},
-        {rope_with("color = \"red\""), "swing.toml:4:9: rope[0].color: ", "\"red\" is not a colour"},
+        {rope_with("color = \"redd\""),
+         "swing.toml:4:9: rope[0].color: ", "\"redd\" is not a colour; did you mean \"red\"?"},
         {rope_with("width_px = 0"), "swing.toml:4:12: rope[0].width_px: ", "0 is not >= 0.1"},
     });
 }
