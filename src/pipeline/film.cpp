@@ -10,6 +10,7 @@
 #include "corda/pipeline/motion.hpp"
 #include "corda/pipeline/painter.hpp"
 #include "corda/pipeline/stage.hpp"
+#include "corda/pipeline/tracks.hpp"
 #include "corda/pipeline/validate.hpp"
 #include "corda/sim/auto/planner.hpp"
 #include "corda/view/camera.hpp"
@@ -73,7 +74,8 @@ struct Film::Impl {
           stage(scene, system, def.backend, def.require_gpu),
           motion(system, scene.world, if_all_named(named),
                  Timeline(scene.video.fps, pipeline::last_frame_of(scene), def.stills_s),
-                 def.motion_budget_bytes, def.on_progress) {
+                 def.motion_budget_bytes, def.on_progress),
+          tracks(stage.traced(), scene.style.trail_s, scene.video.fps) {
         if (motion.methods().empty()) {
             plan = motion.record([&](const Timeline& timeline, sim::Recording& recording) {
                 return plan_within(timeline, recording);
@@ -161,8 +163,9 @@ struct Film::Impl {
     }
 
     PixelRect draw(double time_s, const view::Camera& map, const OnProgress& on_progress) {
+        tracks.read(motion, time_s, def.on_progress);
         const State& state = at(time_s);
-        return stage.draw(state, map, caption_of(state, map), on_progress);
+        return stage.draw(state, map, caption_of(state, map), tracks.to(state), on_progress);
     }
 
     Scene scene;
@@ -171,6 +174,7 @@ struct Film::Impl {
     sim::NamedMethods named;
     pipeline::Stage stage;
     pipeline::Motion motion;
+    pipeline::Tracks tracks;
     Plan plan;
     std::optional<CameraDef> camera;
 };

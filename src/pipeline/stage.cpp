@@ -81,8 +81,8 @@ void Stage::open() {
 }
 
 PixelRect Stage::draw(const State& state, const view::Camera& map, const view::Caption& caption,
-                      const OnProgress& on_progress) {
-    view_.draw(state, map, list_);
+                      std::span<const view::Trail> trails, const OnProgress& on_progress) {
+    view_.draw(state, map, list_, trails);
     annotate(caption, map, list_);
     return paint(on_progress);
 }

@@ -4,6 +4,7 @@
 #include <exception>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "corda/core/basics.hpp"
 #include "corda/gl/context.hpp"
@@ -48,11 +49,13 @@ class Stage {
     /// What draw() throws if `on_progress` itself has drawn this stage: its picture is the last one now.
     struct Overdrawn : std::exception {};
 
-    /// Draws a state, with what the overlay says of it; returns the pixels that may differ from the last
-    /// picture. Asks `on_progress` again and again if the picture is large. Throws Overdrawn, and
-    /// corda::Error: kNoGl, kInterrupted. Requires a Use.
+    /// See view::SceneView::traced().
+    [[nodiscard]] std::vector<std::size_t> traced() const { return view_.traced(); }
+    /// Draws a state, with what the overlay says of it and the trails to it; returns the pixels that may
+    /// differ from the last picture. Asks `on_progress` again and again if the picture is large. Throws
+    /// Overdrawn, and corda::Error: kNoGl, kInterrupted. Requires a Use.
     PixelRect draw(const State& state, const view::Camera& map, const view::Caption& caption = {},
-                   const OnProgress& on_progress = {});
+                   std::span<const view::Trail> trails = {}, const OnProgress& on_progress = {});
     /// Draws a list of this stage's size, in the same way.
     PixelRect draw(view::DrawList list, const OnProgress& on_progress = {});
     /// Adds what the overlay says to a list.

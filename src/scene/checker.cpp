@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "corda/core/css_colors.hpp"
 #include "corda/core/image.hpp"
 #include "corda/core/nearest.hpp"
 #include "corda/core/text.hpp"
@@ -22,6 +23,14 @@ std::string other_home(std::string_view name) {
     const auto key = std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.name == name; });
     if (key == keys.end()) return "";
     return fmt::format("; it is a key of {}", key->section.empty() ? "the top level" : key->section);
+}
+
+/// `; did you mean "blue"?`
+std::string hint_of_color(std::string_view text) {
+    std::vector<std::string_view> names;
+    for (const CssColor& color : kCssColors) names.push_back(color.name);
+    const auto meant = nearest(text, names);
+    return meant ? fmt::format("; did you mean \"{}\"?", *meant) : "";
 }
 
 /// Checks a value of one key.
@@ -133,7 +142,8 @@ class ValueChecker {
     }
 
     bool check_color(const std::string& text, const toml::node& node, const std::string& path) const {
-        return Color::parse(text) || fail(node, path, fmt::format("\"{}\" is not a colour", excerpt(text)));
+        return Color::parse(text) ||
+               fail(node, path, fmt::format("\"{}\" is not a colour{}", excerpt(text), hint_of_color(text)));
     }
 
     [[nodiscard]] std::string_view one_words() const {

@@ -354,6 +354,8 @@ std::vector<Key> style_keys() {
         {"style", "supports", boolean, "", at(def.supports), "pinned particles hang from plates",
          "from rings if something rises above them"},
         {"style", "halo", boolean, "", at(def.halo), "a gap parts crossing bodies"},
+        {"style", "trail_s", number({.low = 0.0, .high = 3600.0}), "s", at(def.trail_s),
+         "the time for which the path of the free end of a rope stays", "it fades; 0: not at all"},
         {"style", "markers", one_of(markers), "", at(markers, def.markers), "the particles with a marker"},
         {"style", "marker_radius_px", number(kWidthPx), "px", otherwise("grows with the width of the rope"),
          "the radius of markers"},

@@ -10,7 +10,8 @@
 namespace corda::scene {
 namespace {
 
-constexpr std::string_view kColorWords = R"(such as "#e8c07d", "#e8c07d80" (with alpha) or "transparent")";
+constexpr std::string_view kColorWords =
+    R"(such as "tomato", "#e8c07d", "#e8c07d80" (with alpha) or "transparent")";
 
 std::string kind_text(Kind kind) {
     switch (kind) {

@@ -52,6 +52,7 @@ StyleDef read_style(const TableReader& style) {
     style.read("payload", def.payload);
     style.read("supports", def.supports);
     style.read("halo", def.halo);
+    style.read("trail_s", def.trail_s);
     style.read("markers", def.markers);
     style.read("marker_radius_px", def.marker_radius_px);
     style.read("pinned_color", def.pinned_color);

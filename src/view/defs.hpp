@@ -43,6 +43,8 @@ struct StyleDef {
     bool payload = true;   ///< payloads are balls, and so are the masses of ropes of up to 3 links
     bool supports = true;  ///< pinned particles hang from plates, or rings if something rises above them
     bool halo = true;      ///< a body leaves a gap in the bodies behind it
+    double trail_s =
+        0.0;  ///< 0 .. 3600: for how long the path of the free end of a rope stays; 0: not at all
     Markers markers = Markers::kNone;
     std::optional<double>
         marker_radius_px;  ///< 0.1 .. 1000; default: a little more than half the line's width

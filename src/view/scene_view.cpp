@@ -20,6 +20,8 @@ constexpr double kLargestBall = 0.055;
 constexpr double kThinnestLinePx = 2.0;
 constexpr double kNetWidthPerRopeWidth = 0.5;
 constexpr double kBallPerLine = 1.6;  // radius, at least
+constexpr double kTrailPerLine = 0.6;
+constexpr double kThinnestTrail = 0.8;
 constexpr double kHaloPerWidth = 0.35;
 constexpr double kBarWidthPerRopeWidth = 0.25;
 constexpr double kThinnestBarPx = 1.0;
@@ -146,8 +148,41 @@ void SceneView::include_slack(const Body& body, std::span<const MotionBounds> mo
     }
 }
 
-void SceneView::draw(const State& state, const Camera& camera, DrawList& list) const {
+std::vector<std::size_t> SceneView::traced() const {
+    std::vector<std::size_t> ends;
+    for (const Body& body : system_->bodies) {
+        const bool is_closed = body.link_count == body.particle_count;
+        if (style_.trail_s == 0.0 || body.is_net || is_closed) continue;
+        const std::size_t first = body.first_particle;
+        const std::size_t last = first + body.particle_count - 1;
+        if (!system_->is_pinned(last))
+            ends.push_back(last);
+        else if (!system_->is_pinned(first))
+            ends.push_back(first);
+    }
+    return ends;
+}
+
+void SceneView::draw_trails(std::span<const Trail> trails, const Camera& camera, DrawList& list) const {
+    if (trails.empty()) return;
+    const std::vector<std::size_t> ends = traced();
+    std::vector<FadingPoint> path;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        std::size_t body = 0;
+        while (ends[i] >= system_->bodies[body].first_particle + system_->bodies[body].particle_count) ++body;
+        path.clear();
+        for (const TrailPoint& point : trails[i])
+            path.push_back(
+                {{camera.x_px(point.at_m.x), camera.y_px(point.at_m.y)}, 1.0 - point.age_s / style_.trail_s});
+        add_trail(path, std::max(kThinnestTrail, kTrailPerLine * bodies_[body].radius_px),
+                  bodies_[body].color, list);
+    }
+}
+
+void SceneView::draw(const State& state, const Camera& camera, DrawList& list,
+                     std::span<const Trail> trails) const {
     start(list);
+    draw_trails(trails, camera, list);
     draw_pose(state, camera, list);
     draw_supports(state, camera, list);
 }

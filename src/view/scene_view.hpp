@@ -12,14 +12,15 @@
 #include "corda/view/draw_list.hpp"
 #include "corda/view/look.hpp"
 #include "corda/view/supports.hpp"
+#include "corda/view/trail.hpp"
 
 namespace corda::view {
 
 /// Turns states into draw lists. Construction decides what is drawn and in which layer; each frame decides
 /// where.
 ///
-/// From back to front: imaginary bars; each body, its links and then its balls; real bars, markers of free
-/// particles, supports, markers of pinned particles.
+/// From back to front: trails; imaginary bars; each body, its links and then its balls; real bars, markers of
+/// free particles, supports, markers of pinned particles.
 class SceneView {
   public:
     /// `body_styles` has an entry per body of `system`; one that is missing overrides nothing. `system` must
@@ -34,8 +35,14 @@ class SceneView {
     /// All that is drawn of particles that stay within `motion`.
     [[nodiscard]] std::vector<Drawn> drawn(std::span<const MotionBounds> motion) const;
 
-    /// Writes the frame of `state` to `list`. Memory that `list` holds is reused.
-    void draw(const State& state, const Camera& camera, DrawList& list) const;
+    /// The particles whose paths are drawn: the free ends of open ropes, the last before the first. Empty
+    /// without trails.
+    [[nodiscard]] std::vector<std::size_t> traced() const;
+
+    /// Writes the frame of `state` to `list`, with a trail for each of the particles traced(), or none.
+    /// Memory that `list` holds is reused.
+    void draw(const State& state, const Camera& camera, DrawList& list,
+              std::span<const Trail> trails = {}) const;
 
     // The steps of draw(), for several poses in one picture: once, for each pose, once.
     void start(DrawList& list) const;
@@ -75,6 +82,7 @@ class SceneView {
     [[nodiscard]] double marker_radius_px(std::size_t body, bool pinned) const;
     /// Adds where slack links of a string may hang.
     void include_slack(const Body& body, std::span<const MotionBounds> motion, MotionBounds& bounds) const;
+    void draw_trails(std::span<const Trail> trails, const Camera& camera, DrawList& list) const;
     void draw_body(std::size_t i, const Positions& positions, DrawList& list) const;
     void draw_slack(const Bar& link, double radius_px, double halo_px, const Positions& positions,
                     DrawList& list) const;

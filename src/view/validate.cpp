@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kThinnestPx = 0.1;
 constexpr double kThickestPx = 1000.0;
+constexpr double kLongestTrail = 3600.0;
 constexpr double kWidestMargin = 0.45;
 
 void require_range(bool holds, const std::string& field, const char* range) {
@@ -24,6 +25,8 @@ void validate_width(const std::optional<double>& width_px, const std::string& fi
 }  // namespace
 
 void validate(const StyleDef& style, const std::vector<BodyStyleDef>& body_styles) {
+    require_range(style.trail_s >= 0.0 && style.trail_s <= kLongestTrail, "style: trail_s",
+                  "within 0 .. 3600");
     validate_width(style.rope_width_px, "style: rope_width_px");
     validate_width(style.net_width_px, "style: net_width_px");
     validate_width(style.marker_radius_px, "style: marker_radius_px");

@@ -276,8 +276,11 @@ INSTANTIATE_TEST_SUITE_P(
         Remedy{"colour",
                rope_scene(kHang + "color = \"redd\""),
                "plan SCENE",
-               R"(such as "#e8c07d", "#e8c07d80" (with alpha) or "transparent")",
-               {{{"redd", "#e8c07d"}}, {{"redd", "#e8c07d80"}}, {{"redd", "transparent"}}}},
+               R"(such as "tomato", "#e8c07d", "#e8c07d80" (with alpha) or "transparent")",
+               {{{"redd", "tomato"}},
+                {{"redd", "#e8c07d"}},
+                {{"redd", "#e8c07d80"}},
+                {{"redd", "transparent"}}}},
         Remedy{
             "transparent_video",
             rope_scene(kHang, "[style]\nbackground = \"transparent\"\n"),

@@ -60,6 +60,7 @@ background = ["#101010", "#202020"]
 payload = false
 supports = true
 halo = true
+trail_s = 0.5
 net_width_px = 2.5
 palette = ["#ff0000", '#00ff00']
 rope_width_px = 4

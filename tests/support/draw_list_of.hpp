@@ -20,7 +20,8 @@ inline void include(const State& state, std::vector<MotionBounds>& motion) {
 /// What a scene draws at a state, made apart from Film: what the reference renderer is to draw too.
 inline view::DrawList draw_list_of(const Scene& scene, const System& system, const CameraDef& camera,
                                    const State& state, const std::vector<MotionBounds>& motion,
-                                   const view::Caption& caption = {}) {
+                                   const view::Caption& caption = {},
+                                   std::span<const view::Trail> trails = {}) {
     const int width_px = scene.video.width_px;
     const int height_px = scene.video.height_px;
     view::SceneView scene_view(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, width_px,
@@ -28,21 +29,41 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
     scene_view.set_motion(motion);
     view::DrawList list;
     const view::Camera map(camera, system.origin_m, width_px, height_px);
-    scene_view.draw(state, map, list);
+    scene_view.draw(state, map, list, trails);
     view::Overlay(scene.overlay, scene.style, width_px, height_px, scene.video.fps.interval_s(),
                   scene.world.duration_s)
         .draw(caption, map.pixels_per_metre(), list);
     return list;
 }
 
+/// The particles whose paths a film draws.
+inline std::vector<std::size_t> traced(const Film& film) {
+    const Scene& scene = film.scene();
+    return view::SceneView(film.system(), scene.world.gravity_m_s2, scene.style, scene.body_styles, 64, 64)
+        .traced();
+}
+
+inline void add_points(const Film& film, const State& state, double age_s, std::vector<view::Trail>& trails) {
+    const std::vector<std::size_t> ends = traced(film);
+    for (std::size_t i = 0; i < ends.size(); ++i)
+        trails[i].push_back({age_s, {state.x_m[ends[i]], state.y_m[ends[i]]}});
+}
+
 /// What a film draws at a time.
 inline view::DrawList draw_list_of(const Film& film, double time_s) {
     std::vector<MotionBounds> motion;
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) include(film.state(k), motion);
+    std::vector<view::Trail> trails(test::traced(film).size());
+    const double trail_s = film.scene().style.trail_s;
+    for (std::int64_t k = 0; k <= film.last_frame() && !trails.empty(); ++k) {
+        const double age_s = time_s - film.time_s(k);
+        if (age_s > 0.0 && age_s < trail_s) add_points(film, film.state(k), age_s, trails);
+    }
     const State& state = film.state_at(time_s);
+    add_points(film, state, 0.0, trails);
     const view::Caption caption{time_s, film.figures().energy_error,
                                 method_caption(film.plan(), film.error_bound_px())};
-    return draw_list_of(film.scene(), film.system(), film.camera(), state, motion, caption);
+    return draw_list_of(film.scene(), film.system(), film.camera(), state, motion, caption, trails);
 }
 
 }  // namespace corda::test

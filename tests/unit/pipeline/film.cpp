@@ -135,6 +135,27 @@ TEST(FilmFrames, AreTheSameInAnyOrderAndByThePainter) {
     }
 }
 
+TEST(FilmFrames, WithTrailsAreTheSameInAnyOrderAndWithoutTheMotion) {
+    const auto film = [](std::size_t budget_bytes) {
+        Scene scene = parse_scene(kRope, "film.toml");
+        scene.style.trail_s = 0.4;
+        FilmDef def;
+        def.motion_budget_bytes = budget_bytes;
+        return Film(scene, def);
+    };
+    const Film whole = film(std::size_t{256} << 20);
+    const Film small = film(0);
+    for (const double time_s : {0.777, 0.0, 0.3, 1.0}) {
+        const Image still = whole.still(time_s);
+        EXPECT_TRUE(equal_images(small.still(time_s), still)) << time_s;
+        EXPECT_TRUE(equal_images(film(0).still(time_s), still)) << time_s;
+    }
+    Scene bare = whole.scene();
+    bare.style.trail_s = 0.0;
+    EXPECT_FALSE(whole.still(0.777) == Film(bare).still(0.777));
+    EXPECT_TRUE(equal_images(whole.still(0.0), Film(bare).still(0.0)));
+}
+
 TEST(FilmFrames, OfFilmsOfDifferentSizeSideBySideInOneThreadAndInTwo) {
     const auto sized = [](int width_px, int height_px) {
         Scene scene = parse_scene(kRope, "film.toml");

@@ -68,8 +68,8 @@ TEST(SceneErrors, DeepDottedKeysAreRefusedBeforeTheParserRecurses) {
     const std::string dots(100, '.');
     EXPECT_EQ(error_of("# " + dots + "\n" + rope_with("color = \"" + dots + "\"")).message,
               "swing.toml:5:9: rope[0].color: \"" + dots.substr(0, 60) +
-                  "...\" is not a colour; give a colour such as \"#e8c07d\", \"#e8c07d80\" (with alpha) or "
-                  "\"transparent\"");
+                  "...\" is not a colour; give a colour such as \"tomato\", \"#e8c07d\", \"#e8c07d80\" (with "
+                  "alpha) or \"transparent\"");
 }
 
 TEST(SceneErrors, Types) {
@@ -173,7 +173,8 @@ TEST(SceneErrors, Particles) {
         {rope_with("pinned = [-4]"), "swing.toml:4:11: rope[0].pinned[0]: ", "-4 is out of range"},
         {rope_with("pinned = [2, 0, -1]"),
          "swing.toml:4:17: rope[0].pinned[2]: ", "particle 2 is given twice"},
-        {rope_with("color = \"red\""), "swing.toml:4:9: rope[0].color: ", "\"red\" is not a colour"},
+        {rope_with("color = \"redd\""),
+         "swing.toml:4:9: rope[0].color: ", "\"redd\" is not a colour; did you mean \"red\"?"},
         {rope_with("width_px = 0"), "swing.toml:4:12: rope[0].width_px: ", "0 is not >= 0.1"},
     });
 }
@@ -442,7 +443,8 @@ TEST(SceneErrors, StyleAndCamera) {
          "swing.toml:4:26: style.background[1]: ", "is not a colour"},
         {style("theme = \"light\""), "swing.toml:4:9: style.theme: ", "give one of: dark, paper"},
         {style("palette = []"), "swing.toml:4:11: style.palette: ", "the list is empty"},
-        {style("palette = [\"#000000\", \"blue\"]"), "swing.toml:4:23: style.palette[1]: ", "not a colour"},
+        {style("palette = [\"#000000\", \"bleu\"]"),
+         "swing.toml:4:23: style.palette[1]: ", "did you mean \"blue\"?"},
         {style("rope_width_px = 1001"), "swing.toml:4:17: style.rope_width_px: ", "1001 is not <= 1000"},
         {style("markers = \"al\""), "swing.toml:4:11: style.markers: ", "did you mean \"all\"?"},
         {style("bars = \"imaginary\""), "swing.toml:4:8: style.bars: ", "give one of: none, real, all"},

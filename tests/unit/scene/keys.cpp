@@ -95,6 +95,7 @@ std::string text(const Scene& scene) {
     for (const int choice : {static_cast<int>(style.theme), static_cast<int>(style.payload),
                              static_cast<int>(style.supports), static_cast<int>(style.halo)})
         all += text(choice);
+    all += text(style.trail_s);
     const OverlayDef& overlay = scene.overlay;
     all += overlay.title + text(static_cast<int>(overlay.energy)) + text(static_cast<int>(overlay.method));
     return all + text(static_cast<int>(style.markers)) + text(static_cast<int>(style.bars)) +

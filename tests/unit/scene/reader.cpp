@@ -143,7 +143,8 @@ TEST(SceneReader, Overlay) {
 TEST(SceneReader, Style) {
     const Scene scene = parse_scene(
         with("[style]\nbackground = \"#010203\"\npalette = [\"#ff0000\", \"#00ff0080\"]\nrope_width_px = 3\n"
-             "markers = \"all\"\nmarker_radius_px = 5.5\npinned_color = \"#111111\"\nfree_color = "
+             "markers = \"all\"\ntrail_s = 1.5\nmarker_radius_px = 5.5\npinned_color = "
+             "\"#111111\"\nfree_color = "
              "\"#222222\"\n"
              "bars = \"real\"\nbar_width_px = 1.5\nreal_bar_color = \"#333333\"\n"
              "imaginary_bar_color = \"#44444444\"\n"),
@@ -153,6 +154,7 @@ TEST(SceneReader, Style) {
     EXPECT_THAT(style.palette, ElementsAre(Color{255, 0, 0, 255}, Color{0, 255, 0, 128}));
     EXPECT_EQ(style.rope_width_px, 3.0);
     EXPECT_EQ(style.markers, Markers::kAll);
+    EXPECT_EQ(style.trail_s, 1.5);
     EXPECT_EQ(style.marker_radius_px, 5.5);
     EXPECT_EQ(style.pinned_color, (Color{0x11, 0x11, 0x11, 255}));
     EXPECT_EQ(style.free_color, (Color{0x22, 0x22, 0x22, 255}));

@@ -55,6 +55,14 @@ TEST(ValidStyles, HaveWidthsWithinTheirRange) {
     }
 }
 
+TEST(ValidStyles, HaveATrailOfAtMostAnHour) {
+    for (const double trail_s : {-0.1, 3601.0, kNone}) {
+        StyleDef style;
+        style.trail_s = trail_s;
+        expect_refused([&] { validate(style, {}); }, "trail_s");
+    }
+}
+
 TEST(ValidCameras, HaveSidesMarginsAndAPlace) {
     validate(CameraDef{});
     validate(CameraDef{Vec2{-1e300, 1e300}, 1e-300, 0.45});
