@@ -35,7 +35,7 @@ fps = 29.97
 line = { particles = 3, step = [0, -1] }
 pinned = [7]
 masss = 2
-color = "red"
+color = "redd"
 velocity = [[0, 0]]
 [[rope]]
 [world]
