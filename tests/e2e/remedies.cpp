@@ -247,8 +247,7 @@ INSTANTIATE_TEST_SUITE_P(
                rope_scene(kHang),
                "still SCENE --at 0 -o DIR/a.v2 --dry-run",
                "stills are written as .png, .svg or .pdf; give such a name, or a folder (ending with / if "
-               "its name "
-               "has a dot)",
+               "its name has a dot)",
                {{{"a.v2", "a.png"}},
                 {{"a.v2", "a.svg"}},
                 {{"a.v2", "a.pdf"}},
