@@ -118,6 +118,8 @@ struct Film::Impl {
         const view::SceneView& view = stage.view();
         view::DrawList list;
         view.start(list);
+        tracks.read(motion, times_s.back(), def.on_progress);
+        view.draw_trails(tracks.to(at(times_s.back())), map, list);
         for (std::size_t k = 0; k < times_s.size(); ++k) {
             report_progress(on_progress, static_cast<std::int64_t>(k),
                             static_cast<std::int64_t>(times_s.size()));

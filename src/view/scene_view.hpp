@@ -44,8 +44,9 @@ class SceneView {
     void draw(const State& state, const Camera& camera, DrawList& list,
               std::span<const Trail> trails = {}) const;
 
-    // The steps of draw(), for several poses in one picture: once, for each pose, once.
+    // The steps of draw(), for several poses in one picture: once, once, for each pose, once.
     void start(DrawList& list) const;
+    void draw_trails(std::span<const Trail> trails, const Camera& camera, DrawList& list) const;
     void draw_pose(const State& state, const Camera& camera, DrawList& list) const;
     /// What never moves; `state` is any.
     void draw_supports(const State& state, const Camera& camera, DrawList& list) const;
@@ -82,7 +83,6 @@ class SceneView {
     [[nodiscard]] double marker_radius_px(std::size_t body, bool pinned) const;
     /// Adds where slack links of a string may hang.
     void include_slack(const Body& body, std::span<const MotionBounds> motion, MotionBounds& bounds) const;
-    void draw_trails(std::span<const Trail> trails, const Camera& camera, DrawList& list) const;
     void draw_body(std::size_t i, const Positions& positions, DrawList& list) const;
     void draw_slack(const Bar& link, double radius_px, double halo_px, const Positions& positions,
                     DrawList& list) const;

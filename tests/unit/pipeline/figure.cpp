@@ -41,8 +41,10 @@ ExitCode code_of(const Film& film, const FigureDef& def) {
 }
 
 TEST(Strobe, OfOneTimeIsTheStill) {
-    const Film film(scene_of());
-    EXPECT_TRUE(equal_images(draw_figure(film, {.times_s = {0.5}}), film.still(0.5)));
+    for (const char* const style : {"", "[style]\ntrail_s = 0.4\n"}) {
+        const Film film(scene_of(style));
+        EXPECT_TRUE(equal_images(draw_figure(film, {.times_s = {0.5}}), film.still(0.5))) << style;
+    }
 }
 
 TEST(Strobe, ShowsTheLastPoseInFullAndTheOthersFainter) {
