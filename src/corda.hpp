@@ -16,7 +16,6 @@
 #include "corda/core/rational.hpp"
 #include "corda/golden/compare.hpp"
 #include "corda/media/defs.hpp"
-#include "corda/pipeline/figure.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/scene/scene.hpp"
 #include "corda/sim/defs.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "corda/pipeline/figure.hpp"
+#include "corda/pipeline/film.hpp"
 #include "shots.hpp"
 
 namespace corda::app {

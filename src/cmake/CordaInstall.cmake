@@ -9,7 +9,7 @@ corda_add_public_library(
         core/basics.hpp core/image.hpp core/rational.hpp
         golden/compare.hpp
         media/defs.hpp
-        pipeline/figure.hpp pipeline/film.hpp
+        pipeline/film.hpp
         scene/scene.hpp
         sim/defs.hpp sim/simulation.hpp sim/system.hpp
         view/defs.hpp

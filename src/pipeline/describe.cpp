@@ -137,7 +137,7 @@ std::string method_names(const Plan& plan) {
 }
 
 std::string method_caption(const Plan& plan, const std::optional<double>& error_bound_px) {
-    const std::string names = method_names(plan);
+    std::string names = method_names(plan);
     if (!error_bound_px) return names;
     constexpr double kSmallest = 1e-3;  // with decimals
     if (*error_bound_px < kSmallest)

@@ -1,4 +1,4 @@
-#include "corda/pipeline/figure.hpp"
+#include "corda/pipeline/film.hpp"
 
 #include <algorithm>
 #include <cmath>
