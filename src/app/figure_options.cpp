@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "corda/core/basics.hpp"
@@ -109,6 +108,7 @@ ExitCode FigureOptions::write_one(const Console& console, const Scene& loaded, c
                                           {.force = force, .on_progress = stopping_if_asked()});
         empties.count = static_cast<std::int64_t>(empty_s.size());
         if (!empty_s.empty()) empties.first_s = empty_s.front();
+        warn_of_branch(console, film);
         console.result(output);
     } else {
         console.info(fmt::format("would write {}", output));

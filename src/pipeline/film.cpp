@@ -104,13 +104,22 @@ struct Film::Impl {
         return *camera;
     }
 
+    void require_time(double time_s) const {
+        if (pipeline::has_time(scene, time_s)) return;
+        throw Error(ExitCode::kUsage, fmt::format("{} s is not within 0 .. {} s; world.duration sets the end",
+                                                  time_s, scene.world.duration_s));
+    }
+
     const State& at(double time_s) {
-        if (!pipeline::has_time(scene, time_s)) {
-            throw Error(ExitCode::kUsage,
-                        fmt::format("{} s is not within 0 .. {} s; world.duration sets the end", time_s,
-                                    scene.world.duration_s));
-        }
+        require_time(time_s);
         return motion.at(time_s, def.on_progress);
+    }
+
+    /// The trails that end at a time.
+    const std::vector<view::Trail>& trails_to(double time_s) {
+        require_time(time_s);
+        tracks.read(motion, time_s, def.on_progress);
+        return tracks.to(at(time_s));
     }
 
     view::DrawList poses(std::span<const double> times_s, const OnProgress& on_progress) {
@@ -118,8 +127,7 @@ struct Film::Impl {
         const view::SceneView& view = stage.view();
         view::DrawList list;
         view.start(list);
-        tracks.read(motion, times_s.back(), def.on_progress);
-        view.draw_trails(tracks.to(at(times_s.back())), map, list);
+        view.draw_trails(trails_to(times_s.back()), map, list);
         for (std::size_t k = 0; k < times_s.size(); ++k) {
             report_progress(on_progress, static_cast<std::int64_t>(k),
                             static_cast<std::int64_t>(times_s.size()));
@@ -165,9 +173,9 @@ struct Film::Impl {
     }
 
     PixelRect draw(double time_s, const view::Camera& map, const OnProgress& on_progress) {
-        tracks.read(motion, time_s, def.on_progress);
+        const std::vector<view::Trail>& trails = trails_to(time_s);
         const State& state = at(time_s);
-        return stage.draw(state, map, caption_of(state, map), tracks.to(state), on_progress);
+        return stage.draw(state, map, caption_of(state, map), trails, on_progress);
     }
 
     Scene scene;

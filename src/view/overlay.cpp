@@ -164,6 +164,7 @@ int Overlay::draw_scale_bar(double pixels_per_metre, int begin_px, DrawList& lis
     const int right_px = width_ - edge_px_;
     const double longest_px = std::min(kBarPerWidth * width_, kBarLength * std::min(width_, height_));
     const double longest_m = longest_px / pixels_per_metre;
+    if (!std::isnormal(longest_m)) return right_px;
     int exponent = static_cast<int>(std::floor(std::log10(longest_m)));
     // log10 may be off by one next to a power of 10.
     if (power_of_10(exponent + 1) <= longest_m) ++exponent;

@@ -218,7 +218,7 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
         const double time_s = def.timeline.time_s(static_cast<std::size_t>(i));
         if (i == 0) ++passes;
         if (recording.advance(run, def.timeline, def.clock_s, goes_on) == Status::kDiverged) {
-            trial.diverged = is_checked;
+            trial.diverged = trial.diverged || is_checked;
             break;
         }
         if (is_checked && run.diagnostics().branched_s) trial.diverged = true;

@@ -70,13 +70,14 @@ class ConstraintSolver {
     [[nodiscard]] virtual bool move(const Stage& stage, Motion& motion, std::span<double> impulse,
                                     StopCheck& stop) = 0;
 
-    /// Moves on by `span_s` from where bars have come to depend on each other, so that move() finds no way:
-    /// to the positions nearest to x + span v, weighted with the masses, at which the bars have their
-    /// lengths, and with the part of v that turns no bar into its length there. Of first order. False if
-    /// there are none near. Whether the impulses of the last move() tell the tensions. Those of bars near the
-    /// line in which they depend on each other are finite, but differences of the squares of a stage's angles
-    /// over that of the line.
+    /// Whether the impulses of the last move() tell the tensions. Those of bars near the line in which they
+    /// depend on each other are differences of second order over the angle to it.
     [[nodiscard]] virtual bool tells_tensions() const { return true; }
+
+    /// Moves on by `span_s` from where move() finds no way, as a rule because bars have come to depend on
+    /// each other: to the positions nearest to x + span v, weighted with the masses, at which the bars have
+    /// their lengths, and with the part of v that turns no bar into its length there. Of first order. False
+    /// if there are none near.
     [[nodiscard]] virtual bool leap(double span_s, Motion& motion, StopCheck& stop) {
         static_cast<void>(span_s), static_cast<void>(motion), static_cast<void>(stop);
         return false;

@@ -240,11 +240,11 @@ bool GraphConstraints::factorise(const Motion& motion, double raise, StopCheck& 
 }
 
 bool GraphConstraints::is_regular(const Motion& motion, StopCheck& stop) {
+    smallest_pivot_ = 0.0;
     if (!factorise(motion, 0.0, stop)) return false;
     const auto& order = factors_.permutationP().indices();
     const auto pivots = factors_.vectorD();
     double smallest = 1.0;
-    smallest_pivot_ = 0.0;
     for (Eigen::Index k = 0; k < matrix_.cols(); ++k) {
         const double pivot = pivots[order[k]] / matrix_.coeff(k, k);
         if (!(pivot > kDependentPivot)) return false;  // negated, so that a NaN fails
@@ -364,7 +364,6 @@ bool GraphConstraints::leap(double span_s, Motion& motion, StopCheck& stop) {
         apply(right_.data(), motion);
         drift(1.0, motion);
     }
-    // Negated, so that a NaN fails.
     if (!(largest <= kImpliedTolerance) || !meet_implied(motion)) return false;
     motion.vx_m_s = ahead.vx_m_s;
     motion.vy_m_s = ahead.vy_m_s;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <string>
 
 #include "corda/pipeline/painter.hpp"
@@ -101,9 +103,12 @@ TEST(Strobe, OfTooManyLinesIsRefused) {
 }
 
 TEST(Strobe, RefusesTimesThatCannotBe) {
-    const Film film(scene_of());
-    for (const std::vector<double>& times_s : {std::vector<double>{}, {0.5, 0.2}, {0.0, 1.1}, {-0.1, 0.2}})
-        EXPECT_EQ(code_of(film, {.times_s = times_s}), ExitCode::kUsage);
+    for (const char* const style : {"", "[style]\ntrail_s = 0.4\n"}) {
+        const Film film(scene_of(style));
+        for (const std::vector<double>& times_s :
+             {std::vector<double>{}, {0.5, 0.2}, {0.0, 1.1}, {-0.1, 0.2}, {0.0, 1e9}, {HUGE_VAL}})
+            EXPECT_EQ(code_of(film, {.times_s = times_s}), ExitCode::kUsage);
+    }
 }
 
 TEST(ContactSheet, HasTheStillsInItsCells) {
