@@ -26,6 +26,8 @@ std::string xml_text(std::string_view text) {
             escaped += "&amp;";
         else if (c == '<')
             escaped += "&lt;";
+        else if (c == '>')  // of "]]>"
+            escaped += "&gt;";
         else
             escaped += c;
     }

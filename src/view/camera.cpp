@@ -118,8 +118,10 @@ CameraDef fit_camera(const CameraDef& def, Vec2 origin_m, std::span<const Drawn>
     const double bottom_px = std::max(border_px, insets.bottom_px);
     if (!def.height_m) {
         const double room_x_px = width_px - 2.0 * border_px;
+        const double all_px = height_px - top_px - bottom_px;
+        // About a centre that is given, the larger inset counts twice, as far as it leaves room.
         const double room_y_px =
-            height_px - (def.center_m ? 2.0 * std::max(top_px, bottom_px) : top_px + bottom_px);
+            def.center_m ? std::max(height_px - 2.0 * std::max(top_px, bottom_px), 0.5 * all_px) : all_px;
         const Vec2 center = def.center_m.value_or(Vec2{}) - origin_m;
         const double scale = def.center_m
                                  ? std::min(x.scale(room_x_px, center.x), y.scale(room_y_px, center.y))

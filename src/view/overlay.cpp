@@ -143,7 +143,7 @@ void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& li
     int right_px = width_ - edge_px_;
     if (time_ && caption.time_s) left_px = write_bottom(time_text(*caption.time_s), left_px, right_px, list);
     if (scale_bar_) right_px = draw_scale_bar(pixels_per_metre, left_px, list);
-    if (def_.energy) {
+    if (def_.energy && caption.time_s) {
         const std::string error = caption.energy_error ? power_text(*caption.energy_error) : "unknown";
         write_bottom("energy error " + error, left_px, right_px, list);
     }

@@ -46,6 +46,8 @@ TEST(Camera, LeavesTheInsetsFree) {
     const Camera centred{fit_camera(def, {}, all, 800, 400, {90.0, 10.0}), {}, 800, 400};
     EXPECT_DOUBLE_EQ(centred.y_px(-1.0), 200.0);
     EXPECT_DOUBLE_EQ(centred.y_px(0.0) - 5.0, 90.0);
+    // An inset of half a tiny frame leaves some room all the same.
+    EXPECT_LT(fit_camera(def, {}, all, 64, 48, {24.0, 0.0}).height_m.value(), 100.0);
 }
 
 TEST(Camera, CentresWhatIsDrawnNotTheMotion) {
