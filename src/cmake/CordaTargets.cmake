@@ -14,12 +14,21 @@ if(CORDA_WARNINGS_AS_ERRORS)
     target_compile_options(corda_options INTERFACE -Werror)
 endif()
 if(CORDA_SANITIZE)
-    target_compile_options(corda_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=all
+    # Not of targets whose property CORDA_SANITIZED is OFF.
+    target_compile_options(corda_options INTERFACE
+        "$<$<NOT:$<STREQUAL:$<TARGET_PROPERTY:CORDA_SANITIZED>,OFF>>:-fsanitize=address,undefined;-fno-sanitize-recover=all>"
         -fno-omit-frame-pointer
         # GCC 12 sees uninitialised values in std::regex if it is instrumented (PR 105562).
         $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
     target_link_options(corda_options INTERFACE -fsanitize=address,undefined)
 endif()
+
+# corda_optimise(<folder>): for what runs long under CORDA_SANITIZE. The rest takes longer to optimise than to run.
+function(corda_optimise folder)
+    if(CORDA_SANITIZE)
+        target_compile_options(corda_${folder}_objects PRIVATE -O1)
+    endif()
+endfunction()
 
 # corda_link_sanitizer(<executable>): what an executable needs for readable reports under CORDA_SANITIZE.
 function(corda_link_sanitizer target)
