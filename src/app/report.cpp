@@ -107,7 +107,11 @@ void report_plan(const Console& console, const Film& film) {
 
 void warn_of_branch(const Console& console, const Film& film) {
     const std::optional<double> branched_s = film.diagnostics().branched_s;
-    if (!branched_s || std::holds_alternative<AutoDef>(film.scene().solver)) return;
+    const bool is_named =
+        std::any_of(film.plan().bodies.begin(), film.plan().bodies.end(), [](const auto& body) {
+            return body.reason == PlanReason::kNamed;  // a bound says it of the others
+        });
+    if (!branched_s || !is_named) return;
     console.warning(fmt::format(
         "before {:.6g} s bars of a net lay in line, from where it could go on in several ways; what is drawn "
         "after it is one of them; another solver.step may pass, and method auto says how far its own is "

@@ -88,6 +88,9 @@ class ConstraintSolver {
     /// False if it cannot.
     [[nodiscard]] virtual bool solve(const Motion& motion, std::span<double> right, StopCheck& stop) = 0;
 
+    /// Whether the bars of the last solve() did not depend on each other, so that it was of full rank.
+    [[nodiscard]] virtual bool had_full_rank() const { return true; }
+
     /// The square of the largest angular frequency, 1 / s^2, of small motions about a state whose bars have
     /// these multipliers (tension over length, N / m), or a bound on it: Gershgorin's, the largest over all
     /// particles of 2 w sum |multiplier|.

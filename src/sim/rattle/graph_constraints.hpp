@@ -32,6 +32,7 @@ class GraphConstraints final : public ConstraintSolver {
     [[nodiscard]] bool tells_tensions() const override;
     [[nodiscard]] bool leap(double span_s, Motion& motion, StopCheck& stop) override;
     [[nodiscard]] bool solve(const Motion& motion, std::span<double> right, StopCheck& stop) override;
+    [[nodiscard]] bool had_full_rank() const override { return smallest_pivot_ > 0.0; }
     [[nodiscard]] double square_frequency(std::span<const double> multiplier) const override;
     [[nodiscard]] double expected_square_frequency(const System& system, double acceleration_m_s2,
                                                    std::span<const double> multiplier) const override;
@@ -84,8 +85,8 @@ class GraphConstraints final : public ConstraintSolver {
     std::vector<double> dx_m_;  ///< bar vectors at the start of a stage
     std::vector<double> dy_m_;
     Eigen::VectorXd right_;
-    double smallest_pivot_ = 1.0;           ///< of the last factorisation, as a share of its diagonal entry
-    double near_line_ = 0.0;                ///< of smallest_pivot_
+    double smallest_pivot_ = 1.0;  ///< of the last is_regular(), over its diagonal entry; 0 if it is not
+    double near_line_ = 0.0;       ///< of smallest_pivot_
     Eigen::SparseMatrix<double> crossing_;  ///< that of cross(); empty until it is needed
     Eigen::SparseLU<Eigen::SparseMatrix<double>> crossing_factors_;
     mutable std::vector<double> load_;  ///< scratch, one entry per particle

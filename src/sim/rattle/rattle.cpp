@@ -96,7 +96,9 @@ Status Rattle::advance_to(double time_s, State& state, StopCheck& stop) {
         if (!advance(time_s - static_cast<double>(step_) * step_s_, between_, nullptr, stop))
             return Status::kDiverged;
     }
-    if (!complete(target.is_on_grid ? grid_ : between_, stop)) return Status::kDiverged;
+    const Trajectory& reached = target.is_on_grid ? grid_ : between_;
+    if (!complete(reached, stop)) return Status::kDiverged;
+    has_branched_ = reached.has_leapt;
     state.time_s = time_s;
     state.x_m = output_.x_m;
     state.y_m = output_.y_m;
@@ -161,7 +163,6 @@ bool Rattle::take_part(double part_s, Trajectory& trajectory, History* history, 
 }
 
 bool Rattle::leap(double span_s, Trajectory& trajectory, StopCheck& stop) {
-    has_branched_ = true;
     if (!complete(trajectory, stop)) return false;
     const double decay = forces_.decay(span_s);
     for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
@@ -174,11 +175,11 @@ bool Rattle::leap(double span_s, Trajectory& trajectory, StopCheck& stop) {
     }
     if (!constraints_->leap(span_s, output_, stop)) return false;
     const double elastic_square = is_elastic() ? find_forces(output_) : 0.0;
-    if (!find_tensions()) return false;
+    if (find_tensions()) trajectory.multiplier = tension_over_length_n_m_;
     trajectory.motion = output_;
     trajectory.last_span_s = 0.0;
-    trajectory.multiplier = tension_over_length_n_m_;
     trajectory.level = 0;
+    trajectory.has_leapt = true;
     trajectory.frequency_1_s =
         std::sqrt(constraints_->square_frequency(trajectory.multiplier) + elastic_square);
     return true;
@@ -293,7 +294,7 @@ bool Rattle::find_tensions() const {
         }
     }
     StopCheck nobody;  // complete() has factorised the matrix at output_
-    return constraints_->solve(output_, tension_over_length_n_m_, nobody);
+    return constraints_->solve(output_, tension_over_length_n_m_, nobody) && constraints_->had_full_rank();
 }
 
 std::optional<Loads> Rattle::loads() const {

@@ -69,6 +69,7 @@ class Rattle final : public Solver {
         std::vector<double> multiplier;  ///< of every rigid bar in the last stage: impulse over kick, N / m
         int level = 0;                   ///< a step is taken in 2^level parts
         double frequency_1_s = 0.0;  ///< bound on the largest frequency, from `multiplier` and ElasticForces
+        bool has_leapt = false;
     };
     /// Multipliers of the last parts of a step, from which those of the next part are guessed.
     struct History {
@@ -94,6 +95,7 @@ class Rattle final : public Solver {
     double push(double kick_s, Stage& stage, Motion& motion);
     /// Writes a trajectory's state with complete velocities to output_.
     [[nodiscard]] bool complete(const Trajectory& trajectory, StopCheck& stop);
+    /// Of output_. False if bars depend on each other there.
     [[nodiscard]] bool find_tensions() const;
 
     int order_;
@@ -105,7 +107,7 @@ class Rattle final : public Solver {
     double step_s_ = 0.0;
     std::uint64_t step_ = 0;
     std::uint64_t parts_ = 0;
-    bool has_branched_ = false;
+    bool has_branched_ = false;  ///< before output_
     std::vector<double> mass_kg_;
     std::vector<double> inverse_mass_1_kg_;
     Trajectory grid_;        ///< at step_ * step_s_
