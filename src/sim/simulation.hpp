@@ -99,6 +99,7 @@ struct Trial {
     double largest_difference_m = 0.0;  ///< up to `reached_s`
     double error_bound_m = 0.0;         ///< up to `reached_s`
     double reached_s = 0.0;             ///< the last frame time up to which it was within the tolerance
+    double hundredth_s = 0.0;           ///< the same of a hundredth of the tolerance
     bool to_the_end = false;            ///< within the tolerance at all frame times
     bool diverged = false;              ///< the run or a check diverged or branched after `reached_s`
 };

@@ -93,17 +93,20 @@ bool give_up_together(const Trial& a, const Trial& b) {
     return a.diverged && b.diverged && a.reached_s == b.reached_s;
 }
 
-/// The trial to run after number `failed`, from the time that it gained on the one that ran before it. Errors
-/// of chaotic motions grow exponentially, so each of the next trials is to gain about as much; those that
-/// would not reach the end are left out.
+/// The trial to run after number `failed`; those that would not reach the end either are left out. Errors of
+/// chaotic motions grow exponentially, so that each trial gains about as much time as the one before. How
+/// much the next one gains, a hundred times tighter if of `exact`, shows in the first: at most by the factor
+/// by which the tolerance is reached later than a hundredth of it.
 std::size_t next_trial(const BodyPlan& plan, std::size_t failed, std::size_t count, double end_s) {
     const std::size_t ran = plan.trials.size();
-    if (ran < 2) return failed + 1;
-    const double reached_s = plan.trials[ran - 1].reached_s;
-    const double gained_s = reached_s - plan.trials[ran - 2].reached_s;
+    const Trial& last = plan.trials.back();
+    const double gained_s = ran < 2 ? HUGE_VAL : last.reached_s - plan.trials[ran - 2].reached_s;
+    const double factor =
+        std::holds_alternative<ExactDef>(last.method) ? last.reached_s / last.hundredth_s : HUGE_VAL;
+    const auto later_s = [&](double reached_s) { return std::min(reached_s + gained_s, reached_s * factor); };
     std::size_t next = failed + 1;
-    for (double hoped_s = reached_s + gained_s; next + 1 < count && hoped_s < end_s; ++next)
-        hoped_s += gained_s;
+    for (double hoped_s = later_s(last.reached_s); next + 1 < count && hoped_s < end_s; ++next)
+        hoped_s = later_s(hoped_s);
     return next;
 }
 

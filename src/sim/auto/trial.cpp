@@ -1,106 +1,17 @@
 #include "corda/sim/auto/trial.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <memory>
 #include <vector>
 
+#include "corda/sim/auto/checks.hpp"
 #include "corda/sim/distance.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::sim {
 namespace {
-
-/// An angle by its cosine and sine.
-struct Turn {
-    double cosine;
-    double sine;
-    [[nodiscard]] Vec2 of(Vec2 v) const { return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y}; }
-};
-constexpr std::array<Turn, 3> kTurns{{{0.8, 0.6}, {5.0 / 13.0, 12.0 / 13.0}, {24.0 / 25.0, 7.0 / 25.0}}};
-
-/// Moves the free particles of a start by about as much as it is rounded, in directions of no order, others
-/// for each seed. Strings stay: whether a link is taut must not change.
-void move_by_rounding(System& system, std::uint32_t order) {
-    const auto moved = [&order](double x_m, double length_m) {
-        order = order * 1664525U + 1013904223U;
-        const double sign = (order >> 31U) == 0U ? 1.0 : -1.0;
-        return x_m + sign * std::numeric_limits<double>::epsilon() * length_m;
-    };
-    for (const Body& body : system.bodies) {
-        if (body.material.is_string) continue;
-        const double length_m = links_length_m(system, body);
-        for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
-            if (system.is_pinned(i)) continue;
-            system.x_m[i] = moved(system.x_m[i], length_m);
-            system.y_m[i] = moved(system.y_m[i], length_m);
-        }
-    }
-}
-
-/// A tighter run in turned coordinates, which rounds otherwise from the start on.
-class Check {
-  public:
-    Check(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
-          std::size_t number, const GoesOn& goes_on)
-        : turn_(kTurns[number]), system_(system) {
-        if (number > 0) move_by_rounding(system_, static_cast<std::uint32_t>(number));
-        for (std::size_t i = 0; i < system.particle_count(); ++i) {
-            const Vec2 position = turn_.of({system_.x_m[i], system_.y_m[i]});
-            const Vec2 velocity = turn_.of({system_.vx_m_s[i], system_.vy_m_s[i]});
-            system_.x_m[i] = position.x;
-            system_.y_m[i] = position.y;
-            system_.vx_m_s[i] = velocity.x;
-            system_.vy_m_s[i] = velocity.y;
-        }
-        solver_ = make_solver(system_, Forces(ForceTerm{turn_.of(forces.uniform_m_s2()), forces.drag_1_s()}),
-                              {&method, 1}, frame_interval_s, goes_on);
-        state_ = {0.0, system_.x_m, system_.y_m};
-    }
-    Check(const Check&) = delete;
-    Check& operator=(const Check&) = delete;
-
-    Status advance_to(double time_s, StopCheck& stop) { return solver_->advance_to(time_s, state_, stop); }
-    [[nodiscard]] bool has_branched() const { return solver_->has_branched(); }
-    [[nodiscard]] std::uint64_t steps() const { return solver_->steps(); }
-    /// Where it has a particle, in the scene's directions.
-    [[nodiscard]] Vec2 position_m(std::size_t i) const {
-        return Turn{turn_.cosine, -turn_.sine}.of({state_.x_m[i], state_.y_m[i]});
-    }
-
-  private:
-    Turn turn_;
-    System system_;
-    std::unique_ptr<Solver> solver_;
-    State state_;
-};
-
-/// How far a run is from its checks: the largest distance of a particle from its positions there, and if
-/// there are several, twice what these differ by. That is rounding; if the run were no better, it could be
-/// near them by chance and far from the truth. Infinite for a NaN.
-double difference_m(const State& state, const std::deque<Check>& checks) {
-    constexpr double kPerRounding = 2.0;
-    double largest_m = 0.0;
-    for (std::size_t i = 0; i < state.x_m.size(); ++i) {
-        double distance_m = 0.0;
-        double rounding_m = 0.0;
-        for (std::size_t a = 0; a < checks.size(); ++a) {
-            const Vec2 at = checks[a].position_m(i);
-            const Vec2 apart = at - Vec2{state.x_m[i], state.y_m[i]};
-            distance_m = std::max(length(apart.x, apart.y), distance_m);
-            for (std::size_t b = 0; b < a; ++b) {
-                const Vec2 differ = at - checks[b].position_m(i);
-                rounding_m = std::max(length(differ.x, differ.y), rounding_m);
-            }
-        }
-        distance_m += kPerRounding * rounding_m;
-        if (!(distance_m <= largest_m)) largest_m = std::isnan(distance_m) ? HUGE_VAL : distance_m;
-    }
-    return largest_m;
-}
 
 /// Between the bound on an error and the difference from a check. The error may exceed the difference by the
 /// check's own error, little as a rule and a sixth near rounding: 3 leaves room.
@@ -130,12 +41,14 @@ class Comparison {
         for (const Record& record : records_) {
             if (!(record.largest_m <= allowed_m)) break;
             trial.reached_s = record.until_s;
+            if (record.largest_m <= kHundredth * allowed_m) trial.hundredth_s = record.until_s;
             trial.largest_difference_m = record.largest_m;
         }
         trial.error_bound_m = kBoundPerDifference * trial.largest_difference_m + hidden_m;
     }
 
   private:
+    static constexpr double kHundredth = 0.01;
     /// A motion may still grow by about this factor, and the tolerance with it.
     static constexpr double kHopeless = 16.0;
 
@@ -204,35 +117,32 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
     std::int64_t i = 0;
     const GoesOn goes_on = reporting(def, i);
     Simulation run(system, world, trial.method, interval_s, goes_on);
-    std::deque<Check> checks;
     const bool has_one = is_far_from_rounding(trial.method) ||
                          (kind.is_first && std::holds_alternative<RattleDef>(trial.method));
-    for (std::size_t number = 0; number < (has_one ? 1 : kTurns.size()); ++number)
-        checks.emplace_back(system, world, trial.check, interval_s, number, goes_on);
+    Checks checks(system, world, trial.check, interval_s, has_one ? 1 : Checks::kMost, goes_on);
     Comparison comparison(def.tolerance_m);
     recording.clear();
     bool is_checked = true;
-    StopCheck stop(goes_on);
     for (; i < total && (is_checked || kind.is_last); ++i) {
         goes_on();
-        const double time_s = def.timeline.time_s(static_cast<std::size_t>(i));
+        const bool compares = is_checked && def.timeline.is_frame(static_cast<std::size_t>(i));
         if (i == 0) ++passes;
+        if (compares) checks.start(def.timeline.time_s(static_cast<std::size_t>(i)));
         if (recording.advance(run, def.timeline, def.clock_s, goes_on) == Status::kDiverged) {
             trial.diverged = trial.diverged || is_checked;
             break;
         }
         if (is_checked && run.diagnostics().branched_s) trial.diverged = true;
-        if (!is_checked || !def.timeline.is_frame(static_cast<std::size_t>(i))) continue;
-        for (Check& check : checks) {
-            if (i == 0) ++passes;
-            trial.diverged =
-                trial.diverged || check.advance_to(time_s, stop) == Status::kDiverged || check.has_branched();
-        }
-        if (!trial.diverged) comparison.add(time_s, difference_m(run.state(), checks), recording.bounds());
+        if (!compares) continue;
+        if (i == 0) passes += static_cast<int>(checks.size());
+        if (checks.finish() == Status::kDiverged) trial.diverged = true;
+        if (!trial.diverged)
+            comparison.add(def.timeline.time_s(static_cast<std::size_t>(i)), checks.difference_m(run.state()),
+                           recording.bounds());
         is_checked = !trial.diverged && !comparison.has_parted();
     }
     trial.steps = run.diagnostics().steps;
-    trial.check_steps = checks.front().steps();
+    trial.check_steps = checks.steps();
     comparison.conclude(recording.bounds(), hidden_m(system, trial), trial);
     trial.error_bound_m += rounding_m(system, recording.bounds());
     trial.to_the_end = trial.to_the_end && !trial.diverged;
