@@ -18,29 +18,31 @@ double longest_run_s(bool is_quick) {
 }
 
 /// About how long a run takes, in seconds.
-double forecast_s(const Problem& problem, const MethodDef& method, double step_s) {
+double forecast_s(const System& system, double duration_s, const MethodDef& method, double step_s) {
     double step_ns = 0.0;
-    const System system = problem.system();
     for (const Body& body : system.bodies) step_ns += sim::step_cost_ns(body, method);
-    return 1e-9 * step_ns * problem.world.duration_s / step_s;
+    return 1e-9 * step_ns * duration_s / step_s;
 }
 
 void add_relaxation(const Problem& problem, bool is_quick, std::vector<SweepRun>& runs) {
     constexpr double kLongestStepSeconds = 1.0 / 60.0;
     const double frame_s = problem.fps.interval_s();
     const double longest_step_s = frame_s / std::ceil(frame_s / kLongestStepSeconds - 1e-9);
+    const std::size_t bars = problem.system().bars.size();
     for (const int reach : {1, 7}) {
         const Problem reaching = with_reach(problem, reach);
-        const bool has_imaginary_bars = reaching.system().bars.size() > problem.system().bars.size();
+        const System system = reaching.system();
+        const bool has_imaginary_bars = system.bars.size() > bars;
         if (reach > 1 && !has_imaginary_bars) continue;
+        const bool is_refused = !refusal(reaching, RelaxationDef{longest_step_s}).empty();
         for (const int sweeps : {1, 4, 16, 64}) {
             const std::string label = fmt::format("relaxation, reach {}, sweeps {}", reach, sweeps);
             for (int halving = 0; halving <= kMostHalvings; halving += is_quick ? 2 : 1) {
                 const double step_s = std::ldexp(longest_step_s, -halving);
                 const MethodDef method = RelaxationDef{step_s, sweeps};
-                if (halving > 0 && forecast_s(reaching, method, step_s) > longest_run_s(is_quick)) break;
+                const double run_s = forecast_s(system, problem.world.duration_s, method, step_s);
+                if (halving > 0 && (is_refused || run_s > longest_run_s(is_quick))) break;
                 runs.push_back({method, label, step_s, reach});
-                if (!refusal(reaching, method).empty()) break;
             }
         }
     }
@@ -48,6 +50,7 @@ void add_relaxation(const Problem& problem, bool is_quick, std::vector<SweepRun>
 
 void add_rattle(const Problem& problem, bool is_quick, std::vector<SweepRun>& runs) {
     const bool is_refused = !refusal(problem, RattleDef{2}).empty();
+    const System system = problem.system();
     const double frame_s = problem.fps.interval_s();
     for (const int order : {2, 4, 6, 8}) {
         const std::string label = fmt::format("rattle, order {}", order);
@@ -64,7 +67,8 @@ void add_rattle(const Problem& problem, bool is_quick, std::vector<SweepRun>& ru
             const double finer = std::exp2(static_cast<double>(point) / points_per_halving);
             const double step_s = frame_s / std::round(steps_per_frame * finer);
             const MethodDef method = RattleDef{order, step_s};
-            if (point > 0 && forecast_s(problem, method, step_s) > longest_run_s(is_quick)) break;
+            const double run_s = forecast_s(system, problem.world.duration_s, method, step_s);
+            if (point > 0 && run_s > longest_run_s(is_quick)) break;
             runs.push_back({method, label, step_s});
         }
     }
