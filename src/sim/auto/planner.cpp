@@ -11,25 +11,28 @@
 namespace corda::sim {
 namespace {
 
-constexpr double kLoosestTolerance = 1e-3;
-constexpr double kNextTolerance = 1e-2;  // over the last trial's
-/// A check's tolerance over its run's. The run may err far less than its tolerance, by luck along the one
-/// direction that the motion magnifies; its check then errs as much. False claims of 900 random chains: 2 at
-/// 1e-2, none at 1e-3 (worst 0.44 of the bound) and 1e-4 (0.35); of 400 strings that stretch, 9 at 1e-2 and
-/// none at 1e-4.
-constexpr double kCheckPerTolerance = 1e-4;
+/// Tolerances of `exact` are powers of ten: a preview at another size, whose pixels are of nearly the same
+/// size, shows the same bits. They are told by their digits.
+constexpr std::array<double, 16> kTolerance{1.0,  1e-1, 1e-2,  1e-3,  1e-4,  1e-5,  1e-6,  1e-7,
+                                            1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15};
+constexpr std::size_t kLoosestDigits = 3;
+constexpr std::size_t kNextDigits = 2;  ///< more than the last trial's
+/// A check's over its run's. The run may err far less than its tolerance, by luck along the one direction
+/// that the motion magnifies; its check then errs as much. False claims of 900 random chains: 2 at 2, none at
+/// 3 (worst 0.44 of the bound) and 4 (0.35); of 400 strings that stretch, 9 at 2 and none at 4.
+constexpr std::size_t kCheckDigits = 4;
 
 /// Rounding moves a chain about as much as a tolerance of 1e-12 (random chains of 2 to 24 links: 0.03 of the
 /// error at 1e-10). A run and a check that both err by rounding may part together and agree by chance; so the
 /// tightest run is one whose check is better.
-struct Tightest {
-    double run;
-    double check;
+struct TightestDigits {
+    std::size_t run;
+    std::size_t check;
 };
-constexpr Tightest kSmooth{1e-10, 1e-12};
+constexpr TightestDigits kSmooth{10, 12};
 /// Of strings that stretch, whose forces have a kink where they come taut: errors there are far larger than
 /// rounding. (400 that swing and snap: 42 horizons, 73 at 1e-10.)
-constexpr Tightest kWithKinks{1e-13, 1e-15};
+constexpr TightestDigits kWithKinks{13, 15};
 
 /// A trial for closed ropes and nets: an order of `rattle` and how often its step is halved. In order of
 /// cost; each gains several digits on the one before.
@@ -51,22 +54,19 @@ bool has_kinks(const System& system) {
     });
 }
 
-/// Trials of `exact`, each a hundred times tighter than the last. The first tolerance is a power of ten, so
-/// that pictures of nearly the same scale show the same bits.
+/// Trials of `exact`, each a hundred times tighter than the last.
 std::vector<Trial> exact_trials(const System& system, double tolerance_m) {
     std::vector<Trial> trials;
-    const Tightest& tightest = has_kinks(system) ? kWithKinks : kSmooth;
-    const double wanted = std::clamp(tolerance_m / largest_length_m(system), tightest.run, kLoosestTolerance);
-    double tolerance = kLoosestTolerance;
-    while (tolerance > 1.000001 * wanted) tolerance *= 0.1;
-    for (bool is_tightest = false; !is_tightest; tolerance *= kNextTolerance) {
-        is_tightest = tolerance <= 1.000001 * tightest.run;
-        const double chosen = std::max(tolerance, tightest.run);
+    const TightestDigits& tightest = has_kinks(system) ? kWithKinks : kSmooth;
+    const double wanted = tolerance_m / largest_length_m(system);
+    std::size_t digits = kLoosestDigits;
+    while (digits < tightest.run && kTolerance[digits] > wanted) ++digits;
+    for (;; digits = std::min(digits + kNextDigits, tightest.run)) {
         Trial& trial = trials.emplace_back();
-        trial.method = ExactDef{chosen};
-        trial.check = ExactDef{std::max(kCheckPerTolerance * chosen, tightest.check)};
+        trial.method = ExactDef{kTolerance[digits]};
+        trial.check = ExactDef{kTolerance[std::min(digits + kCheckDigits, tightest.check)]};
+        if (digits == tightest.run) return trials;
     }
-    return trials;
 }
 
 /// Trials of `rattle` for a graph, each checked by the next order (8 by 8) at kCheckStep of its step.
@@ -119,8 +119,7 @@ bool can_tell_little(const BodyPlan& plan, std::size_t failed, std::size_t count
     constexpr std::size_t kRungs = 3;  // of `rattle`: orders 2 and 4 say little of 6 and 8
     const std::size_t ran = plan.trials.size();
     const auto* exact = std::get_if<ExactDef>(&plan.trials.back().method);
-    if (ran < (exact == nullptr ? kRungs : 2) ||
-        (exact != nullptr && exact->tolerance > 1.000001 * kLooseTolerance))
+    if (ran < (exact == nullptr ? kRungs : 2) || (exact != nullptr && exact->tolerance > kLooseTolerance))
         return false;
     const double reached_s = plan.trials[ran - 1].reached_s;
     const double gained_s = std::max(0.0, reached_s - plan.trials[ran - 2].reached_s);
@@ -250,7 +249,8 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
     const std::int64_t none_done = 0;
     const GoesOn goes_on = reporting(def, none_done);
     BodyPlan plan;
-    const auto exact_refusal = refusal(system, world, ExactDef{kLoosestTolerance}, interval_s, goes_on);
+    const auto exact_refusal =
+        refusal(system, world, ExactDef{kTolerance[kLoosestDigits]}, interval_s, goes_on);
     if (!exact_refusal) {
         plan.reason = PlanReason::kExact;
         MotionBounds start;
