@@ -27,8 +27,11 @@ h2 a { color: inherit; text-decoration: none; }
 h2 a:hover::after { content: " #"; color: var(--soft); }
 p { margin: 0 0 1rem; max-width: 44rem; }
 a { color: var(--accent); }
-nav { margin: 0 0 2rem; }
+.summary { font-size: 1.125rem; margin: 0 0 0.6rem; }
+nav { margin: 2rem 0; }
 nav ol { margin: 0; padding-left: 1.4rem; }
+details { margin: 1rem 0; }
+summary { font-weight: 600; cursor: pointer; }
 .scroll { overflow-x: auto; margin: 2rem 0 0.5rem; }
 table { border-collapse: collapse; font-size: 0.9375rem; line-height: 1.4; font-variant-numeric: tabular-nums; }
 caption { text-align: left; font-weight: 600; padding: 0 0 0.6rem; white-space: nowrap; }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -54,8 +55,15 @@ struct Table {
 
 /// One line of a plot: points in the order in which they are joined.
 struct Series {
+    /// Lines that differ by colour and marker; more repeat them with dashes.
+    static constexpr std::size_t kLooks = 8;
+
     std::string name;
     std::vector<std::pair<double, double>> points;
+    /// Its colour and marker, 0 .. kLooks - 1, so that a subject looks the same in all plots; default: its
+    /// place among the lines that are not context.
+    std::optional<std::size_t> look = {};
+    bool is_context = false;  ///< grey and thin, behind the others, with one entry for all such in the key
 };
 
 /// A line plot.
@@ -67,6 +75,7 @@ struct Plot {
     bool log_x = true;
     bool log_y = true;
     std::vector<Series> series;
+    std::string context_name = {};  ///< of all lines that are context
 };
 
 /// One subject: what the figures show, and the figures.
@@ -75,6 +84,7 @@ struct Chapter {
     std::vector<std::string> paragraphs;  ///< plain text
     std::vector<Table> tables;
     std::vector<Plot> plots;
+    std::string summary = {};  ///< what it found, in a sentence: the report opens with those; may be empty
 };
 
 /// Chapters of tables and plots, and what they were measured on.

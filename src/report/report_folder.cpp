@@ -27,10 +27,10 @@ void ReportFolder::add(const Chapter& chapter) {
     check_report({{}, {}, {chapter}});
     for (const Table& table : chapter.tables) write(table.id + ".csv", csv_text(table));
     for (const Plot& plot : chapter.plots) {
-        for (const PlotFormat format : {PlotFormat::kSvg, PlotFormat::kPng}) {
+        for (const PlotFormat format : {PlotFormat::kSvg, PlotFormat::kPng, PlotFormat::kPdf}) {
             report_progress(options_.on_progress, std::ssize(svgs_), std::ssize(chapter.plots));
             const std::string picture = draw_plot(plot, format);
-            write(plot.id + (format == PlotFormat::kSvg ? ".svg" : ".png"), picture);
+            write(plot.id + "." + ending(format), picture);
             if (format == PlotFormat::kSvg) svgs_[plot.id] = picture;
         }
     }

@@ -18,8 +18,8 @@ class ReportFolder {
     /// Makes the folder if it is missing. `options.on_progress` is asked between pictures.
     explicit ReportFolder(std::string path, OutputOptions options = {});
 
-    /// Writes the figures of a chapter: `<id>.csv` per table, then `<id>.svg` and `<id>.png` per plot. Also
-    /// throws kInterrupted if it is asked to stop.
+    /// Writes the figures of a chapter: `<id>.csv` per table, then `<id>.svg`, `.png` and `.pdf` per plot.
+    /// Also throws kInterrupted if it is asked to stop.
     void add(const Chapter& chapter);
 
     /// Writes report.md, report.json and report.html. A plot of which `add` has not drawn the picture is left

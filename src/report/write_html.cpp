@@ -60,8 +60,9 @@ std::string cell_html(const Cell& cell) {
 }
 
 std::string table_html(const Table& table) {
-    std::string text = fmt::format("<div class=\"scroll\">\n<table id=\"table-{}\">\n<caption>{}</caption>\n",
-                                   table.id, html_text(table.title));
+    std::string text =
+        fmt::format("<details>\n<summary>{}</summary>\n<div class=\"scroll\">\n<table id=\"table-{}\">\n",
+                    html_text(table.title), table.id);
     text += "<thead><tr>";
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
         if (!is_for_people(table, i)) continue;
@@ -78,7 +79,7 @@ std::string table_html(const Table& table) {
     }
     text += "</tbody>\n</table>\n</div>\n";
     if (!table.note.empty()) text += fmt::format("<p class=\"note\">{}</p>\n", html_text(table.note));
-    return text;
+    return text + "</details>\n";
 }
 
 void remove_element(std::string& text, std::string_view start, std::string_view end) {
@@ -151,6 +152,10 @@ std::string html_text(const Report& report, const SvgOf& svg_of) {
         "initial-scale=1\"/>\n"
         "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
         html_text(report.title), kPageStyle);
+    for (const Chapter& chapter : report.chapters) {
+        if (!chapter.summary.empty())
+            text += fmt::format("<p class=\"summary\">{}</p>\n", html_text(chapter.summary));
+    }
     text += contents_html(report) + setting_html(report);
     for (std::size_t i = 0; i < report.chapters.size(); ++i) {
         text += chapter_html(report.chapters[i], i + 1, svg_of);

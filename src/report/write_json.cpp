@@ -46,8 +46,11 @@ Json to_json(const Chapter& chapter) {
     for (const Table& table : chapter.tables) tables.push_back(to_json(table));
     Json plots = Json::array();
     for (const Plot& plot : chapter.plots) plots.push_back(to_json(plot));
-    return {
-        {"title", chapter.title}, {"paragraphs", chapter.paragraphs}, {"tables", tables}, {"plots", plots}};
+    return {{"title", chapter.title},
+            {"summary", chapter.summary},
+            {"paragraphs", chapter.paragraphs},
+            {"tables", tables},
+            {"plots", plots}};
 }
 
 }  // namespace

@@ -103,6 +103,9 @@ Table setting_table(const Report& report) {
 
 std::string markdown_text(const Report& report) {
     std::string text = fmt::format("# {}\n\n", markdown_text(report.title));
+    for (const Chapter& chapter : report.chapters) {
+        if (!chapter.summary.empty()) text += paragraph_text(chapter.summary);
+    }
     if (!report.setting.empty()) add_table(setting_table(report), text);
     for (const Chapter& chapter : report.chapters) {
         text += fmt::format("## {}\n\n", markdown_text(chapter.title));

@@ -1,8 +1,10 @@
 #include <array>
 #include <cmath>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/text.hpp"
@@ -16,8 +18,9 @@ constexpr const char* kHint = "Corda draws plots with it; install it with: apt-g
 
 /// Colours that colour-blind readers can tell apart (after Okabe and Ito 2008, without their yellow and
 /// black, which cannot be seen on a light or a dark page), and shapes that differ without any colour.
-constexpr std::array<const char*, 8> kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
-                                             "#e69f00", "#56b4e9", "#7a5fd0", "#8c6d31"};
+constexpr std::array<const char*, Series::kLooks> kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                                          "#e69f00", "#56b4e9", "#7a5fd0", "#8c6d31"};
+constexpr const char* kContextColor = "#b4bac2";
 constexpr std::array<int, 5> kPointTypes{7, 5, 9, 13, 11};  // filled ones: open ones are thin in an SVG
 constexpr std::array<int, 3> kDashTypes{1, 2, 4};
 
@@ -63,22 +66,44 @@ std::string data_block(const Plot& plot, std::size_t index) {
     return text + "END\n";
 }
 
-std::string plot_item(const Plot& plot, std::size_t index) {
+/// `place`: among the lines that are not context.
+std::string plot_item(const Plot& plot, std::size_t index, std::size_t place) {
     const Series& series = plot.series[index];
     const bool is_drawn = has_points(plot, series);
     const std::string source = is_drawn ? fmt::format("$s{}", index) : "keyentry";
+    const std::size_t look = series.look.value_or(place);
     return fmt::format(
         "{} with linespoints linewidth 2.5 linecolor rgb '{}' pointtype {} "
         "dashtype {} title {}",
-        source, kColors[index % kColors.size()], kPointTypes[index % kPointTypes.size()],
-        kDashTypes[index / kColors.size() % kDashTypes.size()],
+        source, kColors[look % kColors.size()], kPointTypes[look % kPointTypes.size()],
+        kDashTypes[look / kColors.size() % kDashTypes.size()],
         literal(is_drawn ? series.name : series.name + " (no points)"));
+}
+
+/// What gnuplot is to draw, the context first.
+std::vector<std::string> plot_items(const Plot& plot) {
+    std::vector<std::string> items;
+    for (std::size_t i = 0; i < plot.series.size(); ++i) {
+        if (!plot.series[i].is_context || !has_points(plot, plot.series[i])) continue;
+        items.push_back(
+            fmt::format("$s{} with linespoints linewidth 1.2 linecolor rgb '{}' pointtype 7 pointsize 0.5 {}",
+                        i, kContextColor, items.empty() ? "title " + literal(plot.context_name) : "notitle"));
+    }
+    std::size_t place = 0;
+    for (std::size_t i = 0; i < plot.series.size(); ++i) {
+        if (!plot.series[i].is_context) items.push_back(plot_item(plot, i, place++));
+    }
+    return items;
 }
 
 std::string terminal(const Plot& plot, PlotFormat format) {
     if (format == PlotFormat::kPng) {
         return "set terminal pngcairo size 1200,800 enhanced font 'sans,16' background rgb 'white'\n"
                "set pointsize 1.5\nset key font ',14'\n";
+    }
+    if (format == PlotFormat::kPdf) {
+        return "set terminal pdfcairo size 17cm,11.3cm enhanced font 'sans,8' linewidth 0.5\n"
+               "set pointsize 0.6\nset key font ',7'\n";
     }
     return fmt::format(
         "set terminal svg size 1200,800 dynamic enhanced font 'sans-serif,20' name '{}'\n"
@@ -89,7 +114,8 @@ std::string terminal(const Plot& plot, PlotFormat format) {
 /// Whether a picture has its end. gnuplot does not say that it could not write all of it.
 bool is_whole(std::string_view picture, PlotFormat format) {
     constexpr std::size_t kLongestEnd = 16;
-    const std::size_t end = picture.rfind(format == PlotFormat::kSvg ? "</svg>" : "IEND");
+    const std::array<const char*, 3> ends{"IEND", "</svg>", "%%EOF"};
+    const std::size_t end = picture.rfind(ends[static_cast<std::size_t>(format)]);
     return end != std::string_view::npos && picture.size() - end <= kLongestEnd;
 }
 
@@ -101,7 +127,20 @@ std::string last_words(const std::string& text) {
     return words.empty() ? "without a message" : words;
 }
 
+/// Puts a fixed time in the place of that at which a PDF was made.
+void forget_time(std::string& pdf) {
+    constexpr std::string_view kDate = "/CreationDate (D:";
+    constexpr std::string_view kTime = "20000101000000";
+    const std::size_t at = pdf.find(kDate);
+    if (at != std::string::npos) pdf.replace(at + kDate.size(), kTime.size(), kTime);
+}
+
 }  // namespace
+
+const char* ending(PlotFormat format) {
+    constexpr std::array<const char*, 3> kEndings{"png", "svg", "pdf"};
+    return kEndings[static_cast<std::size_t>(format)];
+}
 
 std::string gnuplot_script(const Plot& plot, PlotFormat format) {
     std::string text = "set encoding utf8\n" + terminal(plot, format);
@@ -110,19 +149,20 @@ std::string gnuplot_script(const Plot& plot, PlotFormat format) {
     text +=
         "set grid xtics ytics linetype 1 linewidth 0.6 linecolor rgb '#b0b0b0'\n"
         "set border linewidth 1.2\n"
-        "set key below center maxrows 4 Left reverse noenhanced samplen 3 spacing 1.15\n";
+        "set key below center maxrows 4 Left reverse noenhanced samplen 3 spacing 1.15 height 1\n";
     bool is_empty = true;
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
         if (!has_points(plot, plot.series[i])) continue;
         is_empty = false;
         text += data_block(plot, i);
     }
+    std::vector<std::string> items = plot_items(plot);
     // gnuplot refuses a plot without points. One that is outside the ranges gives the axes alone.
-    text += is_empty ? "set xrange [1:10]\nset yrange [1:10]\nplot NaN notitle" : "plot ";
-    for (std::size_t i = 0; i < plot.series.size(); ++i) {
-        text += (i > 0 || is_empty ? ", \\\n" : "") + plot_item(plot, i);
+    if (is_empty) {
+        text += "set xrange [1:10]\nset yrange [1:10]\n";
+        items.insert(items.begin(), "NaN notitle");
     }
-    return text + "\n";
+    return text + fmt::format("plot {}\n", fmt::join(items, ", \\\n"));
 }
 
 std::string draw_plot(const Plot& plot, PlotFormat format) {
@@ -139,6 +179,7 @@ std::string draw_plot(const Plot& plot, PlotFormat format) {
     }
     // gnuplot escapes & and <, but no > where XML wants it.
     if (format == PlotFormat::kSvg) replace_all(picture, "]]>", "]]&gt;");
+    if (format == PlotFormat::kPdf) forget_time(picture);
     return picture;
 }
 

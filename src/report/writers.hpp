@@ -33,8 +33,11 @@ using SvgOf = std::function<std::string(const Plot&)>;
 /// file. It is also well-formed XML.
 [[nodiscard]] std::string html_text(const Report& report, const SvgOf& svg_of);
 
-/// The format of a plot's picture of 1200 x 800 pixels.
-enum class PlotFormat { kPng, kSvg };
+/// The format of a plot's picture: 1200 x 800 pixels, or 170 x 113 mm.
+enum class PlotFormat { kPng, kSvg, kPdf };
+
+/// "png", "svg" or "pdf".
+[[nodiscard]] const char* ending(PlotFormat format);
 
 /// The script with which gnuplot draws `plot` to its standard output. A point that an axis cannot show (not
 /// finite, or not positive on a logarithmic axis) is left out and breaks its line.

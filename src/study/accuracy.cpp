@@ -168,6 +168,7 @@ ChapterWork accuracy_work(const StudyDef& def) {
             "digits than a double holds.",
             bounds_paragraph(*rows)};
         chapter.tables = {short_table(cases, *rows), rows_table(*rows)};
+        chapter.summary = bounds_paragraph(*rows);
         return chapter;
     };
     return work;

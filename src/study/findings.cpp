@@ -188,6 +188,7 @@ report::Chapter chapter_of(const Findings& findings) {
                           light_statement(findings.bars),
                           many_particles_statement(findings.sizes),
                           settling_statement(findings.settling, findings.watched_s)};
+    chapter.summary = sweeps_statement(findings.bars);
     chapter.tables = {rates_table(findings),
                       swings_table("bars", "Quality over bars, sweeps and mass", findings.bars),
                       swings_table("particles", "Quality over the number of particles", findings.sizes),

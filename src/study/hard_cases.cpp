@@ -40,8 +40,9 @@ report::Chapter chapter_of(const report::Table& table) {
     };
     report::Chapter chapter;
     chapter.title = "Hard cases";
-    chapter.paragraphs = {fmt::format("Of {} cases, {} passed, {} failed and {} were not run.",
-                                      table.rows.size(), count(kPassed), count(kFailed), count(kNotRun))};
+    chapter.summary = fmt::format("Of {} hard cases, {} passed, {} failed and {} were not run.",
+                                  table.rows.size(), count(kPassed), count(kFailed), count(kNotRun));
+    chapter.paragraphs = {chapter.summary};
     chapter.tables = {table};
     return chapter;
 }

@@ -197,7 +197,7 @@ void add_solver(const SolverSetting& setting, Pictures& pictures) {
                           frames / time.whole_s});
     auto& series = pictures.plot.series;
     if (series.empty() || series.back().name != setting.series) series.push_back({setting.series, {}});
-    series.back().points.emplace_back(1e3 * time.whole_s, error.value());
+    series.back().points.emplace_back(error.value(), 1e3 * time.whole_s);
 }
 
 /// Adds luma PSNR and SSIM of a video against the frames that it was made of, drawn again.
@@ -266,9 +266,9 @@ void describe_tables(Pictures& pictures) {
         "the mean over the frames.",
         encoder.crf, encoder.threads);
     pictures.plot = {"picture_error",
-                     "Displayed error against the time of the whole render",
-                     "whole render [ms]",
+                     "Time of the whole render against displayed error",
                      "largest displayed error [px]",
+                     "whole render [ms]",
                      true,
                      true,
                      {}};
@@ -321,7 +321,8 @@ ChapterWork pictures_work(const StudyDef& def) {
         return report::Chapter{"Pictures: from a scene to a video",
                                {setting_paragraph(*pictures), share_paragraph(pictures->solvers)},
                                {pictures->solvers, pictures->presets},
-                               {pictures->plot}};
+                               {pictures->plot},
+                               share_paragraph(pictures->solvers)};
     };
     return work;
 }

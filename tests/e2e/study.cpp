@@ -35,7 +35,7 @@ void expect_files_of(const json& report, const std::string& folder) {
             ++expected;
         }
         for (const json& plot : chapter["plots"]) {
-            for (const char* ending : {".png", ".svg"})
+            for (const char* ending : {".png", ".svg", ".pdf"})
                 EXPECT_TRUE(fs::exists(folder + "/" + plot["id"].get<std::string>() + ending));
             expected += 2;
         }

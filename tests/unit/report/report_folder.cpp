@@ -31,9 +31,10 @@ TEST(ReportFolder, GetsEveryFile) {
     const test::ScratchFolder folder;
     const std::string out = folder.file("some/out");
     const auto paths = write(small_report(), out);
-    EXPECT_THAT(paths, ElementsAre(out + "/report.html", out + "/report.json", out + "/report.md",
-                                   out + "/linear.png", out + "/linear.svg", out + "/error.png",
-                                   out + "/error.svg", out + "/speed.csv"));
+    EXPECT_THAT(paths,
+                ElementsAre(out + "/report.html", out + "/report.json", out + "/report.md",
+                            out + "/linear.pdf", out + "/linear.png", out + "/linear.svg", out + "/error.pdf",
+                            out + "/error.png", out + "/error.svg", out + "/speed.csv"));
     for (const std::string& path : paths) EXPECT_GT(std::filesystem::file_size(path), 0U) << path;
     EXPECT_EQ(test::read_file(out + "/speed.csv"), csv_text(small_table()));
     EXPECT_EQ(test::read_file(out + "/report.json"), json_text(small_report()));
@@ -60,20 +61,20 @@ TEST(ReportFolder, HasAChapterAsSoonAsItIsAdded) {
     const test::ScratchFolder folder;
     ReportFolder report(folder.path());
     report.add(small_report().chapters[0]);
-    EXPECT_THAT(folder.files(), ElementsAre("error.png", "error.svg", "speed.csv"));
+    EXPECT_THAT(folder.files(), ElementsAre("error.pdf", "error.png", "error.svg", "speed.csv"));
 }
 
 TEST(ReportFolder, IsFinishedWithThePicturesThatWereDrawn) {
     const test::ScratchFolder folder;
     const Report whole = small_report();
-    // Asked once per picture, of which the first chapter has two.
-    const auto asks = [asked = 0](std::int64_t, std::int64_t) mutable { return ++asked < 3; };
+    // Asked once per picture, of which the first chapter has three.
+    const auto asks = [asked = 0](std::int64_t, std::int64_t) mutable { return ++asked < 4; };
     ReportFolder report(folder.path(), {.on_progress = asks});
     report.add(whole.chapters[0]);
     EXPECT_EQ(code_of([&] { report.add(whole.chapters[1]); }), ExitCode::kInterrupted);
     report.finish(whole);
-    EXPECT_THAT(folder.files(), ElementsAre("error.png", "error.svg", "report.html", "report.json",
-                                            "report.md", "speed.csv"));
+    EXPECT_THAT(folder.files(), ElementsAre("error.pdf", "error.png", "error.svg", "report.html",
+                                            "report.json", "report.md", "speed.csv"));
     for (const char* name : {"report.html", "report.json", "report.md"}) {
         EXPECT_THAT(test::read_file(folder.file(name)), HasSubstr("Second")) << name;
         EXPECT_THAT(test::read_file(folder.file(name)), Not(HasSubstr("linear"))) << name;

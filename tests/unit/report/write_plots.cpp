@@ -1,8 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <thread>
 
 #include "corda/media/defs.hpp"
 #include "samples.hpp"
@@ -66,9 +68,34 @@ TEST(Plots, ArePicturesOfTheRightSize) {
         EXPECT_EQ(result.exit_code, 0) << result.err;
         EXPECT_THAT(test::read_file(svg), HasSubstr("viewBox=\"0 0 1200 800\"")) << plot.id;
     }
+    const std::string pdf = folder.write("one.pdf", draw_plot(one, PlotFormat::kPdf));
+    EXPECT_THAT(run_shell("pdfinfo " + test::quoted(pdf)).out, HasSubstr("Page size:       481 x 320 pts"));
     EXPECT_FALSE(std::filesystem::exists("pwned"));
     EXPECT_THAT(test::read_file(folder.file("error.svg")), HasSubstr("`touch pwned` $(touch pwned) @m \\"));
     EXPECT_THAT(test::read_file(folder.file("error.svg")), HasSubstr("never (no points)"));
+}
+
+TEST(Plots, HaveTheSameBytesAtAnotherTime) {
+    for (const PlotFormat format : {PlotFormat::kPng, PlotFormat::kSvg, PlotFormat::kPdf}) {
+        const std::string first = draw_plot(small_plot(), format);
+        std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+        EXPECT_EQ(draw_plot(small_plot(), format), first) << ending(format);
+    }
+}
+
+TEST(Plots, ContextIsGreyBehindTheOthersWithOneEntryInTheKey) {
+    Plot plot = small_plot();
+    plot.series = {{"a", {{1.0, 1.0}}},
+                   {"b", {{1.0, 2.0}}, {}, true},
+                   {"c", {{1.0, 3.0}}, {}, true},
+                   {"d", {{1.0, 4.0}}, 3}};
+    plot.context_name = "the rest";
+    const std::string script = gnuplot_script(plot, PlotFormat::kSvg);
+    const std::string items = script.substr(script.find("plot $"));
+    EXPECT_LT(items.find("$s1"), items.find("$s2"));
+    EXPECT_LT(items.find("$s2"), items.find("$s0"));
+    EXPECT_THAT(items, AllOf(HasSubstr("title 'the rest'"), HasSubstr("notitle"), Not(HasSubstr("'b'"))));
+    EXPECT_THAT(items.substr(items.find("$s3")), HasSubstr("'#cc79a7'"));  // its own look
 }
 
 TEST(Plots, MissingGnuplotNamesItsPackage) {
@@ -94,7 +121,7 @@ TEST(Plots, PicturesThatBreakOffAreRefused) {
     const std::string fake = folder.write("gnuplot", "#!/bin/sh\nPATH=/usr/bin:/bin\ngnuplot \"$@\"" + end);
     std::filesystem::permissions(fake, std::filesystem::perms::owner_all);
     const Environment path("PATH", folder.path());
-    for (const PlotFormat format : {PlotFormat::kPng, PlotFormat::kSvg}) {
+    for (const PlotFormat format : {PlotFormat::kPng, PlotFormat::kSvg, PlotFormat::kPdf}) {
         const auto failure = test::failure_of([&] { (void)draw_plot(small_plot(), format); });
         EXPECT_EQ(failure.code, ExitCode::kIo);
         EXPECT_THAT(failure.message, HasSubstr("breaks off"));
