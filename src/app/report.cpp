@@ -42,10 +42,13 @@ void warn_of_unbounded(const Console& console, const Film& film) {
 void warn_of_plates(const Console& console, const Film& film) {
     for (std::size_t i = 0; i < film.plan().bodies.size(); ++i) {
         if (!film.plan().bodies[i].stands_still) continue;
+        const std::string other = film.plan().bodies.size() == 1
+                                      ? "use method relaxation"
+                                      : "give it method relaxation in [[solver.bodies]]";
         console.warning(
             fmt::format("{} stands still: its bars make it a plate, and its pins hold it; pin one particle "
-                        "alone, let it stretch by a compliance, or use method relaxation",
-                        body_name(film.system(), i)));
+                        "alone, let it stretch by a compliance, or {}",
+                        body_name(film.system(), i), other));
     }
 }
 
@@ -84,12 +87,10 @@ std::optional<std::string> bound_text(const Film& film) {
         else
             unbounded.push_back(i);
     }
-    if (!largest_m) return std::nullopt;
+    if (!largest_m || plan.horizon_s == 0.0) return std::nullopt;
     const double pixels_per_metre = film.scene().video.height_px / film.camera().height_m.value();
     std::string text = fmt::format("{:.2g} px, {:.2g} m", pixels_per_metre * *largest_m, *largest_m);
-    if (plan.horizon_s)
-        text +=
-            *plan.horizon_s > 0.0 ? fmt::format(", up to {:.6g} s", *plan.horizon_s) : ", at the start alone";
+    if (plan.horizon_s) text += fmt::format(", up to {:.6g} s", *plan.horizon_s);
     if (!unbounded.empty()) text += ", but for " + describe(film.system(), unbounded);
     return text;
 }

@@ -64,12 +64,14 @@ std::string_view hint_for_errno(int error_number) {
 
 void fail_file(std::string_view action, const std::string& path, int error_number) {
     // Only a pipe or a device makes a call wait for so long that a signal breaks it off.
-    const ExitCode code = error_number == EINTR ? ExitCode::kInterrupted : ExitCode::kIo;
+    if (error_number == EINTR)
+        throw Error(ExitCode::kInterrupted,
+                    "interrupted while waiting to " + std::string(action) + " '" + path + "'");
     const std::string_view hint = hint_for_errno(error_number);
     std::string message =
         "cannot " + std::string(action) + " '" + path + "': " + std::generic_category().message(error_number);
     if (!hint.empty()) message += "; " + std::string(hint);
-    throw Error(code, message);
+    throw Error(ExitCode::kIo, message);
 }
 
 void make_folder(const std::string& path) {

@@ -37,11 +37,11 @@ std::string_view remedy(Refusal::Reason reason) {
         case Reason::kImaginaryBars:
             return "remove the imaginary bars (solver.reach, net.grid.diagonals) or use method relaxation";
         case Reason::kRigidGraph:
-            return "set method = \"auto\" or \"rattle\", or let the bars stretch by a compliance";
+            return "use method auto, or let the bars stretch by a compliance";
         case Reason::kRigidStringGraph:
             return "open it, or let it stretch by a compliance";
         case Reason::kRigidString:
-            return "use method auto or exact, or let the string stretch by a compliance";
+            return "use method auto, or let the string stretch by a compliance";
         case Reason::kRigidBendingString:
             return "remove bending, or let the string stretch by a compliance";
         case Reason::kStretchedString:
@@ -55,7 +55,7 @@ std::string_view remedy(Refusal::Reason reason) {
             return "bend what is in line a little, leave out bars that others imply, or use method "
                    "relaxation";
         case Reason::kMaterial:
-            return "remove compliance, string and bending, or use method auto or exact";
+            return "remove compliance, string and bending, or use method auto";
     }
     return "";
 }

@@ -186,6 +186,16 @@ TEST_F(Output, WarnsOfANetThatItsBarsKeepFromMovingUntilItsAdviceIsTaken) {
         EXPECT_EQ(result.exit_code, 0) << result.err;
         EXPECT_THAT(result.err, Not(HasSubstr("stands still"))) << advice;
     }
+    // Beside a string, which relaxation does not move.
+    const std::string scene =
+        test::read_file(plate) + "[[rope]]\nhang = { links = 2, length = 1.0 }\nstring = true\n";
+    const std::string both = folder_.write("both.toml", scene);
+    EXPECT_THAT(run_corda({"plan", both}).err,
+                HasSubstr("or give it method relaxation in [[solver.bodies]]"));
+    folder_.write("both.toml", scene + "[[solver.bodies]]\nnets = [0]\nmethod = 'relaxation'\n");
+    const auto result = run_corda({"plan", both});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.err, Not(HasSubstr("stands still")));
 }
 
 TEST_F(Output, PlanDoesNotPromiseThatRelaxationKeepsEnergy) {

@@ -81,8 +81,8 @@ const std::map<std::string, std::uint64_t> kHashes{
 
 /// What a method refuses, with the reason in the message.
 const std::map<std::string, std::string> kRefused{
-    {"materials by rattle", "use method auto or exact"},  // its string
-    {"slack by rattle", "use method auto or exact"},
+    {"materials by rattle", "use method auto"},  // its string
+    {"slack by rattle", "use method auto"},
 };
 
 /// The methods that a scene is run by besides its own: all of them where its bodies are chains.

@@ -93,16 +93,29 @@ bool give_up_together(const Trial& a, const Trial& b) {
     return a.diverged && b.diverged && a.reached_s == b.reached_s;
 }
 
+/// A horizon before this share of the motion is not worth the tightest method's cost.
+constexpr double kEarly = 0.1;
+
+/// By which factor a trial a hundred times tighter reaches farther, at most, if errors grow exponentially:
+/// how much later the last one came to its tolerance than to a hundredth of it. Infinite if it does not show,
+/// or if even the tightest would end so early that another trial is to tell.
+double farther(const System& system, const Trial& last, std::size_t left, double end_s) {
+    if (!std::holds_alternative<ExactDef>(last.method) || has_kinks(system) || last.hundredth_s == 0.0)
+        return HUGE_VAL;
+    const double factor = last.reached_s / last.hundredth_s;
+    double tightest_s = last.reached_s;
+    for (std::size_t i = 0; i < left; ++i) tightest_s *= factor;
+    return tightest_s < kEarly * end_s ? HUGE_VAL : factor;
+}
+
 /// The trial to run after number `failed`; those that would not reach the end either are left out. Errors of
-/// chaotic motions grow exponentially, so that each trial gains about as much time as the one before. How
-/// much the next one gains, a hundred times tighter if of `exact`, shows in the first: at most by the factor
-/// by which the tolerance is reached later than a hundredth of it.
-std::size_t next_trial(const BodyPlan& plan, std::size_t failed, std::size_t count, double end_s) {
+/// chaotic motions grow exponentially, so that each trial gains about as much time as the one before.
+std::size_t next_trial(const System& system, const BodyPlan& plan, std::size_t failed, std::size_t count,
+                       double end_s) {
     const std::size_t ran = plan.trials.size();
     const Trial& last = plan.trials.back();
     const double gained_s = ran < 2 ? HUGE_VAL : last.reached_s - plan.trials[ran - 2].reached_s;
-    const double factor =
-        std::holds_alternative<ExactDef>(last.method) ? last.reached_s / last.hundredth_s : HUGE_VAL;
+    const double factor = farther(system, last, count - 1 - failed, end_s);
     const auto later_s = [&](double reached_s) { return std::min(reached_s + gained_s, reached_s * factor); };
     std::size_t next = failed + 1;
     for (double hoped_s = later_s(last.reached_s); next + 1 < count && hoped_s < end_s; ++next)
@@ -114,7 +127,6 @@ std::size_t next_trial(const BodyPlan& plan, std::size_t failed, std::size_t cou
 /// is not worth the tightest method's cost: the one that failed will do, unless it is so loose that energy
 /// is seen to change.
 bool can_tell_little(const BodyPlan& plan, std::size_t failed, std::size_t count, double end_s) {
-    constexpr double kShare = 0.1;
     constexpr double kLooseTolerance = 1e-6;
     constexpr std::size_t kRungs = 3;  // of `rattle`: orders 2 and 4 say little of 6 and 8
     const std::size_t ran = plan.trials.size();
@@ -123,7 +135,7 @@ bool can_tell_little(const BodyPlan& plan, std::size_t failed, std::size_t count
         return false;
     const double reached_s = plan.trials[ran - 1].reached_s;
     const double gained_s = std::max(0.0, reached_s - plan.trials[ran - 2].reached_s);
-    return reached_s + static_cast<double>(count - 1 - failed) * gained_s < kShare * end_s;
+    return reached_s + static_cast<double>(count - 1 - failed) * gained_s < kEarly * end_s;
 }
 
 /// Records the run of a plan's method.
@@ -146,7 +158,7 @@ void record(const System& system, const WorldDef& world, const PlanDef& def, Bod
 void run_until_one_holds(const System& system, const WorldDef& world, const PlanDef& def,
                          std::vector<Trial> trials, BodyPlan& plan, Recording& recording) {
     const double end_s = def.timeline.time_s(def.timeline.size() - 1);
-    for (std::size_t i = 0; i < trials.size(); i = next_trial(plan, i, trials.size(), end_s)) {
+    for (std::size_t i = 0; i < trials.size(); i = next_trial(system, plan, i, trials.size(), end_s)) {
         const TrialKind kind{i == 0, i + 1 == trials.size()};
         plan.method = trials[i].method;
         run_trial(system, world, def, kind, trials[i], recording, plan.passes);
