@@ -59,7 +59,7 @@ Scene parse_scene(std::string_view toml, const std::string& source_name,
     scene.style = read_style(sections.style);
     scene.overlay = read_overlay(sections.overlay);
     scene.camera = read_camera(sections.camera);
-    const SceneSize size = count_bodies(sections, solver);
+    const SceneSize size = count_bodies(sections, solver, scene);
     check_work(sections, solver, size, scene);
     if (size.fits) read_bodies(sections, size, solver, scene);
     problems.throw_if_any();
