@@ -1,12 +1,34 @@
 #version 450 core
-// Coverage of one pixel by one capsule and by its halo, as k/255. The same steps as segment_distance_px() and
-// coverage_within() in src/render/coverage.hpp: only operations that IEEE 754 fixes to the last bit. Change both
-// together.
+// Coverage of one pixel by one capsule and by its halo, as k/255; TINTED: and the capsule's part of the pixel's
+// colour. The same steps as segment_distance_px(), coverage_within(), tint_weight() and TintSums in
+// src/render/coverage.hpp: only operations that IEEE 754 fixes to the last bit. Change both together.
 
 flat in vec4 capsule_axis;
 flat in vec3 capsule_extent;
 
-out vec2 mask; // capsule, halo
+layout(location = 0) out vec2 mask; // capsule, halo
+#ifdef TINTED
+flat in uvec4 capsule_tint;
+
+layout(location = 1) out vec4 sums; // channels times weight, weight
+
+// v / 255, rounded to the nearest integer, for 0 <= v <= 255 * 255.
+uint over_255(uint v) {
+    uint t = v + 128u;
+    return (t + (t >> 8)) >> 8;
+}
+
+void add_tint(float along, uint coverage) {
+    precise float before = along - 0.5;
+    precise float after = along + 0.5;
+    precise float overlap = min(after, capsule_extent.x) - max(before, 0.0);
+    float share = capsule_extent.x == 0.0 ? 1.0 : min(max(overlap, 0.0), 1.0);
+    precise float scaled = share * 255.0;
+    precise float rounded = scaled + 0.5;
+    uint weight = coverage == 0u ? 0u : capsule_tint.a * (1u + over_255(coverage * uint(rounded)));
+    sums = vec4(float(weight)) * vec4(vec3(capsule_tint.rgb), 1.0);
+}
+#endif
 
 float coverage_within(float radius, float distance_px) {
     precise float inner = min(distance_px + 0.5, radius);
@@ -46,4 +68,7 @@ void main() {
         distance_px = squared * inverse;
     }
     mask = vec2(coverage_within(capsule_extent.y, distance_px), coverage_within(capsule_extent.z, distance_px));
+#ifdef TINTED
+    add_tint(along, uint(mask.x * 255.0 + 0.5));
+#endif
 }

@@ -4,6 +4,11 @@
 
 layout(location = 0) in vec4 axis;   // a.x, a.y, u.x, u.y in pixels, y down
 layout(location = 1) in vec3 extent; // length, radius, radius of the halo
+#ifdef TINTED
+layout(location = 2) in uvec4 tint; // r, g, b, weight
+
+flat out uvec4 capsule_tint;
+#endif
 
 uniform vec2 frame_size;
 uniform float edge_margin;
@@ -19,6 +24,9 @@ void main() {
     vec2 position = axis.xy + along * u + across * vec2(-u.y, u.x);
     capsule_axis = axis;
     capsule_extent = extent;
+#ifdef TINTED
+    capsule_tint = tint;
+#endif
     // Row 0 of the framebuffer is the top row of the picture, so y is never flipped, here or later.
     gl_Position = vec4(2.0 * position / frame_size - 1.0, 0.0, 1.0);
 }

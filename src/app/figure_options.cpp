@@ -15,7 +15,6 @@
 namespace corda::app {
 namespace {
 
-constexpr double kMmPerInch = 25.4;
 constexpr double kScreenPpi = 96.0;
 constexpr double kPrintPpi = 300.0;
 

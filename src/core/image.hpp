@@ -11,6 +11,8 @@
 #pragma GCC visibility push(default)
 namespace corda {
 
+inline constexpr double kMmPerInch = 25.4;
+
 /// An sRGB colour with straight alpha, 0..255 per channel.
 struct Color {
     std::uint8_t r = 0;

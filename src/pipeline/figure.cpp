@@ -14,6 +14,7 @@
 #include "corda/render/vector.hpp"
 #include "corda/view/font.hpp"
 #include "corda/view/look.hpp"
+#include "corda/view/overlay.hpp"
 
 namespace corda {
 namespace {
@@ -33,8 +34,8 @@ class Sheet {
     Sheet(int width_px, int height_px, int columns, int count)
         : width_px_(width_px),
           height_px_(height_px),
-          columns_(columns),
-          rows_((count + columns - 1) / columns),
+          columns_(std::min(columns, kLargestSidePx)),  // more have no room
+          rows_((count - 1) / columns_ + 1),
           gap_px_(std::max(1, static_cast<int>(kGapPerSide * std::min(width_px, height_px)))) {}
 
     [[nodiscard]] int cell_width_px() const { return (width_px_ - (columns_ + 1) * gap_px_) / columns_; }
@@ -126,12 +127,14 @@ std::vector<std::string> captions_of(const std::vector<double>& times_s) {
     constexpr int kFewDigits = 3;
     constexpr int kMostDigits = 9;
     std::vector<std::string> captions;
+    double steps_1_s = 1.0;  // of the last digit
     for (int digits = 1; digits <= kMostDigits; ++digits) {
         captions.clear();
         bool is_exact = true;
+        steps_1_s *= 10.0;
         for (const double time_s : times_s) {
-            captions.push_back(fmt::format("t = {:.{}f} s", time_s, digits));
-            is_exact &= std::abs(std::stod(captions.back().substr(4)) - time_s) < 1e-9;
+            captions.push_back(view::time_text(fmt::format("{:.{}f}", time_s, digits)));
+            is_exact &= std::abs(std::round(time_s * steps_1_s) / steps_1_s - time_s) < 1e-9;
         }
         const bool are_apart = std::adjacent_find(captions.begin(), captions.end()) == captions.end();
         if (is_exact || (digits >= kFewDigits && are_apart)) break;
@@ -217,7 +220,6 @@ std::string describe_lines(const std::string& ending, const Film& film, const Fi
     render::PageDef page_def{.width_px = is_sheet ? def.width_px : video.width_px,
                              .height_px = is_sheet ? def.height_px : video.height_px};
     page_def.on_progress = on_progress;
-    constexpr double kMmPerInch = 25.4;
     page_def.width_mm = page_def.width_px * kMmPerInch / info.pixels_per_inch;
     for (const auto& [keyword, text] : info.text) {
         if (keyword == "Title") page_def.title = utf8(text);

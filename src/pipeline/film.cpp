@@ -74,7 +74,7 @@ struct Film::Impl {
           stage(scene, system, def.backend, def.require_gpu),
           motion(system, scene.world, if_all_named(named),
                  Timeline(scene.video.fps, pipeline::last_frame_of(scene), def.stills_s),
-                 def.motion_budget_bytes, def.on_progress),
+                 def.motion_budget_bytes, def.on_progress, quantity_of(scene.style.color_by)),
           tracks(stage.traced(), scene.style.trail_s, scene.video.fps) {
         if (motion.methods().empty()) {
             plan = motion.record([&](const Timeline& timeline, sim::Recording& recording) {
@@ -99,8 +99,9 @@ struct Film::Impl {
         if (camera) return *camera;
         if (stage.needs_motion()) motion.run_to_end(def.on_progress);
         // The start is there even if the first step diverges.
-        camera = stage.fit(motion.recording().size() > 0 ? motion.recording().particle_bounds()
-                                                         : bounds_of_start(system));
+        camera = stage.fit(
+            motion.recording().size() > 0 ? motion.recording().particle_bounds() : bounds_of_start(system),
+            motion.recording().spread());
         return *camera;
     }
 
@@ -314,6 +315,11 @@ const Image& FilmPainter::image() const {
 struct Renderer::Impl {
     Impl(const Scene& given, const std::string& backend)
         : scene(given), system(system_of(scene)), stage(scene, system, backend, false) {
+        if (quantity_of(scene.style.color_by)) {
+            throw Error(ExitCode::kInvalidScene,
+                        "style: color_by is a quantity of a motion, and a Renderer draws positions alone; "
+                        "choose kBody or kLink");
+        }
         camera = stage.fit(bounds_of_start(system));
     }
     Scene scene;

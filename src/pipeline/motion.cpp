@@ -12,12 +12,12 @@
 namespace corda::pipeline {
 
 Motion::Motion(const System& system, const WorldDef& world, std::vector<MethodDef> methods, Timeline timeline,
-               std::size_t budget_bytes, const OnProgress& on_progress)
+               std::size_t budget_bytes, const OnProgress& on_progress, std::optional<Quantity> quantity)
     : system_(&system),
       world_(world),
       methods_(std::move(methods)),
       timeline_(std::move(timeline)),
-      recording_(system.particle_count(), timeline_.size(), budget_bytes) {
+      recording_(system.particle_count(), timeline_.size(), budget_bytes, system.bars.size(), quantity) {
     if (!methods_.empty()) start(on_progress);
 }
 
@@ -32,6 +32,7 @@ void Motion::start(const OnProgress& on_progress) {
     next_ = 0;
     run_.reset();
     run_.emplace(*system_, world_, methods_, timeline_.fps().interval_s(), asking(on_progress));
+    run_->tell(recording_.readings());
     methods_ = run_->methods();
 }
 

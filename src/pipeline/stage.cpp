@@ -55,8 +55,13 @@ bool Stage::needs_motion() const {
     return view::needs_motion(scene_->camera) || view_.needs_motion();
 }
 
-CameraDef Stage::fit(std::span<const MotionBounds> motion) {
+CameraDef Stage::fit(std::span<const MotionBounds> motion, const sim::Spread& spread) {
     view_.set_motion(motion);
+    if (const auto quantity = quantity_of(scene_->style.color_by)) {
+        const view::ColorScale scale = view::scale_of(*quantity, spread, scene_->style);
+        view_.set_scale(scale);
+        overlay_.set_scale(scale);
+    }
     return view::fit_camera(scene_->camera, system_->origin_m, view_.drawn(motion), scene_->video.width_px,
                             scene_->video.height_px, overlay_.insets());
 }

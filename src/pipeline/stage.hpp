@@ -28,9 +28,9 @@ class Stage {
 
     /// Whether pictures depend on the whole motion: by the camera, or by what pins hang from.
     [[nodiscard]] bool needs_motion() const;
-    /// Fits what follows from the motion to the bounds of each particle. Returns the scene's camera with
-    /// center and height filled in, so that all is in view.
-    CameraDef fit(std::span<const MotionBounds> motion);
+    /// Fits what follows from the motion to the bounds of each particle and the spread of the quantity that
+    /// colours tell. Returns the scene's camera with center and height filled in, so that all is in view.
+    CameraDef fit(std::span<const MotionBounds> motion, const sim::Spread& spread = {});
     /// At least the scale of the camera that fit() will return for a motion within `bounds`.
     [[nodiscard]] double largest_pixels_per_metre(const MotionBounds& bounds) const;
     /// The map to pixels of a camera with center and height.

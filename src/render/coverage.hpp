@@ -56,6 +56,45 @@ namespace corda::render {
     return (t + (t >> 8U)) >> 8U;
 }
 
+/// How much a capsule of a tinted layer counts in the mean of a pixel that it covers by `coverage` / 255:
+/// mostly by the share of the pixel that is beside its segment. 0 if it does not cover it, else 1 .. 256
+/// times its own weight.
+[[nodiscard]] inline std::uint32_t tint_weight(const view::Capsule& capsule, float center_x, float center_y,
+                                               std::uint32_t coverage) {
+    if (coverage == 0) return 0;
+    const float along = (center_x - capsule.ax) * capsule.ux + (center_y - capsule.ay) * capsule.uy;
+    const float from = std::max(along - 0.5F, 0.0F);
+    const float to = std::min(along + 0.5F, capsule.length);
+    const float share = capsule.length == 0.0F ? 1.0F : std::min(std::max(to - from, 0.0F), 1.0F);
+    const auto beside = static_cast<std::uint32_t>(share * 255.0F + 0.5F);
+    return capsule.tint.weight * (1 + over_255(coverage * beside));
+}
+
+/// Sums over the capsules of a tinted layer: the weights, and the channels times them. Whole numbers, so that
+/// single precision adds them without rounding in any order, up to 2^24: one pixel covered whole by 257
+/// links.
+struct TintSums {
+    float r = 0.0F;
+    float g = 0.0F;
+    float b = 0.0F;
+    float weight = 0.0F;
+
+    void add(const view::Tint& tint, std::uint32_t capsule_weight) {
+        const auto w = static_cast<float>(capsule_weight);
+        r += w * static_cast<float>(tint.r);
+        g += w * static_cast<float>(tint.g);
+        b += w * static_cast<float>(tint.b);
+        weight += w;
+    }
+    /// The mean of a channel, rounded to the nearest integer.
+    [[nodiscard]] std::uint32_t mean(float sum) const {
+        constexpr float kLargest = 2147483520.0F;  // that fits into 31 bits
+        const auto total = static_cast<std::uint32_t>(std::min(weight, kLargest));
+        const auto part = static_cast<std::uint32_t>(std::min(sum, kLargest));
+        return std::min((part + total / 2) / std::max(total, 1U), 255U);
+    }
+};
+
 /// One channel of what a layer of that alpha paints over `below` where it covers `coverage` / 255 of the
 /// pixel. In gamma space: 8-bit sRGB times the pixel's alpha, and that alpha itself, the fourth channel, in
 /// the same way. A layer paints its halo as the ground is, with the layer's alpha, and then itself, opaque.

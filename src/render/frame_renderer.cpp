@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -29,6 +30,7 @@ constexpr GLuint kFrameUnit = 0;
 constexpr GLuint kGroundUnit = 1;
 constexpr GLuint kMaskUnit = 2;
 constexpr GLuint kCoverageUnit = 3;
+constexpr GLuint kSumsUnit = 4;
 
 /// Whether two stamps look the same, each with the coverage of its own list.
 bool same_look(const view::Stamp& a, const std::vector<std::uint8_t>& a_coverage, const view::Stamp& b,
@@ -70,7 +72,46 @@ void check_size(int width, int height) {
                             width, height, widest, highest));
 }
 
+/// The same shader for tinted layers.
+std::string tinted(std::string source) {
+    const std::size_t second_line = source.find('\n') + 1;  // #version stays the first
+    return source.insert(second_line, "#define TINTED\n");
+}
+
+gl::Program tinted_program(const std::string& name, const char* vertex, const char* fragment) {
+    return {name, tinted(vertex).c_str(), tinted(fragment).c_str()};
+}
+
+void make_texture(const gl::Texture& texture, GLenum format, const Image& image) {
+    glActiveTexture(GL_TEXTURE0);
+    glBindTexture(GL_TEXTURE_2D, texture.id());
+    glTexStorage2D(GL_TEXTURE_2D, 1, format, image.width(), image.height());
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
+
+/// A framebuffer of these textures, in the order of the shader's outputs.
+void make_target(const gl::Framebuffer& target, std::initializer_list<const gl::Texture*> textures,
+                 const std::string& what) {
+    glBindFramebuffer(GL_FRAMEBUFFER, target.id());
+    std::vector<GLenum> outputs;
+    for (const gl::Texture* const texture : textures) {
+        outputs.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(outputs.size()));
+        glFramebufferTexture2D(GL_FRAMEBUFFER, outputs.back(), GL_TEXTURE_2D, texture->id(), 0);
+    }
+    glDrawBuffers(static_cast<GLsizei>(outputs.size()), outputs.data());
+    gl::check_framebuffer(what);
+}
+
+std::string making_frame(const Image& image) {
+    return fmt::format("making a frame of {}x{} pixels", image.width(), image.height());
+}
+
 }  // namespace
+
+FrameRenderer::Tints::Tints()
+    : capsule_program(tinted_program("tinted capsule", shaders::kCapsuleVert, shaders::kCapsuleFrag)),
+      paint_program(tinted_program("tinted paint", shaders::kPaintVert, shaders::kPaintFrag)) {}
 
 FrameRenderer::FrameRenderer(int width, int height)
     : image_((check_size(width, height), Image(width, height))),
@@ -85,41 +126,38 @@ FrameRenderer::FrameRenderer(int width, int height)
 }
 
 void FrameRenderer::make_textures() {
-    const auto make = [this](const gl::Texture& texture, GLenum format) {
-        glBindTexture(GL_TEXTURE_2D, texture.id());
-        glTexStorage2D(GL_TEXTURE_2D, 1, format, image_.width(), image_.height());
-        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    };
-    glActiveTexture(GL_TEXTURE0);
-    make(frame_, GL_RGBA8);
-    make(ground_, GL_RGBA8);
-    make(masks_, GL_RG8);
-    const std::string what = fmt::format("making a frame of {}x{} pixels", image_.width(), image_.height());
-    glBindFramebuffer(GL_FRAMEBUFFER, mask_target_.id());
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, masks_.id(), 0);
-    gl::check_framebuffer(what);
-    glBindFramebuffer(GL_FRAMEBUFFER, frame_target_.id());
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, frame_.id(), 0);
-    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, GL_TEXTURE_2D, masks_.id(), 0);
-    const std::array<GLenum, 2> both{GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
-    glDrawBuffers(static_cast<GLsizei>(both.size()), both.data());
-    gl::check_framebuffer(what);
+    make_texture(frame_, GL_RGBA8, image_);
+    make_texture(ground_, GL_RGBA8, image_);
+    make_texture(masks_, GL_RG8, image_);
+    make_target(mask_target_, {&masks_}, making_frame(image_));
+    make_target(frame_target_, {&frame_, &masks_}, making_frame(image_));
+}
+
+void FrameRenderer::make_tints() {
+    tints_ = std::make_unique<Tints>();
+    make_texture(tints_->sums, GL_RGBA32F, image_);
+    make_target(tints_->mask_target, {&masks_, &tints_->sums}, making_frame(image_));
+    make_target(tints_->frame_target, {&frame_, &masks_, &tints_->sums}, making_frame(image_));
+    set_capsule_uniforms(tints_->capsule_program);
+    set_paint_uniforms(tints_->paint_program);
+    glUniform1i(tints_->paint_program.uniform("sums"), kSumsUnit);
+    everything_is_stale_ = true;
 }
 
 void FrameRenderer::describe_capsules() {
-    static_assert(std::is_standard_layout_v<view::Capsule> && sizeof(view::Capsule) == 7 * sizeof(float));
+    static_assert(std::is_standard_layout_v<view::Capsule> && sizeof(view::Capsule) == 8 * sizeof(float));
     glBindVertexArray(capsule_array_.id());
     // Binding a name for the first time creates the buffer.
     glBindBuffer(GL_ARRAY_BUFFER, capsule_buffer_.id());
     glBindVertexBuffer(0, capsule_buffer_.id(), 0, sizeof(view::Capsule));
     glVertexBindingDivisor(0, 1);
-    for (const GLuint attribute : {0U, 1U}) {
+    for (const GLuint attribute : {0U, 1U, 2U}) {
         glEnableVertexAttribArray(attribute);
         glVertexAttribBinding(attribute, 0);
     }
     glVertexAttribFormat(0, 4, GL_FLOAT, GL_FALSE, offsetof(view::Capsule, ax));
     glVertexAttribFormat(1, 3, GL_FLOAT, GL_FALSE, offsetof(view::Capsule, length));
+    glVertexAttribIFormat(2, 4, GL_UNSIGNED_BYTE, offsetof(view::Capsule, tint));
 }
 
 void FrameRenderer::describe_tiles() {
@@ -141,19 +179,28 @@ void FrameRenderer::describe_tiles() {
 }
 
 void FrameRenderer::set_uniforms() {
-    const auto width = static_cast<float>(image_.width());
-    const auto height = static_cast<float>(image_.height());
-    capsule_program_.use();
-    glUniform2f(capsule_program_.uniform("frame_size"), width, height);
-    glUniform1f(capsule_program_.uniform("edge_margin"), view::kEdgeMargin);
+    set_capsule_uniforms(capsule_program_);
     stamp_program_.use();
-    glUniform2f(stamp_program_.uniform("frame_size"), width, height);
+    glUniform2f(stamp_program_.uniform("frame_size"), static_cast<float>(image_.width()),
+                static_cast<float>(image_.height()));
     glUniform1i(stamp_program_.uniform("coverage"), kCoverageUnit);
-    paint_program_.use();
-    glUniform2f(paint_program_.uniform("frame_size"), width, height);
-    glUniform1i(paint_program_.uniform("frame"), kFrameUnit);
-    glUniform1i(paint_program_.uniform("ground"), kGroundUnit);
-    glUniform1i(paint_program_.uniform("masks"), kMaskUnit);
+    set_paint_uniforms(paint_program_);
+}
+
+void FrameRenderer::set_capsule_uniforms(const gl::Program& program) const {
+    program.use();
+    glUniform2f(program.uniform("frame_size"), static_cast<float>(image_.width()),
+                static_cast<float>(image_.height()));
+    glUniform1f(program.uniform("edge_margin"), view::kEdgeMargin);
+}
+
+void FrameRenderer::set_paint_uniforms(const gl::Program& program) const {
+    program.use();
+    glUniform2f(program.uniform("frame_size"), static_cast<float>(image_.width()),
+                static_cast<float>(image_.height()));
+    glUniform1i(program.uniform("frame"), kFrameUnit);
+    glUniform1i(program.uniform("ground"), kGroundUnit);
+    glUniform1i(program.uniform("masks"), kMaskUnit);
 }
 
 PixelRect FrameRenderer::damage_of(const view::DrawList& list) const {
@@ -176,6 +223,9 @@ PixelRect FrameRenderer::render(const view::DrawList& list, const OnProgress& on
     const PixelRect damage = damage_of(list);
     if (damage.empty()) return damage;
 
+    const bool has_tints = std::any_of(list.layers.begin(), list.layers.end(),
+                                       [](const view::Layer& layer) { return layer.is_tinted; });
+    if (has_tints && !tints_) make_tints();
     const bool starts_anew = std::exchange(everything_is_stale_, true);  // if it fails on the way
     tiles_.plan(list);
     upload(list);
@@ -231,6 +281,9 @@ void FrameRenderer::empty_masks() const {
     set_state(image_.rect());
     glBindFramebuffer(GL_FRAMEBUFFER, mask_target_.id());
     glClearBufferfv(GL_COLOR, 0, kNothing.data());
+    if (!tints_) return;
+    glBindFramebuffer(GL_FRAMEBUFFER, tints_->mask_target.id());
+    glClearBufferfv(GL_COLOR, 1, kNothing.data());
 }
 
 void FrameRenderer::draw_band(const PixelRect& band) {
@@ -271,12 +324,13 @@ void FrameRenderer::set_state(const PixelRect& band) const {
     bind(kFrameUnit, frame_);
     bind(kGroundUnit, ground_);
     bind(kMaskUnit, masks_);
+    if (tints_) bind(kSumsUnit, tints_->sums);
     glActiveTexture(GL_TEXTURE0 + kCoverageUnit);
     glBindTexture(GL_TEXTURE_BUFFER, coverage_.id());
 }
 
 void FrameRenderer::draw_masks(const Batch& batch) const {
-    glBindFramebuffer(GL_FRAMEBUFFER, mask_target_.id());
+    glBindFramebuffer(GL_FRAMEBUFFER, batch.is_tinted ? tints_->mask_target.id() : mask_target_.id());
     glEnable(GL_BLEND);
     if (batch.is_stamps) {
         glBindVertexArray(tile_array_.id());
@@ -284,18 +338,27 @@ void FrameRenderer::draw_masks(const Batch& batch) const {
         glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.tile_count),
                                           static_cast<GLuint>(batch.first_tile));
     } else {
-        glBindVertexArray(capsule_array_.id());
-        capsule_program_.use();
-        glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.capsule_count),
-                                          static_cast<GLuint>(batch.first_capsule));
+        draw_capsules(batch);
     }
     glDisable(GL_BLEND);
 }
 
+void FrameRenderer::draw_capsules(const Batch& batch) const {
+    glBindVertexArray(capsule_array_.id());
+    (batch.is_tinted ? tints_->capsule_program : capsule_program_).use();
+    if (batch.is_tinted) {
+        glBlendEquationi(1, GL_FUNC_ADD);
+        glBlendFunci(1, GL_ONE, GL_ONE);
+    }
+    glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.capsule_count),
+                                      static_cast<GLuint>(batch.first_capsule));
+    if (batch.is_tinted) glBlendEquation(GL_MAX);
+}
+
 void FrameRenderer::paint(const Batch& batch) const {
-    glBindFramebuffer(GL_FRAMEBUFFER, frame_target_.id());
+    glBindFramebuffer(GL_FRAMEBUFFER, batch.is_tinted ? tints_->frame_target.id() : frame_target_.id());
     glBindVertexArray(tile_array_.id());
-    paint_program_.use();
+    (batch.is_tinted ? tints_->paint_program : paint_program_).use();
     glTextureBarrier();  // it reads what it draws on
     glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.tile_count),
                                       static_cast<GLuint>(batch.first_tile));

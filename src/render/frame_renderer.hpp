@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -19,7 +20,8 @@ namespace corda::render {
 ///
 /// Layer by layer, or many at once if no tile has two of them: the capsules and halos of a layer are united
 /// in two masks, by GL_MAX of values that are exactly k/255; then a pass over its tiles paints it in
-/// integers. So are stamps. Only the damage, what may differ from the last frame, is drawn and read back.
+/// integers. So are stamps. A tinted layer has sums of colours beside its masks. Only the damage, what may
+/// differ from the last frame, is drawn and read back.
 class FrameRenderer {
   public:
     /// A gl::Context must be current and outlive this. Throws corda::Error (kNoGl) if the driver cannot draw
@@ -35,16 +37,30 @@ class FrameRenderer {
     [[nodiscard]] const Image& image() const { return image_; }
 
   private:
+    /// What tinted layers take besides; made when the first one is drawn.
+    struct Tints {
+        Tints();
+        gl::Program capsule_program;
+        gl::Program paint_program;
+        gl::Texture sums;
+        gl::Framebuffer mask_target;   ///< masks and sums
+        gl::Framebuffer frame_target;  ///< frame, masks and sums
+    };
+
     void make_textures();
+    void make_tints();
     void describe_capsules();
     void describe_tiles();
     void set_uniforms();
+    void set_capsule_uniforms(const gl::Program& program) const;
+    void set_paint_uniforms(const gl::Program& program) const;
     /// Sets the state that drawing depends on: another renderer may have drawn in this context meanwhile.
     void set_state(const PixelRect& band) const;
     [[nodiscard]] PixelRect damage_of(const view::DrawList& list) const;
     void upload(const view::DrawList& list);
     void upload_ground(const Ground& ground, const OnProgress& on_progress);
     void empty_masks() const;
+    void draw_capsules(const Batch& batch) const;
     /// Draws and reads some rows.
     void draw_band(const PixelRect& band);
     void draw_masks(const Batch& batch) const;
@@ -66,6 +82,7 @@ class FrameRenderer {
     gl::Texture frame_;
     gl::Framebuffer mask_target_;
     gl::Framebuffer frame_target_;
+    std::unique_ptr<Tints> tints_;
     PixelRect last_bounds_;
     std::vector<view::Stamp> last_stamps_;
     std::vector<std::uint8_t> last_coverage_;

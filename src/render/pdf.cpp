@@ -26,7 +26,7 @@ struct CairoDeleter {
 using FontFace = std::unique_ptr<cairo_font_face_t, CairoDeleter>;
 using Pattern = std::unique_ptr<cairo_pattern_t, CairoDeleter>;
 
-constexpr double kPointsPerMm = 72.0 / 25.4;
+constexpr double kPointsPerMm = 72.0 / kMmPerInch;
 
 cairo_status_t append_bytes(void* file, const unsigned char* bytes, unsigned count) {
     try {
@@ -62,35 +62,13 @@ Pattern pattern_of(const Ground& ground, int height) {
     return pattern;
 }
 
-/// The font that the program carries with it, for cairo, which may keep it longer than a page lives.
-class FontFile {
-  public:
-    FontFile() {
-        if (FT_Init_FreeType(&library_) != 0 ||
-            FT_New_Memory_Face(library_, view::font_begin(), static_cast<FT_Long>(view::font_bytes()), 0,
-                               &face_) != 0)
-            throw Error(ExitCode::kInternal, "the font cannot be read");
-    }
-    FontFile(const FontFile&) = delete;
-    FontFile& operator=(const FontFile&) = delete;
-    ~FontFile() {
-        FT_Done_Face(face_);
-        FT_Done_FreeType(library_);
-    }
-    [[nodiscard]] FT_Face face() const { return face_; }
-
-  private:
-    FT_Library library_ = nullptr;
-    FT_Face face_ = nullptr;
-};
-
-/// The font's file dies with the face.
+/// cairo may keep the face longer than a page lives: the font's file dies with the face.
 FontFace make_font_face() {
     static const cairo_user_data_key_t key{};
-    auto file = std::make_unique<FontFile>();
+    auto file = std::make_unique<view::FontFile>();
     FontFace face(cairo_ft_font_face_create_for_ft_face(file->face(), FT_LOAD_NO_HINTING));
     check(cairo_font_face_set_user_data(face.get(), &key, file.get(),
-                                        [](void* kept) { delete static_cast<FontFile*>(kept); }));
+                                        [](void* kept) { delete static_cast<view::FontFile*>(kept); }));
     static_cast<void>(file.release());
     return face;
 }
@@ -102,7 +80,8 @@ class Pdf : public VectorPage {
         const double scale = width_pt / def.width_px;
         surface_.reset(
             cairo_pdf_surface_create_for_stream(append_bytes, &bytes_, width_pt, scale * def.height_px));
-        cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_TITLE, def.title.c_str());
+        cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_TITLE,
+                                       printable(def.title).c_str());
         cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_CREATOR, "corda");
         // Otherwise it is the time of day, and no two files are the same.
         cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_CREATE_DATE,
@@ -134,15 +113,13 @@ class Pdf : public VectorPage {
                 stroke(strokes.halos, ground.get(), layer.color.a);
             else if (!strokes.halos.empty())
                 cut_out(list, layer);
-            stroke(strokes.lines, solid({layer.color.r, layer.color.g, layer.color.b}).get(), layer.color.a);
+            stroke(strokes.lines, nullptr, layer.color.a);
         }
         if (!is_opaque) {
             cairo_pop_group_to_source(cairo);
             cairo_paint(cairo);
         }
-        for (const view::Stamp& stamp : list.stamps) {
-            if (stamp.first_coverage == view::Stamp::kSolid) fill_box(stamp);
-        }
+        for (const view::Stamp& box : boxes_of(list)) fill_box(box);
         for (const view::Text& text : list.texts) write(text);
         cairo_restore(cairo);
         check(cairo_status(cairo));
@@ -157,13 +134,15 @@ class Pdf : public VectorPage {
     }
 
   private:
-    /// Unites the strokes, then paints them.
+    /// Unites the strokes, then paints them; without a pattern each in its colour.
     void stroke(const std::vector<Stroke>& strokes, cairo_pattern_t* paint, std::uint8_t alpha) {
         if (strokes.empty() || alpha == 0) return;
         cairo_t* const cairo = cairo_.get();
         if (alpha < 255) cairo_push_group(cairo);
-        cairo_set_source(cairo, paint);
+        if (paint != nullptr) cairo_set_source(cairo, paint);
         for (const Stroke& stroke : strokes) {
+            if (paint == nullptr) cairo_set_source(cairo, solid(stroke.color).get());
+            cairo_set_line_cap(cairo, stroke.is_blunt ? CAIRO_LINE_CAP_BUTT : CAIRO_LINE_CAP_ROUND);
             cairo_set_line_width(cairo, stroke.width_px);
             for (const auto& line : stroke.lines) {
                 cairo_move_to(cairo, line.front().x, line.front().y);

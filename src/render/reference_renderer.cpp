@@ -13,19 +13,24 @@ namespace {
 struct Mask {
     std::vector<std::uint8_t> line;
     std::vector<std::uint8_t> halo;
+    std::vector<TintSums> tints;  ///< empty if no layer is tinted
 };
 
-void unite(const view::Capsule& capsule, const PixelRect& box, int width, Mask& mask) {
+void unite(const view::Capsule& capsule, bool is_tinted, const PixelRect& box, int width, Mask& mask) {
     for (int y = box.y0; y < box.y1; ++y) {
         for (int x = box.x0; x < box.x1; ++x) {
-            const float distance_px =
-                segment_distance_px(capsule, static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+            const float center_x = static_cast<float>(x) + 0.5F;
+            const float center_y = static_cast<float>(y) + 0.5F;
+            const float distance_px = segment_distance_px(capsule, center_x, center_y);
             const std::size_t i = static_cast<std::size_t>(y) * width + x;
             const auto add = [distance_px](std::uint8_t& united, float radius) {
                 united = std::max(united, static_cast<std::uint8_t>(coverage_within(radius, distance_px)));
             };
             add(mask.line[i], capsule.radius);
             add(mask.halo[i], capsule.halo_radius);
+            if (!is_tinted) continue;
+            const std::uint32_t coverage = coverage_within(capsule.radius, distance_px);
+            mask.tints[i].add(capsule.tint, tint_weight(capsule, center_x, center_y, coverage));
         }
     }
 }
@@ -41,12 +46,19 @@ void put(const view::Stamp& stamp, const std::vector<std::uint8_t>& coverage, in
 }
 
 /// Paints a layer or a stamp, and empties its mask.
-void paint(const Color& color, const PixelRect& box, const Image& ground, Mask& mask, Image& image) {
+void paint(Color color, bool is_tinted, const PixelRect& box, const Image& ground, Mask& mask, Image& image) {
     for (int y = box.y0; y < box.y1; ++y) {
         for (int x = box.x0; x < box.x1; ++x) {
             const std::size_t i = static_cast<std::size_t>(y) * image.width() + x;
             std::uint8_t* pixel = image.pixel(x, y);
             const std::uint8_t* bare = ground.pixel(x, y);
+            if (is_tinted) {
+                const TintSums& sums = mask.tints[i];
+                color.r = static_cast<std::uint8_t>(sums.mean(sums.r));
+                color.g = static_cast<std::uint8_t>(sums.mean(sums.g));
+                color.b = static_cast<std::uint8_t>(sums.mean(sums.b));
+                mask.tints[i] = {};
+            }
             const auto channel = [&](int c, std::uint8_t own) {
                 const std::uint32_t below = paint_over(pixel[c], bare[c], color.a, mask.halo[i]);
                 pixel[c] = static_cast<std::uint8_t>(paint_over(below, own, color.a, mask.line[i]));
@@ -69,20 +81,21 @@ Image render_reference(const view::DrawList& list) {
         write_ground_row(list.ground, y, list.width, list.height, ground.pixel(0, y));
     Image image = ground;
     const std::size_t pixels = static_cast<std::size_t>(list.width) * list.height;
-    Mask mask{std::vector<std::uint8_t>(pixels), std::vector<std::uint8_t>(pixels)};
+    Mask mask{std::vector<std::uint8_t>(pixels), std::vector<std::uint8_t>(pixels), {}};
     for (const view::Layer& layer : list.layers) {
         PixelRect touched;
+        if (layer.is_tinted) mask.tints.resize(pixels);
         for (std::size_t i = 0; i < layer.capsule_count; ++i) {
             const view::Capsule& capsule = list.capsules[layer.first_capsule + i];
             const PixelRect box = view::capsule_bounds(capsule, list.width, list.height);
-            unite(capsule, box, list.width, mask);
+            unite(capsule, layer.is_tinted, box, list.width, mask);
             touched = touched.united(box);
         }
-        paint(layer.color, touched, ground, mask, image);
+        paint(layer.color, layer.is_tinted, touched, ground, mask, image);
     }
     for (const view::Stamp& stamp : list.stamps) {
         put(stamp, list.coverage, list.width, mask);
-        paint(stamp.color, stamp.box, ground, mask, image);
+        paint(stamp.color, false, stamp.box, ground, mask, image);
     }
     for (int y = 0; y < list.height && !list.ground.is_opaque(); ++y) {
         for (int x = 0; x < list.width; ++x) straighten(image.pixel(x, y));

@@ -13,15 +13,17 @@ bool is_same(const view::PixelPoint& a, const view::PixelPoint& b) {
     return std::abs(a.x - b.x) < kSamePointPx && std::abs(a.y - b.y) < kSamePointPx;
 }
 
-void append(std::vector<Stroke>& strokes, const view::Capsule& capsule, double radius_px) {
-    if (radius_px <= 0.0) return;
-    const double width_px = 2.0 * radius_px;
+/// Appends the segment of a capsule to the stroke of that look.
+void append(std::vector<Stroke>& strokes, const view::Capsule& capsule, const Stroke& look) {
+    if (look.width_px <= 0.0) return;
     const view::PixelPoint from{capsule.ax, capsule.ay};
     const view::PixelPoint to{from.x + static_cast<double>(capsule.ux) * capsule.length,
                               from.y + static_cast<double>(capsule.uy) * capsule.length};
-    auto stroke = std::find_if(strokes.begin(), strokes.end(),
-                               [&](const Stroke& other) { return other.width_px == width_px; });
-    if (stroke == strokes.end()) stroke = strokes.insert(stroke, {width_px, {}});
+    auto stroke = std::find_if(strokes.begin(), strokes.end(), [&](const Stroke& other) {
+        return other.width_px == look.width_px && other.color == look.color &&
+               other.is_blunt == look.is_blunt;
+    });
+    if (stroke == strokes.end()) stroke = strokes.insert(stroke, look);
     const bool is_dot = capsule.length == 0.0F;
     const bool goes_on = !stroke->lines.empty() && is_same(stroke->lines.back().back(), from) && !is_dot;
     if (goes_on)
@@ -34,12 +36,35 @@ void append(std::vector<Stroke>& strokes, const view::Capsule& capsule, double r
 
 LayerStrokes strokes_of(const view::DrawList& list, const view::Layer& layer) {
     LayerStrokes strokes;
+    std::vector<Stroke> blunt;
+    std::vector<Stroke> dots;
     for (std::size_t i = layer.first_capsule; i < layer.first_capsule + layer.capsule_count; ++i) {
         const view::Capsule& capsule = list.capsules[i];
-        append(strokes.halos, capsule, capsule.halo_radius);
-        append(strokes.lines, capsule, capsule.radius);
+        append(strokes.halos, capsule, {.width_px = 2.0 * static_cast<double>(capsule.halo_radius)});
+        Stroke look{.width_px = 2.0 * static_cast<double>(capsule.radius), .color = layer.color};
+        look.color.a = 255;
+        if (layer.is_tinted) look.color = {capsule.tint.r, capsule.tint.g, capsule.tint.b};
+        const bool is_dot = capsule.length == 0.0F;
+        append(layer.is_tinted && is_dot ? dots : strokes.lines, capsule, look);
+        look.is_blunt = true;
+        if (layer.is_tinted && !is_dot) append(blunt, capsule, look);
     }
+    strokes.lines.insert(strokes.lines.end(), blunt.begin(), blunt.end());
+    strokes.lines.insert(strokes.lines.end(), dots.begin(), dots.end());
     return strokes;
+}
+
+std::vector<view::Stamp> boxes_of(const view::DrawList& list) {
+    std::vector<view::Stamp> boxes;
+    for (const view::Stamp& stamp : list.stamps) {
+        if (stamp.first_coverage != view::Stamp::kSolid) continue;
+        if (!boxes.empty() && stamp.color.a == 255) {
+            PixelRect& last = boxes.back().box;
+            if (last.x1 == stamp.box.x0 && last.y0 == stamp.box.y0 && last.y1 == stamp.box.y1) ++last.x1;
+        }
+        boxes.push_back(stamp);
+    }
+    return boxes;
 }
 
 }  // namespace corda::render

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <iterator>
+#include <span>
+#include <vector>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/text.hpp"
@@ -52,9 +54,12 @@ std::string opacity(std::string_view name, const Color& color) {
     return color.a == 255 ? "" : fmt::format(R"( {}="{:.4g}")", name, color.a / 255.0);
 }
 
-void append_paths(const std::vector<Stroke>& strokes, std::string& text) {
+/// `is_tinted`: each in its own colour.
+void append_paths(const std::vector<Stroke>& strokes, bool is_tinted, std::string& text) {
     for (const Stroke& stroke : strokes) {
-        fmt::format_to(std::back_inserter(text), R"(<path stroke-width="{}" d=")", number(stroke.width_px));
+        const std::string color = is_tinted ? fmt::format(R"( stroke="{}")", stroke.color.text()) : "";
+        fmt::format_to(std::back_inserter(text), R"(<path{}{} stroke-width="{}" d=")", color,
+                       stroke.is_blunt ? R"( stroke-linecap="butt")" : "", number(stroke.width_px));
         for (const auto& line : stroke.lines) {
             for (std::size_t i = 0; i < line.size(); ++i)
                 fmt::format_to(std::back_inserter(text), "{}{} {}",
@@ -71,7 +76,7 @@ class Svg : public VectorPage {
   public:
     explicit Svg(const PageDef& def) : def_(def) {
         text_ = fmt::format(fmt::runtime(kHead), def.width_mm, def.width_mm * def.height_px / def.width_px,
-                            def.width_px, def.height_px, xml_text(def.title));
+                            def.width_px, def.height_px, xml_text(printable(def.title)));
     }
 
     void draw(const view::DrawList& list, int x_px, int y_px) override {
@@ -80,22 +85,13 @@ class Svg : public VectorPage {
                              list.height) +
                  "\n";
         const std::string ground = draw_ground(list);
-        std::string layers;
+        std::vector<LayerText> layers;
         for (std::size_t l = 0; l < list.layers.size(); ++l) {
             report_progress(def_.on_progress, static_cast<std::int64_t>(l),
                             static_cast<std::int64_t>(list.layers.size()));
-            const view::Layer& layer = list.layers[l];
-            const LayerStrokes strokes = strokes_of(list, layer);
-            if (!strokes.halos.empty()) {
-                if (list.ground.is_opaque())
-                    append_group(ground, layer.color, strokes.halos, layers);
-                else
-                    cut_out(list, layer.color, strokes.halos, layers);
-            }
-            if (!strokes.lines.empty())
-                append_group(opaque_text(layer.color), layer.color, strokes.lines, layers);
+            layers.push_back(describe(list, list.layers[l], ground));
         }
-        text_ += layers;
+        append_layers(layers, list);
         append_stamps(list);
         text_ += "</svg>\n";
     }
@@ -127,28 +123,64 @@ class Svg : public VectorPage {
 
     /// A group is united before its opacity counts.
     static void append_group(std::string_view paint, const Color& color, const std::vector<Stroke>& strokes,
-                             std::string& layers) {
+                             bool is_tinted, std::string& layers) {
         layers += fmt::format(R"(<g stroke="{}"{}>)", paint, opacity("opacity", color)) + "\n";
-        append_paths(strokes, layers);
+        append_paths(strokes, is_tinted, layers);
         layers += "</g>\n";
     }
 
-    /// Removes what is below halos.
-    void cut_out(const view::DrawList& list, const Color& color, const std::vector<Stroke>& halos,
-                 std::string& layers) {
-        const std::string id = fmt::format("halo{}", ids_++);
-        std::string mask =
-            fmt::format(R"(<mask id="{}" maskUnits="userSpaceOnUse" x="0" y="0" width="{}" height="{}">)"
-                        R"(<rect width="{}" height="{}" fill="#fff"/>)",
-                        id, list.width, list.height, list.width, list.height);
-        append_group("#000", color, halos, mask);
-        layers = mask + fmt::format("</mask>\n<g mask=\"url(#{})\">\n", id) + layers + "</g>\n";
+    struct LayerText {
+        std::string lines;
+        std::string halo_id;  ///< of what it cuts out of the layers below; empty: nothing
+    };
+
+    LayerText describe(const view::DrawList& list, const view::Layer& layer, const std::string& ground) {
+        const LayerStrokes strokes = strokes_of(list, layer);
+        LayerText text;
+        if (!strokes.halos.empty() && list.ground.is_opaque()) {
+            append_group(ground, layer.color, strokes.halos, false, text.lines);
+        } else if (!strokes.halos.empty()) {
+            text.halo_id = fmt::format("halo{}", ids_++);
+            text_ += fmt::format("<defs><g id=\"{}\">\n", text.halo_id);
+            append_group("#000", layer.color, strokes.halos, false, text_);
+            text_ += "</g></defs>\n";
+        }
+        if (!strokes.lines.empty())
+            append_group(opaque_text(layer.color), layer.color, strokes.lines, layer.is_tinted, text.lines);
+        return text;
+    }
+
+    /// Draws layers, of which each cuts its halo out of all below it: the lower half through a mask of the
+    /// halos of the upper one, and so on in both halves. Groups nest as deep as there are halvings: viewers
+    /// fail at some hundreds.
+    void append_layers(std::span<const LayerText> layers, const view::DrawList& list) {
+        if (layers.empty()) return;
+        if (layers.size() == 1) {
+            text_ += layers.front().lines;
+            return;
+        }
+        const auto lower = layers.first(layers.size() / 2);
+        const auto upper = layers.subspan(lower.size());
+        std::string halos;
+        for (const LayerText& layer : upper) {
+            if (!layer.halo_id.empty()) halos += fmt::format("<use href=\"#{}\"/>\n", layer.halo_id);
+        }
+        if (!halos.empty()) {
+            const std::string id = fmt::format("mask{}", ids_++);
+            text_ +=
+                fmt::format(R"(<mask id="{}" maskUnits="userSpaceOnUse" x="0" y="0" width="{}" height="{}">)"
+                            R"(<rect width="{}" height="{}" fill="#fff"/>)"
+                            "\n{}</mask>\n<g mask=\"url(#{})\">\n",
+                            id, list.width, list.height, list.width, list.height, halos, id);
+        }
+        append_layers(lower, list);
+        if (!halos.empty()) text_ += "</g>\n";
+        append_layers(upper, list);
     }
 
     void append_stamps(const view::DrawList& list) {
         const auto out = std::back_inserter(text_);
-        for (const view::Stamp& stamp : list.stamps) {
-            if (stamp.first_coverage != view::Stamp::kSolid) continue;
+        for (const view::Stamp& stamp : boxes_of(list)) {
             fmt::format_to(out, R"(<rect x="{}" y="{}" width="{}" height="{}" fill="{}"{}/>)", stamp.box.x0,
                            stamp.box.y0, stamp.box.width(), stamp.box.height(), opaque_text(stamp.color),
                            opacity("fill-opacity", stamp.color));

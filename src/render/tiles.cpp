@@ -42,7 +42,7 @@ void Tiles::plan(const view::DrawList& list) {
         const view::Layer& layer = list.layers[l];
         if (layer.capsule_count == 0) continue;
         touched_.clear();
-        bool overlaps = batches_.empty();
+        bool overlaps = batches_.empty() || batches_.back().is_tinted != layer.is_tinted;
         for (std::size_t i = 0; i < layer.capsule_count; ++i) {
             for_each_tile(list.capsules[layer.first_capsule + i], list, [&](std::size_t tile) {
                 if (last_layer_[tile] == l + 1) return;
@@ -52,7 +52,9 @@ void Tiles::plan(const view::DrawList& list) {
             });
         }
         if (overlaps) {
-            batches_.push_back({.first_capsule = layer.first_capsule, .first_tile = tiles_.size()});
+            batches_.push_back({.first_capsule = layer.first_capsule,
+                                .first_tile = tiles_.size(),
+                                .is_tinted = layer.is_tinted});
             first_layer = l;
         }
         Batch& batch = batches_.back();

@@ -19,13 +19,15 @@ struct Tile {
     std::int32_t first_coverage = -1;  ///< of a stamp: see view::Stamp; -1: all of it is covered
 };
 
-/// Layers, or stamps, that can be painted at once, because no two of them have a tile in common.
+/// Layers, tinted ones or others, or stamps that can be painted at once, because no two of them have a tile
+/// in common.
 struct Batch {
     std::size_t first_capsule = 0;
     std::size_t capsule_count = 0;
     std::size_t first_tile = 0;
     std::size_t tile_count = 0;
     bool is_stamps = false;  ///< one per tile
+    bool is_tinted = false;  ///< of its layers
 };
 
 /// Where the layers and stamps of a draw list are painted, in what order. A layer is painted only in the

@@ -13,7 +13,7 @@ struct PageDef {
     int width_px = 0;  ///< of the coordinates; 1 px is width_mm / width_px
     int height_px = 0;
     double width_mm = 0.0;
-    std::string title = {};       ///< UTF-8
+    std::string title = {};       ///< UTF-8; control characters are written as their numbers
     OnProgress on_progress = {};  ///< asked at each layer
 };
 

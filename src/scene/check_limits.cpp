@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <string>
@@ -108,9 +109,22 @@ double expected_bytes(const BodySize& size, const SolverDef& solver, bool is_net
            kPerBar * static_cast<double>(size.bars);
 }
 
+/// About the most memory that the trail of a rope takes: a point per frame, at most 400 in a trail, and in a
+/// picture half of 12 layers of 4 capsules per point.
+double trail_bytes(const Scene& scene) {
+    if (scene.style.trail_s == 0.0) return 0.0;
+    constexpr double kPerPoint = 2.0 * sizeof(Vec2);  // a vector that grows has as much again
+    constexpr double kPerPointInPicture = 2.0 * 26.0 * 32.0;
+    constexpr double kMostPoints = 400.0;
+    const double in_trail = scene.style.trail_s * scene.video.fps.per_second();
+    const double stride = std::max(1.0, in_trail / kMostPoints);
+    const double points = scene.world.duration_s * scene.video.fps.per_second() / stride;
+    return kPerPoint * points + kPerPointInPicture * std::min({in_trail, points, kMostPoints});
+}
+
 /// Adds one body to what all ask for together. Returns whether that is within the limits.
-bool add_size(const TableReader& body, const BodySize& size, double bytes, std::string_view fewer_bars,
-              Demand& all) {
+bool add_size(const TableReader& body, const BodySize& size, double bytes, bool has_trail,
+              std::string_view fewer_bars, Demand& all) {
     all.particles += size.particles;
     all.bars += size.bars;
     all.bytes += bytes;
@@ -129,8 +143,8 @@ bool add_size(const TableReader& body, const BodySize& size, double bytes, std::
     if (gibibytes <= Limits::kGibibytes) return true;
     body.add_problem(
         fmt::format("the ropes and nets up to this one take some {:.0f} GiB of memory, over the limit of "
-                    "{:g}; give fewer particles, or method relaxation, which takes less",
-                    gibibytes, Limits::kGibibytes));
+                    "{:g}; give fewer particles, {}or method relaxation, which takes less",
+                    gibibytes, Limits::kGibibytes, has_trail ? "no style.trail_s, " : ""));
     return false;
 }
 
@@ -195,7 +209,7 @@ void check_pace(const Sections& sections, const Scene& scene, const System& syst
 
 }  // namespace
 
-SceneSize count_bodies(const Sections& sections, const SolverSection& solver) {
+SceneSize count_bodies(const Sections& sections, const SolverSection& solver, const Scene& scene) {
     SceneSize size;
     Demand all;
     size.has_bars = sections.solver.is_sound("method") && sections.solver.is_sound("reach") &&
@@ -205,8 +219,10 @@ SceneSize count_bodies(const Sections& sections, const SolverSection& solver) {
         const SolverDef& method = solver.group_of(size.bodies.size()).def;
         size.bodies.push_back(own);
         size.has_bars = size.has_bars && own;
+        const double of_trail = is_net ? 0.0 : trail_bytes(scene);
         if (size.fits && own)
-            size.fits = add_size(body, *own, expected_bytes(*own, method, is_net), fewer_bars, all);
+            size.fits = add_size(body, *own, expected_bytes(*own, method, is_net) + of_trail, of_trail > 0.0,
+                                 fewer_bars, all);
     };
     for (const TableReader& rope : sections.ropes) {
         const int reach = solver.group_of(size.bodies.size()).reach;

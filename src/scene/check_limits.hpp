@@ -16,7 +16,8 @@ struct SceneSize {
 };
 
 /// Counts without making anything. Too many particles or bars of all bodies together are a problem.
-[[nodiscard]] SceneSize count_bodies(const Sections& sections, const SolverSection& solver);
+[[nodiscard]] SceneSize count_bodies(const Sections& sections, const SolverSection& solver,
+                                     const Scene& scene);
 
 /// Adds a problem if the video has no frame or too many, or the simulation would take too many steps or bar
 /// updates, by each body's own method.

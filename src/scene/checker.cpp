@@ -53,7 +53,7 @@ class ValueChecker {
     [[nodiscard]] bool takes(unsigned forms) const { return (key_->type.forms & forms) != 0; }
 
     bool check_list(const toml::array& list, const std::string& path) const {
-        if (list.size() < key_->type.least_entries || list.size() > key_->type.most_entries)
+        if (list.size() < key_->type.least_entries)
             return fail(list, path, list.empty() ? "the list is empty" : described(list));
         bool good = true;
         for (std::size_t i = 0; i < list.size(); ++i) {
@@ -137,6 +137,11 @@ class ValueChecker {
     }
 
     bool check_text(const std::string& text, const toml::node& node, const std::string& path) const {
+        if (text.size() > Limits::kTextBytes) {
+            return fail(
+                node, path,
+                fmt::format("a text of {} bytes, over the limit of {}", text.size(), Limits::kTextBytes));
+        }
         return printable(text) == text ||
                fail(node, path, fmt::format("\"{}\" has a control character", excerpt(text)));
     }

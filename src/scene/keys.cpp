@@ -60,8 +60,8 @@ Type or_list(Type type, std::string_view words) {
     return type;
 }
 
-Type list(Kind kind, std::size_t least, std::size_t most = SIZE_MAX) {
-    return {.kind = kind, .forms = kList, .list = "a list", .least_entries = least, .most_entries = most};
+Type list(Kind kind, std::size_t least) {
+    return {.kind = kind, .forms = kList, .list = "a list", .least_entries = least};
 }
 
 Type pairs(Kind kind, std::string_view words, std::size_t least, const Range& range = kAny) {
@@ -147,6 +147,8 @@ std::vector<Key> world_keys() {
 std::vector<Key> body_keys(std::string_view section, std::vector<Key> keys, std::string_view width) {
     const Type mass = or_list(number(kMass), "a list with one per particle");
     const Type velocity = or_list(pair("[vx, vy]", kAny), "a list with one such pair per particle");
+    Type color = or_list(of(Kind::kColor), "a list with one per link, in turn");
+    color.least_entries = 1;
     const std::vector<Key> common{
         {section, "points", pairs(Kind::kNumber, "[x, y]", 2, kCoordinate), "m", none(),
          "the positions of the particles"},
@@ -154,7 +156,8 @@ std::vector<Key> body_keys(std::string_view section, std::vector<Key> keys, std:
         {section, "velocity", velocity, "m/s", at(Vec2{}), "the velocity of the particles at the start"},
         {section, "compliance", number({.low = 0.0, .high = 1e6}), "1/N", at(MaterialDef{}.compliance_1_n),
          "the strain per newton of tension, 1/(E A)", "at 0 all lengths are kept"},
-        {section, "color", of(Kind::kColor), "", otherwise("the next of style.palette"), "the colour"},
+        {section, "color", color, "", otherwise("the next of style.palette"), "the colour",
+         "a list: of its links in turn, with style.color_by = \"link\""},
         {section, "width_px", number(kWidthPx), "px", otherwise(width), "the width"},
     };
     keys.insert(keys.end(), common.begin(), common.end());
@@ -335,6 +338,7 @@ std::vector<Key> style_keys() {
     const Type boolean = of(Kind::kBoolean);
     const Type color = of(Kind::kColor);
     const Words themes{"dark", "paper"};
+    const Words color_by{"body", "tension", "speed", "strain", "link"};
     const Words markers{"none", "pinned", "all"};
     const Words bars{"none", "real", "all"};
     const Default of_theme = otherwise("the theme's");
@@ -343,8 +347,10 @@ std::vector<Key> style_keys() {
          "every one below overrides it"},
         {"style", "background", or_pair(of(Kind::kColor), "[top, bottom]"), "", of_theme, "the background",
          "with alpha for .png, .svg and .pdf"},
-        {"style", "palette", list(Kind::kColor, 1, 64), "", of_theme,
+        {"style", "palette", list(Kind::kColor, 1), "", of_theme,
          "the colours that ropes, then nets take in turn"},
+        {"style", "color_by", one_of(color_by), "", at(color_by, def.color_by), "what colours tell",
+         "tension, speed and strain of each link by one scale for the whole film; link: the list in color"},
         {"style", "rope_width_px", number(kWidthPx), "px", otherwise("shorter side / 120, at least 2"),
          "the width of ropes"},
         {"style", "net_width_px", number(kWidthPx), "px", otherwise("half of ropes, at least 2"),
@@ -376,6 +382,7 @@ std::vector<Key> overlay_keys() {
     return {
         {"overlay", "time", boolean, "", if_large, "the time, at the lower left"},
         {"overlay", "scale_bar", boolean, "", if_large, "a scale bar, at the lower right"},
+        {"overlay", "legend", boolean, "", if_large, "the scale of style.color_by, at the upper right"},
         {"overlay", "title", of(Kind::kText), "", at(def.title), "the title, at the upper left",
          "shortened if it is too long"},
         {"overlay", "energy", boolean, "", at(def.energy), "the error of the energy, beside the time",

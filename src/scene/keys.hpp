@@ -31,7 +31,6 @@ struct Type {
     std::string_view pair = {};                  ///< what a pair looks like
     std::string_view list = {};                  ///< what a list holds
     std::size_t least_entries = 0;               ///< of a list
-    std::size_t most_entries = SIZE_MAX;         ///< of a list
 };
 
 /// What a key stands for if the file does not have it.

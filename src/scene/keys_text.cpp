@@ -38,8 +38,6 @@ std::string kind_text(Kind kind) {
 }
 
 std::string entries_text(const Key& key) {
-    if (key.type.most_entries != SIZE_MAX)
-        return fmt::format("{} .. {}", key.type.least_entries, key.type.most_entries);
     return key.type.least_entries == 0 ? "" : fmt::format("at least {}", key.type.least_entries);
 }
 
@@ -154,9 +152,8 @@ std::string remedy(const Key& key) {
         case Kind::kBoolean:
             return "give true or false";
         case Kind::kColor:
-            return (key.type.forms & kList) != 0
-                       ? fmt::format("give a list of {} colours {}", entries_text(key), kColorWords)
-                       : fmt::format("give a colour {}", kColorWords);
+            return fmt::format("give a {} {}", (key.type.forms & kOne) != 0 ? "colour" : "list of colours",
+                               kColorWords);
         case Kind::kText:
             return fmt::format("give {} as one line of text in quotes", key.meaning);
         case Kind::kFrameRate:

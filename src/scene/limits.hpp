@@ -7,6 +7,7 @@ namespace corda::scene {
 /// What a scene may ask for at most. Checked before any memory is taken.
 struct Limits {
     static constexpr std::int64_t kFileBytes = 16 << 20;
+    static constexpr std::size_t kTextBytes = 1000;  // of a title
     static constexpr std::int64_t kParticles = 1'000'000;
     static constexpr std::int64_t kBars = 20'000'000;
     static constexpr double kGibibytes = 8.0;  // of memory to simulate it

@@ -47,6 +47,7 @@ StyleDef read_style(const TableReader& style) {
     if (const auto palette = style.find("palette")) {
         for (std::size_t i = 0; i < palette->size(); ++i) def.palette.push_back(palette->at(i).as<Color>());
     }
+    style.read("color_by", def.color_by);
     style.read("rope_width_px", def.rope_width_px);
     style.read("net_width_px", def.net_width_px);
     style.read("payload", def.payload);
@@ -68,6 +69,7 @@ OverlayDef read_overlay(const TableReader& overlay) {
     OverlayDef def;
     overlay.read("time", def.time);
     overlay.read("scale_bar", def.scale_bar);
+    overlay.read("legend", def.legend);
     overlay.read("title", def.title);
     overlay.read("energy", def.energy);
     overlay.read("method", def.method);
@@ -82,9 +84,21 @@ CameraDef read_camera(const TableReader& camera) {
     return def;
 }
 
-BodyStyleDef read_body_style(const TableReader& body) {
+BodyStyleDef read_body_style(const TableReader& body, const StyleDef& style) {
     BodyStyleDef def;
-    body.read("color", def.color);
+    if (const auto color = body.find("color"); color && color->is_list()) {
+        for (std::size_t i = 0; i < color->size(); ++i) {
+            def.link_colors.push_back(color->at(i).as<Color>());
+            if (def.link_colors.back().a != def.link_colors.front().a)
+                color->at(i).add_problem(
+                    "another alpha than that of the first link; give all links the same");
+        }
+        if (style.color_by != ColorBy::kLink)
+            color->add_problem(
+                "a list of colours is for links in turn; set style.color_by = \"link\", or give one colour");
+    } else if (color) {
+        def.color = color->as<Color>();
+    }
     body.read("width_px", def.width_px);
     return def;
 }

@@ -28,11 +28,11 @@ void read_bodies(const Sections& sections, const SceneSize& size, const SolverSe
     for (const TableReader& rope : sections.ropes) {
         const std::size_t body = scene.ropes.size();
         scene.ropes.push_back(read_rope(rope, size.bodies[body], solver.group_of(body).reach));
-        scene.body_styles.push_back(read_body_style(rope));
+        scene.body_styles.push_back(read_body_style(rope, scene.style));
     }
     for (const TableReader& net : sections.nets) {
         scene.nets.push_back(read_net(net, size.bodies[scene.body_styles.size()]));
-        scene.body_styles.push_back(read_body_style(net));
+        scene.body_styles.push_back(read_body_style(net, scene.style));
     }
 }
 
@@ -59,8 +59,9 @@ Scene parse_scene(std::string_view toml, const std::string& source_name,
     scene.style = read_style(sections.style);
     scene.overlay = read_overlay(sections.overlay);
     scene.camera = read_camera(sections.camera);
-    const SceneSize size = count_bodies(sections, solver);
+    const SceneSize size = count_bodies(sections, solver, scene);
     check_work(sections, solver, size, scene);
+    check_color_by(sections, solver, scene.style);
     if (size.fits) read_bodies(sections, size, solver, scene);
     problems.throw_if_any();
     check_motion(sections, scene);

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "corda/scene/readers.hpp"
@@ -102,6 +103,17 @@ SolverSection read_solver(const Sections& sections, Scene& scene) {
     for (const TableReader& table : sections.solver.tables("bodies"))
         scene.body_solvers.push_back(read_body_solver(table, sections, section));
     return section;
+}
+
+void check_color_by(const Sections& sections, const SolverSection& solver, const StyleDef& style) {
+    const bool relaxes = std::any_of(
+        solver.groups.begin(), solver.groups.end(),
+        [](const SolverGroup& group) { return std::holds_alternative<RelaxationDef>(group.def); });
+    if (style.color_by != ColorBy::kTension || !relaxes) return;
+    sections.style.find("color_by")
+        ->add_problem(
+            "method \"relaxation\" knows no tensions; give \"speed\" or \"strain\", or another "
+            "solver.method");
 }
 
 }  // namespace corda::scene

@@ -20,6 +20,10 @@ bool all_conserve_energy(const std::vector<BodySolvers::Part>& parts) {
                        [](const BodySolvers::Part& part) { return part.solver->conserves_energy(); });
 }
 
+void put(const std::vector<double>& values, std::size_t first, std::vector<double>& all) {
+    std::copy(values.begin(), values.end(), all.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
 }  // namespace
 
 BodySolvers::BodySolvers(std::vector<Part> parts)
@@ -28,9 +32,8 @@ BodySolvers::BodySolvers(std::vector<Part> parts)
 Status BodySolvers::advance_to(double time_s, State& state, StopCheck& stop) {
     for (Part& part : parts_) {
         if (part.solver->advance_to(time_s, part.state, stop) == Status::kDiverged) return Status::kDiverged;
-        const auto first = static_cast<std::ptrdiff_t>(part.first_particle);
-        std::copy(part.state.x_m.begin(), part.state.x_m.end(), state.x_m.begin() + first);
-        std::copy(part.state.y_m.begin(), part.state.y_m.end(), state.y_m.begin() + first);
+        put(part.state.x_m, part.first_particle, state.x_m);
+        put(part.state.y_m, part.first_particle, state.y_m);
     }
     state.time_s = time_s;
     return Status::kOk;
@@ -51,6 +54,24 @@ std::optional<Loads> BodySolvers::loads() const {
     std::optional<Loads> largest = Loads{};
     for (const Part& part : parts_) largest = loads_of_both(largest, part.solver->loads());
     return largest;
+}
+
+void BodySolvers::velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) {
+    for (Part& part : parts_) {
+        part.state.vx_m_s.assign(part.state.x_m.size(), 0.0);
+        part.state.vy_m_s.assign(part.state.x_m.size(), 0.0);
+        part.solver->velocities(part.state.vx_m_s, part.state.vy_m_s);
+        put(part.state.vx_m_s, part.first_particle, vx_m_s);
+        put(part.state.vy_m_s, part.first_particle, vy_m_s);
+    }
+}
+
+bool BodySolvers::tensions(std::vector<double>& tension_n) {
+    return std::all_of(parts_.begin(), parts_.end(), [&](Part& part) {
+        if (!part.solver->tensions(part.state.tension_n)) return false;
+        put(part.state.tension_n, part.first_bar, tension_n);
+        return true;
+    });
 }
 
 std::uint64_t BodySolvers::steps() const {

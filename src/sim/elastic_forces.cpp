@@ -55,7 +55,7 @@ void ElasticForces::add_springs(const System& system, const Body& body) {
         const Bar& bar = system.bars[k];
         if (system.is_pinned(bar.a) && system.is_pinned(bar.b)) continue;
         assert(bar.rest_m > 0.0);
-        springs_.push_back({static_cast<std::uint32_t>(bar.a - first_particle_),
+        springs_.push_back({k, static_cast<std::uint32_t>(bar.a - first_particle_),
                             static_cast<std::uint32_t>(bar.b - first_particle_), bar.rest_m,
                             1.0 / (body.material.compliance_1_n * bar.rest_m), least_m});
     }
@@ -169,12 +169,18 @@ double ElasticForces::energy_j(const double* x_m, const double* y_m) const {
 
 double ElasticForces::largest_tension_n(const double* x_m, const double* y_m) const {
     double largest_n = 0.0;
-    for (const Spring& spring : springs_) {
-        const double stretch_m =
-            std::max(along(x_m, y_m, spring.a, spring.b).length_m - spring.rest_m, spring.least_stretch_m);
-        largest_n = std::max(largest_n, spring.stiffness_n_m * std::abs(stretch_m));
-    }
+    for (const Spring& spring : springs_)
+        largest_n = std::max(largest_n, std::abs(tension_n(spring, x_m, y_m)));
     return largest_n;
+}
+
+void ElasticForces::tensions(const double* x_m, const double* y_m, std::vector<double>& tensions_n) const {
+    for (const Spring& spring : springs_) tensions_n[spring.bar] = tension_n(spring, x_m, y_m);
+}
+
+double ElasticForces::tension_n(const Spring& spring, const double* x_m, const double* y_m) {
+    return spring.stiffness_n_m *
+           std::max(along(x_m, y_m, spring.a, spring.b).length_m - spring.rest_m, spring.least_stretch_m);
 }
 
 }  // namespace corda::sim

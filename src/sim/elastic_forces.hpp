@@ -42,11 +42,14 @@ class ElasticForces {
 
     [[nodiscard]] double energy_j(const double* x_m, const double* y_m) const;
 
+    /// Writes the tensions of the bars that stretch, in N, to an array of all bars of the system.
+    void tensions(const double* x_m, const double* y_m, std::vector<double>& tensions_n) const;
     /// Largest tension of a bar; a bar that pushes counts by the size of its tension.
     [[nodiscard]] double largest_tension_n(const double* x_m, const double* y_m) const;
 
   private:
     struct Spring {
+        std::size_t bar = 0;  ///< of the system
         std::uint32_t a = 0;
         std::uint32_t b = 0;
         double rest_m = 0.0;
@@ -61,6 +64,7 @@ class ElasticForces {
         double before_m = 0.0;  ///< |ab| at the start
         double after_m = 0.0;   ///< |bc| at the start
     };
+    [[nodiscard]] static double tension_n(const Spring& spring, const double* x_m, const double* y_m);
     void add_springs(const System& system, const Body& body);
     void add_joints(const System& system, std::size_t particle_count);
     void bound_frequencies(const double* inverse_mass_1_kg, std::size_t particle_count);

@@ -1,22 +1,33 @@
 #include "corda/sim/recording.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "corda/sim/figures.hpp"
 
 namespace corda::sim {
 
-Recording::Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes)
+Recording::Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes,
+                     std::size_t bar_count, std::optional<Quantity> quantity)
     : particle_count_(particle_count),
-      most_states_(std::min(state_count, budget_bytes / (state_size() * sizeof(double) + sizeof(Figures)))) {
+      quantity_(quantity),
+      readings_(quantity ? readings_for(*quantity) : Readings{}),
+      parts_{{{&State::x_m, particle_count},
+              {&State::y_m, particle_count},
+              {&State::vx_m_s, readings_.velocities ? particle_count : 0},
+              {&State::vy_m_s, readings_.velocities ? particle_count : 0},
+              {&State::tension_n, readings_.tensions ? bar_count : 0, true}}},
+      state_size_(std::accumulate(parts_.begin(), parts_.end(), std::size_t{1},
+                                  [](std::size_t sum, const Part& part) { return sum + part.count; })),
+      most_states_(std::min(state_count, budget_bytes / (state_size_ * sizeof(double) + sizeof(Figures)))) {
     particle_bounds_.resize(particle_count);
-    values_.reserve(most_states_ * state_size());
+    values_.reserve(most_states_ * state_size_);
     figures_.reserve(most_states_);
     energy_change_j_.reserve(state_count);
 }
 
-Recording Recording::for_part(std::size_t particle_count) const {
-    Recording part(particle_count, 0, 0);
+Recording Recording::for_part(std::size_t particle_count, std::size_t bar_count) const {
+    Recording part(particle_count, 0, 0, bar_count, quantity_);
     part.most_states_ = most_states_;
     return part;
 }
@@ -28,6 +39,7 @@ void Recording::clear() {
     energy_scale_j_ = 0.0;
     bounds_ = {};
     particle_bounds_.assign(particle_count_, {});
+    spread_ = {};
     diagnostics_ = {};
     wall_s_ = 0.0;
     bodies_ = 0;
@@ -35,6 +47,7 @@ void Recording::clear() {
 
 Status Recording::advance(Simulation& run, const Timeline& timeline, const std::function<double()>& clock_s,
                           const GoesOn& goes_on) {
+    run.tell(readings_);
     const double start_s = clock_s ? clock_s() : 0.0;
     const Status status = run.advance_to(timeline.time_s(size()), goes_on);
     if (clock_s) wall_s_ += clock_s() - start_s;
@@ -44,6 +57,7 @@ Status Recording::advance(Simulation& run, const Timeline& timeline, const std::
         bounds_.include(state);
         for (std::size_t i = 0; i < particle_count_; ++i)
             particle_bounds_[i].include(state.x_m[i], state.y_m[i]);
+        if (quantity_) add_spread(run.system(), state);
     }
     diagnostics_ = run.diagnostics();
     energy_change_j_.push_back(run.energy_change_j());
@@ -51,33 +65,49 @@ Status Recording::advance(Simulation& run, const Timeline& timeline, const std::
     if (size() > most_states_) return status;
     figures_.push_back(run.figures());
     values_.push_back(state.time_s);
-    values_.insert(values_.end(), state.x_m.begin(), state.x_m.end());
-    values_.insert(values_.end(), state.y_m.begin(), state.y_m.end());
+    for (const Part& part : parts_) {
+        const auto first = (state.*part.array).begin();
+        values_.insert(values_.end(), first, first + static_cast<std::ptrdiff_t>(part.count));
+    }
     return status;
 }
 
-void Recording::add_body(const Recording& body, std::size_t first_particle) {
+void Recording::add_spread(const System& system, const State& state) {
+    for (const Body& body : system.bodies) {
+        for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k)
+            spread_.add(value_of(*quantity_, system, body, k, state));
+    }
+}
+
+void Recording::add_body(const Recording& body, std::size_t first_particle, std::size_t first_bar) {
     if (bodies_++ == 0) {
         energy_change_j_.assign(body.size(), 0.0);
         figures_.assign(body.figures_.size(), Figures{0.0, std::nullopt, Loads{}});
-        values_.resize(body.figures_.size() * state_size());
+        values_.resize(body.figures_.size() * state_size_);
         diagnostics_.largest.loads = Loads{};
     }
     energy_change_j_.resize(std::min(size(), body.size()));
     figures_.resize(std::min(figures_.size(), body.figures_.size()));
-    values_.resize(figures_.size() * state_size());
+    values_.resize(figures_.size() * state_size_);
     bounds_.include(body.bounds_);
+    spread_.add(body.spread_);
     std::copy(body.particle_bounds_.begin(), body.particle_bounds_.end(),
               particle_bounds_.begin() + static_cast<std::ptrdiff_t>(first_particle));
     wall_s_ += body.wall_s_;
     add_figures(body);
     for (std::size_t i = 0; i < figures_.size(); ++i) {
-        const double* const from = &body.values_[i * body.state_size()];
-        double* const to = &values_[i * state_size()];
+        const double* const from = &body.values_[i * body.state_size_];
+        double* const to = &values_[i * state_size_];
         *to = *from;
-        std::copy_n(from + 1, body.particle_count_, to + 1 + first_particle);
-        std::copy_n(from + 1 + body.particle_count_, body.particle_count_,
-                    to + 1 + particle_count_ + first_particle);
+        std::size_t from_at = 1;
+        std::size_t to_at = 1;
+        for (std::size_t p = 0; p < parts_.size(); ++p) {
+            const std::size_t count = body.parts_[p].count;
+            std::copy_n(from + from_at, count,
+                        to + to_at + (parts_[p].is_of_bars ? first_bar : first_particle));
+            from_at += count;
+            to_at += parts_[p].count;
+        }
     }
 }
 
@@ -105,11 +135,13 @@ void Recording::add_figures(const Recording& body) {
 }
 
 void Recording::read(std::size_t i, State& state) const {
-    const auto values = values_.begin() + static_cast<std::ptrdiff_t>(i * state_size());
-    const auto middle = values + 1 + static_cast<std::ptrdiff_t>(particle_count_);
-    state.time_s = *values;
-    state.x_m.assign(values + 1, middle);
-    state.y_m.assign(middle, middle + static_cast<std::ptrdiff_t>(particle_count_));
+    auto values = values_.begin() + static_cast<std::ptrdiff_t>(i * state_size_);
+    state.time_s = *values++;
+    for (const Part& part : parts_) {
+        const auto end = values + static_cast<std::ptrdiff_t>(part.count);
+        (state.*part.array).assign(values, end);
+        values = end;
+    }
 }
 
 }  // namespace corda::sim

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "corda/core/timeline.hpp"
 #include "corda/sim/bounds.hpp"
 #include "corda/sim/simulation.hpp"
+#include "corda/sim/spread.hpp"
 
 namespace corda::sim {
 
@@ -14,11 +17,13 @@ namespace corda::sim {
 /// budget only the bounds and the largest figures are kept.
 class Recording {
   public:
-    /// `state_count`: of the timeline. `budget_bytes`: the most memory that states may take.
-    Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes);
+    /// `state_count`: of the timeline. `budget_bytes`: the most memory that states may take. `quantity`: one
+    /// whose spread is wanted; states then have readings_for() it.
+    Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes,
+              std::size_t bar_count = 0, std::optional<Quantity> quantity = {});
 
-    /// An empty recording of some of the particles that keeps as many states.
-    [[nodiscard]] Recording for_part(std::size_t particle_count) const;
+    /// An empty recording of some of the particles and bars that keeps as many states.
+    [[nodiscard]] Recording for_part(std::size_t particle_count, std::size_t bar_count = 0) const;
 
     /// Forgets all states.
     void clear();
@@ -26,9 +31,9 @@ class Recording {
     /// not empty, measures the stepping. `goes_on`: see Simulation::advance_to.
     Status advance(Simulation& run, const Timeline& timeline, const std::function<double()>& clock_s,
                    const GoesOn& goes_on = {});
-    /// Adds the recording of a body whose particles begin at `first_particle`, made by for_part(). The states
-    /// are then those that all bodies added so far have.
-    void add_body(const Recording& body, std::size_t first_particle);
+    /// Adds the recording of a body whose particles begin at `first_particle` and its bars at `first_bar`,
+    /// made by for_part(). The states are then those that all bodies added so far have.
+    void add_body(const Recording& body, std::size_t first_particle, std::size_t first_bar = 0);
 
     /// Number of states added.
     [[nodiscard]] std::size_t size() const { return energy_change_j_.size(); }
@@ -43,6 +48,10 @@ class Recording {
     [[nodiscard]] const MotionBounds& bounds() const { return bounds_; }
     /// The same for each particle; all empty before the first state.
     [[nodiscard]] const std::vector<MotionBounds>& particle_bounds() const { return particle_bounds_; }
+    /// Of the quantity, of all links in all states added at frame times; empty without one.
+    [[nodiscard]] const Spread& spread() const { return spread_; }
+    /// What its states have.
+    [[nodiscard]] const Readings& readings() const { return readings_; }
     /// Of the run up to the last state added.
     [[nodiscard]] const Diagnostics& diagnostics() const { return diagnostics_; }
 
@@ -51,16 +60,28 @@ class Recording {
 
   private:
     void add_figures(const Recording& body);
-    [[nodiscard]] std::size_t state_size() const { return 2 * particle_count_ + 1; }
+    void add_spread(const System& system, const State& state);
+
+    /// What a recorded state has of an array.
+    struct Part {
+        std::vector<double> State::*array;
+        std::size_t count;
+        bool is_of_bars = false;
+    };
 
     std::size_t particle_count_;
+    std::optional<Quantity> quantity_;
+    Readings readings_;
+    std::array<Part, 5> parts_;
+    std::size_t state_size_;
     std::size_t most_states_;
-    std::vector<double> values_;  ///< per state: time, then all x, then all y
+    std::vector<double> values_;  ///< per state: time, then the parts
     std::vector<Figures> figures_;
     std::vector<double> energy_change_j_;  ///< of all states added; NaN if not known
     double energy_scale_j_ = 0.0;
     MotionBounds bounds_;
     std::vector<MotionBounds> particle_bounds_;
+    Spread spread_;
     Diagnostics diagnostics_;
     double wall_s_ = 0.0;
     std::size_t bodies_ = 0;  ///< added by add_body()

@@ -108,8 +108,10 @@ std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces,
         stop.spend(kUpdatesPerBody + body.particle_count());
         const MethodDef& method = methods.size() == 1 ? methods.front() : methods[i];
         parts.push_back({system.bodies[i].first_particle,
+                         system.bodies[i].first_bar,
                          make_one(body, forces, method, frame_interval_s, goes_on),
                          {0.0, body.x_m, body.y_m}});
+        parts.back().state.tension_n.resize(body.bars.size());
     });
     return std::make_unique<BodySolvers>(std::move(parts));
 }
@@ -163,8 +165,30 @@ double Simulation::energy_change_j() const {
                              : std::numeric_limits<double>::quiet_NaN();
 }
 
+void Simulation::tell(const Readings& readings) {
+    if (readings == readings_) return;
+    readings_ = readings;
+    read();
+}
+
+void Simulation::read() {
+    if (readings_.velocities) {
+        state_.vx_m_s.assign(state_.x_m.size(), 0.0);
+        state_.vy_m_s.assign(state_.x_m.size(), 0.0);
+        solver_->velocities(state_.vx_m_s, state_.vy_m_s);
+    }
+    if (!readings_.tensions) return;
+    state_.tension_n.assign(system_.bars.size(), 0.0);
+    if (!solver_->tensions(state_.tension_n)) {
+        throw Refusal(Refusal::Reason::kUnknownTensions,
+                      "tensions are asked for, which the method does not know: relaxation has none, and bars "
+                      "that depend on each other share them in any way");
+    }
+}
+
 void Simulation::observe() {
     const sim::FlushDenormals flush;
+    read();
     figures_.strain = max_strain(system_, state_);
     figures_.energy_error = sim::energy_error(energy_change_j(), energy_scale_j_);
     figures_.loads = solver_->loads();

@@ -59,6 +59,10 @@ class Simulation {
     /// after an interruption; kInterrupted if `goes_on` returned false; and what `goes_on` throws.
     Status advance_to(double time_s, const GoesOn& goes_on = {});
 
+    /// From now on, states have these too. Throws corda::Error (kInvalidScene) if a method does not know the
+    /// tensions: `relaxation`, or `rattle` if bars depend on each other.
+    void tell(const Readings& readings);
+
     /// Positions relative to `system().origin_m`, at the last time that was reached.
     [[nodiscard]] const State& state() const { return state_; }
     [[nodiscard]] const System& system() const { return system_; }
@@ -75,11 +79,13 @@ class Simulation {
 
   private:
     void observe();
+    void read();
 
     System system_;
     std::unique_ptr<sim::Solver> solver_;
     State state_;
     State next_;  ///< kept for its memory
+    Readings readings_;
     bool has_diverged_ = false;
     bool is_stepping_ = false;  ///< still, if an exception ended the steps
     bool conserves_energy_ = true;

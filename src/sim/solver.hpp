@@ -41,6 +41,16 @@ class Solver {
     /// What the links carry at the last `advance_to`; std::nullopt if the method does not know.
     [[nodiscard]] virtual std::optional<Loads> loads() const { return std::nullopt; }
 
+    /// Writes the velocities of the free particles at the last `advance_to`, in m/s, to arrays of all.
+    virtual void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) = 0;
+
+    /// Writes the tensions of the bars that move at the last `advance_to`, in N, to an array of all bars;
+    /// false if the method does not know them.
+    [[nodiscard]] virtual bool tensions(std::vector<double>& tension_n) {
+        static_cast<void>(tension_n);
+        return false;
+    }
+
     /// Steps taken so far.
     [[nodiscard]] virtual std::uint64_t steps() const = 0;
 

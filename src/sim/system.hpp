@@ -93,6 +93,23 @@ struct State {
     double time_s = 0.0;
     std::vector<double> x_m;
     std::vector<double> y_m;
+    // Empty unless they are asked for: see Readings.
+    std::vector<double> vx_m_s = {};  ///< 0 for a pinned particle
+    std::vector<double> vy_m_s = {};
+    /// One per bar of the system: positive ones pull. 0 between two pins; NaN if it is not determined.
+    std::vector<double> tension_n = {};
+};
+
+/// A quantity of a link: its tension in N, the mean of the speeds of its ends in m/s, or its length over its
+/// rest length - 1, which for a slack link of a string is 0.
+enum class Quantity { kTension, kSpeed, kStrain };
+
+/// What states have besides positions.
+struct Readings {
+    bool velocities = false;
+    bool tensions = false;
+
+    friend bool operator==(const Readings&, const Readings&) = default;
 };
 
 /// Whether a run can go on. A run that diverged keeps the last good state.

@@ -6,6 +6,7 @@
 
 #include "corda/core/image.hpp"
 #include "corda/sim/defs.hpp"
+#include "corda/sim/system.hpp"
 
 #pragma GCC visibility push(default)
 namespace corda {
@@ -30,6 +31,26 @@ enum class Markers { kNone, kPinned, kAll };
 /// Which bars are drawn as lines of their own: real ones over the ropes and nets, imaginary ones behind them.
 enum class Bars { kNone, kReal, kAll };
 
+/// What the colours of ropes and nets tell: which body it is; a quantity of each link, by a scale of the
+/// whole motion; or the colours that a body gives to its links (BodyStyleDef::link_colors).
+enum class ColorBy { kBody, kTension, kSpeed, kStrain, kLink };
+
+/// The quantity; std::nullopt if it is none.
+[[nodiscard]] constexpr std::optional<Quantity> quantity_of(ColorBy by) {
+    switch (by) {
+        case ColorBy::kTension:
+            return Quantity::kTension;
+        case ColorBy::kSpeed:
+            return Quantity::kSpeed;
+        case ColorBy::kStrain:
+            return Quantity::kStrain;
+        case ColorBy::kBody:
+        case ColorBy::kLink:
+            break;
+    }
+    return std::nullopt;
+}
+
 /// How a scene looks. Widths are in pixels of the output; the defaults grow with its shorter side. What is
 /// not given is the theme's.
 struct StyleDef {
@@ -38,6 +59,7 @@ struct StyleDef {
     /// Colours of the ropes and nets in turn. A body that has its own colour (BodyStyleDef) takes none of
     /// them. Empty: the theme's.
     std::vector<Color> palette;
+    ColorBy color_by = ColorBy::kBody;
     std::optional<double> rope_width_px;  ///< 0.1 .. 1000; default: side / 120, at least 2
     std::optional<double> net_width_px;   ///< 0.1 .. 1000; default: half of a rope's, at least 2
     bool payload = true;   ///< payloads are balls, and so are the masses of ropes of up to 3 links
@@ -59,6 +81,8 @@ struct StyleDef {
 /// What one rope or net overrides in the style.
 struct BodyStyleDef {
     std::optional<Color> color;
+    /// Of its links in turn, for ColorBy::kLink, with the alpha of the first; empty: all as `color`.
+    std::vector<Color> link_colors;
     std::optional<double> width_px;  ///< 0.1 .. 1000; default: rope_width_px, or net_width_px for a net
 };
 
@@ -67,6 +91,7 @@ struct OverlayDef {
     /// The time; default: on an opaque ground, if the shorter side has at least 160 px.
     std::optional<bool> time;
     std::optional<bool> scale_bar;  ///< a length of 1, 2 or 5 times a power of 10; default: as `time`
+    std::optional<bool> legend;     ///< the scale of style.color_by; default: as `time`
     std::string title;              ///< UTF-8; empty: none
     bool energy = false;            ///< the error of the energy (Figures::energy_error)
     bool method = false;            ///< the methods, and the bound of the displayed error

@@ -23,13 +23,14 @@ void DrawList::clear() {
     texts.clear();
 }
 
-void DrawList::add_layer(Color color) {
-    layers.push_back({color, capsules.size(), 0});
+void DrawList::add_layer(Color color, bool is_tinted) {
+    layers.push_back({color, capsules.size(), 0, is_tinted});
 }
 
-void DrawList::add_capsule(PixelPoint a, PixelPoint b, double radius_px, double halo_px) {
-    const auto capsule = make_capsule(a, b, radius_px, width, height, halo_px);
+void DrawList::add_capsule(PixelPoint a, PixelPoint b, double radius_px, double halo_px, Tint tint) {
+    auto capsule = make_capsule(a, b, radius_px, width, height, halo_px);
     if (!capsule) return;
+    capsule->tint = tint;
     bounds = bounds.united(capsule_bounds(*capsule, width, height));
     capsules.push_back(*capsule);
     ++layers.back().capsule_count;

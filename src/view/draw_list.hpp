@@ -16,6 +16,16 @@ struct PixelPoint {
     double y = 0;
 };
 
+/// The colour of a capsule in a tinted layer.
+struct Tint {
+    std::uint8_t r = 0;
+    std::uint8_t g = 0;
+    std::uint8_t b = 0;
+    std::uint8_t weight = 1;  ///< with which it counts where capsules overlap; >= 1
+
+    friend bool operator==(const Tint&, const Tint&) = default;
+};
+
 /// A line with round caps: all points within `radius` of a segment. A disc if `length` is 0.
 ///
 /// In pixels, x to the right, y down; the centre of the top left pixel is at (0.5, 0.5). (ax, ay) is the
@@ -30,14 +40,18 @@ struct Capsule {
     float radius = 0;
     /// Within this distance of the segment the ground shows in place of the layers below; 0: they stay.
     float halo_radius = 0;
+    Tint tint;
 };
 
-/// Capsules of one colour. They are united before they are painted, so that the joints and crossings of a
-/// transparent or smooth-edged line do not darken, and so are their halos.
+/// Capsules of one colour, or each of its own. They are united before they are painted, so that the joints
+/// and crossings of a transparent or smooth-edged line do not darken, and so are their halos.
 struct Layer {
     Color color;
     std::size_t first_capsule = 0;
     std::size_t capsule_count = 0;
+    /// Each capsule has its tint, with the alpha of `color`. Where several cover a pixel it gets their mean,
+    /// in which one counts little beyond the ends of its segment: links in line meet at a sharp edge.
+    bool is_tinted = false;
 };
 
 /// A line of text. Font::write() adds it to a draw list.
@@ -77,10 +91,10 @@ struct DrawList {
     /// Removes layers and stamps, but keeps their memory.
     void clear();
     /// Adds an empty layer on top of the others.
-    void add_layer(Color color);
+    void add_layer(Color color, bool is_tinted = false);
     /// Adds the capsule around the segment from `a` to `b` to the last layer, if it can touch the frame. Its
     /// halo extends `halo_px` beyond `radius_px`.
-    void add_capsule(PixelPoint a, PixelPoint b, double radius_px, double halo_px = 0.0);
+    void add_capsule(PixelPoint a, PixelPoint b, double radius_px, double halo_px = 0.0, Tint tint = {});
     /// Adds a circle of that radius, drawn with a pen of `width_px`, as a polygon.
     void add_ring(PixelPoint center, double radius_px, double width_px);
     /// Adds the part of a filled rectangle that is in the frame on top of the other stamps.

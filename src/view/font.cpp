@@ -7,9 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include <ft2build.h>
-#include FT_FREETYPE_H
-
 #include "corda/core/basics.hpp"
 #include "corda/view/font_data.hpp"
 
@@ -38,7 +35,7 @@ char32_t take_character(std::string_view& rest) {
 
 void check_font(FT_Error error) {
     if (error != 0)
-        throw Error(ExitCode::kInternal, "FreeType: the font cannot be read: error " + std::to_string(error));
+        throw Error(ExitCode::kInternal, "FreeType: a glyph cannot be drawn: error " + std::to_string(error));
 }
 
 }  // namespace
@@ -54,20 +51,6 @@ struct Font::Impl {
         std::vector<std::uint8_t> coverage;  ///< row by row, 0 .. 255
     };
 
-    Impl() {
-        check_font(FT_Init_FreeType(&library));
-        const FT_Error error =
-            FT_New_Memory_Face(library, font_begin(), static_cast<FT_Long>(font_bytes()), 0, &face);
-        if (error != 0) FT_Done_FreeType(library);
-        check_font(error);
-    }
-    Impl(const Impl&) = delete;
-    Impl& operator=(const Impl&) = delete;
-    ~Impl() {
-        FT_Done_Face(face);
-        FT_Done_FreeType(library);
-    }
-
     const Glyph& glyph(char32_t character, int size_px) {
         const auto [entry, is_new] = glyphs.try_emplace({size_px, character});
         if (is_new) entry->second = load(character, size_px);
@@ -75,6 +58,7 @@ struct Font::Impl {
     }
 
     Glyph load(char32_t character, int size_px) {
+        const FT_Face face = file.face();
         check_font(FT_Set_Pixel_Sizes(face, 0, static_cast<FT_UInt>(size_px)));
         check_font(FT_Load_Char(face, character, FT_LOAD_RENDER | FT_LOAD_TARGET_LIGHT));
         const FT_GlyphSlot slot = face->glyph;
@@ -106,8 +90,7 @@ struct Font::Impl {
         return x_px;
     }
 
-    FT_Library library = nullptr;
-    FT_Face face = nullptr;
+    FontFile file;
     std::map<std::pair<int, char32_t>, Glyph> glyphs;
 };
 

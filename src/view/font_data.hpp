@@ -1,11 +1,24 @@
 #pragma once
 
-#include <cstddef>
+#include <ft2build.h>
+#include FT_FREETYPE_H
 
 namespace corda::view {
 
-/// The file of the font, which is part of the program.
-[[nodiscard]] const unsigned char* font_begin();
-[[nodiscard]] std::size_t font_bytes();
+/// The font that is part of the program, as FreeType reads it.
+class FontFile {
+  public:
+    /// Throws corda::Error (kInternal) if it cannot be read.
+    FontFile();
+    FontFile(const FontFile&) = delete;
+    FontFile& operator=(const FontFile&) = delete;
+    ~FontFile();
+
+    [[nodiscard]] FT_Face face() const { return face_; }
+
+  private:
+    FT_Library library_ = nullptr;
+    FT_Face face_ = nullptr;
+};
 
 }  // namespace corda::view

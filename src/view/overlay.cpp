@@ -1,6 +1,7 @@
 #include "corda/view/overlay.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -29,6 +30,9 @@ constexpr double kDescent = 0.24;  // below the baseline
 constexpr double kLine = 1.5;      // from a baseline to the next
 constexpr double kGap = 0.4;       // between a text and what the camera shows
 constexpr double kTick = 0.4;      // at the ends of the scale bar
+constexpr double kLegendHeight = 0.6;
+constexpr double kLegendTick = 0.2;
+constexpr int kGradientStepPx = 2;
 
 /// In frames whose shorter side is less, overlays are in the way.
 constexpr int kSmallestSidePx = 160;
@@ -54,30 +58,81 @@ double power_of_10(int exponent) {
     return exponent < 0 ? 1.0 / power : power;
 }
 
-void remove_last_character(std::string& utf8) {
+/// Where the character that begins at byte `i` of a UTF-8 text ends.
+std::size_t end_of_character(std::string_view utf8, std::size_t i) {
     constexpr unsigned kFollowing = 2;  // the two first bits of a byte that goes on
-    while (!utf8.empty() && static_cast<unsigned char>(utf8.back()) >> 6U == kFollowing) utf8.pop_back();
-    if (!utf8.empty()) utf8.pop_back();
+    do ++i;
+    while (i < utf8.size() && static_cast<unsigned char>(utf8[i]) >> 6U == kFollowing);
+    return i;
 }
 
 }  // namespace
 
+std::string time_text(const std::string& digits) {
+    return "t = " + digits + " s";
+}
+
 double rounded_up(double value) {
+    if (!(value > 0.0) || !std::isfinite(value)) return value;
+    // std::stod would take a comma in some countries.
+    const auto number = [](const std::string& text) {
+        double parsed = 0.0;
+        std::from_chars(text.data(), text.data() + text.size(), parsed);
+        return parsed;
+    };
     const std::string nearest = fmt::format("{:.1e}", value);
     const double half = 0.05 * power_of_10(std::stoi(nearest.substr(nearest.find('e') + 1)));
-    return std::stod(std::stod(nearest) < value ? fmt::format("{:.1e}", value + half) : nearest);
+    return number(number(nearest) < value ? fmt::format("{:.1e}", value + half) : nearest);
 }
+
+namespace {
+
+/// "10⁻¹²"
+std::string power_of_10_text(int exponent) {
+    std::string text = exponent < 0 ? "10⁻" : "10";
+    constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    for (const char digit : std::to_string(std::abs(exponent))) text += kDigits[digit - '0'];
+    return text;
+}
+
+/// The exponent of the largest power of 1000 that is not above.
+int thousands_below(double value) {
+    int exponent = 0;
+    while (exponent > -300 && power_of_10(exponent) > value * (1.0 + 1e-9)) exponent -= 3;
+    while (exponent < 300 && power_of_10(exponent + 3) <= value) exponent += 3;
+    return exponent;
+}
+
+/// "k" for 3; empty if there is none.
+std::string prefix_of(int exponent) {
+    constexpr const char* kPrefixes[] = {"n", "µ", "m", "", "k", "M", "G", "T"};
+    return exponent < -9 || exponent > 12 ? "" : kPrefixes[exponent / 3 + 3];
+}
+
+}  // namespace
 
 std::string power_text(double value) {
     if (!(value > 0.0) || !std::isfinite(value)) return fmt::format("{}", value);
     const std::string digits = fmt::format("{:.1e}", rounded_up(value));
     const std::size_t e = digits.find('e');
-    const int exponent = std::stoi(digits.substr(e + 1));
-    std::string text = digits.substr(0, e) + "·10";
-    if (exponent < 0) text += "⁻";
-    constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-    for (const char digit : std::to_string(std::abs(exponent))) text += kDigits[digit - '0'];
-    return text;
+    return digits.substr(0, e) + "·" + power_of_10_text(std::stoi(digits.substr(e + 1)));
+}
+
+ScaleTitle title_of(const ColorScale& scale) {
+    constexpr double kFewestDecimals = 0.01;
+    constexpr double kMostDigits = 1e4;
+    const double shortest = scale.quantity == Quantity::kStrain ? kFewestDecimals : 10.0 * kFewestDecimals;
+    const bool is_plain = scale.high >= shortest * (1.0 - 1e-9) && scale.high < kMostDigits;
+    const int exponent = is_plain ? 0 : thousands_below(scale.high);
+    const std::string power = power_of_10_text(exponent);
+    if (scale.quantity == Quantity::kStrain)
+        return {exponent == 0 ? "strain" : fmt::format("strain ({})", power), power_of_10(exponent)};
+    const bool is_tension = scale.quantity == Quantity::kTension;
+    const std::string prefix = prefix_of(exponent);
+    const std::string factor = exponent != 0 && prefix.empty() ? power + " " : "";
+    return {fmt::format("{} ({}{}{})", is_tension ? "tension" : "speed", factor, prefix,
+                        is_tension ? "N" : "m/s"),
+            power_of_10(exponent)};
 }
 
 std::string length_text(int digit, int exponent) {
@@ -99,6 +154,7 @@ Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int he
     const bool by_default = side_px >= kSmallestSidePx && look.ground.is_opaque();
     time_ = def.time.value_or(by_default);
     scale_bar_ = def.scale_bar.value_or(by_default);
+    legend_ = quantity_of(style.color_by) && def.legend.value_or(by_default);
     color_ = text_color(look);
     em_px_ = em_of(side_px);
     edge_px_ = rounded(std::max(kEdge * side_px, kEdgePerEm * em_px_));
@@ -119,38 +175,47 @@ int Overlay::method_baseline_px() const {
                               : title_baseline_px() + rounded(kLine * em_px_);
 }
 
+int Overlay::legend_baseline_px() const {
+    return edge_px_ + rounded((2.0 * kAscent + kLegendTick + kGap) * em_px_);
+}
+
 Insets Overlay::insets() const {
     Insets insets;
     if (def_.method)
         insets.top_px = method_baseline_px() + (kDescent + kGap) * em_px_;
     else if (!def_.title.empty())
         insets.top_px = title_baseline_px() + (kDescent + kGap) * title_px();
+    if (legend_) insets.top_px = std::max(insets.top_px, legend_baseline_px() + (kDescent + kGap) * em_px_);
     if (has_bottom()) insets.bottom_px = edge_px_ + (kAscent + kGap) * em_px_;
     // A tiny frame is for the picture.
     const double share = 0.5 * height_ / std::max(0.5 * height_, insets.top_px + insets.bottom_px);
     return {share * insets.top_px, share * insets.bottom_px};
 }
 
-std::string Overlay::time_text(double time_s) const {
-    const std::string digits = fmt::format("{:.{}f}", time_s, decimals_);
-    std::string text = "t = ";
-    for (std::size_t i = digits.size(); i < time_digits_; ++i) text += kFigureSpace;
-    return text + digits + " s";
+std::string Overlay::wide_time_text(double time_s) const {
+    std::string digits = fmt::format("{:.{}f}", time_s, decimals_);
+    while (digits.size() < time_digits_) digits.insert(0, 1, ' ');
+    std::string text;
+    for (const char digit : digits) text += digit == ' ' ? kFigureSpace : std::string(1, digit);
+    return time_text(text);
 }
 
 void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& list) {
     int left_px = edge_px_;
     int right_px = width_ - edge_px_;
-    if (time_ && caption.time_s) left_px = write_bottom(time_text(*caption.time_s), left_px, right_px, list);
+    if (time_ && caption.time_s)
+        left_px = write_bottom(wide_time_text(*caption.time_s), left_px, right_px, list);
     if (scale_bar_) right_px = draw_scale_bar(pixels_per_metre, left_px, list);
     if (def_.energy && caption.time_s) {
         const std::string error = caption.energy_error ? power_text(*caption.energy_error) : "unknown";
         write_bottom("energy error " + error, left_px, right_px, list);
     }
-    write_top(def_.title, title_baseline_px(), title_px(), color_, list);
+    const int end_px = legend_ && scale_ ? draw_legend(list) : width_ - edge_px_;
+    write_top(def_.title, end_px, title_baseline_px(), title_px(), color_, list);
     constexpr std::uint8_t kDim = 0xb0;
     if (def_.method)
-        write_top(caption.method, method_baseline_px(), em_px_, {color_.r, color_.g, color_.b, kDim}, list);
+        write_top(caption.method, end_px, method_baseline_px(), em_px_, {color_.r, color_.g, color_.b, kDim},
+                  list);
 }
 
 int Overlay::write_bottom(const std::string& text, int x_px, int end_px, DrawList& list) {
@@ -188,12 +253,62 @@ int Overlay::draw_scale_bar(double pixels_per_metre, int begin_px, DrawList& lis
     return text_px - rounded(kLine * em_px_);
 }
 
-void Overlay::write_top(std::string text, int baseline_px, int size_px, Color color, DrawList& list) {
-    const int room_px = width_ - 2 * edge_px_;
+int Overlay::draw_legend(DrawList& list) {
+    const ScaleTitle title = title_of(*scale_);
+    const auto number = [&](double value) { return fmt::format("{:g}", value / title.unit + 0.0); };
+    const std::string beyond = scale_->is_cut ? "≥ " : "";
+    const bool goes_below = scale_->low < 0.0;
+    const std::string first =
+        goes_below ? (scale_->is_cut ? "≤ −" : "−") + number(-scale_->low) : number(0.0);
+    const std::string last = beyond + number(scale_->high);
+    const auto half_px = [&](const std::string& text) { return font_.width_px(text, em_px_) / 2; };
+    const int bar_px = rounded(kBarLength * std::min(width_, height_));
+    const int bar_end_px = width_ - edge_px_ - half_px(last);
+    const int bar_px0 = bar_end_px - bar_px;
+    const int title_end_px = bar_px0 - rounded(kGap * em_px_);
+    const int title_x_px = title_end_px - font_.width_px(title.text, em_px_);
+    if (title_x_px < edge_px_) return width_ - edge_px_;
+    const int baseline_px = edge_px_ + rounded(kAscent * em_px_);
+    font_.write({title_x_px, baseline_px, em_px_, color_, title.text}, list);
+    const int height_px = rounded(kLegendHeight * em_px_);
+    const int top_px = baseline_px - (rounded(kAscent * em_px_) + height_px) / 2;
+    draw_gradient({bar_px0, top_px, bar_end_px, top_px + height_px}, list);
+    const int line_px = std::max(1, rounded(kBarWidth * std::min(width_, height_)));
+    const auto add_tick = [&](int x_px, const std::string& text) {
+        const int tick_end_px = top_px + height_px + std::max(1, rounded(kLegendTick * em_px_));
+        list.add_box({x_px, top_px + height_px, x_px + line_px, tick_end_px}, color_);
+        font_.write({x_px + line_px / 2 - half_px(text), legend_baseline_px(), em_px_, color_, text}, list);
+    };
+    add_tick(bar_px0, first);
+    const std::string middle = number(0.5 * (scale_->low + scale_->high));
+    const int taken_px = std::max(half_px(first), half_px(last)) + half_px(middle) + rounded(kGap * em_px_);
+    if (taken_px <= bar_px / 2) add_tick((bar_px0 + bar_end_px - line_px) / 2, middle);
+    add_tick(bar_end_px - line_px, last);
+    return title_x_px - rounded(kLine * em_px_);
+}
+
+void Overlay::draw_gradient(const PixelRect& bar, DrawList& list) const {
+    for (int x = bar.x0; x < bar.x1; x += kGradientStepPx) {
+        const int end = std::min(x + kGradientStepPx, bar.x1);
+        const double share = (0.5 * (x + end) - bar.x0) / bar.width();
+        list.add_box({x, bar.y0, end, bar.y1},
+                     scale_->color(scale_->low + share * (scale_->high - scale_->low)));
+    }
+}
+
+void Overlay::write_top(std::string text, int end_px, int baseline_px, int size_px, Color color,
+                        DrawList& list) {
+    const int room_px = end_px - edge_px_;
     if (font_.width_px(text, size_px) > room_px) {
         const std::string mark = "…";
-        while (!text.empty() && font_.width_px(text + mark, size_px) > room_px) remove_last_character(text);
-        text = text.empty() ? "" : text + mark;
+        int end = font_.width_px(mark, size_px);
+        std::size_t kept = 0;
+        for (std::size_t next = 0; next < text.size(); kept = next) {
+            next = end_of_character(text, next);
+            end += font_.width_px(std::string_view(text).substr(kept, next - kept), size_px);
+            if (end > room_px) break;
+        }
+        text = kept == 0 ? "" : text.substr(0, kept) + mark;
     }
     font_.write({edge_px_, baseline_px, size_px, color, std::move(text)}, list);
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "corda/view/camera.hpp"
+#include "corda/view/color_scale.hpp"
 #include "corda/view/defs.hpp"
 #include "corda/view/draw_list.hpp"
 #include "corda/view/font.hpp"
@@ -18,8 +19,8 @@ struct Caption {
 };
 
 /// The words and the scale bar at the edges of a picture. Time and energy stand at the lower left, the scale
-/// bar at the lower right, title and method at the upper left. A title or a method that is too long is
-/// shortened; what else has no room is left out.
+/// bar at the lower right, title and method at the upper left, the legend at the upper right. A title or a
+/// method that is too long is shortened; what else has no room is left out.
 class Overlay {
   public:
     /// `interval_s`: between frames; so many decimals has the time. `end_s`: of the scene; the time always
@@ -29,6 +30,8 @@ class Overlay {
 
     /// What the camera is to keep clear of what it fits.
     [[nodiscard]] Insets insets() const;
+    /// The scale of the legend; without one there is none.
+    void set_scale(const ColorScale& scale) { scale_ = scale; }
     /// Adds the stamps of a picture of that scale.
     void draw(const Caption& caption, double pixels_per_metre, DrawList& list);
 
@@ -38,17 +41,25 @@ class Overlay {
     /// The baselines from the upper edge.
     [[nodiscard]] int title_baseline_px() const;
     [[nodiscard]] int method_baseline_px() const;
-    [[nodiscard]] std::string time_text(double time_s) const;
+    /// That of the numbers of the legend.
+    [[nodiscard]] int legend_baseline_px() const;
+    /// With blanks, so that it has the width of that of the last frame.
+    [[nodiscard]] std::string wide_time_text(double time_s) const;
     /// Writes a text at the left end of the lower baseline if it ends before `end_px`; returns where the next
     /// may begin.
     int write_bottom(const std::string& text, int x_px, int end_px, DrawList& list);
     /// The same for the scale bar, from the right; returns where it begins.
     int draw_scale_bar(double pixels_per_metre, int begin_px, DrawList& list);
-    void write_top(std::string text, int baseline_px, int size_px, Color color, DrawList& list);
+    /// Draws the legend; returns where it begins.
+    int draw_legend(DrawList& list);
+    void draw_gradient(const PixelRect& bar, DrawList& list) const;
+    void write_top(std::string text, int end_px, int baseline_px, int size_px, Color color, DrawList& list);
 
     OverlayDef def_;
     bool time_;
     bool scale_bar_;
+    bool legend_;
+    std::optional<ColorScale> scale_;
     Color color_;
     int width_;
     int height_;
@@ -59,11 +70,21 @@ class Overlay {
     Font font_;
 };
 
-/// A positive number, rounded up to two digits.
+/// "t = 1.20 s"
+[[nodiscard]] std::string time_text(const std::string& digits);
+
+/// A positive number, rounded up to two digits; another one as it is.
 [[nodiscard]] double rounded_up(double value);
 
 /// "3.1·10⁻¹²": two digits, rounded up.
 [[nodiscard]] std::string power_text(double value);
+
+/// What a scale shows: "tension (kN)", and what its values are divided by for that unit.
+struct ScaleTitle {
+    std::string text;
+    double unit = 1.0;
+};
+[[nodiscard]] ScaleTitle title_of(const ColorScale& scale);
 
 /// "20 cm": `digit` times 10 to the power of `exponent` metres.
 [[nodiscard]] std::string length_text(int digit, int exponent);

@@ -26,6 +26,9 @@ constexpr double kHaloPerWidth = 0.35;
 constexpr double kBarWidthPerRopeWidth = 0.25;
 constexpr double kThinnestBarPx = 1.0;
 
+/// A ball hides the links that end in it.
+constexpr std::uint8_t kBallWeight = 64;
+
 /// More balls than that have no outlines, which are many capsules each.
 constexpr std::size_t kMostOutlines = 1000;
 
@@ -70,8 +73,12 @@ SceneView::SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& st
         const Body& body = system.bodies[i];
         const BodyStyleDef own = i < body_styles.size() ? body_styles[i] : BodyStyleDef{};
         const double width_px = own.width_px.value_or(body.is_net ? net_width_px : rope_width_px_);
-        bodies_.push_back({own.color ? *own.color : look_.palette[next_color++ % look_.palette.size()],
-                           0.5 * width_px, balls_of(body, 0.5 * width_px)});
+        const bool by_link = style.color_by == ColorBy::kLink && !own.link_colors.empty();
+        Color color = by_link ? own.link_colors.front() : own.color.value_or(look_.support);
+        if (!by_link && !own.color && !quantity_of(style.color_by))
+            color = look_.palette[next_color++ % look_.palette.size()];
+        bodies_.push_back({color, by_link ? own.link_colors : std::vector<Color>{}, 0.5 * width_px,
+                           balls_of(body, 0.5 * width_px)});
         ball_count_ += bodies_.back().balls.size();
     }
 }
@@ -88,13 +95,16 @@ std::vector<SceneView::Ball> SceneView::balls_of(const Body& body, double line_p
         if (system_->is_pinned(i) || !(is_bob || has_payload)) continue;
         const double mass_kg = is_bob ? system_->mass_kg[i] : body.payload_kg;
         const double radius_px = ball_radius(mass_kg, rope_kg) * side_px_;
-        balls.push_back({i, std::max(radius_px, kBallPerLine * line_px)});
+        const std::size_t link =
+            body.first_bar + std::max(i, body.first_particle + 1) - body.first_particle - 1;
+        balls.push_back({i, link, std::max(radius_px, kBallPerLine * line_px)});
     }
     return balls;
 }
 
 bool SceneView::needs_motion() const {
     const auto& inverse = system_->inverse_mass_1_kg;
+    if (quantity_of(style_.color_by)) return true;
     return style_.supports && gravity_m_s2_ != Vec2{} &&
            std::find(inverse.begin(), inverse.end(), 0.0) != inverse.end();
 }
@@ -208,32 +218,46 @@ void SceneView::draw_supports(const State& state, const Camera& camera, DrawList
     if (style_.markers != Markers::kNone) draw_markers(true, Positions(state, camera), list);
 }
 
+Tint SceneView::tint_of(std::size_t body, std::size_t link, const State& state) const {
+    const Body& of = system_->bodies[body];
+    const std::vector<Color>& in_turn = bodies_[body].link_colors;
+    const Color color = scale_ ? scale_->color(sim::value_of(scale_->quantity, *system_, of, link, state))
+                               : in_turn[(link - of.first_bar) % in_turn.size()];
+    return {color.r, color.g, color.b};
+}
+
 void SceneView::draw_body(std::size_t i, const Positions& positions, DrawList& list) const {
     const Body& body = system_->bodies[i];
     const BodyLook& look = bodies_[i];
     // What is behind the first body is the ground.
     const double halo_px = style_.halo && i > 0 ? kHaloPerWidth * 2.0 * look.radius_px : 0.0;
-    list.add_layer(look.color);
+    const bool is_tinted = scale_.has_value() || !look.link_colors.empty();
+    list.add_layer(look.color, is_tinted);
     for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k) {
         const Bar& link = system_->bars[k];
+        const Tint tint = is_tinted ? tint_of(i, k, positions.state()) : Tint{};
         if (body.material.is_string && positions.distance_m(link) < link.rest_m)
-            draw_slack(link, look.radius_px, halo_px, positions, list);
+            draw_slack(link, look.radius_px, halo_px, tint, positions, list);
         else
-            list.add_capsule(positions.px(link.a), positions.px(link.b), look.radius_px, halo_px);
+            list.add_capsule(positions.px(link.a), positions.px(link.b), look.radius_px, halo_px, tint);
     }
     if (look.balls.empty()) return;
     const double outline_px = kOutlineWidth * side_px_;
     const auto inside_px = [&](const Ball& ball) { return ball.radius_px - 0.5 * outline_px; };
-    for (const Ball& ball : look.balls)
-        list.add_capsule(positions.px(ball.particle), positions.px(ball.particle), inside_px(ball), halo_px);
+    for (const Ball& ball : look.balls) {
+        Tint tint = is_tinted ? tint_of(i, ball.link, positions.state()) : Tint{};
+        tint.weight = kBallWeight;
+        list.add_capsule(positions.px(ball.particle), positions.px(ball.particle), inside_px(ball), halo_px,
+                         tint);
+    }
     if (ball_count_ > kMostOutlines) return;
     list.add_layer(look_.outline);
     for (const Ball& ball : look.balls)
         list.add_ring(positions.px(ball.particle), inside_px(ball), outline_px);
 }
 
-void SceneView::draw_slack(const Bar& link, double radius_px, double halo_px, const Positions& positions,
-                           DrawList& list) const {
+void SceneView::draw_slack(const Bar& link, double radius_px, double halo_px, Tint tint,
+                           const Positions& positions, DrawList& list) const {
     const PixelPoint a = positions.px(link.a);
     const PixelPoint b = positions.px(link.b);
     // Without gravity it bends to the left, seen from a.
@@ -243,7 +267,7 @@ void SceneView::draw_slack(const Bar& link, double radius_px, double halo_px, co
     const Arc arc =
         hang_slack(a, b, link.rest_m * positions.pixels_per_metre(), {down.x / length, down.y / length});
     for (std::size_t k = 0; k + 1 < arc.count; ++k)
-        list.add_capsule(arc.points[k], arc.points[k + 1], radius_px, halo_px);
+        list.add_capsule(arc.points[k], arc.points[k + 1], radius_px, halo_px, tint);
 }
 
 void SceneView::draw_bars(bool real, const Positions& positions, DrawList& list) const {

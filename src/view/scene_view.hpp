@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "corda/sim/distance.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/camera.hpp"
+#include "corda/view/color_scale.hpp"
 #include "corda/view/defs.hpp"
 #include "corda/view/draw_list.hpp"
 #include "corda/view/look.hpp"
@@ -28,8 +30,10 @@ class SceneView {
     SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& style,
               const std::vector<BodyStyleDef>& body_styles, int width, int height);
 
-    /// Whether pictures depend on where the particles go during the motion, whatever the camera.
+    /// Whether pictures depend on what happens during the whole motion, whatever the camera.
     [[nodiscard]] bool needs_motion() const;
+    /// Colours links by a quantity: those of the states have what it needs. Before, they have one colour.
+    void set_scale(const ColorScale& scale) { scale_ = scale; }
     /// Chooses the supports by the bounds of each particle. Before, there are none.
     void set_motion(std::span<const MotionBounds> motion);
     /// All that is drawn of particles that stay within `motion`.
@@ -54,11 +58,13 @@ class SceneView {
   private:
     struct Ball {
         std::size_t particle;
+        std::size_t link;  ///< that ends there
         double radius_px;
     };
     struct BodyLook {
         Color color;
-        double radius_px;  ///< of its links
+        std::vector<Color> link_colors;  ///< in turn; empty: `color`
+        double radius_px;                ///< of its links
         std::vector<Ball> balls;
     };
     /// A state as the camera sees it.
@@ -73,6 +79,7 @@ class SceneView {
                                state_->y_m[bar.b] - state_->y_m[bar.a]);
         }
         [[nodiscard]] double pixels_per_metre() const { return camera_->pixels_per_metre(); }
+        [[nodiscard]] const State& state() const { return *state_; }
 
       private:
         const State* state_;
@@ -83,8 +90,9 @@ class SceneView {
     [[nodiscard]] double marker_radius_px(std::size_t body, bool pinned) const;
     /// Adds where slack links of a string may hang.
     void include_slack(const Body& body, std::span<const MotionBounds> motion, MotionBounds& bounds) const;
+    [[nodiscard]] Tint tint_of(std::size_t body, std::size_t link, const State& state) const;
     void draw_body(std::size_t i, const Positions& positions, DrawList& list) const;
-    void draw_slack(const Bar& link, double radius_px, double halo_px, const Positions& positions,
+    void draw_slack(const Bar& link, double radius_px, double halo_px, Tint tint, const Positions& positions,
                     DrawList& list) const;
     void draw_bars(bool real, const Positions& positions, DrawList& list) const;
     void draw_markers(bool pinned, const Positions& positions, DrawList& list) const;
@@ -100,6 +108,7 @@ class SceneView {
     std::vector<BodyLook> bodies_;
     std::size_t ball_count_ = 0;
     Supports supports_;
+    std::optional<ColorScale> scale_;
 };
 
 }  // namespace corda::view

@@ -59,9 +59,10 @@ void add_trail(std::span<const FadingPoint> points, double radius_px, Color colo
     const std::vector<FadingPoint> path = smooth(points);
     const auto left = [&](std::size_t i) { return 0.5 * (path[i].left + path[i + 1].left); };
     for (int step = 0; step < kSteps; ++step) {
-        const double share = alpha_over(kYoungAlpha * step / kSteps, kYoungAlpha * (step + 1) / kSteps);
+        const double young = kYoungAlpha * (color.a / 255.0);
         Color layer = color;
-        layer.a = static_cast<std::uint8_t>(std::lround(share * color.a));
+        layer.a = static_cast<std::uint8_t>(
+            std::lround(255.0 * alpha_over(young * step / kSteps, young * (step + 1) / kSteps)));
         list.add_layer(layer);
         for (std::size_t i = 0; i + 1 < path.size(); ++i) {
             if (left(i) * kSteps < step) continue;

@@ -156,6 +156,22 @@ TEST_F(Figures, AreTheSameOnTransparentGrounds) {
     expect_same_pictures(command, 14);
 }
 
+TEST_F(Figures, AreTheSameInColoursOfLinks) {
+    const std::string no_text = "overlay={time=false,scale_bar=false,legend=false}";
+    // Measured 10 levels as SVG and 12 as PDF.
+    const std::string two = "rope[0].color=[\"#e69f00\",\"#56b4e9\"]";
+    expect_same_pictures({"still", "--at", "0.4", "--set", no_text, "--set", "style.color_by=strain"}, 14);
+    expect_same_pictures(
+        {"still", "--at", "0.4", "--set", no_text, "--set", "style.color_by=link", "--set", two}, 14);
+    expect_same_pictures({"strobe", "--at", "0,0.2,0.4", "--set", no_text, "--set", "style.color_by=speed",
+                          "--set", "style.theme=paper"},
+                         14);
+    // A legend and its words: measured 41 and 50.
+    expect_same_pictures({"still", "--at", "0.4", "--set", "overlay={time=false,scale_bar=false,legend=true}",
+                          "--set", "style.color_by=speed"},
+                         60);
+}
+
 TEST_F(Figures, HaveTextAsText) {
     const auto text_of = [&](const std::string& times) {
         for (const char* const name : {"a.svg", "a.pdf"}) {

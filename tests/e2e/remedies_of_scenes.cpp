@@ -331,5 +331,32 @@ INSTANTIATE_TEST_SUITE_P(
                {{{"a.b.c.d.e.f.g.h.a.b.c.d.e.f.g.h.a.b.c.d.e.f.g.h.a.b.c.d.e.f.g.h.a", "mass"}}}}),
     kName);
 
+const std::string kByTension = "[style]\ncolor_by = \"tension\"\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    OfColours, SceneRemedies,
+    testing::Values(
+        Remedy{
+            "colours_of_links",
+            rope_scene(kHang + "color = [\"red\", \"blue\"]\n"),
+            "plan SCENE",
+            "set style.color_by = \"link\", or give one colour",
+            {{{"[\"red\", \"blue\"]", "\"red\""}}, {{"[world]", "[style]\ncolor_by = \"link\"\n[world]"}}}},
+        Remedy{"tensions_by_relaxation",
+               rope_scene(kHang, method_of("relaxation") + kByTension),
+               "plan SCENE",
+               "give \"speed\" or \"strain\", or another solver.method",
+               {{{"\"tension\"", "\"speed\""}},
+                {{"\"tension\"", "\"strain\""}},
+                {{"\"relaxation\"", "\"exact\""}}}},
+        Remedy{"tensions_of_dependent_bars",
+               net_scene(kGrid, kByTension),
+               "plan SCENE",
+               "set style.color_by = \"strain\" or \"speed\", or let the bars stretch by a compliance",
+               {{{"\"tension\"", "\"speed\""}},
+                {{"\"tension\"", "\"strain\""}},
+                {{kGrid, kGrid + "compliance = 1e-4\n"}}}}),
+    kName);
+
 }  // namespace
 }  // namespace corda

@@ -61,6 +61,7 @@ payload = false
 supports = true
 halo = true
 trail_s = 0.5
+color_by = "speed"
 net_width_px = 2.5
 palette = ["#ff0000", '#00ff00']
 rope_width_px = 4

@@ -59,6 +59,27 @@ TEST(TransparentGrounds, EqualTheReferenceByteForByte) {
     }
 }
 
+TEST(TintedLayers, EqualTheReferenceByteForByte) {
+    const gl::Context context;
+    render::FrameRenderer renderer(641, 359);
+    for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+        // Plain lists, then some with tinted layers, from the second frame on with less damage.
+        view::DrawList list = test::random_draw_list(seed, 641, 359, 6, seed % 2 == 0 ? 4 : 60, 3, seed % 3);
+        list.ground.top.a = seed > 6 ? 100 : 255;
+        renderer.render(list);
+        EXPECT_TRUE(equal_images(renderer.image(), render::render_reference(list))) << "seed " << seed;
+    }
+}
+
+TEST(TintedLayers, EqualTheReferenceIfManyCapsulesCoverAPixel) {
+    // Beyond 257 the sums are rounded, in the order of the capsules.
+    const gl::Context context;
+    render::FrameRenderer renderer(64, 48);
+    view::DrawList list = test::random_draw_list(1, 64, 48, 1, 3000, 0, 1);
+    renderer.render(list);
+    EXPECT_TRUE(equal_images(renderer.image(), render::render_reference(list)));
+}
+
 void move_down(view::DrawList& list, int rows) {
     list.bounds = {};
     for (view::Capsule& capsule : list.capsules) {

@@ -77,12 +77,28 @@ const std::map<std::string, std::uint64_t> kHashes{
     {"trail by exact", 0x3bf4b86b0c582406U},         {"trail by rattle", 0x621d8a953fb68c77U},
     {"transparent as it is", 0xbb47ec42b6305c98U},   {"transparent by auto", 0x8c5a205ff6b57332U},
     {"transparent by exact", 0x6c930b9527c70921U},   {"transparent by rattle", 0xc325a0e8ccd851d9U},
+    {"links as it is", 0xe3feb45dddb76030U},         {"links by auto", 0xe3feb45dddb76030U},
+    {"links by exact", 0x517bc89cffd9afbaU},         {"links by rattle", 0xbcfe08ce3dfbe888U},
+    {"speed as it is", 0x9bc76ccdcde4ecc8U},         {"speed by auto", 0x9bc76ccdcde4ecc8U},
+    {"speed by exact", 0x7fee48a6a55f033U},          {"speed by rattle", 0xcc201cc866cd0609U},
+    {"speed_paper as it is", 0xcb14ea3567eab4a6U},   {"speed_paper by auto", 0x82f09089513f602U},
+    {"speed_paper by exact", 0x49904fc855d68baeU},   {"speed_paper by rattle", 0xd1102938b1eeeef1U},
+    {"strain as it is", 0xfec0809042361ba1U},        {"strain by auto", 0xfec0809042361ba1U},
+    {"strain by exact", 0xdb87c689ce98df76U},        {"strain by rattle", 0x4982bae4148ba258U},
+    {"strain_paper as it is", 0xfec0809042361ba1U},  {"strain_paper by auto", 0xfec0809042361ba1U},
+    {"strain_paper by exact", 0xdb87c689ce98df76U},  {"strain_paper by rattle", 0x4982bae4148ba258U},
+    {"tension as it is", 0xc83318f7ff211625U},       {"tension by auto", 0xc83318f7ff211625U},
+    {"tension by exact", 0x87bd41d4e85ce5a1U},       {"tension_paper as it is", 0x1ad8207973720ab1U},
+    {"tension_paper by auto", 0x1ad8207973720ab1U},  {"tension_paper by rattle", 0x9003d38e56e411f8U},
+    {"links_paper as it is", 0x3d090f6a4bc0ce4dU},   {"links_paper by auto", 0x3d090f6a4bc0ce4dU},
+    {"links_paper by exact", 0xb5d799fb09ac8ff5U},   {"links_paper by rattle", 0x8dabf094d4cf3280U},
 };
 
 /// What a method refuses, with the reason in the message.
 const std::map<std::string, std::string> kRefused{
     {"materials by rattle", "use method auto"},  // its string
     {"slack by rattle", "use method auto"},
+    {"tension by rattle", "use method auto"},
 };
 
 /// The methods that a scene is run by besides its own: all of them where its bodies are chains.

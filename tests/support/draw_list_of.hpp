@@ -5,7 +5,9 @@
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/sim/bounds.hpp"
+#include "corda/sim/spread.hpp"
 #include "corda/view/camera.hpp"
+#include "corda/view/color_scale.hpp"
 #include "corda/view/overlay.hpp"
 #include "corda/view/scene_view.hpp"
 
@@ -21,18 +23,22 @@ inline void include(const State& state, std::vector<MotionBounds>& motion) {
 inline view::DrawList draw_list_of(const Scene& scene, const System& system, const CameraDef& camera,
                                    const State& state, const std::vector<MotionBounds>& motion,
                                    const view::Caption& caption = {},
-                                   std::span<const view::Trail> trails = {}) {
+                                   std::span<const view::Trail> trails = {}, const sim::Spread& spread = {}) {
     const int width_px = scene.video.width_px;
     const int height_px = scene.video.height_px;
     view::SceneView scene_view(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, width_px,
                                height_px);
     scene_view.set_motion(motion);
+    view::Overlay overlay(scene.overlay, scene.style, width_px, height_px, scene.video.fps.interval_s(),
+                          scene.world.duration_s);
+    if (const auto quantity = quantity_of(scene.style.color_by)) {
+        scene_view.set_scale(view::scale_of(*quantity, spread, scene.style));
+        overlay.set_scale(view::scale_of(*quantity, spread, scene.style));
+    }
     view::DrawList list;
     const view::Camera map(camera, system.origin_m, width_px, height_px);
     scene_view.draw(state, map, list, trails);
-    view::Overlay(scene.overlay, scene.style, width_px, height_px, scene.video.fps.interval_s(),
-                  scene.world.duration_s)
-        .draw(caption, map.pixels_per_metre(), list);
+    overlay.draw(caption, map.pixels_per_metre(), list);
     return list;
 }
 
@@ -49,10 +55,24 @@ inline void add_points(const Film& film, const State& state, double age_s, std::
         trails[i].push_back({age_s, {state.x_m[ends[i]], state.y_m[ends[i]]}});
 }
 
+/// Adds what the colours of a film tell of a state.
+inline void add_values(const Film& film, const State& state, sim::Spread& spread) {
+    const auto quantity = quantity_of(film.scene().style.color_by);
+    if (!quantity) return;
+    for (const Body& body : film.system().bodies) {
+        for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k)
+            spread.add(sim::value_of(*quantity, film.system(), body, k, state));
+    }
+}
+
 /// What a film draws at a time.
 inline view::DrawList draw_list_of(const Film& film, double time_s) {
     std::vector<MotionBounds> motion;
-    for (std::int64_t k = 0; k <= film.last_frame(); ++k) include(film.state(k), motion);
+    sim::Spread spread;
+    for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
+        include(film.state(k), motion);
+        add_values(film, film.state(k), spread);
+    }
     std::vector<view::Trail> trails(test::traced(film).size());
     const double trail_s = film.scene().style.trail_s;
     for (std::int64_t k = 0; k <= film.last_frame() && !trails.empty(); ++k) {
@@ -63,7 +83,7 @@ inline view::DrawList draw_list_of(const Film& film, double time_s) {
     add_points(film, state, 0.0, trails);
     const view::Caption caption{time_s, film.figures().energy_error,
                                 method_caption(film.plan(), film.error_bound_px())};
-    return draw_list_of(film.scene(), film.system(), film.camera(), state, motion, caption, trails);
+    return draw_list_of(film.scene(), film.system(), film.camera(), state, motion, caption, trails, spread);
 }
 
 }  // namespace corda::test

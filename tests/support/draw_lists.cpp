@@ -25,7 +25,8 @@ class Numbers {
 }  // namespace
 
 view::DrawList random_draw_list(std::uint32_t seed, int width, int height, std::size_t layer_count,
-                                std::size_t capsules_per_layer, std::size_t stamps) {
+                                std::size_t capsules_per_layer, std::size_t stamps,
+                                std::size_t tinted_every) {
     Numbers numbers(seed);
     view::DrawList list;
     list.width = width;
@@ -36,7 +37,7 @@ view::DrawList random_draw_list(std::uint32_t seed, int width, int height, std::
     for (std::size_t l = 0; l < layer_count; ++l) {
         Color color = opaque();
         if (l % 2 == 1) color.a = numbers.byte();
-        list.add_layer(color);
+        list.add_layer(color, tinted_every > 0 && l % tinted_every == 0);
         for (std::size_t i = 0; i < capsules_per_layer; ++i) {
             const view::PixelPoint a{numbers.between(-0.2, 1.2) * width, numbers.between(-0.2, 1.2) * height};
             const double reach = i % 7 == 0 ? 1000.0 : 40.0;
@@ -44,6 +45,10 @@ view::DrawList random_draw_list(std::uint32_t seed, int width, int height, std::
             if (i % 5 == 0) b = a;
             const double radius_px = 0.1 * std::pow(600.0, numbers.between(0.0, i % 3 == 0 ? 1.0 : 0.5));
             list.add_capsule(a, b, radius_px, i % 4 == 0 ? 0.0 : numbers.between(0.0, 9.0));
+            if (list.layers.back().is_tinted && list.layers.back().capsule_count > 0) {
+                list.capsules.back().tint = {numbers.byte(), numbers.byte(), numbers.byte(),
+                                             static_cast<std::uint8_t>(i % 6 == 0 ? 64 : 1)};
+            }
         }
     }
     view::Font font;

@@ -77,14 +77,13 @@ class ChainDynamics final : public Dynamics {
 
     void positions(const double* y, State& state) const override;
 
-    /// Writes the velocities of the particles whose positions positions() writes, in m/s.
-    void velocities(const double* y, std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) const;
+    void velocities(const double* y, std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) const override;
 
     [[nodiscard]] double energy_j(const double* y) const override;
     [[nodiscard]] Loads loads(const double* y) override;
 
-    /// Writes the tension of every link, in the state's order; a positive tension pulls.
-    void tensions(const double* y, std::vector<double>& tension_n);
+    /// Entry i is that of the link that joins particle i of the system to the next one; 0 if none does.
+    void tensions(const double* y, std::vector<double>& tension_n) override;
 
     /// Brings the end of a chain between two pins back to its pin, and the end's velocity to 0, by the least
     /// changes of the links' directions and angular velocities.

@@ -23,6 +23,10 @@ class ChainPart final : public ExactPart {
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override { return dynamics_.energy_j(output_.data()); }
     [[nodiscard]] Loads loads() override { return dynamics_.loads(output_.data()); }
+    void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override {
+        dynamics_.velocities(output_.data(), vx_m_s, vy_m_s);
+    }
+    void tensions(std::vector<double>& tension_n) override { dynamics_.tensions(output_.data(), tension_n); }
     [[nodiscard]] std::uint64_t steps() const override;
     [[nodiscard]] std::uint64_t rejected_steps() const override { return 0; }
 

@@ -81,7 +81,10 @@ double ChainDynamics::energy_j(const double* y) const {
 
 void ChainDynamics::tensions(const double* y, std::vector<double>& tension_n) {
     find_all_tensions(y);
-    tension_n = tension_n_;
+    tension_n.assign(links_.size() - 1, 0.0);
+    for (std::size_t i = 0; i < tension_n.size(); ++i) {
+        if (links_[i].moves) tension_n[i] = tension_n_[links_[i].index];
+    }
 }
 
 Loads ChainDynamics::loads(const double* y) {

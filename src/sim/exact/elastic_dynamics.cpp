@@ -115,6 +115,12 @@ double ElasticDynamics::energy_j(const double* y) const {
     return energy_j;
 }
 
+void ElasticDynamics::velocities(const double* y, std::vector<double>& vx_m_s,
+                                 std::vector<double>& vy_m_s) const {
+    std::copy_n(y + 2 * count_, count_, vx_m_s.begin() + static_cast<std::ptrdiff_t>(first_particle_));
+    std::copy_n(y + 3 * count_, count_, vy_m_s.begin() + static_cast<std::ptrdiff_t>(first_particle_));
+}
+
 Loads ElasticDynamics::loads(const double* y) {
     Loads loads;
     loads.largest_tension_n = elastic_.largest_tension_n(y, y + count_);

@@ -33,6 +33,13 @@ class Exact final : public Solver {
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override { return part_->energy_j(); }
     [[nodiscard]] std::optional<Loads> loads() const override { return part_->loads(); }
+    void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override {
+        part_->velocities(vx_m_s, vy_m_s);
+    }
+    [[nodiscard]] bool tensions(std::vector<double>& tension_n) override {
+        part_->tensions(tension_n);
+        return true;
+    }
     [[nodiscard]] std::uint64_t steps() const override { return part_->steps(); }
     [[nodiscard]] std::vector<MethodDef> methods() const override { return {def_}; }
 

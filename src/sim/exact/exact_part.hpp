@@ -24,6 +24,8 @@ class ExactPart {
     // See Solver; of this body alone.
     [[nodiscard]] virtual double energy_j() const = 0;
     [[nodiscard]] virtual Loads loads() = 0;
+    virtual void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) = 0;
+    virtual void tensions(std::vector<double>& tension_n) = 0;
     [[nodiscard]] virtual std::uint64_t steps() const = 0;
     [[nodiscard]] virtual std::uint64_t rejected_steps() const = 0;
 };
@@ -40,6 +42,10 @@ class OdePart final : public ExactPart {
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override { return dynamics_->energy_j(output_.data()); }
     [[nodiscard]] Loads loads() override { return dynamics_->loads(output_.data()); }
+    void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override {
+        dynamics_->velocities(output_.data(), vx_m_s, vy_m_s);
+    }
+    void tensions(std::vector<double>& tension_n) override { dynamics_->tensions(output_.data(), tension_n); }
     [[nodiscard]] std::uint64_t steps() const override { return integrator_.accepted_steps(); }
     [[nodiscard]] std::uint64_t rejected_steps() const override { return integrator_.rejected_steps(); }
 

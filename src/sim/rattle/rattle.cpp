@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "corda/sim/distance.hpp"
@@ -56,6 +57,14 @@ Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def,
       tension_over_length_n_m_(impulse_.size(), 0.0),
       pin_force_n_(mass_kg_.size()) {
     refuse_rigid_strings(system);
+    for (const Body& body : system.bodies) {
+        for (std::size_t k = body.first_bar; k < body.first_bar + body.bar_count; ++k) {
+            const Bar& bar = system.bars[k];
+            const bool moves = inverse_mass_1_kg_[bar.a] > 0.0 || inverse_mass_1_kg_[bar.b] > 0.0;
+            if (body.material.compliance_1_n == 0.0 && moves) bar_of_link_.push_back(k);
+        }
+    }
+    assert(bar_of_link_.size() == impulse_.size());
     grid_.motion = Motion::start_of(system);
     if (is_elastic()) {
         force_x_n_.assign(mass_kg_.size(), 0.0);
@@ -321,6 +330,24 @@ std::optional<Loads> Rattle::loads() const {
             loads.pin_force_n = std::max(loads.pin_force_n, length(pin_force_n_[i].x, pin_force_n_[i].y));
     }
     return loads;
+}
+
+void Rattle::velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) {
+    vx_m_s = output_.vx_m_s;
+    vy_m_s = output_.vy_m_s;
+}
+
+bool Rattle::tensions(std::vector<double>& tension_n) {
+    if (!constraints_->determines_tensions()) return false;
+    const bool are_known = find_tensions();
+    for (std::size_t k = 0; k < bar_of_link_.size(); ++k) {
+        const auto [a, b, rest_m] = constraints_->links()[k];
+        const double length_m = length(output_.x_m[b] - output_.x_m[a], output_.y_m[b] - output_.y_m[a]);
+        tension_n[bar_of_link_[k]] =
+            are_known ? tension_over_length_n_m_[k] * length_m : std::numeric_limits<double>::quiet_NaN();
+    }
+    elastic_.tensions(output_.x_m.data(), output_.y_m.data(), tension_n);
+    return true;
 }
 
 double Rattle::energy_j() const {

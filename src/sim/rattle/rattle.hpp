@@ -50,6 +50,9 @@ class Rattle final : public Solver {
     /// From the tensions that keep the second derivatives of the rigid bars' lengths 0. std::nullopt if bars
     /// depend on each other: they could share the load in any way, and no way is truer than another.
     [[nodiscard]] std::optional<Loads> loads() const override;
+    void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override;
+    /// As loads().
+    [[nodiscard]] bool tensions(std::vector<double>& tension_n) override;
     [[nodiscard]] std::uint64_t steps() const override { return step_; }
     [[nodiscard]] bool has_branched() const override { return has_branched_; }
 
@@ -110,6 +113,7 @@ class Rattle final : public Solver {
     bool has_branched_ = false;  ///< before output_
     std::vector<double> mass_kg_;
     std::vector<double> inverse_mass_1_kg_;
+    std::vector<std::size_t> bar_of_link_;
     Trajectory grid_;        ///< at step_ * step_s_
     Trajectory between_;     ///< scratch for a time between grid points
     Trajectory part_start_;  ///< from which a part that fails is repeated

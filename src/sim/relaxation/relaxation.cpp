@@ -167,6 +167,13 @@ void Relaxation::interpolate(double fraction, State& state) const {
     }
 }
 
+void Relaxation::velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) {
+    for (std::size_t i = 0; i < vx_m_s.size(); ++i) {
+        vx_m_s[i] = motion_.move_m[2 * i] / step_s_;
+        vy_m_s[i] = motion_.move_m[2 * i + 1] / step_s_;
+    }
+}
+
 double Relaxation::energy_j() const {
     // At the middle of the last step, where move / h is the velocity to second order; before the first step,
     // at t = 0.

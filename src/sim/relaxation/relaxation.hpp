@@ -34,6 +34,8 @@ class Relaxation final : public Solver {
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;
+    /// The last move over the step.
+    void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override;
     [[nodiscard]] std::uint64_t steps() const override { return step_; }
     [[nodiscard]] std::vector<MethodDef> methods() const override { return {def_}; }
 

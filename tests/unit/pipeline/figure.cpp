@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include <string>
 
@@ -180,6 +181,20 @@ TEST(FigureFiles, AreNotWrittenIfAskedToStop) {
 TEST(FigureFiles, RefuseOtherEndings) {
     const Film film(scene_of());
     EXPECT_EQ(failure_of([&] { write_figure("x.gif", film, {.times_s = {0.0}}); }).code, ExitCode::kUsage);
+}
+
+TEST(ContactSheet, OfTooManyColumnsIsRefused) {
+    for (const int columns : {std::numeric_limits<int>::max(), 100'000}) {
+        Scene scene = scene_of();
+        EXPECT_EQ(test::code_of([&] {
+                      static_cast<void>(contact_sheet(scene, {0.0, 0.1}, columns));
+                  }),
+                  ExitCode::kUsage);
+        const Film film(scene_of());
+        EXPECT_EQ(
+            code_of(film, {.times_s = {0.0, 0.1}, .columns = columns, .width_px = 640, .height_px = 480}),
+            ExitCode::kUsage);
+    }
 }
 
 }  // namespace

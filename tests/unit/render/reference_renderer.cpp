@@ -82,5 +82,62 @@ TEST(TransparentGround, ShowsInAHalo) {
     EXPECT_EQ(image.pixel(20, 20)[2], 255);
 }
 
+TEST(TintedLayer, OfOneTintIsAPlainLayer) {
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+        view::DrawList list = test::random_draw_list(seed, 160, 120, 4, 30);
+        view::DrawList tinted = list;
+        for (view::Layer& layer : tinted.layers) {
+            layer.is_tinted = true;
+            for (std::size_t i = 0; i < layer.capsule_count; ++i)
+                tinted.capsules[layer.first_capsule + i].tint = {layer.color.r, layer.color.g, layer.color.b};
+            layer.color = {1, 2, 3, layer.color.a};
+        }
+        EXPECT_TRUE(test::equal_images(render_reference(tinted), render_reference(list))) << seed;
+    }
+}
+
+view::DrawList two_links(view::PixelPoint joint) {
+    view::DrawList list;
+    list.width = 60;
+    list.height = 40;
+    list.add_layer({}, true);
+    list.add_capsule({5.0, 20.0}, joint, 8.0, 0.0, {200, 0, 0});
+    list.add_capsule(joint, {55.0, 20.0}, 8.0, 0.0, {0, 0, 200});
+    return list;
+}
+
+TEST(TintedLayer, LinksInLineMeetAtASharpEdge) {
+    const Image image = render_reference(two_links({30.25, 20.0}));
+    for (const int y : {14, 20, 25}) {
+        EXPECT_EQ(image.pixel(28, y)[0], 199);  // the next link's round end counts as one to 256
+        EXPECT_EQ(image.pixel(28, y)[2], 1);
+        EXPECT_NEAR(image.pixel(30, y)[0], 50, 2);  // a quarter of the pixel
+        EXPECT_NEAR(image.pixel(30, y)[2], 150, 2);
+        EXPECT_EQ(image.pixel(32, y)[0], 1);
+        EXPECT_EQ(image.pixel(32, y)[2], 199);
+    }
+    EXPECT_EQ(image.pixel(10, 20)[0], 200);
+}
+
+TEST(TintedLayer, ACornerIsCoveredAsThatOfOneColour) {
+    view::DrawList list = two_links({30.0, 8.0});
+    const Image tinted = render_reference(list);
+    list.layers.front().is_tinted = false;
+    const Image plain = render_reference(list);
+    for (int y = 0; y < 40; ++y) {
+        for (int x = 0; x < 60; ++x) EXPECT_EQ(tinted.pixel(x, y)[3], plain.pixel(x, y)[3]);
+    }
+    EXPECT_NEAR(tinted.pixel(30, 2)[0], 100, 3);  // outside of the bend: half of each
+    EXPECT_NEAR(tinted.pixel(30, 2)[2], 100, 3);
+}
+
+TEST(TintedLayer, AHeavierCapsuleHidesOthers) {
+    view::DrawList list = two_links({30.0, 20.0});
+    list.add_capsule({30.0, 20.0}, {30.0, 20.0}, 12.0, 0.0, {0, 250, 0, 64});
+    const Image image = render_reference(list);
+    EXPECT_GE(image.pixel(30, 20)[1], 240);
+    EXPECT_LE(image.pixel(30, 20)[0], 4);
+}
+
 }  // namespace
 }  // namespace corda::render

@@ -56,5 +56,37 @@ TEST(Strokes, OfARingAreOneLine) {
     EXPECT_EQ(strokes.lines[0].lines[0].size(), 65U);
 }
 
+TEST(Strokes, OfATintedLayerAreByColourAndEndBluntlyOnTop) {
+    view::DrawList list = list_of_one_layer();
+    list.layers.front().is_tinted = true;
+    list.add_capsule({10.0, 10.0}, {20.0, 10.0}, 2.0, 1.0, {1, 0, 0});
+    list.add_capsule({20.0, 10.0}, {30.0, 10.0}, 2.0, 1.0, {1, 0, 0});
+    list.add_capsule({30.0, 10.0}, {40.0, 10.0}, 2.0, 1.0, {0, 1, 0});
+    list.add_capsule({40.0, 10.0}, {40.0, 10.0}, 5.0, 1.0, {0, 1, 0});
+    const LayerStrokes strokes = strokes_of(list, list.layers.front());
+    ASSERT_EQ(strokes.lines.size(), 5U);
+    EXPECT_EQ(strokes.lines[0].color, (Color{1, 0, 0}));
+    EXPECT_EQ(strokes.lines[0].lines.front().size(), 3U);
+    EXPECT_FALSE(strokes.lines[1].is_blunt);
+    EXPECT_TRUE(strokes.lines[2].is_blunt);
+    EXPECT_TRUE(strokes.lines[3].is_blunt);
+    EXPECT_EQ(strokes.lines[4].width_px, 10.0);  // the dot
+    EXPECT_FALSE(strokes.lines[4].is_blunt);
+    EXPECT_EQ(strokes.halos.size(), 2U);  // of two widths, in one colour
+}
+
+TEST(Boxes, GoOnBelowTheNextOne) {
+    view::DrawList list = list_of_one_layer();
+    list.add_box({10, 10, 12, 20}, {1, 2, 3});
+    list.add_box({12, 10, 14, 20}, {4, 5, 6});
+    list.add_box({14, 10, 16, 20}, {7, 8, 9, 100});
+    list.add_box({16, 10, 18, 21}, {4, 5, 6});
+    const std::vector<view::Stamp> boxes = boxes_of(list);
+    ASSERT_EQ(boxes.size(), 4U);
+    EXPECT_EQ(boxes[0].box.x1, 13);
+    EXPECT_EQ(boxes[1].box.x1, 14);  // the next one is transparent
+    EXPECT_EQ(boxes[2].box.x1, 16);  // and the next one higher
+}
+
 }  // namespace
 }  // namespace corda::render

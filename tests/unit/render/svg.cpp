@@ -48,7 +48,48 @@ TEST(Svg, PaintsHalosInTheColoursOfTheGround) {
 TEST(Svg, CutsHalosOutOverATransparentGround) {
     const std::string svg = svg_of(crossing({{0, 0, 0, 0}, {0, 0, 0, 0}}));
     EXPECT_THAT(svg, Not(HasSubstr("<rect width=\"100\" height=\"50\" fill=\"#000000\"")));
-    EXPECT_THAT(svg, HasSubstr("<g mask=\"url(#halo0)\">\n<g stroke=\"#ff0000\">"));
+    EXPECT_THAT(svg, HasSubstr("<g mask=\"url(#mask1)\">\n<g stroke=\"#ff0000\">"));
+    EXPECT_THAT(svg, HasSubstr("<use href=\"#halo0\"/>"));
+}
+
+TEST(Svg, NestsMasksOfManyHalosAsDeepAsTheyCanBeHalved) {
+    view::DrawList list = crossing({{0, 0, 0, 0}, {0, 0, 0, 0}});
+    for (int i = 0; i < 1000; ++i) {
+        list.add_layer({0, 0, 0});
+        list.add_capsule({10.0 + 0.08 * i, 5.0}, {20.0, 45.0}, 1.0, 1.0);
+    }
+    const std::string svg = svg_of(list);
+    int depth = 0;
+    int deepest = 0;
+    for (std::size_t i = 0; i < svg.size(); ++i) {
+        if (svg.compare(i, 2, "<g") == 0) deepest = std::max(deepest, ++depth);
+        if (svg.compare(i, 3, "</g") == 0) --depth;
+    }
+    EXPECT_EQ(depth, 0);
+    EXPECT_LE(deepest, 13);        // measured 12
+    EXPECT_LT(svg.size(), 1.2e6);  // measured 0.6 MB
+}
+
+TEST(Svg, WritesNoControlCharacterOfATitle) {
+    const std::string svg = svg_of(crossing({{255, 255, 255}, {255, 255, 255}}), "a\x01\x1b");
+    EXPECT_THAT(svg, HasSubstr("<title>a\\x01\\x1b</title>"));
+}
+
+TEST(Svg, GivesEachLinkOfATintedLayerItsColour) {
+    view::DrawList list;
+    list.width = 100;
+    list.height = 50;
+    list.ground = {{255, 255, 255}, {255, 255, 255}};
+    list.add_layer({0, 0, 0, 51}, true);
+    list.add_capsule({10.0, 25.0}, {50.0, 25.0}, 2.0, 0.0, {255, 0, 0});
+    list.add_capsule({50.0, 25.0}, {90.0, 25.0}, 2.0, 0.0, {0, 0, 255});
+    const std::string svg = svg_of(list);
+    const std::string first = R"(<path stroke="#ff0000" stroke-width="4")";
+    const std::string blunt = R"(<path stroke="#ff0000" stroke-linecap="butt" stroke-width="4")";
+    EXPECT_THAT(svg, HasSubstr("opacity=\"0.2\""));
+    EXPECT_LT(svg.find(first), svg.find(blunt));
+    EXPECT_LT(svg.find(R"(<path stroke="#0000ff" stroke-width="4")"), svg.find(blunt));
+    EXPECT_THAT(svg, HasSubstr(R"(<path stroke="#0000ff" stroke-linecap="butt")"));
 }
 
 TEST(Svg, WritesTextOverTheLayers) {

@@ -174,6 +174,16 @@ TEST(SceneLimits, PaceOfEachBodysSolver) {
     EXPECT_NO_THROW(parse_scene(two_ropes_with("[[solver.bodies]]\nropes = [1]\n" + relaxation), "a"));
 }
 
+TEST(SceneLimits, MemoryOfTrails) {
+    std::string ropes;
+    for (int i = 0; i < 20'000; ++i) ropes += "[[rope]]\nline = { particles = 2, step = [0.1, -1.0] }\n";
+    const std::string minute = "schema = 1\n[world]\nduration = 60.0\n";
+    EXPECT_NO_THROW(parse_scene(minute + ropes, "a"));
+    // 115 kB of points and 599 kB in a picture, for each.
+    expect_limit(minute + "[style]\ntrail_s = 6.0\n" + ropes, "swing.toml:", "no style.trail_s");
+    EXPECT_NO_THROW(parse_scene(minute + "[style]\ntrail_s = 0.5\n" + ropes, "a"));
+}
+
 TEST(SceneLimits, FileSize) {
     const std::string large(static_cast<std::size_t>(Limits::kFileBytes) + 1, '\n');
     expect_limit(large, "swing.toml: ", "over the limit of 16777216 bytes");

@@ -454,10 +454,34 @@ TEST(SceneErrors, StyleAndCamera) {
          "0 is not >= 1e-9; give the height of the picture in m, 1e-9 .. 4e9"},
         {camera("margin = 0.46"), "swing.toml:4:10: camera.margin: ", "0.46 is not <= 0.45"},
     });
-    std::string colors;
-    for (int i = 0; i < 65; ++i) colors += "'#000000',";
-    expect_errors({{style("palette = [" + colors + "]"), "swing.toml:4:11: style.palette: ",
-                    "this is a list of 65; give a list of 1 .. 64 colours"}});
+}
+
+TEST(SceneErrors, ColoursOfLinks) {
+    const std::string relaxes = "[solver]\nmethod = \"relaxation\"\n";
+    expect_errors({
+        {with("[style]\ncolor_by = \"tensoin\""),
+         "swing.toml:4:12: style.color_by: ", "\"tensoin\" is unknown; did you mean \"tension\"?"},
+        {with("[style]\ncolor_by = 3"), "swing.toml:4:12: style.color_by: ", "3 is an integer, not text"},
+        {with(relaxes + "[style]\ncolor_by = \"tension\""),
+         "swing.toml:6:12: style.color_by: ", "knows no tensions; give \"speed\" or \"strain\", or another"},
+        {rope_with("color = [\"red\", \"blue\"]"),
+         "swing.toml:4:9: rope[0].color: ", "set style.color_by = \"link\", or give one colour"},
+        {rope_with("color = [\"red\", 3]"),
+         "swing.toml:4:17: rope[0].color[1]: ", "3 is an integer, not text"},
+        {rope_with("color = [\"red\", \"bleu\"]"),
+         "swing.toml:4:17: rope[0].color[1]: ", "did you mean \"blue\""},
+        {rope_with("color = [\"red\", \"#00ff0080\"]\n[style]\ncolor_by = \"link\""),
+         "swing.toml:4:17: rope[0].color[1]: ", "another alpha than that of the first link"},
+        {rope_with("color = []"), "swing.toml:4:9: rope[0].color: ", "the list is empty"},
+    });
+    EXPECT_NO_THROW(parse_scene(with(relaxes + "[style]\ncolor_by = \"speed\""), "a"));
+}
+
+TEST(SceneErrors, LongTitles) {
+    const std::string title(1001, 'x');
+    expect_errors({{with("[overlay]\ntitle = \"" + title + "\""),
+                    "swing.toml:4:9: overlay.title: ", "a text of 1001 bytes, over the limit of 1000"}});
+    EXPECT_NO_THROW(parse_scene(with("[overlay]\ntitle = \"" + title.substr(1) + "\""), "a"));
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ std::string text(const Scene& scene) {
     for (const int choice : {static_cast<int>(style.theme), static_cast<int>(style.payload),
                              static_cast<int>(style.supports), static_cast<int>(style.halo)})
         all += text(choice);
-    all += text(style.trail_s);
+    all += text(style.trail_s) + text(static_cast<int>(style.color_by));
     const OverlayDef& overlay = scene.overlay;
     all += overlay.title + text(static_cast<int>(overlay.energy)) + text(static_cast<int>(overlay.method));
     return all + text(static_cast<int>(style.markers)) + text(static_cast<int>(style.bars)) +

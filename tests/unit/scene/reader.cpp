@@ -242,5 +242,23 @@ TEST_F(SceneFile, WithoutEndIsRefusedAtTheLimit) {
     EXPECT_THAT(error.message, HasSubstr("over the limit of 16777216 bytes"));
 }
 
+TEST(SceneReader, ColoursOfLinks) {
+    const Scene scene = parse_scene(
+        "schema = 1\n[style]\ncolor_by = \"link\"\n[overlay]\nlegend = true\n[[rope]]\nhang = { links = 2, "
+        "length = 1 }\ncolor = [\"#ff000080\", \"#00ff0080\"]\n[[rope]]\nhang = { links = 2, length = 1 }\n",
+        "a");
+    EXPECT_EQ(scene.style.color_by, ColorBy::kLink);
+    EXPECT_EQ(scene.overlay.legend, true);
+    EXPECT_THAT(scene.body_styles[0].link_colors, ElementsAre(Color{255, 0, 0, 128}, Color{0, 255, 0, 128}));
+    EXPECT_FALSE(scene.body_styles[0].color);
+    EXPECT_TRUE(scene.body_styles[1].link_colors.empty());
+}
+
+TEST(SceneReader, PalettesOfAnyNumberOfColours) {
+    std::string colors;
+    for (int i = 0; i < 1000; ++i) colors += "\"red\", ";
+    EXPECT_EQ(parse_scene(with("[style]\npalette = [" + colors + "]"), "a").style.palette.size(), 1000U);
+}
+
 }  // namespace
 }  // namespace corda::scene

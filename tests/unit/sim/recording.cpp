@@ -93,6 +93,28 @@ TEST(Recording, OfBodiesEndsWithTheFirstThatDiverges) {
     EXPECT_EQ(whole.size(), 0U);
 }
 
+TEST(Recording, KeepsTensionsOfAllBodiesAndTheirSpread) {
+    constexpr std::size_t kBars = kParticles - 1;
+    Recording whole(2 * kParticles, 5, 1 << 20, 2 * kBars, Quantity::kTension);
+    std::vector<double> expected_n;
+    for (const std::size_t body : {0U, 1U}) {
+        Recording part = whole.for_part(kParticles, kBars);
+        Simulation run = swing();
+        for (int k = 0; k < 5; ++k) ASSERT_EQ(part.advance(run, kTimes, {}), Status::kOk);
+        expected_n.insert(expected_n.end(), run.state().tension_n.begin(), run.state().tension_n.end());
+        whole.add_body(part, body * kParticles, body * kBars);
+    }
+    State state;
+    whole.read(4, state);
+    EXPECT_EQ(state.tension_n, expected_n);
+    EXPECT_EQ(state.tension_n.size(), 2 * kBars);
+    EXPECT_TRUE(state.vx_m_s.empty());
+    EXPECT_GE(whole.spread().largest(), state.tension_n[0]);
+    EXPECT_LT(whole.spread().least(), whole.spread().largest());
+    whole.clear();
+    EXPECT_TRUE(whole.spread().empty());
+}
+
 TEST(Recording, AddsNoStateOfARunThatDiverges) {
     RopeDef rope = reference::straight_rope(1, 1.0, 0.0);
     rope.pinned = {};

@@ -167,5 +167,59 @@ TEST(Simulation, IsNotMadeOfManyBodiesOnceItShallNotGoOn) {
     EXPECT_EQ(left, 0);
 }
 
+/// A plumb line of 3 links of 0.5 m and 1 kg each, released or hanging at rest.
+RopeDef plumb_line() {
+    RopeDef rope = reference::straight_rope(3, 1.5, 0.0);
+    rope.velocity_m_s = {{}, {0.5, 0.0}, {1.0, 0.0}, {1.5, 0.0}};
+    return rope;
+}
+
+TEST(Simulation, TellsVelocitiesAndTensionsByEveryMethodThatKnowsThem) {
+    // It turns as a rod at first: every link carries the weight and the centripetal force of what is below.
+    constexpr double kTurn = 1.0;  // 1/s
+    RopeDef elastic = plumb_line();
+    RopeDef string = plumb_line();
+    string.material.is_string = true;
+    elastic.rest_m.clear();
+    elastic.material.compliance_1_n = 1e-4;
+    for (double below_m : {0.5, 1.0, 1.5}) {
+        double load_n = 0.0;
+        for (double at_m = below_m; at_m <= 1.5; at_m += 0.5) load_n += 9.81 + kTurn * kTurn * at_m;
+        elastic.rest_m.push_back(0.5 / (1.0 + 1e-4 * load_n));
+    }
+    const std::vector<std::pair<RopeDef, MethodDef>> cases{{plumb_line(), ExactDef{}},
+                                                           {plumb_line(), RattleDef{}},
+                                                           {string, ExactDef{}},
+                                                           {elastic, ExactDef{}},
+                                                           {elastic, RattleDef{}}};
+    for (const auto& [rope, method] : cases) {
+        const std::vector<RopeDef> two{rope, rope};
+        Simulation run(build_system(two), WorldDef{}, method);
+        ASSERT_EQ(run.advance_to(0.0), Status::kOk);
+        EXPECT_TRUE(run.state().tension_n.empty());
+        run.tell({.velocities = true, .tensions = true});
+        const State& state = run.state();
+        ASSERT_EQ(state.tension_n.size(), 6U);
+        for (const std::size_t i : {0U, 4U}) EXPECT_NEAR(state.vx_m_s[i + 3], 1.5, 1e-9);
+        for (const std::size_t first : {0U, 3U}) {
+            // 3 . 9.81 + 0.5 + 1 + 1.5, and so on
+            EXPECT_NEAR(state.tension_n[first], 32.43, 1e-6) << method_name(method);
+            EXPECT_NEAR(state.tension_n[first + 1], 22.12, 1e-6);
+            EXPECT_NEAR(state.tension_n[first + 2], 11.31, 1e-6);
+        }
+        ASSERT_EQ(run.advance_to(0.1), Status::kOk);
+        EXPECT_LT(run.state().vx_m_s[3], 1.5);  // 1.48: it rises
+        EXPECT_GT(run.state().vy_m_s[3], 0.0);
+        EXPECT_EQ(run.state().vx_m_s[4], 0.0);
+    }
+}
+
+TEST(Simulation, RefusesTensionsThatItsMethodDoesNotKnow) {
+    Simulation run = test::simulate(plumb_line(), WorldDef{}, RelaxationDef{});
+    run.tell({.velocities = true});
+    EXPECT_NEAR(run.state().vx_m_s[3], 1.5, 1e-12);
+    EXPECT_THROW(run.tell({.tensions = true}), Error);
+}
+
 }  // namespace
 }  // namespace corda

@@ -8,6 +8,8 @@
 #include <numbers>
 #include <vector>
 
+#include "corda/view/color_scale.hpp"
+
 namespace corda::view {
 namespace {
 
@@ -166,6 +168,57 @@ TEST(Palettes, HaveNotTheColourOfSupports) {
         for (const Color& color : look.palette)
             EXPECT_GT(distance_as_seen(color, look.support, kNormal), 15.0) << color.text();  // measured 17.3
         EXPECT_GT(contrast(look.support, look.ground.bottom), 4.5);                           // measured 5.0
+    }
+}
+
+/// All colours of a scale, in steps.
+std::vector<Color> colors_of_scale(Theme theme, bool is_about_zero) {
+    StyleDef style;
+    style.theme = theme;
+    sim::Spread spread;
+    spread.add(1.0);
+    if (is_about_zero) spread.add(-1.0);
+    const ColorScale scale = scale_of(Quantity::kTension, spread, style);
+    std::vector<Color> colors;
+    for (int i = 0; i <= 64; ++i)
+        colors.push_back(scale.color(scale.low + i * (scale.high - scale.low) / 64));
+    return colors;
+}
+
+TEST(ScaleColours, StandOutFromTheGround) {
+    for (const Theme theme : {Theme::kDark, Theme::kPaper}) {
+        const Ground ground = look_of_theme(theme).ground;
+        for (const bool is_about_zero : {false, true}) {
+            for (const Color& color : colors_of_scale(theme, is_about_zero)) {
+                // Measured 3.1 on the dark ground, 2.9 on paper.
+                EXPECT_GE(std::min(contrast(color, ground.top), contrast(color, ground.bottom)), 2.8)
+                    << color.text();
+            }
+        }
+    }
+}
+
+TEST(ScaleColours, GrowEvenlyInLightnessForAllEyes) {
+    for (const Theme theme : {Theme::kDark, Theme::kPaper}) {
+        const std::vector<Color> colors = colors_of_scale(theme, false);
+        const double sign = theme == Theme::kDark ? 1.0 : -1.0;
+        for (const Matrix& eye : {kNormal, kProtanopia, kDeuteranopia}) {
+            for (std::size_t i = 8; i < colors.size(); i += 8) {
+                const double step = lab_of(product(eye, linear(colors[i])))[0] -
+                                    lab_of(product(eye, linear(colors[i - 8])))[0];
+                EXPECT_GT(sign * step, 1.0) << i;  // measured 1.6, of 5.3 on average
+            }
+        }
+    }
+}
+
+TEST(ScaleColours, TellSignsApartForAllEyes) {
+    for (const Theme theme : {Theme::kDark, Theme::kPaper}) {
+        const std::vector<Color> colors = colors_of_scale(theme, true);
+        for (const Matrix& eye : {kNormal, kProtanopia, kDeuteranopia}) {
+            for (const std::size_t i : {16U, 32U})
+                EXPECT_GT(distance_as_seen(colors[32 - i], colors[32 + i], eye), 20.0) << i;  // measured 26
+        }
     }
 }
 

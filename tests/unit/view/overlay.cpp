@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <clocale>
+#include <cmath>
+#include <limits>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -161,6 +164,98 @@ TEST(OverlayNumbers, HaveAUnitThatFits) {
                                                 {5, -9, "5 nm"},
                                                 {2, -10, "0.2 nm"}})
         EXPECT_EQ(length_text(digit, exponent), text);
+}
+
+StyleDef by_tension() {
+    StyleDef style;
+    style.color_by = ColorBy::kTension;
+    return style;
+}
+
+ColorScale kilonewtons(double low = 0.0) {
+    sim::Spread spread;
+    spread.add(20e3);
+    if (low < 0.0) spread.add(low);
+    return scale_of(Quantity::kTension, spread, by_tension());
+}
+
+DrawList with_legend(const ColorScale& scale, OverlayDef def, int width, int height) {
+    DrawList list;
+    list.width = width;
+    list.height = height;
+    def.time = def.scale_bar = false;
+    def.legend = true;
+    Overlay overlay(def, by_tension(), width, height, kFrameS, 10.0);
+    overlay.set_scale(scale);
+    overlay.draw({}, 100.0, list);
+    return list;
+}
+
+TEST(Legends, NameTheirUnitAndTheEndsOfTheScale) {
+    EXPECT_EQ(words(with_legend(kilonewtons(), {}, 960, 540)), (Words{"tension (kN)", "0", "10", "20"}));
+    EXPECT_EQ(words(with_legend(kilonewtons(-5e3), {}, 960, 540)), (Words{"tension (kN)", "−20", "0", "20"}));
+    ColorScale cut = kilonewtons(-5e3);
+    cut.is_cut = true;
+    EXPECT_EQ(words(with_legend(cut, {}, 960, 540)), (Words{"tension (kN)", "≤ −20", "0", "≥ 20"}));
+}
+
+TEST(Legends, StayInTheirFrameAndKeepClearOfTheTitle) {
+    OverlayDef def;
+    def.title = "a title that is a good deal longer than there is room for beside the legend of a picture";
+    for (const auto& [width, height] :
+         {std::pair{128, 128}, {160, 90}, {960, 540}, {540, 960}, {3840, 2160}}) {
+        const DrawList list = with_legend(kilonewtons(), def, width, height);
+        ASSERT_GE(list.texts.size(), 4U) << width;
+        Font font;
+        const PixelRect legend = font.ink(list.texts[0]);
+        for (const Text& text : list.texts) {
+            const PixelRect ink = font.ink(text);
+            EXPECT_EQ(ink, ink.intersected({0, 0, width, height})) << text.utf8;
+        }
+        if (list.texts.size() > 4) {
+            EXPECT_LT(font.ink(list.texts[4]).x1, legend.x0) << width;
+            EXPECT_TRUE(list.texts[4].utf8.ends_with("…"));
+        }
+        OverlayDef alone;
+        alone.legend = true;
+        alone.time = false;
+        const Insets insets = Overlay(alone, by_tension(), width, height, kFrameS, 10.0).insets();
+        for (std::size_t i = 1; i < 4; ++i) EXPECT_LE(font.ink(list.texts[i]).y1, insets.top_px) << width;
+    }
+}
+
+TEST(Legends, AreLeftOutIfThereIsNoRoomOrNoScale) {
+    EXPECT_TRUE(words(with_legend(kilonewtons(), {}, 60, 400)).empty());
+    OverlayDef def = bar_alone();
+    def.scale_bar = false;
+    EXPECT_TRUE(words(drawn(def, {}, 960, 540, 100.0, 10.0, by_tension())).empty());
+    EXPECT_EQ(Overlay(def, {}, 960, 540, kFrameS, 10.0).insets().top_px, 0.0);
+}
+
+TEST(RoundedUp, LeavesWhatIsNoPositiveNumber) {
+    const double infinite = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(rounded_up(infinite), infinite);
+    EXPECT_EQ(rounded_up(0.0), 0.0);
+    EXPECT_TRUE(std::isnan(rounded_up(std::nan(""))));
+}
+
+TEST(RoundedUp, DoesNotDependOnTheLocale) {
+    const std::string before = std::setlocale(LC_ALL, nullptr);
+    for (const char* const name : {"de_DE.UTF-8", "de_DE", "fr_FR.UTF-8"}) {
+        if (std::setlocale(LC_ALL, name) == nullptr) continue;  // not installed
+        EXPECT_EQ(rounded_up(0.00123), 0.0013) << name;
+    }
+    std::setlocale(LC_ALL, before.c_str());
+    EXPECT_EQ(rounded_up(0.00123), 0.0013);
+}
+
+TEST(Titles, OfAMegabyteAreShortenedAtOnce) {
+    OverlayDef def = bar_alone();
+    def.scale_bar = false;
+    def.title.assign(1 << 20, 'x');
+    const Words all = words(drawn(def, {}, 640, 360));
+    ASSERT_EQ(all.size(), 1U);
+    EXPECT_LT(all.front().size(), 100U);
 }
 
 }  // namespace

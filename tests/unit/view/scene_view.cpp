@@ -268,5 +268,57 @@ TEST(SceneView, AllThatIsDrawnStaysInsideThePicture) {
     }
 }
 
+TEST(SceneView, LinksTakeTheColoursOfAListInTurnAndABallThatOfItsLink) {
+    StyleDef style = plain();
+    style.color_by = ColorBy::kLink;
+    style.payload = true;
+    RopeDef rope = reference::straight_rope(5, 1.0, 30.0);
+    rope.payload_kg = 1.0;
+    BodyStyleDef two;
+    two.link_colors = {{1, 2, 3, 100}, {4, 5, 6, 100}};
+    NetDef net;
+    net.points_m = {{2.0, 0.0}, {2.5, 0.0}, {2.0, -0.5}};
+    net.bars = {{0, 1}, {1, 2}, {0, 2}};
+    net.pinned = {0};
+    const DrawList list = draw({rope, rope}, style, {two, {}, two}, {net});
+    ASSERT_EQ(list.layers.size(), 5U);  // and the outlines of two balls
+    EXPECT_TRUE(list.layers[0].is_tinted);
+    EXPECT_EQ(list.layers[0].color.a, 100);
+    for (std::size_t k = 0; k < 5; ++k) EXPECT_EQ(list.capsules[k].tint.r, k % 2 == 0 ? 1 : 4) << k;
+    EXPECT_EQ(list.capsules[5].tint, (Tint{1, 2, 3, 64}));  // the ball on the fifth link
+    EXPECT_FALSE(list.layers[2].is_tinted);
+    EXPECT_EQ(list.layers[2].color, look_of(style).palette[0]);
+    EXPECT_TRUE(list.layers[4].is_tinted);
+    EXPECT_EQ(list.capsules[list.layers[4].first_capsule + 1].tint.r, 4);
+}
+
+TEST(SceneView, LinksTakeTheColoursOfAScale) {
+    StyleDef style = plain();
+    style.color_by = ColorBy::kSpeed;
+    const RopeDef rope = reference::straight_rope(2, 1.0, 0.0);
+    const System system = build_system({&rope, 1});
+    SceneView view(system, {0.0, -9.81}, style, {}, kWidth, kHeight);
+    EXPECT_TRUE(view.needs_motion());
+    State state{0.0, system.x_m, system.y_m};
+    state.vx_m_s = {0.0, 3.0, 0.0};
+    state.vy_m_s = {0.0, 4.0, 10.0};
+    const Camera camera({.center_m = Vec2{}, .height_m = 4.0}, system.origin_m, kWidth, kHeight);
+    DrawList list;
+    view.draw(state, camera, list);
+    EXPECT_FALSE(list.layers.front().is_tinted);  // before there is a scale
+    sim::Spread spread;
+    spread.add(10.0);
+    const ColorScale scale = scale_of(Quantity::kSpeed, spread, style);
+    view.set_scale(scale);
+    view.draw(state, camera, list);
+    ASSERT_TRUE(list.layers.front().is_tinted);
+    const auto color = [&](std::size_t k) {
+        const Tint tint = list.capsules[k].tint;
+        return Color{tint.r, tint.g, tint.b};
+    };
+    EXPECT_EQ(color(0), scale.color(2.5));
+    EXPECT_EQ(color(1), scale.color(7.5));
+}
+
 }  // namespace
 }  // namespace corda::view

@@ -31,6 +31,17 @@ TEST(Trails, FadeInLayersOfWhatIsYounger) {
     EXPECT_NEAR(list.capsules.back().radius, 4.0F, 0.1F);
 }
 
+TEST(Trails, OfATranslucentRopeAreMoreSoThanIt) {
+    DrawList list;
+    list.width = list.height = 400;
+    std::vector<FadingPoint> path;
+    for (int i = 0; i <= 10; ++i) path.push_back({{30.0 * i, 50.0}, 0.1 * i});
+    add_trail(path, 4.0, {255, 255, 255, 128}, list);
+    double covered = 0.0;
+    for (const Layer& layer : list.layers) covered += (1.0 - covered) * layer.color.a / 255.0;
+    EXPECT_NEAR(covered, 0.8 * 128.0 / 255.0, 0.02);  // measured 0.40
+}
+
 TEST(Trails, AreSmooth) {
     // A quarter of a circle, of few points, with a last one that is closer.
     DrawList list;

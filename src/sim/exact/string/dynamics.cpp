@@ -39,7 +39,6 @@ StringDynamics::StringDynamics(const System& string, const std::vector<std::uint
     : forces_(forces),
       length_m_(links_length_m(string, string.bodies.front())),
       runs_(string, runs_of(is_taut), forces),
-      link_count_(is_taut.size()),
       first_loose_(runs_.initial_state().size()),
       initial_state_(runs_.initial_state()) {
     for (std::size_t i = 0; i < string.particle_count(); ++i) {
@@ -121,15 +120,6 @@ double StringDynamics::energy_j(const double* y) const {
         moved += kLooseSize;
     }
     return energy_j;
-}
-
-void StringDynamics::tensions(const double* y, std::vector<double>& tension_n) {
-    runs_.tensions(y, run_tension_n_);
-    tension_n.resize(link_count_);
-    for (std::size_t k = 0; k < link_count_; ++k) {
-        const ChainLink& link = runs_.link(k);
-        tension_n[k] = link.moves ? run_tension_n_[link.index] : 0.0;
-    }
 }
 
 }  // namespace corda::sim

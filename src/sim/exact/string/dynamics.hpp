@@ -29,11 +29,10 @@ class StringDynamics final : public Dynamics {
     [[nodiscard]] double energy_j(const double* y) const override;
     [[nodiscard]] Loads loads(const double* y) override { return runs_.loads(y); }
 
-    /// Writes the velocities of the particles that are not pinned, in m/s.
-    void velocities(const double* y, std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) const;
+    void velocities(const double* y, std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) const override;
 
-    /// Writes the tension of every link of the string in newtons; 0 if slack.
-    void tensions(const double* y, std::vector<double>& tension_n);
+    /// That of a slack link is 0.
+    void tensions(const double* y, std::vector<double>& tension_n) override { runs_.tensions(y, tension_n); }
 
   private:
     struct Loose {
@@ -49,12 +48,10 @@ class StringDynamics final : public Dynamics {
     Forces forces_;
     double length_m_;
     ChainDynamics runs_;
-    std::size_t link_count_;
     std::vector<Loose> loose_;
     std::size_t first_loose_;  ///< index in a state
     std::vector<double> initial_state_;
     double inverse_timescale_1_s_ = 1.0;
-    std::vector<double> run_tension_n_;  ///< scratch
 };
 
 }  // namespace corda::sim

@@ -33,6 +33,10 @@ class StringPart final : public ExactPart {
     [[nodiscard]] double energy_j() const override;
     /// Slack links carry no tension.
     [[nodiscard]] Loads loads() override { return dynamics_->loads(output_.data()); }
+    void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override {
+        dynamics_->velocities(output_.data(), vx_m_s, vy_m_s);
+    }
+    void tensions(std::vector<double>& tension_n) override { dynamics_->tensions(output_.data(), tension_n); }
     [[nodiscard]] std::uint64_t steps() const override;
     [[nodiscard]] std::uint64_t rejected_steps() const override;
 

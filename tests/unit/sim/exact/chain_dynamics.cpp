@@ -52,7 +52,7 @@ TEST(ChainDynamics, ObeysNewtonsLawWithItsTensions) {
         // What the bar from one particle to the next does to the first.
         const auto pull = [&](std::size_t i) {
             const Vec2 along{state.x_m[i + 1] - state.x_m[i], state.y_m[i + 1] - state.y_m[i]};
-            return (tension_n[dynamics.link(i).index] / std::hypot(along.x, along.y)) * along;
+            return (tension_n[i] / std::hypot(along.x, along.y)) * along;
         };
         for (std::size_t i = 0; i < test::kChainParticles; ++i) {
             if (system.is_pinned(i)) continue;

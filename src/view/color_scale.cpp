@@ -1,0 +1,123 @@
+#include "corda/view/color_scale.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "corda/view/look.hpp"
+
+namespace corda::view {
+namespace {
+
+using Colors = std::array<Color, 9>;
+
+// Our own, in B. Ottosson's colour space Oklab (2020): even steps of lightness, so that the colour-blind can
+// read them, away from that of the theme's ground.
+
+/// Lightness 0.56 to 0.95, violet, blue, green, yellow.
+constexpr Colors kDark{{{0x79, 0x5b, 0xce},
+                        {0x52, 0x7b, 0xe8},
+                        {0x03, 0x9b, 0xe3},
+                        {0x0b, 0xb4, 0xcd},
+                        {0x0b, 0xca, 0xba},
+                        {0x1f, 0xe0, 0x9e},
+                        {0x8f, 0xe9, 0x7b},
+                        {0xcb, 0xf0, 0x65},
+                        {0xff, 0xf4, 0x65}}};
+/// 0.67 to 0.27, ochre, red, purple.
+constexpr Colors kPaper{{{0xb0, 0x93, 0x08},
+                         {0xb0, 0x7a, 0x06},
+                         {0xae, 0x61, 0x05},
+                         {0xab, 0x45, 0x01},
+                         {0xa9, 0x17, 0x0a},
+                         {0x92, 0x00, 0x2e},
+                         {0x78, 0x00, 0x3c},
+                         {0x5a, 0x00, 0x4e},
+                         {0x3a, 0x00, 0x56}}};
+/// 0.90 and 0.88, 0.60 in the middle: blue, grey, orange.
+constexpr Colors kDarkAboutZero{{{0xb1, 0xe8, 0xfe},
+                                 {0x65, 0xd6, 0xff},
+                                 {0x45, 0xbd, 0xe7},
+                                 {0x57, 0xa2, 0xbe},
+                                 {0x80, 0x80, 0x80},
+                                 {0xb7, 0x8c, 0x5a},
+                                 {0xdb, 0x9d, 0x4f},
+                                 {0xfd, 0xae, 0x47},
+                                 {0xfe, 0xce, 0x96}}};
+/// 0.33 and 0.38, 0.68 in the middle: blue, grey, brown.
+constexpr Colors kPaperAboutZero{{{0x00, 0x2b, 0x81},
+                                  {0x0d, 0x42, 0xa8},
+                                  {0x35, 0x61, 0xb4},
+                                  {0x5d, 0x7d, 0xba},
+                                  {0x98, 0x98, 0x98},
+                                  {0xb5, 0x6b, 0x58},
+                                  {0xae, 0x46, 0x2d},
+                                  {0x9b, 0x25, 0x01},
+                                  {0x79, 0x1b, 0x01}}};
+
+constexpr double kRare = 1.0 / 50.0;
+constexpr double kFarBeyond = 2.0;
+/// A scale goes below 0 if values do by more than this share of its end.
+constexpr double kBelowZero = 0.02;
+/// Less is rounding.
+constexpr double kSmallestEnd = 1e-12;
+constexpr double kSmallestStrain = 1e-9;
+
+/// The next of these digits times a power of 10, whose halves are short.
+double rounded_end(double value) {
+    // One of them is 1, so that what is returned is rounded once.
+    double power = 1.0;
+    double inverse = 1.0;
+    while (10.0 * power <= value) power *= 10.0;
+    while (power / inverse > value) inverse *= 10.0;
+    for (const double digit : {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0}) {
+        if (digit * power / inverse >= value) return digit * power / inverse;
+    }
+    return 10.0 * power / inverse;
+}
+
+/// Whether a ground is light, as far as it can be seen.
+bool is_light(const StyleDef& style) {
+    const Color text = text_color(look_of(style));
+    return text.g < 128;
+}
+
+}  // namespace
+
+Color ColorScale::color(double value) const {
+    if (std::isnan(value)) return unknown;
+    const double place =
+        std::clamp((value - low) / (high - low), 0.0, 1.0) * static_cast<double>(colors.size() - 1);
+    const std::size_t i = std::min(static_cast<std::size_t>(place), colors.size() - 2);
+    // In 1/32 of the way, so that neighbours in a smooth picture often share one.
+    const long part = std::lround(32.0 * (place - static_cast<double>(i)));
+    const auto mixed = [&](int a, int b) {
+        return static_cast<std::uint8_t>((a * (32 - part) + b * part + 16) / 32);
+    };
+    const Color& a = colors[i];
+    const Color& b = colors[i + 1];
+    return {mixed(a.r, b.r), mixed(a.g, b.g), mixed(a.b, b.b)};
+}
+
+ColorScale scale_of(Quantity quantity, const sim::Spread& spread, const StyleDef& style) {
+    ColorScale scale;
+    scale.quantity = quantity;
+    scale.unknown = look_of(style).support;
+    double end = 1.0;
+    const double smallest = quantity == Quantity::kStrain ? kSmallestStrain : kSmallestEnd;
+    if (!spread.empty() && std::max(-spread.least(), spread.largest()) > smallest) {
+        const double largest = std::max(-spread.least(), spread.largest());
+        const double usual = spread.size_exceeded_by(kRare);
+        scale.is_cut = usual > smallest && largest > kFarBeyond * usual;
+        end = std::min(scale.is_cut ? usual : largest, 1e300);
+    }
+    scale.high = rounded_end(end);
+    const bool is_about_zero = !spread.empty() && spread.least() < -kBelowZero * scale.high;
+    if (is_about_zero) scale.low = -scale.high;
+    if (is_light(style))
+        scale.colors = is_about_zero ? kPaperAboutZero : kPaper;
+    else
+        scale.colors = is_about_zero ? kDarkAboutZero : kDark;
+    return scale;
+}
+
+}  // namespace corda::view
