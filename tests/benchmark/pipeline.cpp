@@ -32,7 +32,7 @@ template <class Use>
 void draw_frames(Film& film, const Use& use) {
     FilmPainter painter(film);
     for (int k = 0; k < kFrames; ++k) {
-        const PixelRect damage = painter.draw(film.time_s(k));
+        const Damage damage = painter.draw(film.time_s(k));
         use(painter.image(), damage);
     }
 }
@@ -48,8 +48,8 @@ void draw(benchmark::State& bench) {
 void encode(benchmark::State& bench) {
     Film film(load_example());
     std::vector<Image> frames;
-    std::vector<PixelRect> damages;
-    draw_frames(film, [&](const Image& image, const PixelRect& damage) {
+    std::vector<Damage> damages;
+    draw_frames(film, [&](const Image& image, const Damage& damage) {
         frames.push_back(image);
         damages.push_back(damage);
     });
@@ -65,7 +65,7 @@ void draw_and_encode(benchmark::State& bench) {
     for (auto _ : bench) {
         Film film(load_example());
         media::VideoWriter writer(output_path(), film.scene().video, {}, {.force = true});
-        draw_frames(film, [&](const Image& image, const PixelRect& damage) { writer.write(image, damage); });
+        draw_frames(film, [&](const Image& image, const Damage& damage) { writer.write(image, damage); });
         writer.finish();
     }
     count_frames(bench);
