@@ -177,6 +177,8 @@ struct FigureDef {
     // Of a contact sheet, at least what its cells take.
     int width_px = 0;
     int height_px = 0;
+    /// Of one time in one picture of pixels: exposes it as Film::still() does, 0 .. 1.
+    double shutter = 0.0;
 };
 
 /// A contact sheet of the scene's picture size: gives `scene` the size of a cell, for a film of which
