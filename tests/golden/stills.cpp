@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 #include "corda/media/defs.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/render/reference_renderer.hpp"
+#include "support/command.hpp"
 #include "support/draw_list_of.hpp"
 #include "support/files.hpp"
 #include "support/image_matchers.hpp"
@@ -75,7 +77,7 @@ TEST_P(GoldenStill, IsUnchangedAt1080p) {
         std::string(CORDA_GOLDENS) + "/stills_1080p/" + test::test_name(GetParam()) + ".txt";
     const Film film(load_scene(GetParam(), {"video.size=[1920,1080]", "world.duration=1.0"}));
     const std::string hash = hash_of(film.still(kTimeSeconds, {}, film.scene().video.shutter));
-    if (std::getenv("CORDA_UPDATE_GOLDENS") != nullptr) test::write_file(path, hash);
+    if (std::getenv("CORDA_UPDATE_GOLDENS") != nullptr) std::ofstream(path) << hash;
     EXPECT_EQ(test::read_file(path), hash) << path;
 }
 

@@ -523,15 +523,15 @@ subframes = 64
         const Image frame = film.frame(k);
         double worst = 0.0;
         for (int x = 0; x < 200; ++x) {
-            const double light = covered_share(x + 0.5 - middle_px, way_px);
-            const double level =
-                255.0 * (light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1.0 / 2.4) - 0.055);
-            worst = std::max(worst, std::abs(frame.pixel(x, 30)[0] - level));
+            const double v = frame.pixel(x, 30)[0] / 255.0;
+            const double light = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
+            worst = std::max(worst, std::abs(light - covered_share(x + 0.5 - middle_px, way_px)));
         }
         return worst;
     };
-    EXPECT_LT(worst_of(1, 100.0, 64.0), 1.0);
-    EXPECT_LT(worst_of(0, 52.0, 32.0), 1.0);  // the shutter opens at the start
+    // A sub-frame is 1/64 of the light: 0.016.
+    EXPECT_LT(worst_of(1, 100.0, 64.0), 0.001);
+    EXPECT_LT(worst_of(0, 52.0, 32.0), 0.001);  // the shutter opens at the start
 }
 
 }  // namespace
