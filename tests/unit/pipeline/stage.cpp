@@ -169,7 +169,7 @@ TEST(LargePictures, AreWholeForAPainterWhoseCallbackDrawsOthers) {
 }
 
 TEST(Painters, InterleaveAndTellWhatOthersHaveDrawn) {
-    Film a(scene_of(64, 48));
+    Film a(scene_of(300, 48));  // wider than the tiles of the rope
     Film b(scene_of(40, 40));
     const Image a_first = a.frame(0);
     const Image b_first = b.frame(0);
