@@ -19,6 +19,7 @@ struct FigureOptions {
     std::string output;
     std::optional<double> width_mm;
     std::optional<double> pixels_per_inch;
+    double shutter = 0.0;
     bool force = false;
     bool dry_run = false;
 

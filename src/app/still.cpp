@@ -78,7 +78,7 @@ void write_each(const std::vector<Still>& stills, const FigureOptions& options, 
     try {
         for (const Still& still : stills) {
             stop_if_asked();
-            const FigureDef def{.times_s = {still.time_s}};
+            const FigureDef def{.times_s = {still.time_s}, .shutter = options.shutter};
             const auto empty_s = write_figure(
                 still.path, film, def, options.describe(film.scene(), {still}, film.scene().video.width_px),
                 {.force = options.force, .on_progress = stopping_if_asked()});
@@ -124,6 +124,10 @@ void add_still(CLI::App& app, Action& action) {
     auto options = std::make_shared<FigureOptions>();
     CLI::App* command = app.add_subcommand("still", "draw frames at exact times");
     options->add_to(*command, "folder, or a .png, .svg or .pdf file for one still");
+    command
+        ->add_option("--shutter", options->shutter,
+                     "blur the motion as a video of this video.shutter does; stills are sharp otherwise")
+        ->check(within(0.0, 1.0));
     command->callback([options, &action] {
         options->shots.require();
         action = [options](const Console& console) { return write_stills(console, *options); };

@@ -67,6 +67,9 @@ struct PixelRect {
     friend bool operator==(const PixelRect&, const PixelRect&) = default;
 };
 
+/// The parts of a picture that may differ from the last one. They may overlap.
+using Damage = std::vector<PixelRect>;
+
 /// A picture of 8-bit RGBA pixels (sRGB, straight alpha), row by row, row 0 on top, no padding.
 class Image {
   public:

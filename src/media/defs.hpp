@@ -25,11 +25,18 @@ struct EncoderDef {
     int threads = 2;
 };
 
-/// The picture size and rate of a video.
+/// The picture size and rate of a video, and how long its frames are exposed.
 struct VideoDef {
+    static constexpr int kMostSubframes = 64;
+
     int width_px = 1920;  ///< see is_picture_size(); even for H.264
     int height_px = 1080;
     FrameRate fps{Rational{60, 1}};
+    /// The share of the interval between frames in which the shutter is open, 0 .. 1: motion is blurred. 0:
+    /// not at all. It is open for as long before a frame's time as after, so that the frame shows on average
+    /// where things are at its time; not before the motion's start, nor after its end.
+    double shutter = 0.0;
+    int subframes = 16;  ///< 2 .. kMostSubframes: of how many pictures a blurred one is the mean
     EncoderDef encoder;
 };
 

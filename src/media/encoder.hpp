@@ -20,7 +20,7 @@ class Encoder {
 
     /// Encodes the next frame: `frame` inside `damage` and the previous frame elsewhere; the first frame is
     /// taken whole. Packets that become ready go to `sink`. Throws corda::Error (kEncoder).
-    virtual void encode(const Image& frame, const PixelRect& damage, const PacketSink& sink) = 0;
+    virtual void encode(const Image& frame, const Damage& damage, const PacketSink& sink) = 0;
 
     /// Ends the stream; the remaining packets go to `sink`. Throws corda::Error (kEncoder).
     virtual void drain(const PacketSink& sink) = 0;

@@ -19,7 +19,7 @@ EncoderProbe probe(const Format& format) {
     const auto ignore = [](AVPacket&) {};
     try {
         const auto encoder = format.make_encoder(format, def);
-        encoder->encode(image, image.rect(), ignore);
+        encoder->encode(image, {image.rect()}, ignore);
         encoder->drain(ignore);
     } catch (const Error& error) {
         return {format.codec, false, error.what()};

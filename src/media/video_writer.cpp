@@ -93,7 +93,7 @@ VideoWriter::~VideoWriter() {
     if (impl_ && impl_->part.is_empty()) impl_->part.remove();
 }
 
-void VideoWriter::write(const Image& frame, const PixelRect& damage) {
+void VideoWriter::write(const Image& frame, const Damage& damage) {
     Impl& impl = *impl_;
     if (impl.drained)
         throw Error(ExitCode::kInternal, "a frame was written to a video that has already ended");

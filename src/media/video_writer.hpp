@@ -44,7 +44,7 @@ class VideoWriter {
 
     /// Adds the next frame, of the size of `def`. `damage` is what may differ from the previous frame (the
     /// first is taken whole). Throws kEncoder or kIo.
-    void write(const Image& frame, const PixelRect& damage);
+    void write(const Image& frame, const Damage& damage);
 
     /// Frames written so far.
     [[nodiscard]] std::int64_t frames() const;

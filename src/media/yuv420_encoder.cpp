@@ -107,14 +107,13 @@ void Yuv420Encoder::hold(std::unique_ptr<Yuv420Image> picture) {
     }
 }
 
-void Yuv420Encoder::encode(const Image& frame, const PixelRect& damage, const PacketSink& sink) {
+void Yuv420Encoder::encode(const Image& frame, const Damage& damage, const PacketSink& sink) {
     assert(frame.width() == picture_->width() && frame.height() == picture_->height());
     const LogCapture log;
-    const PixelRect changed = frames_ == 0 ? frame.rect() : damage.intersected(frame.rect());
-    if (!changed.empty()) {
-        if (av_buffer_get_ref_count(frame_->buf[0]) > 1) hold(std::make_unique<Yuv420Image>(*picture_));
-        convert_to_yuv420(frame, changed, *picture_);
-    }
+    const Damage& changed = frames_ == 0 ? Damage{frame.rect()} : damage;
+    if (!changed.empty() && av_buffer_get_ref_count(frame_->buf[0]) > 1)
+        hold(std::make_unique<Yuv420Image>(*picture_));
+    for (const PixelRect& part : changed) convert_to_yuv420(frame, part, *picture_);
     frame_->pts = frames_;
     send(frame_.get(), sink);
     ++frames_;

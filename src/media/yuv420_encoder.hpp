@@ -23,7 +23,7 @@ class Yuv420Encoder : public Encoder {
     /// Opens the encoder of `format`. Throws corda::Error (kEncoder).
     Yuv420Encoder(const Format& format, const VideoDef& def, const EncoderSettings& settings);
 
-    void encode(const Image& frame, const PixelRect& damage, const PacketSink& sink) override;
+    void encode(const Image& frame, const Damage& damage, const PacketSink& sink) override;
     void drain(const PacketSink& sink) override;
     [[nodiscard]] std::int64_t frames() const override { return frames_; }
     [[nodiscard]] const AVCodecParameters& parameters() const override { return *parameters_; }

@@ -99,6 +99,8 @@ void check(const Film& film, const FigureDef& def) {
     if (def.times_s.empty()) throw Error(ExitCode::kUsage, "a figure of no times; give one or more");
     if (!std::is_sorted(def.times_s.begin(), def.times_s.end()))
         throw Error(ExitCode::kUsage, "the times of a figure do not increase; sort them");
+    if (def.shutter != 0.0 && (def.columns > 0 || def.times_s.size() > 1))
+        throw Error(ExitCode::kUsage, "a figure of several times with a shutter; blur stills, one by one");
     if (def.columns == 0) return;
     const VideoDef& video = film.scene().video;
     if (is_picture_size(def.width_px, def.height_px) && def.columns > 0 &&
@@ -201,6 +203,11 @@ Image draw(const Film& film, const FigureDef& def, const OnProgress& on_progress
            std::vector<double>& empty_s) {
     check(film, def);
     if (def.columns > 0) return draw_sheet(film, def, on_progress, empty_s);
+    if (def.shutter != 0.0) {
+        Image image = film.still(def.times_s.front(), on_progress, def.shutter);
+        if (film.shows_nothing()) empty_s.push_back(def.times_s.front());
+        return image;
+    }
     FilmPainter painter(film);
     painter.draw(FilmPainter::poses(film, def.times_s, on_progress), on_progress);
     if (film.shows_nothing()) empty_s.push_back(def.times_s.front());
@@ -215,6 +222,10 @@ std::string ending_of(const std::string& path) {
 std::string describe_lines(const std::string& ending, const Film& film, const FigureDef& def,
                            const PngInfo& info, const OnProgress& on_progress, std::vector<double>& empty_s) {
     check(film, def);
+    if (def.shutter != 0.0) {
+        throw Error(ExitCode::kUsage,
+                    fmt::format("a shutter and {}: lines cannot be blurred; draw a .png", ending));
+    }
     const VideoDef& video = film.scene().video;
     const bool is_sheet = def.columns > 0;
     render::PageDef page_def{.width_px = is_sheet ? def.width_px : video.width_px,

@@ -164,19 +164,42 @@ struct Film::Impl {
     }
 
     /// Requires a pipeline::Stage::Use.
-    PixelRect draw(double time_s, const OnProgress& on_progress) {
+    Damage draw(double time_s, double shutter, const OnProgress& on_progress) {
+        require_time(time_s);
+        if (!(shutter >= 0.0 && shutter <= 1.0))
+            throw Error(ExitCode::kUsage, fmt::format("a shutter of {} is not within 0 .. 1", shutter));
         const view::Camera map = stage.map_of(find_camera());
+        const auto draw_asking = [&](const OnProgress& ask) {
+            return shutter > 0.0 ? expose(time_s, shutter, map, ask) : draw_sharp(time_s, map, ask);
+        };
         try {
-            return draw(time_s, map, on_progress);
+            return draw_asking(on_progress);
         } catch (const pipeline::Stage::Overdrawn&) {
-            return draw(time_s, map, {});  // without asking: it would not end
+            return draw_asking({});  // without asking: it would not end
         }
     }
 
-    PixelRect draw(double time_s, const view::Camera& map, const OnProgress& on_progress) {
+    Damage draw_sharp(double time_s, const view::Camera& map, const OnProgress& on_progress) {
         const std::vector<view::Trail>& trails = trails_to(time_s);
         const State& state = at(time_s);
         return stage.draw(state, map, caption_of(state, map), trails, on_progress);
+    }
+
+    /// The states are read in the order of time: what is not recorded is simulated on the way.
+    Damage expose(double time_s, double shutter, const view::Camera& map, const OnProgress& on_progress) {
+        const VideoDef& video = scene.video;
+        const double half_s = 0.5 * shutter * video.fps.interval_s();
+        const double from_s = std::max(0.0, time_s - half_s);
+        const double until_s = std::min(std::max(scene.world.duration_s, time_s), time_s + half_s);
+        std::optional<view::Caption> caption;
+        for (int i = 0; i < video.subframes; ++i) {
+            const double at_s = from_s + (i + 0.5) / video.subframes * (until_s - from_s);
+            if (!caption && at_s >= time_s) caption = caption_of(at(time_s), map);
+            const std::vector<view::Trail>& trails = trails_to(at_s);
+            stage.expose(at(at_s), map, trails, on_progress);
+        }
+        if (!caption) caption = caption_of(at(time_s), map);
+        return stage.develop(*caption, map);
     }
 
     Scene scene;
@@ -263,12 +286,12 @@ double Film::stepping_s() const {
 }
 
 Image Film::frame(std::int64_t k, const OnProgress& on_progress) const {
-    return still(time_s(k), on_progress);
+    return still(time_s(k), on_progress, scene().video.shutter);
 }
 
-Image Film::still(double time_s, const OnProgress& on_progress) const {
+Image Film::still(double time_s, const OnProgress& on_progress, double shutter) const {
     const pipeline::Stage::Use use(impl_->stage);
-    impl_->draw(time_s, on_progress);
+    impl_->draw(time_s, shutter, on_progress);
     return impl_->stage.image();
 }
 
@@ -285,12 +308,12 @@ GlInfo Film::gl() const {
 
 FilmPainter::FilmPainter(const Film& film) : film_(&film), use_(film.impl_->stage) {}
 
-PixelRect FilmPainter::draw(double time_s, const OnProgress& on_progress) {
+Damage FilmPainter::draw(double time_s, const OnProgress& on_progress) {
     pipeline::Stage& stage = film_->impl_->stage;
-    const PixelRect damage = film_->impl_->draw(time_s, on_progress);
+    Damage damage = film_->impl_->draw(time_s, film_->scene().video.shutter, on_progress);
     const bool is_next = stage.pictures() == pictures_ + 1;
     pictures_ = stage.pictures();
-    return is_next ? damage : stage.image().rect();
+    return is_next ? damage : Damage{stage.image().rect()};
 }
 
 void FilmPainter::draw(view::DrawList list, const OnProgress& on_progress) {

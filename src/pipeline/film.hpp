@@ -89,11 +89,13 @@ class Film {
     /// Seconds of the stepping alone.
     [[nodiscard]] double stepping_s() const;
 
-    /// Draws frame `k`, 0 .. last_frame(), or the picture at a time in 0 .. world.duration_s: RGBA8, row 0 on
-    /// top. Asks `on_progress` again and again if the picture is large. Throws as state(), and kNoGl,
-    /// kInterrupted.
+    /// Draws frame `k`, 0 .. last_frame(), as the video has it, blurred if video.shutter says so; or the
+    /// picture at a time in 0 .. world.duration_s, sharp unless `shutter` is more than 0 (0 .. 1, see
+    /// VideoDef). RGBA8, row 0 on top. States within an exposure are simulated in passing: frames in order of
+    /// time take one more simulation in all, in any other order up to one each. Asks `on_progress` again and
+    /// again if the picture is large or blurred. Throws as state(), and kNoGl, kInterrupted.
     [[nodiscard]] Image frame(std::int64_t k, const OnProgress& on_progress = {}) const;
-    [[nodiscard]] Image still(double time_s, const OnProgress& on_progress = {}) const;
+    [[nodiscard]] Image still(double time_s, const OnProgress& on_progress = {}, double shutter = 0.0) const;
     /// Whether nothing is in view in the last picture that was drawn.
     [[nodiscard]] bool shows_nothing() const;
     /// What draws. Throws kNoGl.
@@ -175,6 +177,8 @@ struct FigureDef {
     // Of a contact sheet, at least what its cells take.
     int width_px = 0;
     int height_px = 0;
+    /// Of one time in one picture of pixels: exposes it as Film::still() does, 0 .. 1.
+    double shutter = 0.0;
 };
 
 /// A contact sheet of the scene's picture size: gives `scene` the size of a cell, for a film of which

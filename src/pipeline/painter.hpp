@@ -17,9 +17,9 @@ class FilmPainter {
     FilmPainter& operator=(const FilmPainter&) = delete;
     ~FilmPainter() = default;
 
-    /// Draws the picture at a time; returns the pixels that may differ from the last one that this painter
-    /// drew: all, if somebody else has drawn the film since. Asks `on_progress` as Film::still().
-    PixelRect draw(double time_s, const OnProgress& on_progress = {});
+    /// Draws the picture at a time; returns what may differ from the last one that this painter drew: all,
+    /// if somebody else has drawn the film since. Asks `on_progress` as Film::still().
+    Damage draw(double time_s, const OnProgress& on_progress = {});
     /// Draws a list of the film's size.
     void draw(view::DrawList list, const OnProgress& on_progress = {});
     /// The poses at some times, at least one, in one picture: the fainter the earlier, the last on top in

@@ -49,7 +49,7 @@ void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProg
     };
     for (; k < end; ++k) {
         report_progress(on_progress, k - first, end - first);
-        const PixelRect damage = painter.draw(film.time_s(k), ask);
+        const Damage damage = painter.draw(film.time_s(k), ask);
         if (film.shows_nothing() && result.empty_frames++ == 0) result.first_empty_s = film.time_s(k);
         writer.write(painter.image(), damage);
     }

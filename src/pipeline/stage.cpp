@@ -1,7 +1,6 @@
 #include "corda/pipeline/stage.hpp"
 
 #include <array>
-#include <functional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -85,28 +84,55 @@ void Stage::open() {
     }
 }
 
-PixelRect Stage::draw(const State& state, const view::Camera& map, const view::Caption& caption,
-                      std::span<const view::Trail> trails, const OnProgress& on_progress) {
+Damage Stage::draw(const State& state, const view::Camera& map, const view::Caption& caption,
+                   std::span<const view::Trail> trails, const OnProgress& on_progress) {
     view_.draw(state, map, list_, trails);
     annotate(caption, map, list_);
     return paint(on_progress);
 }
 
-PixelRect Stage::draw(view::DrawList list, const OnProgress& on_progress) {
+Damage Stage::draw(view::DrawList list, const OnProgress& on_progress) {
     list_ = std::move(list);
     return paint(on_progress);
 }
 
-PixelRect Stage::paint(const OnProgress& on_progress) {
+void Stage::expose(const State& state, const view::Camera& map, std::span<const view::Trail> trails,
+                   const OnProgress& on_progress) {
+    canvas_->context.make_current();
+    if (exposed_.value_or(pictures_) != pictures_) throw Overdrawn();
+    view_.draw(state, map, list_, trails);
+    shows_nothing_ = list_.shows_nothing() && (!exposed_ || shows_nothing_);
+    exposed_ = pictures_;
+    const OnProgress ask = asking(on_progress);
+    report_progress(ask, 0, 1);
+    canvas_->renderer.expose(list_, ask);
+}
+
+Damage Stage::develop(const view::Caption& caption, const view::Camera& map) {
+    canvas_->context.make_current();
+    if (std::exchange(exposed_, std::nullopt) != pictures_) throw Overdrawn();
+    ++pictures_;
+    view_.start(list_);
+    annotate(caption, map, list_);
+    return canvas_->renderer.develop(list_);
+}
+
+Damage Stage::paint(const OnProgress& on_progress) {
     canvas_->context.make_current();  // a callback since open() may have left another one
-    const std::int64_t picture = ++pictures_;
-    const auto ask = [&](std::int64_t done, std::int64_t total) {
+    ++pictures_;
+    exposed_.reset();
+    shows_nothing_ = list_.shows_nothing();
+    return canvas_->renderer.render(list_, asking(on_progress));
+}
+
+OnProgress Stage::asking(const OnProgress& on_progress) {
+    if (!on_progress) return {};
+    return [this, &on_progress, picture = pictures_](std::int64_t done, std::int64_t total) {
         if (!on_progress(done, total)) return false;
         if (pictures_ != picture) throw Overdrawn();
         canvas_->context.make_current();
         return true;
     };
-    return canvas_->renderer.render(list_, on_progress ? OnProgress(std::ref(ask)) : OnProgress());
 }
 
 }  // namespace corda::pipeline

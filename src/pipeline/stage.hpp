@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -51,13 +52,19 @@ class Stage {
 
     /// See view::SceneView::traced().
     [[nodiscard]] std::vector<std::size_t> traced() const { return view_.traced(); }
-    /// Draws a state, with what the overlay says of it and the trails to it; returns the pixels that may
-    /// differ from the last picture. Asks `on_progress` again and again if the picture is large. Throws
+    /// Draws a state, with what the overlay says of it and the trails to it; returns what may differ
+    /// from the last picture. Asks `on_progress` again and again if the picture is large. Throws
     /// Overdrawn, and corda::Error: kNoGl, kInterrupted. Requires a Use.
-    PixelRect draw(const State& state, const view::Camera& map, const view::Caption& caption = {},
-                   std::span<const view::Trail> trails = {}, const OnProgress& on_progress = {});
+    Damage draw(const State& state, const view::Camera& map, const view::Caption& caption = {},
+                std::span<const view::Trail> trails = {}, const OnProgress& on_progress = {});
+    /// Adds a state to the exposure that develop() makes a picture of. Asks and throws as draw().
+    void expose(const State& state, const view::Camera& map, std::span<const view::Trail> trails,
+                const OnProgress& on_progress = {});
+    /// Makes the exposure a picture, with what the overlay says of it; returns what may differ from the last
+    /// one. Throws Overdrawn.
+    Damage develop(const view::Caption& caption, const view::Camera& map);
     /// Draws a list of this stage's size, in the same way.
-    PixelRect draw(view::DrawList list, const OnProgress& on_progress = {});
+    Damage draw(view::DrawList list, const OnProgress& on_progress = {});
     /// Adds what the overlay says to a list.
     void annotate(const view::Caption& caption, const view::Camera& map, view::DrawList& list) {
         overlay_.draw(caption, map.pixels_per_metre(), list);
@@ -66,7 +73,7 @@ class Stage {
     /// The last picture.
     [[nodiscard]] const Image& image() const { return canvas_->renderer.image(); }
     /// Whether nothing was to be drawn on it but the ground.
-    [[nodiscard]] bool shows_nothing() const { return list_.shows_nothing(); }
+    [[nodiscard]] bool shows_nothing() const { return shows_nothing_; }
     /// How many pictures were drawn.
     [[nodiscard]] std::int64_t pictures() const { return pictures_; }
     /// Requires a Use.
@@ -82,7 +89,9 @@ class Stage {
     };
 
     void open();
-    PixelRect paint(const OnProgress& on_progress);
+    /// Asks `on_progress` whether to go on with the picture that was begun last.
+    [[nodiscard]] OnProgress asking(const OnProgress& on_progress);
+    Damage paint(const OnProgress& on_progress);
 
     const Scene* scene_;
     const System* system_;
@@ -92,6 +101,8 @@ class Stage {
     view::DrawList list_;
     std::unique_ptr<Canvas> canvas_;
     std::int64_t pictures_ = 0;
+    std::optional<std::int64_t> exposed_;  ///< pictures_ when the exposure began; std::nullopt: there is none
+    bool shows_nothing_ = true;
 };
 
 }  // namespace corda::pipeline

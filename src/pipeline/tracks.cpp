@@ -24,7 +24,7 @@ Tracks::Tracks(std::vector<std::size_t> particles, double trail_s, FrameRate fps
 
 void Tracks::read(Motion& motion, double end_s, const OnProgress& on_progress) {
     if (particles_.empty()) return;
-    for (; time_s(points_) < end_s; ++points_) {
+    for (; time_s(points_) <= end_s; ++points_) {
         const State& state = motion.at(time_s(points_), on_progress);
         for (const std::size_t i : particles_) at_m_.push_back({state.x_m[i], state.y_m[i]});
     }

@@ -14,8 +14,8 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/gl/check.hpp"
-#include "corda/render/coverage.hpp"
 #include "corda/render/ground.hpp"
+#include "corda/render/stamps.hpp"
 #include "embedded_shaders.hpp"
 
 namespace corda::render {
@@ -29,8 +29,7 @@ constexpr int kAskingRows = 1024;
 constexpr GLuint kFrameUnit = 0;
 constexpr GLuint kGroundUnit = 1;
 constexpr GLuint kMaskUnit = 2;
-constexpr GLuint kCoverageUnit = 3;
-constexpr GLuint kSumsUnit = 4;
+constexpr GLuint kSumsUnit = 3;
 
 /// Whether two stamps look the same, each with the coverage of its own list.
 bool same_look(const view::Stamp& a, const std::vector<std::uint8_t>& a_coverage, const view::Stamp& b,
@@ -115,9 +114,11 @@ FrameRenderer::Tints::Tints()
 
 FrameRenderer::FrameRenderer(int width, int height)
     : image_((check_size(width, height), Image(width, height))),
+      bare_(width, height),
+      exposure_(width, height),
       capsule_program_("capsule", shaders::kCapsuleVert, shaders::kCapsuleFrag),
-      stamp_program_("stamp", shaders::kStampVert, shaders::kStampFrag),
-      paint_program_("paint", shaders::kPaintVert, shaders::kPaintFrag) {
+      paint_program_("paint", shaders::kPaintVert, shaders::kPaintFrag),
+      last_touched_(tile_count(width, height)) {
     make_textures();
     describe_capsules();
     describe_tiles();
@@ -141,6 +142,7 @@ void FrameRenderer::make_tints() {
     set_capsule_uniforms(tints_->capsule_program);
     set_paint_uniforms(tints_->paint_program);
     glUniform1i(tints_->paint_program.uniform("sums"), kSumsUnit);
+    masks_are_empty_ = false;
     everything_is_stale_ = true;
 }
 
@@ -161,7 +163,7 @@ void FrameRenderer::describe_capsules() {
 }
 
 void FrameRenderer::describe_tiles() {
-    static_assert(std::is_standard_layout_v<Tile> && sizeof(Tile) == 6 * sizeof(float));
+    static_assert(std::is_standard_layout_v<Tile> && sizeof(Tile) == 5 * sizeof(float));
     glBindVertexArray(tile_array_.id());
     glBindBuffer(GL_ARRAY_BUFFER, tile_buffer_.id());
     glBindVertexBuffer(0, tile_buffer_.id(), 0, sizeof(Tile));
@@ -172,18 +174,10 @@ void FrameRenderer::describe_tiles() {
     }
     glVertexAttribFormat(0, 4, GL_FLOAT, GL_FALSE, offsetof(Tile, x0));
     glVertexAttribIFormat(1, 4, GL_UNSIGNED_BYTE, offsetof(Tile, color));
-    glVertexAttribIFormat(2, 1, GL_INT, offsetof(Tile, first_coverage));
-    glBindBuffer(GL_TEXTURE_BUFFER, coverage_buffer_.id());
-    glBindTexture(GL_TEXTURE_BUFFER, coverage_.id());
-    glTexBuffer(GL_TEXTURE_BUFFER, GL_R8UI, coverage_buffer_.id());
 }
 
 void FrameRenderer::set_uniforms() {
     set_capsule_uniforms(capsule_program_);
-    stamp_program_.use();
-    glUniform2f(stamp_program_.uniform("frame_size"), static_cast<float>(image_.width()),
-                static_cast<float>(image_.height()));
-    glUniform1i(stamp_program_.uniform("coverage"), kCoverageUnit);
     set_paint_uniforms(paint_program_);
 }
 
@@ -203,47 +197,71 @@ void FrameRenderer::set_paint_uniforms(const gl::Program& program) const {
     glUniform1i(program.uniform("masks"), kMaskUnit);
 }
 
-PixelRect FrameRenderer::damage_of(const view::DrawList& list) const {
-    if (everything_is_stale_) return image_.rect();
-    PixelRect damage = last_bounds_.united(list.bounds);
+Damage FrameRenderer::damage_of(const view::DrawList& list) const {
+    if (everything_is_stale_) return {image_.rect()};
+    Damage damage = rects_of(last_touched_, list.width, list.height);
     for (std::size_t i = 0; i < std::max(list.stamps.size(), last_stamps_.size()); ++i) {
         const bool is_old = i < last_stamps_.size();
         const bool is_new = i < list.stamps.size();
         if (is_old && is_new && same_look(last_stamps_[i], last_coverage_, list.stamps[i], list.coverage))
             continue;
-        if (is_old) damage = damage.united(last_stamps_[i].box);
-        if (is_new) damage = damage.united(list.stamps[i].box);
+        if (is_old) damage.push_back(last_stamps_[i].box);
+        if (is_new && !(is_old && last_stamps_[i].box == list.stamps[i].box))
+            damage.push_back(list.stamps[i].box);
     }
     return damage;
 }
 
-PixelRect FrameRenderer::render(const view::DrawList& list, const OnProgress& on_progress) {
-    assert(list.width == image_.width() && list.height == image_.height());
-    if (last_ground_ != list.ground) everything_is_stale_ = true;
-    const PixelRect damage = damage_of(list);
-    if (damage.empty()) return damage;
-
-    const bool has_tints = std::any_of(list.layers.begin(), list.layers.end(),
-                                       [](const view::Layer& layer) { return layer.is_tinted; });
-    if (has_tints && !tints_) make_tints();
-    const bool starts_anew = std::exchange(everything_is_stale_, true);  // if it fails on the way
+Damage FrameRenderer::render(const view::DrawList& list, const OnProgress& on_progress) {
+    exposure_.clear();
+    begin(list, on_progress);
     tiles_.plan(list);
-    upload(list);
-    if (starts_anew) {
-        upload_ground(list.ground, on_progress);
-        empty_masks();
+    touch(tiles_.touched());
+    draw(list,
+         everything_is_stale_ ? Damage{image_.rect()} : rects_of(last_touched_, list.width, list.height),
+         on_progress);
+    return finish(list, tiles_.touched());
+}
+
+void FrameRenderer::expose(const view::DrawList& list, const OnProgress& on_progress) {
+    try {
+        begin(list, on_progress);
+        tiles_.plan(list);
+        touch(tiles_.touched());
+        draw(list, rects_of(tiles_.touched(), list.width, list.height), on_progress);
+    } catch (...) {
+        exposure_.clear();
+        throw;
     }
-    const int rows = on_progress ? band_rows(damage, list, tiles_) : kLargestSidePx;
-    for (PixelRect band = damage; band.y0 < damage.y1; band.y0 = band.y1) {
-        if (band.y0 > damage.y0) report_progress(on_progress, band.y0 - damage.y0, damage.height());
-        band.y1 = std::min(band.y0 - band.y0 % Tiles::kSidePx + rows, damage.y1);
-        draw_band(band);
+    exposure_.add(bare_, tiles_.touched(), list.ground);
+}
+
+Damage FrameRenderer::develop(const view::DrawList& list) {
+    const PixelRect frame = image_.rect();
+    for (const PixelRect& part :
+         everything_is_stale_ ? Damage{frame} : rects_of(last_touched_, list.width, list.height))
+        write_ground(list.ground, part, bare_);
+    exposure_.develop(list.ground, bare_);
+    return finish(list, exposure_.touched());
+}
+
+Damage FrameRenderer::finish(const view::DrawList& list, const std::vector<std::uint8_t>& touched) {
+    Damage damage = damage_of(list);
+    for (const PixelRect& part : damage) {
+        for (int y = part.y0; y < part.y1; ++y)
+            std::copy_n(bare_.pixel(part.x0, y), 4 * part.width(), image_.pixel(part.x0, y));
+        paint_stamps(list, part, image_);
+        if (!list.ground.is_opaque()) straighten(part, image_);
     }
-    last_bounds_ = list.bounds;
+    last_touched_ = touched;
     last_stamps_ = list.stamps;
     last_coverage_ = list.coverage;
     everything_is_stale_ = false;
     return damage;
+}
+
+void FrameRenderer::touch(const std::vector<std::uint8_t>& tiles) {
+    for (std::size_t i = 0; i < tiles.size(); ++i) last_touched_[i] |= tiles[i];
 }
 
 void FrameRenderer::upload(const view::DrawList& list) {
@@ -254,7 +272,6 @@ void FrameRenderer::upload(const view::DrawList& list) {
     };
     fill(capsule_buffer_, list.capsules);
     fill(tile_buffer_, tiles_.tiles());
-    fill(coverage_buffer_, list.coverage);
 }
 
 void FrameRenderer::upload_ground(const Ground& ground, const OnProgress& on_progress) {
@@ -277,7 +294,13 @@ void FrameRenderer::upload_ground(const Ground& ground, const OnProgress& on_pro
     last_ground_ = ground;
 }
 
-void FrameRenderer::empty_masks() const {
+void FrameRenderer::begin(const view::DrawList& list, const OnProgress& on_progress) {
+    const bool has_tints = std::any_of(list.layers.begin(), list.layers.end(),
+                                       [](const view::Layer& layer) { return layer.is_tinted; });
+    if (has_tints && !tints_) make_tints();
+    if (last_ground_ != list.ground) everything_is_stale_ = true;
+    upload_ground(list.ground, on_progress);
+    if (masks_are_empty_) return;
     set_state(image_.rect());
     glBindFramebuffer(GL_FRAMEBUFFER, mask_target_.id());
     glClearBufferfv(GL_COLOR, 0, kNothing.data());
@@ -286,22 +309,46 @@ void FrameRenderer::empty_masks() const {
     glClearBufferfv(GL_COLOR, 1, kNothing.data());
 }
 
-void FrameRenderer::draw_band(const PixelRect& band) {
+void FrameRenderer::draw(const view::DrawList& list, const Damage& parts, const OnProgress& on_progress) {
+    PixelRect all;
+    for (const PixelRect& part : parts) all = all.united(part);
+    if (all.empty()) return;
+    const bool was_stale = std::exchange(everything_is_stale_, true);  // if it fails on the way
+    masks_are_empty_ = false;
+    upload(list);
+    const int rows = on_progress ? band_rows(all, list, tiles_) : kLargestSidePx;
+    for (PixelRect band = all; band.y0 < all.y1; band.y0 = band.y1) {
+        if (band.y0 > all.y0) report_progress(on_progress, band.y0 - all.y0, all.height());
+        band.y1 = std::min(band.y0 + rows, all.y1);
+        draw_band(band, parts);
+    }
+    masks_are_empty_ = true;
+    everything_is_stale_ = was_stale;
+}
+
+void FrameRenderer::draw_band(const PixelRect& band, const Damage& parts) {
+    const auto for_each_part = [&](const auto& visit) {
+        for (const PixelRect& part : parts) {
+            const PixelRect rect = part.intersected(band);
+            if (!rect.empty()) visit(rect);
+        }
+    };
     set_state(band);
-    glCopyImageSubData(ground_.id(), GL_TEXTURE_2D, 0, band.x0, band.y0, 0, frame_.id(), GL_TEXTURE_2D, 0,
-                       band.x0, band.y0, 0, band.width(), band.height(), 1);
+    for_each_part([&](const PixelRect& rect) {
+        glCopyImageSubData(ground_.id(), GL_TEXTURE_2D, 0, rect.x0, rect.y0, 0, frame_.id(), GL_TEXTURE_2D, 0,
+                           rect.x0, rect.y0, 0, rect.width(), rect.height(), 1);
+    });
     for (const Batch& batch : tiles_.batches()) {
         draw_masks(batch);
         paint(batch);
     }
     glBindFramebuffer(GL_FRAMEBUFFER, frame_target_.id());
-    // Waits until the band is drawn.
-    glReadPixels(band.x0, band.y0, band.width(), band.height(), GL_RGBA, GL_UNSIGNED_BYTE,
-                 image_.pixel(band.x0, band.y0));
+    // The first waits until the band is drawn.
+    for_each_part([&](const PixelRect& rect) {
+        glReadPixels(rect.x0, rect.y0, rect.width(), rect.height(), GL_RGBA, GL_UNSIGNED_BYTE,
+                     bare_.pixel(rect.x0, rect.y0));
+    });
     gl::check_errors("drawing a frame");
-    for (int y = band.y0; y < band.y1 && !last_ground_->is_opaque(); ++y) {
-        for (int x = band.x0; x < band.x1; ++x) straighten(image_.pixel(x, y));
-    }
 }
 
 void FrameRenderer::set_state(const PixelRect& band) const {
@@ -325,21 +372,12 @@ void FrameRenderer::set_state(const PixelRect& band) const {
     bind(kGroundUnit, ground_);
     bind(kMaskUnit, masks_);
     if (tints_) bind(kSumsUnit, tints_->sums);
-    glActiveTexture(GL_TEXTURE0 + kCoverageUnit);
-    glBindTexture(GL_TEXTURE_BUFFER, coverage_.id());
 }
 
 void FrameRenderer::draw_masks(const Batch& batch) const {
     glBindFramebuffer(GL_FRAMEBUFFER, batch.is_tinted ? tints_->mask_target.id() : mask_target_.id());
     glEnable(GL_BLEND);
-    if (batch.is_stamps) {
-        glBindVertexArray(tile_array_.id());
-        stamp_program_.use();
-        glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.tile_count),
-                                          static_cast<GLuint>(batch.first_tile));
-    } else {
-        draw_capsules(batch);
-    }
+    draw_capsules(batch);
     glDisable(GL_BLEND);
 }
 

@@ -10,6 +10,7 @@
 #include "corda/core/image.hpp"
 #include "corda/gl/object.hpp"
 #include "corda/gl/program.hpp"
+#include "corda/render/exposure.hpp"
 #include "corda/render/tiles.hpp"
 #include "corda/view/draw_list.hpp"
 
@@ -20,18 +21,26 @@ namespace corda::render {
 ///
 /// Layer by layer, or many at once if no tile has two of them: the capsules and halos of a layer are united
 /// in two masks, by GL_MAX of values that are exactly k/255; then a pass over its tiles paints it in
-/// integers. So are stamps. A tinted layer has sums of colours beside its masks. Only the damage, what may
-/// differ from the last frame, is drawn and read back.
+/// integers. A tinted layer has sums of colours beside its masks. Only tiles that may differ from the last
+/// frame are drawn and read back. What is then done without OpenGL, in integers, too: the mean of the
+/// pictures of an exposure; and stamps, which change alone.
 class FrameRenderer {
   public:
     /// A gl::Context must be current and outlive this. Throws corda::Error (kNoGl) if the driver cannot draw
     /// a frame of that size.
     FrameRenderer(int width, int height);
 
-    /// Draws the next frame; `list` has this renderer's size. Returns the damage: the pixels that may differ
-    /// from the last frame. A large one is drawn in bands, and `on_progress` is asked between them. Throws
-    /// corda::Error: kNoGl, kInterrupted; then the next frame is drawn whole.
-    PixelRect render(const view::DrawList& list, const OnProgress& on_progress = {});
+    /// Draws the next frame; `list` has this renderer's size. Returns what may differ from the last frame. A
+    /// large one is drawn in bands, and `on_progress` is asked between them. Throws corda::Error: kNoGl,
+    /// kInterrupted; then the next frame is drawn whole.
+    Damage render(const view::DrawList& list, const OnProgress& on_progress = {});
+
+    /// Adds the layers of a list to the frame that develop() will finish; all have the same ground. Asks and
+    /// throws as render(); the exposure is lost then, as it is by render().
+    void expose(const view::DrawList& list, const OnProgress& on_progress = {});
+    /// The next frame is the mean of what was exposed since the last one, at least one list, under the stamps
+    /// of `list`, whose own layers are left out. Returns what may differ from the last frame.
+    Damage develop(const view::DrawList& list);
 
     /// The last frame.
     [[nodiscard]] const Image& image() const { return image_; }
@@ -56,37 +65,45 @@ class FrameRenderer {
     void set_paint_uniforms(const gl::Program& program) const;
     /// Sets the state that drawing depends on: another renderer may have drawn in this context meanwhile.
     void set_state(const PixelRect& band) const;
-    [[nodiscard]] PixelRect damage_of(const view::DrawList& list) const;
+    /// Prepares for drawing on a ground.
+    void begin(const view::DrawList& list, const OnProgress& on_progress);
+    /// Draws the layers in some rectangles, a multiple of tiles, to bare_.
+    void draw(const view::DrawList& list, const Damage& parts, const OnProgress& on_progress);
+    /// Adds tiles to last_touched_.
+    void touch(const std::vector<std::uint8_t>& tiles);
+    /// What may differ from the last frame, of bare_ and of the stamps.
+    [[nodiscard]] Damage damage_of(const view::DrawList& list) const;
+    /// Makes the frame of bare_, whose tiles `touched` are not the ground alone, and the stamps.
+    Damage finish(const view::DrawList& list, const std::vector<std::uint8_t>& touched);
     void upload(const view::DrawList& list);
     void upload_ground(const Ground& ground, const OnProgress& on_progress);
-    void empty_masks() const;
     void draw_capsules(const Batch& batch) const;
     /// Draws and reads some rows.
-    void draw_band(const PixelRect& band);
+    void draw_band(const PixelRect& band, const Damage& parts);
     void draw_masks(const Batch& batch) const;
     void paint(const Batch& batch) const;
 
     Image image_;
+    Image bare_;  ///< without stamps, colours times alpha
     Tiles tiles_;
+    Exposure exposure_;
     gl::Program capsule_program_;
-    gl::Program stamp_program_;
     gl::Program paint_program_;
     gl::VertexArray capsule_array_;
     gl::VertexArray tile_array_;
     gl::Buffer capsule_buffer_;
-    gl::Buffer coverage_buffer_;
     gl::Buffer tile_buffer_;
     gl::Texture ground_;
     gl::Texture masks_;
-    gl::Texture coverage_;
     gl::Texture frame_;
     gl::Framebuffer mask_target_;
     gl::Framebuffer frame_target_;
     std::unique_ptr<Tints> tints_;
-    PixelRect last_bounds_;
+    std::vector<std::uint8_t> last_touched_;  ///< per tile: 1 if it has not been the ground alone
     std::vector<view::Stamp> last_stamps_;
     std::vector<std::uint8_t> last_coverage_;
     std::optional<Ground> last_ground_;  ///< that of ground_
+    bool masks_are_empty_ = false;
     bool everything_is_stale_ = true;
 };
 

@@ -1,5 +1,6 @@
 #include "corda/render/ground.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace corda::render {
@@ -37,6 +38,15 @@ void write_ground_row(const Ground& ground, int y, int width, int height, std::u
     for (int x = 0; x < width; ++x) {
         for (const std::uint32_t level : levels)
             *rgba++ = static_cast<std::uint8_t>((level + thresholds[x & 7]) >> 8U);
+    }
+}
+
+void write_ground(const Ground& ground, const PixelRect& part, Image& image) {
+    std::array<std::uint8_t, 32> eight{};  // pixels, which repeat
+    for (int y = part.y0; y < part.y1; ++y) {
+        write_ground_row(ground, y, 8, image.height(), eight.data());
+        std::uint8_t* rgba = image.pixel(part.x0, y);
+        for (int x = part.x0; x < part.x1; ++x, rgba += 4) std::copy_n(&eight[4 * (x & 7)], 4, rgba);
     }
 }
 

@@ -3,7 +3,10 @@
 #include <vector>
 
 #include "corda/render/coverage.hpp"
+#include "corda/render/exposure.hpp"
 #include "corda/render/ground.hpp"
+#include "corda/render/stamps.hpp"
+#include "corda/render/tiles.hpp"
 #include "corda/view/capsule.hpp"
 
 namespace corda::render {
@@ -35,17 +38,7 @@ void unite(const view::Capsule& capsule, bool is_tinted, const PixelRect& box, i
     }
 }
 
-void put(const view::Stamp& stamp, const std::vector<std::uint8_t>& coverage, int width, Mask& mask) {
-    std::size_t i = stamp.first_coverage;
-    for (int y = stamp.box.y0; y < stamp.box.y1; ++y) {
-        for (int x = stamp.box.x0; x < stamp.box.x1; ++x) {
-            mask.line[static_cast<std::size_t>(y) * width + x] =
-                stamp.first_coverage == view::Stamp::kSolid ? 255 : coverage[i++];
-        }
-    }
-}
-
-/// Paints a layer or a stamp, and empties its mask.
+/// Paints a layer, and empties its mask.
 void paint(Color color, bool is_tinted, const PixelRect& box, const Image& ground, Mask& mask, Image& image) {
     for (int y = box.y0; y < box.y1; ++y) {
         for (int x = box.x0; x < box.x1; ++x) {
@@ -73,12 +66,10 @@ void paint(Color color, bool is_tinted, const PixelRect& box, const Image& groun
     }
 }
 
-}  // namespace
-
-Image render_reference(const view::DrawList& list) {
+/// The layers alone, colours times alpha.
+Image render_layers(const view::DrawList& list) {
     Image ground(list.width, list.height);
-    for (int y = 0; y < list.height; ++y)
-        write_ground_row(list.ground, y, list.width, list.height, ground.pixel(0, y));
+    write_ground(list.ground, ground.rect(), ground);
     Image image = ground;
     const std::size_t pixels = static_cast<std::size_t>(list.width) * list.height;
     Mask mask{std::vector<std::uint8_t>(pixels), std::vector<std::uint8_t>(pixels), {}};
@@ -93,13 +84,29 @@ Image render_reference(const view::DrawList& list) {
         }
         paint(layer.color, layer.is_tinted, touched, ground, mask, image);
     }
-    for (const view::Stamp& stamp : list.stamps) {
-        put(stamp, list.coverage, list.width, mask);
-        paint(stamp.color, false, stamp.box, ground, mask, image);
-    }
-    for (int y = 0; y < list.height && !list.ground.is_opaque(); ++y) {
-        for (int x = 0; x < list.width; ++x) straighten(image.pixel(x, y));
-    }
+    return image;
+}
+
+void finish(const view::DrawList& list, Image& image) {
+    paint_stamps(list, image.rect(), image);
+    straighten(image.rect(), image);
+}
+
+}  // namespace
+
+Image render_reference(const view::DrawList& list) {
+    Image image = render_layers(list);
+    finish(list, image);
+    return image;
+}
+
+Image render_reference(std::span<const view::DrawList> exposed, const view::DrawList& list) {
+    Image image(list.width, list.height);
+    Exposure exposure(list.width, list.height);
+    const std::vector<std::uint8_t> everywhere(tile_count(list.width, list.height), 1);
+    for (const view::DrawList& one : exposed) exposure.add(render_layers(one), everywhere, list.ground);
+    exposure.develop(list.ground, image);
+    finish(list, image);
     return image;
 }
 

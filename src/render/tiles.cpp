@@ -33,8 +33,7 @@ void Tiles::for_each_tile(const view::Capsule& capsule, const view::DrawList& li
 
 void Tiles::plan(const view::DrawList& list) {
     columns_ = (list.width + kSidePx - 1) / kSidePx;
-    const int rows = (list.height + kSidePx - 1) / kSidePx;
-    last_layer_.assign(static_cast<std::size_t>(columns_) * rows, 0);
+    last_layer_.assign(tile_count(list.width, list.height), 0);
     tiles_.clear();
     batches_.clear();
     std::size_t first_layer = 0;  // of the batch
@@ -65,29 +64,34 @@ void Tiles::plan(const view::DrawList& list) {
             const int y0 = static_cast<int>(tile) / columns_ * kSidePx;
             tiles_.push_back({static_cast<float>(x0), static_cast<float>(y0),
                               static_cast<float>(std::min(x0 + kSidePx, list.width)),
-                              static_cast<float>(std::min(y0 + kSidePx, list.height)), layer.color, -1});
+                              static_cast<float>(std::min(y0 + kSidePx, list.height)), layer.color});
         }
     }
-    plan_stamps(list);
+    touched_by_any_.resize(last_layer_.size());
+    std::transform(last_layer_.begin(), last_layer_.end(), touched_by_any_.begin(),
+                   [](std::size_t layer) { return static_cast<std::uint8_t>(layer > 0); });
 }
 
-void Tiles::plan_stamps(const view::DrawList& list) {
-    std::size_t first = 0;  // of the batch
-    for (std::size_t i = 0; i < list.stamps.size(); ++i) {
-        const view::Stamp& stamp = list.stamps[i];
-        const PixelRect& box = stamp.box;
-        const auto meets = [&](const view::Stamp& other) { return !other.box.intersected(box).empty(); };
-        if (i == 0 || std::any_of(&list.stamps[first], &list.stamps[i], meets)) {
-            first = i;
-            batches_.push_back({.first_tile = tiles_.size(), .is_stamps = true});
+std::size_t tile_count(int width, int height) {
+    constexpr int kSidePx = Tiles::kSidePx;
+    return static_cast<std::size_t>((width + kSidePx - 1) / kSidePx) * ((height + kSidePx - 1) / kSidePx);
+}
+
+std::vector<PixelRect> rects_of(const std::vector<std::uint8_t>& tiles, int width, int height) {
+    constexpr int kSidePx = Tiles::kSidePx;
+    const int columns = (width + kSidePx - 1) / kSidePx;
+    std::vector<PixelRect> rects;
+    for (int y = 0; y < height; y += kSidePx) {
+        const std::uint8_t* row = &tiles[static_cast<std::size_t>(y / kSidePx) * columns];
+        for (int column = 0; column < columns; ++column) {
+            if (row[column] == 0) continue;
+            const int first = column;
+            while (column < columns && row[column] != 0) ++column;
+            rects.push_back(
+                {first * kSidePx, y, std::min(column * kSidePx, width), std::min(y + kSidePx, height)});
         }
-        ++batches_.back().tile_count;
-        tiles_.push_back({static_cast<float>(box.x0), static_cast<float>(box.y0), static_cast<float>(box.x1),
-                          static_cast<float>(box.y1), stamp.color,
-                          stamp.first_coverage == view::Stamp::kSolid
-                              ? -1
-                              : static_cast<std::int32_t>(stamp.first_coverage)});
     }
+    return rects;
 }
 
 }  // namespace corda::render

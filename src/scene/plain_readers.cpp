@@ -29,6 +29,8 @@ VideoDef read_video(const TableReader& video) {
                                           def.width_px, def.height_px, pixels, kMostPicturePx));
     }
     if (const auto fps = video.find("fps")) def.fps = FrameRate(std::get<Rational>(read_rate(fps->node())));
+    video.read("shutter", def.shutter);
+    video.read("subframes", def.subframes);
     video.read("codec", def.encoder.codec);
     video.read("preset", def.encoder.preset);
     video.read("crf", def.encoder.crf);

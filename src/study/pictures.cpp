@@ -148,7 +148,7 @@ void time_film(Film& film, const VideoDef& video, double simulate_s, const std::
     lap(encode_s);
     for (std::int64_t k = 0; k < film.frame_count(); ++k) {
         take_step();
-        const PixelRect damage = painter.draw(film.time_s(k));
+        const Damage damage = painter.draw(film.time_s(k));
         lap(draw_s);
         writer.write(painter.image(), damage);
         lap(encode_s);

@@ -1,5 +1,6 @@
-// The stages of a video of examples/swing.toml at its own size, apart and together: drawing alone, encoding
-// the same frames from memory, and both. The figure to watch is the ratio of the last two, taken in one run.
+// The stages of a video of examples/swing.toml at its own size, apart and together: drawing alone, of several
+// looks, encoding the same frames from memory, and both. The figure to watch is the ratio of the last two,
+// taken in one run.
 
 #include <benchmark/benchmark.h>
 
@@ -32,24 +33,33 @@ template <class Use>
 void draw_frames(Film& film, const Use& use) {
     FilmPainter painter(film);
     for (int k = 0; k < kFrames; ++k) {
-        const PixelRect damage = painter.draw(film.time_s(k));
+        const Damage damage = painter.draw(film.time_s(k));
         use(painter.image(), damage);
     }
 }
 
-void draw(benchmark::State& bench) {
-    for (auto _ : bench) {
-        Film film(load_example());
-        draw_frames(film, [](const Image&, const PixelRect&) {});
-    }
+/// A look, as settings of the scene.
+using Look = std::vector<Setting>;
+const Look kDefault;
+const Look kPlain{"style.background=#0e1320", "style.payload=false", "style.supports=false",
+                  "style.halo=false",         "overlay.time=false",  "overlay.scale_bar=false"};
+const Look kOverlays{"overlay.title=A swing", "overlay.energy=true", "overlay.method=true"};
+const Look kBlur8{"video.shutter=0.5", "video.subframes=8"};
+const Look kBlur16{"video.shutter=0.5", "video.subframes=16"};
+
+/// Drawing alone: the motion is there.
+void draw(benchmark::State& bench, const Look& look) {
+    Film film(load_scene(CORDA_EXAMPLES "/swing.toml", look));
+    static_cast<void>(film.camera());
+    for (auto _ : bench) draw_frames(film, [](const Image&, const Damage&) {});
     count_frames(bench);
 }
 
 void encode(benchmark::State& bench) {
     Film film(load_example());
     std::vector<Image> frames;
-    std::vector<PixelRect> damages;
-    draw_frames(film, [&](const Image& image, const PixelRect& damage) {
+    std::vector<Damage> damages;
+    draw_frames(film, [&](const Image& image, const Damage& damage) {
         frames.push_back(image);
         damages.push_back(damage);
     });
@@ -65,13 +75,17 @@ void draw_and_encode(benchmark::State& bench) {
     for (auto _ : bench) {
         Film film(load_example());
         media::VideoWriter writer(output_path(), film.scene().video, {}, {.force = true});
-        draw_frames(film, [&](const Image& image, const PixelRect& damage) { writer.write(image, damage); });
+        draw_frames(film, [&](const Image& image, const Damage& damage) { writer.write(image, damage); });
         writer.finish();
     }
     count_frames(bench);
 }
 
-BENCHMARK(draw)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(draw, plain, kPlain)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(draw, default_look, kDefault)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(draw, overlays, kOverlays)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(draw, blur_8, kBlur8)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(draw, blur_16, kBlur16)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(encode)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(draw_and_encode)->Unit(benchmark::kMillisecond)->UseRealTime();
 

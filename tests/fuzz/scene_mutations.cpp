@@ -80,6 +80,8 @@ codec = "libx264"
 preset = "medium"
 crf = 18
 threads = 2
+shutter = 0.5
+subframes = 4
 )",
     R"(schema = 1
 [[net]]

@@ -76,7 +76,7 @@ class VideoMutations : public testing::Test {
         for (int k = 0; k < 10; ++k) {
             Image image(def.width_px, def.height_px);
             for (int y = 16; y < 32; ++y) std::fill_n(image.pixel(4 * k, y), 64, std::uint8_t{255});
-            writer.write(image, image.rect());
+            writer.write(image, {image.rect()});
         }
         if (is_part) return test::read_file(writer.abandon());
         writer.finish();

@@ -92,6 +92,10 @@ const std::map<std::string, std::uint64_t> kHashes{
     {"tension_paper by auto", 0x1ad8207973720ab1U},  {"tension_paper by rattle", 0x9003d38e56e411f8U},
     {"links_paper as it is", 0x3d090f6a4bc0ce4dU},   {"links_paper by auto", 0x3d090f6a4bc0ce4dU},
     {"links_paper by exact", 0xb5d799fb09ac8ff5U},   {"links_paper by rattle", 0x8dabf094d4cf3280U},
+    {"blur as it is", 0xb476d7a90b0ca2f1U},          {"blur by auto", 0xb476d7a90b0ca2f1U},
+    {"blur by exact", 0x6288bb0e7bcfe44dU},          {"blur by rattle", 0x0ee66cd62ce89535U},
+    {"blur_clear as it is", 0x4cb9e163ad3e968bU},    {"blur_clear by auto", 0x4cb9e163ad3e968bU},
+    {"blur_clear by exact", 0x3558fb47c0b166a3U},    {"blur_clear by rattle", 0x2d329ad4f18fbb0cU},
 };
 
 /// What a method refuses, with the reason in the message.

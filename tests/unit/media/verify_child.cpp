@@ -57,7 +57,7 @@ TEST_F(VerifyChild, DoesNotBlameTheFileIfTheUserAllowsLittleMemory) {
         def.height_px = 1080;
         VideoWriter writer(file("a.mp4"), def, {"", "{}"});
         const Image image(def.width_px, def.height_px);
-        for (int k = 0; k < 12; ++k) writer.write(image, image.rect());
+        for (int k = 0; k < 12; ++k) writer.write(image, {image.rect()});
         writer.finish();
         return std::string("made");
     };

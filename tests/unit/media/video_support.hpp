@@ -74,7 +74,7 @@ inline VideoDef small_video(Rational fps = {60, 1}) {
 
 inline void write_frames(VideoWriter& writer, std::int64_t frames) {
     for (std::int64_t k = 0; k < frames; ++k) {
-        writer.write(frame_image(k), k == 0 ? PixelRect{0, 0, kWidth, kHeight} : bob(k).united(bob(k - 1)));
+        writer.write(frame_image(k), k == 0 ? Damage{{0, 0, kWidth, kHeight}} : Damage{bob(k), bob(k - 1)});
     }
 }
 

@@ -106,14 +106,14 @@ TEST_F(Video, FramesGivenByDamageEqualWholeFrames) {
     make_video(file("a.mp4"), small_video(), 30);
     {
         VideoWriter writer(file("b.mp4"), small_video(), {"A swing", R"({"scene":"test"})"});
-        for (int k = 0; k < 30; ++k) writer.write(frame_image(k), {0, 0, kWidth, kHeight});
+        for (int k = 0; k < 30; ++k) writer.write(frame_image(k), {{0, 0, kWidth, kHeight}});
         writer.finish();
     }
     EXPECT_EQ(test::read_file(file("a.mp4")), test::read_file(file("b.mp4")));
 }
 
 TEST_F(Video, FirstFrameIsTakenWholeAndEmptyDamageRepeatsIt) {
-    for (const PixelRect damage : {PixelRect{0, 0, kWidth, kHeight}, PixelRect{}}) {
+    for (const Damage& damage : {Damage{{0, 0, kWidth, kHeight}}, Damage{}}) {
         VideoWriter writer(file(damage.empty() ? "b.mp4" : "a.mp4"), small_video(), {});
         for (int k = 0; k < 5; ++k) writer.write(frame_image(0), damage);
         writer.finish();
@@ -162,7 +162,7 @@ TEST_F(Video, SmallestSize) {
     def.height_px = 2;
     VideoWriter writer(file("a.mp4"), def, {});
     Image image(2, 2);
-    writer.write(image, image.rect());
+    writer.write(image, {image.rect()});
     writer.finish();
     EXPECT_TRUE(verify(file("a.mp4")).ok());
 }

@@ -164,24 +164,24 @@ TEST(LargePictures, AreWholeForAPainterWhoseCallbackDrawsOthers) {
                                static_cast<void>(film.frame(2));
                                return true;
                            }),
-              first.rect());
+              Damage{first.rect()});
     EXPECT_TRUE(equal_images(painter.image(), Film(large_scene()).still(0.1)));
 }
 
 TEST(Painters, InterleaveAndTellWhatOthersHaveDrawn) {
-    Film a(scene_of(64, 48));
+    Film a(scene_of(300, 48));  // wider than the tiles of the rope
     Film b(scene_of(40, 40));
     const Image a_first = a.frame(0);
     const Image b_first = b.frame(0);
     FilmPainter paint_a(a);
     FilmPainter paint_b(b);
-    EXPECT_EQ(paint_a.draw(0.0), a_first.rect());
-    EXPECT_EQ(paint_b.draw(0.0), b_first.rect());
+    EXPECT_EQ(paint_a.draw(0.0), Damage{a_first.rect()});
+    EXPECT_EQ(paint_b.draw(0.0), Damage{b_first.rect()});
     EXPECT_TRUE(equal_images(paint_a.image(), a_first));
     EXPECT_TRUE(equal_images(paint_b.image(), b_first));
-    EXPECT_NE(paint_a.draw(0.1), a_first.rect());
+    EXPECT_NE(paint_a.draw(0.1), Damage{a_first.rect()});
     static_cast<void>(a.frame(40));
-    EXPECT_EQ(paint_a.draw(0.1), a_first.rect());
+    EXPECT_EQ(paint_a.draw(0.1), Damage{a_first.rect()});
 }
 
 }  // namespace

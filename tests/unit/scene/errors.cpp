@@ -418,6 +418,10 @@ TEST(SceneErrors, Video) {
         {video("codec = \"libx265\""), "swing.toml:4:9: video.codec: ", "did you mean \"libx264\"?"},
         {video("threads = 65"), "swing.toml:4:11: video.threads: ", "65 is not <= 64"},
         {video("threads = 0"), "swing.toml:4:11: video.threads: ", "0 is not >= 1"},
+        {video("shutter = 1.5"), "swing.toml:4:11: video.shutter: ", "1.5 is not <= 1"},
+        {video("shutter = -0.1"), "swing.toml:4:11: video.shutter: ", "-0.1 is not >= 0"},
+        {video("subframes = 1"), "swing.toml:4:13: video.subframes: ", "1 is not >= 2"},
+        {video("subframes = 65"), "swing.toml:4:13: video.subframes: ", "65 is not <= 64"},
     });
 }
 

@@ -90,7 +90,8 @@ std::string text(const Scene& scene) {
                std::visit([](const auto& def) { return text(SolverDef(def)); }, group.method);
     const VideoDef& video = scene.video;
     all += text(scene.solver) + text(video.width_px) + text(video.height_px) + video.fps.rational().text() +
-           video.encoder.codec + video.encoder.preset + text(video.encoder.crf) + text(video.encoder.threads);
+           video.encoder.codec + video.encoder.preset + text(video.encoder.crf) +
+           text(video.encoder.threads) + text(video.shutter) + text(video.subframes);
     const StyleDef& style = scene.style;
     for (const int choice : {static_cast<int>(style.theme), static_cast<int>(style.payload),
                              static_cast<int>(style.supports), static_cast<int>(style.halo)})

@@ -103,7 +103,7 @@ TEST(SceneReader, RelaxationHasTheReachOfTheSourceReport) {
 TEST(SceneReader, Video) {
     const Scene scene =
         parse_scene(with("[video]\nsize = [641, 359]\nfps = \"30000/1001\"\ncodec = \"libx264\"\n"
-                         "preset = \"slow\"\ncrf = 23\nthreads = 4\n"),
+                         "preset = \"slow\"\ncrf = 23\nthreads = 4\nshutter = 0.5\nsubframes = 64\n"),
                     "a");
     EXPECT_EQ(scene.video.width_px, 641);
     EXPECT_EQ(scene.video.height_px, 359);
@@ -112,6 +112,8 @@ TEST(SceneReader, Video) {
     EXPECT_EQ(scene.video.encoder.preset, "slow");
     EXPECT_EQ(scene.video.encoder.crf, 23);
     EXPECT_EQ(scene.video.encoder.threads, 4);
+    EXPECT_EQ(scene.video.shutter, 0.5);
+    EXPECT_EQ(scene.video.subframes, 64);
 }
 
 TEST(SceneReader, FrameRates) {
