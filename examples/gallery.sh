@@ -20,6 +20,7 @@ folded_chain    still  0.58
 hammock         still  0.6
 materials       still  0.6
 relaxation      still  2.5
+start           strobe 0,0.2,0.3,0.4,0.5
 string          still  0.42
 swing           strobe 0,0.3,0.6,0.9,1.2,1.5,1.75
 three_ropes     still  0.9
