@@ -3,8 +3,9 @@
 # that of examples/swing.sh, or the one given.
 # Usage: examples/gallery.sh [CORDA]
 set -euo pipefail
-cd "$(dirname "${BASH_SOURCE[0]}")"
-corda=$(realpath "${1:-../build/release/corda}")
+examples=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+corda=$(realpath "${1:-$examples/../build/release/corda}")
+cd "$examples"
 
 # Name, command and times of each. A plain ground keeps the files small.
 while read -r name command times; do

@@ -24,7 +24,7 @@ const Example* find_example(std::string_view name) {
     return found == std::end(kExamples) ? nullptr : found;
 }
 
-/// What the comment at the top says before its first colon or full stop.
+/// The first sentence of the comment at the top.
 std::string summary(std::string_view text) {
     std::string comment;
     while (text.starts_with("#")) {
@@ -33,7 +33,7 @@ std::string summary(std::string_view text) {
         text.remove_prefix(end + 1);
     }
     comment += ' ';
-    return comment.substr(1, std::min(comment.find(". "), comment.find(": ")) - 1);
+    return comment.substr(1, comment.find(". ") - 1);
 }
 
 struct InitOptions {
