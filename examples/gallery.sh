@@ -3,9 +3,9 @@
 # that of examples/swing.sh, or the one given.
 # Usage: examples/gallery.sh [CORDA]
 set -euo pipefail
-examples=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-corda=$(realpath "${1:-$examples/../build/release/corda}")
-cd "$examples"
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+corda=$(realpath "${1:-$root/build/release/corda}")
+cd "$root/examples"
 
 # Name, command and times of each. A plain ground keeps the files small.
 while read -r name command times; do
