@@ -31,6 +31,8 @@ void add_verify(CLI::App& app, Action& action);
 void add_doctor(CLI::App& app, Action& action);
 void add_plan(CLI::App& app, Action& action);
 void add_study(CLI::App& app, Action& action);
+void add_init(CLI::App& app, Action& action);
+void add_examples(CLI::App& app, Action& action);
 void add_help(CLI::App& app, Action& action);
 
 /// The subcommand of that name; null if there is none.

@@ -121,6 +121,8 @@ int run(int argc, char** argv) {
     add_doctor(app, action);
     add_plan(app, action);
     add_study(app, action);
+    add_init(app, action);
+    add_examples(app, action);
     add_help(app, action);
     add_console_flags(app, console_def);
     refuse_empty_values(app);

@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# Draws the pictures of examples/README.md into examples/pictures, one per scene, and writes nothing else. The program is
+# that of examples/swing.sh, or the one given.
+# Usage: examples/gallery.sh [CORDA]
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+corda=$(realpath "${1:-$root/build/release/corda}")
+cd "$root/examples"
+
+# Name, command and times of each. A plain ground keeps the files small.
+while read -r name command times; do
+    "$corda" "$command" "$name.toml" --at "$times" --size 640x360 -q --force -o "pictures/$name.png" \
+        --set 'style.background="#121828"' --set overlay.time=false
+done <<'END'
+bars            still  2.0
+bridge          still  0.6
+cloth           still  1.5
+double_pendulum still  5.3
+first           strobe 0,0.1,0.2,0.3,0.4,0.5,0.6
+folded_chain    still  0.58
+hammock         still  0.6
+materials       still  0.6
+relaxation      still  2.5
+start           strobe 0,0.2,0.3,0.4,0.5
+string          still  0.42
+swing           strobe 0,0.3,0.6,0.9,1.2,1.5,1.75
+three_ropes     still  0.9
+throw           strobe 0,0.6,1.2,2,3,4,4.9
+trapeze         strobe 0,1
+whip            strobe 0,0.3,0.45,0.6,0.75,0.9
+wrecking_ball   strobe 0,0.9,1.4,1.8,2.2,2.7,3.5
+END

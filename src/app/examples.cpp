@@ -1,0 +1,91 @@
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/output_file.hpp"
+#include "embedded_examples.hpp"
+
+namespace corda::app {
+namespace {
+
+/// The example that `init` writes if no other is named.
+constexpr std::string_view kStart = "start";
+
+const Example* find_example(std::string_view name) {
+    const auto* const found = std::find_if(std::begin(kExamples), std::end(kExamples),
+                                           [name](const Example& one) { return one.name == name; });
+    return found == std::end(kExamples) ? nullptr : found;
+}
+
+/// The first sentence of the comment at the top.
+std::string summary(std::string_view text) {
+    std::string comment;
+    while (text.starts_with("#")) {
+        const std::size_t end = text.find('\n');
+        comment += text.substr(1, end - 1);
+        text.remove_prefix(end + 1);
+    }
+    comment += ' ';
+    return comment.substr(1, comment.find(". ") - 1);
+}
+
+struct InitOptions {
+    std::string name = "scene";
+    bool force = false;
+};
+
+ExitCode write_scene(const Console& console, const InitOptions& options) {
+    const bool is_toml = std::filesystem::path(options.name).extension() == ".toml";
+    const std::string path = options.name + (is_toml ? "" : ".toml");
+    const Example* const named = find_example(std::filesystem::path(path).stem().string());
+    const Example& example = named != nullptr ? *named : *find_example(kStart);
+    check_output(path, {}, options.force);
+    OutputFile file(path, {.force = options.force});
+    file.write(example.text);
+    file.commit();
+    console.info(fmt::format("example {}; draw it with: corda render {} -o {}.mp4", example.name, path,
+                             path.substr(0, path.size() - std::string_view(".toml").size())));
+    console.result(path);
+    console.report({{"schema", 1}, {"output", path}, {"example", example.name}});
+    return ExitCode::kOk;
+}
+
+ExitCode list_examples(const Console& console) {
+    nlohmann::json list = nlohmann::json::array();
+    std::size_t width = 0;
+    for (const Example& example : kExamples) width = std::max(width, example.name.size());
+    for (const Example& example : kExamples) {
+        const std::string text = summary(example.text);
+        console.result(fmt::format("{:<{}}  {}", example.name, width, text));
+        list.push_back({{"name", example.name}, {"summary", text}});
+    }
+    console.report({{"schema", 1}, {"examples", list}});
+    return ExitCode::kOk;
+}
+
+}  // namespace
+
+void add_init(CLI::App& app, Action& action) {
+    auto options = std::make_shared<InitOptions>();
+    CLI::App* command = app.add_subcommand("init", "write a commented scene to start from, or an example");
+    command->add_option("NAME", options->name,
+                        "an example, or any other name for the scene to start from; scene if left out");
+    command->add_flag("--force", options->force, "replace an existing file");
+    command->callback([options, &action] {
+        action = [options](const Console& console) { return write_scene(console, *options); };
+    });
+}
+
+void add_examples(CLI::App& app, Action& action) {
+    CLI::App* command = app.add_subcommand("examples", "list the scenes that init can write");
+    command->callback([&action] { action = list_examples; });
+}
+
+}  // namespace corda::app

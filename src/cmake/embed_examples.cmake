@@ -1,0 +1,12 @@
+# Script mode: writes OUTPUT, a header with name and text of each scene of SCENES in kExamples.
+set(text "// Generated from examples/. Do not edit.\n#pragma once\n\n#include <string_view>\n\n")
+string(APPEND text "namespace corda::app {\n/// A scene that is part of the program.\n")
+string(APPEND text "struct Example {\n    std::string_view name;\n    std::string_view text;\n};\n")
+string(APPEND text "inline constexpr Example kExamples[] = {\n")
+foreach(scene IN LISTS SCENES)
+    get_filename_component(name ${scene} NAME_WE)
+    file(READ ${scene} source)
+    string(APPEND text "    {\"${name}\", R\"toml(${source})toml\"},\n")
+endforeach()
+string(APPEND text "};\n}  // namespace corda::app\n")
+file(WRITE ${OUTPUT} "${text}")

@@ -1,0 +1,82 @@
+// The gallery: the program carries the examples, and each has its picture and its entry.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "support/command.hpp"
+#include "support/files.hpp"
+
+namespace corda {
+namespace {
+
+using test::run_corda;
+using testing::HasSubstr;
+
+const std::string kFolder = CORDA_EXAMPLES "/";
+
+/// "init" with the scratch folder as the current one.
+test::CommandResult init_in(const test::ScratchFolder& folder, const std::string& arguments) {
+    return test::run_shell("cd " + test::quoted(folder.path()) + " && " + test::quoted(CORDA_PROGRAM) +
+                           " init " + arguments);
+}
+
+TEST(Gallery, ListsEveryExampleAndWritesIt) {
+    const auto listed = nlohmann::json::parse(run_corda({"examples", "--json"}).out)["examples"];
+    const std::vector<std::string> scenes = test::list_files(CORDA_EXAMPLES, ".toml");
+    ASSERT_EQ(listed.size(), scenes.size());
+    const test::ScratchFolder folder;
+    const std::string plain = run_corda({"examples"}).out;
+    for (const auto& example : listed) {
+        const auto name = example["name"].get<std::string>();
+        ASSERT_EQ(init_in(folder, name).exit_code, 0) << name;
+        EXPECT_EQ(test::read_file(folder.file(name + ".toml")), test::read_file(kFolder + name + ".toml"));
+        EXPECT_THAT(example["summary"].get<std::string>(), testing::SizeIs(testing::Gt(5U))) << name;
+        EXPECT_THAT(plain, HasSubstr(name + " "));
+    }
+}
+
+TEST(Gallery, EveryExampleHasItsPictureAndItsEntry) {
+    const std::string page = test::read_file(kFolder + "README.md");
+    const std::string script = test::read_file(kFolder + "gallery.sh");
+    std::size_t count = 0;
+    for (const std::string& scene : test::list_files(CORDA_EXAMPLES, ".toml")) {
+        const std::string name = std::filesystem::path(scene).stem().string();
+        const std::string picture = "pictures/" + name + ".png";
+        EXPECT_THAT(page, HasSubstr("## " + name + "\n\n![" + name + "](" + picture + ")\n"));
+        EXPECT_THAT(script, HasSubstr("\n" + name + " "));
+        const std::size_t bytes = test::read_file(kFolder + picture).size();
+        EXPECT_GT(bytes, 5000U) << name;
+        EXPECT_LT(bytes, 60000U) << name;  // 41'932 measured
+        ++count;
+    }
+    EXPECT_EQ(test::list_files(kFolder + "pictures", ".png").size(), count);
+}
+
+TEST(Init, WritesASceneThatDrawsSomething) {
+    const test::ScratchFolder folder;
+    EXPECT_EQ(init_in(folder, "").out, "scene.toml\n");
+    const auto planned = run_corda({"plan", folder.file("scene.toml"), "--json"});
+    EXPECT_EQ(planned.exit_code, 0) << planned.err;
+    const auto drawn = run_corda({"still", folder.file("scene.toml"), "--at", "0.3", "--size", "320x180",
+                                  "--fail-empty", "-o", folder.file("scene.svg")});
+    EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+}
+
+TEST(Init, TakesANewNameAndReplacesNothing) {
+    const test::ScratchFolder folder;
+    EXPECT_EQ(init_in(folder, "mine.toml").out, "mine.toml\n");
+    EXPECT_EQ(test::read_file(folder.file("mine.toml")), test::read_file(kFolder + "start.toml"));
+    const std::string own = folder.write("whip.toml", "schema = 1\n");
+    const auto refused = init_in(folder, "whip");
+    EXPECT_EQ(refused.exit_code, 6);
+    EXPECT_THAT(refused.err, HasSubstr("--force"));
+    EXPECT_EQ(test::read_file(own), "schema = 1\n");
+    EXPECT_EQ(init_in(folder, "whip --force").exit_code, 0);
+    EXPECT_EQ(test::read_file(own), test::read_file(kFolder + "whip.toml"));
+}
+
+}  // namespace
+}  // namespace corda
