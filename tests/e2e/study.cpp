@@ -37,7 +37,7 @@ void expect_files_of(const json& report, const std::string& folder) {
         for (const json& plot : chapter["plots"]) {
             for (const char* ending : {".png", ".svg", ".pdf"})
                 EXPECT_TRUE(fs::exists(folder + "/" + plot["id"].get<std::string>() + ending));
-            expected += 2;
+            expected += 3;
         }
     }
     const auto begin = fs::directory_iterator(folder);
@@ -196,9 +196,9 @@ TEST_F(Study, EndsItsReportAtASignal) {
     // The last file of the first chapter is there, while the others are measured.
     const auto result =
         run_shell(study_of(scene, out_) + " & pid=$!; for i in $(seq 1000); do [ -e " + out_ +
-                  "/speed_scene.png ] && break; sleep 0.05; done; kill -TERM $pid; wait $pid");
+                  "/speed_scene.pdf ] && break; sleep 0.05; done; kill -TERM $pid; wait $pid");
     EXPECT_EQ(result.exit_code, 143) << result.err;
-    EXPECT_THAT(result.err, HasSubstr("error: interrupted; 8 files are written, the last of them is " + out_ +
+    EXPECT_THAT(result.err, HasSubstr("error: interrupted; 9 files are written, the last of them is " + out_ +
                                       "/report.html"));
     const json report = json::parse(test::read_file(out_ + "/report.json"));
     ASSERT_EQ(report["chapters"].size(), 1U);
