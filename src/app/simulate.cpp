@@ -1,3 +1,4 @@
+#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -15,18 +16,51 @@
 namespace corda::app {
 namespace {
 
+/// The columns beside the positions.
+struct Columns {
+    bool velocities = false;
+    bool tensions = false;
+    bool energy = false;
+    bool diagnostics = false;
+};
+
 struct SimulateOptions {
     SceneOptions scene;
     std::string output;
-    bool diagnostics = false;
+    Columns columns;
     bool force = false;
     bool dry_run = false;
 };
 
-std::string csv_header(std::size_t particles, bool diagnostics) {
-    std::string line = "t";
-    for (std::size_t i = 0; i < particles; ++i) line += fmt::format(",x{},y{}", i, i);
-    if (diagnostics) line += ",energy_error,strain,pin_force_n,largest_tension_n";
+/// Says what the columns are, if there is more than positions: those alone are told by their names.
+std::string csv_comment(const System& system, const Columns& columns) {
+    std::string line = "# t in s; x, y in m";
+    if (columns.velocities) line += "; vx, vy in m/s";
+    if (columns.tensions) line += "; tension of link k in N, positive if it pulls";
+    if (columns.energy) line += "; energy_change in J since t = 0, kinetic and potential";
+    std::size_t link = 0;
+    for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+        const Body& body = system.bodies[i];
+        line += fmt::format("; {}: particles {} .. {}", body_name(system, i), body.first_particle,
+                            body.first_particle + body.particle_count - 1);
+        if (columns.tensions && body.link_count > 0)
+            line += fmt::format(", links {} .. {}", link, link + body.link_count - 1);
+        link += body.link_count;
+    }
+    return line + "\n";
+}
+
+std::string csv_header(const System& system, const Columns& columns) {
+    std::string line;
+    if (columns.velocities || columns.tensions || columns.energy) line = csv_comment(system, columns);
+    line += "t";
+    for (std::size_t i = 0; i < system.particle_count(); ++i) line += fmt::format(",x{},y{}", i, i);
+    for (std::size_t i = 0; columns.velocities && i < system.particle_count(); ++i)
+        line += fmt::format(",vx{},vy{}", i, i);
+    for (std::size_t k = 0; columns.tensions && k < system.link_count(); ++k)
+        line += fmt::format(",tension{}", k);
+    if (columns.energy) line += ",energy_change";
+    if (columns.diagnostics) line += ",energy_error,strain,pin_force_n,largest_tension_n";
     return line + "\n";
 }
 
@@ -43,15 +77,26 @@ void write_figures(const Figures& figures, std::string& line) {
     write(figures.loads ? std::optional(figures.loads->largest_tension_n) : std::nullopt);
 }
 
-void write_row(const Film& film, const State& state, bool diagnostics, std::string& line) {
-    const Vec2 origin_m = film.system().origin_m;
+void write_row(const Film& film, const State& state, const Columns& columns, std::string& line) {
+    const System& system = film.system();
+    const Vec2 origin_m = system.origin_m;
     line.clear();
     auto out = std::back_inserter(line);
     fmt::format_to(out, "{:.17g}", state.time_s);
     for (std::size_t i = 0; i < state.x_m.size(); ++i) {
         fmt::format_to(out, ",{:.17g},{:.17g}", origin_m.x + state.x_m[i], origin_m.y + state.y_m[i]);
     }
-    if (diagnostics) write_figures(film.figures(), line);
+    for (std::size_t i = 0; columns.velocities && i < state.x_m.size(); ++i)
+        fmt::format_to(out, ",{:.17g},{:.17g}", state.vx_m_s[i], state.vy_m_s[i]);
+    for (std::size_t i = 0; columns.tensions && i < system.bodies.size(); ++i) {
+        const Body& body = system.bodies[i];
+        for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k) {
+            *out++ = ',';
+            if (!std::isnan(state.tension_n[k])) fmt::format_to(out, "{:.17g}", state.tension_n[k]);
+        }
+    }
+    if (columns.energy) fmt::format_to(out, ",{:.17g}", film.figures().energy_change_j);
+    if (columns.diagnostics) write_figures(film.figures(), line);
     line += '\n';
 }
 
@@ -91,14 +136,14 @@ std::string cost_text(const Film& film) {
 }
 
 /// Writes the states of all frame times.
-void write_states(const Console& console, const Film& film, bool diagnostics, OutputFile* csv) {
+void write_states(const Console& console, const Film& film, const Columns& columns, OutputFile* csv) {
     Progress progress(console, "simulate", film.last_frame() + 1);
     std::string line;
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
         stop_if_asked(kSomethingWritten);
         const State& state = film.state(k);
         if (csv != nullptr) {
-            write_row(film, state, diagnostics, line);
+            write_row(film, state, columns, line);
             csv->write(line);
         }
         progress.update(k + 1);
@@ -129,6 +174,7 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     OnProgress on_progress = show_progress(console, "plan");
     FilmDef def;
     def.on_progress = [&on_progress](std::int64_t done, std::int64_t all) { return on_progress(done, all); };
+    def.readings = {options.columns.velocities, options.columns.tensions};
     const Film film(scene, def);
     report_plan(console, film);
     console.info(fmt::format("{}: {}, method {}", film.scene().name, describe(film.system()),
@@ -143,10 +189,10 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     if (!options.output.empty()) {
         csv = std::make_unique<OutputFile>(options.output,
                                            OutputOptions{.force = options.force, .on_progress = on_progress});
-        csv->write(csv_header(film.system().particle_count(), options.diagnostics));
+        csv->write(csv_header(film.system(), options.columns));
     }
     try {
-        write_states(console, film, options.diagnostics, csv.get());
+        write_states(console, film, options.columns, csv.get());
     } catch (const Error& error) {
         const bool ends_early = error.code() == ExitCode::kDiverged || error.code() == interruption();
         if (!csv || !ends_early) throw;
@@ -174,7 +220,10 @@ void add_simulate(CLI::App& app, Action& action) {
                         "CSV file, or - for standard output; none: figures only");
     options->scene.add_shortcut(*command, "--fps", "video.fps", "rows per second");
     options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
-    command->add_flag("--diagnostics", options->diagnostics,
+    command->add_flag("--velocity", options->columns.velocities, "add the velocity of every particle");
+    command->add_flag("--tension", options->columns.tensions, "add the tension of every link");
+    command->add_flag("--energy", options->columns.energy, "add the change of energy since the start");
+    command->add_flag("--diagnostics", options->columns.diagnostics,
                       "add energy error, strain, pin force and tension to every row");
     command->add_flag("--force", options->force, "replace an existing output");
     command->add_flag("--dry-run", options->dry_run, "check everything and write nothing");

@@ -74,7 +74,7 @@ struct Film::Impl {
           stage(scene, system, def.backend, def.require_gpu),
           motion(system, scene.world, if_all_named(named),
                  Timeline(scene.video.fps, pipeline::last_frame_of(scene), def.stills_s),
-                 def.motion_budget_bytes, def.on_progress, quantity_of(scene.style.color_by)),
+                 def.motion_budget_bytes, def.on_progress, quantity_of(scene.style.color_by), def.readings),
           tracks(stage.traced(), scene.style.trail_s, scene.video.fps) {
         if (motion.methods().empty()) {
             plan = motion.record([&](const Timeline& timeline, sim::Recording& recording) {
@@ -185,21 +185,29 @@ struct Film::Impl {
         return stage.draw(state, map, caption_of(state, map), trails, on_progress);
     }
 
+    /// The end of the motion: that of the scene, or of the last recorded state if it diverges.
+    double last_s() const {
+        const std::size_t states = motion.recording().size();
+        return motion.diverges() && states > 0 ? motion.timeline().time_s(states - 1)
+                                               : scene.world.duration_s;
+    }
+
     /// The states are read in the order of time: what is not recorded is simulated on the way.
     Damage expose(double time_s, double shutter, const view::Camera& map, const OnProgress& on_progress) {
         const VideoDef& video = scene.video;
         const double half_s = 0.5 * shutter * video.fps.interval_s();
         const double from_s = std::max(0.0, time_s - half_s);
-        const double until_s = std::min(std::max(scene.world.duration_s, time_s), time_s + half_s);
+        const double until_s = std::min(std::max(last_s(), time_s), time_s + half_s);
+        const std::int64_t picture = stage.begin_exposure();
         std::optional<view::Caption> caption;
         for (int i = 0; i < video.subframes; ++i) {
             const double at_s = from_s + (i + 0.5) / video.subframes * (until_s - from_s);
             if (!caption && at_s >= time_s) caption = caption_of(at(time_s), map);
             const std::vector<view::Trail>& trails = trails_to(at_s);
-            stage.expose(at(at_s), map, trails, on_progress);
+            stage.expose(picture, at(at_s), map, trails, on_progress);
         }
         if (!caption) caption = caption_of(at(time_s), map);
-        return stage.develop(*caption, map);
+        return stage.develop(picture, *caption, map);
     }
 
     Scene scene;

@@ -29,6 +29,7 @@ struct FilmDef {
     /// The way to OpenGL: "auto", "device", "device:N", "surfaceless" or "default".
     std::string backend = "auto";
     bool require_gpu = false;  ///< refuse an OpenGL that runs on the CPU
+    Readings readings;         ///< what its states have besides positions
     /// Called with the frames done so far, in every pass of the simulation, and again during frames that take
     /// long; returning false ends what is being asked for by kInterrupted. It can be asked for again.
     OnProgress on_progress;
@@ -49,9 +50,9 @@ struct GlInfo {
 class Film {
   public:
     /// Plans a scene of method `auto`, which simulates it; another is simulated as far as it is asked for,
-    /// for pictures mostly to its end. Throws corda::Error: kInvalidScene if no method can run it or a field
-    /// of it is not what it is declared to be, kUsage for an unknown backend or a still outside of the scene,
-    /// kInterrupted if on_progress asks to stop.
+    /// for pictures mostly to its end. Throws corda::Error: kInvalidScene if no method can run it or tell its
+    /// tensions, or a field of it is not what it is declared to be, kUsage for an unknown backend or a still
+    /// outside of the scene, kInterrupted if on_progress asks to stop.
     explicit Film(const Scene& scene, FilmDef def = {});
     Film(Film&&) noexcept;
     Film& operator=(Film&&) noexcept;

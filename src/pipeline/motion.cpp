@@ -12,12 +12,14 @@
 namespace corda::pipeline {
 
 Motion::Motion(const System& system, const WorldDef& world, std::vector<MethodDef> methods, Timeline timeline,
-               std::size_t budget_bytes, const OnProgress& on_progress, std::optional<Quantity> quantity)
+               std::size_t budget_bytes, const OnProgress& on_progress, std::optional<Quantity> quantity,
+               const Readings& readings)
     : system_(&system),
       world_(world),
       methods_(std::move(methods)),
       timeline_(std::move(timeline)),
-      recording_(system.particle_count(), timeline_.size(), budget_bytes, system.bars.size(), quantity) {
+      recording_(system.particle_count(), timeline_.size(), budget_bytes, system.bars.size(), quantity,
+                 readings) {
     if (!methods_.empty()) start(on_progress);
 }
 

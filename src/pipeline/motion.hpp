@@ -18,11 +18,11 @@ namespace corda::pipeline {
 class Motion {
   public:
     /// A motion that has not begun, by a method per body or, if there are none, by those that record() will
-    /// find. `quantity`: see sim::Recording. `system` must outlive it. Throws corda::Refusal if a method
-    /// cannot run its body, and corda::Error (kInterrupted) if asked to stop.
+    /// find. `quantity` and `readings`: see sim::Recording. `system` must outlive it. Throws corda::Refusal
+    /// if a method cannot run its body, and corda::Error (kInterrupted) if asked to stop.
     Motion(const System& system, const WorldDef& world, std::vector<MethodDef> methods, Timeline timeline,
            std::size_t budget_bytes, const OnProgress& on_progress = {},
-           std::optional<Quantity> quantity = {});
+           std::optional<Quantity> quantity = {}, const Readings& readings = {});
     Motion(const Motion&) = delete;
     Motion& operator=(const Motion&) = delete;
 

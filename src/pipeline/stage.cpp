@@ -17,6 +17,15 @@ const Scene& drawable(const Scene& scene) {
     view::validate(scene.camera);
     const int width = scene.video.width_px;
     const int height = scene.video.height_px;
+    const VideoDef& video = scene.video;
+    if (!(video.shutter >= 0.0 && video.shutter <= 1.0)) {
+        throw Error(ExitCode::kInvalidScene,
+                    fmt::format("video.shutter: {} is not within 0 .. 1", video.shutter));
+    }
+    if (video.subframes < 2 || video.subframes > VideoDef::kMostSubframes) {
+        throw Error(ExitCode::kInvalidScene, fmt::format("video.subframes: {} is not within 2 .. {}",
+                                                         video.subframes, VideoDef::kMostSubframes));
+    }
     if (is_picture_size(width, height)) return scene;
     throw Error(ExitCode::kInvalidScene,
                 fmt::format("video.size: {}x{} is not within 1 .. {} pixels per side and {} in all", width,
@@ -96,22 +105,26 @@ Damage Stage::draw(view::DrawList list, const OnProgress& on_progress) {
     return paint(on_progress);
 }
 
-void Stage::expose(const State& state, const view::Camera& map, std::span<const view::Trail> trails,
-                   const OnProgress& on_progress) {
+std::int64_t Stage::begin_exposure() {
+    shows_nothing_ = true;
+    canvas_->renderer.begin_exposure();
+    return ++pictures_;
+}
+
+void Stage::expose(std::int64_t picture, const State& state, const view::Camera& map,
+                   std::span<const view::Trail> trails, const OnProgress& on_progress) {
     canvas_->context.make_current();
-    if (exposed_.value_or(pictures_) != pictures_) throw Overdrawn();
+    if (picture != pictures_) throw Overdrawn();
     view_.draw(state, map, list_, trails);
-    shows_nothing_ = list_.shows_nothing() && (!exposed_ || shows_nothing_);
-    exposed_ = pictures_;
+    shows_nothing_ = list_.shows_nothing() && shows_nothing_;
     const OnProgress ask = asking(on_progress);
     report_progress(ask, 0, 1);
     canvas_->renderer.expose(list_, ask);
 }
 
-Damage Stage::develop(const view::Caption& caption, const view::Camera& map) {
+Damage Stage::develop(std::int64_t picture, const view::Caption& caption, const view::Camera& map) {
     canvas_->context.make_current();
-    if (std::exchange(exposed_, std::nullopt) != pictures_) throw Overdrawn();
-    ++pictures_;
+    if (picture != pictures_) throw Overdrawn();
     view_.start(list_);
     annotate(caption, map, list_);
     return canvas_->renderer.develop(list_);
@@ -120,7 +133,6 @@ Damage Stage::develop(const view::Caption& caption, const view::Camera& map) {
 Damage Stage::paint(const OnProgress& on_progress) {
     canvas_->context.make_current();  // a callback since open() may have left another one
     ++pictures_;
-    exposed_.reset();
     shows_nothing_ = list_.shows_nothing();
     return canvas_->renderer.render(list_, asking(on_progress));
 }

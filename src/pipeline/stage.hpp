@@ -57,12 +57,15 @@ class Stage {
     /// Overdrawn, and corda::Error: kNoGl, kInterrupted. Requires a Use.
     Damage draw(const State& state, const view::Camera& map, const view::Caption& caption = {},
                 std::span<const view::Trail> trails = {}, const OnProgress& on_progress = {});
+    /// Begins the exposure of a picture, whatever became of the last one, and returns its number. Requires a
+    /// Use.
+    [[nodiscard]] std::int64_t begin_exposure();
     /// Adds a state to the exposure that develop() makes a picture of. Asks and throws as draw().
-    void expose(const State& state, const view::Camera& map, std::span<const view::Trail> trails,
-                const OnProgress& on_progress = {});
+    void expose(std::int64_t picture, const State& state, const view::Camera& map,
+                std::span<const view::Trail> trails, const OnProgress& on_progress = {});
     /// Makes the exposure a picture, with what the overlay says of it; returns what may differ from the last
     /// one. Throws Overdrawn.
-    Damage develop(const view::Caption& caption, const view::Camera& map);
+    Damage develop(std::int64_t picture, const view::Caption& caption, const view::Camera& map);
     /// Draws a list of this stage's size, in the same way.
     Damage draw(view::DrawList list, const OnProgress& on_progress = {});
     /// Adds what the overlay says to a list.
@@ -101,7 +104,6 @@ class Stage {
     view::DrawList list_;
     std::unique_ptr<Canvas> canvas_;
     std::int64_t pictures_ = 0;
-    std::optional<std::int64_t> exposed_;  ///< pictures_ when the exposure began; std::nullopt: there is none
     bool shows_nothing_ = true;
 };
 

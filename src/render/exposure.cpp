@@ -12,6 +12,7 @@ namespace corda::render {
 namespace {
 
 constexpr int kTilePx = Tiles::kSidePx;
+constexpr std::ptrdiff_t kTileRow = std::ptrdiff_t{4} * kTilePx;  // sums
 constexpr std::size_t kSumsPerTile = std::size_t{4} * kTilePx * kTilePx;
 constexpr std::uint32_t kWhite = 65535;  // in linear light
 
@@ -135,7 +136,7 @@ void Exposure::add(const Image& picture, const std::vector<std::uint8_t>& touche
         ++tiles_[place].pictures;
         const PixelRect rect = rect_of(tile);
         std::uint32_t* sums = &sums_[place * kSumsPerTile];
-        for (int y = rect.y0; y < rect.y1; ++y, sums += 4 * kTilePx)
+        for (int y = rect.y0; y < rect.y1; ++y, sums += kTileRow)
             add(picture.pixel(rect.x0, y), rect.width(), sums);
     }
 }
@@ -148,7 +149,7 @@ void Exposure::develop(const Ground& ground, Image& mean) {
         const PixelRect rect = rect_of(tiles_[place].tile);
         const std::uint32_t bare_pictures = pictures_ - tiles_[place].pictures;
         std::uint32_t* sums = &sums_[place * kSumsPerTile];
-        for (int y = rect.y0; y < rect.y1; ++y, sums += 4 * kTilePx) {
+        for (int y = rect.y0; y < rect.y1; ++y, sums += kTileRow) {
             std::array<std::uint8_t, 32> bare{};
             write_ground_row(ground, y, 8, height_, bare.data());
             std::uint8_t* row = mean.pixel(rect.x0, y);

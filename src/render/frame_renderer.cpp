@@ -135,13 +135,14 @@ void FrameRenderer::make_textures() {
 }
 
 void FrameRenderer::make_tints() {
-    tints_ = std::make_unique<Tints>();
-    make_texture(tints_->sums, GL_RGBA32F, image_);
-    make_target(tints_->mask_target, {&masks_, &tints_->sums}, making_frame(image_));
-    make_target(tints_->frame_target, {&frame_, &masks_, &tints_->sums}, making_frame(image_));
-    set_capsule_uniforms(tints_->capsule_program);
-    set_paint_uniforms(tints_->paint_program);
-    glUniform1i(tints_->paint_program.uniform("sums"), kSumsUnit);
+    auto tints = std::make_unique<Tints>();
+    make_texture(tints->sums, GL_RGBA32F, image_);
+    make_target(tints->mask_target, {&masks_, &tints->sums}, making_frame(image_));
+    make_target(tints->frame_target, {&frame_, &masks_, &tints->sums}, making_frame(image_));
+    set_capsule_uniforms(tints->capsule_program);
+    set_paint_uniforms(tints->paint_program);
+    glUniform1i(tints->paint_program.uniform("sums"), kSumsUnit);
+    tints_ = std::move(tints);
     masks_are_empty_ = false;
     everything_is_stale_ = true;
 }

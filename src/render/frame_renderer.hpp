@@ -35,6 +35,8 @@ class FrameRenderer {
     /// kInterrupted; then the next frame is drawn whole.
     Damage render(const view::DrawList& list, const OnProgress& on_progress = {});
 
+    /// Forgets what was exposed and not developed.
+    void begin_exposure() { exposure_.clear(); }
     /// Adds the layers of a list to the frame that develop() will finish; all have the same ground. Asks and
     /// throws as render(); the exposure is lost then, as it is by render().
     void expose(const view::DrawList& list, const OnProgress& on_progress = {});

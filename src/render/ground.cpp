@@ -46,7 +46,8 @@ void write_ground(const Ground& ground, const PixelRect& part, Image& image) {
     for (int y = part.y0; y < part.y1; ++y) {
         write_ground_row(ground, y, 8, image.height(), eight.data());
         std::uint8_t* rgba = image.pixel(part.x0, y);
-        for (int x = part.x0; x < part.x1; ++x, rgba += 4) std::copy_n(&eight[4 * (x & 7)], 4, rgba);
+        for (int x = part.x0; x < part.x1; ++x, rgba += 4)
+            std::copy_n(&eight[std::size_t{4} * (x & 7)], 4, rgba);
     }
 }
 

@@ -8,10 +8,10 @@
 namespace corda::sim {
 
 Recording::Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes,
-                     std::size_t bar_count, std::optional<Quantity> quantity)
+                     std::size_t bar_count, std::optional<Quantity> quantity, const Readings& readings)
     : particle_count_(particle_count),
       quantity_(quantity),
-      readings_(quantity ? readings_for(*quantity) : Readings{}),
+      readings_(quantity ? readings.with(readings_for(*quantity)) : readings),
       parts_{{{&State::x_m, particle_count},
               {&State::y_m, particle_count},
               {&State::vx_m_s, readings_.velocities ? particle_count : 0},
@@ -27,7 +27,7 @@ Recording::Recording(std::size_t particle_count, std::size_t state_count, std::s
 }
 
 Recording Recording::for_part(std::size_t particle_count, std::size_t bar_count) const {
-    Recording part(particle_count, 0, 0, bar_count, quantity_);
+    Recording part(particle_count, 0, 0, bar_count, quantity_, readings_);
     part.most_states_ = most_states_;
     return part;
 }
@@ -131,6 +131,7 @@ void Recording::add_figures(const Recording& body) {
         figures.strain = std::max(figures.strain, body.figures_[i].strain);
         figures.loads = loads_of_both(figures.loads, body.figures_[i].loads);
         figures.energy_error = error;
+        figures.energy_change_j += body.figures_[i].energy_change_j;
     }
 }
 

@@ -18,9 +18,10 @@ namespace corda::sim {
 class Recording {
   public:
     /// `state_count`: of the timeline. `budget_bytes`: the most memory that states may take. `quantity`: one
-    /// whose spread is wanted; states then have readings_for() it.
+    /// whose spread is wanted; states then have readings_for() it beside `readings`.
     Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes,
-              std::size_t bar_count = 0, std::optional<Quantity> quantity = {});
+              std::size_t bar_count = 0, std::optional<Quantity> quantity = {},
+              const Readings& readings = {});
 
     /// An empty recording of some of the particles and bars that keeps as many states.
     [[nodiscard]] Recording for_part(std::size_t particle_count, std::size_t bar_count = 0) const;

@@ -191,6 +191,7 @@ void Simulation::observe() {
     read();
     figures_.strain = max_strain(system_, state_);
     figures_.energy_error = sim::energy_error(energy_change_j(), energy_scale_j_);
+    figures_.energy_change_j = solver_->energy_j() - initial_energy_j_;
     figures_.loads = solver_->loads();
     largest_ = sim::larger_figures(largest_, figures_);
     if (!branched_s_ && solver_->has_branched()) branched_s_ = state_.time_s;

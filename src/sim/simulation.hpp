@@ -23,7 +23,8 @@ struct Figures {
     /// | E(t) - E(0) | over the sum of weight times length of all bodies, or over E(0) without a force.
     /// std::nullopt if damping takes energy on purpose.
     std::optional<double> energy_error;
-    std::optional<Loads> loads;  ///< std::nullopt if the method does not know them
+    std::optional<Loads> loads;    ///< std::nullopt if the method does not know them
+    double energy_change_j = 0.0;  ///< E(t) - E(0), kinetic plus potential, of all bodies, in J
 };
 
 /// The largest figures of a run over all times that were asked for.

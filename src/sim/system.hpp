@@ -109,6 +109,10 @@ struct Readings {
     bool velocities = false;
     bool tensions = false;
 
+    /// What either has.
+    [[nodiscard]] Readings with(const Readings& other) const {
+        return {velocities || other.velocities, tensions || other.tensions};
+    }
     friend bool operator==(const Readings&, const Readings&) = default;
 };
 

@@ -107,6 +107,48 @@ TEST_F(Output, SimulateAddsDiagnosticsToEveryRow) {
     EXPECT_NEAR(tension_n, 39 * 9.81, 1.0);  // measured 382.62; the weight is 382.59
 }
 
+/// The numbers of a line of CSV.
+std::vector<double> numbers_of(const std::string& line) {
+    std::vector<double> numbers;
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) numbers.push_back(std::stod(cell));
+    return numbers;
+}
+
+TEST_F(Output, SimulateAddsVelocitiesTensionsAndEnergy) {
+    const std::string pendulum = folder_.write(
+        "pendulum.toml",
+        "schema = 1\n[world]\nduration = 1\n[[rope]]\nhang = { links = 1, length = 2.0, angle_deg = 60.0 }\n"
+        "mass = 3.0\n[solver]\nmethod = \"exact\"\ntolerance = 1e-12\n");
+    std::istringstream lines(
+        run_corda({"simulate", pendulum, "-o", "-", "--velocity", "--tension", "--energy"}).out);
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_EQ(
+        line,
+        "# t in s; x, y in m; vx, vy in m/s; tension of link k in N, positive if it pulls; energy_change in "
+        "J since t = 0, kinetic and potential; rope 0: particles 0 .. 1, links 0 .. 0");
+    std::getline(lines, line);
+    EXPECT_EQ(line, "t,x0,y0,x1,y1,vx0,vy0,vx1,vy1,tension0,energy_change");
+    int rows = 0;
+    for (; std::getline(lines, line); ++rows) {
+        const std::vector<double> cells = numbers_of(line);
+        ASSERT_EQ(cells.size(), 11U);
+        // v^2 = 2 g (h0 - h) and T = m (g cos + v^2 / L), whose errors are 1e-10 and less.
+        const double height_m = cells[4];
+        const double speed_square = cells[7] * cells[7] + cells[8] * cells[8];
+        EXPECT_NEAR(speed_square, 2.0 * 9.81 * (-1.0 - height_m), 1e-9);
+        EXPECT_NEAR(cells[9], 3.0 * (9.81 * -height_m + speed_square) / 2.0, 1e-8);
+        EXPECT_NEAR(cells[10], 0.0, 1e-9);
+        EXPECT_EQ(cells[5], 0.0);  // of the pin
+    }
+    EXPECT_EQ(rows, 61);
+    // Drag takes what the column shows.
+    const std::string dragged =
+        run_corda({"simulate", pendulum, "-o", "-", "--energy", "--set", "world.drag=1.0"}).out;
+    EXPECT_LT(numbers_of(dragged.substr(dragged.rfind('\n', dragged.size() - 2) + 1)).back(), -1.0);
+}
+
 TEST_F(Output, AutoReportsItsBoundAndPlanSaysWhy) {
     const std::string chaotic = folder_.write(
         "chaotic.toml", "schema = 1\n[[rope]]\nhang = { links = 10, length = 1.0, angle_deg = 90.0 }\n");

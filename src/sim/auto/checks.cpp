@@ -115,21 +115,16 @@ Status Checks::finish() {
     constexpr std::chrono::milliseconds kPatience{10};
     Status status = Status::kOk;
     const auto add = [&status](Status one) { status = one == Status::kOk ? status : one; };
-    if (!in_threads_) {
-        for (const auto& check : checks_) add(check->advance_to(time_s_, goes_on_));
-        return status;
-    }
-    for (std::future<Status>& future : pending_) {
-        while (future.wait_for(kPatience) == std::future_status::timeout)
+    for (std::size_t i = 0; i < checks_.size(); ++i) {
+        auto waited = std::future_status::deferred;
+        while (in_threads_ && (waited = pending_[i].wait_for(kPatience)) == std::future_status::timeout)
             require_going_on(!goes_on_ || goes_on_());
-        add(future.get());
+        add(waited == std::future_status::deferred ? checks_[i]->advance_to(time_s_, goes_on_)
+                                                   : pending_[i].get());
     }
     pending_.clear();
+    steps_ = checks_.front()->steps();
     return status;
-}
-
-std::uint64_t Checks::steps() const {
-    return checks_.front()->steps();
 }
 
 double Checks::difference_m(const State& state) const {

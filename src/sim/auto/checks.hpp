@@ -41,8 +41,8 @@ class Checks {
     /// be near them by chance and far from the truth. Infinite for a NaN.
     [[nodiscard]] double difference_m(const State& state) const;
 
-    /// Of one of them.
-    [[nodiscard]] std::uint64_t steps() const;
+    /// Of one of them, up to the last finish().
+    [[nodiscard]] std::uint64_t steps() const { return steps_; }
 
   private:
     class Check;
@@ -52,6 +52,7 @@ class Checks {
     GoesOn is_wanted_ = [this] { return !is_abandoned_.load(std::memory_order_relaxed); };
     bool in_threads_;
     double time_s_ = 0.0;
+    std::uint64_t steps_ = 0;
     std::vector<std::unique_ptr<Check>> checks_;
     std::vector<std::future<Status>> pending_;  ///< declared last: it ends before what it uses does
 };

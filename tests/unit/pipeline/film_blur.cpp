@@ -55,6 +55,17 @@ TEST(FilmBlur, LeavesPlansStatesAndStillsAlone) {
     EXPECT_EQ(code_of([&] { static_cast<void>(film.still(0.1, {}, 1.1)); }), ExitCode::kUsage);
 }
 
+TEST(FilmBlur, KeepsNothingOfAnExposureThatWasBrokenOff) {
+    int asked = 0;
+    FilmDef def;
+    def.motion_budget_bytes = 0;  // sub-frames are simulated, and ask
+    const Film film = blurred_film(kBlur, def);
+    const Image expected = film.frame(20);
+    const auto third = [&asked](std::int64_t, std::int64_t) { return ++asked < 3; };
+    EXPECT_EQ(code_of([&] { static_cast<void>(film.frame(9, third)); }), ExitCode::kInterrupted);
+    EXPECT_TRUE(equal_images(film.frame(20), expected));
+}
+
 TEST(FilmBlur, GivesTheSameFramesInAnyOrderAndMemory) {
     const Film film = blurred_film(kBlur);
     const Film forgetful = blurred_film(kBlur, def_of(0));
