@@ -46,6 +46,7 @@ void configure(AVCodecContext& context, const Format& format, const VideoDef& de
 }
 
 void open(AVCodecContext& context, const VideoDef& def, const EncoderSettings& settings) {
+    const std::string encoder = context.codec->name;  // unknown once it has failed to open
     Options options;
     std::string text;
     for (const auto& [name, value] : settings.options) {
@@ -53,12 +54,11 @@ void open(AVCodecContext& context, const VideoDef& def, const EncoderSettings& s
         text += fmt::format(", {} {}", name, value);
     }
     check_libav(avcodec_open2(&context, nullptr, options.get()), ExitCode::kEncoder,
-                fmt::format("{} does not open for {}x{} at {} fps{}", context.codec->name, def.width_px,
-                            def.height_px, def.fps.rational().text(), text),
+                fmt::format("{} does not open for {}x{} at {} fps{}", encoder, def.width_px, def.height_px,
+                            def.fps.rational().text(), text),
                 "try another preset or size");
     if (const std::string name = options.left_over(); !name.empty()) {
-        throw Error(ExitCode::kEncoder,
-                    fmt::format("{} does not know the option '{}'", context.codec->name, name));
+        throw Error(ExitCode::kEncoder, fmt::format("{} does not know the option '{}'", encoder, name));
     }
 }
 

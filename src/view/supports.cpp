@@ -125,6 +125,7 @@ void Supports::draw(const Camera& camera, DrawList& list) const {
 }
 
 void Supports::draw_plate(PixelPoint first, double length_px, double plate_px, DrawList& list) const {
+    if (!std::isfinite(length_px)) return;  // between pins near the largest of numbers
     const double hatch_px = width_px(kHatchWidth, side_px_);
     const double height_px = kHatchHeight * side_px_;
     // Pixels count y downwards.

@@ -57,14 +57,7 @@ Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def,
       tension_over_length_n_m_(impulse_.size(), 0.0),
       pin_force_n_(mass_kg_.size()) {
     refuse_rigid_strings(system);
-    for (const Body& body : system.bodies) {
-        for (std::size_t k = body.first_bar; k < body.first_bar + body.bar_count; ++k) {
-            const Bar& bar = system.bars[k];
-            const bool moves = inverse_mass_1_kg_[bar.a] > 0.0 || inverse_mass_1_kg_[bar.b] > 0.0;
-            if (body.material.compliance_1_n == 0.0 && moves) bar_of_link_.push_back(k);
-        }
-    }
-    assert(bar_of_link_.size() == impulse_.size());
+    if (constraints_->determines_tensions()) find_bars_of_links(system);
     grid_.motion = Motion::start_of(system);
     if (is_elastic()) {
         force_x_n_.assign(mass_kg_.size(), 0.0);
@@ -335,6 +328,17 @@ std::optional<Loads> Rattle::loads() const {
 void Rattle::velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) {
     vx_m_s = output_.vx_m_s;
     vy_m_s = output_.vy_m_s;
+}
+
+void Rattle::find_bars_of_links(const System& system) {
+    for (const Body& body : system.bodies) {
+        for (std::size_t k = body.first_bar; k < body.first_bar + body.bar_count; ++k) {
+            const Bar& bar = system.bars[k];
+            const bool moves = inverse_mass_1_kg_[bar.a] > 0.0 || inverse_mass_1_kg_[bar.b] > 0.0;
+            if (body.material.compliance_1_n == 0.0 && moves) bar_of_link_.push_back(k);
+        }
+    }
+    assert(bar_of_link_.size() == constraints_->links().size());
 }
 
 bool Rattle::tensions(std::vector<double>& tension_n) {

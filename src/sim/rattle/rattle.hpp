@@ -98,6 +98,7 @@ class Rattle final : public Solver {
     double push(double kick_s, Stage& stage, Motion& motion);
     /// Writes a trajectory's state with complete velocities to output_.
     [[nodiscard]] bool complete(const Trajectory& trajectory, StopCheck& stop);
+    void find_bars_of_links(const System& system);
     /// Of output_. False if bars depend on each other there.
     [[nodiscard]] bool find_tensions() const;
 
@@ -113,6 +114,7 @@ class Rattle final : public Solver {
     bool has_branched_ = false;  ///< before output_
     std::vector<double> mass_kg_;
     std::vector<double> inverse_mass_1_kg_;
+    /// Empty if the constraints do not determine the tensions.
     std::vector<std::size_t> bar_of_link_;
     Trajectory grid_;        ///< at step_ * step_s_
     Trajectory between_;     ///< scratch for a time between grid points
