@@ -14,13 +14,10 @@ if(CORDA_WARNINGS_AS_ERRORS)
     target_compile_options(corda_options INTERFACE -Werror)
 endif()
 if(CORDA_SANITIZE)
-    # Not of targets whose property CORDA_SANITIZED is OFF.
     target_compile_options(corda_options INTERFACE
-        "$<$<NOT:$<STREQUAL:$<TARGET_PROPERTY:CORDA_SANITIZED>,OFF>>:-fsanitize=address,undefined;-fno-sanitize-recover=all>"
-        -fno-omit-frame-pointer
-        # GCC 12 sees uninitialised values in std::regex if it is instrumented (PR 105562).
-        $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+        -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(corda_options INTERFACE -fsanitize=address,undefined)
+    target_compile_definitions(corda_options INTERFACE CORDA_SANITIZE)
 endif()
 
 # corda_optimise(<folder>): for what runs long under CORDA_SANITIZE. The rest takes longer to optimise than to run.

@@ -32,6 +32,8 @@ if [[ "${1:-build}" == test ]]; then
         libgmock-dev        # its matchers
         libbenchmark-dev    # measured speed
         clang-format        # the style check
+        clang               # the tests under the sanitizers, by a second compiler
+        libclang-rt-14-dev  # its sanitizers
         clang-tidy          # the static checks
         ffmpeg              # a second opinion on the videos: ffprobe
         libxml2-utils       # whether pages and SVG are well formed: xmllint

@@ -13,7 +13,7 @@
 namespace corda::sim {
 namespace {
 
-const FrameRate kFrames(Rational{60, 1});
+const FrameRate kGraphFrames(Rational{60, 1});
 
 MethodDef fine_rattle(double step_s) {
     return RattleDef{8, step_s};
@@ -21,12 +21,12 @@ MethodDef fine_rattle(double step_s) {
 
 /// Largest distance between two runs at the frame times, in m.
 double largest_error_m(const System& system, const MethodDef& solver, const MethodDef& truth, int frames) {
-    Simulation run(system, WorldDef{}, solver, kFrames.interval_s());
-    Simulation reference(system, WorldDef{}, truth, kFrames.interval_s());
+    Simulation run(system, WorldDef{}, solver, kGraphFrames.interval_s());
+    Simulation reference(system, WorldDef{}, truth, kGraphFrames.interval_s());
     double largest_m = 0.0;
     for (int k = 0; k <= frames; ++k) {
-        EXPECT_EQ(run.advance_to(kFrames.time_s(k)), Status::kOk);
-        EXPECT_EQ(reference.advance_to(kFrames.time_s(k)), Status::kOk);
+        EXPECT_EQ(run.advance_to(kGraphFrames.time_s(k)), Status::kOk);
+        EXPECT_EQ(reference.advance_to(kGraphFrames.time_s(k)), Status::kOk);
         for (std::size_t i = 0; i < system.particle_count(); ++i) {
             largest_m = std::max(largest_m, std::hypot(run.state().x_m[i] - reference.state().x_m[i],
                                                        run.state().y_m[i] - reference.state().y_m[i]));
@@ -36,7 +36,7 @@ double largest_error_m(const System& system, const MethodDef& solver, const Meth
 }
 
 void expect_true_bound(const System& system, double tolerance_m, int frames) {
-    const BodyPlan plan = test::plan_of(system, WorldDef{}, tolerance_m, kFrames, frames);
+    const BodyPlan plan = test::plan_of(system, WorldDef{}, tolerance_m, kGraphFrames, frames);
     ASSERT_TRUE(std::holds_alternative<RattleDef>(plan.method));
     ASSERT_FALSE(plan.horizon_s.has_value());
     ASSERT_TRUE(plan.error_bound_m.has_value());
@@ -64,7 +64,7 @@ TEST(ClosedRope, KeepsItsLengthsItsEnergyAndItsMirrorImage) {
     const RopeDef rope = test::ring(12);
     const System system = build_system({&rope, 1});
     EXPECT_EQ(system.bars.size(), 12U);
-    Simulation run(system, WorldDef{}, fine_rattle(1e-3), kFrames.interval_s());
+    Simulation run(system, WorldDef{}, fine_rattle(1e-3), kGraphFrames.interval_s());
     ASSERT_EQ(run.advance_to(1.0), Status::kOk);
     // Before the ring collapses on itself. Measured: strain 4e-16, energy 7e-16, mirror 3e-14.
     EXPECT_LT(run.diagnostics().largest.strain, 1e-14);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "corda/reference/ropes.hpp"
+#include "support/gravity.hpp"
 #include "support/slope.hpp"
 #include "support/solver_run.hpp"
 
@@ -43,7 +44,7 @@ std::vector<double> solve(Matrix a, std::vector<double> b) {
     return b;
 }
 
-constexpr double kGravity = 9.81;
+using test::kGravity;
 
 /// A beam of 1 m and 1 kg, horizontal, its first link clamped between two pins. `links` are free.
 struct Cantilever {

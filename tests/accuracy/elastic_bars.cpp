@@ -11,6 +11,7 @@
 
 #include "corda/reference/numbers.hpp"
 #include "corda/reference/ropes.hpp"
+#include "support/gravity.hpp"
 #include "support/nets.hpp"
 #include "support/slope.hpp"
 #include "support/solver_run.hpp"
@@ -18,7 +19,7 @@
 namespace corda::sim {
 namespace {
 
-constexpr double kGravity = 9.81;
+using test::kGravity;
 
 /// A rope of 1 m that hangs straight down, with a payload, at the lengths that its own weight gives it.
 struct HeavyRope {

@@ -10,13 +10,14 @@
 #include <vector>
 
 #include "corda/reference/ropes.hpp"
+#include "support/gravity.hpp"
 #include "support/root.hpp"
 #include "support/solver_run.hpp"
 
 namespace corda::sim {
 namespace {
 
-constexpr double kGravity = 9.81;
+using test::kGravity;
 
 /// The classical Runge-Kutta method in equal steps.
 template <std::size_t Count>

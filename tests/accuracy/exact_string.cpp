@@ -10,6 +10,7 @@
 
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/exact/string/part.hpp"
+#include "support/gravity.hpp"
 #include "support/root.hpp"
 #include "support/solver_run.hpp"
 #include "support/strings.hpp"
@@ -18,7 +19,7 @@
 namespace corda::sim {
 namespace {
 
-constexpr double kGravity = 9.81;
+using test::kGravity;
 
 /// A string under the method `exact`, with its events.
 class StringRun {

@@ -10,12 +10,13 @@
 
 #include "corda/reference/numbers.hpp"
 #include "corda/reference/ropes.hpp"
+#include "support/gravity.hpp"
 #include "support/solver_run.hpp"
 
 namespace corda::sim {
 namespace {
 
-constexpr double kGravity = 9.81;
+using test::kGravity;
 
 /// A hanging chain of 1 m, displaced by at most `amplitude_m` in the mode of frequency omega: the Laguerre
 /// polynomials L_k(x), k counted from the tip, x = omega^2 a / g.

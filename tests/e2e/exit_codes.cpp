@@ -13,7 +13,7 @@ using test::run_shell;
 using test::ScratchFolder;
 using testing::HasSubstr;
 
-const char* const kScene = R"(schema = 1
+const char* const kSceneOfExitCodes = R"(schema = 1
 [world]
 duration = 0.2
 [[rope]]
@@ -26,7 +26,7 @@ fps = 30
 class ExitCodes : public testing::Test {
   protected:
     ScratchFolder folder_;
-    std::string scene_ = folder_.write("scene.toml", kScene);
+    std::string scene_ = folder_.write("scene.toml", kSceneOfExitCodes);
     std::string video_ = folder_.file("out.mp4");
 };
 
@@ -352,7 +352,7 @@ TEST_F(ExitCodes, EightForADivergedSimulationKeepingWhatWasGood) {
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.csv.part", "out.mp4.part", "scene.toml"}));
 }
 
-#if !defined(__SANITIZE_ADDRESS__)  // which reserves more memory than any limit
+#ifndef CORDA_SANITIZE  // which reserves more memory than any limit
 TEST_F(ExitCodes, SeventyFiveWithoutMemory) {
     const std::string many = folder_.write("many.toml",
                                            "schema = 1\n[[rope]]\nline = { particles = 900000, step = "

@@ -21,7 +21,7 @@ using test::ScratchFolder;
 using testing::HasSubstr;
 
 /// Ropes that cross, a ball, a ring, a see-through colour and a cloth.
-const char* const kScene = R"(schema = 1
+const char* const kSceneOfFigures = R"(schema = 1
 [world]
 duration = 1.0
 [[rope]]
@@ -130,7 +130,7 @@ class Figures : public testing::Test {
     }
 
     ScratchFolder folder_;
-    std::string scene_ = folder_.write("scene.toml", kScene);
+    std::string scene_ = folder_.write("scene.toml", kSceneOfFigures);
 };
 
 TEST_F(Figures, AreTheSameAsPixelsAndAsLines) {

@@ -28,8 +28,8 @@ TEST(Help, ListsTheKeysOfAScene) {
     const auto scene = run_corda({"help", "scene"});
     EXPECT_EQ(scene.exit_code, 0);
     EXPECT_EQ(scene.out, scene::keys_text());
-    const auto json = nlohmann::json::parse(run_corda({"help", "scene", "--json"}).out);
-    EXPECT_EQ(json.at("help"), scene::keys_text());
+    const auto help = nlohmann::json::parse(run_corda({"help", "scene", "--json"}).out);
+    EXPECT_EQ(help.at("help"), scene::keys_text());
 }
 
 TEST(Help, OfAnUnknownTopicNamesTheNearest) {

@@ -18,7 +18,7 @@ using test::run_corda;
 using test::run_shell;
 using testing::HasSubstr;
 
-const char* const kScene = R"(schema = 1
+const char* const kSceneOfNames = R"(schema = 1
 [world]
 duration = 0.1
 [[rope]]
@@ -34,7 +34,7 @@ class Names : public testing::Test {
 };
 
 TEST_F(Names, AreBytesAsFilesAndEscapedElsewhere) {
-    const std::string scene = folder_.write("caf\xe9\x1b[31m.toml", kScene);
+    const std::string scene = folder_.write("caf\xe9\x1b[31m.toml", kSceneOfNames);
     const std::string video = folder_.file("caf\xe9.mp4");
     const auto rendered = run_corda({"render", scene, "-o", video, "--json"});
     ASSERT_EQ(rendered.exit_code, 0) << rendered.err;
@@ -55,7 +55,7 @@ TEST_F(Names, AreBytesAsFilesAndEscapedElsewhere) {
 }
 
 TEST_F(Names, OfAStudyCanBeAnything) {
-    const std::string scene = folder_.write("'x ]]> & <b> \"q\" `id` \xe9\x1b[31m.toml", kScene);
+    const std::string scene = folder_.write("'x ]]> & <b> \"q\" `id` \xe9\x1b[31m.toml", kSceneOfNames);
     const std::string out = folder_.file("report'");
     const auto result = run_corda({"study", scene, "-o", out, "--quick", "--chapter", "speed"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -71,7 +71,7 @@ TEST_F(Names, OfAStudyCanBeAnything) {
 }
 
 TEST_F(Names, AsLongAsAFileCanHaveAreCutInThoseOfTables) {
-    const std::string scene = folder_.write(std::string(250, 'a') + ".toml", kScene);
+    const std::string scene = folder_.write(std::string(250, 'a') + ".toml", kSceneOfNames);
     const auto result =
         run_corda({"study", scene, "-o", folder_.file("report"), "--quick", "--chapter", "speed"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -79,7 +79,7 @@ TEST_F(Names, AsLongAsAFileCanHaveAreCutInThoseOfTables) {
 
 TEST_F(Names, NeverReachTheTerminalRaw) {
     const std::string nasty = "\x1b[31m\x07\xc2\x9b\x9b";
-    const std::string scene = folder_.write(nasty + ".toml", kScene);
+    const std::string scene = folder_.write(nasty + ".toml", kSceneOfNames);
     const std::string broken =
         folder_.write("broken.toml", "schema = 1\n\"" + std::string("a\\u001bb\" = 1\n[wor\x1b[ld]\n"));
     const std::vector<std::vector<std::string>> commands{

@@ -16,7 +16,7 @@ using test::ScratchFolder;
 using testing::HasSubstr;
 using testing::Not;
 
-const char* const kScene = R"(schema = 1
+const char* const kSceneOfOutput = R"(schema = 1
 [world]
 duration = 1.0
 [[rope]]
@@ -31,7 +31,7 @@ fps = 20
 class Output : public testing::Test {
   protected:
     ScratchFolder folder_;
-    std::string scene_ = folder_.write("scene.toml", kScene);
+    std::string scene_ = folder_.write("scene.toml", kSceneOfOutput);
     std::string video_ = folder_.file("out.mp4");
 };
 

@@ -20,8 +20,6 @@ const std::string kPicture = CORDA_GOLDENS "/stills/plain.png";
 
 const std::string kStringRope = "[[rope]]\n" + kHang + "string = true\n";
 
-const auto kName = [](const auto& param) { return std::string(param.param.name); };
-
 // What a method cannot run.
 INSTANTIATE_TEST_SUITE_P(
     OfMethods, Remedies,
@@ -134,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(
                "simulate SCENE",
                "less speed or force may help, or a smaller solver.step",
                {{{"force = [1e300, 0]", "force = [1, 0]"}}}}),
-    kName);
+    test::kNameOfCase);
 
 // How much a scene may ask for.
 INSTANTIATE_TEST_SUITE_P(
@@ -200,7 +198,7 @@ INSTANTIATE_TEST_SUITE_P(
                "plan SCENE --set world.gravity=1e26",
                "give less gravity, longer links or a shorter duration",
                {{{"1e26", "1"}}}}),
-    kName);
+    test::kNameOfCase);
 
 // Options of commands.
 INSTANTIATE_TEST_SUITE_P(
@@ -341,7 +339,7 @@ INSTANTIATE_TEST_SUITE_P(
                "compare " + kPicture + " " + kPicture + " --diff DIR/c.jpg",
                "the picture is written as .png; give such a name",
                {{{"c.jpg", "c.png"}}}}),
-    kName);
+    test::kNameOfCase);
 
 /// A scene from code, which the reader of files does not check: what it is refused with.
 void expect_refused(const Scene& scene, const std::string& advice) {

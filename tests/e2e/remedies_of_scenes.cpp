@@ -15,8 +15,6 @@ TEST_P(SceneRemedies, Work) {
     expect_to_work(GetParam());
 }
 
-const auto kName = [](const auto& param) { return std::string(param.param.name); };
-
 // Shapes and materials of a rope.
 INSTANTIATE_TEST_SUITE_P(
     OfRopes, SceneRemedies,
@@ -130,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(
                "plan SCENE",
                "particle 0 is given twice; remove one",
                {{{"[0, 0]", "[0]"}}}}),
-    kName);
+    test::kNameOfCase);
 
 // Shapes and materials of a net.
 INSTANTIATE_TEST_SUITE_P(
@@ -190,7 +188,7 @@ INSTANTIATE_TEST_SUITE_P(
                            "plan SCENE",
                            "give a compliance, or remove string",
                            {{{"string", "compliance = 1e-3\nstring"}}, {{"string = true", ""}}}}),
-    kName);
+    test::kNameOfCase);
 
 // Keys and values.
 INSTANTIATE_TEST_SUITE_P(
@@ -329,7 +327,7 @@ INSTANTIATE_TEST_SUITE_P(
                "plan SCENE",
                "no key of a scene has that many",
                {{{"a.b.c.d.e.f.g.h.a.b.c.d.e.f.g.h.a.b.c.d.e.f.g.h.a.b.c.d.e.f.g.h.a", "mass"}}}}),
-    kName);
+    test::kNameOfCase);
 
 const std::string kByTension = "[style]\ncolor_by = \"tension\"\n";
 
@@ -358,7 +356,7 @@ INSTANTIATE_TEST_SUITE_P(
             {{{"\"tension\"", "\"speed\""}},
              {{"\"tension\"", "\"strain\""}},
              {{kGrid, kGrid + "compliance = 1e-4\n"}}}}),
-    kName);
+    test::kNameOfCase);
 
 }  // namespace
 }  // namespace corda

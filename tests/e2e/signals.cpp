@@ -19,7 +19,7 @@ namespace {
 using test::run_shell;
 using testing::HasSubstr;
 
-const char* const kScene = R"(schema = 1
+const char* const kSceneOfSignals = R"(schema = 1
 [world]
 duration = 40
 [[rope]]
@@ -61,7 +61,7 @@ Interrupted interrupt(const std::string& arguments, const std::string& signal, c
 class Signals : public testing::Test {
   protected:
     test::ScratchFolder folder_;
-    std::string scene_ = folder_.write("scene.toml", kScene);
+    std::string scene_ = folder_.write("scene.toml", kSceneOfSignals);
 };
 
 TEST_F(Signals, EndTheWaitForAPipe) {

@@ -22,7 +22,7 @@ using test::run_corda;
 using test::ScratchFolder;
 using testing::HasSubstr;
 
-const char* const kScene = R"(schema = 1
+const char* const kSceneOfVideo = R"(schema = 1
 [world]
 duration = 1.0
 [[rope]]
@@ -75,7 +75,7 @@ std::vector<std::string> thread_counts() {
 class Video : public testing::Test {
   protected:
     ScratchFolder folder_;
-    std::string scene_ = folder_.write("scene.toml", kScene);
+    std::string scene_ = folder_.write("scene.toml", kSceneOfVideo);
     std::string video_ = folder_.file("out.mp4");
 };
 

@@ -28,6 +28,9 @@ inline void PrintTo(const Remedy& remedy, std::ostream* out) {
     *out << remedy.name;
 }
 
+/// Of a test of such a parameter.
+inline const auto kNameOfCase = [](const auto& param) { return std::string(param.param.name); };
+
 /// Provokes the message, and expects that every remedy that it names works.
 void expect_to_work(const Remedy& remedy);
 

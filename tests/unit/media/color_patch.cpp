@@ -12,7 +12,7 @@ namespace {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
-void fill(Image& image, const PixelRect& rect, const Rgb& rgb) {
+void paint(Image& image, const PixelRect& rect, const Rgb& rgb) {
     for (int y = rect.y0; y < rect.y1; ++y) {
         for (int x = rect.x0; x < rect.x1; ++x) std::copy(rgb.begin(), rgb.end(), image.pixel(x, y));
     }
@@ -20,7 +20,7 @@ void fill(Image& image, const PixelRect& rect, const Rgb& rgb) {
 
 TEST(ColorPatches, OfOneColourStartInTheCorners) {
     Image image(64, 48);
-    fill(image, image.rect(), {1, 2, 3});
+    paint(image, image.rect(), {1, 2, 3});
     const auto patches = choose_patches(image);
     ASSERT_EQ(patches.size(), 5U);
     EXPECT_EQ(patches[0].x, 0);
@@ -40,7 +40,7 @@ TEST(ColorPatches, PreferDifferentColours) {
     Image image(256, 48);
     const std::vector<Rgb> colors{{255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {9, 9, 9}};
     for (int i = 0; i < 4; ++i)
-        fill(image, {64 * i, 0, 64 * (i + 1), 48}, colors[static_cast<std::size_t>(i)]);
+        paint(image, {64 * i, 0, 64 * (i + 1), 48}, colors[static_cast<std::size_t>(i)]);
     std::set<Rgb> chosen;
     for (const ColorPatch& patch : choose_patches(image)) chosen.insert(patch.rgb);
     EXPECT_EQ(chosen, (std::set<Rgb>{colors.begin(), colors.end()}));
@@ -48,7 +48,7 @@ TEST(ColorPatches, PreferDifferentColours) {
 
 TEST(ColorPatches, StayAwayFromOtherColours) {
     Image image(32, 32);
-    fill(image, image.rect(), {50, 50, 50});
+    paint(image, image.rect(), {50, 50, 50});
     EXPECT_EQ(choose_patches(image).size(), 4U);
     image.pixel(24, 24)[0] = 55;  // 9 pixels from the blocks above and to the left
     EXPECT_THAT(choose_patches(image), testing::SizeIs(3));
@@ -64,7 +64,7 @@ TEST(ColorPatches, ComeBackFromTheConversion) {
     for (const Rgb& rgb :
          std::vector<Rgb>{{0, 0, 0}, {255, 255, 255}, {255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {200, 100, 7}}) {
         Image image(2, 2);
-        fill(image, image.rect(), rgb);
+        paint(image, image.rect(), rgb);
         Yuv420Image yuv(2, 2);
         convert_to_yuv420(image, image.rect(), yuv);
         const auto back = rgb_from_ycbcr(yuv.plane(0)[0], yuv.plane(1)[0], yuv.plane(2)[0]);

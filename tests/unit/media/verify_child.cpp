@@ -49,7 +49,7 @@ class VerifyChild : public Video {
 };
 
 // The first test, as others leave freed memory behind.
-#if !defined(__SANITIZE_ADDRESS__)  // which reserves more memory than any limit
+#ifndef CORDA_SANITIZE  // which reserves more memory than any limit
 TEST_F(VerifyChild, DoesNotBlameTheFileIfTheUserAllowsLittleMemory) {
     const auto make = [&] {
         VideoDef def;

@@ -20,7 +20,7 @@ namespace {
 using test::equal_images;
 using test::failure_of;
 
-const std::string kRope = R"(schema = 1
+const std::string kFigureRope = R"(schema = 1
 [world]
 duration = 1.0
 [[rope]]
@@ -36,7 +36,7 @@ fps = 30
 )";
 
 Scene scene_of(const std::string& more = {}) {
-    return parse_scene(kRope + more, "figure.toml");
+    return parse_scene(kFigureRope + more, "figure.toml");
 }
 
 ExitCode code_of(const Film& film, const FigureDef& def) {

@@ -19,7 +19,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const std::string kRope = R"(schema = 1
+const std::string kVideoRope = R"(schema = 1
 [world]
 duration = 1.0
 [[rope]]
@@ -32,7 +32,7 @@ fps = 20
 preset = "ultrafast"
 )";
 
-Film film_of(const std::string& toml = kRope) {
+Film rope_film(const std::string& toml = kVideoRope) {
     return Film(parse_scene(toml, "film.toml"));
 }
 
@@ -60,7 +60,7 @@ class RenderVideo : public testing::Test {
 };
 
 TEST_F(RenderVideo, WritesEveryFrameOnce) {
-    Film film = film_of();
+    Film film = rope_film();
     std::vector<std::int64_t> heard;
     RenderDef def;
     def.on_progress = [&](std::int64_t done, std::int64_t total) {
@@ -81,14 +81,14 @@ TEST_F(RenderVideo, WritesEveryFrameOnce) {
 }
 
 TEST_F(RenderVideo, WritesARange) {
-    Film film = film_of();
+    Film film = rope_film();
     EXPECT_EQ(render_video(film, file("a.mp4"), range(15, std::nullopt)).frames, 5);
     EXPECT_EQ(render_video(film, file("b.mp4"), range(19, 20)).frames, 1);
     EXPECT_EQ(render_video(film, file("c.mp4"), range(0, 2)).frames, 2);
 }
 
 TEST_F(RenderVideo, RefusesRangesThatCannotBe) {
-    Film film = film_of();
+    Film film = rope_film();
     using Range = std::pair<std::int64_t, std::optional<std::int64_t>>;
     for (const auto& [first, end] :
          std::vector<Range>{{-1, 5}, {5, 5}, {6, 5}, {0, 0}, {0, 21}, {20, std::nullopt}, {0, -1}}) {
@@ -102,7 +102,7 @@ TEST_F(RenderVideo, RefusesRangesThatCannotBe) {
 }
 
 TEST_F(RenderVideo, ChecksTheOutputBeforeItSimulates) {
-    Film film = film_of();
+    Film film = rope_film();
     test::write_file(file("a.mp4"), "precious");
     test::write_file(file("b.mp4.part"), "interrupted");
     for (const char* name : {"a.mp4", "b.mp4", "no/such/folder/a.mp4"})
@@ -121,7 +121,7 @@ TEST_F(RenderVideo, ChecksTheVideoBeforeItSimulates) {
     for (const auto& spoil : std::vector<void (*)(VideoDef&)>{[](VideoDef& v) { v.encoder.codec = "gif"; },
                                                               [](VideoDef& v) { v.encoder.crf = 0; },
                                                               [](VideoDef& v) { v.width_px = 97; }}) {
-        Scene scene = parse_scene(kRope, "film.toml");
+        Scene scene = parse_scene(kVideoRope, "film.toml");
         spoil(scene.video);
         Film film(scene);
         EXPECT_EQ(failure_of([&] { render_video(film, file("a.mp4")); }).code, ExitCode::kUsage);
@@ -131,7 +131,7 @@ TEST_F(RenderVideo, ChecksTheVideoBeforeItSimulates) {
 }
 
 TEST_F(RenderVideo, KeepsThePartWhenItIsStopped) {
-    Film film = film_of();
+    Film film = rope_film();
     RenderDef def;
     def.on_progress = [](std::int64_t done, std::int64_t) { return done < 7; };
     const Rendered rendered = render_video(film, file("a.mp4"), def);
@@ -146,7 +146,7 @@ TEST_F(RenderVideo, KeepsThePartWhenItIsStopped) {
 }
 
 TEST_F(RenderVideo, KeepsAllFramesWhenItIsStoppedWhileTheVideoIsCopiedOrVerified) {
-    Film film = film_of();
+    Film film = rope_film();
     // Measured: 21 calls for the frames, 20 while the part is read, 20 while it is copied, 20 while the copy
     // is verified.
     for (const int most_calls : {20, 21, 40, 41, 60, 61, 80}) {
@@ -166,7 +166,7 @@ TEST_F(RenderVideo, KeepsAllFramesWhenItIsStoppedWhileTheVideoIsCopiedOrVerified
 }
 
 TEST_F(RenderVideo, NamesASceneThatIsNotUtf8) {
-    Film film(parse_scene(kRope, "caf\xe9\x1b.toml"));
+    Film film(parse_scene(kVideoRope, "caf\xe9\x1b.toml"));
     render_video(film, file("a.mp4"));
     EXPECT_TRUE(media::verify(file("a.mp4")).ok());
     EXPECT_THAT(test::read_file(file("a.mp4")),
@@ -174,7 +174,7 @@ TEST_F(RenderVideo, NamesASceneThatIsNotUtf8) {
 }
 
 TEST_F(RenderVideo, KeepsTheFramesBeforeADivergence) {
-    Scene scene = parse_scene(kRope, "film.toml");
+    Scene scene = parse_scene(kVideoRope, "film.toml");
     scene.camera = {Vec2{0.0, 0.0}, 3.0};
     scene.solver = RelaxationDef{.force_n = Vec2{1e300, 0.0}};
     Film diverging(scene);
@@ -185,9 +185,9 @@ TEST_F(RenderVideo, KeepsTheFramesBeforeADivergence) {
 }
 
 TEST_F(RenderVideo, HasTheSameBytesWhateverItsCallbackDraws) {
-    Film film = film_of();
+    Film film = rope_film();
     const std::string alone = render(film);
-    const Film other = film_of(
+    const Film other = rope_film(
         "schema = 1\n[[rope]]\nline = { particles = 5, step = [0.1, -1.0] }\n"
         "[video]\nsize = [50, 30]\n");
     const test::HostContext host;
@@ -197,7 +197,7 @@ TEST_F(RenderVideo, HasTheSameBytesWhateverItsCallbackDraws) {
         [&](std::int64_t done) { static_cast<void>(film.frame(19 - std::min<std::int64_t>(done, 19))); },
         [&](std::int64_t done) { static_cast<void>(other.frame(done)); },
         [&](std::int64_t) {
-            dying.emplace(film_of());
+            dying.emplace(rope_film());
             static_cast<void>(dying->frame(3));
             dying.reset();
         },

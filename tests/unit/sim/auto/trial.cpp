@@ -8,7 +8,7 @@
 namespace corda::sim {
 namespace {
 
-const FrameRate kFrames(Rational{60, 1});
+const FrameRate kTrialFrames(Rational{60, 1});
 
 struct Outcome {
     Trial trial;
@@ -25,8 +25,8 @@ Outcome outcome_of(const RopeDef& rope, const MethodDef& method, const MethodDef
     Outcome outcome;
     outcome.trial.method = method;
     outcome.trial.check = check;
-    run_trial(system, WorldDef{}, {tolerance, Timeline(kFrames, 60), on_progress, {}}, kind, outcome.trial,
-              recording, outcome.passes);
+    run_trial(system, WorldDef{}, {tolerance, Timeline(kTrialFrames, 60), on_progress, {}}, kind,
+              outcome.trial, recording, outcome.passes);
     outcome.states = recording.size();
     return outcome;
 }
