@@ -38,9 +38,9 @@ FrameRange frames_of(const std::string& word, const Scene& scene) {
     const std::int64_t end = range.end.value_or(count);
     if (range.first < 0 || range.first >= end || end > count) {
         throw Error(ExitCode::kUsage,
-                    fmt::format("--frame {}: is not within 0 .. {} (the END of a range is not drawn); "
+                    fmt::format("--frame {}: the frames are 0 to {}, all of them the range 0:{}; "
                                 "world.duration sets the end",
-                                word, count - 1));
+                                word, count - 1, count));
     }
     return {range.first, end};
 }

@@ -11,7 +11,11 @@ struct Character {
     std::size_t bytes = 0;  ///< 0 if there is none: the first byte is not UTF-8
     std::uint32_t number = 0;
 
-    [[nodiscard]] bool is_control() const { return number < 0x20 || (number >= 0x7f && number < 0xa0); }
+    /// Also what separates lines and what turns the direction of the text after it.
+    [[nodiscard]] bool is_control() const {
+        return number < 0x20 || (number >= 0x7f && number < 0xa0) || (number >= 0x2028 && number <= 0x202e) ||
+               (number >= 0x2066 && number <= 0x2069);
+    }
 };
 
 Character first_character(std::string_view text) {

@@ -10,7 +10,8 @@ namespace corda {
 [[nodiscard]] std::string utf8(std::string_view bytes);
 
 /// The same with each byte of a control character as its number, e.g. "\x1b": one line that a terminal, a
-/// title and XML can show. Printable text stays as it is.
+/// title and XML can show. Line separators and what turns the direction of text (U+202E) count as such.
+/// Printable text stays as it is.
 [[nodiscard]] std::string printable(std::string_view bytes);
 
 }  // namespace corda

@@ -145,7 +145,7 @@ PngInfo collect_info(const ReadJob& job) {
         info.text.emplace_back(texts[i].key, international ? std::string(text) : from_latin1(text));
     }
     const png_uint_32 pixels_per_metre = png_get_pixels_per_meter(job.png, job.info);
-    if (pixels_per_metre > 0) info.pixels_per_inch = pixels_per_metre * 0.0254;
+    if (pixels_per_metre > 0) info.pixels_per_inch = pixels_per_metre * kMmPerInch / 1000.0;
     return info;
 }
 

@@ -14,7 +14,7 @@
 namespace corda {
 namespace {
 
-constexpr double kInchesPerMetre = 1.0 / 0.0254;
+constexpr double kInchesPerMetre = 1000.0 / kMmPerInch;
 constexpr std::size_t kLongestKeyword = 79;
 // Measured on 1080p pictures of a few lines on one colour: level 4 without a filter takes 24 ms and half the
 // bytes of level 3 (14 ms); level 6 saves 1 % more. Row filters make such pictures larger.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <span>
 
 #include "corda/core/basics.hpp"
 
@@ -110,7 +111,8 @@ void Yuv420Encoder::hold(std::unique_ptr<Yuv420Image> picture) {
 void Yuv420Encoder::encode(const Image& frame, const Damage& damage, const PacketSink& sink) {
     assert(frame.width() == picture_->width() && frame.height() == picture_->height());
     const LogCapture log;
-    const Damage& changed = frames_ == 0 ? Damage{frame.rect()} : damage;
+    const PixelRect whole = frame.rect();
+    const auto changed = frames_ == 0 ? std::span(&whole, 1) : std::span(damage);
     if (!changed.empty() && av_buffer_get_ref_count(frame_->buf[0]) > 1)
         hold(std::make_unique<Yuv420Image>(*picture_));
     for (const PixelRect& part : changed) convert_to_yuv420(frame, part, *picture_);

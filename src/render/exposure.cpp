@@ -113,13 +113,6 @@ void Exposure::clear() {
     std::fill(sum_of_.begin(), sum_of_.end(), 0);
 }
 
-PixelRect Exposure::rect_of(std::size_t tile) const {
-    const int columns = (width_ + kTilePx - 1) / kTilePx;
-    const int x0 = static_cast<int>(tile) % columns * kTilePx;
-    const int y0 = static_cast<int>(tile) / columns * kTilePx;
-    return {x0, y0, std::min(x0 + kTilePx, width_), std::min(y0 + kTilePx, height_)};
-}
-
 void Exposure::add(const Image& picture, const std::vector<std::uint8_t>& touched, const Ground& ground) {
     const auto add = ground.is_opaque() ? add_row<true> : add_row<false>;
     ++pictures_;
@@ -134,7 +127,7 @@ void Exposure::add(const Image& picture, const std::vector<std::uint8_t>& touche
         }
         const std::size_t place = sum_of_[tile] - 1;
         ++tiles_[place].pictures;
-        const PixelRect rect = rect_of(tile);
+        const PixelRect rect = tile_rect(tile, width_, height_);
         std::uint32_t* sums = &sums_[place * kSumsPerTile];
         for (int y = rect.y0; y < rect.y1; ++y, sums += kTileRow)
             add(picture.pixel(rect.x0, y), rect.width(), sums);
@@ -146,7 +139,7 @@ void Exposure::develop(const Ground& ground, Image& mean) {
     std::fill(touched_.begin(), touched_.end(), std::uint8_t{0});
     for (std::size_t place = 0; place < tiles_.size(); ++place) {
         touched_[tiles_[place].tile] = 1;
-        const PixelRect rect = rect_of(tiles_[place].tile);
+        const PixelRect rect = tile_rect(tiles_[place].tile, width_, height_);
         const std::uint32_t bare_pictures = pictures_ - tiles_[place].pictures;
         std::uint32_t* sums = &sums_[place * kSumsPerTile];
         for (int y = rect.y0; y < rect.y1; ++y, sums += kTileRow) {

@@ -29,8 +29,6 @@ class Exposure {
     [[nodiscard]] const std::vector<std::uint8_t>& touched() const { return touched_; }
 
   private:
-    [[nodiscard]] PixelRect rect_of(std::size_t tile) const;
-
     int width_;
     int height_;
     std::uint32_t pictures_ = 0;

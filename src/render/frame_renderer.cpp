@@ -198,9 +198,13 @@ void FrameRenderer::set_paint_uniforms(const gl::Program& program) const {
     glUniform1i(program.uniform("masks"), kMaskUnit);
 }
 
-Damage FrameRenderer::damage_of(const view::DrawList& list) const {
-    if (everything_is_stale_) return {image_.rect()};
-    Damage damage = rects_of(last_touched_, list.width, list.height);
+Damage FrameRenderer::stale_parts() const {
+    return everything_is_stale_ ? Damage{image_.rect()}
+                                : rects_of(last_touched_, image_.width(), image_.height());
+}
+
+void FrameRenderer::add_changed_stamps(const view::DrawList& list, Damage& damage) const {
+    if (everything_is_stale_) return;
     for (std::size_t i = 0; i < std::max(list.stamps.size(), last_stamps_.size()); ++i) {
         const bool is_old = i < last_stamps_.size();
         const bool is_new = i < list.stamps.size();
@@ -210,7 +214,6 @@ Damage FrameRenderer::damage_of(const view::DrawList& list) const {
         if (is_new && !(is_old && last_stamps_[i].box == list.stamps[i].box))
             damage.push_back(list.stamps[i].box);
     }
-    return damage;
 }
 
 Damage FrameRenderer::render(const view::DrawList& list, const OnProgress& on_progress) {
@@ -218,10 +221,9 @@ Damage FrameRenderer::render(const view::DrawList& list, const OnProgress& on_pr
     begin(list, on_progress);
     tiles_.plan(list);
     touch(tiles_.touched());
-    draw(list,
-         everything_is_stale_ ? Damage{image_.rect()} : rects_of(last_touched_, list.width, list.height),
-         on_progress);
-    return finish(list, tiles_.touched());
+    Damage damage = stale_parts();
+    draw(list, damage, on_progress);
+    return finish(list, tiles_.touched(), std::move(damage));
 }
 
 void FrameRenderer::expose(const view::DrawList& list, const OnProgress& on_progress) {
@@ -238,16 +240,15 @@ void FrameRenderer::expose(const view::DrawList& list, const OnProgress& on_prog
 }
 
 Damage FrameRenderer::develop(const view::DrawList& list) {
-    const PixelRect frame = image_.rect();
-    for (const PixelRect& part :
-         everything_is_stale_ ? Damage{frame} : rects_of(last_touched_, list.width, list.height))
-        write_ground(list.ground, part, bare_);
+    Damage damage = stale_parts();
+    for (const PixelRect& part : damage) write_ground(list.ground, part, bare_);
     exposure_.develop(list.ground, bare_);
-    return finish(list, exposure_.touched());
+    return finish(list, exposure_.touched(), std::move(damage));
 }
 
-Damage FrameRenderer::finish(const view::DrawList& list, const std::vector<std::uint8_t>& touched) {
-    Damage damage = damage_of(list);
+Damage FrameRenderer::finish(const view::DrawList& list, const std::vector<std::uint8_t>& touched,
+                             Damage damage) {
+    add_changed_stamps(list, damage);
     for (const PixelRect& part : damage) {
         for (int y = part.y0; y < part.y1; ++y)
             std::copy_n(bare_.pixel(part.x0, y), 4 * part.width(), image_.pixel(part.x0, y));

@@ -73,10 +73,13 @@ class FrameRenderer {
     void draw(const view::DrawList& list, const Damage& parts, const OnProgress& on_progress);
     /// Adds tiles to last_touched_.
     void touch(const std::vector<std::uint8_t>& tiles);
-    /// What may differ from the last frame, of bare_ and of the stamps.
-    [[nodiscard]] Damage damage_of(const view::DrawList& list) const;
-    /// Makes the frame of bare_, whose tiles `touched` are not the ground alone, and the stamps.
-    Damage finish(const view::DrawList& list, const std::vector<std::uint8_t>& touched);
+    /// Where bare_ may differ from what the last frame was made of.
+    [[nodiscard]] Damage stale_parts() const;
+    /// Adds the boxes of stamps that differ from the last frame's.
+    void add_changed_stamps(const view::DrawList& list, Damage& damage) const;
+    /// Makes the frame of bare_, whose tiles `touched` are not the ground alone, and the stamps. `damage` is
+    /// that of bare_; returns it with that of the stamps.
+    Damage finish(const view::DrawList& list, const std::vector<std::uint8_t>& touched, Damage damage);
     void upload(const view::DrawList& list);
     void upload_ground(const Ground& ground, const OnProgress& on_progress);
     void draw_capsules(const Batch& batch) const;

@@ -60,11 +60,9 @@ void Tiles::plan(const view::DrawList& list) {
         batch.capsule_count = layer.first_capsule + layer.capsule_count - batch.first_capsule;
         batch.tile_count += touched_.size();
         for (const std::size_t tile : touched_) {
-            const int x0 = static_cast<int>(tile) % columns_ * kSidePx;
-            const int y0 = static_cast<int>(tile) / columns_ * kSidePx;
-            tiles_.push_back({static_cast<float>(x0), static_cast<float>(y0),
-                              static_cast<float>(std::min(x0 + kSidePx, list.width)),
-                              static_cast<float>(std::min(y0 + kSidePx, list.height)), layer.color});
+            const PixelRect rect = tile_rect(tile, list.width, list.height);
+            tiles_.push_back({static_cast<float>(rect.x0), static_cast<float>(rect.y0),
+                              static_cast<float>(rect.x1), static_cast<float>(rect.y1), layer.color});
         }
     }
     touched_by_any_.resize(last_layer_.size());
@@ -75,6 +73,14 @@ void Tiles::plan(const view::DrawList& list) {
 std::size_t tile_count(int width, int height) {
     constexpr int kSidePx = Tiles::kSidePx;
     return static_cast<std::size_t>((width + kSidePx - 1) / kSidePx) * ((height + kSidePx - 1) / kSidePx);
+}
+
+PixelRect tile_rect(std::size_t index, int width, int height) {
+    constexpr int kSidePx = Tiles::kSidePx;
+    const int columns = (width + kSidePx - 1) / kSidePx;
+    const int x0 = static_cast<int>(index) % columns * kSidePx;
+    const int y0 = static_cast<int>(index) / columns * kSidePx;
+    return {x0, y0, std::min(x0 + kSidePx, width), std::min(y0 + kSidePx, height)};
 }
 
 std::vector<PixelRect> rects_of(const std::vector<std::uint8_t>& tiles, int width, int height) {

@@ -59,6 +59,9 @@ class Tiles {
 /// The number of tiles of a frame.
 [[nodiscard]] std::size_t tile_count(int width, int height);
 
+/// A tile of a frame by its index, row by row.
+[[nodiscard]] PixelRect tile_rect(std::size_t index, int width, int height);
+
 /// Some tiles of a frame, marked by 1, as rectangles that do not overlap.
 [[nodiscard]] std::vector<PixelRect> rects_of(const std::vector<std::uint8_t>& tiles, int width, int height);
 

@@ -143,7 +143,9 @@ class ValueChecker {
                 fmt::format("a text of {} bytes, over the limit of {}", text.size(), Limits::kTextBytes));
         }
         return printable(text) == text ||
-               fail(node, path, fmt::format("\"{}\" has a control character", excerpt(text)));
+               fail(node, path,
+                    fmt::format("\"{}\" {}", excerpt(text),
+                                utf8(text) == text ? "has a control character" : "is not UTF-8"));
     }
 
     bool check_color(const std::string& text, const toml::node& node, const std::string& path) const {

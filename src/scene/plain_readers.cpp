@@ -86,7 +86,7 @@ CameraDef read_camera(const TableReader& camera) {
     return def;
 }
 
-BodyStyleDef read_body_style(const TableReader& body, const StyleDef& style) {
+BodyStyleDef read_body_style(const TableReader& body, bool takes_link_colors) {
     BodyStyleDef def;
     if (const auto color = body.find("color"); color && color->is_list()) {
         for (std::size_t i = 0; i < color->size(); ++i) {
@@ -95,7 +95,7 @@ BodyStyleDef read_body_style(const TableReader& body, const StyleDef& style) {
                 color->at(i).add_problem(
                     "another alpha than that of the first link; give all links the same");
         }
-        if (style.color_by != ColorBy::kLink)
+        if (!takes_link_colors)
             color->add_problem(
                 "a list of colours is for links in turn; set style.color_by = \"link\", or give one colour");
     } else if (color) {

@@ -63,7 +63,7 @@ struct SolverSection {
 [[nodiscard]] StyleDef read_style(const TableReader& style);
 [[nodiscard]] OverlayDef read_overlay(const TableReader& overlay);
 [[nodiscard]] CameraDef read_camera(const TableReader& camera);
-[[nodiscard]] BodyStyleDef read_body_style(const TableReader& body, const StyleDef& style);
+[[nodiscard]] BodyStyleDef read_body_style(const TableReader& body, bool takes_link_colors);
 /// Adds a problem if colours tell what a named method does not know.
 void check_color_by(const Sections& sections, const SolverSection& solver, const StyleDef& style);
 

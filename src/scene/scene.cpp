@@ -25,14 +25,17 @@ Sections sections_of(const toml::table& document, Problems& problems) {
 
 /// Ropes and nets, with their styles.
 void read_bodies(const Sections& sections, const SceneSize& size, const SolverSection& solver, Scene& scene) {
+    // One problem with style.color_by is enough.
+    const bool takes_link_colors =
+        scene.style.color_by == ColorBy::kLink || !sections.style.is_sound("color_by");
     for (const TableReader& rope : sections.ropes) {
         const std::size_t body = scene.ropes.size();
         scene.ropes.push_back(read_rope(rope, size.bodies[body], solver.group_of(body).reach));
-        scene.body_styles.push_back(read_body_style(rope, scene.style));
+        scene.body_styles.push_back(read_body_style(rope, takes_link_colors));
     }
     for (const TableReader& net : sections.nets) {
         scene.nets.push_back(read_net(net, size.bodies[scene.body_styles.size()]));
-        scene.body_styles.push_back(read_body_style(net, scene.style));
+        scene.body_styles.push_back(read_body_style(net, takes_link_colors));
     }
 }
 

@@ -161,8 +161,7 @@ Status Simulation::advance_to(double time_s, const GoesOn& goes_on) {
 }
 
 double Simulation::energy_change_j() const {
-    return conserves_energy_ ? solver_->energy_j() - initial_energy_j_
-                             : std::numeric_limits<double>::quiet_NaN();
+    return conserves_energy_ ? figures_.energy_change_j : std::numeric_limits<double>::quiet_NaN();
 }
 
 void Simulation::tell(const Readings& readings) {
@@ -190,8 +189,8 @@ void Simulation::observe() {
     const sim::FlushDenormals flush;
     read();
     figures_.strain = max_strain(system_, state_);
-    figures_.energy_error = sim::energy_error(energy_change_j(), energy_scale_j_);
     figures_.energy_change_j = solver_->energy_j() - initial_energy_j_;
+    figures_.energy_error = sim::energy_error(energy_change_j(), energy_scale_j_);
     figures_.loads = solver_->loads();
     largest_ = sim::larger_figures(largest_, figures_);
     if (!branched_s_ && solver_->has_branched()) branched_s_ = state_.time_s;

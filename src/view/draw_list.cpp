@@ -17,7 +17,6 @@ bool DrawList::shows_nothing() const {
 void DrawList::clear() {
     capsules.clear();
     layers.clear();
-    bounds = {};
     stamps.clear();
     coverage.clear();
     texts.clear();
@@ -31,7 +30,6 @@ void DrawList::add_capsule(PixelPoint a, PixelPoint b, double radius_px, double 
     auto capsule = make_capsule(a, b, radius_px, width, height, halo_px);
     if (!capsule) return;
     capsule->tint = tint;
-    bounds = bounds.united(capsule_bounds(*capsule, width, height));
     capsules.push_back(*capsule);
     ++layers.back().capsule_count;
 }

@@ -81,7 +81,6 @@ struct DrawList {
     Ground ground;
     std::vector<Capsule> capsules;
     std::vector<Layer> layers;  ///< contiguous and in the order of `capsules`
-    PixelRect bounds;           ///< contains every pixel that the layers change; within the frame
     std::vector<Stamp> stamps;
     std::vector<std::uint8_t> coverage;  ///< of the stamps, 0 .. 255
     std::vector<Text> texts;             ///< what the stamps that are not solid say

@@ -175,7 +175,7 @@ TEST_F(ExitCodes, TwoForAFrameThatTheVideoDoesNotHave) {
     EXPECT_EQ(run_corda({"still", scene_, "--frame", "5", "-o", folder_.file("a.png")}).exit_code, 0);
     const auto result = run_corda({"still", scene_, "--frame", "6", "-o", folder_.file("b.png")});
     EXPECT_EQ(result.exit_code, 2);
-    EXPECT_THAT(result.err, HasSubstr("0 .. 5"));
+    EXPECT_THAT(result.err, HasSubstr("0 to 5"));
     for (const char* const range : {"4:7", "3:3", "5:4", "-1:2", "6:", "1:2:3", "0,x", "1.5", ":-1"}) {
         const auto refused = run_corda({"still", scene_, "--frame", range, "-o", folder_.path()});
         EXPECT_EQ(refused.exit_code, 2) << range;

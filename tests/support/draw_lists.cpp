@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "corda/view/capsule.hpp"
 #include "corda/view/font.hpp"
 
 namespace corda::test {
@@ -64,6 +65,13 @@ view::DrawList random_draw_list(std::uint32_t seed, int width, int height, std::
                        list);
     }
     return list;
+}
+
+PixelRect bounds_of(const view::DrawList& list) {
+    PixelRect bounds;
+    for (const view::Capsule& capsule : list.capsules)
+        bounds = bounds.united(view::capsule_bounds(capsule, list.width, list.height));
+    return bounds;
 }
 
 }  // namespace corda::test

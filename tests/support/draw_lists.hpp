@@ -14,4 +14,7 @@ namespace corda::test {
                                               std::size_t layer_count, std::size_t capsules_per_layer,
                                               std::size_t stamps = 0, std::size_t tinted_every = 0);
 
+/// Contains every pixel that the layers change; within the frame.
+[[nodiscard]] PixelRect bounds_of(const view::DrawList& list);
+
 }  // namespace corda::test

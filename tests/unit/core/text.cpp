@@ -33,6 +33,9 @@ TEST(Text, ThatCanBePrintedHasNoControlCharacters) {
                         "31m\x9b"),
               "\\xc2\\x9b31m\\x9b");  // CSI, as a character and as a byte
     EXPECT_EQ(utf8("\x1b\n\xc2\x9b"), "\x1b\n\xc2\x9b");
+    EXPECT_EQ(printable("gnp.\xe2\x80\xae!\xe2\x80\xa8"), "gnp.\\xe2\\x80\\xae!\\xe2\\x80\\xa8");
+    EXPECT_EQ(printable("\xe2\x81\xa7\xe2\x81\xaa\xe2\x80\xa7\xe2\x80\xaf"),
+              "\\xe2\\x81\\xa7\xe2\x81\xaa\xe2\x80\xa7\xe2\x80\xaf");
 }
 
 }  // namespace

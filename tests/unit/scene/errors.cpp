@@ -433,6 +433,7 @@ TEST(SceneErrors, Overlay) {
         {overlay("title = 3"),
          "swing.toml:4:9: overlay.title: ", "give the title, at the upper left as one line"},
         {overlay("title = \"a\\nb\""), "swing.toml:4:9: overlay.title: ", "has a control character"},
+        {overlay("title = \"a\\u202eb\""), "swing.toml:4:9: overlay.title: ", "has a control character"},
     });
 }
 
@@ -478,6 +479,9 @@ TEST(SceneErrors, ColoursOfLinks) {
          "swing.toml:4:17: rope[0].color[1]: ", "another alpha than that of the first link"},
         {rope_with("color = []"), "swing.toml:4:9: rope[0].color: ", "the list is empty"},
     });
+    EXPECT_THAT(error_of(rope_with("color = [\"red\"]\n[style]\ncolor_by = \"lnik\"")).message,
+                testing::AllOf(testing::HasSubstr("did you mean \"link\""),
+                               testing::Not(testing::HasSubstr("rope[0].color"))));
     EXPECT_NO_THROW(std::ignore = parse_scene(with(relaxes + "[style]\ncolor_by = \"speed\""), "a"));
 }
 

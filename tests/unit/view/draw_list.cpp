@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "support/draw_lists.hpp"
+
 namespace corda::view {
 namespace {
 
@@ -32,16 +34,16 @@ TEST(DrawLists, ShowNothingIfAllIsOutsideTheFrame) {
 
 TEST(DrawLists, ContainTheirCapsulesWithTheirHalos) {
     DrawList list = list_of({50.0, 25.0}, {60.0, 25.0}, 2.0);
-    EXPECT_EQ(list.bounds.x0, 46);
+    EXPECT_EQ(test::bounds_of(list).x0, 46);
     list.add_layer({1, 2, 3});
     list.add_capsule({50.0, 25.0}, {60.0, 25.0}, 2.0, 5.0);
-    EXPECT_EQ(list.bounds.x0, 41);
+    EXPECT_EQ(test::bounds_of(list).x0, 41);
     EXPECT_EQ(list.capsules[1].halo_radius, 7.0F);
     ASSERT_EQ(list.layers.size(), 2U);
     EXPECT_EQ(list.layers[1].first_capsule, 1U);
     EXPECT_EQ(list.layers[1].capsule_count, 1U);
     list.clear();
-    EXPECT_TRUE(list.layers.empty() && list.capsules.empty() && list.bounds.empty());
+    EXPECT_TRUE(list.layers.empty() && list.capsules.empty() && test::bounds_of(list).empty());
 }
 
 TEST(DrawLists, HaveRingsThatClose) {

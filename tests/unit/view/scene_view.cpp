@@ -8,6 +8,7 @@
 
 #include "corda/reference/ropes.hpp"
 #include "support/draw_list_of.hpp"
+#include "support/draw_lists.hpp"
 
 namespace corda::view {
 namespace {
@@ -227,10 +228,10 @@ TEST(SceneView, ASlackLinkStaysInsideThePictureAndATautOneNeedsNoRoom) {
     const std::vector<Vec2> points_m{{0.0, 0.0}, {0.5, 0.1}};
     for (const Vec2 gravity_m_s2 : {Vec2{0.0, -1.0}, {0.0, 1.0}, {1.0, 0.0}, {-1.0, 0.5}, {}}) {
         const DrawList list = draw({slack_string(points_m, {2.0})}, plain(), {}, {}, gravity_m_s2);
-        EXPECT_GE(list.bounds.x0, 4);
-        EXPECT_GE(list.bounds.y0, 4);
-        EXPECT_LE(list.bounds.x1, kWidth - 4);
-        EXPECT_LE(list.bounds.y1, kHeight - 4);
+        EXPECT_GE(test::bounds_of(list).x0, 4);
+        EXPECT_GE(test::bounds_of(list).y0, 4);
+        EXPECT_LE(test::bounds_of(list).x1, kWidth - 4);
+        EXPECT_LE(test::bounds_of(list).y1, kHeight - 4);
     }
     const System system =
         build_system({{slack_string({{0.0, 0.0}, {0.0, -1.0}, {0.0, -2.0}}, {1.0, 1.0})}}, {});
@@ -261,10 +262,11 @@ TEST(SceneView, AllThatIsDrawnStaysInsideThePicture) {
     rope.payload_kg = 1000.0;
     for (const Vec2 gravity_m_s2 : {Vec2{0.0, -1.0}, {0.0, 1.0}, {1.0, 0.0}, {-1.0, 0.0}, {}}) {
         const DrawList list = draw({rope}, style, {}, {}, gravity_m_s2);
-        EXPECT_GE(list.bounds.x0, 5);  // a margin of 8 pixels, less what a capsule's bounds have to spare
-        EXPECT_GE(list.bounds.y0, 5);
-        EXPECT_LE(list.bounds.x1, kWidth - 5);
-        EXPECT_LE(list.bounds.y1, kHeight - 5);
+        EXPECT_GE(test::bounds_of(list).x0,
+                  5);  // a margin of 8 pixels, less what a capsule's bounds have to spare
+        EXPECT_GE(test::bounds_of(list).y0, 5);
+        EXPECT_LE(test::bounds_of(list).x1, kWidth - 5);
+        EXPECT_LE(test::bounds_of(list).y1, kHeight - 5);
     }
 }
 

@@ -7,6 +7,7 @@
 
 #include "corda/reference/ropes.hpp"
 #include "support/draw_list_of.hpp"
+#include "support/draw_lists.hpp"
 
 namespace corda::view {
 namespace {
@@ -66,7 +67,7 @@ TEST(Supports, LeanAgainstGravity) {
                           {{0.0, 9.81}, {451, 496, 549, 528}},
                           {{9.81, 0.0}, {472, 451, 504, 549}},
                           {{-9.81, 0.0}, {496, 451, 528, 549}}}) {
-        const PixelRect bounds = draw(system, c.gravity_m_s2).bounds;
+        const PixelRect bounds = test::bounds_of(draw(system, c.gravity_m_s2));
         EXPECT_NEAR(bounds.x0, c.bounds.x0, 2);
         EXPECT_NEAR(bounds.y0, c.bounds.y0, 2);
         EXPECT_NEAR(bounds.x1, c.bounds.x1, 2);
@@ -91,7 +92,7 @@ TEST(Supports, HideTheRoundEndsOfWideLines) {
                         static_cast<float>(0.5 * plate_px));
     }
     const DrawList ring = draw(system, {}, 0.0, 60.0);
-    EXPECT_GT(ring.bounds.width(), 120);
+    EXPECT_GT(test::bounds_of(ring).width(), 120);
 }
 
 TEST(Supports, OfAClampAreOne) {
