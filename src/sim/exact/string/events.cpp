@@ -8,7 +8,7 @@
 namespace corda::sim {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// The top of a parabola counts as near 0 within this share of its height above the lower outer point: more
@@ -44,7 +44,7 @@ void StringEvents::start(const System& string, const std::vector<std::uint8_t>& 
     for (std::size_t k = 0; k < link_count_; ++k) {
         const double rounding = is_taut[k] != 0 ? contacts.tension_error_n(k) : contacts.length_error_m(k);
         threshold_[k] = std::max(0.0, raw_margin(k)) + rounding;
-        if (string.is_pinned(k) && string.is_pinned(k + 1)) threshold_[k] = kInfinity;
+        if (string.is_pinned(k) && string.is_pinned(k + 1)) threshold_[k] = kNever;
     }
     knows_start_ = false;
 }
@@ -66,7 +66,7 @@ double StringEvents::measure(const Motion& motion, double time_s, double* margin
     motion.stop.spend(1 + link_count_);
     motion.integrator.interpolate(time_s, y_.data());
     read(motion.dynamics);
-    double largest = -kInfinity;
+    double largest = -kNever;
     for (std::size_t k = 0; k < link_count_; ++k) {
         margin[k] = raw_margin(k) - threshold_[k];
         largest = std::max(largest, margin[k]);
@@ -108,7 +108,7 @@ std::optional<StringEvents::Sample> StringEvents::first_top(const Motion& motion
     const double* const at = row(middle);
     const double* const after = row(middle + 1);
     for (std::size_t k = 0; k < link_count_; ++k) {
-        if (!(at[k] < 0.0 && after[k] < 0.0) || at[k] == -kInfinity) continue;
+        if (!(at[k] < 0.0 && after[k] < 0.0) || at[k] == -kNever) continue;
         const auto high = top(motion, k, {time_s_[middle - 1], before[k]}, {time_s_[middle], at[k]},
                               {time_s_[middle + 1], after[k]});
         if (high && (!first || high->time_s < first->time_s)) first = high;
