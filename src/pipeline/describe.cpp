@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "corda/pipeline/freeze.hpp"
-#include "corda/view/overlay.hpp"
+#include "corda/view/number_text.hpp"
 
 namespace corda {
 namespace {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/clock.hpp"
+#include "corda/pipeline/curves.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/motion.hpp"
 #include "corda/pipeline/painter.hpp"
@@ -72,9 +73,11 @@ struct Film::Impl {
           system(system_of(scene)),
           named(named_methods(scene)),
           stage(scene, system, def.backend, def.require_gpu),
+          curves(scene, system),
           motion(system, scene.world, if_all_named(named),
                  Timeline(scene.video.fps, pipeline::last_frame_of(scene), def.stills_s),
-                 def.motion_budget_bytes, def.on_progress, quantity_of(scene.style.color_by), def.readings),
+                 def.motion_budget_bytes, def.on_progress, quantity_of(scene.style.color_by),
+                 def.readings.with(curves.readings())),
           tracks(stage.traced(), scene.style.trail_s, scene.video.fps) {
         if (motion.methods().empty()) {
             plan = motion.record([&](const Timeline& timeline, sim::Recording& recording) {
@@ -102,7 +105,18 @@ struct Film::Impl {
         camera = stage.fit(
             motion.recording().size() > 0 ? motion.recording().particle_bounds() : bounds_of_start(system),
             motion.recording().spread());
+        read_curves();
         return *camera;
+    }
+
+    void read_curves() {
+        if (scene.overlay.plot == LivePlot::kNone) return;
+        const double end_s = last_s();
+        std::int64_t states = 0;
+        while (states <= pipeline::last_frame_of(scene) && scene.video.fps.time_s(states) <= end_s) ++states;
+        stage.set_plot(curves.read(motion.methods(), states, [this](std::int64_t k) -> const State& {
+            return motion.at(scene.video.fps.time_s(k), def.on_progress);
+        }));
     }
 
     void require_time(double time_s) const {
@@ -152,6 +166,7 @@ struct Film::Impl {
             caption.time_s.reset();
             caption.energy_error.reset();
         }
+        stage.draw_curves(curves.at(last), list);
         stage.annotate(caption, map, list);
         return list;
     }
@@ -182,7 +197,7 @@ struct Film::Impl {
     Damage draw_sharp(double time_s, const view::Camera& map, const OnProgress& on_progress) {
         const std::vector<view::Trail>& trails = trails_to(time_s);
         const State& state = at(time_s);
-        return stage.draw(state, map, caption_of(state, map), trails, on_progress);
+        return stage.draw(state, map, caption_of(state, map), {trails, curves.at(state)}, on_progress);
     }
 
     /// The end of the motion: that of the scene, or of the last recorded state if it diverges.
@@ -204,7 +219,8 @@ struct Film::Impl {
             const double at_s = from_s + (i + 0.5) / video.subframes * (until_s - from_s);
             if (!caption && at_s >= time_s) caption = caption_of(at(time_s), map);
             const std::vector<view::Trail>& trails = trails_to(at_s);
-            stage.expose(picture, at(at_s), map, trails, on_progress);
+            const State& state = at(at_s);
+            stage.expose(picture, state, map, {trails, curves.at(state)}, on_progress);
         }
         if (!caption) caption = caption_of(at(time_s), map);
         return stage.develop(picture, *caption, map);
@@ -215,6 +231,7 @@ struct Film::Impl {
     System system;
     sim::NamedMethods named;
     pipeline::Stage stage;
+    pipeline::Curves curves;
     pipeline::Motion motion;
     pipeline::Tracks tracks;
     Plan plan;
@@ -350,6 +367,11 @@ struct Renderer::Impl {
             throw Error(ExitCode::kInvalidScene,
                         "style: color_by is a quantity of a motion, and a Renderer draws positions alone; "
                         "choose kBody or kLink");
+        }
+        if (scene.overlay.plot != LivePlot::kNone) {
+            throw Error(
+                ExitCode::kInvalidScene,
+                "overlay: plot shows a whole motion, and a Renderer draws positions alone; leave it out");
         }
         camera = stage.fit(bounds_of_start(system));
     }

@@ -60,7 +60,8 @@ Stage::~Stage() {
 }
 
 bool Stage::needs_motion() const {
-    return view::needs_motion(scene_->camera) || view_.needs_motion();
+    return view::needs_motion(scene_->camera) || view_.needs_motion() ||
+           scene_->overlay.plot != LivePlot::kNone;
 }
 
 CameraDef Stage::fit(std::span<const MotionBounds> motion, const sim::Spread& spread) {
@@ -94,8 +95,9 @@ void Stage::open() {
 }
 
 Damage Stage::draw(const State& state, const view::Camera& map, const view::Caption& caption,
-                   std::span<const view::Trail> trails, const OnProgress& on_progress) {
-    view_.draw(state, map, list_, trails);
+                   const Traces& traces, const OnProgress& on_progress) {
+    view_.draw(state, map, list_, traces.trails);
+    draw_curves(traces.plotted, list_);
     annotate(caption, map, list_);
     return paint(on_progress);
 }
@@ -111,11 +113,12 @@ std::int64_t Stage::begin_exposure() {
     return ++pictures_;
 }
 
-void Stage::expose(std::int64_t picture, const State& state, const view::Camera& map,
-                   std::span<const view::Trail> trails, const OnProgress& on_progress) {
+void Stage::expose(std::int64_t picture, const State& state, const view::Camera& map, const Traces& traces,
+                   const OnProgress& on_progress) {
     canvas_->context.make_current();
     if (picture != pictures_) throw Overdrawn();
-    view_.draw(state, map, list_, trails);
+    view_.draw(state, map, list_, traces.trails);
+    draw_curves(traces.plotted, list_);
     shows_nothing_ = list_.shows_nothing() && shows_nothing_;
     const OnProgress ask = asking(on_progress);
     report_progress(ask, 0, 1);

@@ -17,6 +17,12 @@
 
 namespace corda::pipeline {
 
+/// What pictures show of the motion up to their state.
+struct Traces {
+    std::span<const view::Trail> trails;        ///< one per particle traced(), or none
+    std::span<const view::CurvePoint> plotted;  ///< where the curves of the live plot are; empty: no plot
+};
+
 /// What draws a scene's bodies at any positions. OpenGL is opened by the first picture.
 class Stage {
   public:
@@ -27,11 +33,13 @@ class Stage {
     Stage& operator=(const Stage&) = delete;
     ~Stage();
 
-    /// Whether pictures depend on the whole motion: by the camera, or by what pins hang from.
+    /// Whether pictures depend on the whole motion: by the camera, by what pins hang from, or by a plot.
     [[nodiscard]] bool needs_motion() const;
     /// Fits what follows from the motion to the bounds of each particle and the spread of the quantity that
     /// colours tell. Returns the scene's camera with center and height filled in, so that all is in view.
     CameraDef fit(std::span<const MotionBounds> motion, const sim::Spread& spread = {});
+    /// What the live plot shows.
+    void set_plot(const view::PlotData& data) { overlay_.set_plot(data); }
     /// At least the scale of the camera that fit() will return for a motion within `bounds`.
     [[nodiscard]] double largest_pixels_per_metre(const MotionBounds& bounds) const;
     /// The map to pixels of a camera with center and height.
@@ -52,25 +60,28 @@ class Stage {
 
     /// See view::SceneView::traced().
     [[nodiscard]] std::vector<std::size_t> traced() const { return view_.traced(); }
-    /// Draws a state, with what the overlay says of it and the trails to it; returns what may differ
+    /// Draws a state, with what the overlay says of it and the traces to it; returns what may differ
     /// from the last picture. Asks `on_progress` again and again if the picture is large. Throws
     /// Overdrawn, and corda::Error: kNoGl, kInterrupted. Requires a Use.
     Damage draw(const State& state, const view::Camera& map, const view::Caption& caption = {},
-                std::span<const view::Trail> trails = {}, const OnProgress& on_progress = {});
+                const Traces& traces = {}, const OnProgress& on_progress = {});
     /// Begins the exposure of a picture, whatever became of the last one, and returns its number. Requires a
     /// Use.
     [[nodiscard]] std::int64_t begin_exposure();
     /// Adds a state to the exposure that develop() makes a picture of. Asks and throws as draw().
-    void expose(std::int64_t picture, const State& state, const view::Camera& map,
-                std::span<const view::Trail> trails, const OnProgress& on_progress = {});
+    void expose(std::int64_t picture, const State& state, const view::Camera& map, const Traces& traces,
+                const OnProgress& on_progress = {});
     /// Makes the exposure a picture, with what the overlay says of it; returns what may differ from the last
     /// one. Throws Overdrawn.
     Damage develop(std::int64_t picture, const view::Caption& caption, const view::Camera& map);
     /// Draws a list of this stage's size, in the same way.
     Damage draw(view::DrawList list, const OnProgress& on_progress = {});
-    /// Adds what the overlay says to a list.
+    /// Adds what the overlay says to a list, without the curves of the plot.
     void annotate(const view::Caption& caption, const view::Camera& map, view::DrawList& list) {
         overlay_.draw(caption, map.pixels_per_metre(), list);
+    }
+    void draw_curves(std::span<const view::CurvePoint> plotted, view::DrawList& list) const {
+        overlay_.draw_curves(plotted, list);
     }
     [[nodiscard]] const view::SceneView& view() const { return view_; }
     /// The last picture.

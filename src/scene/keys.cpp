@@ -126,7 +126,7 @@ std::vector<Key> root_keys() {
         {"", "solver", table, "", none(), "how the motion is computed"},
         {"", "video", table, "", none(), "picture size, frame rate and encoder"},
         {"", "style", table, "", none(), "how it looks"},
-        {"", "overlay", table, "", none(), "words and a scale bar at the edges of the picture"},
+        {"", "overlay", table, "", none(), "words, a scale bar and a plot beside the picture"},
         {"", "camera", table, "", none(), "where the camera looks"},
     };
 }
@@ -383,6 +383,7 @@ std::vector<Key> style_keys() {
 std::vector<Key> overlay_keys() {
     const OverlayDef def;
     const Type boolean = of(Kind::kBoolean);
+    const Words plots{"none", "energy", "tip", "phase"};
     const Default if_large = otherwise("true on an opaque background, from a shorter side of 160 px on");
     return {
         {"overlay", "time", boolean, "", if_large, "the time, at the lower left"},
@@ -394,6 +395,8 @@ std::vector<Key> overlay_keys() {
          "left out if there is no room"},
         {"overlay", "method", boolean, "", at(def.method),
          "the method and the bound of the displayed error, below the title"},
+        {"overlay", "plot", one_of(plots), "", at(plots, def.plot), "a live plot beside the picture",
+         "kinetic, potential and total energy; x and y of the first free end; its vx against x"},
     };
 }
 

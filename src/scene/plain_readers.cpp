@@ -75,6 +75,7 @@ OverlayDef read_overlay(const TableReader& overlay) {
     overlay.read("title", def.title);
     overlay.read("energy", def.energy);
     overlay.read("method", def.method);
+    overlay.read("plot", def.plot);
     return def;
 }
 

@@ -115,13 +115,17 @@ CameraDef fit_camera(const CameraDef& def, Vec2 origin_m, std::span<const Drawn>
     CameraDef fitted = def;
     const double border_px = def.margin * std::min(width_px, height_px);
     const double top_px = std::max(border_px, insets.top_px);
-    const double bottom_px = std::max(border_px, insets.bottom_px);
+    const double bottom_px = std::max(border_px, insets.bottom_px) + insets.bottom_panel_px;
+    const double right_px = border_px + insets.right_panel_px;
     if (!def.height_m) {
-        const double room_x_px = width_px - 2.0 * border_px;
-        const double all_px = height_px - top_px - bottom_px;
         // About a centre that is given, the larger inset counts twice, as far as it leaves room.
-        const double room_y_px =
-            def.center_m ? std::max(height_px - 2.0 * std::max(top_px, bottom_px), 0.5 * all_px) : all_px;
+        const auto room_px = [&](double all_px, double one_px, double other_px) {
+            const double left_px = all_px - one_px - other_px;
+            return def.center_m ? std::max(all_px - 2.0 * std::max(one_px, other_px), 0.5 * left_px)
+                                : left_px;
+        };
+        const double room_x_px = room_px(width_px, border_px, right_px);
+        const double room_y_px = room_px(height_px, top_px, bottom_px);
         const Vec2 center = def.center_m.value_or(Vec2{}) - origin_m;
         const double scale = def.center_m
                                  ? std::min(x.scale(room_x_px, center.x), y.scale(room_y_px, center.y))
@@ -129,8 +133,8 @@ CameraDef fit_camera(const CameraDef& def, Vec2 origin_m, std::span<const Drawn>
         fitted.height_m = height_px / scale;
     }
     const double scale = height_px / *fitted.height_m;
-    const double shift_m = 0.5 * (top_px - bottom_px) / scale;
-    if (!def.center_m) fitted.center_m = origin_m + Vec2{x.middle_m(scale), y.middle_m(scale) + shift_m};
+    const Vec2 shift_m{0.5 * (right_px - border_px) / scale, 0.5 * (top_px - bottom_px) / scale};
+    if (!def.center_m) fitted.center_m = origin_m + Vec2{x.middle_m(scale), y.middle_m(scale)} + shift_m;
     return fitted;
 }
 

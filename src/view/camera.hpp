@@ -17,10 +17,13 @@ struct Drawn {
     double down_px = 0.0;
 };
 
-/// What is to stay free at the upper and the lower edge, at least.
+/// What is to stay free at the upper and the lower edge, at least; and what panels take from the frame, at
+/// whose edges is a border, too.
 struct Insets {
     double top_px = 0.0;
     double bottom_px = 0.0;
+    double right_panel_px = 0.0;
+    double bottom_panel_px = 0.0;
 };
 
 /// Whether `def` leaves the centre or the height open, so that they follow from the motion.

@@ -86,7 +86,11 @@ struct BodyStyleDef {
     std::optional<double> width_px;  ///< 0.1 .. 1000; default: rope_width_px, or net_width_px for a net
 };
 
-/// What stands in words at the edges of a picture.
+/// What a live plot shows against the time: the energy; the position of a tip; or, in the plane of both, its
+/// horizontal position and velocity.
+enum class LivePlot { kNone, kEnergy, kTip, kPhase };
+
+/// What stands in words at the edges of a picture, or beside it.
 struct OverlayDef {
     /// The time; default: on an opaque ground, if the shorter side has at least 160 px.
     std::optional<bool> time;
@@ -95,6 +99,7 @@ struct OverlayDef {
     std::string title;              ///< UTF-8; empty: none
     bool energy = false;            ///< the error of the energy (Figures::energy_error)
     bool method = false;            ///< the methods, and the bound of the displayed error
+    LivePlot plot = LivePlot::kNone;
 };
 
 /// Where the camera looks. What is not given is fitted to the whole motion.

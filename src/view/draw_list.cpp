@@ -7,10 +7,14 @@
 namespace corda::view {
 
 bool DrawList::shows_nothing() const {
-    return std::all_of(capsules.begin(), capsules.end(), [this](const Capsule& capsule) {
+    const auto is_outside = [this](const Capsule& capsule) {
         const Surroundings box = surroundings(capsule, capsule.radius);
         return box.x1 <= 0.0F || box.y1 <= 0.0F || box.x0 >= static_cast<float>(width) ||
                box.y0 >= static_cast<float>(height);
+    };
+    return std::all_of(layers.begin(), layers.end(), [&](const Layer& layer) {
+        const Capsule* const first = capsules.data() + layer.first_capsule;
+        return layer.is_note || std::all_of(first, first + layer.capsule_count, is_outside);
     });
 }
 

@@ -52,6 +52,7 @@ struct Layer {
     /// Each capsule has its tint, with the alpha of `color`. Where several cover a pixel it gets their mean,
     /// in which one counts little beyond the ends of its segment: links in line meet at a sharp edge.
     bool is_tinted = false;
+    bool is_note = false;  ///< says something of the scene and is nothing of it
 };
 
 /// A line of text. Font::write() adds it to a draw list.
@@ -85,7 +86,7 @@ struct DrawList {
     std::vector<std::uint8_t> coverage;  ///< of the stamps, 0 .. 255
     std::vector<Text> texts;             ///< what the stamps that are not solid say
 
-    /// Whether all capsules are outside of the frame, or there are none.
+    /// Whether all capsules of layers that are no notes are outside of the frame, or there are none.
     [[nodiscard]] bool shows_nothing() const;
     /// Removes layers and stamps, but keeps their memory.
     void clear();

@@ -1,35 +1,25 @@
 #include "corda/view/overlay.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "corda/view/lettering.hpp"
 #include "corda/view/look.hpp"
+#include "corda/view/number_text.hpp"
 
 namespace corda::view {
 namespace {
 
 // Sizes as shares of the frame's shorter side.
-constexpr double kEm = 1.0 / 40.0;
-constexpr double kSmallEm = 1.0 / 16.0;  // of frames in which kEm is too small to read
-constexpr double kEdge = 0.03;
 constexpr double kBarLength = 0.3;
 constexpr double kBarWidth = 1.0 / 400.0;
 
-constexpr double kReadableEmPx = 12.0;
-constexpr double kSmallestEmPx = 7.0;
-
 // Sizes as shares of the em.
 constexpr double kTitle = 1.4;
-constexpr double kEdgePerEm = 0.45;
-constexpr double kAscent = 0.76;   // of DejaVu's capitals
-constexpr double kDescent = 0.24;  // below the baseline
-constexpr double kLine = 1.5;      // from a baseline to the next
-constexpr double kGap = 0.4;       // between a text and what the camera shows
-constexpr double kTick = 0.4;      // at the ends of the scale bar
+constexpr double kTick = 0.4;  // at the ends of the scale bar
 constexpr double kLegendHeight = 0.6;
 constexpr double kLegendTick = 0.2;
 constexpr int kGradientStepPx = 2;
@@ -42,21 +32,6 @@ constexpr int kMostDecimals = 9;
 
 /// U+2007, as wide as a digit.
 constexpr const char* kFigureSpace = "\u2007";
-
-int rounded(double px) {
-    return static_cast<int>(std::lround(px));
-}
-
-int em_of(int side_px) {
-    return rounded(std::max({kEm * side_px, std::min(kReadableEmPx, kSmallEm * side_px), kSmallestEmPx}));
-}
-
-/// 10 to that power, rounded once.
-double power_of_10(int exponent) {
-    double power = 1.0;
-    for (int i = 0; i < std::abs(exponent); ++i) power *= 10.0;
-    return exponent < 0 ? 1.0 / power : power;
-}
 
 /// Where the character that begins at byte `i` of a UTF-8 text ends.
 std::size_t end_of_character(std::string_view utf8, std::size_t i) {
@@ -72,92 +47,24 @@ std::string time_text(const std::string& digits) {
     return "t = " + digits + " s";
 }
 
-double rounded_up(double value) {
-    if (!(value > 0.0) || !std::isfinite(value)) return value;
-    // std::stod would take a comma in some countries.
-    const auto number = [](const std::string& text) {
-        double parsed = 0.0;
-        std::from_chars(text.data(), text.data() + text.size(), parsed);
-        return parsed;
-    };
-    const std::string nearest = fmt::format("{:.1e}", value);
-    const double half = 0.05 * power_of_10(std::stoi(nearest.substr(nearest.find('e') + 1)));
-    return number(number(nearest) < value ? fmt::format("{:.1e}", value + half) : nearest);
-}
-
-namespace {
-
-/// "10⁻¹²"
-std::string power_of_10_text(int exponent) {
-    std::string text = exponent < 0 ? "10⁻" : "10";
-    constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-    for (const char digit : std::to_string(std::abs(exponent))) text += kDigits[digit - '0'];
-    return text;
-}
-
-/// The exponent of the largest power of 1000 that is not above.
-int thousands_below(double value) {
-    int exponent = 0;
-    while (exponent > -300 && power_of_10(exponent) > value * (1.0 + 1e-9)) exponent -= 3;
-    while (exponent < 300 && power_of_10(exponent + 3) <= value) exponent += 3;
-    return exponent;
-}
-
-/// "k" for 3; empty if there is none.
-std::string prefix_of(int exponent) {
-    constexpr const char* kPrefixes[] = {"n", "µ", "m", "", "k", "M", "G", "T"};
-    return exponent < -9 || exponent > 12 ? "" : kPrefixes[exponent / 3 + 3];
-}
-
-}  // namespace
-
-std::string power_text(double value) {
-    if (!(value > 0.0) || !std::isfinite(value)) return fmt::format("{}", value);
-    const std::string digits = fmt::format("{:.1e}", rounded_up(value));
-    const std::size_t e = digits.find('e');
-    return digits.substr(0, e) + "·" + power_of_10_text(std::stoi(digits.substr(e + 1)));
-}
-
-ScaleTitle title_of(const ColorScale& scale) {
-    constexpr double kFewestDecimals = 0.01;
-    constexpr double kMostDigits = 1e4;
-    const double shortest = scale.quantity == Quantity::kStrain ? kFewestDecimals : 10.0 * kFewestDecimals;
-    const bool is_plain = scale.high >= shortest * (1.0 - 1e-9) && scale.high < kMostDigits;
-    const int exponent = is_plain ? 0 : thousands_below(scale.high);
-    const std::string power = power_of_10_text(exponent);
-    if (scale.quantity == Quantity::kStrain)
-        return {exponent == 0 ? "strain" : fmt::format("strain ({})", power), power_of_10(exponent)};
-    const bool is_tension = scale.quantity == Quantity::kTension;
-    const std::string prefix = prefix_of(exponent);
-    const std::string factor = exponent != 0 && prefix.empty() ? power + " " : "";
-    return {fmt::format("{} ({}{}{})", is_tension ? "tension" : "speed", factor, prefix,
-                        is_tension ? "N" : "m/s"),
-            power_of_10(exponent)};
-}
-
-std::string length_text(int digit, int exponent) {
-    const auto [unit, power] = exponent >= 3    ? std::pair{"km", 3}
-                               : exponent >= 0  ? std::pair{"m", 0}
-                               : exponent >= -2 ? std::pair{"cm", -2}
-                               : exponent >= -3 ? std::pair{"mm", -3}
-                               : exponent >= -6 ? std::pair{"µm", -6}
-                                                : std::pair{"nm", -9};
-    const int rest = exponent - power;
-    return fmt::format("{} {}", rest < 0 ? digit / power_of_10(-rest) : digit * power_of_10(rest), unit);
-}
-
 Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int height, double interval_s,
                  double end_s)
-    : def_(def), width_(width), height_(height) {
-    const int side_px = std::min(width, height);
+    : def_(def),
+      side_px_(std::min(width, height)),
+      em_px_(em_of(side_px_)),
+      edge_px_(edge_of(side_px_)),
+      plot_(style, width, height) {
+    const Room room = room_beside(def.plot, width, height);
+    width_ = room.width_px;
+    height_ = room.height_px;
+    panel_.right_panel_px = width - width_;
+    panel_.bottom_panel_px = height - height_;
     const Look look = look_of(style);
-    const bool by_default = side_px >= kSmallestSidePx && look.ground.is_opaque();
+    const bool by_default = side_px_ >= kSmallestSidePx && look.ground.is_opaque();
     time_ = def.time.value_or(by_default);
     scale_bar_ = def.scale_bar.value_or(by_default);
     legend_ = quantity_of(style.color_by) && def.legend.value_or(by_default);
     color_ = text_color(look);
-    em_px_ = em_of(side_px);
-    edge_px_ = rounded(std::max(kEdge * side_px, kEdgePerEm * em_px_));
     while (decimals_ < kMostDecimals && interval_s * power_of_10(decimals_) < 1.0) ++decimals_;
     time_digits_ = fmt::format("{:.{}f}", std::max(0.0, end_s - interval_s), decimals_).size();
 }
@@ -180,7 +87,7 @@ int Overlay::legend_baseline_px() const {
 }
 
 Insets Overlay::insets() const {
-    Insets insets;
+    Insets insets = panel_;
     if (def_.method)
         insets.top_px = method_baseline_px() + (kDescent + kGap) * em_px_;
     else if (!def_.title.empty())
@@ -189,7 +96,9 @@ Insets Overlay::insets() const {
     if (has_bottom()) insets.bottom_px = edge_px_ + (kAscent + kGap) * em_px_;
     // A tiny frame is for the picture.
     const double share = 0.5 * height_ / std::max(0.5 * height_, insets.top_px + insets.bottom_px);
-    return {share * insets.top_px, share * insets.bottom_px};
+    insets.top_px *= share;
+    insets.bottom_px *= share;
+    return insets;
 }
 
 std::string Overlay::wide_time_text(double time_s) const {
@@ -201,6 +110,7 @@ std::string Overlay::wide_time_text(double time_s) const {
 }
 
 void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& list) {
+    plot_.draw_axes(list, font_);
     int left_px = edge_px_;
     int right_px = width_ - edge_px_;
     if (time_ && caption.time_s)
@@ -227,24 +137,18 @@ int Overlay::write_bottom(const std::string& text, int x_px, int end_px, DrawLis
 
 int Overlay::draw_scale_bar(double pixels_per_metre, int begin_px, DrawList& list) {
     const int right_px = width_ - edge_px_;
-    const double longest_px = std::min(kBarPerWidth * width_, kBarLength * std::min(width_, height_));
+    const double longest_px = std::min(kBarPerWidth * width_, kBarLength * side_px_);
     const double longest_m = longest_px / pixels_per_metre;
     if (!std::isnormal(longest_m)) return right_px;
-    int exponent = static_cast<int>(std::floor(std::log10(longest_m)));
-    // log10 may be off by one next to a power of 10.
-    if (power_of_10(exponent + 1) <= longest_m) ++exponent;
-    if (power_of_10(exponent) > longest_m) --exponent;
-    int digit = 1;
-    for (const int larger : {2, 5})
-        if (larger * power_of_10(exponent) <= longest_m) digit = larger;
-    const int length_px = std::max(1, rounded(digit * power_of_10(exponent) * pixels_per_metre));
-    const std::string text = length_text(digit, exponent);
+    const RoundNumber number = round_number_below(longest_m);
+    const int length_px = std::max(1, rounded(number.value() * pixels_per_metre));
+    const std::string text = length_text(number.digit, number.exponent);
     const int gap_px = rounded(kGap * em_px_);
     const int text_px = right_px - length_px - gap_px - font_.width_px(text, em_px_);
     if (text_px < begin_px) return right_px;
     const int baseline_px = height_ - edge_px_;
     font_.write({text_px, baseline_px, em_px_, color_, text}, list);
-    const int line_px = std::max(1, rounded(kBarWidth * std::min(width_, height_)));
+    const int line_px = std::max(1, rounded(kBarWidth * side_px_));
     const int tick_px = std::max(line_px + 1, rounded(kTick * em_px_));
     const int left_px = right_px - length_px;
     list.add_box({left_px, baseline_px - line_px, right_px, baseline_px}, color_);
@@ -254,15 +158,12 @@ int Overlay::draw_scale_bar(double pixels_per_metre, int begin_px, DrawList& lis
 }
 
 int Overlay::draw_legend(DrawList& list) {
-    const ScaleTitle title = title_of(*scale_);
-    const auto number = [&](double value) { return fmt::format("{:g}", value / title.unit + 0.0); };
-    const std::string beyond = scale_->is_cut ? "≥ " : "";
-    const bool goes_below = scale_->low < 0.0;
-    const std::string first =
-        goes_below ? (scale_->is_cut ? "≤ −" : "−") + number(-scale_->low) : number(0.0);
-    const std::string last = beyond + number(scale_->high);
+    const NumberTitle title = title_of(*scale_);
+    const auto number = [&](double value) { return number_text(value / title.unit); };
+    const std::string first = (scale_->is_cut && scale_->low < 0.0 ? "≤ " : "") + number(scale_->low);
+    const std::string last = (scale_->is_cut ? "≥ " : "") + number(scale_->high);
     const auto half_px = [&](const std::string& text) { return font_.width_px(text, em_px_) / 2; };
-    const int bar_px = rounded(kBarLength * std::min(width_, height_));
+    const int bar_px = rounded(kBarLength * side_px_);
     const int bar_end_px = width_ - edge_px_ - half_px(last);
     const int bar_px0 = bar_end_px - bar_px;
     const int title_end_px = bar_px0 - rounded(kGap * em_px_);
@@ -273,7 +174,7 @@ int Overlay::draw_legend(DrawList& list) {
     const int height_px = rounded(kLegendHeight * em_px_);
     const int top_px = baseline_px - (rounded(kAscent * em_px_) + height_px) / 2;
     draw_gradient({bar_px0, top_px, bar_end_px, top_px + height_px}, list);
-    const int line_px = std::max(1, rounded(kBarWidth * std::min(width_, height_)));
+    const int line_px = std::max(1, rounded(kBarWidth * side_px_));
     const auto add_tick = [&](int x_px, const std::string& text) {
         const int tick_end_px = top_px + height_px + std::max(1, rounded(kLegendTick * em_px_));
         list.add_box({x_px, top_px + height_px, x_px + line_px, tick_end_px}, color_);

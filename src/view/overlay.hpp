@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "corda/view/camera.hpp"
@@ -8,6 +9,7 @@
 #include "corda/view/defs.hpp"
 #include "corda/view/draw_list.hpp"
 #include "corda/view/font.hpp"
+#include "corda/view/plot_panel.hpp"
 
 namespace corda::view {
 
@@ -18,9 +20,9 @@ struct Caption {
     std::string method;
 };
 
-/// The words and the scale bar at the edges of a picture. Time and energy stand at the lower left, the scale
-/// bar at the lower right, title and method at the upper left, the legend at the upper right. A title or a
-/// method that is too long is shortened; what else has no room is left out.
+/// The words and the scale bar at the edges of a picture, and the plot beside it. Time and energy stand at
+/// the lower left, the scale bar at the lower right, title and method at the upper left, the legend at the
+/// upper right. A title or a method that is too long is shortened; what else has no room is left out.
 class Overlay {
   public:
     /// `interval_s`: between frames; so many decimals has the time. `end_s`: of the scene; the time always
@@ -32,6 +34,10 @@ class Overlay {
     [[nodiscard]] Insets insets() const;
     /// The scale of the legend; without one there is none.
     void set_scale(const ColorScale& scale) { scale_ = scale; }
+    /// What the plot shows; without it there is none.
+    void set_plot(const PlotData& data) { plot_.set_data(data, font_); }
+    /// Adds the curves of the plot, each up to where it is now.
+    void draw_curves(std::span<const CurvePoint> now, DrawList& list) const { plot_.draw_curves(now, list); }
     /// Adds the stamps of a picture of that scale.
     void draw(const Caption& caption, double pixels_per_metre, DrawList& list);
 
@@ -61,32 +67,19 @@ class Overlay {
     bool legend_;
     std::optional<ColorScale> scale_;
     Color color_;
-    int width_;
+    Insets panel_;  ///< what the plot takes
+    int width_;     ///< of what it leaves
     int height_;
+    int side_px_;  ///< the shorter one of the frame
     int em_px_;
     int edge_px_;  ///< from the edges of the frame to the texts
     int decimals_ = 2;
     std::size_t time_digits_ = 0;  ///< with the decimal point
     Font font_;
+    PlotPanel plot_;
 };
 
 /// "t = 1.20 s"
 [[nodiscard]] std::string time_text(const std::string& digits);
-
-/// A positive number, rounded up to two digits; another one as it is.
-[[nodiscard]] double rounded_up(double value);
-
-/// "3.1·10⁻¹²": two digits, rounded up.
-[[nodiscard]] std::string power_text(double value);
-
-/// What a scale shows: "tension (kN)", and what its values are divided by for that unit.
-struct ScaleTitle {
-    std::string text;
-    double unit = 1.0;
-};
-[[nodiscard]] ScaleTitle title_of(const ColorScale& scale);
-
-/// "20 cm": `digit` times 10 to the power of `exponent` metres.
-[[nodiscard]] std::string length_text(int digit, int exponent);
 
 }  // namespace corda::view

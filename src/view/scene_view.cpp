@@ -159,18 +159,7 @@ void SceneView::include_slack(const Body& body, std::span<const MotionBounds> mo
 }
 
 std::vector<std::size_t> SceneView::traced() const {
-    std::vector<std::size_t> ends;
-    for (const Body& body : system_->bodies) {
-        const bool is_closed = body.link_count == body.particle_count;
-        if (style_.trail_s == 0.0 || body.is_net || is_closed) continue;
-        const std::size_t first = body.first_particle;
-        const std::size_t last = first + body.particle_count - 1;
-        if (!system_->is_pinned(last))
-            ends.push_back(last);
-        else if (!system_->is_pinned(first))
-            ends.push_back(first);
-    }
-    return ends;
+    return style_.trail_s == 0.0 ? std::vector<std::size_t>{} : free_ends(*system_);
 }
 
 void SceneView::draw_trails(std::span<const Trail> trails, const Camera& camera, DrawList& list) const {

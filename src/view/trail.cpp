@@ -55,6 +55,21 @@ double alpha_over(double below, double wanted) {
 
 }  // namespace
 
+std::vector<std::size_t> free_ends(const System& system) {
+    std::vector<std::size_t> ends;
+    for (const Body& body : system.bodies) {
+        const bool is_closed = body.link_count == body.particle_count;
+        if (body.is_net || is_closed) continue;
+        const std::size_t first = body.first_particle;
+        const std::size_t last = first + body.particle_count - 1;
+        if (!system.is_pinned(last))
+            ends.push_back(last);
+        else if (!system.is_pinned(first))
+            ends.push_back(first);
+    }
+    return ends;
+}
+
 void add_trail(std::span<const FadingPoint> points, double radius_px, Color color, DrawList& list) {
     const std::vector<FadingPoint> path = smooth(points);
     const auto left = [&](std::size_t i) { return 0.5 * (path[i].left + path[i + 1].left); };

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "corda/core/image.hpp"
+#include "corda/sim/system.hpp"
 #include "corda/view/draw_list.hpp"
 
 namespace corda::view {
@@ -22,6 +23,9 @@ struct FadingPoint {
     PixelPoint at;
     double left = 0.0;
 };
+
+/// The free ends of open ropes, one each: the last particle before the first.
+[[nodiscard]] std::vector<std::size_t> free_ends(const System& system);
 
 /// Adds a smooth curve through the points of a path, of which no two have the same age. It fades in alpha and
 /// width: it is layers each of which holds what is younger than the last: so they add up without a seam where

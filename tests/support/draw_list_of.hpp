@@ -1,7 +1,11 @@
 #pragma once
 
+#include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
+#include "corda/pipeline/curves.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/sim/bounds.hpp"
@@ -19,11 +23,28 @@ inline void include(const State& state, std::vector<MotionBounds>& motion) {
     for (std::size_t i = 0; i < motion.size(); ++i) motion[i].include(state.x_m[i], state.y_m[i]);
 }
 
+/// What the live plot of a film shows at a time.
+struct Plotted {
+    view::PlotData data;
+    std::vector<view::CurvePoint> now;
+};
+
+inline std::optional<Plotted> plotted_of(const Film& film, double time_s) {
+    if (film.scene().overlay.plot == LivePlot::kNone) return std::nullopt;
+    pipeline::Curves curves(film.scene(), film.system());
+    std::vector<MethodDef> methods;
+    for (const BodyPlan& body : film.plan().bodies) methods.push_back(body.method);
+    view::PlotData data = curves.read(methods, film.last_frame() + 1,
+                                      [&](std::int64_t k) -> const State& { return film.state(k); });
+    return Plotted{std::move(data), curves.at(film.state_at(time_s))};
+}
+
 /// What a scene draws at a state, made apart from Film: what the reference renderer is to draw too.
 inline view::DrawList draw_list_of(const Scene& scene, const System& system, const CameraDef& camera,
                                    const State& state, const std::vector<MotionBounds>& motion,
                                    const view::Caption& caption = {},
-                                   std::span<const view::Trail> trails = {}, const sim::Spread& spread = {}) {
+                                   std::span<const view::Trail> trails = {}, const sim::Spread& spread = {},
+                                   const std::optional<Plotted>& plot = {}) {
     const int width_px = scene.video.width_px;
     const int height_px = scene.video.height_px;
     view::SceneView scene_view(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, width_px,
@@ -38,6 +59,8 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
     view::DrawList list;
     const view::Camera map(camera, system.origin_m, width_px, height_px);
     scene_view.draw(state, map, list, trails);
+    if (plot) overlay.set_plot(plot->data);
+    if (plot) overlay.draw_curves(plot->now, list);
     overlay.draw(caption, map.pixels_per_metre(), list);
     return list;
 }
@@ -79,11 +102,12 @@ inline view::DrawList draw_list_of(const Film& film, double time_s) {
         const double age_s = time_s - film.time_s(k);
         if (age_s > 0.0 && age_s < trail_s) add_points(film, film.state(k), age_s, trails);
     }
-    const State& state = film.state_at(time_s);
+    const State state = film.state_at(time_s);
     add_points(film, state, 0.0, trails);
     const view::Caption caption{time_s, film.figures().energy_error,
                                 method_caption(film.plan(), film.error_bound_px())};
-    return draw_list_of(film.scene(), film.system(), film.camera(), state, motion, caption, trails, spread);
+    return draw_list_of(film.scene(), film.system(), film.camera(), state, motion, caption, trails, spread,
+                        plotted_of(film, time_s));
 }
 
 }  // namespace corda::test

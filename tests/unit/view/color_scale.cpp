@@ -6,7 +6,7 @@
 #include <string>
 
 #include "corda/view/look.hpp"
-#include "corda/view/overlay.hpp"
+#include "corda/view/number_text.hpp"
 
 namespace corda::view {
 namespace {

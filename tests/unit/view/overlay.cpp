@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <clocale>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -140,32 +138,6 @@ TEST(Overlays, StandOutFromTheirGround) {
     }
 }
 
-TEST(OverlayNumbers, AreRoundedUpToTwoDigits) {
-    EXPECT_EQ(rounded_up(0.031), 0.031);
-    EXPECT_EQ(rounded_up(0.0311), 0.032);
-    EXPECT_EQ(rounded_up(9.91), 10.0);
-    EXPECT_EQ(rounded_up(1.001), 1.1);
-    EXPECT_EQ(rounded_up(5.449), 5.5);
-    EXPECT_EQ(power_text(3.1e-12), "3.1·10⁻¹²");
-    EXPECT_EQ(power_text(3.11e-12), "3.2·10⁻¹²");
-    EXPECT_EQ(power_text(2e45), "2.0·10⁴⁵");
-    EXPECT_EQ(power_text(0.0), "0");
-}
-
-TEST(OverlayNumbers, HaveAUnitThatFits) {
-    for (const auto& [digit, exponent, text] : {std::tuple{1, 0, "1 m"},
-                                                {5, 2, "500 m"},
-                                                {2, 3, "2 km"},
-                                                {1, 8, "100000 km"},
-                                                {2, -1, "20 cm"},
-                                                {5, -2, "5 cm"},
-                                                {1, -3, "1 mm"},
-                                                {2, -4, "200 µm"},
-                                                {5, -9, "5 nm"},
-                                                {2, -10, "0.2 nm"}})
-        EXPECT_EQ(length_text(digit, exponent), text);
-}
-
 StyleDef by_tension() {
     StyleDef style;
     style.color_by = ColorBy::kTension;
@@ -230,23 +202,6 @@ TEST(Legends, AreLeftOutIfThereIsNoRoomOrNoScale) {
     def.scale_bar = false;
     EXPECT_TRUE(words(drawn(def, {}, 960, 540, 100.0, 10.0, by_tension())).empty());
     EXPECT_EQ(Overlay(def, {}, 960, 540, kFrameS, 10.0).insets().top_px, 0.0);
-}
-
-TEST(RoundedUp, LeavesWhatIsNoPositiveNumber) {
-    const double infinite = std::numeric_limits<double>::infinity();
-    EXPECT_EQ(rounded_up(infinite), infinite);
-    EXPECT_EQ(rounded_up(0.0), 0.0);
-    EXPECT_TRUE(std::isnan(rounded_up(std::nan(""))));
-}
-
-TEST(RoundedUp, DoesNotDependOnTheLocale) {
-    const std::string before = std::setlocale(LC_ALL, nullptr);
-    for (const char* const name : {"de_DE.UTF-8", "de_DE", "fr_FR.UTF-8"}) {
-        if (std::setlocale(LC_ALL, name) == nullptr) continue;  // not installed
-        EXPECT_EQ(rounded_up(0.00123), 0.0013) << name;
-    }
-    std::setlocale(LC_ALL, before.c_str());
-    EXPECT_EQ(rounded_up(0.00123), 0.0013);
 }
 
 TEST(Titles, OfAMegabyteAreShortenedAtOnce) {

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "corda/core/image.hpp"
+#include "corda/view/defs.hpp"
+#include "corda/view/draw_list.hpp"
+#include "corda/view/font.hpp"
+
+namespace corda::view {
+
+/// Where a curve is at a time.
+struct CurvePoint {
+    double time_s = 0.0;
+    double x = 0.0;
+    double y = 0.0;
+};
+
+/// What a live plot shows.
+struct PlotData {
+    struct Curve {
+        std::string name;                     ///< empty: it needs none
+        std::vector<CurvePoint> points = {};  ///< in order of time, at least one
+    };
+    /// What stands at an axis, and the unit of its values, which takes a prefix.
+    struct AxisName {
+        std::string text;
+        std::string unit;
+    };
+
+    AxisName x;
+    AxisName y;
+    /// x is the time, from 0 to this; 0: it is something else.
+    double end_s = 0.0;
+    std::vector<Curve> curves;  ///< 1 .. 3
+};
+
+/// The part of a frame, from its upper left corner, that a live plot leaves to the picture.
+struct Room {
+    int width_px = 0;
+    int height_px = 0;
+};
+[[nodiscard]] Room room_beside(LivePlot plot, int width_px, int height_px);
+
+/// A plot of the whole motion whose curves grow with time: to the right of the picture if the frame is wider
+/// than high, otherwise below. In a frame without room for it, there is none.
+class PlotPanel {
+  public:
+    PlotPanel(const StyleDef& style, int width_px, int height_px);
+
+    /// Fits the axes to what is plotted. Before, nothing is drawn.
+    void set_data(const PlotData& data, Font& font);
+    /// Adds the curves up to where they are now, one point each.
+    void draw_curves(std::span<const CurvePoint> now, DrawList& list) const;
+    /// Adds what does not change.
+    void draw_axes(DrawList& list, Font& font) const;
+
+  private:
+    struct Label {
+        std::string text;
+        int at_px = 0;  ///< along its axis
+    };
+    /// One axis: the map from values to pixels, and its labels.
+    struct Axis {
+        double low = 0.0;
+        double high = 1.0;
+        int low_px = 0;
+        int high_px = 0;
+        std::string title;
+        double unit = 1.0;
+        std::vector<Label> labels;
+
+        [[nodiscard]] double px(double value) const {
+            return low_px + (value - low) / (high - low) * (high_px - low_px);
+        }
+    };
+    struct PixelCurve {
+        std::string name;
+        Color color;
+        std::vector<PixelPoint> points;
+        std::vector<double> times_s;  ///< of the points
+    };
+    struct Name {
+        std::string text;
+        Color color;
+        int x_px = 0;
+        int row = 0;
+    };
+
+    void place_names(const PixelRect& panel, Font& font);
+    /// Places the box and finds the labels; false if there is no room.
+    [[nodiscard]] bool place_box(const PixelRect& panel, bool is_over_time, Font& font);
+    void add_labels(Axis& axis, int most) const;
+    void write(const std::string& text, int x_px, int y_px, Color color, DrawList& list, Font& font) const;
+
+    int width_px_;
+    int height_px_;
+    int em_px_;
+    int line_px_;
+    Color text_color_;
+    std::vector<Color> curve_colors_;
+    bool is_shown_ = false;
+    PixelRect box_;
+    Axis x_;
+    Axis y_;
+    std::vector<PixelCurve> curves_;
+    std::vector<Name> names_;
+    int name_rows_ = 0;
+};
+
+}  // namespace corda::view

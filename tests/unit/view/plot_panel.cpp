@@ -1,0 +1,171 @@
+#include "corda/view/plot_panel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "corda/view/overlay.hpp"
+
+namespace corda::view {
+namespace {
+
+constexpr int kSamples = 1000;
+
+/// A cosine and its half, over ten seconds.
+PlotData waves(double size = 1.0, double shift = 0.0) {
+    PlotData data{{"t", "s"}, {"energy", "J"}, 10.0, {{"kinetic"}, {"potential"}}};
+    for (int i = 0; i <= kSamples; ++i) {
+        const double t = 10.0 * i / kSamples;
+        data.curves[0].points.push_back({t, t, shift + size * std::cos(t)});
+        data.curves[1].points.push_back({t, t, shift + 0.5 * size * std::cos(t)});
+    }
+    return data;
+}
+
+/// A panel of that data at the time of sample `k`.
+DrawList panel_of(const PlotData& data, int width, int height, std::size_t k = kSamples) {
+    DrawList list;
+    list.width = width;
+    list.height = height;
+    Font font;
+    PlotPanel panel({}, width, height);
+    panel.set_data(data, font);
+    std::vector<CurvePoint> now;
+    for (const PlotData::Curve& curve : data.curves) now.push_back(curve.points[k]);
+    panel.draw_curves(now, list);
+    panel.draw_axes(list, font);
+    return list;
+}
+
+std::vector<PixelRect> inks(const DrawList& list) {
+    Font font;
+    std::vector<PixelRect> boxes;
+    for (const Text& text : list.texts) boxes.push_back(font.ink(text));
+    return boxes;
+}
+
+TEST(PlotPanel, KeepsItsTextsApartAndInTheFrame) {
+    int shown = 0;
+    for (const auto& [width, height] : {std::pair{3840, 2160},
+                                        {1920, 1080},
+                                        {1280, 720},
+                                        {640, 360},
+                                        {256, 144},
+                                        {720, 1280},
+                                        {180, 320},
+                                        {500, 500},
+                                        {641, 640},
+                                        {2000, 100}}) {
+        for (const double size : {1.0, 3e-12, 4.7e9, 1e-300, 1e300}) {
+            for (const double shift : {0.0, -40.0 * size, 1e6 * size}) {
+                const DrawList list = panel_of(waves(size, shift), width, height);
+                const std::vector<PixelRect> boxes = inks(list);
+                shown += boxes.empty() ? 0 : 1;
+                const Room room = room_beside(LivePlot::kEnergy, width, height);
+                for (std::size_t i = 0; i < boxes.size(); ++i) {
+                    const std::string what =
+                        list.texts[i].utf8 + " at " + std::to_string(width) + "x" + std::to_string(height);
+                    EXPECT_TRUE(boxes[i].x0 >= 0 && boxes[i].y0 >= 0) << what;
+                    EXPECT_TRUE(boxes[i].x1 <= width && boxes[i].y1 <= height) << what;
+                    EXPECT_TRUE(boxes[i].x0 >= room.width_px || boxes[i].y0 >= room.height_px) << what;
+                    for (std::size_t k = 0; k < i; ++k) {
+                        EXPECT_TRUE(boxes[i].intersected(boxes[k]).empty())
+                            << what << " and " << list.texts[k].utf8;
+                    }
+                }
+            }
+        }
+    }
+    EXPECT_GE(shown, 100);
+}
+
+TEST(PlotPanel, HasNoRoomInAStamp) {
+    for (const auto& [width, height] : {std::pair{128, 128}, {64, 64}, {168, 94}, {1, 1}, {16384, 1}}) {
+        EXPECT_TRUE(panel_of(waves(), width, height).texts.empty()) << width << "x" << height;
+        const Room room = room_beside(LivePlot::kTip, width, height);
+        if (width < 16384) {
+            EXPECT_TRUE(room.width_px == width && room.height_px == height);
+        }
+    }
+}
+
+TEST(PlotPanel, DrawsCurvesUpToNow) {
+    const auto last_x = [](std::size_t k) {
+        const DrawList list = panel_of(waves(), 1280, 720, k);
+        float last = 0.0F;
+        for (std::size_t l = 1; l < list.layers.size(); ++l) {  // the first one is the grid
+            const Layer& layer = list.layers[l];
+            EXPECT_TRUE(layer.is_note);
+            for (std::size_t c = 0; c < layer.capsule_count; ++c) {
+                const Capsule& capsule = list.capsules[layer.first_capsule + c];
+                last = std::max(last, capsule.ax + std::max(0.0F, capsule.ux * capsule.length));
+            }
+        }
+        return last;
+    };
+    const float start = last_x(0);
+    const float end = last_x(kSamples);
+    for (const std::size_t k : {100U, 250U, 777U}) {
+        EXPECT_NEAR(last_x(k), start + (end - start) * static_cast<float>(k) / kSamples, 0.01F);
+    }
+}
+
+TEST(PlotPanel, KeepsTheOutlineOfALongMotion) {
+    PlotData data{{"t", "s"}, {"x", "m"}, 1000.0, {{""}}};
+    for (int i = 0; i <= 100'000; ++i) {
+        const double t = 0.01 * i;
+        data.curves[0].points.push_back({t, t, i == 50'001 ? 3.0 : std::cos(20.0 * t)});
+    }
+    const DrawList list = panel_of(data, 1920, 1080, 100'000);
+    const Layer& curve = list.layers[1];
+    EXPECT_LE(curve.capsule_count, 4U * 691U);
+    float highest = 1e9F;
+    for (std::size_t c = 0; c < curve.capsule_count; ++c)
+        highest = std::min(highest, list.capsules[curve.first_capsule + c].ay);
+    // The single point of 3 is drawn at its place: a quarter of the axis from -1 to 3 above 2.
+    const DrawList whole =
+        panel_of({{"t", "s"}, {"x", "m"}, 1000.0, {{"", {{0, 0, -1}, {0, 0, 3}}}}}, 1920, 1080, 1);
+    float top = 1e9F;
+    for (std::size_t c = 0; c < whole.layers[1].capsule_count; ++c)
+        top = std::min(top, whole.capsules[whole.layers[1].first_capsule + c].ay);
+    EXPECT_EQ(highest, top);
+}
+
+TEST(PlotPanel, ShowsNothingOfTheScene) {
+    const DrawList list = panel_of(waves(), 1280, 720);
+    EXPECT_GT(list.capsules.size(), 100U);
+    EXPECT_TRUE(list.shows_nothing());
+}
+
+TEST(PlotPanel, LeavesTheCameraTheRest) {
+    OverlayDef def;
+    def.plot = LivePlot::kTip;
+    const Insets beside = Overlay(def, {}, 1280, 720, 0.02, 10.0).insets();
+    EXPECT_EQ(beside.right_panel_px, 461.0);
+    EXPECT_EQ(beside.bottom_panel_px, 0.0);
+    const Insets below = Overlay(def, {}, 720, 1280, 0.02, 10.0).insets();
+    EXPECT_EQ(below.right_panel_px, 0.0);
+    EXPECT_EQ(below.bottom_panel_px, 461.0);
+    MotionBounds bounds;
+    bounds.include(-1.0, -1.0);
+    bounds.include(1.0, 0.0);
+    const std::vector<Drawn> drawn{{.bounds = bounds}};
+    const CameraDef fitted = fit_camera({}, {}, drawn, 1280, 720, beside);
+    const Camera camera(fitted, {}, 1280, 720);
+    EXPECT_NEAR(camera.x_px(-1.0), 0.08 * 720, 1e-9);
+    EXPECT_NEAR(camera.x_px(1.0), 1280 - 461 - 0.08 * 720, 1e-9);
+}
+
+TEST(PlotPanel, DrawsWhatDoesNotMove) {
+    PlotData data{{"x", "m"}, {"vx", "m/s"}, 0.0, {{"", {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}}}};
+    const DrawList list = panel_of(data, 1280, 720, 1);
+    EXPECT_GE(list.texts.size(), 4U);
+    EXPECT_EQ(list.layers[1].capsule_count, 2U);  // the point, and the dot on it
+}
+
+}  // namespace
+}  // namespace corda::view
