@@ -60,10 +60,17 @@ struct Series {
 
     std::string name;
     std::vector<std::pair<double, double>> points;
+    /// The least and the largest y of each point, drawn as a bar; empty: there are none.
+    std::vector<std::pair<double, double>> spreads = {};
     /// Its colour and marker, 0 .. kLooks - 1, so that a subject looks the same in all plots; default: its
     /// place among the lines that are not context.
     std::optional<std::size_t> look = {};
     bool is_context = false;  ///< grey and thin, behind the others, with one entry for all such in the key
+
+    void add(double x, double y, const std::pair<double, double>& spread) {
+        points.emplace_back(x, y);
+        spreads.push_back(spread);
+    }
 };
 
 /// A line plot.

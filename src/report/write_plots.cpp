@@ -56,9 +56,14 @@ std::string axis(char name, const std::string& title, bool is_log) {
 
 std::string data_block(const Plot& plot, std::size_t index) {
     std::string text = fmt::format("$s{} << END\n", index);
-    for (const auto& point : plot.series[index].points) {
+    const Series& series = plot.series[index];
+    for (std::size_t i = 0; i < series.points.size(); ++i) {
+        const auto& point = series.points[i];
         if (is_drawable(plot, point)) {
-            text += fmt::format("{:.17g} {:.17g}\n", point.first, point.second);
+            text += fmt::format("{:.17g} {:.17g}", point.first, point.second);
+            if (!series.spreads.empty())
+                text += fmt::format(" {:.17g} {:.17g}", series.spreads[i].first, series.spreads[i].second);
+            text += '\n';
         } else {
             text += "NaN NaN\n";
         }
@@ -91,7 +96,15 @@ std::vector<std::string> plot_items(const Plot& plot) {
     }
     std::size_t place = 0;
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
-        if (!plot.series[i].is_context) items.push_back(plot_item(plot, i, place++));
+        const Series& series = plot.series[i];
+        if (series.is_context) continue;
+        const std::size_t look = series.look.value_or(place);
+        if (!series.spreads.empty() && has_points(plot, series)) {
+            items.push_back(
+                fmt::format("$s{} with yerrorbars linewidth 1.2 linecolor rgb '{}' pointsize 0 notitle", i,
+                            kColors[look % kColors.size()]));
+        }
+        items.push_back(plot_item(plot, i, place++));
     }
     return items;
 }

@@ -97,8 +97,8 @@ void add_problem_row(AccuracyRow row, const Problem& problem, const NamedMethod&
     row.method = method.name;
     row.error = run.largest_error;
     row.failure = run.failure;
-    row.ms_per_simulated_s = run.ms_per_simulated_s;
-    row.wall_ms = run.ms_per_simulated_s * problem.fps.time_s(problem.last_frame());
+    row.ms_per_simulated_s = run.ms_per_simulated_s.median();
+    row.wall_ms = row.ms_per_simulated_s * problem.fps.time_s(problem.last_frame());
     rows.push_back(std::move(row));
 }
 

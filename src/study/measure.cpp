@@ -56,14 +56,14 @@ void watch(const Problem& problem, std::span<const MethodDef> methods, Measureme
     result.steps = shown.steps;
 }
 
-/// Seconds that all frames take without the set-up: the shortest of the repeats. The bare solver is timed,
-/// without the figures that a Simulation works out.
-double stepping_s(const Problem& problem, const MethodDef& method, const Timing& timing) {
+/// Seconds that all frames take without the set-up. The bare solver is timed, without the figures that a
+/// Simulation works out.
+Times stepping_s(const Problem& problem, const MethodDef& method, const Timing& timing) {
     const System system = problem.system();
     const std::int64_t last_frame = problem.last_frame();
     const GoesOn goes_on = take_step;
     StopCheck stop(goes_on);
-    double shortest_s = std::numeric_limits<double>::infinity();
+    Times times_s;
     for (int repeat = 0; repeat < timing.repeats; ++repeat) {
         double sum_s = 0.0;
         int runs = 0;
@@ -79,9 +79,9 @@ double stepping_s(const Problem& problem, const MethodDef& method, const Timing&
             sum_s += now_s() - from_s;
             ++runs;
         } while (sum_s < timing.shortest_s);
-        shortest_s = std::min(shortest_s, sum_s / runs);
+        times_s.add(sum_s / runs);
     }
-    return shortest_s;
+    return times_s;
 }
 
 }  // namespace
@@ -107,7 +107,7 @@ Measurement measure(const Problem& problem, const MethodDef& method, const std::
         watch(problem, {&method, 1}, result);
         const double simulated_s = problem.fps.time_s(problem.last_frame());
         if (result.failure.empty() && timing.repeats > 0 && simulated_s > 0.0)
-            result.ms_per_simulated_s = 1e3 * stepping_s(problem, method, timing) / simulated_s;
+            result.ms_per_simulated_s = stepping_s(problem, method, timing).times(1e3 / simulated_s);
     } catch (const Error& error) {
         result.failure = error.what();
     }

@@ -9,6 +9,7 @@
 
 #include "corda/core/rational.hpp"
 #include "corda/sim/simulation.hpp"
+#include "corda/study/times.hpp"
 
 namespace corda::study {
 
@@ -45,14 +46,14 @@ struct Measurement {
     double rms_error = 0.0;      ///< largest, over the frames, of the RMS distance of the particles over L
     double largest_strain = 0.0;
     std::optional<double> energy_error;  ///< over m g L
-    double ms_per_simulated_s = 0.0;     ///< of the stepping alone; 0: not timed
+    Times ms_per_simulated_s;            ///< of the stepping alone; empty: not timed
     std::uint64_t steps = 0;
     std::string failure;  ///< why it failed; empty if it did not. A failed run is shown, never dropped.
 };
 
 /// How a run is timed.
 struct Timing {
-    int repeats = 5;           ///< the shortest counts; 0: not timed
+    int repeats = 5;           ///< 0: not timed
     double shortest_s = 0.05;  ///< a repeat consists of as many runs as take this time
 };
 

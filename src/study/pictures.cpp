@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <utility>
 
@@ -31,7 +30,6 @@ line = { particles = 40, step = [0.1, -1.0] }
 [solver]
 method = "exact"
 )";
-constexpr double kForever = std::numeric_limits<double>::infinity();
 constexpr std::array<const char*, 6> kPresets{"ultrafast", "superfast", "veryfast", "fast", "medium", "slow"};
 
 /// A folder for trial videos, removed with everything in it.
@@ -80,12 +78,12 @@ std::vector<SolverSetting> list_settings(double frame_s) {
     return settings;
 }
 
-/// The shortest times of the parts of a render, in seconds.
+/// How long the parts of a render take, in ms.
 struct RenderTime {
-    double simulate_s = kForever;
-    double draw_s = kForever;
-    double encode_s = kForever;  ///< up to the verified file
-    double whole_s = kForever;
+    Times simulate_ms;
+    Times draw_ms;
+    Times encode_ms;  ///< up to the verified file
+    Times whole_ms;
 };
 
 FilmDef film_of(const StudyDef& def) {
@@ -130,9 +128,10 @@ struct Pictures {
     report::Table solvers;
     report::Table presets;
     report::Plot plot;
+    std::vector<double> simulating;  ///< its share of the whole render, by each solver
 };
 
-/// Draws and encodes a film, which took `simulate_s` to simulate, and keeps the shortest times in `time`.
+/// Draws and encodes a film, which took `simulate_s` to simulate, and adds the times to `time`.
 void time_film(Film& film, const VideoDef& video, double simulate_s, const std::string& path,
                RenderTime& time) {
     FilmPainter painter(film);
@@ -155,10 +154,10 @@ void time_film(Film& film, const VideoDef& video, double simulate_s, const std::
     }
     writer.finish();
     lap(encode_s);
-    time.simulate_s = std::min(time.simulate_s, simulate_s);
-    time.draw_s = std::min(time.draw_s, draw_s);
-    time.encode_s = std::min(time.encode_s, encode_s);
-    time.whole_s = std::min(time.whole_s, simulate_s + draw_s + encode_s);
+    time.simulate_ms.add(1e3 * simulate_s);
+    time.draw_ms.add(1e3 * draw_s);
+    time.encode_ms.add(1e3 * encode_s);
+    time.whole_ms.add(1e3 * (simulate_s + draw_s + encode_s));
 }
 
 /// Largest displayed distance of a particle from the truth, in pixels.
@@ -192,12 +191,15 @@ void add_solver(const SolverSetting& setting, Pictures& pictures) {
         return;
     }
     const auto frames = static_cast<double>(scene.video.fps.frame_count(scene.world.duration_s));
-    pictures.solvers.add({setting.series, words, report::cell_of(error), 1e3 * time.whole_s,
-                          1e3 * time.simulate_s, 1e3 * time.draw_s, 1e3 * time.encode_s,
-                          frames / time.whole_s});
+    pictures.solvers.add({setting.series, words, report::cell_of(error), time.whole_ms.median(),
+                          time.whole_ms.least(), time.whole_ms.largest(), time.simulate_ms.median(),
+                          time.draw_ms.median(), time.encode_ms.median(),
+                          1e3 * frames / time.whole_ms.median()});
+    pictures.simulating.push_back(time.simulate_ms.median() / time.whole_ms.median());
     auto& series = pictures.plot.series;
     if (series.empty() || series.back().name != setting.series) series.push_back({setting.series, {}});
-    series.back().points.emplace_back(error.value(), 1e3 * time.whole_s);
+    series.back().add(error.value(), time.whole_ms.median(),
+                      {time.whole_ms.least(), time.whole_ms.largest()});
 }
 
 /// Adds luma PSNR and SSIM of a video against the frames that it was made of, drawn again.
@@ -232,7 +234,8 @@ void add_preset(const char* preset, Pictures& pictures) {
     std::vector<report::Cell> row{preset};
     add_quality(film, path, row);
     row.insert(row.end(), {static_cast<double>(fs::file_size(path)),
-                           static_cast<double>(film.frame_count()) / time.encode_s, 1e3 * time.encode_s});
+                           1e3 * static_cast<double>(film.frame_count()) / time.encode_ms.median(),
+                           time.encode_ms.median(), time.encode_ms.least(), time.encode_ms.largest()});
     pictures.presets.add(std::move(row));
 }
 
@@ -244,27 +247,35 @@ void describe_tables(Pictures& pictures) {
                        {"setting", "setting"},
                        {"error_px", "largest displayed error [px]"},
                        {"whole_ms", "whole render [ms]"},
+                       {"whole_ms_least", "least"},
+                       {"whole_ms_largest", "largest"},
                        {"simulate_ms", "simulating [ms]"},
                        {"draw_ms", "drawing [ms]"},
                        {"encode_ms", "encoding [ms]"},
                        {"frames_per_s", "frames per second"},
                        report::failure_column()};
     solvers.note = fmt::format(
-        "The shortest of {} renders, column by column. Simulating includes the plan of auto, and encoding "
-        "the check of the finished file. Starting OpenGL is in none of them.",
+        "Times are medians of {} renders, column by column. Simulating includes the plan of auto, and "
+        "encoding the check of the finished file. Starting OpenGL is in none of them.",
         pictures.repeats);
     report::Table& presets = pictures.presets;
     presets.id = "picture_presets";
     presets.title = "x264 presets on the same frames";
-    presets.columns = {
-        {"preset", "preset"}, {"psnr_db", "luma PSNR [dB]"},         {"one_minus_ssim", "1 - luma SSIM"},
-        {"bytes", "bytes"},   {"frames_per_s", "frames per second"}, {"encode_ms", "encoding [ms]"}};
+    presets.columns = {{"preset", "preset"},
+                       {"psnr_db", "luma PSNR [dB]"},
+                       {"one_minus_ssim", "1 - luma SSIM"},
+                       {"bytes", "bytes"},
+                       {"frames_per_s", "frames per second"},
+                       {"encode_ms", "encoding [ms]"},
+                       {"encode_ms_least", "least"},
+                       {"encode_ms_largest", "largest"}};
     const EncoderDef& encoder = pictures.scene.video.encoder;
     presets.note = fmt::format(
-        "CRF {}, {} threads. Speed is that of encoding up to the checked file, without simulating and "
+        "CRF {}, {} threads. Speed is that of encoding (the median of {} times) up to the checked file, "
+        "without simulating and "
         "drawing. PSNR is of the mean square over all frames; SSIM (Wang and others 2004, windows of 8x8) is "
         "the mean over the frames.",
-        encoder.crf, encoder.threads);
+        encoder.crf, encoder.threads, pictures.repeats);
     pictures.plot = {"picture_error",
                      "Time of the whole render against displayed error",
                      "largest displayed error [px]",
@@ -285,20 +296,12 @@ std::string setting_paragraph(const Pictures& pictures) {
     return text + ".";
 }
 
-std::string share_paragraph(const report::Table& solvers) {
-    double least = kForever;
-    double most = 0.0;
-    for (const auto& row : solvers.rows) {
-        const auto* const whole_ms = std::get_if<double>(&row[3]);
-        if (whole_ms == nullptr) continue;
-        const double share = std::get<double>(row[4]) / *whole_ms;
-        least = std::min(least, share);
-        most = std::max(most, share);
-    }
-    if (most == 0.0) return "No solver ran the scene.";
+std::string share_paragraph(const std::vector<double>& simulating) {
+    if (simulating.empty()) return "No solver ran the scene.";
+    const auto [least, most] = std::minmax_element(simulating.begin(), simulating.end());
     return fmt::format(
         "Simulating takes {:.2g} % to {:.2g} % of the whole render; the rest is drawing and encoding.",
-        100.0 * least, 100.0 * most);
+        100.0 * *least, 100.0 * *most);
 }
 
 }  // namespace
@@ -319,10 +322,10 @@ ChapterWork pictures_work(const StudyDef& def) {
     }
     work.finish = [pictures] {
         return report::Chapter{"Pictures: from a scene to a video",
-                               {setting_paragraph(*pictures), share_paragraph(pictures->solvers)},
+                               {setting_paragraph(*pictures), share_paragraph(pictures->simulating)},
                                {pictures->solvers, pictures->presets},
                                {pictures->plot},
-                               share_paragraph(pictures->solvers)};
+                               share_paragraph(pictures->simulating)};
     };
     return work;
 }

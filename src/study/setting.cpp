@@ -38,7 +38,7 @@ std::vector<std::pair<std::string, std::string>> setting(const Timing& timing) {
             {"Build", CORDA_BUILD_TYPE ": " CORDA_BUILD_FLAGS},
             {"Corda", std::string(version())},
             {"Times",
-             fmt::format("on one thread, by CLOCK_MONOTONIC: the shortest of {} repeats of at least {:g} ms",
+             fmt::format("on one thread, by CLOCK_MONOTONIC: the median of {} repeats of at least {:g} ms",
                          timing.repeats, 1e3 * timing.shortest_s)}};
 }
 

@@ -105,7 +105,7 @@ double updates_per_second(const SwingDef& def, const Timing& timing) {
     problem.ropes = {rope_of(def)};
     problem.fps = FrameRate(Rational{1, 1});  // many steps per state that is read
     const Measurement run = measure(problem, method_of(def), "", kStepSeconds, timing);
-    return 1e3 / (kStepSeconds * run.ms_per_simulated_s);
+    return 1e3 / (kStepSeconds * run.ms_per_simulated_s.median());
 }
 
 double difference_under_gravity(double mass_kg, double other_mass_kg) {

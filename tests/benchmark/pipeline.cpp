@@ -44,6 +44,7 @@ const Look kDefault;
 const Look kPlain{"style.background=#0e1320", "style.payload=false", "style.supports=false",
                   "style.halo=false",         "overlay.time=false",  "overlay.scale_bar=false"};
 const Look kOverlays{"overlay.title=A swing", "overlay.energy=true", "overlay.method=true"};
+const Look kPlot{"overlay.plot=energy"};
 const Look kBlur8{"video.shutter=0.5", "video.subframes=8"};
 const Look kBlur16{"video.shutter=0.5", "video.subframes=16"};
 
@@ -84,6 +85,7 @@ void draw_and_encode(benchmark::State& bench) {
 BENCHMARK_CAPTURE(draw, plain, kPlain)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(draw, default_look, kDefault)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(draw, overlays, kOverlays)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(draw, plot, kPlot)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(draw, blur_8, kBlur8)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(draw, blur_16, kBlur16)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(encode)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -85,10 +85,10 @@ TEST(Plots, HaveTheSameBytesAtAnotherTime) {
 
 TEST(Plots, ContextIsGreyBehindTheOthersWithOneEntryInTheKey) {
     Plot plot = small_plot();
-    plot.series = {{"a", {{1.0, 1.0}}},
-                   {"b", {{1.0, 2.0}}, {}, true},
-                   {"c", {{1.0, 3.0}}, {}, true},
-                   {"d", {{1.0, 4.0}}, 3}};
+    plot.series = {{.name = "a", .points = {{1.0, 1.0}}},
+                   {.name = "b", .points = {{1.0, 2.0}}, .is_context = true},
+                   {.name = "c", .points = {{1.0, 3.0}}, .is_context = true},
+                   {.name = "d", .points = {{1.0, 4.0}}, .look = 3}};
     plot.context_name = "the rest";
     const std::string script = gnuplot_script(plot, PlotFormat::kSvg);
     const std::string items = script.substr(script.find("plot $"));
@@ -96,6 +96,16 @@ TEST(Plots, ContextIsGreyBehindTheOthersWithOneEntryInTheKey) {
     EXPECT_LT(items.find("$s2"), items.find("$s0"));
     EXPECT_THAT(items, AllOf(HasSubstr("title 'the rest'"), HasSubstr("notitle"), Not(HasSubstr("'b'"))));
     EXPECT_THAT(items.substr(items.find("$s3")), HasSubstr("'#cc79a7'"));  // its own look
+}
+
+TEST(Plots, SpreadsAreBarsOfTheSeriesColour) {
+    Plot plot = small_plot();
+    plot.series = {{.name = "a", .points = {}}};
+    plot.series[0].add(1.0, 2.0, {1.5, 3.0});
+    const std::string script = gnuplot_script(plot, PlotFormat::kSvg);
+    EXPECT_THAT(script, HasSubstr("\n1 2 1.5 3\n"));
+    EXPECT_THAT(script, HasSubstr("$s0 with yerrorbars linewidth 1.2 linecolor rgb '#0072b2'"));
+    EXPECT_FALSE(draw_plot(plot, PlotFormat::kSvg).empty());
 }
 
 TEST(Plots, MissingGnuplotNamesItsPackage) {

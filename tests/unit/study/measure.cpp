@@ -37,14 +37,14 @@ TEST(Measure, GivesErrorsAgainstAClosedForm) {
     EXPECT_EQ(right.failure, "");
     EXPECT_LT(right.largest_error, 1e-14);  // measured 2e-15
     EXPECT_GT(right.steps, 0U);
-    EXPECT_GT(right.ms_per_simulated_s, 0.0);
+    EXPECT_GT(right.ms_per_simulated_s.least(), 0.0);
     EXPECT_LT(right.largest_strain, 1e-14);
     ASSERT_TRUE(right.energy_error.has_value());
     EXPECT_LT(*right.energy_error, 1e-13);
 
     // One particle of two, 0.3 m of 2 m, at one frame of ten.
     const Measurement wrong = measure(falling_pair(0.3), ExactDef{1e-10}, "exact", 1e-10, kNoTiming);
-    EXPECT_EQ(wrong.ms_per_simulated_s, 0.0);
+    EXPECT_TRUE(wrong.ms_per_simulated_s.empty());
     EXPECT_NEAR(wrong.largest_error, 0.15, 1e-13);
     EXPECT_NEAR(wrong.rms_error, 0.15 / std::sqrt(2.0), 1e-13);
 }
