@@ -42,6 +42,9 @@ bool same_look(const view::Stamp& a, const std::vector<std::uint8_t>& a_coverage
                                     &b_coverage[b.first_coverage]);
 }
 
+/// Side of the tiles in which llvmpipe draws.
+constexpr int kLlvmpipeTilePx = 64;
+
 /// How many rows of the damage are drawn at once, a multiple of the side of llvmpipe's tiles, as one that is
 /// cut in two takes twice as long: as many as llvmpipe draws in a tenth of a second on one core, or in the
 /// time in which it passes over all capsules, as every band does.
@@ -53,8 +56,8 @@ int band_rows(const PixelRect& damage, const view::DrawList& list, const Tiles& 
     const std::size_t row = static_cast<std::size_t>(damage.width()) +
                             tiles.tiles().size() * kTile / static_cast<std::size_t>(damage.height());
     const std::size_t rows = std::max(kBand, kCapsule * list.capsules.size()) / row;
-    return Tiles::kSidePx * static_cast<int>(std::clamp<std::size_t>(rows / Tiles::kSidePx, 1,
-                                                                     kLargestSidePx / Tiles::kSidePx));
+    return kLlvmpipeTilePx * static_cast<int>(std::clamp<std::size_t>(rows / kLlvmpipeTilePx, 1,
+                                                                      kLargestSidePx / kLlvmpipeTilePx));
 }
 
 void check_size(int width, int height) {
@@ -321,7 +324,7 @@ void FrameRenderer::draw(const view::DrawList& list, const Damage& parts, const 
     const int rows = on_progress ? band_rows(all, list, tiles_) : kLargestSidePx;
     for (PixelRect band = all; band.y0 < all.y1; band.y0 = band.y1) {
         if (band.y0 > all.y0) report_progress(on_progress, band.y0 - all.y0, all.height());
-        band.y1 = std::min(band.y0 + rows, all.y1);
+        band.y1 = std::min((band.y0 + rows) / kLlvmpipeTilePx * kLlvmpipeTilePx, all.y1);
         draw_band(band, parts);
     }
     masks_are_empty_ = true;

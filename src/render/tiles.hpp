@@ -30,8 +30,9 @@ struct Batch {
 /// Where the layers of a draw list are painted, in what order: each in the tiles that its capsules may touch.
 class Tiles {
   public:
-    /// Side of a tile in pixels: that of those in which llvmpipe draws.
-    static constexpr int kSidePx = 64;
+    /// Side of a tile in pixels: that of a macroblock. Larger ones are fewer, but of a thin line mostly
+    /// ground.
+    static constexpr int kSidePx = 16;
 
     /// Memory of the last call is reused.
     void plan(const view::DrawList& list);

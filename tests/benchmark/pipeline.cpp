@@ -40,13 +40,16 @@ void draw_frames(Film& film, const Use& use) {
 
 /// A look, as settings of the scene.
 using Look = std::vector<Setting>;
-const Look kDefault;
-const Look kPlain{"style.background=#0e1320", "style.payload=false", "style.supports=false",
-                  "style.halo=false",         "overlay.time=false",  "overlay.scale_bar=false"};
-const Look kOverlays{"overlay.title=A swing", "overlay.energy=true", "overlay.method=true"};
-const Look kPlot{"overlay.plot=energy"};
-const Look kBlur8{"video.shutter=0.5", "video.subframes=8"};
-const Look kBlur16{"video.shutter=0.5", "video.subframes=16"};
+const Look kDefault{"style.trail_s=0"};
+const Look kPlain{"style.trail_s=0",        "style.background=#0e1320", "style.payload=false",
+                  "style.supports=false",   "style.halo=false",         "overlay.time=false",
+                  "overlay.scale_bar=false"};
+const Look kOverlays{"style.trail_s=0", "overlay.title=A swing", "overlay.energy=true",
+                     "overlay.method=true"};
+const Look kPlot{"style.trail_s=0", "overlay.plot=energy"};
+const Look kTrail;
+const Look kBlur8{"style.trail_s=0", "video.shutter=0.5", "video.subframes=8"};
+const Look kBlur16{"style.trail_s=0", "video.shutter=0.5", "video.subframes=16"};
 
 /// Drawing alone: the motion is there.
 void draw(benchmark::State& bench, const Look& look) {
@@ -85,6 +88,7 @@ void draw_and_encode(benchmark::State& bench) {
 BENCHMARK_CAPTURE(draw, plain, kPlain)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(draw, default_look, kDefault)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(draw, overlays, kOverlays)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK_CAPTURE(draw, trail, kTrail)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(draw, plot, kPlot)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(draw, blur_8, kBlur8)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK_CAPTURE(draw, blur_16, kBlur16)->Unit(benchmark::kMillisecond)->UseRealTime();
