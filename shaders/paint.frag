@@ -1,7 +1,7 @@
 #version 450 core
 // Paints a layer over what is there in integers, so that no driver's blending decides a bit, and empties its mask.
-// The same steps as paint_over() and TintSums::mean() in src/render/coverage.hpp. Change both together. It reads what it writes, its own
-// pixel alone.
+// The same steps as paint_over() and TintSums::mean() in src/render/coverage.hpp. Change both together. It
+// reads what it writes, its own pixel alone.
 
 uniform sampler2D frame;
 uniform sampler2D ground; // colours times alpha, as in the frame

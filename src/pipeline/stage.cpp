@@ -15,8 +15,6 @@ namespace {
 /// not.
 const Scene& drawable(const Scene& scene) {
     view::validate(scene.camera);
-    const int width = scene.video.width_px;
-    const int height = scene.video.height_px;
     const VideoDef& video = scene.video;
     if (!(video.shutter >= 0.0 && video.shutter <= 1.0)) {
         throw Error(ExitCode::kInvalidScene,
@@ -26,10 +24,10 @@ const Scene& drawable(const Scene& scene) {
         throw Error(ExitCode::kInvalidScene, fmt::format("video.subframes: {} is not within 2 .. {}",
                                                          video.subframes, VideoDef::kMostSubframes));
     }
-    if (is_picture_size(width, height)) return scene;
+    if (is_picture_size(video.width_px, video.height_px)) return scene;
     throw Error(ExitCode::kInvalidScene,
-                fmt::format("video.size: {}x{} is not within 1 .. {} pixels per side and {} in all", width,
-                            height, kLargestSidePx, kMostPicturePx));
+                fmt::format("video.size: {}x{} is not within 1 .. {} pixels per side and {} in all",
+                            video.width_px, video.height_px, kLargestSidePx, kMostPicturePx));
 }
 
 }  // namespace

@@ -11,6 +11,9 @@ using Real = ExtendedMotion::Real;
 
 constexpr int kColumns = 7;
 constexpr Real kShare = 3e-18L;  // of the size of the system: the error of a step
+/// What counts of the share of the largest speed by which a step's velocities err: near moments at which
+/// light particles whip, steps are so short that positions alone do not show it.
+constexpr Real kVelocityShare = 1e-3L;
 /// Steps after which a scene is given up: some minutes.
 constexpr long kMostSteps = 300000;
 
@@ -63,7 +66,7 @@ bool ExtendedMotion::advance_to(double time_s) {
         const Real grow = std::pow(kShare / std::max(error, Real{1e-30L}), Real{1} / (2 * kColumns - 1));
         if (!(error <= kShare)) {
             step_ = step * std::clamp(Real{0.9L} * grow, Real{0.1L}, Real{0.7L});
-            if (!(step_ > Real{1e-12L} * std::max(time_, Real{1e-6L})))
+            if (!(step_ > Real{1e-15L} * std::max(time_, Real{1e-6L})))
                 return fail("the truth's steps become too short");
             continue;
         }
@@ -188,6 +191,8 @@ Real ExtendedMotion::extrapolate(Real step, Vector& change) {
     Vector start_slope(4 * count_);
     derivative(y_, start_slope);
     const Real size = std::max(size_, y_.head(2 * count_).cwiseAbs().maxCoeff());
+    const Real speed = std::max({y_.tail(2 * count_).cwiseAbs().maxCoeff(),
+                                 step * start_slope.tail(2 * count_).cwiseAbs().maxCoeff(), Real{1e-30L}});
     Real error = 1;
     for (int j = 0; j < kColumns && !(error <= Real{1e-3L} * kShare); ++j) {
         const int parts = 2 * (j + 1);
@@ -208,8 +213,10 @@ Real ExtendedMotion::extrapolate(Real step, Vector& change) {
             change = finer;
         }
         if (j > 0) {
-            error = (change - row[static_cast<std::size_t>(j - 1)]).head(2 * count_).cwiseAbs().maxCoeff();
-            error = std::isfinite(error) ? error / size : 1;
+            const Vector differ = (change - row[static_cast<std::size_t>(j - 1)]).cwiseAbs();
+            error = std::max(differ.head(2 * count_).maxCoeff() / size,
+                             kVelocityShare * differ.tail(2 * count_).maxCoeff() / speed);
+            if (!std::isfinite(error)) error = 1;
         }
         row[static_cast<std::size_t>(j)] = change;
     }
