@@ -124,7 +124,8 @@ void add_render(CLI::App& app, Action& action) {
     options->scene.add_shortcut(*command, "--crf", "video.crf", "x264 quality, 1 (best) .. 51");
     options->scene.add_shortcut(*command, "--preset", "video.preset", "x264 preset, ultrafast .. placebo");
     options->scene.add_shortcut(*command, "--codec", "video.codec", "encoder");
-    options->scene.add_shortcut(*command, "--threads", "video.threads", "threads of the encoder");
+    options->scene.add_shortcut(*command, "--threads", "video.threads", "threads of each encoder");
+    options->scene.add_shortcut(*command, "--jobs", "video.jobs", "chunks made at a time; 0: one per core");
     command->add_option("--frames", options->frames, "only frames FIRST <= k < END")->type_name("FIRST:END");
     options->gl.add_to(*command);
     options->empty.add_to(*command);

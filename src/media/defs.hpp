@@ -20,9 +20,12 @@ struct EncoderDef {
     std::string preset = "medium";  ///< x264: ultrafast .. placebo
     /// x264 constant rate factor, 1 .. kLargestCrf (0 selects High 4:4:4, which browsers refuse).
     int crf = 18;
-    /// Threads of the encoder, 1 .. kMostThreads. Fixed, never "as many as there are cores": x264's bytes
+    /// Threads of each encoder, 1 .. kMostThreads. Fixed, never "as many as there are cores": x264's bytes
     /// depend on it.
-    int threads = 2;
+    int threads = 1;
+    /// How many chunks of a video are drawn and encoded at a time, 0 .. kMostThreads; 0: one per core. The
+    /// bytes do not depend on it.
+    int jobs = 0;
 };
 
 /// The picture size and rate of a video, and how long its frames are exposed.

@@ -84,6 +84,10 @@ void check_video_def(const VideoDef& def) {
         fail_usage("{} encoder threads are out of range; use 1 to {}", def.encoder.threads,
                    EncoderDef::kMostThreads);
     }
+    if (def.encoder.jobs < 0 || def.encoder.jobs > EncoderDef::kMostThreads) {
+        fail_usage("{} encoder jobs are out of range; use 0 (one per core) to {}", def.encoder.jobs,
+                   EncoderDef::kMostThreads);
+    }
     const auto row = std::find_if(kFormats.begin(), kFormats.end(), [&def](const Format& candidate) {
         return candidate.codec == def.encoder.codec;
     });

@@ -93,6 +93,14 @@ void Mp4Output::write(AVPacket& packet) {
     check_libav(io_->error, kIo, fmt::format("cannot write to '{}'", path_));
 }
 
+void Mp4Output::flush() {
+    assert(begun_);
+    const LogCapture log;
+    check_libav(av_write_frame(format_.get(), nullptr), kIo, fmt::format("cannot write to '{}'", path_));
+    avio_flush(io_.get());
+    check_libav(io_->error, kIo, fmt::format("cannot write to '{}'", path_));
+}
+
 void Mp4Output::finish() {
     assert(begun_);
     const LogCapture log;

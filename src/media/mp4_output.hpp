@@ -31,6 +31,9 @@ class Mp4Output {
     /// Writes a packet (pts and dts in frames, duration 1), which is empty afterwards.
     void write(AVPacket& packet);
 
+    /// Ends the fragment: all packets so far can be played from the file. kFragmented only.
+    void flush();
+
     /// Writes the trailer and all that is buffered.
     void finish();
 

@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
-#include "corda/media/color_patch.hpp"
-#include "corda/media/encoder.hpp"
+#include "corda/media/chunk.hpp"
 #include "corda/media/mp4_output.hpp"
 #include "corda/media/mp4_remux.hpp"
 
@@ -30,6 +31,13 @@ nlohmann::json patches_json(const std::vector<ColorPatch>& patches) {
     return list;
 }
 
+/// Whether a decoder of one takes the other, too.
+bool are_of_one_video(const AVCodecParameters& a, const AVCodecParameters& b) {
+    return a.width == b.width && a.height == b.height && a.video_delay == b.video_delay &&
+           std::equal(a.extradata, a.extradata + a.extradata_size, b.extradata,
+                      b.extradata + b.extradata_size);
+}
+
 }  // namespace
 
 void check_video_output(const std::string& path, const VideoDef& def, const std::string& input, bool force) {
@@ -41,31 +49,62 @@ void check_video_output(const std::string& path, const VideoDef& def, const std:
 
 struct VideoWriter::Impl {
     Impl(std::string final_path, const VideoDef& video, VideoMetadata meta,
-         const OutputOptions& output_options)
+         const OutputOptions& output_options, std::int64_t first)
         : path(std::move(final_path)),
           options(output_options),
           def(video),
           format(find_format(path, def.encoder.codec)),
           title(std::move(meta.title)),
           comment(parsed_comment(meta.comment_json)),
-          encoder(format.make_encoder(format, def)),
+          first_frame(first),
+          encoder(std::make_unique<ChunkEncoder>(format, def)),
           part(PartFile::create(part_path(path), options)),
           mp4(part.descriptor(), part.path()) {}
 
-    /// Writes the header, once: it waits for the first frame because the comment holds that frame's colours.
-    void begin(const Image* first_frame) {
-        if (mp4.begun()) return;
+    /// Writes the header, with the colours of the first frame.
+    void begin(Chunk& chunk) {
         comment["fps"] = def.fps.rational().text();
         comment["crf"] = def.encoder.crf;
-        comment["patches"] =
-            patches_json(first_frame == nullptr ? std::vector<ColorPatch>{} : choose_patches(*first_frame));
-        mp4.begin(format.container, Mp4Layout::kFragmented, encoder->parameters(), def.fps.rational(), title,
+        comment["patches"] = patches_json(chunk.patches);
+        parameters = std::move(chunk.parameters);
+        mp4.begin(format.container, Mp4Layout::kFragmented, *parameters, def.fps.rational(), title,
                   comment.dump());
     }
 
+    void append(Chunk chunk) {
+        if (chunk.frames == 0) return;
+        if (!mp4.begun())
+            begin(chunk);
+        else if (!are_of_one_video(*parameters, *chunk.parameters))
+            throw Error(ExitCode::kInternal, "two chunks of a video have different parameters");
+        // The n-th packet is decoded at frame n, earlier by as many as it takes to put frames in order.
+        std::int64_t decoded = written - parameters->video_delay;
+        for (const Packet& packet : chunk.packets) {
+            packet->pts += written;
+            packet->dts = decoded++;
+            packet->duration = 1;
+            if (packet->pts < packet->dts || packet->pts >= written + chunk.frames)
+                throw Error(ExitCode::kInternal, "a chunk has a packet at a time that cannot be");
+            mp4.write(*packet);
+        }
+        mp4.flush();
+        part.sync();
+        written += chunk.frames;
+    }
+
+    /// Ends the chunk that write() has begun.
+    void end_chunk() {
+        if (encoder && encoder->frames() > 0) append(encoder->finish());
+        encoder.reset();
+    }
+
+    [[nodiscard]] std::int64_t frames() const { return written + (encoder ? encoder->frames() : 0); }
+
+    /// The number in the film of the next frame that write() is given.
+    [[nodiscard]] std::int64_t next_frame() const { return first_frame + frames(); }
+
     void drain() {
-        begin(nullptr);
-        encoder->drain([this](AVPacket& packet) { mp4.write(packet); });
+        end_chunk();
         mp4.finish();
         drained = true;
     }
@@ -76,16 +115,19 @@ struct VideoWriter::Impl {
     const Format& format;
     std::string title;
     nlohmann::json comment;
-    std::unique_ptr<Encoder> encoder;
+    std::int64_t first_frame;
+    std::unique_ptr<ChunkEncoder> encoder;  ///< of the chunk that write() adds to
+    CodecParameters parameters;
     PartFile part;
     Mp4Output mp4;
+    std::int64_t written = 0;  ///< frames of whole chunks
     bool drained = false;
 };
 
 VideoWriter::VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata,
-                         const OutputOptions& options) {
+                         const OutputOptions& options, std::int64_t first_frame) {
     check_video_output(path, def, "", options.force);
-    impl_ = std::make_unique<Impl>(std::move(path), def, std::move(metadata), options);
+    impl_ = std::make_unique<Impl>(std::move(path), def, std::move(metadata), options, first_frame);
 }
 
 VideoWriter::~VideoWriter() {
@@ -102,12 +144,24 @@ void VideoWriter::write(const Image& frame, const Damage& damage) {
                     fmt::format("a frame of {}x{} was written to a video of {}x{}", frame.width(),
                                 frame.height(), impl.def.width_px, impl.def.height_px));
     }
-    impl.begin(&frame);
-    impl.encoder->encode(frame, damage, [&impl](AVPacket& packet) { impl.mp4.write(packet); });
+    if (!impl.encoder) impl.encoder = std::make_unique<ChunkEncoder>(impl.format, impl.def);
+    impl.encoder->encode(frame, damage);
+    if (impl.next_frame() % frames_per_chunk(impl.def.fps) == 0) impl.end_chunk();
+}
+
+void VideoWriter::append(Chunk chunk) {
+    Impl& impl = *impl_;
+    if (impl.drained) throw Error(ExitCode::kInternal, "a chunk was added to a video that has already ended");
+    impl.end_chunk();
+    impl.append(std::move(chunk));
+}
+
+const Format& VideoWriter::format() const {
+    return impl_->format;
 }
 
 std::int64_t VideoWriter::frames() const {
-    return impl_->encoder->frames();
+    return impl_->frames();
 }
 
 void VideoWriter::finish() {

@@ -6,6 +6,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
+#include "corda/media/chunk.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/media/format.hpp"
 
@@ -26,17 +27,17 @@ struct VideoMetadata {
 
 /// Writes a video of one constant rational frame rate, in the format that the ending of its name tells.
 ///
-/// While it runs, whole fragments go to `PATH.part`, which plays at any moment. `finish` drains the encoder,
+/// While it runs, whole chunks go to `PATH.part`, which plays at any moment. `finish` ends the last chunk,
 /// copies the stream into a plain faststart MP4 of temporary name, verifies that, and only then gives it the
 /// final name. Whatever has the final name is complete and verified.
 class VideoWriter {
   public:
-    /// Opens the encoder and the part file. With `force`, an existing video is replaced at the end, and the
-    /// part of an interrupted render now. Throws corda::Error: kUsage for an unknown ending or a bad def,
-    /// kEncoder if the encoder is missing or refuses, kIo if the file cannot be made, exists, or is being
-    /// written by another render.
+    /// Opens the part file, for a video whose first frame is number `first_frame` of its film. With `force`,
+    /// an existing video is replaced at the end, and the part of an interrupted render now. Throws
+    /// corda::Error: kUsage for an unknown ending or a bad def, kEncoder if the encoder is missing, kIo if
+    /// the file cannot be made, exists, or is being written by another render.
     VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata,
-                const OutputOptions& options = {});
+                const OutputOptions& options = {}, std::int64_t first_frame = 0);
     VideoWriter(const VideoWriter&) = delete;
     VideoWriter& operator=(const VideoWriter&) = delete;
     /// Without `finish` or `abandon` the part file stays as it is, unless it is empty.
@@ -45,6 +46,14 @@ class VideoWriter {
     /// Adds the next frame, of the size of `def`. `damage` is what may differ from the previous frame (the
     /// first is taken whole). Throws kEncoder or kIo.
     void write(const Image& frame, const Damage& damage);
+
+    /// Adds a chunk that was encoded elsewhere, and forces it onto the disk. All of the frames so far are in
+    /// chunks then, each of which ends where frames_per_chunk() says. Throws kIo, and kInternal if it is no
+    /// part of this video.
+    void append(Chunk chunk);
+
+    /// What it is written as.
+    [[nodiscard]] const Format& format() const;
 
     /// Frames written so far.
     [[nodiscard]] std::int64_t frames() const;

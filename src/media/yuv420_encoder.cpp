@@ -7,11 +7,10 @@
 #include <span>
 
 #include "corda/core/basics.hpp"
+#include "corda/media/chunk.hpp"
 
 namespace corda::media {
 namespace {
-
-constexpr double kKeyFrameIntervalS = 2.0;  // an interrupted run loses at most this much
 
 const AVCodec* find_codec(const char* name) {
     const AVCodec* codec = avcodec_find_encoder_by_name(name);
@@ -40,7 +39,7 @@ void configure(AVCodecContext& context, const Format& format, const VideoDef& de
     context.sample_aspect_ratio = {1, 1};
     context.time_base = frame_time_base(fps);
     context.framerate = to_libav(fps);
-    context.gop_size = static_cast<int>(std::clamp(kKeyFrameIntervalS * fps.value(), 1.0, 1e6));
+    context.gop_size = static_cast<int>(frames_per_chunk(def.fps));
     context.thread_count = def.encoder.threads;
     context.flags |= AV_CODEC_FLAG_GLOBAL_HEADER | AV_CODEC_FLAG_CLOSED_GOP | AV_CODEC_FLAG_BITEXACT;
     set_colors(context);

@@ -1,6 +1,7 @@
 #include "corda/pipeline/film.hpp"
 
 #include <cmath>
+#include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
@@ -66,19 +67,32 @@ std::vector<MotionBounds> bounds_of_start(const System& system) {
 
 }  // namespace
 
+/// What one thread draws a film with.
+struct pipeline::Brush {
+    Brush(const Scene& scene, const System& system, const FilmDef& def)
+        : stage(scene, system, def.backend, def.require_gpu),
+          tracks(stage.traced(), scene.style.trail_s, scene.video.fps) {}
+
+    Stage stage;
+    Tracks tracks;
+    State state;
+    Figures figures;  ///< of the state
+};
+
 struct Film::Impl {
+    using Brush = pipeline::Brush;
+
     Impl(const Scene& given, FilmDef options)
         : scene(given),
           def(std::move(options)),
           system(system_of(scene)),
           named(named_methods(scene)),
-          stage(scene, system, def.backend, def.require_gpu),
+          brush(scene, system, def),
           curves(scene, system),
           motion(system, scene.world, if_all_named(named),
                  Timeline(scene.video.fps, pipeline::last_frame_of(scene), def.stills_s),
                  def.motion_budget_bytes, def.on_progress, quantity_of(scene.style.color_by),
-                 def.readings.with(curves.readings())),
-          tracks(stage.traced(), scene.style.trail_s, scene.video.fps) {
+                 def.readings.with(curves.readings())) {
         if (motion.methods().empty()) {
             plan = motion.record([&](const Timeline& timeline, sim::Recording& recording) {
                 return plan_within(timeline, recording);
@@ -91,7 +105,7 @@ struct Film::Impl {
     Plan plan_within(const Timeline& timeline, sim::Recording& recording) const {
         const double tolerance_px = std::get<AutoDef>(scene.solver).tolerance_px;
         const auto tolerance_m = [&](const MotionBounds& bounds) {
-            return tolerance_px / stage.largest_pixels_per_metre(bounds);
+            return tolerance_px / brush.stage.largest_pixels_per_metre(bounds);
         };
         return sim::plan_methods(system, named, scene.world, {tolerance_m, timeline, def.on_progress, now_s},
                                  recording);
@@ -100,23 +114,37 @@ struct Film::Impl {
     /// The camera, fitted once the motion is known as far as it needs it.
     const CameraDef& find_camera() {
         if (camera) return *camera;
-        if (stage.needs_motion()) motion.run_to_end(def.on_progress);
-        // The start is there even if the first step diverges.
-        camera = stage.fit(
-            motion.recording().size() > 0 ? motion.recording().particle_bounds() : bounds_of_start(system),
-            motion.recording().spread());
-        read_curves();
+        if (brush.stage.needs_motion()) motion.run_to_end(def.on_progress);
+        if (scene.overlay.plot != LivePlot::kNone) plot = read_curves();
+        camera = fit(brush.stage);
         return *camera;
     }
 
-    void read_curves() {
-        if (scene.overlay.plot == LivePlot::kNone) return;
+    /// Fits a stage to the motion.
+    CameraDef fit(pipeline::Stage& stage) const {
+        if (plot) stage.set_plot(*plot);
+        // The start is there even if the first step diverges.
+        const sim::Recording& recording = motion.recording();
+        return stage.fit(recording.size() > 0 ? recording.particle_bounds() : bounds_of_start(system),
+                         recording.spread());
+    }
+
+    /// Another brush for what this film draws.
+    std::unique_ptr<Brush> another_brush() {
+        static_cast<void>(find_camera());
+        auto made = std::make_unique<Brush>(scene, system, def);
+        static_cast<void>(fit(made->stage));
+        made->tracks = brush.tracks;
+        return made;
+    }
+
+    view::PlotData read_curves() {
         const double end_s = last_s();
         std::int64_t states = 0;
         while (states <= pipeline::last_frame_of(scene) && scene.video.fps.time_s(states) <= end_s) ++states;
-        stage.set_plot(curves.read(motion.methods(), states, [this](std::int64_t k) -> const State& {
+        return curves.read(motion.methods(), states, [this](std::int64_t k) -> const State& {
             return motion.at(scene.video.fps.time_s(k), def.on_progress);
-        }));
+        });
     }
 
     void require_time(double time_s) const {
@@ -130,24 +158,29 @@ struct Film::Impl {
         return motion.at(time_s, def.on_progress);
     }
 
-    /// The trails that end at a time.
-    const std::vector<view::Trail>& trails_to(double time_s) {
+    /// Reads the state at a time, and what the trails to it need, for a brush. Brushes may be used by several
+    /// threads.
+    const State& read(double time_s, Brush& by) {
         require_time(time_s);
-        tracks.read(motion, time_s, def.on_progress);
-        return tracks.to(at(time_s));
+        const std::lock_guard lock(reading);
+        by.tracks.read(motion, time_s, def.on_progress);
+        by.state = motion.at(time_s, def.on_progress);
+        by.figures = motion.figures();
+        return by.state;
     }
 
     view::DrawList poses(std::span<const double> times_s, const OnProgress& on_progress) {
+        pipeline::Stage& stage = brush.stage;
         const view::Camera map = stage.map_of(find_camera());
         const view::SceneView& view = stage.view();
         view::DrawList list;
         view.start(list);
-        view.draw_trails(trails_to(times_s.back()), map, list);
+        view.draw_trails(brush.tracks.to(read(times_s.back(), brush)), map, list);
         for (std::size_t k = 0; k < times_s.size(); ++k) {
             report_progress(on_progress, static_cast<std::int64_t>(k),
                             static_cast<std::int64_t>(times_s.size()));
             const std::size_t first_layer = list.layers.size();
-            view.draw_pose(at(times_s[k]), map, list);
+            view.draw_pose(read(times_s[k], brush), map, list);
             const double opacity = pose_opacity(k, times_s.size());
             for (std::size_t l = first_layer; l < list.layers.size(); ++l) {
                 Color& color = list.layers[l].color;
@@ -159,9 +192,9 @@ struct Film::Impl {
                                         k + 1, times_s.size(), kMostPoseCapsules));
             }
         }
-        const State& last = at(times_s.back());
+        const State& last = read(times_s.back(), brush);
         view.draw_supports(last, map, list);
-        view::Caption caption = caption_of(last, map);
+        view::Caption caption = caption_of(brush, map);
         if (times_s.size() > 1) {  // it is of no one time
             caption.time_s.reset();
             caption.energy_error.reset();
@@ -171,21 +204,22 @@ struct Film::Impl {
         return list;
     }
 
-    /// What there is to say of the last state that at() returned.
-    view::Caption caption_of(const State& state, const view::Camera& map) const {
+    /// What there is to say of the last state that was read for a brush.
+    view::Caption caption_of(const Brush& by, const view::Camera& map) const {
         std::optional<double> bound_px;
         if (plan.error_bound_m) bound_px = *plan.error_bound_m * map.pixels_per_metre();
-        return {state.time_s, motion.figures().energy_error, method_caption(plan, bound_px)};
+        return {by.state.time_s, by.figures.energy_error, method_caption(plan, bound_px)};
     }
 
-    /// Requires a pipeline::Stage::Use.
-    Damage draw(double time_s, double shutter, const OnProgress& on_progress) {
+    /// Requires a Use of the brush's stage. `camera`: of find_camera().
+    Damage draw(double time_s, double shutter, const CameraDef& camera_def, const OnProgress& on_progress,
+                Brush& by) {
         require_time(time_s);
         if (!(shutter >= 0.0 && shutter <= 1.0))
             throw Error(ExitCode::kUsage, fmt::format("a shutter of {} is not within 0 .. 1", shutter));
-        const view::Camera map = stage.map_of(find_camera());
+        const view::Camera map = by.stage.map_of(camera_def);
         const auto draw_asking = [&](const OnProgress& ask) {
-            return shutter > 0.0 ? expose(time_s, shutter, map, ask) : draw_sharp(time_s, map, ask);
+            return shutter > 0.0 ? expose(time_s, shutter, map, ask, by) : draw_sharp(time_s, map, ask, by);
         };
         try {
             return draw_asking(on_progress);
@@ -194,10 +228,10 @@ struct Film::Impl {
         }
     }
 
-    Damage draw_sharp(double time_s, const view::Camera& map, const OnProgress& on_progress) {
-        const std::vector<view::Trail>& trails = trails_to(time_s);
-        const State& state = at(time_s);
-        return stage.draw(state, map, caption_of(state, map), {trails, curves.at(state)}, on_progress);
+    Damage draw_sharp(double time_s, const view::Camera& map, const OnProgress& on_progress, Brush& by) {
+        const State& state = read(time_s, by);
+        return by.stage.draw(state, map, caption_of(by, map), {by.tracks.to(state), curves.at(state)},
+                             on_progress);
     }
 
     /// The end of the motion: that of the scene, or of the last recorded state if it diverges.
@@ -208,33 +242,45 @@ struct Film::Impl {
     }
 
     /// The states are read in the order of time: what is not recorded is simulated on the way.
-    Damage expose(double time_s, double shutter, const view::Camera& map, const OnProgress& on_progress) {
+    Damage expose(double time_s, double shutter, const view::Camera& map, const OnProgress& on_progress,
+                  Brush& by) {
         const VideoDef& video = scene.video;
         const double half_s = 0.5 * shutter * video.fps.interval_s();
         const double from_s = std::max(0.0, time_s - half_s);
         const double until_s = std::min(std::max(last_s(), time_s), time_s + half_s);
-        const std::int64_t picture = stage.begin_exposure();
+        const std::int64_t picture = by.stage.begin_exposure();
         std::optional<view::Caption> caption;
+        const auto note = [&] {
+            static_cast<void>(read(time_s, by));
+            caption = caption_of(by, map);
+        };
         for (int i = 0; i < video.subframes; ++i) {
             const double at_s = from_s + (i + 0.5) / video.subframes * (until_s - from_s);
-            if (!caption && at_s >= time_s) caption = caption_of(at(time_s), map);
-            const std::vector<view::Trail>& trails = trails_to(at_s);
-            const State& state = at(at_s);
-            stage.expose(picture, state, map, {trails, curves.at(state)}, on_progress);
+            if (!caption && at_s >= time_s) note();
+            const State& state = read(at_s, by);
+            by.stage.expose(picture, state, map, {by.tracks.to(state), curves.at(state)}, on_progress);
         }
-        if (!caption) caption = caption_of(at(time_s), map);
-        return stage.develop(picture, *caption, map);
+        if (!caption) note();
+        return by.stage.develop(picture, *caption, map);
+    }
+
+    /// Whether frames before `end` can be drawn in any order without being simulated again.
+    bool holds(std::int64_t end) {
+        motion.run_to_end(def.on_progress);
+        const auto last = motion.timeline().find(scene.video.fps.time_s(end - 1));
+        return scene.video.shutter == 0.0 && last && motion.recording().holds(*last);
     }
 
     Scene scene;
     FilmDef def;
     System system;
     sim::NamedMethods named;
-    pipeline::Stage stage;
+    Brush brush;
     pipeline::Curves curves;
+    std::recursive_mutex reading;  ///< on_progress may draw this film itself
     pipeline::Motion motion;
-    pipeline::Tracks tracks;
     Plan plan;
+    std::optional<view::PlotData> plot;
     std::optional<CameraDef> camera;
 };
 
@@ -279,7 +325,7 @@ const Plan& Film::plan() const {
 
 std::optional<double> Film::error_bound_px() const {
     if (!plan().error_bound_m) return std::nullopt;
-    return *plan().error_bound_m * impl_->stage.map_of(impl_->find_camera()).pixels_per_metre();
+    return *plan().error_bound_m * impl_->brush.stage.map_of(impl_->find_camera()).pixels_per_metre();
 }
 
 const CameraDef& Film::camera() const {
@@ -315,34 +361,49 @@ Image Film::frame(std::int64_t k, const OnProgress& on_progress) const {
 }
 
 Image Film::still(double time_s, const OnProgress& on_progress, double shutter) const {
-    const pipeline::Stage::Use use(impl_->stage);
-    impl_->draw(time_s, shutter, on_progress);
-    return impl_->stage.image();
+    const pipeline::Stage::Use use(impl_->brush.stage);
+    const CameraDef& camera = impl_->find_camera();
+    impl_->draw(time_s, shutter, camera, on_progress, impl_->brush);
+    return impl_->brush.stage.image();
 }
 
 bool Film::shows_nothing() const {
-    return impl_->stage.shows_nothing();
+    return impl_->brush.stage.shows_nothing();
 }
 
 GlInfo Film::gl() const {
-    const pipeline::Stage::Use use(impl_->stage);
-    const gl::Context& context = impl_->stage.context();
+    const pipeline::Stage::Use use(impl_->brush.stage);
+    const gl::Context& context = impl_->brush.stage.context();
     return {context.info().gl_renderer, context.info().gl_vendor, context.info().gl_version,
             context.platform()};
 }
 
-FilmPainter::FilmPainter(const Film& film) : film_(&film), use_(film.impl_->stage) {}
+FilmPainter::FilmPainter(const Film& film)
+    : film_(&film), brush_(&film.impl_->brush), use_(brush_->stage), camera_(film.impl_->find_camera()) {}
+
+FilmPainter::FilmPainter(const Film& film, Apart)
+    : film_(&film),
+      own_(film.impl_->another_brush()),
+      brush_(own_.get()),
+      use_(brush_->stage),
+      camera_(film.impl_->find_camera()) {}
+
+FilmPainter::~FilmPainter() = default;
+
+bool FilmPainter::can_draw_apart(const Film& film, std::int64_t end) {
+    return film.impl_->holds(end);
+}
 
 Damage FilmPainter::draw(double time_s, const OnProgress& on_progress) {
-    pipeline::Stage& stage = film_->impl_->stage;
-    Damage damage = film_->impl_->draw(time_s, film_->scene().video.shutter, on_progress);
+    pipeline::Stage& stage = brush_->stage;
+    Damage damage = film_->impl_->draw(time_s, film_->scene().video.shutter, camera_, on_progress, *brush_);
     const bool is_next = stage.pictures() == pictures_ + 1;
     pictures_ = stage.pictures();
     return is_next ? damage : Damage{stage.image().rect()};
 }
 
 void FilmPainter::draw(view::DrawList list, const OnProgress& on_progress) {
-    pipeline::Stage& stage = film_->impl_->stage;
+    pipeline::Stage& stage = brush_->stage;
     try {
         stage.draw(list, on_progress);
     } catch (const pipeline::Stage::Overdrawn&) {
@@ -357,7 +418,11 @@ view::DrawList FilmPainter::poses(const Film& film, std::span<const double> time
 }
 
 const Image& FilmPainter::image() const {
-    return film_->impl_->stage.image();
+    return brush_->stage.image();
+}
+
+bool FilmPainter::shows_nothing() const {
+    return brush_->stage.shows_nothing();
 }
 
 struct Renderer::Impl {

@@ -1,21 +1,34 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <span>
 
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/stage.hpp"
 
 namespace corda {
+namespace pipeline {
+struct Brush;
+}
 
-/// Draws a film's frames one after the other without copying them, for a caller that encodes them. The film's
-/// context is current on this thread for as long as it lives; afterwards, the one before is again.
+/// Draws a film's frames one after the other without copying them, for a caller that encodes them. A context
+/// is current on this thread for as long as it lives; afterwards, the one before is again.
 class FilmPainter {
   public:
-    /// Throws corda::Error (kNoGl).
+    /// Draws with the film's own context. Throws corda::Error (kNoGl).
     explicit FilmPainter(const Film& film);
+    /// Draws with a context of its own: painters of a film may then work side by side, in the threads that
+    /// made them, one at a time being made. Throws corda::Error (kNoGl).
+    struct Apart {};
+    FilmPainter(const Film& film, Apart);
     FilmPainter(const FilmPainter&) = delete;
     FilmPainter& operator=(const FilmPainter&) = delete;
-    ~FilmPainter() = default;
+    ~FilmPainter();
+
+    /// Whether frames before `end` can be drawn in any order without being simulated again. Simulates what
+    /// has not been yet.
+    [[nodiscard]] static bool can_draw_apart(const Film& film, std::int64_t end);
 
     /// Draws the picture at a time; returns what may differ from the last one that this painter drew: all,
     /// if somebody else has drawn the film since. Asks `on_progress` as Film::still().
@@ -27,12 +40,17 @@ class FilmPainter {
     /// kInterrupted, and kUsage for several poses of more lines than memory is meant for.
     [[nodiscard]] static view::DrawList poses(const Film& film, std::span<const double> times_s,
                                               const OnProgress& on_progress = {});
-    /// The last picture of the film.
+    /// The last picture.
     [[nodiscard]] const Image& image() const;
+    /// Whether nothing is in view on it.
+    [[nodiscard]] bool shows_nothing() const;
 
   private:
     const Film* film_;
+    std::unique_ptr<pipeline::Brush> own_;
+    pipeline::Brush* brush_;
     pipeline::Stage::Use use_;
+    CameraDef camera_;
     std::int64_t pictures_ = -1;  ///< the stage's count after the last draw
 };
 

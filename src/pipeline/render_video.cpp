@@ -1,13 +1,18 @@
+#include <algorithm>
+#include <thread>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
+#include "corda/media/chunk.hpp"
 #include "corda/media/format.hpp"
 #include "corda/media/video_writer.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/render_chunks.hpp"
 #include "corda/pipeline/validate.hpp"
 #include "corda/view/look.hpp"
 
@@ -39,9 +44,22 @@ media::VideoMetadata metadata(const Film& film, std::int64_t first) {
                             error.what(), first, first + frames - 1, kept, path));
 }
 
+/// How many chunks of so many frames to make at a time.
+int jobs_of(const VideoDef& video, std::int64_t frames) {
+    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const std::int64_t length = media::frames_per_chunk(video.fps);
+    const auto wanted = static_cast<std::int64_t>(video.encoder.jobs == 0 ? cores : video.encoder.jobs);
+    return static_cast<int>(std::min(wanted, (frames + length - 1) / length));
+}
+
 /// Draws and encodes frames first <= k < end; counts the empty ones.
 void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProgress& on_progress,
                   media::VideoWriter& writer, Rendered& result) {
+    const int jobs = jobs_of(film.scene().video, end - first);
+    if (jobs > 1 && FilmPainter::can_draw_apart(film, end)) {
+        pipeline::render_chunks(film, first, end, jobs, on_progress, writer, result);
+        return;
+    }
     FilmPainter painter(film);
     std::int64_t k = first;
     const OnProgress ask = [&](std::int64_t, std::int64_t) {
@@ -96,7 +114,7 @@ Rendered render_video(Film& film, const std::string& path, const RenderDef& def)
     static_cast<void>(film.camera());  // what can fail does so before a file is made
     static_cast<void>(film.gl());
     media::VideoWriter writer(path, film.scene().video, metadata(film, def.first),
-                              {.force = def.force, .on_progress = def.on_progress});
+                              {.force = def.force, .on_progress = def.on_progress}, def.first);
     Rendered result;
     result.encoder = film.scene().video.encoder.codec;
     try {

@@ -334,7 +334,9 @@ std::vector<Key> video_keys() {
         {"video", "crf", integer(1, EncoderDef::kLargestCrf), "", at(def.encoder.crf),
          "the constant rate factor", "1 is the best; browsers refuse the profile that 0 selects"},
         {"video", "threads", integer(1, EncoderDef::kMostThreads), "", at(def.encoder.threads),
-         "the number of threads of the encoder", "the bytes depend on it"},
+         "the number of threads of each encoder", "the bytes depend on it"},
+        {"video", "jobs", integer(0, EncoderDef::kMostThreads), "", at(def.encoder.jobs),
+         "how many chunks of the video are made at a time", "0: one per core; the bytes do not depend on it"},
     };
 }
 

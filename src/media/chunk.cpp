@@ -1,0 +1,46 @@
+#include "corda/media/chunk.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "corda/media/color_patch.hpp"
+
+namespace corda::media {
+
+std::int64_t frames_per_chunk(const FrameRate& fps) {
+    constexpr double kFrames = 60.0;
+    const double per_second = fps.rational().value();
+    return std::max<std::int64_t>(1, std::llround(std::clamp(kFrames, per_second, 2.0 * per_second)));
+}
+
+ChunkEncoder::ChunkEncoder(const Format& format, const VideoDef& def)
+    : encoder_(format.make_encoder(format, def)) {}
+
+void ChunkEncoder::keep(AVPacket& packet) {
+    Packet kept = check_allocated(Packet(av_packet_alloc()), "a packet");
+    av_packet_move_ref(kept.get(), &packet);
+    chunk_.packets.push_back(std::move(kept));
+}
+
+void ChunkEncoder::encode(const Image& frame, const Damage& damage) {
+    assert(encoder_);
+    if (chunk_.frames == 0) chunk_.patches = choose_patches(frame);
+    encoder_->encode(frame, damage, [this](AVPacket& packet) { keep(packet); });
+    ++chunk_.frames;
+}
+
+Chunk ChunkEncoder::finish() {
+    assert(encoder_);
+    if (chunk_.frames > 0) {
+        encoder_->drain([this](AVPacket& packet) { keep(packet); });
+        chunk_.parameters = check_allocated(CodecParameters(avcodec_parameters_alloc()), "codec parameters");
+        check_libav(avcodec_parameters_copy(chunk_.parameters.get(), &encoder_->parameters()),
+                    ExitCode::kEncoder, "cannot copy codec parameters");
+    }
+    encoder_.reset();
+    return std::move(chunk_);
+}
+
+}  // namespace corda::media

@@ -1,0 +1,155 @@
+#include "corda/pipeline/render_chunks.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "corda/media/chunk.hpp"
+#include "corda/media/mp4_remux.hpp"
+#include "corda/media/verify.hpp"
+#include "corda/pipeline/painter.hpp"
+#include "support/command.hpp"
+#include "support/failure.hpp"
+#include "support/image_matchers.hpp"
+
+namespace corda {
+namespace {
+
+using testing::ElementsAre;
+
+/// 130 frames: chunks of 30, the last of 10. With a trail and a plot, which need other frames.
+Scene chunked_scene(int jobs, const std::vector<Setting>& settings = {}) {
+    Scene scene = parse_scene(R"(schema = 1
+[world]
+duration = 8.66
+[[rope]]
+hang = { links = 12, length = 1.0, angle_deg = 50.0 }
+[solver]
+method = "exact"
+[style]
+trail_s = 0.5
+[overlay]
+plot = "tip"
+[video]
+size = [256, 144]
+fps = 15
+preset = "veryfast"
+)",
+                              "film.toml", settings);
+    scene.video.encoder.jobs = jobs;
+    return scene;
+}
+
+class RenderChunks : public testing::Test {
+  protected:
+    [[nodiscard]] std::string file(const std::string& name) const { return folder_.file(name); }
+
+    [[nodiscard]] std::string bytes_of(const Scene& scene, const RenderDef& def = {},
+                                       std::size_t budget_bytes = std::size_t{1} << 20) const {
+        FilmDef film_def;
+        film_def.motion_budget_bytes = budget_bytes;
+        Film film(scene, film_def);
+        EXPECT_TRUE(render_video(film, file("out.mp4"), def).complete);
+        const std::string bytes = test::read_file(file("out.mp4"));
+        std::filesystem::remove(file("out.mp4"));
+        return bytes;
+    }
+
+    test::ScratchFolder folder_;
+};
+
+TEST_F(RenderChunks, HaveTheSameBytesHoweverManyAreMadeAtATime) {
+    const std::string expected = bytes_of(chunked_scene(1));
+    for (const int jobs : {2, 3, 8, 0}) EXPECT_TRUE(bytes_of(chunked_scene(jobs)) == expected) << jobs;
+    // A motion that is not recorded is drawn in order.
+    EXPECT_TRUE(bytes_of(chunked_scene(4), {}, 0) == expected);
+    RenderDef middle;
+    middle.first = 20;
+    middle.end = 100;
+    EXPECT_TRUE(bytes_of(chunked_scene(1), middle) == bytes_of(chunked_scene(3), middle));
+}
+
+TEST_F(RenderChunks, BeginWhereTheFilmsDo) {
+    const FrameRate fps = chunked_scene(1).video.fps;
+    EXPECT_EQ(media::frames_per_chunk(fps), 30);
+    Film film(chunked_scene(2));
+    RenderDef def;
+    def.first = 20;
+    def.end = 100;
+    EXPECT_EQ(render_video(film, file("a.mp4"), def).frames, 80);
+    const media::VerifyReport report = media::verify(file("a.mp4"));
+    EXPECT_TRUE(report.ok());
+    EXPECT_EQ(report.frames, 80);
+}
+
+TEST_F(RenderChunks, TellProgressInOrderAndEmptyFrames) {
+    const Scene scene = chunked_scene(3, {"camera.center=[100,100]", "camera.height=1"});
+    Film film(scene);
+    std::vector<std::int64_t> heard;
+    RenderDef def;
+    def.on_progress = [&](std::int64_t done, std::int64_t total) {
+        EXPECT_EQ(total, 130);
+        heard.push_back(done);
+        return true;
+    };
+    const Rendered rendered = render_video(film, file("a.mp4"), def);
+    EXPECT_EQ(rendered.frames, 130);
+    EXPECT_EQ(rendered.empty_frames, 130);
+    EXPECT_EQ(rendered.first_empty_s, 0.0);
+    EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
+    EXPECT_EQ(heard.back(), 130);
+}
+
+TEST_F(RenderChunks, KeepTheFramesBeforeAStop) {
+    Film film(chunked_scene(3));
+    RenderDef def;
+    def.on_progress = [](std::int64_t done, std::int64_t) { return done < 45; };
+    const Rendered rendered = render_video(film, file("a.mp4"), def);
+    EXPECT_FALSE(rendered.complete);
+    EXPECT_GT(rendered.frames, 0);
+    EXPECT_LT(rendered.frames, 130);
+    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.part"));
+    const media::RemuxResult kept = media::recover_part(file("a.mp4.part"), file("b.mp4"));
+    EXPECT_EQ(kept.frames, rendered.frames);
+    EXPECT_FALSE(kept.truncated);
+}
+
+TEST_F(RenderChunks, EndWithWhatTheHostThrows) {
+    Film film(chunked_scene(3));
+    RenderDef def;
+    int asked = 0;
+    def.on_progress = [&](std::int64_t, std::int64_t) -> bool {
+        if (++asked > 3) throw Error(ExitCode::kIo, "the host has enough");
+        return true;
+    };
+    EXPECT_EQ(test::code_of([&] { render_video(film, file("a.mp4"), def); }), ExitCode::kIo);
+}
+
+TEST(ChunkLength, IsOneToTwoSeconds) {
+    for (const auto& [rate, frames] : {std::pair{Rational{60, 1}, 60},
+                                       {{24, 1}, 48},
+                                       {{25, 1}, 50},
+                                       {{30, 1}, 60},
+                                       {{30000, 1001}, 60},
+                                       {{120, 1}, 120},
+                                       {{5, 1}, 10},
+                                       {{1, 10}, 1}})
+        EXPECT_EQ(media::frames_per_chunk(FrameRate(rate)), frames) << rate.text();
+}
+
+TEST(FilmPainters, DrawTheSameApart) {
+    const Film film(chunked_scene(1));
+    ASSERT_TRUE(FilmPainter::can_draw_apart(film, film.frame_count()));
+    FilmPainter one(film);
+    FilmPainter other(film, FilmPainter::Apart{});
+    for (const std::int64_t k : {70, 3, 71}) {
+        other.draw(film.time_s(k));
+        const Image image = other.image();
+        EXPECT_TRUE(test::equal_images(image, film.frame(k))) << k;
+    }
+}
+
+}  // namespace
+}  // namespace corda
