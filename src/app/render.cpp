@@ -21,6 +21,7 @@ struct RenderOptions {
     EmptyPictures empty;
     std::string output;
     std::string frames;
+    std::string verify = "keys";
     bool force = false;
     bool dry_run = false;
 };
@@ -70,6 +71,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     Scene scene = options.scene.load();
     RenderDef def;
     def.force = options.force;
+    def.verify_all = options.verify == "full";
     parse_range(options.frames, def);
     check_render(scene, options.output, def, options.scene.path);
     OnProgress on_progress = show_progress(console, "simulate");
@@ -127,6 +129,11 @@ void add_render(CLI::App& app, Action& action) {
     options->scene.add_shortcut(*command, "--threads", "video.threads", "threads of each encoder");
     options->scene.add_shortcut(*command, "--jobs", "video.jobs", "chunks made at a time; 0: one per core");
     command->add_option("--frames", options->frames, "only frames FIRST <= k < END")->type_name("FIRST:END");
+    command
+        ->add_option("--verify", options->verify,
+                     "what of the finished video is decoded: key frames (keys), or all (full)")
+        ->check(CLI::IsMember({"keys", "full"}))
+        ->capture_default_str();
     options->gl.add_to(*command);
     options->empty.add_to(*command);
     command->add_flag("--force", options->force, "replace an existing output");

@@ -187,7 +187,7 @@ void remux(const PartIndex& index, const std::string& part_path, const Format& f
 }  // namespace
 
 RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOptions& options,
-                        std::optional<std::int64_t> expected_frames) {
+                        std::optional<std::int64_t> expected_frames, VerifyDepth depth) {
     const LogCapture log;
     const OnProgress all_done = [&options, frames = expected_frames.value_or(0)](std::int64_t, std::int64_t) {
         return !options.on_progress || options.on_progress(frames, frames);
@@ -200,7 +200,7 @@ RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOpt
     }
     OutputFile output(path, options);
     remux(index, part.path(), find_format(path), all_done, output);
-    const VerifyReport report = verify(output.temporary_path(), all_done);
+    const VerifyReport report = verify(output.temporary_path(), all_done, depth);
     if (!report.ok()) {
         throw Error(ExitCode::kMismatch,
                     fmt::format("the video for '{}' failed its check and stays as '{}':{}", path, part.path(),

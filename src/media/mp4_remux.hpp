@@ -6,6 +6,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/part_file.hpp"
+#include "corda/media/verify.hpp"
 
 namespace corda::media {
 
@@ -27,6 +28,7 @@ RemuxResult recover_part(const std::string& part_path, const std::string& path,
 /// As recover_part, for a part that this process holds. Also throws kMismatch if it has another number of
 /// frames than `expected_frames`, if given. `options.on_progress` hears that all of them are done.
 RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOptions& options,
-                        std::optional<std::int64_t> expected_frames = std::nullopt);
+                        std::optional<std::int64_t> expected_frames = std::nullopt,
+                        VerifyDepth depth = VerifyDepth::kAllFrames);
 
 }  // namespace corda::media

@@ -287,12 +287,14 @@ bool check_comment(const DecodedVideo& video, VerifyReport& report) {
     return !patches.empty();
 }
 
-void add_notes(bool saw_colors, VerifyReport& report) {
+void add_notes(bool saw_colors, VerifyDepth depth, VerifyReport& report) {
     if (!report.ok()) return;
-    report.notes.push_back(fmt::format(
-        "checked: structure, time stamps, tags, that every frame decodes, and {}; a picture that was changed "
-        "and still decodes is not found",
-        saw_colors ? "colours at a few places of the first frame alone" : "no colours"));
+    report.notes.push_back(
+        fmt::format("checked: structure, time stamps, tags, that {} decodes, and {}; a picture that was "
+                    "changed and still "
+                    "decodes is not found",
+                    depth == VerifyDepth::kAllFrames ? "every frame" : "every key frame",
+                    saw_colors ? "colours at a few places of the first frame alone" : "no colours"));
     report.notes.push_back(fmt::format(
         "H.264 {}, 8-bit 4:2:0: plays in Chrome, Edge, Firefox, Safari and QuickTime", report.profile));
     report.notes.emplace_back("the index comes first: a browser starts to play while it loads, and can seek");
@@ -312,12 +314,12 @@ void add_notes(bool saw_colors, VerifyReport& report) {
 
 }  // namespace
 
-VerifyReport verify(const std::string& path, const OnProgress& on_progress) {
+VerifyReport verify(const std::string& path, const OnProgress& on_progress, VerifyDepth depth) {
     const LogCapture log;
     VerifyReport report;
     const Mp4Boxes boxes = read_mp4_boxes(path);
     if (!check_container(path, boxes, report)) return report;
-    const DecodedVideo video = decode_all(path, patches_of, on_progress);
+    const DecodedVideo video = decode(path, depth, patches_of, on_progress);
     if (!video.opened) {
         problem(report, "{}; the file is damaged: copy or render it again", video.open_reason);
         return report;
@@ -329,7 +331,7 @@ VerifyReport verify(const std::string& path, const OnProgress& on_progress) {
     check_clocks(video, boxes, report);
     check_picture_format(video, report);
     check_tags(video, report);
-    add_notes(check_comment(video, report), report);
+    add_notes(check_comment(video, report), depth, report);
     return report;
 }
 

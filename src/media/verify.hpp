@@ -39,16 +39,21 @@ struct VerifyReport {
     friend bool operator==(const VerifyReport&, const VerifyReport&) = default;
 };
 
+/// Which frames verify() decodes: the first one of each chunk, or all. Of the others it reads the packets'
+/// time stamps.
+enum class VerifyDepth { kKeyFrames, kAllFrames };
+
 /// Opens, decodes and checks a video: that its boxes are whole and in order, that its time stamps have a
 /// constant step from 0 and its clocks an exact duration, profile, pixel format and colour tags, and that
-/// every frame decodes. If the file's comment says that corda made it, also frame count, rate and some
-/// colours of the first frame against what was rendered. What the other frames show is not compared with
-/// anything: a change that still decodes is not found.
+/// every frame decodes that is to be decoded. If the file's comment says that corda made it, also frame
+/// count, rate and some colours of the first frame against what was rendered. What the other frames show is
+/// not compared with anything: a change that still decodes is not found.
 ///
 /// Throws corda::Error: kIo if the file cannot be opened for reading (one that is not a video gives a report
 /// with a problem), kInterrupted if `on_progress`, called with the frames, asks to stop. libav ends the
 /// process at some damaged files: one of unknown origin is for verify_in_child.
-[[nodiscard]] VerifyReport verify(const std::string& path, const OnProgress& on_progress = {});
+[[nodiscard]] VerifyReport verify(const std::string& path, const OnProgress& on_progress = {},
+                                  VerifyDepth depth = VerifyDepth::kAllFrames);
 
 /// As `verify`, in a child process with limits on memory and time. If that crashes or exceeds a limit, the
 /// file is damaged: a report with a problem. If the system starts no further process, it verifies in this

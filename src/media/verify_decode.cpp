@@ -1,6 +1,8 @@
 #include "corda/media/verify_decode.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <queue>
 
 #include "corda/core/basics.hpp"
 #include "corda/media/checked.hpp"
@@ -28,14 +30,18 @@ double plane_mean(const AVFrame& frame, int plane, int x, int y, int side) {
 /// Decodes one file and fills in a DecodedVideo.
 class Decoding {
   public:
-    Decoding(DecodedVideo& video, std::vector<ColorPatch> (*patches_of)(const std::string&))
-        : video_(video), patches_of_(patches_of) {}
+    Decoding(DecodedVideo& video, VerifyDepth depth,
+             std::vector<ColorPatch> (*patches_of)(const std::string&))
+        : video_(video), depth_(depth), patches_of_(patches_of) {}
 
     void run(const std::string& path, const OnProgress& on_progress) {
         if (!open(path)) return;
         video_.opened = true;
         while (read_packet()) report_progress(on_progress, video_.frames, 0);
-        receive(nullptr);
+        if (depth_ == VerifyDepth::kAllFrames)
+            receive(nullptr);
+        else
+            take_stamps(0);
         // libav guesses the duration of the last frame; check_clocks in verify.cpp compares the end with the
         // track's stored duration.
         if (video_.frames == 1)
@@ -86,10 +92,29 @@ class Decoding {
         }
         if (packet_->stream_index == file_.stream->index) {
             if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) note_bad(AVERROR_INVALIDDATA);
-            receive(packet_.get());
+            if (depth_ == VerifyDepth::kAllFrames)
+                receive(packet_.get());
+            else
+                read_alone(*packet_);
         }
         av_packet_unref(packet_.get());
         return true;
+    }
+
+    /// Decodes a packet of a key frame, apart from all others, and notes the stamp of any packet.
+    void read_alone(const AVPacket& packet) {
+        if ((packet.flags & AV_PKT_FLAG_KEY) != 0) {
+            receive(&packet);
+            receive(nullptr);
+            avcodec_flush_buffers(file_.context.get());
+        }
+        stamps_.push(packet.pts);
+        take_stamps(kMostReordered);
+    }
+
+    /// Takes the stamps of packets in the order in which their frames are shown, but for so many.
+    void take_stamps(std::size_t kept) {
+        for (; stamps_.size() > kept; stamps_.pop()) take_stamp(stamps_.top());
     }
 
     /// Sends a packet, or the end of the stream if it is null, and takes every frame that is ready.
@@ -115,7 +140,13 @@ class Decoding {
         const AVFrame& frame = *frame_;
         if (frame.decode_error_flags != 0 || (frame.flags & AV_FRAME_FLAG_CORRUPT) != 0)
             note_bad(AVERROR_INVALIDDATA);
-        const std::int64_t pts = frame.pts;
+        if (!is_described_) measure_patches();
+        // Only the first frame's pixels are measured; for the others it is enough that they decode.
+        file_.context->skip_loop_filter = AVDISCARD_ALL;
+        if (depth_ == VerifyDepth::kAllFrames) take_stamp(frame.pts);
+    }
+
+    void take_stamp(std::int64_t pts) {
         if (!is_sane_stamp(pts)) {
             note_bad(pts == AV_NOPTS_VALUE ? "a frame has no time stamp"
                                            : "a frame has the time stamp " + std::to_string(pts));
@@ -123,9 +154,6 @@ class Decoding {
         }
         if (video_.frames == 0) {
             video_.first_pts = pts;
-            measure_patches();
-            // Only the first frame's pixels are measured; for the others it is enough that they decode.
-            file_.context->skip_loop_filter = AVDISCARD_ALL;
         } else {
             if (video_.frames == 1) video_.step = pts - last_pts_;
             if (pts - last_pts_ != video_.step && video_.uneven_at < 0) video_.uneven_at = video_.frames;
@@ -135,6 +163,7 @@ class Decoding {
     }
 
     void measure_patches() {
+        is_described_ = true;
         describe_first_frame();
         if (frame_->format != AV_PIX_FMT_YUV420P && frame_->format != AV_PIX_FMT_YUVJ420P) return;
         for (const ColorPatch& patch : patches_of_(video_.comment)) {
@@ -166,23 +195,29 @@ class Decoding {
     }
 
     static constexpr std::int64_t kMostBadFrames = 1000;
+    /// No codec decodes more frames than that ahead of one that is shown before them.
+    static constexpr std::size_t kMostReordered = 32;
 
     DecodedVideo& video_;
+    VerifyDepth depth_;
     std::vector<ColorPatch> (*patches_of_)(const std::string&);
     LogCapture log_;
     OpenMp4 file_;
     Frame frame_;
     Packet packet_;
     std::int64_t last_pts_ = 0;
+    bool is_described_ = false;
+    /// Of packets, the least on top.
+    std::priority_queue<std::int64_t, std::vector<std::int64_t>, std::greater<>> stamps_;
 };
 
 }  // namespace
 
-DecodedVideo decode_all(const std::string& path,
-                        std::vector<ColorPatch> (*patches_of)(const std::string& comment),
-                        const OnProgress& on_progress) {
+DecodedVideo decode(const std::string& path, VerifyDepth depth,
+                    std::vector<ColorPatch> (*patches_of)(const std::string& comment),
+                    const OnProgress& on_progress) {
     DecodedVideo video;
-    Decoding(video, patches_of).run(path, on_progress);
+    Decoding(video, depth, patches_of).run(path, on_progress);
     return video;
 }
 

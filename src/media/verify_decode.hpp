@@ -9,7 +9,7 @@
 
 namespace corda::media {
 
-/// What decoding a whole MP4 file has shown.
+/// What decoding an MP4 file has shown.
 struct DecodedVideo {
     bool opened = false;      ///< the demuxer and a decoder accepted the file
     std::string open_reason;  ///< why it was not opened
@@ -32,11 +32,11 @@ struct DecodedVideo {
     std::vector<std::array<double, 3>> patch_means;
 };
 
-/// Decodes every frame of the MP4 file at `path`. `patches_of` is called with the file's comment and returns
+/// Decodes the frames of the MP4 file at `path`. `patches_of` is called with the file's comment and returns
 /// the patches to measure in the first frame, `on_progress` with the frames. Throws corda::Error: kTemporary
 /// if there is not enough memory, kInterrupted if `on_progress` asks to stop; nothing else for a bad file.
-[[nodiscard]] DecodedVideo decode_all(const std::string& path,
-                                      std::vector<ColorPatch> (*patches_of)(const std::string& comment),
-                                      const OnProgress& on_progress);
+[[nodiscard]] DecodedVideo decode(const std::string& path, VerifyDepth depth,
+                                  std::vector<ColorPatch> (*patches_of)(const std::string& comment),
+                                  const OnProgress& on_progress);
 
 }  // namespace corda::media

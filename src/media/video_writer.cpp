@@ -164,7 +164,7 @@ std::int64_t VideoWriter::frames() const {
     return impl_->frames();
 }
 
-void VideoWriter::finish() {
+void VideoWriter::finish(VerifyDepth depth) {
     Impl& impl = *impl_;
     if (impl.drained) throw Error(ExitCode::kInternal, "a video was finished twice");
     if (frames() == 0) {
@@ -174,7 +174,7 @@ void VideoWriter::finish() {
     }
     impl.drain();
     try {
-        finish_part(impl.part, impl.path, impl.options, frames());
+        finish_part(impl.part, impl.path, impl.options, frames(), depth);
     } catch (const Error& error) {
         if (error.code() != ExitCode::kIo) throw;
         throw Error(error.code(),

@@ -58,10 +58,10 @@ class VideoWriter {
     /// Frames written so far.
     [[nodiscard]] std::int64_t frames() const;
 
-    /// Drains, copies, verifies, and gives the video its name. Needs at least one frame. Throws kEncoder,
-    /// kIo, kMismatch (the check found a problem), or kInterrupted if the options' `on_progress` asks to
-    /// stop; then the frames stay in `PATH.part`.
-    void finish();
+    /// Ends the last chunk, copies, verifies, and gives the video its name. Needs at least one frame. Throws
+    /// kEncoder, kIo, kMismatch (the check found a problem), or kInterrupted if the options' `on_progress`
+    /// asks to stop; then the frames stay in `PATH.part`.
+    void finish(VerifyDepth depth = VerifyDepth::kKeyFrames);
 
     /// Drains and ends the part file unless `finish` has, so that it stays as a playable `PATH.part`, and
     /// returns its path. Without any frame the part is removed, and the path is empty.

@@ -141,6 +141,7 @@ struct RenderDef {
     bool force = false;  ///< replace an existing file
     std::int64_t first = 0;
     std::optional<std::int64_t> end;  ///< one past the last frame; default Film::frame_count()
+    bool verify_all = false;          ///< decode every frame of the finished video, not key frames alone
     /// Called after each frame, and again and again while a large one is drawn and while the finished video
     /// is copied and verified, then with all frames done; returning false stops.
     OnProgress on_progress;

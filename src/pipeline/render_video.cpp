@@ -119,7 +119,7 @@ Rendered render_video(Film& film, const std::string& path, const RenderDef& def)
     result.encoder = film.scene().video.encoder.codec;
     try {
         write_frames(film, def.first, end, def.on_progress, writer, result);
-        writer.finish();
+        writer.finish(def.verify_all ? media::VerifyDepth::kAllFrames : media::VerifyDepth::kKeyFrames);
     } catch (const Error& error) {
         if (error.code() == ExitCode::kDiverged) keep_diverged(error, path, def.first, writer);
         if (!is_interruption(error)) throw;

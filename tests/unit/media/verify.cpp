@@ -96,6 +96,35 @@ TEST_F(Video, VerifyComparesWithWhatWasRendered) {
     EXPECT_THAT(with("\"fps\":\"60\"", "\"fps\":\"60\""), IsEmpty());
 }
 
+TEST_F(Video, VerifyFindsTheSameByKeyFrames) {
+    for (const Rational fps : {Rational{30, 1}, Rational{24000, 1001}}) {
+        for (const int frames : {1, 7, 150}) {
+            const std::string name = file("a" + std::to_string(frames) + std::to_string(fps.num) + ".mp4");
+            make_video(name, small_video(fps), frames);
+            VerifyReport all = verify(name);
+            VerifyReport keys = verify(name, {}, VerifyDepth::kKeyFrames);
+            EXPECT_TRUE(keys.ok()) << (keys.problems.empty() ? "" : keys.problems.front());
+            EXPECT_NE(all.notes, keys.notes);  // which say what was decoded
+            all.notes.clear();
+            keys.notes.clear();
+            EXPECT_EQ(all, keys) << frames;
+        }
+    }
+}
+
+TEST_F(Video, VerifyByKeyFramesFindsOneThatDoesNotDecode) {
+    make_video(file("a.mp4"), small_video(), 150);
+    std::string bytes = test::read_file(file("a.mp4"));
+    const VerifyReport whole = verify(file("a.mp4"), {}, VerifyDepth::kKeyFrames);
+    ASSERT_TRUE(whole.ok());
+    // Within the first picture, behind what x264 says of itself.
+    const std::size_t data = bytes.find("mdat");
+    ASSERT_NE(data, std::string::npos);
+    for (std::size_t i = 720; i < 1200; ++i) bytes[data + i] = static_cast<char>(0x5a);
+    test::write_file(file("b.mp4"), bytes);
+    EXPECT_FALSE(verify(file("b.mp4"), {}, VerifyDepth::kKeyFrames).ok());
+}
+
 TEST_F(Video, VerifyReportsFilesThatAreNoVideo) {
     EXPECT_THROW((void)verify(file("missing.mp4")), Error);
     EXPECT_THROW((void)verify(folder_.path()), Error);
