@@ -291,8 +291,7 @@ void add_notes(bool saw_colors, VerifyDepth depth, VerifyReport& report) {
     if (!report.ok()) return;
     report.notes.push_back(
         fmt::format("checked: structure, time stamps, tags, that {} decodes, and {}; a picture that was "
-                    "changed and still "
-                    "decodes is not found",
+                    "changed and still decodes is not found",
                     depth == VerifyDepth::kAllFrames ? "every frame" : "every key frame",
                     saw_colors ? "colours at a few places of the first frame alone" : "no colours"));
     report.notes.push_back(fmt::format(
