@@ -118,6 +118,7 @@ int run(int argc, char** argv) {
     add_simulate(app, action);
     add_compare(app, action);
     add_verify(app, action);
+    add_recover(app, action);
     add_doctor(app, action);
     add_plan(app, action);
     add_study(app, action);

@@ -42,7 +42,8 @@ ExitCode report_interrupted(const Console& console, const RenderOptions& options
                             std::int64_t count, const Rendered& rendered) {
     console.warning(
         rendered.frames > 0
-            ? fmt::format("interrupted: frames {}..{} of {} are in {}, which plays; {} was not written",
+            ? fmt::format("interrupted: frames {}..{} of {} are in {}, which plays; {} was not written "
+                          "(corda recover makes it a video of these frames)",
                           first, first + rendered.frames - 1, count, rendered.kept_part, options.output)
             : fmt::format("interrupted before the first frame; {} was not written", options.output));
     return interruption();

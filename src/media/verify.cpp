@@ -93,7 +93,7 @@ bool check_container(const std::string& path, const Mp4Boxes& boxes, VerifyRepor
         problem(
             report,
             "the index (moov box) is missing: writing was interrupted, or the file was cut; render it again, "
-            "or play the .part file");
+            "or make its .part file a video by corda recover");
         return false;
     }
     report.faststart = boxes.index_first && !boxes.fragmented;

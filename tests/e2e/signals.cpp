@@ -121,8 +121,8 @@ TEST_F(Signals, EndAComparison) {
 TEST_F(Signals, EndTheLastCopyOfAVideoKeepingItsFrames) {
     const std::string video = folder_.file("a.mp4");
     // The file of temporary name is the copy. Verifying it takes a second or more.
-    const Interrupted end =
-        interrupt("render " + scene_ + " -o " + video, "TERM", "ls " + video + ".*.tmp >/dev/null 2>&1");
+    const Interrupted end = interrupt("render --verify full " + scene_ + " -o " + video, "TERM",
+                                      "ls " + video + ".*.tmp >/dev/null 2>&1");
     EXPECT_EQ(end.result.exit_code, 143) << end.result.err;
     EXPECT_THAT(end.result.err, HasSubstr("interrupted: frames 0..1199 of 1200 are in " + video +
                                           ".part, which plays; " + video + " was not written"));

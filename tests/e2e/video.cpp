@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -130,6 +131,25 @@ TEST_F(Video, InFragmentsIsMendedByTheRemedyThatVerifyGives) {
     ASSERT_EQ(test::run_shell("ffmpeg -v error " + arguments).exit_code, 0);
     const auto after = run_corda({"verify", mended});
     EXPECT_EQ(after.exit_code, 0) << after.out << after.err;
+}
+
+TEST_F(Video, IsRecoveredFromWhatAKilledRenderLeaves) {
+    // The header alone has some 40 bytes; what follows is the first chunk.
+    const std::string part = video_ + ".part";
+    const auto killed =
+        test::run_shell(test::quoted(CORDA_PROGRAM) + " render " + scene_ + " --duration 60 -q -o " + video_ +
+                        " & pid=$!; until [ $(stat -c %s " + part +
+                        " 2>/dev/null || echo 0) -gt 1000 ]; do sleep 0.02; done; "
+                        "kill -9 $pid; wait $pid");
+    EXPECT_EQ(killed.exit_code, 137) << killed.err;
+    EXPECT_EQ(run_corda({"recover", scene_}).exit_code, 2);
+    const auto recovered = run_corda({"recover", part, "--json"});
+    ASSERT_EQ(recovered.exit_code, 0) << recovered.err;
+    const json report = json::parse(recovered.out);
+    EXPECT_EQ(report["output"], video_);
+    EXPECT_GE(report["frames"].get<int>(), 60);  // one chunk
+    EXPECT_FALSE(std::filesystem::exists(part));
+    EXPECT_EQ(run_corda({"verify", video_}).exit_code, 0);
 }
 
 TEST_F(Video, IsTaggedForBrowsers) {

@@ -1,0 +1,62 @@
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/output_file.hpp"
+#include "corda/core/part_file.hpp"
+#include "corda/media/mp4_remux.hpp"
+#include "interrupt.hpp"
+
+namespace corda::app {
+namespace {
+
+struct RecoverOptions {
+    std::string part;
+    std::string output;  ///< empty: the name without ".part"
+    bool force = false;
+};
+
+/// "a.mp4" for "a.mp4.part". Another file is refused: a part is removed once its video is there.
+std::string name_of(const std::string& part) {
+    const std::string ending = part_path("");
+    if (part.size() > ending.size() && part.ends_with(ending))
+        return part.substr(0, part.size() - ending.size());
+    throw Error(ExitCode::kUsage, fmt::format("'{}' does not end in {}, as what an interrupted render leaves "
+                                              "does; name such a file",
+                                              part, ending));
+}
+
+ExitCode recover(const Console& console, const RecoverOptions& options) {
+    const std::string name = name_of(options.part);
+    const std::string output = options.output.empty() ? name : options.output;
+    check_output(output, options.part, options.force);
+    const media::RemuxResult result = media::recover_part(
+        options.part, output, {.force = options.force, .on_progress = stopping_if_asked()});
+    if (result.truncated)
+        console.warning(fmt::format("{} breaks off in the middle: what is whole was taken", options.part));
+    console.info(fmt::format("{} frames; verified", result.frames));
+    console.result(output);
+    console.report(
+        {{"schema", 1}, {"output", output}, {"frames", result.frames}, {"truncated", result.truncated}});
+    return ExitCode::kOk;
+}
+
+}  // namespace
+
+void add_recover(CLI::App& app, Action& action) {
+    auto options = std::make_shared<RecoverOptions>();
+    CLI::App* command = app.add_subcommand(
+        "recover", "make the part file of an interrupted render a video, without encoding it again");
+    command->add_option("PART", options->part, "part file, such as out.mp4.part")->required();
+    command->add_option("-o,--output", options->output, "video file; default: the name without .part");
+    command->add_flag("--force", options->force, "replace an existing output");
+    command->callback([options, &action] {
+        action = [options](const Console& console) { return recover(console, *options); };
+    });
+}
+
+}  // namespace corda::app
