@@ -134,12 +134,12 @@ TEST_F(Video, InFragmentsIsMendedByTheRemedyThatVerifyGives) {
 }
 
 TEST_F(Video, IsRecoveredFromWhatAKilledRenderLeaves) {
-    // The header alone has some 40 bytes; what follows is the first chunk.
+    // The header alone has some 1000 bytes; the first chunk follows at once.
     const std::string part = video_ + ".part";
     const auto killed =
         test::run_shell(test::quoted(CORDA_PROGRAM) + " render " + scene_ + " --duration 60 -q -o " + video_ +
                         " & pid=$!; until [ $(stat -c %s " + part +
-                        " 2>/dev/null || echo 0) -gt 1000 ]; do sleep 0.02; done; "
+                        " 2>/dev/null || echo 0) -gt 1000 ]; do sleep 0.02; done; sleep 0.3; "
                         "kill -9 $pid; wait $pid");
     EXPECT_EQ(killed.exit_code, 137) << killed.err;
     EXPECT_EQ(run_corda({"recover", scene_}).exit_code, 2);
