@@ -1,3 +1,5 @@
+#include <malloc.h>
+
 #include <algorithm>
 #include <array>
 #include <exception>
@@ -157,11 +159,20 @@ int run(int argc, char** argv) {
     }
 }
 
+/// Lets the memory of one chunk's encoder serve the next one: zeroing fresh pages took 14 % of a render.
+void keep_memory() {
+    constexpr int kLargestOfHeap = 32 << 20;  // glibc's limit
+    constexpr int kMostKept = 1 << 30;
+    static_cast<void>(mallopt(M_MMAP_THRESHOLD, kLargestOfHeap));
+    static_cast<void>(mallopt(M_TRIM_THRESHOLD, kMostKept));
+}
+
 }  // namespace
 }  // namespace corda::app
 
 int main(int argc, char** argv) {
     try {
+        corda::app::keep_memory();
         corda::app::keep_standard_streams();
         return corda::app::run(argc, argv);
     } catch (...) {
