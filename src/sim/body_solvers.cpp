@@ -67,11 +67,12 @@ void BodySolvers::velocities(std::vector<double>& vx_m_s, std::vector<double>& v
 }
 
 bool BodySolvers::tensions(std::vector<double>& tension_n) {
-    return std::all_of(parts_.begin(), parts_.end(), [&](Part& part) {
-        if (!part.solver->tensions(part.state.tension_n)) return false;
+    bool are_known = true;
+    for (Part& part : parts_) {
+        are_known = part.solver->tensions(part.state.tension_n) && are_known;
         put(part.state.tension_n, part.first_bar, tension_n);
-        return true;
-    });
+    }
+    return are_known;
 }
 
 std::uint64_t BodySolvers::steps() const {

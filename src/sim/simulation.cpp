@@ -178,7 +178,7 @@ void Simulation::read() {
     }
     if (!readings_.tensions) return;
     state_.tension_n.assign(system_.bars.size(), 0.0);
-    if (!solver_->tensions(state_.tension_n)) {
+    if (!solver_->tensions(state_.tension_n) && !readings_.unknown_tensions) {
         throw Refusal(Refusal::Reason::kUnknownTensions,
                       "tensions are asked for, which the method does not know: relaxation has none, and bars "
                       "that depend on each other share them in any way");

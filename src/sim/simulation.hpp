@@ -61,7 +61,7 @@ class Simulation {
     Status advance_to(double time_s, const GoesOn& goes_on = {});
 
     /// From now on, states have these too. Throws corda::Error (kInvalidScene) if a method does not know the
-    /// tensions: `relaxation`, or `rattle` if bars depend on each other.
+    /// tensions, unless unknown ones are allowed: `relaxation`, or `rattle` if bars depend on each other.
     void tell(const Readings& readings);
 
     /// Positions relative to `system().origin_m`, at the last time that was reached.

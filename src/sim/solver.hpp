@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -45,9 +47,9 @@ class Solver {
     virtual void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) = 0;
 
     /// Writes the tensions of the bars that move at the last `advance_to`, in N, to an array of all bars;
-    /// false if the method does not know them.
+    /// false if the method of a body does not know them: those are NaN.
     [[nodiscard]] virtual bool tensions(std::vector<double>& tension_n) {
-        static_cast<void>(tension_n);
+        std::fill(tension_n.begin(), tension_n.end(), std::numeric_limits<double>::quiet_NaN());
         return false;
     }
 

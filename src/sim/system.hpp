@@ -108,10 +108,15 @@ enum class Quantity { kTension, kSpeed, kStrain };
 struct Readings {
     bool velocities = false;
     bool tensions = false;
+    /// Tensions that a method does not know are NaN; otherwise asking for them is an error.
+    bool unknown_tensions = false;
 
     /// What either has.
     [[nodiscard]] Readings with(const Readings& other) const {
-        return {velocities || other.velocities, tensions || other.tensions};
+        const bool are_needed =
+            (tensions && !unknown_tensions) || (other.tensions && !other.unknown_tensions);
+        return {velocities || other.velocities, tensions || other.tensions,
+                !are_needed && (unknown_tensions || other.unknown_tensions)};
     }
     friend bool operator==(const Readings&, const Readings&) = default;
 };

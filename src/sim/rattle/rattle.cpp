@@ -342,7 +342,7 @@ void Rattle::find_bars_of_links(const System& system) {
 }
 
 bool Rattle::tensions(std::vector<double>& tension_n) {
-    if (!constraints_->determines_tensions()) return false;
+    if (!constraints_->determines_tensions()) return Solver::tensions(tension_n);
     const bool are_known = find_tensions();
     for (std::size_t k = 0; k < bar_of_link_.size(); ++k) {
         const auto [a, b, rest_m] = constraints_->links()[k];

@@ -214,6 +214,25 @@ TEST(Simulation, TellsVelocitiesAndTensionsByEveryMethodThatKnowsThem) {
     }
 }
 
+TEST(Simulation, LeavesOutTensionsThatAMethodDoesNotKnowIfItMay) {
+    RopeDef rope;
+    rope.points_m = {{0.0, 0.0}, {0.5, -0.5}, {1.0, -1.5}};
+    const std::vector<MethodDef> methods{RelaxationDef{}, ExactDef{}};
+    Simulation run(build_system(std::vector{rope, rope}), {}, methods);
+    Readings readings{.tensions = true};
+    EXPECT_THROW(run.tell(readings), Error);
+    readings.unknown_tensions = true;
+    run.tell(readings);
+    ASSERT_EQ(run.advance_to(0.1), Status::kOk);
+    const std::vector<double>& tension_n = run.state().tension_n;
+    ASSERT_EQ(tension_n.size(), 4U);
+    EXPECT_TRUE(std::isnan(tension_n[0]) && std::isnan(tension_n[1]));
+    EXPECT_GT(tension_n[2], tension_n[3]);
+    // Who needs them is still refused.
+    EXPECT_FALSE(readings.with({.tensions = true}).unknown_tensions);
+    EXPECT_TRUE(readings.with({.velocities = true}).unknown_tensions);
+}
+
 TEST(Simulation, RefusesTensionsThatItsMethodDoesNotKnow) {
     Simulation run = test::simulate(plumb_line(), WorldDef{}, RelaxationDef{});
     run.tell({.velocities = true});
