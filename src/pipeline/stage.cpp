@@ -15,6 +15,7 @@ namespace {
 /// not.
 const Scene& drawable(const Scene& scene) {
     view::validate(scene.camera);
+    view::validate(scene.overlay);
     const VideoDef& video = scene.video;
     if (!(video.shutter >= 0.0 && video.shutter <= 1.0)) {
         throw Error(ExitCode::kInvalidScene,

@@ -350,7 +350,7 @@ std::vector<Key> style_keys() {
     const Words bars{"none", "real", "all"};
     const Default of_theme = otherwise("the theme's");
     return {
-        {"style", "theme", one_of(themes), "", at(themes, def.theme), "the colours",
+        {"style", "theme", one_of(themes), "", at(themes, Theme::kDark), "the colours",
          "every one below overrides it"},
         {"style", "background", or_pair(of(Kind::kColor), "[top, bottom]"), "", of_theme, "the background",
          "with alpha for .png, .svg and .pdf"},
@@ -399,6 +399,8 @@ std::vector<Key> overlay_keys() {
          "the method and the bound of the displayed error, below the title"},
         {"overlay", "plot", one_of(plots), "", at(plots, def.plot), "a live plot beside the picture",
          "kinetic, potential and total energy; x and y of the first free end; its vx against x"},
+        {"overlay", "text_px", number({.low = 4.0, .high = 400.0}), "px",
+         otherwise("shorter side / 40, at least readable"), "the size of the words at the edges"},
     };
 }
 

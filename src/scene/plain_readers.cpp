@@ -77,6 +77,7 @@ OverlayDef read_overlay(const TableReader& overlay) {
     overlay.read("energy", def.energy);
     overlay.read("method", def.method);
     overlay.read("plot", def.plot);
+    overlay.read("text_px", def.text_px);
     return def;
 }
 

@@ -94,7 +94,7 @@ class TableReader {
     }
     template <class T>
     void read(std::string_view key, std::optional<T>& target) const {
-        if (const auto value = find(key)) target = value->as<T>();
+        if (find(key)) read(key, target.emplace());
     }
 
     [[nodiscard]] Problems& problems() const { return *problems_; }

@@ -54,7 +54,7 @@ enum class ColorBy { kBody, kTension, kSpeed, kStrain, kLink };
 /// How a scene looks. Widths are in pixels of the output; the defaults grow with its shorter side. What is
 /// not given is the theme's.
 struct StyleDef {
-    Theme theme = Theme::kDark;
+    std::optional<Theme> theme;  ///< default: kDark
     std::optional<Ground> background;
     /// Colours of the ropes and nets in turn. A body that has its own colour (BodyStyleDef) takes none of
     /// them. Empty: the theme's.
@@ -100,6 +100,8 @@ struct OverlayDef {
     bool energy = false;            ///< the error of the energy (Figures::energy_error)
     bool method = false;            ///< the methods, and the bound of the displayed error
     LivePlot plot = LivePlot::kNone;
+    /// 4 .. 400: the size of the words at the edges; default: grows with the shorter side
+    std::optional<double> text_px;
 };
 
 /// Where the camera looks. What is not given is fitted to the whole motion.

@@ -17,10 +17,10 @@ int em_of(int side_px) {
     return rounded(std::max({kEm * side_px, std::min(kReadablePx, kSmallEm * side_px), kSmallestPx}));
 }
 
-int edge_of(int side_px) {
+int edge_of(int side_px, int em_px) {
     constexpr double kEdge = 0.03;
     constexpr double kEdgePerEm = 0.45;
-    return rounded(std::max(kEdge * side_px, kEdgePerEm * em_of(side_px)));
+    return rounded(std::max(kEdge * side_px, kEdgePerEm * em_px));
 }
 
 }  // namespace corda::view

@@ -11,7 +11,7 @@ inline constexpr double kGap = 0.4;       ///< between a text and what else is d
 [[nodiscard]] int rounded(double px);
 /// The em in a frame whose shorter side is `side_px`.
 [[nodiscard]] int em_of(int side_px);
-/// From the edges of that frame to its texts.
-[[nodiscard]] int edge_of(int side_px);
+/// From the edges of that frame to its texts, of that em.
+[[nodiscard]] int edge_of(int side_px, int em_px);
 
 }  // namespace corda::view

@@ -41,7 +41,7 @@ Look paper() {
 }  // namespace
 
 Look look_of(const StyleDef& style) {
-    Look look = style.theme == Theme::kDark ? dark() : paper();
+    Look look = style.theme == Theme::kPaper ? paper() : dark();
     if (style.background) look.ground = *style.background;
     if (!style.palette.empty()) look.palette = style.palette;
     look.pinned = style.pinned_color.value_or(look.pinned);

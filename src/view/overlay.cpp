@@ -51,8 +51,8 @@ Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int he
                  double end_s)
     : def_(def),
       side_px_(std::min(width, height)),
-      em_px_(em_of(side_px_)),
-      edge_px_(edge_of(side_px_)),
+      em_px_(def.text_px ? rounded(*def.text_px) : em_of(side_px_)),
+      edge_px_(edge_of(side_px_, em_px_)),
       plot_(style, width, height) {
     const Room room = room_beside(def.plot, width, height);
     width_ = room.width_px;

@@ -170,8 +170,8 @@ void PlotPanel::set_data(const PlotData& data, Font& font) {
 void PlotPanel::place_names(const PixelRect& panel, Font& font) {
     names_.clear();
     name_rows_ = 0;
-    const int begin_px = panel.x0 + edge_of(std::min(width_px_, height_px_));
-    const int end_px = panel.x1 - edge_of(std::min(width_px_, height_px_));
+    const int begin_px = panel.x0 + edge_of(std::min(width_px_, height_px_), em_px_);
+    const int end_px = panel.x1 - edge_of(std::min(width_px_, height_px_), em_px_);
     int x_px = begin_px;
     for (const PixelCurve& curve : curves_) {
         if (curve.name.empty()) continue;
@@ -187,7 +187,7 @@ void PlotPanel::place_names(const PixelRect& panel, Font& font) {
 }
 
 bool PlotPanel::place_box(const PixelRect& panel, bool is_over_time, Font& font) {
-    const int edge_px = edge_of(std::min(width_px_, height_px_));
+    const int edge_px = edge_of(std::min(width_px_, height_px_), em_px_);
     const int line_px = rounded(kLine * em_px_);
     const int gap_px = rounded(kGap * em_px_);
     const int above_px = name_rows_ * line_px + rounded((kAscent + kAboveBox) * em_px_);

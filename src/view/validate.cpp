@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kThinnestPx = 0.1;
 constexpr double kThickestPx = 1000.0;
+constexpr double kSmallestTextPx = 4.0;
+constexpr double kLargestTextPx = 400.0;
 constexpr double kLongestTrail = 3600.0;
 constexpr double kWidestMargin = 0.45;
 
@@ -33,6 +35,12 @@ void validate(const StyleDef& style, const std::vector<BodyStyleDef>& body_style
     validate_width(style.bar_width_px, "style: bar_width_px");
     for (std::size_t i = 0; i < body_styles.size(); ++i)
         validate_width(body_styles[i].width_px, "body_styles " + std::to_string(i) + ": width_px");
+}
+
+void validate(const OverlayDef& overlay) {
+    const auto& text_px = overlay.text_px;
+    require_range(!text_px || (*text_px >= kSmallestTextPx && *text_px <= kLargestTextPx), "overlay: text_px",
+                  "within 4 .. 400");
 }
 
 void validate(const CameraDef& camera) {

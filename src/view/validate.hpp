@@ -10,6 +10,7 @@ namespace corda::view {
 // throws corda::Error (kInvalidScene) for a field that is outside the range of its declaration.
 
 void validate(const StyleDef& style, const std::vector<BodyStyleDef>& body_styles);
+void validate(const OverlayDef& overlay);
 void validate(const CameraDef& camera);
 
 }  // namespace corda::view

@@ -74,6 +74,7 @@ imaginary_bar_color = "#54d6c270"
 [overlay]
 time = true
 title = "t"
+text_px = 20.0
 [video]
 fps = 25
 codec = "libx264"

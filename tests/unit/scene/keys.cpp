@@ -93,8 +93,9 @@ std::string text(const Scene& scene) {
            video.encoder.codec + video.encoder.preset + text(video.encoder.crf) +
            text(video.encoder.threads) + text(video.shutter) + text(video.subframes);
     const StyleDef& style = scene.style;
-    for (const int choice : {static_cast<int>(style.theme), static_cast<int>(style.payload),
-                             static_cast<int>(style.supports), static_cast<int>(style.halo)})
+    for (const int choice :
+         {static_cast<int>(style.theme.value_or(Theme::kDark)), static_cast<int>(style.payload),
+          static_cast<int>(style.supports), static_cast<int>(style.halo)})
         all += text(choice);
     all += text(style.trail_s) + text(static_cast<int>(style.color_by));
     const OverlayDef& overlay = scene.overlay;

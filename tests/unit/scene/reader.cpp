@@ -35,7 +35,7 @@ TEST(SceneReader, MinimalFileHasAllDefaults) {
     EXPECT_EQ(scene.video.height_px, 1080);
     EXPECT_EQ(scene.video.fps.rational(), (Rational{60, 1}));
     EXPECT_EQ(scene.video.encoder.preset, "medium");
-    EXPECT_EQ(scene.style.theme, Theme::kDark);
+    EXPECT_EQ(scene.style.theme, std::nullopt);
     EXPECT_FALSE(scene.style.background);
     EXPECT_TRUE(scene.style.palette.empty());
     EXPECT_FALSE(scene.camera.center_m);
@@ -133,13 +133,14 @@ TEST(SceneReader, Overlay) {
     EXPECT_TRUE(by_default.title.empty() && !by_default.energy && !by_default.method);
     const OverlayDef overlay =
         parse_scene(with("[overlay]\ntime = false\nscale_bar = true\ntitle = \"Schwünge µ\"\nenergy = true\n"
-                         "method = true\n"),
+                         "method = true\ntext_px = 33\n"),
                     "a")
             .overlay;
     EXPECT_EQ(overlay.time, false);
     EXPECT_EQ(overlay.scale_bar, true);
     EXPECT_EQ(overlay.title, "Schwünge µ");
     EXPECT_TRUE(overlay.energy && overlay.method);
+    EXPECT_EQ(overlay.text_px, 33.0);
 }
 
 TEST(SceneReader, Style) {

@@ -50,6 +50,15 @@ TEST(Overlays, ShowTimeAndScaleByDefaultInFramesThatAreLargeEnough) {
     EXPECT_EQ(words(drawn({}, {}, 640, 360)), Words{"1 m"});  // a caption without a time
 }
 
+TEST(Overlays, HaveWordsOfTheSizeThatWasAskedFor) {
+    OverlayDef def;
+    def.text_px = 33.0;
+    const DrawList list = drawn(def, {1.2, {}, {}}, 1004, 565);
+    ASSERT_EQ(list.texts.size(), 2U);
+    for (const Text& text : list.texts) EXPECT_EQ(text.size_px, 33);
+    EXPECT_EQ(drawn({}, {1.2, {}, {}}, 1004, 565).texts[0].size_px, 14);
+}
+
 TEST(Overlays, AreOffOnATransparentGroundUnlessAskedFor) {
     StyleDef style;
     style.background = Ground{{0, 0, 0, 255}, {0, 0, 0, 0}};
