@@ -15,6 +15,7 @@
 #include "corda/pipeline/tracks.hpp"
 #include "corda/pipeline/validate.hpp"
 #include "corda/sim/auto/planner.hpp"
+#include "corda/sim/bounds.hpp"
 #include "corda/view/camera.hpp"
 
 namespace corda {
@@ -58,13 +59,6 @@ double pose_opacity(std::size_t k, std::size_t count) {
     return kFirst + (kSecondLast - kFirst) * age;
 }
 
-/// Of each particle.
-std::vector<MotionBounds> bounds_of_start(const System& system) {
-    std::vector<MotionBounds> bounds(system.particle_count());
-    for (std::size_t i = 0; i < bounds.size(); ++i) bounds[i].include(system.x_m[i], system.y_m[i]);
-    return bounds;
-}
-
 }  // namespace
 
 /// What one thread draws a film with.
@@ -79,20 +73,33 @@ struct pipeline::Brush {
     Figures figures;  ///< of the state
 };
 
+/// What films of one motion share.
+struct Film::Run {
+    explicit Run(const Scene& scene) : system(system_of(scene)), named(named_methods(scene)) {}
+
+    System system;
+    sim::NamedMethods named;
+    std::optional<pipeline::Motion> motion;
+    Plan plan;
+    std::recursive_mutex reading;  ///< on_progress may draw a film itself
+};
+
 struct Film::Impl {
     using Brush = pipeline::Brush;
 
     Impl(const Scene& given, FilmDef options)
         : scene(given),
           def(std::move(options)),
-          system(system_of(scene)),
-          named(named_methods(scene)),
+          run(std::make_shared<Run>(scene)),
+          system(run->system),
           brush(scene, system, def),
           curves(scene, system),
-          motion(system, scene.world, if_all_named(named),
-                 Timeline(scene.video.fps, pipeline::last_frame_of(scene), def.stills_s),
-                 def.motion_budget_bytes, def.on_progress, quantity_of(scene.style.color_by),
-                 def.readings.with(curves.readings())) {
+          motion(run->motion.emplace(system, scene.world, if_all_named(run->named),
+                                     Timeline(scene.video.fps, pipeline::last_frame_of(scene), def.stills_s),
+                                     def.motion_budget_bytes, def.on_progress,
+                                     quantity_of(scene.style.color_by),
+                                     def.readings.with(curves.readings()))),
+          plan(run->plan) {
         if (motion.methods().empty()) {
             plan = motion.record([&](const Timeline& timeline, sim::Recording& recording) {
                 return plan_within(timeline, recording);
@@ -102,13 +109,24 @@ struct Film::Impl {
         }
     }
 
+    /// Shares the motion of another film.
+    Impl(const Impl& other, const Scene& given)
+        : scene(given),
+          def(other.def),
+          run(other.run),
+          system(run->system),
+          brush(scene, system, def),
+          curves(scene, system),
+          motion(*run->motion),
+          plan(run->plan) {}
+
     Plan plan_within(const Timeline& timeline, sim::Recording& recording) const {
         const double tolerance_px = std::get<AutoDef>(scene.solver).tolerance_px;
         const auto tolerance_m = [&](const MotionBounds& bounds) {
             return tolerance_px / brush.stage.largest_pixels_per_metre(bounds);
         };
-        return sim::plan_methods(system, named, scene.world, {tolerance_m, timeline, def.on_progress, now_s},
-                                 recording);
+        return sim::plan_methods(system, run->named, scene.world,
+                                 {tolerance_m, timeline, def.on_progress, now_s}, recording);
     }
 
     /// The camera, fitted once the motion is known as far as it needs it.
@@ -162,7 +180,7 @@ struct Film::Impl {
     /// threads.
     const State& read(double time_s, Brush& by) {
         require_time(time_s);
-        const std::lock_guard lock(reading);
+        const std::lock_guard lock(run->reading);
         by.tracks.read(motion, time_s, def.on_progress);
         by.state = motion.at(time_s, def.on_progress);
         by.figures = motion.figures();
@@ -273,13 +291,12 @@ struct Film::Impl {
 
     Scene scene;
     FilmDef def;
-    System system;
-    sim::NamedMethods named;
+    std::shared_ptr<Run> run;
+    const System& system;
     Brush brush;
     pipeline::Curves curves;
-    std::recursive_mutex reading;  ///< on_progress may draw this film itself
-    pipeline::Motion motion;
-    Plan plan;
+    pipeline::Motion& motion;
+    Plan& plan;
     std::optional<view::PlotData> plot;
     std::optional<CameraDef> camera;
 };
@@ -293,6 +310,7 @@ Film::Film(const Scene& scene, FilmDef def) {
     }
 }
 
+Film::Film(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Film::Film(Film&&) noexcept = default;
 Film& Film::operator=(Film&&) noexcept = default;
 
@@ -417,70 +435,26 @@ view::DrawList FilmPainter::poses(const Film& film, std::span<const double> time
     return film.impl_->poses(times_s, on_progress);
 }
 
+Film FilmPainter::another_look(const Film& film, const Scene& look) {
+    const Scene& scene = film.scene();
+    const bool has_more = look.overlay.plot != LivePlot::kNone || look.style.color_by != scene.style.color_by;
+    if (has_more)
+        throw Error(ExitCode::kInternal, "another look of a film needs what its motion does not have");
+    return Film(std::make_unique<Film::Impl>(*film.impl_, look));
+}
+
+void FilmPainter::keep(const Film& film, std::span<const double> times_s) {
+    for (const double time_s : times_s) film.impl_->require_time(time_s);
+    const std::lock_guard lock(film.impl_->run->reading);
+    film.impl_->motion.keep(times_s, film.impl_->def.on_progress);
+}
+
 const Image& FilmPainter::image() const {
     return brush_->stage.image();
 }
 
 bool FilmPainter::shows_nothing() const {
     return brush_->stage.shows_nothing();
-}
-
-struct Renderer::Impl {
-    Impl(const Scene& given, const std::string& backend)
-        : scene(given), system(system_of(scene)), stage(scene, system, backend, false) {
-        if (quantity_of(scene.style.color_by)) {
-            throw Error(ExitCode::kInvalidScene,
-                        "style: color_by is a quantity of a motion, and a Renderer draws positions alone; "
-                        "choose kBody or kLink");
-        }
-        if (scene.overlay.plot != LivePlot::kNone) {
-            throw Error(
-                ExitCode::kInvalidScene,
-                "overlay: plot shows a whole motion, and a Renderer draws positions alone; leave it out");
-        }
-        camera = stage.fit(bounds_of_start(system));
-    }
-    Scene scene;
-    System system;
-    pipeline::Stage stage;
-    CameraDef camera;
-    State state;
-};
-
-Renderer::Renderer(const Scene& scene, const std::string& backend) {
-    try {
-        impl_ = std::make_unique<Impl>(scene, backend);
-    } catch (const Refusal& refusal) {
-        throw pipeline::explained(refusal, scene.source);
-    }
-}
-Renderer::Renderer(Renderer&&) noexcept = default;
-Renderer& Renderer::operator=(Renderer&&) noexcept = default;
-Renderer::~Renderer() = default;
-
-const CameraDef& Renderer::camera() const {
-    return impl_->camera;
-}
-
-Image Renderer::draw(std::span<const Vec2> positions_m) {
-    const std::size_t count = impl_->system.particle_count();
-    if (positions_m.size() != count) {
-        throw Error(ExitCode::kUsage,
-                    fmt::format("{} positions for the {} particles of the scene; give one each",
-                                positions_m.size(), count));
-    }
-    State& state = impl_->state;
-    state.x_m.resize(count);
-    state.y_m.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        if (!std::isfinite(positions_m[i].x) || !std::isfinite(positions_m[i].y))
-            throw Error(ExitCode::kUsage, fmt::format("position {} is not finite", i));
-        state.x_m[i] = positions_m[i].x - impl_->system.origin_m.x;
-        state.y_m[i] = positions_m[i].y - impl_->system.origin_m.y;
-    }
-    const pipeline::Stage::Use use(impl_->stage);
-    impl_->stage.draw(state, impl_->stage.map_of(impl_->camera));
-    return impl_->stage.image();
 }
 
 }  // namespace corda

@@ -104,7 +104,10 @@ class Film {
 
   private:
     friend class FilmPainter;
+    struct Run;
     struct Impl;
+    explicit Film(std::unique_ptr<Impl> impl);
+
     std::unique_ptr<Impl> impl_;
 };
 

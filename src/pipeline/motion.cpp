@@ -86,6 +86,10 @@ const State& Motion::at(double time_s, const OnProgress& on_progress) {
         figures_ = recording_.figures(*index);
         return state_;
     }
+    if (const auto kept = kept_.find(time_s); kept != kept_.end()) {
+        figures_ = kept->second.figures;
+        return kept->second.state;
+    }
     if (index && diverges_ && *index >= recording_.size()) fail_diverged(time_s);
     if (!run_ || run_->state().time_s > time_s) start(on_progress);
     while (next_ < timeline_.size() && timeline_.time_s(next_) <= time_s) {
@@ -97,6 +101,15 @@ const State& Motion::at(double time_s, const OnProgress& on_progress) {
     }
     figures_ = run_->figures();
     return run_->state();
+}
+
+void Motion::keep(std::span<const double> times_s, const OnProgress& on_progress) {
+    for (const double time_s : times_s) {
+        const auto index = timeline_.find(time_s);
+        if (index && recording_.holds(*index)) continue;
+        const State& state = at(time_s, on_progress);
+        kept_.try_emplace(time_s, Kept{state, figures_});
+    }
 }
 
 void Motion::fail_diverged(double time_s) const {

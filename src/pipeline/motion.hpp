@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "corda/core/basics.hpp"
@@ -37,6 +39,9 @@ class Motion {
     /// until the next call. `on_progress` is asked during steps that take long. Throws corda::Error:
     /// kDiverged if the motion ends before, kInterrupted if asked to stop.
     const State& at(double time_s, const OnProgress& on_progress = {});
+    /// Keeps the states at these times, increasing, beside the recording, whatever its budget is. Throws as
+    /// at().
+    void keep(std::span<const double> times_s, const OnProgress& on_progress);
     /// Figures of the last state that at() returned.
     [[nodiscard]] const Figures& figures() const { return figures_; }
 
@@ -50,6 +55,11 @@ class Motion {
     [[nodiscard]] bool diverges() const { return diverges_; }
 
   private:
+    struct Kept {
+        State state;
+        Figures figures;
+    };
+
     void start(const OnProgress& on_progress);
     /// Tells `on_progress`, which must outlive it, the time that run_ goes to.
     [[nodiscard]] GoesOn asking(const OnProgress& on_progress) const;
@@ -68,6 +78,7 @@ class Motion {
     std::size_t next_ = 0;           ///< the time that it goes to next
     int passes_ = 0;
     bool diverges_ = false;
+    std::map<double, Kept> kept_;  ///< by time
     State state_;
     Figures figures_;
 };

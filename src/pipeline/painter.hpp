@@ -40,6 +40,13 @@ class FilmPainter {
     /// kInterrupted, and kUsage for several poses of more lines than memory is meant for.
     [[nodiscard]] static view::DrawList poses(const Film& film, std::span<const double> times_s,
                                               const OnProgress& on_progress = {});
+    /// The same motion in pictures of another size, style or overlay, without a plot: nothing is simulated
+    /// again. `look` has the bodies, the world and the colouring of the film's scene. Not to be used while
+    /// the film is by another thread. Throws corda::Error (kInternal) for another colouring or a plot.
+    [[nodiscard]] static Film another_look(const Film& film, const Scene& look);
+    /// Reads the states at these times, in order and at most one pass over the motion, and keeps them: what
+    /// is beyond the film's memory budget is not simulated for each picture. Throws as Film::state_at().
+    static void keep(const Film& film, std::span<const double> times_s);
     /// The last picture.
     [[nodiscard]] const Image& image() const;
     /// Whether nothing is in view on it.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #include "corda/sim/defs.hpp"
 #include "corda/sim/system.hpp"
@@ -31,5 +32,12 @@ class MotionBounds {
     Vec2 min_{1e300, 1e300};
     Vec2 max_{-1e300, -1e300};
 };
+
+/// Where each particle is at the start.
+[[nodiscard]] inline std::vector<MotionBounds> bounds_of_start(const System& system) {
+    std::vector<MotionBounds> bounds(system.particle_count());
+    for (std::size_t i = 0; i < bounds.size(); ++i) bounds[i].include(system.x_m[i], system.y_m[i]);
+    return bounds;
+}
 
 }  // namespace corda
