@@ -77,10 +77,6 @@ struct GlOptions {
 /// if a signal asks for that. `console` must outlive it.
 [[nodiscard]] OnProgress show_progress(const Console& console, const std::string& what);
 
-/// The bound on the error of all bodies that have one: "0.06 px, 0.0003 m, up to 0.75 s, but for net 1";
-/// std::nullopt if none has, or if predictability ends at the start.
-[[nodiscard]] std::optional<std::string> bound_text(const Film& film);
-
 /// Says what method `auto` became and how far it can be trusted.
 void report_plan(const Console& console, const Film& film);
 /// Warns if a method that the scene names took one of several ways. To be called when the motion is known.

@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "corda/pipeline/describe.hpp"
+#include "corda/pipeline/terms.hpp"
 #include "corda/sim/auto/planner.hpp"
 
 namespace corda::app {
@@ -17,109 +18,6 @@ struct PlanOptions {
     SceneOptions scene;
     bool toml = false;
 };
-
-/// The values above 0 of one figure of all bodies.
-class Values {
-  public:
-    void include(double value) {
-        if (value == 0.0) return;
-        low_ = std::min(low_, value);
-        high_ = std::max(high_, value);
-    }
-    [[nodiscard]] bool empty() const { return high_ == 0.0; }
-    [[nodiscard]] std::string text() const {
-        return low_ == high_ ? fmt::format("{}", low_) : fmt::format("{} .. {}", low_, high_);
-    }
-
-  private:
-    double low_ = HUGE_VAL;
-    double high_ = 0.0;
-};
-
-/// What the bodies are made of.
-struct Materials {
-    Values compliance_1_n;
-    Values bending_n_m2;
-    bool rigid = false;
-    bool slack = false;    ///< a string, of either kind
-    bool plastic = false;  ///< a rigid string: energy is lost when it comes taut
-};
-
-Materials list_materials(const Scene& scene) {
-    Materials result;
-    const auto include = [&result](const MaterialDef& material) {
-        const bool rigid = material.compliance_1_n == 0.0;
-        result.compliance_1_n.include(material.compliance_1_n);
-        result.rigid = result.rigid || rigid;
-        result.slack = result.slack || material.is_string;
-        result.plastic = result.plastic || (material.is_string && rigid);
-    };
-    for (const RopeDef& rope : scene.ropes) {
-        include(rope.material);
-        result.bending_n_m2.include(rope.bending_n_m2);
-    }
-    for (const NetDef& net : scene.nets) include(net.material);
-    return result;
-}
-
-std::string force_term(const Scene& scene, const RelaxationDef* relaxation) {
-    if (relaxation != nullptr && relaxation->force_n) {
-        return fmt::format("a force of ({}, {}) N per particle, in place of gravity", relaxation->force_n->x,
-                           relaxation->force_n->y);
-    }
-    const Vec2 gravity_m_s2 = scene.world.gravity_m_s2;
-    if (gravity_m_s2 == Vec2{}) return "no gravity";
-    return fmt::format("gravity of ({}, {}) m/s2", gravity_m_s2.x, gravity_m_s2.y);
-}
-
-std::string drag_term(const Scene& scene, const Materials& materials, const RelaxationDef* relaxation) {
-    if (scene.world.drag_1_s != 0.0) return fmt::format("linear drag of {} 1/s, exact", scene.world.drag_1_s);
-    if (relaxation != nullptr) {
-        return relaxation->delta > 0.0
-                   ? fmt::format("damping: a share of {} of the velocity is lost per step", relaxation->delta)
-                   : "no drag; the passes lose energy, and print how much";
-    }
-    return materials.plastic ? "no drag: energy is lost only when a string comes taut"
-                             : "no drag: energy is kept";
-}
-
-std::string nets_term(const Scene& scene) {
-    std::size_t real = 0;
-    std::size_t all = 0;
-    for (const NetDef& net : scene.nets) {
-        all += net.bars.size();
-        real += static_cast<std::size_t>(
-            std::count_if(net.bars.begin(), net.bars.end(), [](const NetBar& bar) { return bar.is_real; }));
-    }
-    return fmt::format("nets: {}, of {} bars and {} imaginary ones", scene.nets.size(), real, all - real);
-}
-
-/// What is modelled, a line per term: what a scene does not ask for is left out.
-std::vector<std::string> list_terms(const Scene& scene, const Plan& plan) {
-    const RelaxationDef* relaxation = nullptr;
-    bool relaxes_all = true;
-    for (const BodyPlan& body : plan.bodies) {
-        const auto* const def = std::get_if<RelaxationDef>(&body.method);
-        relaxes_all = relaxes_all && def != nullptr;
-        if (def != nullptr) relaxation = def;
-    }
-    const Materials materials = list_materials(scene);
-    std::vector<std::string> terms{force_term(scene, relaxation), drag_term(scene, materials, relaxation)};
-    if (relaxation != nullptr) terms.emplace_back("bars that stretch by what the passes of relaxation leave");
-    if (!relaxes_all && materials.rigid) terms.emplace_back("links that do not stretch");
-    if (!materials.compliance_1_n.empty()) {
-        terms.push_back(fmt::format("links that stretch by {} of their length per newton",
-                                    materials.compliance_1_n.text()));
-    }
-    if (materials.slack) terms.emplace_back("strings: links that pull and never push");
-    if (!materials.bending_n_m2.empty())
-        terms.push_back(fmt::format("bending stiffness of {} N m2", materials.bending_n_m2.text()));
-    const auto closed = std::count_if(scene.ropes.begin(), scene.ropes.end(),
-                                      [](const RopeDef& rope) { return rope.closed; });
-    if (closed > 0) terms.push_back(fmt::format("closed ropes: {}", closed));
-    if (!scene.nets.empty()) terms.push_back(nets_term(scene));
-    return terms;
-}
 
 struct Cost {
     double steps = 0.0;
@@ -214,7 +112,7 @@ ExitCode plan(const Console& console, const PlanOptions& options) {
         console.report({{"schema", 1}, {"toml", toml}});
         return ExitCode::kOk;
     }
-    const std::vector<std::string> terms = list_terms(film.scene(), film.plan());
+    const std::vector<std::string> terms = modelled_terms(film.scene(), film.plan());
     report_in_words(console, film, terms);
     console.result(fmt::format("camera: center ({:.6g}, {:.6g}) m, {:.6g} m high", camera.center_m->x,
                                camera.center_m->y, *camera.height_m));

@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "corda/core/clock.hpp"
 #include "corda/pipeline/describe.hpp"
+#include "corda/pipeline/terms.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -76,24 +77,6 @@ void warn_of_horizon(const Console& console, const Film& film) {
 }
 
 }  // namespace
-
-std::optional<std::string> bound_text(const Film& film) {
-    const Plan& plan = film.plan();
-    std::optional<double> largest_m;
-    std::vector<std::size_t> unbounded;
-    for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
-        if (plan.bodies[i].error_bound_m)
-            largest_m = std::max(largest_m.value_or(0.0), *plan.bodies[i].error_bound_m);
-        else
-            unbounded.push_back(i);
-    }
-    if (!largest_m || plan.horizon_s == 0.0) return std::nullopt;
-    const double pixels_per_metre = film.scene().video.height_px / film.camera().height_m.value();
-    std::string text = fmt::format("{:.2g} px, {:.2g} m", pixels_per_metre * *largest_m, *largest_m);
-    if (plan.horizon_s) text += fmt::format(", up to {:.6g} s", *plan.horizon_s);
-    if (!unbounded.empty()) text += ", but for " + describe(film.system(), unbounded);
-    return text;
-}
 
 void report_plan(const Console& console, const Film& film) {
     if (!std::holds_alternative<AutoDef>(film.scene().solver)) return;
