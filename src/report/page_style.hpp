@@ -50,6 +50,11 @@ table.setting td { white-space: normal; }
 table.setting th { font-weight: 500; color: var(--soft); white-space: nowrap; }
 figure { margin: 2rem 0; padding: 0.5rem; border: 1px solid var(--line); border-radius: 8px; }
 figure svg { display: block; width: 100%; height: auto; }
+figcaption { padding: 0.7rem 0.4rem 0.2rem; color: var(--soft); font-size: 0.9375rem; line-height: 1.45; }
+figcaption b { color: var(--ink); }
+figcaption .files { display: block; margin-top: 0.3rem; font-size: 0.875rem; }
+.small { display: grid; grid-template-columns: repeat(auto-fill, minmax(20rem, 1fr)); gap: 1rem; margin: 2rem 0; }
+.small figure { margin: 0; }
 sup { line-height: 0; font-size: 0.75em; }
 svg [stroke="black"] { stroke: var(--ink); }
 svg [fill="black"] { fill: var(--ink); }

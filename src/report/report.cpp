@@ -51,6 +51,7 @@ void check_report(const Report& report) {
             check_table(table);
         }
         for (const Plot& plot : chapter.plots) check_name(plot.id, "plot id", plots);
+        for (const Picture& picture : chapter.pictures) check_name(picture.id, "picture id", plots);
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -66,6 +67,8 @@ struct Series {
     /// place among the lines that are not context.
     std::optional<std::size_t> look = {};
     bool is_context = false;  ///< grey and thin, behind the others, with one entry for all such in the key
+    std::string color = {};   ///< "#rrggbb" in place of that of its look
+    bool is_joined = true;    ///< false: dots, for points too far apart for lines between them
 
     void add(double x, double y, const std::pair<double, double>& spread) {
         points.emplace_back(x, y);
@@ -75,14 +78,30 @@ struct Series {
 
 /// A line plot.
 struct Plot {
-    std::string id;  ///< file name without ending: [a-z0-9_]+, unique among the plots of a Report
-    std::string title;
+    std::string
+        id;  ///< file name without ending: [a-z0-9_]+, unique among the plots and pictures of a Report
+    std::string title;  ///< stands over it, unless it has a caption; readers who cannot see it hear it
     std::string x_title;
     std::string y_title;
     bool log_x = true;
     bool log_y = true;
     std::vector<Series> series;
     std::string context_name = {};  ///< of all lines that are context
+    std::string caption = {};       ///< stands below it on the page, with a number; may be empty
+    std::string data = {};          ///< name of the file with its numbers, for the page; empty: none
+    bool has_markers = true;        ///< false: lines without a marker at each point
+    bool has_equal_scales = false;  ///< a unit is as long along x as along y: for paths
+    double height_per_width = 2.0 / 3.0;
+};
+
+/// A drawing that is made elsewhere.
+struct Picture {
+    std::string id;       ///< as that of a Plot
+    std::string title;    ///< what it shows, for readers who cannot see it
+    std::string caption;  ///< stands below it on the page, with a number
+    /// Writes it, `width_mm` wide, to a path whose ending is .svg, .png or .pdf. Throws what it likes.
+    std::function<void(const std::string& path, double width_mm)> write;
+    bool is_small = false;  ///< stands beside its small neighbours on the page
 };
 
 /// One subject: what the figures show, and the figures.
@@ -92,15 +111,23 @@ struct Chapter {
     std::vector<Table> tables;
     std::vector<Plot> plots;
     std::string summary = {};  ///< what it found, in a sentence: the report opens with those; may be empty
+    std::vector<Picture> pictures = {};  ///< before the plots
 };
 
-/// Chapters of tables and plots, and what they were measured on.
+/// Chapters of tables and figures, and what they were measured on.
 struct Report {
     std::string title;
     /// Machine, build and options as pairs of a name and a value. Without dates, so that the same figures
     /// give the same files.
     std::vector<std::pair<std::string, std::string>> setting;
     std::vector<Chapter> chapters;
+    /// Widths of its figures in print, in mm, increasing: each has the files `<id>_<width>mm.svg`, .png (at
+    /// kPrintPpi) and .pdf per width, and the page shows the widest, of small pictures the narrowest. Empty:
+    /// `<id>.svg`, .png and .pdf, of a plot 170 mm or 1200 pixels wide.
+    std::vector<int> widths_mm = {};
 };
+
+/// Pixels per inch of pictures of a width in print.
+inline constexpr double kPrintPpi = 300.0;
 
 }  // namespace corda::report

@@ -5,42 +5,91 @@
 #include <optional>
 #include <utility>
 
+#include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/report/writers.hpp"
 
 namespace corda::report {
+namespace {
 
-ReportFolder::ReportFolder(std::string path, OutputOptions options)
-    : path_(std::move(path)), options_(std::move(options)) {
+std::string contents_of(const std::string& path) {
+    const FileHandle file = open_for_reading(path);
+    std::string bytes;
+    std::array<char, 65536> block{};
+    while (const std::size_t count = std::fread(block.data(), 1, block.size(), file.get()))
+        bytes.append(block.data(), count);
+    return bytes;
+}
+
+}  // namespace
+
+ReportFolder::ReportFolder(std::string path, OutputOptions options, std::vector<int> widths_mm)
+    : path_(std::move(path)), options_(std::move(options)), widths_mm_(std::move(widths_mm)) {
     make_folder(path_);
 }
 
+std::string ReportFolder::path_of(const std::string& name) const {
+    return (std::filesystem::path(path_) / name).string();
+}
+
 void ReportFolder::write(const std::string& name, const std::string& bytes) {
-    const std::string path = (std::filesystem::path(path_) / name).string();
+    const std::string path = path_of(name);
     OutputFile output(path, options_);
     output.write(bytes);
     output.commit();
-    paths_.insert(paths_.begin(), path);
+    note(path);
 }
 
-void ReportFolder::add(const Chapter& chapter) {
-    check_report({{}, {}, {chapter}});
-    for (const Table& table : chapter.tables) write(table.id + ".csv", csv_text(table));
-    for (const Plot& plot : chapter.plots) {
+void ReportFolder::ask() {
+    const std::int64_t drawn = std::ssize(svgs_);
+    report_progress(options_.on_progress, drawn, drawn + 1);
+}
+
+void ReportFolder::add_picture(const Picture& picture) {
+    if (widths_mm_.empty()) throw Error(ExitCode::kInternal, "a report with pictures needs widths in print");
+    for (const int width_mm : widths_mm_) {
         for (const PlotFormat format : {PlotFormat::kSvg, PlotFormat::kPng, PlotFormat::kPdf}) {
-            report_progress(options_.on_progress, std::ssize(svgs_), std::ssize(chapter.plots));
-            const std::string picture = draw_plot(plot, format);
-            write(plot.id + "." + ending(format), picture);
+            ask();
+            const std::string path = path_of(file_stem(picture.id, width_mm) + "." + ending(format));
+            picture.write(path, width_mm);
+            note(path);
+            // What is small on the page is read with the letters of the narrow one.
+            const int shown_mm = picture.is_small ? widths_mm_.front() : widths_mm_.back();
+            const bool is_shown = format == PlotFormat::kSvg && width_mm == shown_mm;
+            if (is_shown) svgs_[picture.id] = contents_of(path);
+        }
+    }
+}
+
+void ReportFolder::add_plot(const Plot& plot) {
+    std::vector<std::optional<int>> widths_mm(widths_mm_.begin(), widths_mm_.end());
+    if (widths_mm.empty()) widths_mm.emplace_back();
+    for (const std::optional<int>& width_mm : widths_mm) {
+        for (const PlotFormat format : {PlotFormat::kSvg, PlotFormat::kPng, PlotFormat::kPdf}) {
+            ask();
+            const std::string picture = draw_plot(plot, format, width_mm);
+            write(file_stem(plot.id, width_mm) + "." + ending(format), picture);
             if (format == PlotFormat::kSvg) svgs_[plot.id] = picture;
         }
     }
 }
 
+void ReportFolder::add(const Chapter& chapter) {
+    check_report({{}, {}, {chapter}});
+    for (const Table& table : chapter.tables) write(table.id + ".csv", csv_text(table));
+    for (const Picture& picture : chapter.pictures) add_picture(picture);
+    for (const Plot& plot : chapter.plots) add_plot(plot);
+}
+
 void ReportFolder::finish(Report report) {
     check_report(report);
-    for (Chapter& chapter : report.chapters)
-        std::erase_if(chapter.plots, [this](const Plot& plot) { return !svgs_.contains(plot.id); });
-    const std::string page = html_text(report, [this](const Plot& plot) { return svgs_.at(plot.id); });
+    report.widths_mm = widths_mm_;
+    const auto is_missing = [this](const auto& figure) { return !svgs_.contains(figure.id); };
+    for (Chapter& chapter : report.chapters) {
+        std::erase_if(chapter.plots, is_missing);
+        std::erase_if(chapter.pictures, is_missing);
+    }
+    const std::string page = html_text(report, [this](const std::string& id) { return svgs_.at(id); });
     const std::array<std::pair<const char*, std::string>, 3> files{
         {{"report.md", markdown_text(report)}, {"report.json", json_text(report)}, {"report.html", page}}};
     std::optional<Error> failure;

@@ -15,15 +15,21 @@ namespace corda::report {
 /// (see OutputFile).
 class ReportFolder {
   public:
-    /// Makes the folder if it is missing. `options.on_progress` is asked between pictures.
-    explicit ReportFolder(std::string path, OutputOptions options = {});
+    /// Makes the folder if it is missing. `options.on_progress` is asked between pictures. `widths_mm`: see
+    /// Report, of which it becomes that.
+    explicit ReportFolder(std::string path, OutputOptions options = {}, std::vector<int> widths_mm = {});
 
-    /// Writes the figures of a chapter: `<id>.csv` per table, then `<id>.svg`, `.png` and `.pdf` per plot.
-    /// Also throws kInterrupted if it is asked to stop.
+    /// Writes the figures of a chapter: `<id>.csv` per table, then the .svg, .png and .pdf of each picture
+    /// and plot. Also throws kInterrupted if it is asked to stop.
     void add(const Chapter& chapter);
 
-    /// Writes report.md, report.json and report.html. A plot of which `add` has not drawn the picture is left
-    /// out. A file that cannot be written does not keep the others from being written.
+    /// Where a file of that name belongs.
+    [[nodiscard]] std::string path_of(const std::string& name) const;
+    /// Counts a file that somebody else has written there.
+    void note(const std::string& path) { paths_.insert(paths_.begin(), path); }
+
+    /// Writes report.md, report.json and report.html. A figure that `add` has not drawn is left out. A file
+    /// that cannot be written does not keep the others from being written.
     void finish(Report report);
 
     /// The paths of the files, the last written first.
@@ -31,10 +37,15 @@ class ReportFolder {
 
   private:
     void write(const std::string& name, const std::string& bytes);
+    void add_picture(const Picture& picture);
+    void add_plot(const Plot& plot);
+    /// Tells that the next of the pictures is drawn.
+    void ask();
 
     std::string path_;
     OutputOptions options_;
-    std::map<std::string, std::string> svgs_;  ///< by plot
+    std::vector<int> widths_mm_;
+    std::map<std::string, std::string> svgs_;  ///< by plot or picture: that of the page
     std::vector<std::string> paths_;
 };
 

@@ -89,21 +89,60 @@ void remove_element(std::string& text, std::string_view start, std::string_view 
     if (last != std::string::npos) text.erase(first, last + end.size() - first);
 }
 
-/// An SVG file by gnuplot as an element of the page: without the file's header, with a label for readers who
-/// cannot see it, and with ids that no other plot has.
-std::string svg_element(std::string svg, const Plot& plot) {
+/// An SVG file by gnuplot or of a picture as an element of the page: without the file's header, with a label
+/// for readers who cannot see it, and with ids that no other has.
+std::string svg_element(std::string svg, const std::string& id, const std::string& title) {
     svg.erase(0, std::min(svg.find("<svg"), svg.size()));
     remove_element(svg, "<title>", "</title>");
     remove_element(svg, "<desc>", "</desc>");
-    for (const std::string_view id : {"gpDot", "gpPt", "textbox", "greybox"}) {
-        replace_all(svg, fmt::format("id='{}", id), fmt::format("id='{}_{}", plot.id, id));
-        replace_all(svg, fmt::format("'#{}", id), fmt::format("'#{}_{}", plot.id, id));
+    for (const std::string_view own : {"gpDot", "gpPt", "textbox", "greybox"}) {
+        replace_all(svg, fmt::format("id='{}", own), fmt::format("id='{}_{}", id, own));
+        replace_all(svg, fmt::format("'#{}", own), fmt::format("'#{}_{}", id, own));
     }
-    replace_all(svg, "id=\"gnuplot_canvas\"", fmt::format("id=\"{}_canvas\"", plot.id));
-    if (svg.rfind("<svg", 0) == 0) {
-        svg.insert(4, fmt::format(" role=\"img\" aria-label=\"{}\"", html_text(plot.title)));
+    for (const std::string_view own : {"ground", "halo", "mask"}) {
+        replace_all(svg, fmt::format(" id=\"{}", own), fmt::format(" id=\"{}_{}", id, own));
+        replace_all(svg, fmt::format("url(#{}", own), fmt::format("url(#{}_{}", id, own));
+        replace_all(svg, fmt::format("href=\"#{}", own), fmt::format("href=\"#{}_{}", id, own));
     }
+    replace_all(svg, "id=\"gnuplot_canvas\"", fmt::format("id=\"{}_canvas\"", id));
+    // A black curve is as dark as letters are, which a dark page makes light.
+    replace_all(svg, "'rgb(  0,   0,   0)'", "'black'");
+    if (svg.rfind("<svg", 0) == 0)
+        svg.insert(4, fmt::format(" role=\"img\" aria-label=\"{}\"", html_text(title)));
     return svg;
+}
+
+/// Where the files of a figure are.
+std::string files_html(const Report& report, const std::string& id, const std::string& data) {
+    std::string text;
+    for (const int width_mm : report.widths_mm) {
+        text += fmt::format("{}{} mm: ", text.empty() ? "" : " · ", width_mm);
+        for (const auto& [ending, name] : {std::pair{"svg", "SVG"}, {"pdf", "PDF"}, {"png", "PNG"}})
+            text += fmt::format("<a href=\"{}.{}\">{}</a> ", file_stem(id, width_mm), ending, name);
+        text.pop_back();
+    }
+    if (!data.empty())
+        text += fmt::format("{}<a href=\"{}\">CSV</a>", text.empty() ? "" : " · numbers: ", data);
+    return text.empty() ? "" : "<span class=\"files\">" + text + "</span>";
+}
+
+/// The figures that have a caption are numbered.
+struct FigureCount {
+    int count = 0;
+};
+
+std::string caption_html(const Report& report, const std::string& id, const std::string& caption,
+                         const std::string& data, FigureCount& figures) {
+    if (caption.empty()) return {};
+    return fmt::format("<figcaption><b>Figure {}.</b> {}{}</figcaption>\n", ++figures.count,
+                       html_text(caption), files_html(report, id, data));
+}
+
+std::string picture_html(const Report& report, const Picture& picture, const SvgOf& svg_of,
+                         FigureCount& figures) {
+    return fmt::format("<figure id=\"picture-{}\">\n{}{}</figure>\n", picture.id,
+                       svg_element(svg_of(picture.id), picture.id, picture.title),
+                       caption_html(report, picture.id, picture.caption, "", figures));
 }
 
 std::string setting_html(const Report& report) {
@@ -128,16 +167,31 @@ std::string contents_html(const Report& report) {
     return text + "</ol>\n</nav>\n";
 }
 
-std::string chapter_html(const Chapter& chapter, std::size_t number, const SvgOf& svg_of) {
+std::string pictures_html(const Report& report, const Chapter& chapter, const SvgOf& svg_of,
+                          FigureCount& figures) {
+    std::string text;
+    bool is_in_row = false;
+    for (const Picture& picture : chapter.pictures) {
+        if (picture.is_small != is_in_row) text += is_in_row ? "</div>\n" : "<div class=\"small\">\n";
+        is_in_row = picture.is_small;
+        text += picture_html(report, picture, svg_of, figures);
+    }
+    return text + (is_in_row ? "</div>\n" : "");
+}
+
+std::string chapter_html(const Report& report, const Chapter& chapter, std::size_t number,
+                         const SvgOf& svg_of, FigureCount& figures) {
     std::string text =
         fmt::format("<section id=\"chapter-{0}\">\n<h2><a href=\"#chapter-{0}\">{0}. {1}</a></h2>\n", number,
                     html_text(chapter.title));
     for (const std::string& paragraph : chapter.paragraphs) {
         text += fmt::format("<p>{}</p>\n", html_text(paragraph));
     }
+    text += pictures_html(report, chapter, svg_of, figures);
     for (const Plot& plot : chapter.plots) {
-        text +=
-            fmt::format("<figure id=\"plot-{}\">\n{}</figure>\n", plot.id, svg_element(svg_of(plot), plot));
+        text += fmt::format("<figure id=\"plot-{}\">\n{}{}</figure>\n", plot.id,
+                            svg_element(svg_of(plot.id), plot.id, plot.title),
+                            caption_html(report, plot.id, plot.caption, plot.data, figures));
     }
     for (const Table& table : chapter.tables) text += table_html(table);
     return text + "</section>\n";
@@ -157,9 +211,9 @@ std::string html_text(const Report& report, const SvgOf& svg_of) {
             text += fmt::format("<p class=\"summary\">{}</p>\n", html_text(chapter.summary));
     }
     text += contents_html(report) + setting_html(report);
-    for (std::size_t i = 0; i < report.chapters.size(); ++i) {
-        text += chapter_html(report.chapters[i], i + 1, svg_of);
-    }
+    FigureCount figures;
+    for (std::size_t i = 0; i < report.chapters.size(); ++i)
+        text += chapter_html(report, report.chapters[i], i + 1, svg_of, figures);
     return text + "</body>\n</html>\n";
 }
 

@@ -38,19 +38,19 @@ Json to_json(const Plot& plot) {
     }
     return {{"id", plot.id},           {"title", plot.title}, {"x_title", plot.x_title},
             {"y_title", plot.y_title}, {"log_x", plot.log_x}, {"log_y", plot.log_y},
-            {"series", series}};
+            {"caption", plot.caption}, {"series", series}};
 }
 
 Json to_json(const Chapter& chapter) {
     Json tables = Json::array();
     for (const Table& table : chapter.tables) tables.push_back(to_json(table));
+    Json pictures = Json::array();
+    for (const Picture& picture : chapter.pictures)
+        pictures.push_back({{"id", picture.id}, {"title", picture.title}, {"caption", picture.caption}});
     Json plots = Json::array();
     for (const Plot& plot : chapter.plots) plots.push_back(to_json(plot));
-    return {{"title", chapter.title},
-            {"summary", chapter.summary},
-            {"paragraphs", chapter.paragraphs},
-            {"tables", tables},
-            {"plots", plots}};
+    return {{"title", chapter.title}, {"summary", chapter.summary}, {"paragraphs", chapter.paragraphs},
+            {"tables", tables},       {"pictures", pictures},       {"plots", plots}};
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -93,6 +94,13 @@ void add_table(const Table& table, std::string& text) {
     if (!table.note.empty()) text += paragraph_text(table.note);
 }
 
+void add_figure(const Report& report, const std::string& id, const std::string& title,
+                const std::string& caption, std::string& text) {
+    const auto width_mm = report.widths_mm.empty() ? std::nullopt : std::optional(report.widths_mm.back());
+    text += fmt::format("![{}]({}.svg)\n\n", markdown_text(title), file_stem(id, width_mm));
+    if (!caption.empty()) text += paragraph_text(caption);
+}
+
 Table setting_table(const Report& report) {
     Table table{"setting", "Setting", {{"name", "What"}, {"value", "Value"}}, {}, ""};
     for (const auto& [name, value] : report.setting) table.rows.push_back({name, value});
@@ -110,9 +118,9 @@ std::string markdown_text(const Report& report) {
     for (const Chapter& chapter : report.chapters) {
         text += fmt::format("## {}\n\n", markdown_text(chapter.title));
         for (const std::string& paragraph : chapter.paragraphs) text += paragraph_text(paragraph);
-        for (const Plot& plot : chapter.plots) {
-            text += fmt::format("![{}]({}.svg)\n\n", markdown_text(plot.title), plot.id);
-        }
+        for (const Picture& picture : chapter.pictures)
+            add_figure(report, picture.id, picture.title, picture.caption, text);
+        for (const Plot& plot : chapter.plots) add_figure(report, plot.id, plot.title, plot.caption, text);
         for (const Table& table : chapter.tables) add_table(table, text);
     }
     text.pop_back();  // one newline at the end, not two

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,29 +24,34 @@ namespace corda::report {
 [[nodiscard]] std::string json_text(const Report& report);
 
 /// The whole report as GitHub-flavoured Markdown with aligned tables and short numbers; a failed row says so
-/// in its failure column. Plots are linked as `<id>.svg`.
+/// in its failure column. Figures are linked as files beside it.
 [[nodiscard]] std::string markdown_text(const Report& report);
 
-/// Gives the SVG of a plot.
-using SvgOf = std::function<std::string(const Plot&)>;
+/// Gives the SVG of a plot or a picture by its id.
+using SvgOf = std::function<std::string(const std::string& id)>;
 
 /// The whole report as one HTML page without scripts, style sheets or pictures of its own: it needs no other
-/// file. It is also well-formed XML.
+/// file, and only links to those of figures with a caption. It is also well-formed XML.
 [[nodiscard]] std::string html_text(const Report& report, const SvgOf& svg_of);
 
-/// The format of a plot's picture: 1200 x 800 pixels, or 170 x 113 mm.
+/// The format of a plot's picture.
 enum class PlotFormat { kPng, kSvg, kPdf };
 
 /// "png", "svg" or "pdf".
 [[nodiscard]] const char* ending(PlotFormat format);
 
-/// The script with which gnuplot draws `plot` to its standard output. A point that an axis cannot show (not
-/// finite, or not positive on a logarithmic axis) is left out and breaks its line.
-[[nodiscard]] std::string gnuplot_script(const Plot& plot, PlotFormat format);
+/// The name of a figure's file without ending: `<id>`, or `<id>_<width>mm`.
+[[nodiscard]] std::string file_stem(const std::string& id, std::optional<int> width_mm);
+
+/// The script with which gnuplot draws `plot` to its standard output: so wide in print, with letters of 8
+/// points and at kPrintPpi, or 1200 pixels or 170 mm wide. A point that an axis cannot show (not finite, or
+/// not positive on a logarithmic axis) is left out and breaks its line.
+[[nodiscard]] std::string gnuplot_script(const Plot& plot, PlotFormat format,
+                                         std::optional<int> width_mm = {});
 
 /// The bytes of a plot's picture, drawn by gnuplot. Throws corda::Error (kIo): see check_gnuplot, and with
 /// gnuplot's own text if it fails.
-[[nodiscard]] std::string draw_plot(const Plot& plot, PlotFormat format);
+[[nodiscard]] std::string draw_plot(const Plot& plot, PlotFormat format, std::optional<int> width_mm = {});
 
 /// Throws corda::Error (kIo), naming the package, if gnuplot does not run. Call it before a report's figures
 /// are computed, so that they are not computed in vain.

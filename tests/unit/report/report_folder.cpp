@@ -81,6 +81,49 @@ TEST(ReportFolder, IsFinishedWithThePicturesThatWereDrawn) {
     }
 }
 
+/// A report with pictures that say in which order they were written.
+Report drawn_report() {
+    const auto write = [](const std::string& path, double width_mm) {
+        test::write_file(
+            path, "<svg id=\"ground0\"><use href=\"#halo1\"/>" + std::to_string(width_mm) + "</svg>\n");
+    };
+    Report report{"R", {}, {{"C", {}, {}, {}, "", {}}}};
+    report.chapters[0].pictures = {{"whole", "a \"whole\"", "All <of> it.", write},
+                                   {"part", "part", "A part.", write, true},
+                                   {"other", "other", "Another.", write, true}};
+    return report;
+}
+
+TEST(ReportFolder, GetsPicturesOfEachWidth) {
+    const test::ScratchFolder scratch;
+    ReportFolder folder(scratch.path(), {}, {85, 170});
+    Report report = drawn_report();
+    folder.add(report.chapters[0]);
+    test::write_file(folder.path_of("rows.csv"), "t\n");
+    folder.note(folder.path_of("rows.csv"));
+    folder.finish(report);
+    EXPECT_EQ(folder.paths().size(), 3U * 6U + 1U + 3U);
+    EXPECT_EQ(scratch.files().size(), folder.paths().size());
+    EXPECT_TRUE(std::filesystem::exists(scratch.file("whole_85mm.png")));
+    const std::string page = test::read_file(scratch.file("report.html"));
+    EXPECT_THAT(page,
+                HasSubstr("<figure id=\"picture-whole\">\n<svg role=\"img\" aria-label=\"a "
+                          "&quot;whole&quot;\" id=\"whole_ground0\"><use href=\"#whole_halo1\"/>170.0"));
+    EXPECT_THAT(page, HasSubstr("<b>Figure 1.</b> All &lt;of&gt; it.<span class=\"files\">85 mm: <a "
+                                "href=\"whole_85mm.svg\">SVG</a> <a href=\"whole_85mm.pdf\">PDF</a>"));
+    EXPECT_THAT(page, HasSubstr("<div class=\"small\">\n<figure id=\"picture-part\">"));
+    EXPECT_THAT(page, HasSubstr("<use href=\"#part_halo1\"/>85.0"));  // small ones are the narrow ones
+    EXPECT_THAT(page, HasSubstr("<b>Figure 3.</b> Another."));
+    EXPECT_THAT(test::read_file(scratch.file("report.md")), HasSubstr("](whole_170mm.svg)\n\nAll"));
+    EXPECT_THAT(test::read_file(scratch.file("report.json")), HasSubstr("\"caption\": \"A part.\""));
+}
+
+TEST(ReportFolder, WithoutWidthsRefusesPictures) {
+    const test::ScratchFolder scratch;
+    ReportFolder folder(scratch.path());
+    EXPECT_EQ(code_of([&] { folder.add(drawn_report().chapters[0]); }), ExitCode::kInternal);
+}
+
 TEST(ReportFolder, IsFinishedAsFarAsItCanBe) {
     const test::ScratchFolder folder;
     const std::string taken = folder.write("report.md", "mine");

@@ -11,10 +11,18 @@ using test::run_shell;
 using testing::HasSubstr;
 using testing::Not;
 
+Plot plot_of(const std::string& id) {
+    for (const Chapter& chapter : small_report().chapters) {
+        for (const Plot& plot : chapter.plots)
+            if (plot.id == id) return plot;
+    }
+    return {};
+}
+
 TEST(Html, PageIsWellFormedAndNeedsNoOtherFile) {
     const test::ScratchFolder folder;
-    const std::string page =
-        html_text(small_report(), [](const Plot& plot) { return draw_plot(plot, PlotFormat::kSvg); });
+    const std::string page = html_text(
+        small_report(), [](const std::string& id) { return draw_plot(plot_of(id), PlotFormat::kSvg); });
     const std::string path = folder.write("report.html", page);
     const auto result = run_shell("xmllint --noout --nonet --dropdtd " + test::quoted(path));
     EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -32,7 +40,7 @@ TEST(Html, PageIsWellFormedAndNeedsNoOtherFile) {
 }
 
 TEST(Html, PageEscapesAndMarksFailures) {
-    const std::string page = html_text(small_report(), [](const Plot&) { return "<svg></svg>\n"; });
+    const std::string page = html_text(small_report(), [](const std::string&) { return "<svg></svg>\n"; });
     EXPECT_THAT(page, HasSubstr("<title>A &lt;report&gt;</title>"));
     EXPECT_THAT(page, HasSubstr("<h2><a href=\"#chapter-1\">1. First &amp; &lt;foremost&gt;</a></h2>"));
     EXPECT_THAT(page, HasSubstr("<p>Plain a_b, &quot;q&quot; &lt;b&gt;&amp;amp; | *x* &#39;y&#39;"));

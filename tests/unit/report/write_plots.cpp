@@ -75,6 +75,48 @@ TEST(Plots, ArePicturesOfTheRightSize) {
     EXPECT_THAT(test::read_file(folder.file("error.svg")), HasSubstr("never (no points)"));
 }
 
+TEST(Plots, HaveLettersOfEightPointsAtAnyWidthInPrint) {
+    const test::ScratchFolder folder;
+    Plot plot = small_plot();
+    plot.caption = "A caption.";
+    for (const int width_mm : {85, 170}) {
+        const std::string png = folder.write("a.png", draw_plot(plot, PlotFormat::kPng, width_mm));
+        EXPECT_NEAR(read_png(png).width(), width_mm / 25.4 * 300.0, 1.0);
+        EXPECT_NEAR(read_png_info(png).pixels_per_inch, 300.0, 0.1);
+        const std::string pdf = folder.write("a.pdf", draw_plot(plot, PlotFormat::kPdf, width_mm));
+        // Words are as high as the font's box, 1.163 of the size of its letters.
+        const auto words = run_shell("pdftotext -bbox " + pdf + " - | grep 'Step'");
+        double top = 0.0;
+        double bottom = 0.0;
+        ASSERT_EQ(std::sscanf(words.out.c_str(), " <word xMin=\"%*f\" yMin=\"%lf\" xMax=\"%*f\" yMax=\"%lf\"",
+                              &top, &bottom),
+                  2)
+            << words.out;
+        EXPECT_NEAR(bottom - top, 1.163 * 8.0, 0.1);
+        const std::string svg = draw_plot(plot, PlotFormat::kSvg, width_mm);
+        EXPECT_THAT(svg, HasSubstr("width=\"" + std::to_string(width_mm) + "mm\" height="));
+        EXPECT_THAT(svg, HasSubstr("font-size=\"8.00\""));
+        EXPECT_THAT(svg, HasSubstr(width_mm == 85 ? "viewBox=\"0 0 241 161\"" : "viewBox=\"0 0 482 321\""));
+    }
+    EXPECT_THAT(gnuplot_script(plot, PlotFormat::kPdf, 85), Not(HasSubstr("set title")));
+    EXPECT_EQ(file_stem("a", 85), "a_85mm");
+    EXPECT_EQ(file_stem("a", {}), "a");
+}
+
+TEST(Plots, OfPathsHaveEqualScalesWithAMargin) {
+    Plot plot = small_plot();
+    plot.log_x = plot.log_y = false;
+    plot.has_equal_scales = true;
+    plot.has_markers = false;
+    plot.series = {{"a", {{0.0, 1.0}, {100.0, 11.0}}}, {"b", {{0.0, 1.0}}}};
+    plot.series[0].color = "#123456";
+    plot.series[1].is_joined = false;
+    const std::string script = gnuplot_script(plot, PlotFormat::kSvg);
+    EXPECT_THAT(script, AllOf(HasSubstr("set size ratio -1\n"), HasSubstr("set xrange [-4:104]\n"),
+                              HasSubstr("set yrange [-3:15]\n"), HasSubstr("$s0 with lines "),
+                              HasSubstr("linecolor rgb '#123456'"), HasSubstr("$s1 with points ")));
+}
+
 TEST(Plots, HaveTheSameBytesAtAnotherTime) {
     for (const PlotFormat format : {PlotFormat::kPng, PlotFormat::kSvg, PlotFormat::kPdf}) {
         const std::string first = draw_plot(small_plot(), format);
