@@ -31,6 +31,7 @@ void add_verify(CLI::App& app, Action& action);
 void add_recover(CLI::App& app, Action& action);
 void add_doctor(CLI::App& app, Action& action);
 void add_plan(CLI::App& app, Action& action);
+void add_report(CLI::App& app, Action& action);
 void add_study(CLI::App& app, Action& action);
 void add_init(CLI::App& app, Action& action);
 void add_examples(CLI::App& app, Action& action);

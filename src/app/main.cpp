@@ -123,6 +123,7 @@ int run(int argc, char** argv) {
     add_recover(app, action);
     add_doctor(app, action);
     add_plan(app, action);
+    add_report(app, action);
     add_study(app, action);
     add_init(app, action);
     add_examples(app, action);

@@ -1,11 +1,6 @@
 #include "corda/study/study.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -16,15 +11,13 @@
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
-#include "corda/core/file.hpp"
 #include "corda/report/report_folder.hpp"
 #include "corda/report/writers.hpp"
 #include "interrupt.hpp"
+#include "page_folder.hpp"
 
 namespace corda::app {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct StudyOptions {
     SceneOptions scene;
@@ -33,24 +26,6 @@ struct StudyOptions {
     study::StudyDef def;
     bool force = false;
 };
-
-/// Makes the folder of the report, before hours of measuring. Throws corda::Error (kIo).
-void prepare_folder(const std::string& path, bool force) {
-    std::error_code ignored;
-    if (fs::exists(path, ignored) && !fs::is_directory(path, ignored)) {
-        throw Error(ExitCode::kIo, fmt::format("{}: exists and is not a folder; choose another name", path));
-    }
-    make_folder(path);
-    const bool is_empty = fs::is_empty(path, ignored) && !ignored;
-    if (!is_empty && !force) {
-        throw Error(ExitCode::kIo,
-                    fmt::format("{}: is not empty; give --force to replace files of the same names", path));
-    }
-    if (::access(path.c_str(), W_OK | X_OK) != 0) {
-        throw Error(ExitCode::kIo, fmt::format("{}: cannot be written to: {}; choose another folder", path,
-                                               std::strerror(errno)));
-    }
-}
 
 /// Measures everything and writes each chapter when it is measured. What ends the study early is thrown when
 /// the report of the chapters before it is written.
@@ -77,12 +52,7 @@ void measure(const Console& console, study::Study& study, report::ReportFolder& 
         if (!failure) failure = error;
     }
     if (!failure) return;
-    const std::vector<std::string>& paths = folder.paths();
-    throw Error(failure->code(),
-                fmt::format("{}; {}", failure->what(),
-                            paths.empty() ? "nothing was written"
-                                          : fmt::format("{} files are written, the last of them is {}",
-                                                        paths.size(), paths.front())));
+    throw with_files(*failure, folder);
 }
 
 ExitCode study_command(const Console& console, StudyOptions options) {
@@ -96,17 +66,13 @@ ExitCode study_command(const Console& console, StudyOptions options) {
     bool has_folder = false;
     options.def.on_step = [&has_folder] { stop_if_asked(has_folder ? kSomethingWritten : kNothingWritten); };
     study::Study study(options.def);
-    prepare_folder(options.output, options.force);
+    prepare_page_folder(options.output, options.force);
     report::check_gnuplot();
     report::ReportFolder folder(
         options.output, {.force = options.force, .on_progress = stopping_if_asked(kSomethingWritten)});
     has_folder = true;
     measure(console, study, folder);
-    const std::vector<std::string>& paths = folder.paths();
-    console.info(fmt::format("{} files in {:.3g} s", paths.size(), now_s() - start_s));
-    for (const std::string& path : paths) console.result(path);
-    console.report(
-        {{"schema", 1}, {"folder", options.output}, {"files", paths}, {"wall_s", now_s() - start_s}});
+    report_files(console, folder, {{"schema", 1}, {"folder", options.output}}, now_s() - start_s);
     return ExitCode::kOk;
 }
 
@@ -125,7 +91,7 @@ void add_study(CLI::App& app, Action& action) {
         ->delimiter(',')
         ->type_name("NAME");
     options->gl.add_to(*command);
-    command->add_flag("--force", options->force, "write into a folder that is not empty");
+    add_force(*command, options->force);
     command->callback([options, &action] {
         action = [options](const Console& console) { return study_command(console, *options); };
     });

@@ -18,11 +18,11 @@ struct InWords {
         return fmt::format("exact at tolerance {:.3g}", def.tolerance);
     }
     std::string operator()(const RattleDef& def) const {
-        const std::string step = def.step_s ? fmt::format(", step {} s", *def.step_s) : "";
+        const std::string step = def.step_s ? fmt::format(", step {:.6g} s", *def.step_s) : "";
         return fmt::format("rattle of order {}", def.order) + step;
     }
     std::string operator()(const RelaxationDef& def) const {
-        const std::string step = def.step_s ? fmt::format(", step {} s", *def.step_s) : "";
+        const std::string step = def.step_s ? fmt::format(", step {:.6g} s", *def.step_s) : "";
         return fmt::format("relaxation with {} sweep{}", def.sweeps, def.sweeps == 1 ? "" : "s") + step;
     }
 };

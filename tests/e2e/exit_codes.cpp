@@ -105,6 +105,7 @@ TEST_F(ExitCodes, TwoForANumberThatIsNone) {
         {{"render", scene_, "-o", video_}, "--crf", "1 .. 51"},
         {{"render", scene_, "-o", video_}, "--threads", "1 .. 64"},
         {{"simulate", scene_}, "--duration", "> 0"},
+        {{"report", scene_, "-o", folder_.file("report")}, "--at", "0 .. 0.2 s"},
         {{"plan", scene_}, "--fps", "0.001 .. 100000"},
     };
     for (const Option& option : options) {
@@ -140,6 +141,8 @@ TEST_F(ExitCodes, TwoForAnEmptyValue) {
         {"compare", scene_, scene_, "--diff", ""},
         {"verify", ""},
         {"plan", ""},
+        {"report", "", "-o", folder_.file("report")},
+        {"report", scene_, "-o", folder_.file("report"), "--at", ""},
         {"study", "", "-o", folder_.file("report")},
         {"study", "-o", ""},
         {"study", "-o", folder_.file("report"), "--chapter", ""},

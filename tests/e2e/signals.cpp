@@ -70,6 +70,7 @@ TEST_F(Signals, EndTheWaitForAPipe) {
     for (const std::string& arguments :
          {"plan " + pipe, "simulate " + pipe, "render " + pipe + " -o " + folder_.file("a.mp4"),
           "still " + pipe + " --at 0 -o " + folder_.file("a.png"),
+          "report " + pipe + " -o " + folder_.file("report"),
           "study " + pipe + " -o " + folder_.file("report"), "compare " + pipe + " " + pipe}) {
         for (const auto& [signal, exit_code] : {std::pair{"INT", 130}, {"TERM", 143}}) {
             const Interrupted end = interrupt(arguments, signal, kIsListening);
@@ -104,6 +105,16 @@ TEST_F(Signals, EndTheWaitForTheReaderOfAPipe) {
     EXPECT_EQ(end.exit_code, 143) << end.err;
     const Interrupted alone = interrupt("simulate " + scene_ + " -o " + pipe, "INT", kIsListening);
     EXPECT_EQ(alone.result.exit_code, 130) << alone.result.err;
+}
+
+TEST_F(Signals, EndTheReadingOfAMotionForAReport) {
+    const std::string out = folder_.file("report");
+    const Interrupted end = interrupt("report " + scene_ + " -o " + out + " --duration 2000", "TERM",
+                                      "ls -A " + out + " 2>/dev/null | grep -q tip.csv");
+    EXPECT_EQ(end.result.exit_code, 143) << end.result.err;
+    EXPECT_THAT(end.result.err, HasSubstr("error: interrupted; nothing was written"));
+    EXPECT_LT(end.ms, kMostMs);  // measured 3 .. 10
+    EXPECT_EQ(run_shell("ls -A " + out).out, "");
 }
 
 TEST_F(Signals, EndAComparison) {

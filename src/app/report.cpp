@@ -1,0 +1,120 @@
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/clock.hpp"
+#include "corda/figures/paper.hpp"
+#include "corda/figures/reading.hpp"
+#include "corda/figures/scene_report.hpp"
+#include "corda/report/report_folder.hpp"
+#include "corda/report/writers.hpp"
+#include "interrupt.hpp"
+#include "page_folder.hpp"
+#include "shots.hpp"
+
+namespace corda::app {
+namespace {
+
+struct ReportOptions {
+    SceneOptions scene;
+    GlOptions gl;
+    ShotOptions shots;
+    std::string output;
+    bool force = false;
+    bool dry_run = false;
+};
+
+/// Shows the parts of a report as progress, each from its start.
+class Parts {
+  public:
+    explicit Parts(const Console& console) : console_(&console) {}
+
+    void show(const std::string& part, std::int64_t done, std::int64_t total) {
+        if (part != part_) progress_ = show_progress(*console_, part);
+        part_ = part;
+        progress_(done, total);
+    }
+    void end() { progress_ = {}; }
+
+  private:
+    const Console* console_;
+    std::string part_;
+    OnProgress progress_;
+};
+
+/// Writes the report; returns why the motion ended early, if it did.
+std::optional<Error> write_report(const Console& console, const Film& film, const std::vector<Shot>& shots,
+                                  const ReportOptions& options, report::ReportFolder& folder) {
+    Parts parts(console);
+    figures::SceneReportDef def;
+    for (const Shot& shot : shots) def.at_s.push_back(shot.time_s);
+    def.output = {.force = options.force, .on_progress = stopping_if_asked(kSomethingWritten)};
+    def.on_part = [&](const std::string& part, std::int64_t done, std::int64_t total) {
+        stop_if_asked(kSomethingWritten);
+        parts.show(part, done, total);
+    };
+    try {
+        return figures::write_scene_report(film, def, folder);
+    } catch (const Error& error) {
+        parts.end();
+        throw with_files(error, folder);
+    }
+}
+
+ExitCode report_command(const Console& console, const ReportOptions& options) {
+    const double start_s = now_s();
+    Scene scene = options.scene.load();
+    figures::prefer_paper(scene);
+    const std::vector<Shot> shots = options.shots.list(scene);
+    report::check_gnuplot();
+    prepare_page_folder(options.output, options.force, options.dry_run);
+    OnProgress on_progress = show_progress(console, "simulate");
+    FilmDef def;
+    def.on_progress = [&on_progress](std::int64_t done, std::int64_t all) { return on_progress(done, all); };
+    def.readings = figures::needed_readings();
+    for (const Shot& shot : shots) def.stills_s.push_back(shot.time_s);
+    options.gl.apply_to(def);
+    const Film film(scene, def);
+    report_plan(console, film);
+    if (options.dry_run) {
+        console.info(fmt::format("would write a report into {}", options.output));
+        console.report(film_json(film));
+        return ExitCode::kOk;
+    }
+    on_progress = stopping_if_asked(kSomethingWritten);
+    report::ReportFolder folder(options.output,
+                                {.force = options.force, .on_progress = stopping_if_asked(kSomethingWritten)},
+                                {figures::kColumnMm, figures::kPageMm});
+    const std::optional<Error> failure = write_report(console, film, shots, options, folder);
+    warn_of_branch(console, film);
+    if (failure) throw with_files(*failure, folder);
+    nlohmann::json json = film_json(film);
+    json["folder"] = options.output;
+    report_files(console, folder, std::move(json), now_s() - start_s);
+    return ExitCode::kOk;
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Action& action) {
+    auto options = std::make_shared<ReportOptions>();
+    CLI::App* command = app.add_subcommand(
+        "report", "write the figures that a paper needs of a scene, for print, and a page with all of them");
+    options->scene.add_to(*command);
+    command->add_option("-o,--output", options->output, "folder of the report")->required();
+    options->shots.add_to(*command);
+    options->scene.add_shortcut(*command, "--fps", "video.fps", "rows per second");
+    options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
+    options->gl.add_to(*command);
+    add_force(*command, options->force);
+    command->add_flag("--dry-run", options->dry_run, "check everything and write nothing");
+    command->callback([options, &action] {
+        action = [options](const Console& console) { return report_command(console, *options); };
+    });
+}
+
+}  // namespace corda::app

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "corda/figures/reading.hpp"
+#include "corda/report/report.hpp"
+#include "corda/scene/scene.hpp"
+
+namespace corda::figures {
+
+/// A curve before its units are known.
+struct Curve {
+    std::string name;
+    std::vector<CurvePoint> points;
+    std::string color = {};  ///< see report::Series
+    bool is_joined = true;
+};
+
+/// What an axis shows, and the unit of its values, which takes a prefix; "": bare numbers, "rad": as it is.
+struct AxisDef {
+    std::string text;
+    std::string unit;
+};
+
+/// A plot of curves without markers whose axes have units with the prefixes that suit their values. The time
+/// is in seconds.
+[[nodiscard]] report::Plot make_plot(const std::string& id, const std::string& title, const AxisDef& x,
+                                     const AxisDef& y, const std::vector<Curve>& curves);
+
+/// A curve per body, of the colour that it has in pictures; the only one needs no name.
+[[nodiscard]] std::vector<Curve> curves_of(const Scene& scene, const System& system, const Reading& reading,
+                                           Thinner BodyCurves::*curve);
+
+/// Gives a plot of paths as high a picture as they are, within what fits a page.
+void fit_height(report::Plot& plot);
+
+/// " Of 36001 rows it keeps ...", a sentence for the caption of a curve that was thinned; empty otherwise.
+[[nodiscard]] std::string thinning_text(const Reading& reading);
+
+/// "4 more bodies are not shown." as a sentence; empty if all are.
+[[nodiscard]] std::string left_out_text(const System& system, const Reading& reading);
+
+}  // namespace corda::figures

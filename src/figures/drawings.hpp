@@ -1,0 +1,36 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "corda/core/basics.hpp"
+#include "corda/pipeline/film.hpp"
+
+namespace corda::figures {
+
+/// The look of a scene in print: of its shape, so many millimetres wide at report::kPrintPpi, with letters of
+/// 8 points and no live plot. What the scene says in pixels keeps its share of the width.
+[[nodiscard]] Scene look_in_print(const Scene& scene, double width_mm);
+
+/// Draws poses of one film at any width in print.
+class Drawings {
+  public:
+    /// The film must outlive it.
+    explicit Drawings(const Film& film) : film_(&film) {}
+
+    /// Writes the poses at some times in one picture; the ending of `path` is .svg, .png or .pdf. Throws as
+    /// corda::write_figure().
+    void write(const std::string& path, double width_mm, const std::vector<double>& times_s,
+               const OutputOptions& options);
+    /// Opens OpenGL, which PNGs are drawn with. Throws corda::Error (kNoGl).
+    [[nodiscard]] GlInfo gl(double width_mm) { return look(width_mm).gl(); }
+
+  private:
+    [[nodiscard]] const Film& look(double width_mm);
+
+    const Film* film_;
+    std::map<double, Film> looks_;  ///< by width
+};
+
+}  // namespace corda::figures

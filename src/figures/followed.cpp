@@ -1,0 +1,105 @@
+#include "corda/figures/followed.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "corda/pipeline/describe.hpp"
+#include "corda/view/trail.hpp"
+
+namespace corda::figures {
+namespace {
+
+std::vector<std::size_t> particles_of(const System& system, const Body& body, bool are_pinned) {
+    std::vector<std::size_t> particles;
+    for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i)
+        if (system.is_pinned(i) == are_pinned) particles.push_back(i);
+    return particles;
+}
+
+/// Of those that are equally near, rounding apart, the first.
+std::size_t most_central(const System& system, const std::vector<std::size_t>& particles) {
+    constexpr double kSame = 1e-9;
+    Vec2 mean_m;
+    for (const std::size_t i : particles)
+        mean_m = mean_m + (1.0 / static_cast<double>(particles.size())) * Vec2{system.x_m[i], system.y_m[i]};
+    std::size_t nearest = particles.front();
+    double least_m2 = HUGE_VAL;
+    for (const std::size_t i : particles) {
+        const Vec2 way_m = Vec2{system.x_m[i], system.y_m[i]} - mean_m;
+        if (dot(way_m, way_m) >= (1.0 - kSame) * least_m2) continue;
+        least_m2 = dot(way_m, way_m);
+        nearest = i;
+    }
+    return nearest;
+}
+
+}  // namespace
+
+std::vector<Followed> list_followed(const System& system) {
+    const std::vector<std::size_t> ends = view::free_ends(system);
+    std::vector<Followed> all;
+    for (std::size_t b = 0; b < system.bodies.size() && all.size() < kMostBodies; ++b) {
+        const Body& body = system.bodies[b];
+        const std::vector<std::size_t> free = particles_of(system, body, false);
+        if (free.empty()) continue;
+        const auto end = std::find_if(ends.begin(), ends.end(), [&](std::size_t i) {
+            return i >= body.first_particle && i < body.first_particle + body.particle_count;
+        });
+        Followed& followed = all.emplace_back();
+        followed.body = b;
+        followed.is_free_end = end != ends.end();
+        followed.particle = followed.is_free_end ? *end
+                            : body.is_net        ? most_central(system, free)
+                                                 : free[free.size() / 2];
+        const std::vector<std::size_t> pins = particles_of(system, body, true);
+        if (pins.size() == 1) followed.pin = pins.front();
+    }
+    return all;
+}
+
+std::size_t moving_count(const System& system) {
+    return static_cast<std::size_t>(
+        std::count_if(system.bodies.begin(), system.bodies.end(),
+                      [&](const Body& body) { return !particles_of(system, body, false).empty(); }));
+}
+
+std::string describe(const System& system, const Followed& followed) {
+    const std::string name = body_name(system, followed.body);
+    const std::size_t number = followed.particle - system.bodies[followed.body].first_particle;
+    return followed.is_free_end
+               ? fmt::format("the free end of {} (particle {})", name, number)
+               : fmt::format("particle {} of {} (the {} of its free ones)", number, name,
+                             system.bodies[followed.body].is_net ? "most central" : "middle one");
+}
+
+std::string describe(const System& system, const std::vector<Followed>& followed) {
+    std::vector<std::size_t> ends;
+    std::vector<std::size_t> numbers;
+    std::string others;
+    for (const Followed& one : followed) {
+        if (one.is_free_end) {
+            ends.push_back(one.body);
+            numbers.push_back(one.particle - system.bodies[one.body].first_particle);
+        } else {
+            others += (others.empty() ? "" : " and ") + describe(system, one);
+        }
+    }
+    if (ends.empty()) return others;
+    std::string text;
+    if (ends.size() == 1) {
+        text =
+            fmt::format("the free end of {} (particle {})", body_name(system, ends.front()), numbers.front());
+    } else {
+        const bool are_same =
+            std::count(numbers.begin(), numbers.end(), numbers.front()) == std::ssize(numbers);
+        text = fmt::format("the free ends of {} ({})", corda::describe(system, ends),
+                           are_same ? fmt::format("particle {} of each", numbers.front())
+                                    : fmt::format("particles {}", fmt::join(numbers, ", ")));
+    }
+    return text + (others.empty() ? "" : " and ") + others;
+}
+
+}  // namespace corda::figures

@@ -1,0 +1,254 @@
+#include "corda/figures/reading.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "corda/sim/energy.hpp"
+#include "corda/sim/spread.hpp"
+
+namespace corda::figures {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// "rope_2"
+std::string key_of(const System& system, std::size_t body) {
+    std::string key = body_name(system, body);
+    std::replace(key.begin(), key.end(), ' ', '_');
+    return key;
+}
+
+class Reader {
+  public:
+    Reader(const Film& film, const OpenRows& open)
+        : film_(film),
+          system_(film.system()),
+          meter_(system_, film.scene().world, methods_of(film)),
+          reading_(film.last_frame() + 1) {
+        for (const Followed& followed : list_followed(system_))
+            reading_.bodies.emplace_back(followed, film.last_frame() + 1);
+        angles_.resize(reading_.bodies.size());
+        rates_.resize(reading_.bodies.size());
+        tells_tension_.resize(system_.bodies.size());
+        const auto stretches = [](const Body& body) { return body.material.compliance_1_n > 0.0; };
+        reading_.is_elastic =
+            !system_.bends.empty() || std::any_of(system_.bodies.begin(), system_.bodies.end(), stretches);
+        open_rows(open);
+    }
+
+    /// Takes the state that the film handed out last.
+    void add(const State& state) {
+        add_tips(state);
+        add_energy(state);
+        add_links(state);
+        add_speeds(state);
+        ++reading_.rows;
+        reading_.end_s = state.time_s;
+    }
+
+    [[nodiscard]] Reading take() {
+        for (std::size_t b = 0; b < tells_tension_.size(); ++b)
+            if (!tells_tension_[b] && system_.bodies[b].link_count > 0)
+                reading_.unknown_tensions.push_back(b);
+        return std::move(reading_);
+    }
+
+  private:
+    static std::vector<MethodDef> methods_of(const Film& film) {
+        std::vector<MethodDef> methods;
+        for (const BodyPlan& body : film.plan().bodies) methods.push_back(body.method);
+        return methods;
+    }
+
+    void open_rows(const OpenRows& open) {
+        std::vector<std::string> tip{"t_s"};
+        std::vector<std::string> tension{"t_s"};
+        std::vector<std::string> strain{"t_s", "largest"};
+        for (const BodyCurves& body : reading_.bodies) {
+            const std::string key = key_of(system_, body.followed.body);
+            for (const char* what : {"x_m", "y_m", "vx_m_s", "vy_m_s"}) tip.push_back(key + "_" + what);
+            if (body.followed.pin) {
+                tip.push_back(key + "_angle_rad");
+                tip.push_back(key + "_angular_velocity_rad_s");
+            }
+            tension.push_back(key + "_largest_n");
+            tension.push_back(key + "_link");
+            strain.push_back(key + "_largest");
+            strain.push_back(key + "_link");
+        }
+        tip_ = open("tip.csv", tip);
+        energy_ = open("energy.csv", {"t_s", "kinetic_j", "weight_since_start_j", "elastic_j",
+                                      "total_since_start_j", "energy_error"});
+        tension_ = open("tension.csv", tension);
+        strain_ = open("strain.csv", strain);
+    }
+
+    void add_tips(const State& state) {
+        const double t = state.time_s;
+        row_.assign(1, t);
+        for (std::size_t b = 0; b < reading_.bodies.size(); ++b) {
+            BodyCurves& body = reading_.bodies[b];
+            const std::size_t i = body.followed.particle;
+            const double x_m = state.x_m[i];
+            const double y_m = state.y_m[i];
+            body.path.add({t, x_m, y_m});
+            body.phase.add({t, x_m - system_.x_m[body.followed.pin.value_or(i)], state.vx_m_s[i]});
+            row_.insert(row_.end(), {system_.origin_m.x + x_m, system_.origin_m.y + y_m, state.vx_m_s[i],
+                                     state.vy_m_s[i]});
+            if (!body.followed.pin) continue;
+            add_turning(state, b);
+            row_.insert(row_.end(), {angles_[b], rates_[b]});
+        }
+        tip_(row_);
+    }
+
+    /// Between two rows a fast one may turn by more than half a turn, so the turns are counted by the rate.
+    void add_turning(const State& state, std::size_t b) {
+        constexpr double kTurn = 2.0 * std::numbers::pi;
+        BodyCurves& body = reading_.bodies[b];
+        const std::size_t i = body.followed.particle;
+        const std::size_t pin = body.followed.pin.value();
+        const double dx_m = state.x_m[i] - state.x_m[pin];
+        const double dy_m = state.y_m[i] - state.y_m[pin];
+        const double square_m2 = dx_m * dx_m + dy_m * dy_m;
+        const double rate = (dx_m * state.vy_m_s[i] - dy_m * state.vx_m_s[i]) / square_m2;
+        double angle = std::atan2(dx_m, -dy_m);
+        if (reading_.rows > 0) {
+            const double expected = angles_[b] + 0.5 * (rates_[b] + rate) * (state.time_s - reading_.end_s);
+            if (std::isfinite(expected)) angle += kTurn * std::round((expected - angle) / kTurn);
+        }
+        angles_[b] = angle;
+        rates_[b] = rate;
+        body.nearest_m = std::min(body.nearest_m, std::sqrt(square_m2));
+        body.turning.add({state.time_s, angle, rate});
+    }
+
+    void add_energy(const State& state) {
+        const double t = state.time_s;
+        const sim::Energy energy = meter_.of(state);
+        if (reading_.rows == 0) weight_at_start_j_ = energy.weight_j;
+        const double weight_j = energy.weight_j - weight_at_start_j_;
+        const double total_j = energy.kinetic_j + weight_j + energy.elastic_j;
+        reading_.kinetic.add({t, t, energy.kinetic_j});
+        reading_.weight.add({t, t, weight_j});
+        reading_.elastic.add({t, t, energy.elastic_j});
+        reading_.total.add({t, t, total_j});
+        row_.assign({t, energy.kinetic_j, weight_j, energy.elastic_j, total_j,
+                     film_.figures().energy_error.value_or(kUnknown)});
+        energy_(row_);
+    }
+
+    /// The largest size of a quantity of a body's links.
+    [[nodiscard]] Extreme largest_of(Quantity quantity, std::size_t b, const State& state) const {
+        const Body& body = system_.bodies[b];
+        Extreme largest;
+        for (std::size_t k = 0; k < body.link_count; ++k) {
+            largest.include(sim::value_of(quantity, system_, body, body.first_bar + k, state), state.time_s,
+                            b, k);
+        }
+        return largest;
+    }
+
+    void add_links(const State& state) {
+        const double t = state.time_s;
+        row_.assign(1, t);
+        strains_.assign({t, 0.0});
+        std::size_t curve = 0;
+        Extreme strain;
+        for (std::size_t b = 0; b < system_.bodies.size(); ++b) {
+            const Extreme tension = largest_of(Quantity::kTension, b, state);
+            const Extreme own_strain = largest_of(Quantity::kStrain, b, state);
+            if (tension.is_known && (!reading_.tension.is_known || tension.size > reading_.tension.size))
+                keep_tensions(b, state);
+            tells_tension_[b] = tells_tension_[b] || tension.is_known;
+            reading_.tension.include(tension);
+            strain.include(own_strain);
+            if (curve == reading_.bodies.size() || reading_.bodies[curve].followed.body != b) continue;
+            BodyCurves& body = reading_.bodies[curve++];
+            const double tension_n = tension.is_known ? tension.size : kUnknown;
+            const double link = tension.is_known ? static_cast<double>(tension.index) : kUnknown;
+            body.tension.add({t, t, tension_n});
+            body.strain.add({t, t, own_strain.size});
+            row_.insert(row_.end(), {tension_n, link});
+            strains_.insert(strains_.end(), {own_strain.size, static_cast<double>(own_strain.index)});
+        }
+        reading_.strain.include(strain);
+        strains_[1] = strain.size;
+        tension_(row_);
+        strain_(strains_);
+    }
+
+    void keep_tensions(std::size_t b, const State& state) {
+        const Body& body = system_.bodies[b];
+        const auto first = state.tension_n.begin() + static_cast<std::ptrdiff_t>(body.first_bar);
+        reading_.tensions_n.assign(first, first + static_cast<std::ptrdiff_t>(body.link_count));
+    }
+
+    void add_speeds(const State& state) {
+        for (std::size_t b = 0; b < system_.bodies.size(); ++b) {
+            const Body& body = system_.bodies[b];
+            for (std::size_t k = 0; k < body.particle_count; ++k) {
+                const std::size_t i = body.first_particle + k;
+                reading_.speed.include(
+                    std::sqrt(state.vx_m_s[i] * state.vx_m_s[i] + state.vy_m_s[i] * state.vy_m_s[i]),
+                    state.time_s, b, k);
+            }
+        }
+    }
+
+    const Film& film_;
+    const System& system_;
+    sim::EnergyMeter meter_;
+    Reading reading_;
+    OnRow tip_;
+    OnRow energy_;
+    OnRow tension_;
+    OnRow strain_;
+    std::vector<double> row_;
+    std::vector<double> strains_;
+    std::vector<double> angles_;  ///< of the last row, per curve
+    std::vector<double> rates_;
+    std::vector<bool> tells_tension_;  ///< per body
+    double weight_at_start_j_ = 0.0;
+};
+
+}  // namespace
+
+void Extreme::include(double value, double at_s, std::size_t of_body, std::size_t at) {
+    const double new_size = std::abs(value);
+    if (is_known ? !(new_size > size) : std::isnan(new_size)) return;
+    *this = {true, new_size, at_s, of_body, at};
+}
+
+void Extreme::include(const Extreme& other) {
+    if (other.is_known) include(other.size, other.time_s, other.body, other.index);
+}
+
+Readings needed_readings() {
+    return {.velocities = true, .tensions = true, .unknown_tensions = true};
+}
+
+Reading read_motion(const Film& film, const OpenRows& open, const OnProgress& on_progress) {
+    const std::int64_t rows = film.last_frame() + 1;
+    Reader reader(film, open);
+    std::optional<Error> failure;
+    for (std::int64_t k = 0; k < rows; ++k) {
+        report_progress(on_progress, k, rows);
+        try {
+            reader.add(film.state(k));
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::kDiverged || k == 0) throw;
+            failure = error;
+            break;
+        }
+    }
+    Reading reading = reader.take();
+    reading.failure = failure;
+    return reading;
+}
+
+}  // namespace corda::figures

@@ -1,0 +1,116 @@
+#include "corda/figures/scene_report.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "corda/core/text.hpp"
+#include "corda/core/version.hpp"
+#include "corda/figures/chapters.hpp"
+#include "corda/figures/csv_file.hpp"
+#include "corda/figures/drawings.hpp"
+#include "corda/pipeline/describe.hpp"
+#include "corda/pipeline/painter.hpp"
+
+namespace corda::figures {
+namespace {
+
+/// Reads the motion, and leaves its rows in the folder.
+Reading read_into(const Film& film, const SceneReportDef& def, report::ReportFolder& folder) {
+    std::vector<std::pair<std::string, std::unique_ptr<CsvFile>>> files;
+    const auto open = [&](const std::string& name, const std::vector<std::string>& keys) -> OnRow {
+        const std::string path = folder.path_of(name);
+        auto& file = *files.emplace_back(path, std::make_unique<CsvFile>(path, def.output, keys)).second;
+        return [&file](std::span<const double> values) { file.add_row(values); };
+    };
+    const auto on_progress = [&](std::int64_t done, std::int64_t total) {
+        if (def.on_part) def.on_part("read", done, total);
+        return !def.output.on_progress || def.output.on_progress(done, total);
+    };
+    Reading reading = read_motion(film, open, on_progress);
+    for (const auto& [path, file] : files) {
+        file->commit();
+        folder.note(path);
+    }
+    return reading;
+}
+
+/// The numbers of the figure of the tensions along a rope.
+void write_tensions_along(const Film& film, const Reading& reading, const OutputOptions& options,
+                          report::ReportFolder& folder) {
+    const std::string path = folder.path_of("tension_along.csv");
+    CsvFile file(path, options, {"link", "rest_length_m", "tension_n"});
+    const Body& body = film.system().bodies[reading.tension.body];
+    for (std::size_t k = 0; k < body.link_count; ++k) {
+        const double values[] = {static_cast<double>(k), film.system().bars[body.first_bar + k].rest_m,
+                                 reading.tensions_n[k]};
+        file.add_row(values);
+    }
+    file.commit();
+    folder.note(path);
+}
+
+std::vector<report::Chapter> list_chapters(const Film& film, const Reading& reading, const Moments& moments,
+                                           const WritePoses& write) {
+    std::vector<report::Chapter> chapters;
+    chapters.push_back(motion_chapter(film, reading, moments, write));
+    chapters.push_back(path_chapter(film, reading));
+    chapters.push_back(phase_chapter(film, reading));
+    chapters.push_back(energy_chapter(film, reading));
+    chapters.push_back(tension_chapter(film, reading));
+    chapters.push_back(strain_chapter(film, reading));
+    std::erase_if(chapters, [](const report::Chapter& chapter) {
+        return chapter.paragraphs.empty() && chapter.plots.empty() && chapter.summary.empty();
+    });
+    return chapters;
+}
+
+report::Report page_of(const Film& film, std::vector<report::Chapter> chapters) {
+    const Scene& scene = film.scene();
+    report::Report page;
+    page.title = "Report of " + printable(scene.name);
+    page.setting = {{"Bodies", corda::describe(film.system())},
+                    {"Method", corda::describe(film.system(), film.plan())},
+                    {"Duration", fmt::format("{:g} s", scene.world.duration_s)},
+                    {"Rows", fmt::format("{} per second", scene.video.fps.rational().text())},
+                    {"Corda", std::string(version())}};
+    page.chapters = std::move(chapters);
+    return page;
+}
+
+}  // namespace
+
+std::optional<Error> write_scene_report(const Film& film, const SceneReportDef& def,
+                                        report::ReportFolder& folder) {
+    Drawings drawings(film);
+    static_cast<void>(drawings.gl(kColumnMm));  // before anything is simulated, if the method is named
+    const Reading reading = read_into(film, def, folder);
+    if (reading.tension.is_known) write_tensions_along(film, reading, def.output, folder);
+    const Moments moments = find_moments(film, reading, def.at_s);
+    std::vector<double> drawn_s = moments.strobe_s;
+    drawn_s.insert(drawn_s.end(), moments.stills_s.begin(), moments.stills_s.end());
+    std::sort(drawn_s.begin(), drawn_s.end());
+    FilmPainter::keep(film, drawn_s);
+    const auto write = [&](const std::string& path, double width_mm, const std::vector<double>& times_s) {
+        drawings.write(path, width_mm, times_s, def.output);
+    };
+    report::Report page = page_of(film, list_chapters(film, reading, moments, write));
+    std::optional<Error> stopped;
+    std::int64_t done = 0;
+    try {
+        for (const report::Chapter& chapter : page.chapters) {
+            if (def.on_part) def.on_part("draw", done++, std::ssize(page.chapters));
+            folder.add(chapter);
+        }
+    } catch (const Error& error) {
+        stopped = error;
+        page.setting.emplace_back("Ends early", error.what());
+    }
+    folder.finish(std::move(page));
+    if (stopped) throw Error(*stopped);
+    return reading.failure;
+}
+
+}  // namespace corda::figures

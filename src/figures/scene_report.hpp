@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "corda/core/basics.hpp"
+#include "corda/pipeline/film.hpp"
+#include "corda/report/report_folder.hpp"
+
+namespace corda::figures {
+
+/// The widths of a report's figures in print, in mm: a column and a page of a journal.
+inline constexpr int kColumnMm = 85;
+inline constexpr int kPageMm = 170;
+
+/// How a report of a scene is made.
+struct SceneReportDef {
+    std::vector<double> at_s;  ///< times of its strobe and stills, increasing; empty: see find_moments()
+    OutputOptions output;      ///< `on_progress` is asked during all of it
+    /// Told which part is next, and what there is to do in it. May be empty.
+    std::function<void(const std::string& part, std::int64_t done, std::int64_t total)> on_part;
+};
+
+/// Writes the report of a film, whose states have needed_readings(), into a folder: CSVs with a row per frame
+/// time, figures, and the pages. A motion that diverges gives a report of what comes before, and its error is
+/// returned. If it is asked to stop, the pages have what was drawn. Throws corda::Error: kIo, kNoGl,
+/// kDiverged if there is no state at all, kInterrupted.
+[[nodiscard]] std::optional<Error> write_scene_report(const Film& film, const SceneReportDef& def,
+                                                      report::ReportFolder& folder);
+
+}  // namespace corda::figures

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace corda::figures {
+
+/// A point of a curve, and its time.
+struct CurvePoint {
+    double time_s = 0.0;
+    double x = 0.0;
+    double y = 0.0;
+};
+
+/// Keeps few points of a long curve, and none of its extremes is lost: rows are taken in blocks of equal
+/// length, of each of which stay the first, the last, and those where x or y is least or largest. Memory does
+/// not grow with the number of rows.
+///
+/// A path, which is not over time, cannot be told by its turns if blocks are long: lines between them would
+/// cross what it goes around. Of it then stay the first row of each block, as dots, and the extremes of all.
+class Thinner {
+  public:
+    enum class Kind { kOverTime, kPath };
+
+    /// A curve has at most so many points.
+    static constexpr std::int64_t kMostPoints = 2000;
+
+    /// `rows`: how many will be added at most. Up to kMostPoints all stay.
+    explicit Thinner(std::int64_t rows, Kind kind = Kind::kOverTime);
+
+    /// A point that is not finite breaks the curve if no other of its block is left.
+    void add(const CurvePoint& point);
+    /// What is left, in the order in which it was added.
+    [[nodiscard]] std::vector<CurvePoint> points() const;
+    /// Whether lines between the points are the curve; otherwise it is dots.
+    [[nodiscard]] bool is_joined() const { return !is_sparse_; }
+
+  private:
+    /// The rows of a block that stay, each the first one of its kind.
+    struct Block {
+        std::int64_t rows = 0;
+        bool is_empty = true;
+        CurvePoint first, last, left, right, low, high;
+
+        void include(const CurvePoint& point);
+    };
+    void end_block(std::vector<CurvePoint>& points) const;
+
+    bool is_sparse_;
+    std::int64_t block_rows_;
+    Block block_;
+    Block all_;
+    std::vector<CurvePoint> points_;
+};
+
+}  // namespace corda::figures

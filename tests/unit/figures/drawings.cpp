@@ -1,0 +1,43 @@
+#include "corda/figures/drawings.hpp"
+
+#include <gtest/gtest.h>
+
+#include "corda/media/defs.hpp"
+#include "support.hpp"
+#include "support/command.hpp"
+
+namespace corda::figures {
+namespace {
+
+TEST(Drawings, HaveTheShapeOfTheSceneAtThreeHundredPixelsPerInch) {
+    Scene scene = parse_scene("schema = 1\n" + pendulum_toml(), "a");
+    scene.style.rope_width_px = 4.0;
+    scene.overlay.plot = LivePlot::kEnergy;
+    const Scene look = look_in_print(scene, 85.0);
+    EXPECT_EQ(look.video.width_px, 1004);
+    EXPECT_EQ(look.video.height_px, 565);
+    EXPECT_NEAR(*look.style.rope_width_px, 4.0 * 1004 / 320, 0.01);
+    EXPECT_NEAR(*look.overlay.text_px, 8.0 / 72.0 * 300.0, 1e-9);  // 8 points
+    EXPECT_EQ(look.overlay.plot, LivePlot::kNone);
+    scene.video.width_px = 100;
+    scene.video.height_px = 10000;
+    EXPECT_EQ(look_in_print(scene, 85.0).video.height_px, 1406);  // fits a page
+}
+
+TEST(Drawings, SimulateNothingAgain) {
+    const ReadScene scene(pendulum_toml());
+    const test::ScratchFolder folder;
+    Drawings drawings(scene.film);
+    for (const char* name : {"a.svg", "a.pdf", "a.png"}) {
+        drawings.write(folder.file(name), 85.0, {0.0, 0.5}, {});
+        drawings.write(folder.file(std::string("wide_") + name), 170.0, {0.0, 0.5}, {});
+    }
+    EXPECT_EQ(scene.film.simulation_passes(), 1);
+    EXPECT_EQ(read_png(folder.file("a.png")).width(), 1004);
+    EXPECT_EQ(read_png(folder.file("wide_a.png")).width(), 2008);
+    EXPECT_NEAR(read_png_info(folder.file("wide_a.png")).pixels_per_inch, 300.0, 0.1);
+    EXPECT_NE(test::read_file(folder.file("a.svg")).find("width=\"85mm\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace corda::figures

@@ -1,0 +1,126 @@
+#include "corda/figures/reading.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "support.hpp"
+#include "support/failure.hpp"
+
+namespace corda::figures {
+namespace {
+
+constexpr double kWeightN = 2.0 * 9.81;
+
+TEST(Reading, HasTheEnergyAndTheTensionOfAPendulum) {
+    const ReadScene scene(pendulum_toml());
+    ASSERT_EQ(scene.reading.rows, 201);
+    const auto y = scene.column("tip.csv", "rope_0_y_m");
+    const auto kinetic = scene.column("energy.csv", "kinetic_j");
+    const auto weight = scene.column("energy.csv", "weight_since_start_j");
+    const auto total = scene.column("energy.csv", "total_since_start_j");
+    const auto tension = scene.column("tension.csv", "rope_0_largest_n");
+    for (std::size_t k = 0; k < y.size(); ++k) {
+        const double fall_m = 4.0 - 0.5 - y[k];           // from half a metre below the pin
+        const double cosine = 4.0 - y[k];                 // of the angle, on a link of 1 m
+        const double square_speed = 2.0 * 9.81 * fall_m;  // v^2 = 2 g h
+        EXPECT_NEAR(kinetic[k], kWeightN * fall_m, 1e-6);
+        EXPECT_NEAR(weight[k], -kWeightN * fall_m, 1e-6);
+        EXPECT_NEAR(total[k], 0.0, 1e-6);
+        EXPECT_NEAR(tension[k], kWeightN * cosine + 2.0 * square_speed, 1e-5);  // m g cos + m v^2 / L
+    }
+    // At the lowest point, to which a row is as near as half a step of 5 ms at 3.13 m/s:
+    // T = m g + m v^2 / L = 2 m g.
+    EXPECT_NEAR(scene.reading.tension.size, 2.0 * kWeightN, 3e-3);
+    EXPECT_EQ(scene.reading.tension.index, 0U);
+    EXPECT_NEAR(scene.reading.speed.size, std::sqrt(9.81), 1e-4);
+    // A quarter of the period at 60 degrees, 1.07318 times that of small swings (R2).
+    EXPECT_NEAR(scene.reading.speed.time_s, 1.07318 * 0.5 * std::numbers::pi / std::sqrt(9.81), 3e-3);
+    EXPECT_LT(scene.reading.strain.size, 1e-12);
+    EXPECT_FALSE(scene.reading.is_elastic);
+    EXPECT_FALSE(scene.reading.failure);
+}
+
+TEST(Reading, CountsTheAngleFromStraightDown) {
+    const ReadScene scene(pendulum_toml());
+    const auto angle = scene.column("tip.csv", "rope_0_angle_rad");
+    const auto rate = scene.column("tip.csv", "rope_0_angular_velocity_rad_s");
+    const auto x = scene.column("tip.csv", "rope_0_x_m");
+    const auto vx = scene.column("tip.csv", "rope_0_vx_m_s");
+    EXPECT_NEAR(angle[0], std::numbers::pi / 3.0, 1e-12);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        EXPECT_NEAR(std::sin(angle[k]), x[k] - 3.0, 1e-8);
+        EXPECT_NEAR(rate[k] * std::cos(angle[k]), vx[k], 1e-8);
+    }
+}
+
+/// Thrown fast enough to go round: v^2 = 100 > 5 g L.
+std::string looping_toml(const std::string& fps) {
+    return "[world]\nduration = 3.0\n[[rope]]\npoints = [[0.0, 0.0], [0.0, -1.0]]\nvelocity = [10.0, "
+           "0.0]\n[solver]\nmethod = \"exact\"\n[video]\nfps = " +
+           fps + "\n";
+}
+
+TEST(Reading, CountsTurnsOnHoweverFewRowsThereAre) {
+    const auto many = ReadScene(looping_toml("300")).column("tip.csv", "rope_0_angle_rad");
+    const auto few = ReadScene(looping_toml("5")).column("tip.csv", "rope_0_angle_rad");
+    EXPECT_TRUE(std::is_sorted(many.begin(), many.end()));
+    EXPECT_GT(many.back(), 6.0 * std::numbers::pi);  // measured 8.1 half turns
+    ASSERT_EQ(few.size(), 16U);                      // a row per 0.2 s, in which it turns by up to 2 rad
+    EXPECT_NEAR(few.back(), many.back(), 1e-6);
+}
+
+TEST(Reading, TellsTheEnergyOfASpring) {
+    // 1 kg on a spring of 100 N/m, let go at rest length: it falls by 2 m g / k, and is stretched by as much.
+    const ReadScene scene(
+        "[world]\nduration = 1.0\n[[rope]]\npoints = [[0.0, 0.0], [0.0, -1.0]]\ncompliance = "
+        "0.01\n[video]\nfps = 500\n");
+    EXPECT_TRUE(scene.reading.is_elastic);
+    const auto elastic = scene.column("energy.csv", "elastic_j");
+    const auto total = scene.column("energy.csv", "total_since_start_j");
+    const double lowest_m = 2.0 * 9.81 / 100.0;
+    EXPECT_NEAR(*std::max_element(elastic.begin(), elastic.end()), 0.5 * 100.0 * lowest_m * lowest_m, 1e-3);
+    for (const double energy_j : total) EXPECT_NEAR(energy_j, 0.0, 1e-4);
+    EXPECT_NEAR(scene.reading.strain.size, lowest_m, 1e-4);
+    EXPECT_NEAR(scene.reading.tension.size, 2.0 * 9.81, 1e-2);
+}
+
+TEST(Reading, LeavesOutTheTensionsThatAMethodDoesNotKnow) {
+    const ReadScene scene(
+        "[world]\nduration = 0.1\n[[rope]]\nhang = { links = 3, length = 1.0, angle_deg = 9.0 "
+        "}\n[[rope]]\nhang = { links = 3, length = 1.0, angle_deg = 9.0 }\n[[solver.bodies]]\nropes = "
+        "[0]\nmethod = \"relaxation\"\n[[solver.bodies]]\nropes = [1]\nmethod = \"exact\"\n");
+    EXPECT_EQ(scene.reading.unknown_tensions, std::vector<std::size_t>{0});
+    EXPECT_EQ(scene.reading.tension.body, 1U);
+    for (const auto& row : scene.rows.at("tension.csv")) {
+        EXPECT_TRUE(std::isnan(row[1]));
+        EXPECT_GT(row[3], 0.0);
+    }
+    EXPECT_EQ(scene.reading.tensions_n.size(), 3U);
+}
+
+TEST(Reading, EndsWhereTheMotionDiverges) {
+    const ReadScene scene(
+        "[world]\nduration = 1.0\ngravity = [1e14, 0.0]\n[[rope]]\npoints = [[0.0, 0.0], [1.0, 0.0]]\npinned "
+        "= []\n[solver]\nmethod = \"relaxation\"\n[video]\nfps = 50\n");
+    ASSERT_TRUE(scene.reading.failure);
+    EXPECT_EQ(scene.reading.failure->code(), ExitCode::kDiverged);
+    // 1e12 m, beyond which nothing is meant to go, after sqrt(2e-2) s = 0.141 s.
+    EXPECT_EQ(scene.reading.end_s, 0.14);
+    EXPECT_EQ(scene.reading.rows, 8);
+    EXPECT_EQ(scene.rows.at("tip.csv").size(), 8U);
+}
+
+TEST(Reading, IsEndedByItsCallback) {
+    const Film film(parse_scene("schema = 1\n" + pendulum_toml(), "a"), def_of());
+    const auto open = [](const std::string&, const std::vector<std::string>&) -> OnRow {
+        return [](std::span<const double>) {};
+    };
+    const auto stop = [](std::int64_t done, std::int64_t) { return done < 3; };
+    EXPECT_EQ(test::code_of([&] { std::ignore = read_motion(film, open, stop); }), ExitCode::kInterrupted);
+}
+
+}  // namespace
+}  // namespace corda::figures

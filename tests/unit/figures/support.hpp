@@ -1,0 +1,56 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "corda/figures/reading.hpp"
+
+namespace corda::figures {
+
+inline FilmDef def_of(std::vector<double> stills_s = {}) {
+    FilmDef def;
+    def.stills_s = std::move(stills_s);
+    def.readings = needed_readings();
+    return def;
+}
+
+/// A motion and the rows that reading it gave.
+struct ReadScene {
+    explicit ReadScene(const std::string& toml, std::vector<double> stills_s = {})
+        : film(parse_scene("schema = 1\n" + toml, "scene.toml"), def_of(std::move(stills_s))),
+          reading(read_motion(film,
+                              [this](const std::string& name, const std::vector<std::string>& keys) -> OnRow {
+                                  columns[name] = keys;
+                                  return [&all = rows[name]](std::span<const double> values) {
+                                      all.emplace_back(values.begin(), values.end());
+                                  };
+                              },
+                              {})) {}
+
+    /// Column `key` of a file.
+    [[nodiscard]] std::vector<double> column(const std::string& name, const std::string& key) const {
+        const auto& keys = columns.at(name);
+        std::size_t at = 0;
+        while (keys.at(at) != key) ++at;
+        std::vector<double> values;
+        for (const auto& row : rows.at(name)) values.push_back(row.at(at));
+        return values;
+    }
+
+    std::map<std::string, std::vector<std::string>> columns;
+    std::map<std::string, std::vector<std::vector<double>>> rows;
+    Film film;
+    Reading reading;
+};
+
+/// A pendulum of 2 kg on a link of 1 m, let go from 60 degrees.
+inline std::string pendulum_toml(const std::string& world = "duration = 1.0",
+                                 const std::string& fps = "200") {
+    return "[world]\n" + world +
+           "\n[[rope]]\nhang = { links = 1, length = 1.0, angle_deg = 60.0, from = [3.0, 4.0] }\nmass = "
+           "2.0\n[solver]\nmethod = \"exact\"\n[video]\nsize = [320, 180]\nfps = " +
+           fps + "\n";
+}
+
+}  // namespace corda::figures
