@@ -45,30 +45,33 @@ TEST(Tiles, HoldAllThatTheirCapsulesTouch) {
 
 TEST(Tiles, AreFewAlongALine) {
     view::DrawList list;
-    list.width = 1024;
-    list.height = 1024;
+    constexpr int kSide = 16 * Tiles::kSidePx;
+    list.width = kSide;
+    list.height = kSide;
     list.add_layer({});
-    list.add_capsule({0.0, 0.0}, {1024.0, 1024.0}, 2.0);
+    list.add_capsule({0.0, 0.0}, {kSide, kSide}, 2.0);
     Tiles tiles;
     tiles.plan(list);
     EXPECT_EQ(tiles.tiles().size(), 16U + 15U + 15U);  // of 256
-    EXPECT_EQ(tiles.tiles().back().x1, 1024.0F);
+    EXPECT_EQ(tiles.tiles().back().x1, static_cast<float>(kSide));
 }
 
 TEST(Tiles, OfLayersThatDoNotMeetAreOneBatch) {
     view::DrawList list;
-    list.width = 640;
-    list.height = 64;
-    const auto add = [&list](double x) {
-        list.add_layer({static_cast<std::uint8_t>(x), 0, 0});
-        list.add_capsule({x, 32.0}, {x, 32.0}, 5.0);
+    constexpr double kSide = Tiles::kSidePx;
+    list.width = 10 * Tiles::kSidePx;
+    list.height = Tiles::kSidePx;
+    // In the middle of a tile of the row.
+    const auto add = [&list](int tile, std::uint8_t color) {
+        list.add_layer({color, 0, 0});
+        list.add_capsule({(tile + 0.5) * kSide, 0.5 * kSide}, {(tile + 0.5) * kSide, 0.5 * kSide}, 2.0);
     };
-    add(32.0);
-    add(96.0);
+    add(0, 1);
+    add(1, 2);
     list.add_layer({});  // empty
-    add(160.0);
-    add(97.0);  // meets the second
-    add(33.0);  // meets the first, of the batch before
+    add(2, 3);
+    add(1, 4);  // meets the second
+    add(0, 5);  // meets the first, of the batch before
     Tiles tiles;
     tiles.plan(list);
     ASSERT_EQ(tiles.batches().size(), 2U);
@@ -77,7 +80,7 @@ TEST(Tiles, OfLayersThatDoNotMeetAreOneBatch) {
     EXPECT_EQ(tiles.batches()[1].first_capsule, 3U);
     EXPECT_EQ(tiles.batches()[1].capsule_count, 2U);
     EXPECT_EQ(tiles.batches()[1].first_tile, 3U);
-    EXPECT_EQ(tiles.tiles()[3].color.r, 97);
+    EXPECT_EQ(tiles.tiles()[3].color.r, 4);
 }
 
 }  // namespace
