@@ -284,9 +284,16 @@ struct Film::Impl {
 
     /// Whether frames before `end` can be drawn in any order without being simulated again.
     bool holds(std::int64_t end) {
-        motion.run_to_end(def.on_progress);
-        const auto last = motion.timeline().find(scene.video.fps.time_s(end - 1));
-        return scene.video.shutter == 0.0 && last && motion.recording().holds(*last);
+        const double last_frame_s = scene.video.fps.time_s(end - 1);
+        const auto last = motion.timeline().find(last_frame_s);
+        if (scene.video.shutter != 0.0 || !last) return false;
+        try {
+            if (motion.recording().size() <= *last)
+                static_cast<void>(motion.at(last_frame_s, def.on_progress));
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::kDiverged) throw;
+        }
+        return motion.recording().holds(*last);
     }
 
     Scene scene;

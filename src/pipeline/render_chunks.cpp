@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -38,7 +39,13 @@ class Chunks {
           next_(from / length_),
           written_(next_),
           ahead_(2 * static_cast<std::int64_t>(jobs)) {
-        for (int i = 0; i < jobs; ++i) threads_.emplace_back([this] { work(); });
+        try {
+            for (int i = 0; i < jobs; ++i) threads_.emplace_back([this] { work(); });
+        } catch (const std::system_error&) {  // fewer will do
+            if (threads_.empty())
+                throw Error(ExitCode::kTemporary,
+                            "the system starts no thread; make one chunk at a time (jobs 1)");
+        }
     }
     Chunks(const Chunks&) = delete;
     Chunks& operator=(const Chunks&) = delete;
