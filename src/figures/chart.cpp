@@ -104,7 +104,7 @@ std::string thinning_text(const Reading& reading) {
 }
 
 std::string left_out_text(const System& system, const Reading& reading) {
-    const std::size_t moving = moving_count(system);
+    const std::size_t moving = pipeline::moving_count(system);
     if (moving <= reading.bodies.size()) return {};
     const std::size_t count = moving - reading.bodies.size();
     return fmt::format(" {} more bod{} not shown.", count, count == 1 ? "y is" : "ies are");

@@ -29,7 +29,7 @@ class Reader {
           system_(film.system()),
           meter_(system_, film.scene().world, methods_of(film)),
           reading_(film.last_frame() + 1) {
-        for (const Followed& followed : list_followed(system_))
+        for (const pipeline::Followed& followed : pipeline::list_followed(system_))
             reading_.bodies.emplace_back(followed, film.last_frame() + 1);
         angles_.resize(reading_.bodies.size());
         rates_.resize(reading_.bodies.size());

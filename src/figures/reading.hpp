@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
-#include "corda/figures/followed.hpp"
 #include "corda/figures/thinning.hpp"
 #include "corda/pipeline/film.hpp"
+#include "corda/pipeline/followed.hpp"
 
 namespace corda::figures {
 
@@ -30,7 +30,7 @@ struct Extreme {
 
 /// The curves of one body.
 struct BodyCurves {
-    BodyCurves(const Followed& whom, std::int64_t rows)
+    BodyCurves(const pipeline::Followed& whom, std::int64_t rows)
         : followed(whom),
           path(rows, Thinner::Kind::kPath),
           phase(rows, Thinner::Kind::kPath),
@@ -38,7 +38,7 @@ struct BodyCurves {
           tension(rows),
           strain(rows) {}
 
-    Followed followed;
+    pipeline::Followed followed;
     Thinner path;     ///< x and y in m, relative to the system's origin
     Thinner phase;    ///< x in m from the only pin, or else from the start, and vx in m/s
     Thinner turning;  ///< angle of the way from the only pin, in rad from straight down, turns counted on,

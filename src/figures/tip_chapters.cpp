@@ -12,8 +12,8 @@ namespace {
 
 constexpr const char* kTipData = "tip.csv";
 
-std::vector<Followed> followed_of(const Reading& reading) {
-    std::vector<Followed> followed;
+std::vector<pipeline::Followed> followed_of(const Reading& reading) {
+    std::vector<pipeline::Followed> followed;
     for (const BodyCurves& body : reading.bodies) followed.push_back(body.followed);
     return followed;
 }

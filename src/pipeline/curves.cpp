@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "corda/pipeline/followed.hpp"
 #include "corda/view/trail.hpp"
 
 namespace corda::pipeline {
@@ -10,14 +11,12 @@ namespace {
 /// Of a longer motion, every so many frames are read.
 constexpr std::int64_t kMostSamples = 100'000;
 
-/// The free end of the first open rope; without one, the middle one of the free particles.
+/// The first free end of a rope; without one, what stands for the first body that moves.
 std::size_t tip_of(const System& system) {
     const std::vector<std::size_t> ends = view::free_ends(system);
     if (!ends.empty()) return ends.front();
-    std::vector<std::size_t> free;
-    for (std::size_t i = 0; i < system.particle_count(); ++i)
-        if (!system.is_pinned(i)) free.push_back(i);
-    return free.empty() ? 0 : free[free.size() / 2];
+    const std::vector<Followed> followed = list_followed(system);
+    return followed.empty() ? 0 : followed.front().particle;
 }
 
 view::PlotData axes_of(LivePlot plot, double end_s) {

@@ -1,4 +1,4 @@
-#include "corda/figures/followed.hpp"
+#include "corda/pipeline/followed.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "corda/pipeline/describe.hpp"
 #include "corda/view/trail.hpp"
 
-namespace corda::figures {
+namespace corda::pipeline {
 namespace {
 
 std::vector<std::size_t> particles_of(const System& system, const Body& body, bool are_pinned) {
@@ -102,4 +102,4 @@ std::string describe(const System& system, const std::vector<Followed>& followed
     return text + (others.empty() ? "" : " and ") + others;
 }
 
-}  // namespace corda::figures
+}  // namespace corda::pipeline

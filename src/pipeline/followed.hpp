@@ -7,7 +7,7 @@
 
 #include "corda/sim/system.hpp"
 
-namespace corda::figures {
+namespace corda::pipeline {
 
 /// Most bodies whose curves one figure shows.
 inline constexpr std::size_t kMostBodies = 6;
@@ -34,4 +34,4 @@ struct Followed {
 /// The same of several: "the free ends of rope 0 to rope 5 (particle 2 of each)".
 [[nodiscard]] std::string describe(const System& system, const std::vector<Followed>& followed);
 
-}  // namespace corda::figures
+}  // namespace corda::pipeline

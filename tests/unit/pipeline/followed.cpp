@@ -1,10 +1,10 @@
-#include "corda/figures/followed.hpp"
+#include "corda/pipeline/followed.hpp"
 
 #include <gtest/gtest.h>
 
 #include "corda/scene/scene.hpp"
 
-namespace corda::figures {
+namespace corda::pipeline {
 namespace {
 
 System system_with(const std::string& bodies) {
@@ -51,4 +51,4 @@ TEST(Followed, AreFewAndMove) {
 }
 
 }  // namespace
-}  // namespace corda::figures
+}  // namespace corda::pipeline
