@@ -74,11 +74,11 @@ class Chunks {
         changed_.notify_all();
     }
 
-    /// After stop(): the next chunk in order, as far as it got; std::nullopt if nobody has begun it.
+    /// After stop(): the next chunk in order, as far as it got; std::nullopt if there is none.
     std::optional<Made> rest() {
         for (std::thread& thread : threads_) thread.join();
         threads_.clear();
-        auto node = made_.extract(written_);
+        auto node = made_.extract(written_++);
         return node.empty() ? std::nullopt : std::optional(std::move(node.mapped()));
     }
 
@@ -178,7 +178,12 @@ void render_chunks(const Film& film, std::int64_t from, std::int64_t end, int jo
     } catch (const Error& error) {
         if (error.code() != ExitCode::kInterrupted && error.code() != ExitCode::kTerminated) throw;
         chunks.stop();
-        if (auto made = chunks.rest()) add(std::move(*made), writer, result);
+        bool is_whole = true;
+        while (is_whole) {
+            auto made = chunks.rest();
+            is_whole = made && made->is_whole;
+            if (made) add(std::move(*made), writer, result);
+        }
         throw;
     }
 }

@@ -89,8 +89,8 @@ std::string length_text(int digit, int exponent) {
     return fmt::format("{} {}", rest < 0 ? digit / power_of_10(-rest) : digit * power_of_10(rest), unit);
 }
 
-std::string number_text(double value) {
-    return value < 0.0 ? fmt::format("−{:g}", -value) : fmt::format("{:g}", value + 0.0);
+std::string number_text(double value, int digits) {
+    return fmt::format("{}{:.{}g}", value < 0.0 ? "−" : "", std::abs(value), digits);
 }
 
 NumberTitle title_of(const std::string& name, const std::string& unit, double largest) {

@@ -36,8 +36,8 @@ struct RoundNumber {
 /// "20 cm": `digit` times 10 to the power of `exponent` metres.
 [[nodiscard]] std::string length_text(int digit, int exponent);
 
-/// "−0.25": at most six digits, and a minus sign that is as wide as a plus.
-[[nodiscard]] std::string number_text(double value);
+/// "−0.25": at most so many digits, and a minus sign that is as wide as a plus.
+[[nodiscard]] std::string number_text(double value, int digits = 6);
 
 /// What stands beside numbers: "tension (kN)", and what values are divided by for that unit.
 struct NumberTitle {

@@ -62,6 +62,12 @@ Range range_of(const PlotData& data, double CurvePoint::*value) {
     return range;
 }
 
+/// Whether an axis of that extent has steps.
+bool can_be_divided(double extent) {
+    constexpr double kLeast = 1e-290;
+    return extent >= kLeast && extent <= 1.0 / kLeast;
+}
+
 /// From one label to the next, so that there are at most so many steps.
 RoundNumber step_of(double extent, int most_steps) {
     return round_number_above(extent / most_steps);
@@ -151,7 +157,7 @@ void PlotPanel::set_data(const PlotData& data, Font& font) {
     for (std::size_t i = 0; i < data.curves.size(); ++i)
         curves_.push_back({data.curves[i].name, curve_colors_[i % curve_colors_.size()], {}, {}});
     place_names(panel, font);
-    is_shown_ = !panel.empty() && std::isfinite(x_.high - x_.low) && std::isfinite(y_.high - y_.low) &&
+    is_shown_ = !panel.empty() && can_be_divided(x_.high - x_.low) && can_be_divided(y_.high - y_.low) &&
                 place_box(panel, is_over_time, font);
     if (!is_shown_) return;
     for (std::size_t i = 0; i < curves_.size(); ++i) {
@@ -238,12 +244,18 @@ bool PlotPanel::place_box(const PixelRect& panel, bool is_over_time, Font& font)
 void PlotPanel::add_labels(Axis& axis, int most) const {
     axis.labels.clear();
     constexpr double kSlack = 1e-9;
+    constexpr int kFewestDigits = 6;
+    constexpr int kMostDigits = 15;
     const RoundNumber step = step_of(axis.high - axis.low, most);
+    // Far from 0 it takes more digits to tell neighbours apart.
+    int digits = kFewestDigits;
+    const double steps = std::max(std::abs(axis.low), std::abs(axis.high)) / step.value();
+    while (digits < kMostDigits && power_of_10(digits - 1) < steps) ++digits;
     const auto first = static_cast<std::int64_t>(std::ceil(axis.low / step.value() - kSlack));
     const auto last = static_cast<std::int64_t>(std::floor(axis.high / step.value() + kSlack));
     for (std::int64_t k = first; k <= last; ++k) {
         const double value = step.times(static_cast<double>(k));
-        axis.labels.push_back({number_text(value / axis.unit), rounded(axis.px(value))});
+        axis.labels.push_back({number_text(value / axis.unit, digits), rounded(axis.px(value))});
     }
 }
 
