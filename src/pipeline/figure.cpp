@@ -265,7 +265,7 @@ FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns) 
                         "takes {} at least); ask for fewer times or a larger size",
                         count, columns, video.width_px, video.height_px, kSmallestCellPx));
     }
-    if (!scene.overlay.time) scene.overlay.time = false;  // it stands below the cell
+    scene.overlay.time = false;  // it stands below the cell
     video.width_px = sheet.cell_width_px();
     video.height_px = sheet.cell_height_px();
     return def;

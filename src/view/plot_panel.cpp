@@ -12,6 +12,8 @@
 namespace corda::view {
 namespace {
 
+constexpr double kWidestShare = 0.38;  // where the least is more
+constexpr double kHighestShare = 0.5;
 constexpr double kPanelShare = 0.36;           // of the frame
 constexpr double kHeightPerWidth = 0.8;        // of the box, if the panel is beside the picture
 constexpr double kBoxLineWidth = 1.0 / 600.0;  // of the frame's shorter side
@@ -23,7 +25,8 @@ constexpr double kDotPerCurve = 3.0;
 constexpr double kTickLength = 0.25;
 constexpr double kAboveBox = 1.1;  // from the baseline above it
 constexpr double kSmallestBox = 4.0;
-constexpr double kSmallestPanel = 9.0;
+constexpr double kNarrowestPanel = 9.5;
+constexpr double kLowestPanel = 13.0;
 constexpr double kPerLabel = 3.0;  // of the height
 
 constexpr int kFewestLabels = 2;
@@ -118,10 +121,14 @@ Color faint(Color color, std::uint8_t alpha) {
 }  // namespace
 
 Room room_beside(LivePlot plot, int width_px, int height_px) {
-    const int panel_px = rounded(kPanelShare * std::max(width_px, height_px));
-    const bool has_room = panel_px >= kSmallestPanel * em_of(std::min(width_px, height_px));
+    const bool is_beside = width_px > height_px;
+    const int all_px = std::max(width_px, height_px);
+    const double least_em = is_beside ? kNarrowestPanel : kLowestPanel;
+    const int least_px = rounded(least_em * em_of(std::min(width_px, height_px)));
+    const int panel_px = std::max(rounded(kPanelShare * all_px), least_px);
+    const bool has_room = panel_px <= (is_beside ? kWidestShare : kHighestShare) * all_px;
     if (plot == LivePlot::kNone || !has_room) return {width_px, height_px};
-    if (width_px > height_px) return {width_px - panel_px, height_px};
+    if (is_beside) return {width_px - panel_px, height_px};
     return {width_px, height_px - panel_px};
 }
 

@@ -83,6 +83,19 @@ TEST(PlotPanel, KeepsItsTextsApartAndInTheFrame) {
     EXPECT_GE(shown, 100);
 }
 
+TEST(PlotPanel, LeavesNoRoomForAPlotThatIsNotThere) {
+    for (int width = 100; width <= 700; width += 37) {
+        for (int height = 100; height <= 700; height += 37) {
+            const Room room = room_beside(LivePlot::kEnergy, width, height);
+            const bool is_reserved = room.width_px < width || room.height_px < height;
+            PlotData data = waves();
+            data.curves.push_back(data.curves.front());
+            data.curves.back().name = "total";
+            EXPECT_EQ(panel_of(data, width, height).texts.empty(), !is_reserved) << width << "x" << height;
+        }
+    }
+}
+
 TEST(PlotPanel, TellsLabelsApartFarFromZero) {
     for (const double shift : {0.0, 1e3, -1e6, 4e8}) {
         const DrawList list = panel_of(waves(0.5, shift), 1280, 720);
