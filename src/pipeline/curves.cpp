@@ -1,15 +1,27 @@
 #include "corda/pipeline/curves.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <variant>
 
+#include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/followed.hpp"
+#include "corda/sim/bounds.hpp"
 #include "corda/view/trail.hpp"
 
 namespace corda::pipeline {
 namespace {
 
-/// Of a longer motion, every so many frames are read.
-constexpr std::int64_t kMostSamples = 100'000;
+/// Of a longer motion, every so many states are read.
+constexpr std::size_t kMostSamples = 100'000;
+/// A few per pixel of a wide plot.
+constexpr std::size_t kFinestSamples = 4000;
+/// Of the states that are recorded for a plot alone.
+constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+/// What changes less, per size of the scene at its start, and per duration, stands still.
+constexpr double kStill = 1e-3;
 
 /// The first free end of a rope; without one, what stands for the first body that moves.
 std::size_t tip_of(const System& system) {
@@ -19,67 +31,113 @@ std::size_t tip_of(const System& system) {
     return followed.empty() ? 0 : followed.front().particle;
 }
 
-view::PlotData axes_of(LivePlot plot, double end_s) {
-    using Curve = view::PlotData::Curve;
-    switch (plot) {
-        case LivePlot::kEnergy:
-            return {
-                {"t", "s"}, {"energy", "J"}, end_s, {Curve{"kinetic"}, Curve{"potential"}, Curve{"total"}}};
-        case LivePlot::kTip:
-            return {{"t", "s"}, {"position", "m"}, end_s, {Curve{"x"}, Curve{"y"}}};
-        case LivePlot::kPhase:
-            return {{"x", "m"}, {"vx", "m/s"}, 0.0, {Curve{}}};
-        case LivePlot::kNone:
-            break;
-    }
-    return {};
+std::size_t body_of(const System& system, std::size_t particle) {
+    std::size_t body = 0;
+    while (body + 1 < system.bodies.size() && system.bodies[body + 1].first_particle <= particle) ++body;
+    return body;
 }
 
 }  // namespace
 
 Curves::Curves(const Scene& scene, const System& system)
-    : scene_(&scene), system_(&system), plot_(scene.overlay.plot), tip_(tip_of(system)) {}
+    : scene_(&scene),
+      system_(&system),
+      plot_(scene.overlay.plot),
+      tip_(tip_of(system)),
+      body_(body_of(system, tip_)) {}
 
 Readings Curves::readings() const {
     return {.velocities = plot_ == LivePlot::kEnergy || plot_ == LivePlot::kPhase};
 }
 
-view::PlotData Curves::read(std::span<const MethodDef> methods, std::int64_t states,
-                            const std::function<const State&(std::int64_t)>& state_of) {
-    view::PlotData data = axes_of(plot_, scene_->world.duration_s);
-    meter_.emplace(*system_, scene_->world, methods);
-    least_potential_j_ = 0.0;
-    const std::int64_t stride = states / kMostSamples + 1;
-    for (std::int64_t k = 0; k < states; k += stride) {
-        const std::vector<view::CurvePoint> now = at(state_of(k));
-        for (std::size_t i = 0; i < now.size(); ++i) data.curves[i].points.push_back(now[i]);
-    }
-    if (plot_ != LivePlot::kEnergy || data.curves[1].points.empty()) return data;
-    const auto lower = [](const view::CurvePoint& a, const view::CurvePoint& b) { return a.y < b.y; };
-    auto& potential = data.curves[1].points;
-    least_potential_j_ = std::min_element(potential.begin(), potential.end(), lower)->y;
-    for (const std::size_t i : {1, 2})
-        for (view::CurvePoint& point : data.curves[i].points) point.y -= least_potential_j_;
-    return data;
+std::vector<double> Curves::times_s() const {
+    if (plot_ == LivePlot::kNone) return {};
+    constexpr std::size_t kNumbersPerParticle = 4;
+    const std::size_t state_bytes = kNumbersPerParticle * sizeof(double) * system_->particle_count();
+    const std::size_t count = std::min(kFinestSamples, kMostBytes / state_bytes);
+    std::vector<double> times_s;
+    for (std::size_t i = 0; i < count; ++i)
+        times_s.push_back(scene_->world.duration_s * static_cast<double>(i) / static_cast<double>(count));
+    return times_s;
 }
 
-std::vector<view::CurvePoint> Curves::at(const State& state) const {
-    const double t = state.time_s;
-    const double x_m = system_->origin_m.x + state.x_m[tip_];
+view::PlotData Curves::axes() const {
+    using Curve = view::PlotData::Curve;
+    MotionBounds start;
+    for (std::size_t i = 0; i < system_->particle_count(); ++i)
+        start.include(system_->x_m[i], system_->y_m[i]);
+    const Vec2 extent_m = start.max_m() - start.min_m();
+    const double size_m = std::hypot(extent_m.x, extent_m.y);
+    const double end_s = scene_->world.duration_s;
+    const double speed_m_s = size_m / end_s;
+    const double mass_kg = std::accumulate(system_->mass_kg.begin(), system_->mass_kg.end(), 0.0);
+    const view::PlotData::AxisName time{"t", "s"};
+    const std::string of_body = system_->bodies.size() > 1 ? " of " + body_name(*system_, body_) : "";
     switch (plot_) {
-        case LivePlot::kEnergy: {
-            const sim::Energy energy = meter_.value().of(state);
-            const double potential_j = energy.potential_j() - least_potential_j_;
-            return {{t, t, energy.kinetic_j}, {t, t, potential_j}, {t, t, energy.kinetic_j + potential_j}};
-        }
+        case LivePlot::kEnergy:
+            return {time,
+                    {"energy", "J", kStill * mass_kg * speed_m_s * speed_m_s},
+                    end_s,
+                    {Curve{"kinetic"}, Curve{"potential"}, Curve{"total"}}};
         case LivePlot::kTip:
-            return {{t, t, x_m}, {t, t, system_->origin_m.y + state.y_m[tip_]}};
+            return {
+                time, {"position", "m", kStill * size_m}, end_s, {Curve{"x" + of_body}, Curve{"y"}}, body_};
         case LivePlot::kPhase:
-            return {{t, x_m, state.vx_m_s[tip_]}};
+            return {{"x" + of_body, "m", kStill * size_m},
+                    {"vx", "m/s", kStill * speed_m_s},
+                    0.0,
+                    {Curve{}},
+                    body_};
         case LivePlot::kNone:
             break;
     }
     return {};
+}
+
+view::PlotData Curves::read(std::span<const MethodDef> methods, const Timeline& timeline, double end_s,
+                            const std::function<const State&(double time_s)>& state_at) const {
+    view::PlotData data = axes();
+    std::optional<sim::EnergyMeter> meter;
+    if (plot_ == LivePlot::kEnergy) meter.emplace(*system_, scene_->world, methods);
+    const std::size_t stride = timeline.size() / kMostSamples + 1;
+    for (std::size_t i = 0; i < timeline.size() && timeline.time_s(i) <= end_s; i += stride)
+        add(state_at(timeline.time_s(i)), meter, data);
+    if (plot_ != LivePlot::kEnergy) return data;
+    const auto lower = [](const view::CurvePoint& a, const view::CurvePoint& b) { return a.y < b.y; };
+    auto& potential = data.curves[1].points;
+    const double least_j = std::min_element(potential.begin(), potential.end(), lower)->y;
+    for (const std::size_t curve : {1, 2})
+        for (view::CurvePoint& point : data.curves[curve].points) point.y -= least_j;
+    const auto is_relaxation = [](const MethodDef& method) {
+        return std::holds_alternative<RelaxationDef>(method);
+    };
+    if (std::any_of(methods.begin(), methods.end(), is_relaxation)) data.curves.pop_back();
+    return data;
+}
+
+void Curves::add(const State& state, const std::optional<sim::EnergyMeter>& meter,
+                 view::PlotData& data) const {
+    const double t = state.time_s;
+    const double x_m = system_->origin_m.x + state.x_m[tip_];
+    switch (plot_) {
+        case LivePlot::kEnergy: {
+            const sim::Energy energy = meter.value().of(state);
+            const double potential_j = energy.potential_j();
+            data.curves[0].points.push_back({t, t, energy.kinetic_j});
+            data.curves[1].points.push_back({t, t, potential_j});
+            data.curves[2].points.push_back({t, t, energy.kinetic_j + potential_j});
+            break;
+        }
+        case LivePlot::kTip:
+            data.curves[0].points.push_back({t, t, x_m});
+            data.curves[1].points.push_back({t, t, system_->origin_m.y + state.y_m[tip_]});
+            break;
+        case LivePlot::kPhase:
+            data.curves[0].points.push_back({t, x_m, state.vx_m_s[tip_]});
+            break;
+        case LivePlot::kNone:
+            break;
+    }
 }
 
 }  // namespace corda::pipeline

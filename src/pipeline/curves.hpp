@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "corda/core/timeline.hpp"
 #include "corda/scene/scene.hpp"
 #include "corda/sim/energy.hpp"
 #include "corda/view/plot_panel.hpp"
@@ -21,20 +21,25 @@ class Curves {
 
     /// What states must have.
     [[nodiscard]] Readings readings() const;
-    /// Reads the whole motion of bodies with these methods: `state_of` gives each of so many states. The
-    /// potential energy is 0 where it is least.
-    [[nodiscard]] view::PlotData read(std::span<const MethodDef> methods, std::int64_t states,
-                                      const std::function<const State&(std::int64_t)>& state_of);
-    /// Where the curves are at a state, after read(). Empty without a plot.
-    [[nodiscard]] std::vector<view::CurvePoint> at(const State& state) const;
+    /// Times beside those of frames at which states are to be recorded, so that the curves do not depend on
+    /// the frame rate. Empty without a plot.
+    [[nodiscard]] std::vector<double> times_s() const;
+    /// Reads the whole motion of bodies with these methods, up to `end_s`. The potential energy is 0 where it
+    /// is least. With relaxation there is no total: bars that it stretches have no energy.
+    [[nodiscard]] view::PlotData read(std::span<const MethodDef> methods, const Timeline& timeline,
+                                      double end_s,
+                                      const std::function<const State&(double time_s)>& state_at) const;
 
   private:
+    [[nodiscard]] view::PlotData axes() const;
+    /// Adds a point to each curve. `meter`: for energies.
+    void add(const State& state, const std::optional<sim::EnergyMeter>& meter, view::PlotData& data) const;
+
     const Scene* scene_;
     const System* system_;
     LivePlot plot_;
-    std::size_t tip_;  ///< the particle that is followed
-    std::optional<sim::EnergyMeter> meter_;
-    double least_potential_j_ = 0.0;
+    std::size_t tip_;   ///< the particle that is followed
+    std::size_t body_;  ///< that it belongs to
 };
 
 }  // namespace corda::pipeline

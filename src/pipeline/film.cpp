@@ -94,11 +94,9 @@ struct Film::Impl {
           system(run->system),
           brush(scene, system, def),
           curves(scene, system),
-          motion(run->motion.emplace(system, scene.world, if_all_named(run->named),
-                                     Timeline(scene.video.fps, pipeline::last_frame_of(scene), def.stills_s),
-                                     def.motion_budget_bytes, def.on_progress,
-                                     quantity_of(scene.style.color_by),
-                                     def.readings.with(curves.readings()))),
+          motion(run->motion.emplace(
+              system, scene.world, if_all_named(run->named), timeline(), def.motion_budget_bytes,
+              def.on_progress, quantity_of(scene.style.color_by), def.readings.with(curves.readings()))),
           plan(run->plan) {
         if (motion.methods().empty()) {
             plan = motion.record([&](const Timeline& timeline, sim::Recording& recording) {
@@ -107,6 +105,13 @@ struct Film::Impl {
         } else {
             for (const MethodDef& method : motion.methods()) plan.bodies.emplace_back().method = method;
         }
+    }
+
+    /// The times to be recorded.
+    Timeline timeline() const {
+        std::vector<double> times_s = curves.times_s();
+        times_s.insert(times_s.end(), def.stills_s.begin(), def.stills_s.end());
+        return {scene.video.fps, pipeline::last_frame_of(scene), std::move(times_s)};
     }
 
     /// Shares the motion of another film.
@@ -133,7 +138,11 @@ struct Film::Impl {
     const CameraDef& find_camera() {
         if (camera) return *camera;
         if (brush.stage.needs_motion()) motion.run_to_end(def.on_progress);
-        if (scene.overlay.plot != LivePlot::kNone) plot = read_curves();
+        if (scene.overlay.plot != LivePlot::kNone) {
+            plot = curves.read(
+                motion.methods(), motion.timeline(), last_s(),
+                [this](double time_s) -> const State& { return motion.at(time_s, def.on_progress); });
+        }
         camera = fit(brush.stage);
         return *camera;
     }
@@ -154,15 +163,6 @@ struct Film::Impl {
         static_cast<void>(fit(made->stage));
         made->tracks = brush.tracks;
         return made;
-    }
-
-    view::PlotData read_curves() {
-        const double end_s = last_s();
-        std::int64_t states = 0;
-        while (states <= pipeline::last_frame_of(scene) && scene.video.fps.time_s(states) <= end_s) ++states;
-        return curves.read(motion.methods(), states, [this](std::int64_t k) -> const State& {
-            return motion.at(scene.video.fps.time_s(k), def.on_progress);
-        });
     }
 
     void require_time(double time_s) const {
@@ -217,7 +217,7 @@ struct Film::Impl {
             caption.time_s.reset();
             caption.energy_error.reset();
         }
-        stage.draw_curves(curves.at(last), list);
+        stage.draw_curves(last.time_s, list);
         stage.annotate(caption, map, list);
         return list;
     }
@@ -248,7 +248,7 @@ struct Film::Impl {
 
     Damage draw_sharp(double time_s, const view::Camera& map, const OnProgress& on_progress, Brush& by) {
         const State& state = read(time_s, by);
-        return by.stage.draw(state, map, caption_of(by, map), {by.tracks.to(state), curves.at(state)},
+        return by.stage.draw(state, map, caption_of(by, map), {by.tracks.to(state), state.time_s},
                              on_progress);
     }
 
@@ -276,7 +276,7 @@ struct Film::Impl {
             const double at_s = from_s + (i + 0.5) / video.subframes * (until_s - from_s);
             if (!caption && at_s >= time_s) note();
             const State& state = read(at_s, by);
-            by.stage.expose(picture, state, map, {by.tracks.to(state), curves.at(state)}, on_progress);
+            by.stage.expose(picture, state, map, {by.tracks.to(state), time_s}, on_progress);
         }
         if (!caption) note();
         return by.stage.develop(picture, *caption, map);

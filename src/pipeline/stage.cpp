@@ -96,7 +96,7 @@ void Stage::open() {
 Damage Stage::draw(const State& state, const view::Camera& map, const view::Caption& caption,
                    const Traces& traces, const OnProgress& on_progress) {
     view_.draw(state, map, list_, traces.trails);
-    draw_curves(traces.plotted, list_);
+    draw_curves(traces.plotted_s, list_);
     annotate(caption, map, list_);
     return paint(on_progress);
 }
@@ -117,7 +117,7 @@ void Stage::expose(std::int64_t picture, const State& state, const view::Camera&
     canvas_->context.make_current();
     if (picture != pictures_) throw Overdrawn();
     view_.draw(state, map, list_, traces.trails);
-    draw_curves(traces.plotted, list_);
+    draw_curves(traces.plotted_s, list_);
     shows_nothing_ = list_.shows_nothing() && shows_nothing_;
     const OnProgress ask = asking(on_progress);
     report_progress(ask, 0, 1);

@@ -19,8 +19,8 @@ namespace corda::pipeline {
 
 /// What pictures show of the motion up to their state.
 struct Traces {
-    std::span<const view::Trail> trails;        ///< one per particle traced(), or none
-    std::span<const view::CurvePoint> plotted;  ///< where the curves of the live plot are; empty: no plot
+    std::span<const view::Trail> trails;  ///< one per particle traced(), or none
+    double plotted_s = 0.0;               ///< the time to which the curves of the live plot go
 };
 
 /// What draws a scene's bodies at any positions. OpenGL is opened by the first picture.
@@ -39,7 +39,7 @@ class Stage {
     /// colours tell. Returns the scene's camera with center and height filled in, so that all is in view.
     CameraDef fit(std::span<const MotionBounds> motion, const sim::Spread& spread = {});
     /// What the live plot shows.
-    void set_plot(const view::PlotData& data) { overlay_.set_plot(data); }
+    void set_plot(const view::PlotData& data) { overlay_.set_plot(data, view_.body_colors()); }
     /// At least the scale of the camera that fit() will return for a motion within `bounds`.
     [[nodiscard]] double largest_pixels_per_metre(const MotionBounds& bounds) const;
     /// The map to pixels of a camera with center and height.
@@ -80,9 +80,7 @@ class Stage {
     void annotate(const view::Caption& caption, const view::Camera& map, view::DrawList& list) {
         overlay_.draw(caption, map.pixels_per_metre(), list);
     }
-    void draw_curves(std::span<const view::CurvePoint> plotted, view::DrawList& list) const {
-        overlay_.draw_curves(plotted, list);
-    }
+    void draw_curves(double time_s, view::DrawList& list) const { overlay_.draw_curves(time_s, list); }
     [[nodiscard]] const view::SceneView& view() const { return view_; }
     /// The last picture.
     [[nodiscard]] const Image& image() const { return canvas_->renderer.image(); }

@@ -35,9 +35,11 @@ class Overlay {
     /// The scale of the legend; without one there is none.
     void set_scale(const ColorScale& scale) { scale_ = scale; }
     /// What the plot shows; without it there is none.
-    void set_plot(const PlotData& data) { plot_.set_data(data, font_); }
-    /// Adds the curves of the plot, each up to where it is now.
-    void draw_curves(std::span<const CurvePoint> now, DrawList& list) const { plot_.draw_curves(now, list); }
+    void set_plot(const PlotData& data, std::span<const Color> body_colors) {
+        plot_.set_data(data, body_colors, font_);
+    }
+    /// Adds the curves of the plot up to a time.
+    void draw_curves(double time_s, DrawList& list) const { plot_.draw_curves(time_s, list); }
     /// Adds the stamps of a picture of that scale.
     void draw(const Caption& caption, double pixels_per_metre, DrawList& list);
 

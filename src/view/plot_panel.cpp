@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -48,11 +49,13 @@ struct Range {
         high = std::max(high, value);
     }
     [[nodiscard]] double largest() const { return std::max(std::abs(low), std::abs(high)); }
-    /// Widened about its middle if it is too narrow to draw.
-    [[nodiscard]] Range widened() const {
+    /// Widened if it is too narrow to draw: upwards from 0, otherwise about its middle.
+    [[nodiscard]] Range widened(double least) const {
         constexpr double kNarrowest = 1e-6;
-        const double least = largest() > 0.0 ? kNarrowest * largest() : 1.0;
+        least = std::max(least, kNarrowest * largest());
+        if (least == 0.0) least = 1.0;
         if (high - low >= least) return *this;
+        if (low >= 0.0 && low < kNarrowest * least) return {0.0, least};
         const double middle = 0.5 * (low + high);
         return {middle - 0.5 * least, middle + 0.5 * least};
     }
@@ -140,11 +143,27 @@ PlotPanel::PlotPanel(const StyleDef& style, int width_px, int height_px)
     // The theme's: those of a style are for its bodies.
     StyleDef plain;
     plain.theme = style.theme;
-    const std::vector<Color> palette = look_of(plain).palette;
-    curve_colors_ = {palette[1], palette[3], text_color_};
+    palette_ = look_of(plain).palette;
 }
 
-void PlotPanel::set_data(const PlotData& data, Font& font) {
+std::vector<Color> PlotPanel::choose_colors(const PlotData& data, std::span<const Color> body_colors) const {
+    std::vector<Color> colors;
+    const auto add = [&](Color color) {
+        if (std::find(colors.begin(), colors.end(), color) == colors.end()) colors.push_back(color);
+    };
+    if (data.body) add(body_colors[*data.body]);
+    if (data.body) add(text_color_);
+    const auto is_free = [&](Color color) {
+        return color != text_color_ &&
+               std::find(body_colors.begin(), body_colors.end(), color) == body_colors.end();
+    };
+    std::copy_if(palette_.begin(), palette_.end(), std::back_inserter(colors), is_free);
+    for (const Color color : palette_) add(color);
+    if (!data.body && data.curves.size() > 2) colors[2] = text_color_;
+    return colors;
+}
+
+void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_colors, Font& font) {
     const Room room = room_beside(LivePlot::kEnergy, width_px_, height_px_);
     const PixelRect panel{width_px_ > height_px_ ? room.width_px : 0,
                           width_px_ > height_px_ ? 0 : room.height_px, width_px_, height_px_};
@@ -158,11 +177,13 @@ void PlotPanel::set_data(const PlotData& data, Font& font) {
         axis.unit = title.unit;
         return axis;
     };
-    x_ = start_axis(data.x, is_over_time ? Range{0.0, data.end_s} : range_of(data, &CurvePoint::x).widened());
-    y_ = start_axis(data.y, range_of(data, &CurvePoint::y).widened());
+    x_ = start_axis(data.x, is_over_time ? Range{0.0, data.end_s}
+                                         : range_of(data, &CurvePoint::x).widened(data.x.least_extent));
+    y_ = start_axis(data.y, range_of(data, &CurvePoint::y).widened(data.y.least_extent));
     curves_.clear();
+    const std::vector<Color> colors = choose_colors(data, body_colors);
     for (std::size_t i = 0; i < data.curves.size(); ++i)
-        curves_.push_back({data.curves[i].name, curve_colors_[i % curve_colors_.size()], {}, {}});
+        curves_.push_back({data.curves[i].name, colors[i], {}, {}, data.curves[i].points});
     place_names(panel, font);
     is_shown_ = !panel.empty() && can_be_divided(x_.high - x_.low) && can_be_divided(y_.high - y_.low) &&
                 place_box(panel, is_over_time, font);
@@ -266,8 +287,18 @@ void PlotPanel::add_labels(Axis& axis, int most) const {
     }
 }
 
-void PlotPanel::draw_curves(std::span<const CurvePoint> now, DrawList& list) const {
-    if (!is_shown_ || now.empty()) return;
+CurvePoint PlotPanel::PixelCurve::at(double time_s) const {
+    const auto is_before = [](const CurvePoint& point, double time) { return point.time_s < time; };
+    const auto after = std::lower_bound(samples.begin(), samples.end(), time_s, is_before);
+    if (after == samples.end()) return samples.back();
+    if (after == samples.begin() || after->time_s == time_s) return *after;
+    const CurvePoint& last = *(after - 1);
+    const double share = (time_s - last.time_s) / (after->time_s - last.time_s);
+    return {time_s, last.x + share * (after->x - last.x), last.y + share * (after->y - last.y)};
+}
+
+void PlotPanel::draw_curves(double time_s, DrawList& list) const {
+    if (!is_shown_) return;
     list.add_layer(faint(text_color_, kGridAlpha));
     list.layers.back().is_note = true;
     const double half_px = 0.5 * line_px_;
@@ -278,13 +309,14 @@ void PlotPanel::draw_curves(std::span<const CurvePoint> now, DrawList& list) con
         list.add_capsule({box_.x0 + half_px, label.at_px + half_px},
                          {box_.x1 - half_px, label.at_px + half_px}, half_px);
     const double radius_px = 0.5 * std::max(kThinnestCurvePx, kCurveWidth * std::min(width_px_, height_px_));
-    for (std::size_t i = 0; i < curves_.size(); ++i) {
-        const PixelCurve& curve = curves_[i];
+    for (auto curve_at = curves_.rbegin(); curve_at != curves_.rend(); ++curve_at) {
+        const PixelCurve& curve = *curve_at;
         list.add_layer(curve.color);
         list.layers.back().is_note = true;
-        const auto later = std::lower_bound(curve.times_s.begin(), curve.times_s.end(), now[i].time_s);
+        const CurvePoint now = curve.at(time_s);
+        const auto later = std::lower_bound(curve.times_s.begin(), curve.times_s.end(), now.time_s);
         const auto end = static_cast<std::size_t>(later - curve.times_s.begin());
-        const PixelPoint dot{x_.px(now[i].x), y_.px(now[i].y)};
+        const PixelPoint dot{x_.px(now.x), y_.px(now.y)};
         for (std::size_t k = end - std::min(end, kMostPoints); k < end; ++k)
             list.add_capsule(curve.points[k], k + 1 < end ? curve.points[k + 1] : dot, radius_px);
         list.add_capsule(dot, dot, kDotPerCurve * radius_px);

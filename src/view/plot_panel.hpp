@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,19 +24,22 @@ struct CurvePoint {
 struct PlotData {
     struct Curve {
         std::string name;                     ///< empty: it needs none
-        std::vector<CurvePoint> points = {};  ///< in order of time, at least one
+        std::vector<CurvePoint> points = {};  ///< in order of time, at least one; of the same times for all
     };
-    /// What stands at an axis, and the unit of its values, which takes a prefix.
+    /// What stands at an axis, the unit of its values, which takes a prefix, and how far it extends at least.
     struct AxisName {
         std::string text;
         std::string unit;
+        double least_extent = 0.0;
     };
 
     AxisName x;
     AxisName y;
     /// x is the time, from 0 to this; 0: it is something else.
     double end_s = 0.0;
-    std::vector<Curve> curves;  ///< 1 .. 3
+    std::vector<Curve> curves;  ///< 1 .. 3, the first in front
+    /// Which body they are of; std::nullopt: all.
+    std::optional<std::size_t> body = {};
 };
 
 /// The part of a frame, from its upper left corner, that a live plot leaves to the picture.
@@ -50,10 +55,11 @@ class PlotPanel {
   public:
     PlotPanel(const StyleDef& style, int width_px, int height_px);
 
-    /// Fits the axes to what is plotted. Before, nothing is drawn.
-    void set_data(const PlotData& data, Font& font);
-    /// Adds the curves up to where they are now, one point each.
-    void draw_curves(std::span<const CurvePoint> now, DrawList& list) const;
+    /// Fits the axes to what is plotted. Before, nothing is drawn. Of a body, the first curve has the colour;
+    /// other curves have colours that no body has.
+    void set_data(const PlotData& data, std::span<const Color> body_colors, Font& font);
+    /// Adds the curves up to a time, between points by straight lines.
+    void draw_curves(double time_s, DrawList& list) const;
     /// Adds what does not change.
     void draw_axes(DrawList& list, Font& font) const;
 
@@ -79,8 +85,12 @@ class PlotPanel {
     struct PixelCurve {
         std::string name;
         Color color;
-        std::vector<PixelPoint> points;
-        std::vector<double> times_s;  ///< of the points
+        std::vector<PixelPoint> points;  ///< as many as show
+        std::vector<double> times_s;     ///< of the points
+        std::vector<CurvePoint> samples;
+
+        /// Where it is at a time.
+        [[nodiscard]] CurvePoint at(double time_s) const;
     };
     struct Name {
         std::string text;
@@ -89,6 +99,8 @@ class PlotPanel {
         int row = 0;
     };
 
+    [[nodiscard]] std::vector<Color> choose_colors(const PlotData& data,
+                                                   std::span<const Color> body_colors) const;
     void place_names(const PixelRect& panel, Font& font);
     /// Places the box and finds the labels; false if there is no room.
     [[nodiscard]] bool place_box(const PixelRect& panel, bool is_over_time, Font& font);
@@ -100,7 +112,7 @@ class PlotPanel {
     int em_px_;
     int line_px_;
     Color text_color_;
-    std::vector<Color> curve_colors_;
+    std::vector<Color> palette_;
     bool is_shown_ = false;
     PixelRect box_;
     Axis x_;

@@ -102,6 +102,12 @@ std::vector<SceneView::Ball> SceneView::balls_of(const Body& body, double line_p
     return balls;
 }
 
+std::vector<Color> SceneView::body_colors() const {
+    std::vector<Color> colors;
+    for (const BodyLook& body : bodies_) colors.push_back(body.color);
+    return colors;
+}
+
 bool SceneView::needs_motion() const {
     const auto& inverse = system_->inverse_mass_1_kg;
     if (quantity_of(style_.color_by)) return true;

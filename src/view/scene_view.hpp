@@ -39,6 +39,9 @@ class SceneView {
     /// All that is drawn of particles that stay within `motion`.
     [[nodiscard]] std::vector<Drawn> drawn(std::span<const MotionBounds> motion) const;
 
+    /// One per body; of links that differ, that of the first.
+    [[nodiscard]] std::vector<Color> body_colors() const;
+
     /// The particles whose paths are drawn: the free ends of open ropes, the last before the first. Empty
     /// without trails.
     [[nodiscard]] std::vector<std::size_t> traced() const;

@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "corda/pipeline/curves.hpp"
@@ -23,20 +22,16 @@ inline void include(const State& state, std::vector<MotionBounds>& motion) {
     for (std::size_t i = 0; i < motion.size(); ++i) motion[i].include(state.x_m[i], state.y_m[i]);
 }
 
-/// What the live plot of a film shows at a time.
-struct Plotted {
-    view::PlotData data;
-    std::vector<view::CurvePoint> now;
-};
-
-inline std::optional<Plotted> plotted_of(const Film& film, double time_s) {
+/// What the live plot of a film shows.
+inline std::optional<view::PlotData> plotted_of(const Film& film) {
     if (film.scene().overlay.plot == LivePlot::kNone) return std::nullopt;
-    pipeline::Curves curves(film.scene(), film.system());
+    const pipeline::Curves curves(film.scene(), film.system());
     std::vector<MethodDef> methods;
     for (const BodyPlan& body : film.plan().bodies) methods.push_back(body.method);
-    view::PlotData data = curves.read(methods, film.last_frame() + 1,
-                                      [&](std::int64_t k) -> const State& { return film.state(k); });
-    return Plotted{std::move(data), curves.at(film.state_at(time_s))};
+    const Scene& scene = film.scene();
+    const Timeline timeline(scene.video.fps, film.last_frame(), curves.times_s());
+    return curves.read(methods, timeline, scene.world.duration_s,
+                       [&](double time_s) -> const State& { return film.state_at(time_s); });
 }
 
 /// What a scene draws at a state, made apart from Film: what the reference renderer is to draw too.
@@ -44,7 +39,7 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
                                    const State& state, const std::vector<MotionBounds>& motion,
                                    const view::Caption& caption = {},
                                    std::span<const view::Trail> trails = {}, const sim::Spread& spread = {},
-                                   const std::optional<Plotted>& plot = {}) {
+                                   const std::optional<view::PlotData>& plot = {}) {
     const int width_px = scene.video.width_px;
     const int height_px = scene.video.height_px;
     view::SceneView scene_view(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, width_px,
@@ -59,8 +54,8 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
     view::DrawList list;
     const view::Camera map(camera, system.origin_m, width_px, height_px);
     scene_view.draw(state, map, list, trails);
-    if (plot) overlay.set_plot(plot->data);
-    if (plot) overlay.draw_curves(plot->now, list);
+    if (plot) overlay.set_plot(*plot, scene_view.body_colors());
+    if (plot) overlay.draw_curves(state.time_s, list);
     overlay.draw(caption, map.pixels_per_metre(), list);
     return list;
 }
@@ -107,7 +102,7 @@ inline view::DrawList draw_list_of(const Film& film, double time_s) {
     const view::Caption caption{time_s, film.figures().energy_error,
                                 method_caption(film.plan(), film.error_bound_px())};
     return draw_list_of(film.scene(), film.system(), film.camera(), state, motion, caption, trails, spread,
-                        plotted_of(film, time_s));
+                        plotted_of(film));
 }
 
 }  // namespace corda::test

@@ -33,10 +33,8 @@ DrawList panel_of(const PlotData& data, int width, int height, std::size_t k = k
     list.height = height;
     Font font;
     PlotPanel panel({}, width, height);
-    panel.set_data(data, font);
-    std::vector<CurvePoint> now;
-    for (const PlotData::Curve& curve : data.curves) now.push_back(curve.points[k]);
-    panel.draw_curves(now, list);
+    panel.set_data(data, {}, font);
+    panel.draw_curves(data.curves.front().points[k].time_s, list);
     panel.draw_axes(list, font);
     return list;
 }
@@ -158,11 +156,57 @@ TEST(PlotPanel, KeepsTheOutlineOfALongMotion) {
         highest = std::min(highest, list.capsules[curve.first_capsule + c].ay);
     // The single point of 3 is drawn at its place: a quarter of the axis from -1 to 3 above 2.
     const DrawList whole =
-        panel_of({{"t", "s"}, {"x", "m"}, 1000.0, {{"", {{0, 0, -1}, {0, 0, 3}}}}}, 1920, 1080, 1);
+        panel_of({{"t", "s"}, {"x", "m"}, 1000.0, {{"", {{0, 0, -1}, {1, 0, 3}}}}}, 1920, 1080, 1);
     float top = 1e9F;
     for (std::size_t c = 0; c < whole.layers[1].capsule_count; ++c)
         top = std::min(top, whole.capsules[whole.layers[1].first_capsule + c].ay);
     EXPECT_EQ(highest, top);
+}
+
+/// The colours of the curves, the first in front.
+std::vector<Color> colors_of(const PlotData& data, const std::vector<Color>& body_colors) {
+    DrawList list;
+    list.width = 640;
+    list.height = 360;
+    Font font;
+    PlotPanel panel({}, list.width, list.height);
+    panel.set_data(data, body_colors, font);
+    panel.draw_curves(10.0, list);
+    std::vector<Color> colors;
+    for (auto layer = list.layers.rbegin(); layer + 1 != list.layers.rend(); ++layer)
+        colors.push_back(layer->color);
+    return colors;
+}
+
+TEST(PlotPanel, HasTheColorOfItsBodyAndNoOthers) {
+    const std::vector<Color> bodies{{0xe6, 0x9f, 0x00}, {0xf0, 0xe4, 0x42}, {0xcc, 0x79, 0xa7}};
+    PlotData data = waves();
+    data.body = 1;
+    std::vector<Color> colors = colors_of(data, bodies);
+    ASSERT_EQ(colors.size(), 2U);
+    EXPECT_EQ(colors[0], bodies[1]);
+    EXPECT_EQ(std::count(bodies.begin(), bodies.end(), colors[1]), 0);
+    data.body.reset();
+    data.curves.push_back(data.curves.front());
+    colors = colors_of(data, bodies);
+    ASSERT_EQ(colors.size(), 3U);
+    for (const Color color : colors) {
+        EXPECT_EQ(std::count(bodies.begin(), bodies.end(), color), 0);
+        EXPECT_EQ(std::count(colors.begin(), colors.end(), color), 1);
+    }
+}
+
+TEST(PlotPanel, ShowsWhatStandsStillAsALine) {
+    PlotData data{{"t", "s"}, {"x", "m", 0.5}, 1.0, {{"", {{0, 0, 3.0}, {1, 1, 3.0 + 1e-9}}}}};
+    const auto has = [](const DrawList& list, const std::string& label) {
+        return std::any_of(list.texts.begin(), list.texts.end(),
+                           [&](const Text& text) { return text.utf8 == label; });
+    };
+    const DrawList list = panel_of(data, 640, 360, 1);
+    EXPECT_TRUE(has(list, "2.8") && has(list, "3") && has(list, "3.2"));
+    for (CurvePoint& point : data.curves[0].points) point.y = 0.0;
+    const DrawList none = panel_of(data, 640, 360, 1);
+    EXPECT_TRUE(has(none, "0.5") && !has(none, "−0.5"));
 }
 
 TEST(PlotPanel, ShowsNothingOfTheScene) {
