@@ -6,6 +6,7 @@
 #include <string>
 #include <variant>
 
+#include "corda/core/timeline.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/followed.hpp"
 #include "corda/sim/bounds.hpp"
@@ -94,11 +95,13 @@ view::PlotData Curves::axes() const {
     return {};
 }
 
-view::PlotData Curves::read(std::span<const MethodDef> methods, const Timeline& timeline, double end_s,
+view::PlotData Curves::read(std::span<const MethodDef> methods, double end_s,
                             const std::function<const State&(double time_s)>& state_at) const {
     view::PlotData data = axes();
     std::optional<sim::EnergyMeter> meter;
     if (plot_ == LivePlot::kEnergy) meter.emplace(*system_, scene_->world, methods);
+    const FrameRate fps = scene_->video.fps;
+    const Timeline timeline(fps, fps.last_frame_within(scene_->world.duration_s), times_s());
     const std::size_t stride = timeline.size() / kMostSamples + 1;
     for (std::size_t i = 0; i < timeline.size() && timeline.time_s(i) <= end_s; i += stride)
         add(state_at(timeline.time_s(i)), meter, data);

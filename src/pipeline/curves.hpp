@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "corda/core/timeline.hpp"
 #include "corda/scene/scene.hpp"
 #include "corda/sim/energy.hpp"
 #include "corda/view/plot_panel.hpp"
@@ -24,10 +23,10 @@ class Curves {
     /// Times beside those of frames at which states are to be recorded, so that the curves do not depend on
     /// the frame rate. Empty without a plot.
     [[nodiscard]] std::vector<double> times_s() const;
-    /// Reads the whole motion of bodies with these methods, up to `end_s`. The potential energy is 0 where it
+    /// Reads the whole motion of bodies with these methods, at those times and at those of frames, up to
+    /// `end_s`: the same whatever else is recorded. The potential energy is 0 where it
     /// is least. With relaxation there is no total: bars that it stretches have no energy.
-    [[nodiscard]] view::PlotData read(std::span<const MethodDef> methods, const Timeline& timeline,
-                                      double end_s,
+    [[nodiscard]] view::PlotData read(std::span<const MethodDef> methods, double end_s,
                                       const std::function<const State&(double time_s)>& state_at) const;
 
   private:

@@ -107,11 +107,31 @@ struct Film::Impl {
         }
     }
 
-    /// The times to be recorded.
+    /// The times to be recorded: those within exposures too, if there is room.
     Timeline timeline() const {
+        const VideoDef& video = scene.video;
+        const std::int64_t last_frame = pipeline::last_frame_of(scene);
         std::vector<double> times_s = curves.times_s();
         times_s.insert(times_s.end(), def.stills_s.begin(), def.stills_s.end());
-        return {scene.video.fps, pipeline::last_frame_of(scene), std::move(times_s)};
+        constexpr std::size_t kMostNumbersPerParticle = 5;
+        const std::size_t state_bytes = kMostNumbersPerParticle * sizeof(double) * system.particle_count();
+        const double most_states = 0.5 * static_cast<double>(def.motion_budget_bytes / state_bytes);
+        const bool has_room = static_cast<double>(last_frame + 1) * video.subframes <= most_states;
+        for (std::int64_t k = 0; video.shutter > 0.0 && has_room && k <= last_frame; ++k) {
+            const double time_s = video.fps.time_s(k);
+            for (int i = 0; i < video.subframes; ++i)
+                times_s.push_back(subframe_s(time_s, video.shutter, scene.world.duration_s, i));
+        }
+        return {video.fps, last_frame, std::move(times_s)};
+    }
+
+    /// The time of one of the pictures that are exposed at a time; none is before the motion's start or after
+    /// its end.
+    double subframe_s(double time_s, double shutter, double end_s, int i) const {
+        const double half_s = 0.5 * shutter * scene.video.fps.interval_s();
+        const double from_s = std::max(0.0, time_s - half_s);
+        const double until_s = std::min(std::max(end_s, time_s), time_s + half_s);
+        return from_s + (i + 0.5) / scene.video.subframes * (until_s - from_s);
     }
 
     /// Shares the motion of another film.
@@ -139,9 +159,9 @@ struct Film::Impl {
         if (camera) return *camera;
         if (brush.stage.needs_motion()) motion.run_to_end(def.on_progress);
         if (scene.overlay.plot != LivePlot::kNone) {
-            plot = curves.read(
-                motion.methods(), motion.timeline(), last_s(),
-                [this](double time_s) -> const State& { return motion.at(time_s, def.on_progress); });
+            plot = curves.read(motion.methods(), last_s(), [this](double time_s) -> const State& {
+                return motion.at(time_s, def.on_progress);
+            });
         }
         camera = fit(brush.stage);
         return *camera;
@@ -262,18 +282,15 @@ struct Film::Impl {
     /// The states are read in the order of time: what is not recorded is simulated on the way.
     Damage expose(double time_s, double shutter, const view::Camera& map, const OnProgress& on_progress,
                   Brush& by) {
-        const VideoDef& video = scene.video;
-        const double half_s = 0.5 * shutter * video.fps.interval_s();
-        const double from_s = std::max(0.0, time_s - half_s);
-        const double until_s = std::min(std::max(last_s(), time_s), time_s + half_s);
+        const double end_s = last_s();
         const std::int64_t picture = by.stage.begin_exposure();
         std::optional<view::Caption> caption;
         const auto note = [&] {
             static_cast<void>(read(time_s, by));
             caption = caption_of(by, map);
         };
-        for (int i = 0; i < video.subframes; ++i) {
-            const double at_s = from_s + (i + 0.5) / video.subframes * (until_s - from_s);
+        for (int i = 0; i < scene.video.subframes; ++i) {
+            const double at_s = subframe_s(time_s, shutter, end_s, i);
             if (!caption && at_s >= time_s) note();
             const State& state = read(at_s, by);
             by.stage.expose(picture, state, map, {by.tracks.to(state), time_s}, on_progress);
@@ -284,12 +301,16 @@ struct Film::Impl {
 
     /// Whether frames before `end` can be drawn in any order without being simulated again.
     bool holds(std::int64_t end) {
-        const double last_frame_s = scene.video.fps.time_s(end - 1);
-        const auto last = motion.timeline().find(last_frame_s);
-        if (scene.video.shutter != 0.0 || !last) return false;
+        const VideoDef& video = scene.video;
+        const double last_frame_s = video.fps.time_s(end - 1);
+        const double needed_s = video.shutter > 0.0
+                                    ? std::max(last_frame_s, subframe_s(last_frame_s, video.shutter, last_s(),
+                                                                        video.subframes - 1))
+                                    : last_frame_s;
+        const auto last = motion.timeline().find(needed_s);
+        if (!last) return false;
         try {
-            if (motion.recording().size() <= *last)
-                static_cast<void>(motion.at(last_frame_s, def.on_progress));
+            if (motion.recording().size() <= *last) static_cast<void>(motion.at(needed_s, def.on_progress));
         } catch (const Error& error) {
             if (error.code() != ExitCode::kDiverged) throw;
         }

@@ -92,8 +92,9 @@ class Film {
 
     /// Draws frame `k`, 0 .. last_frame(), as the video has it, blurred if video.shutter says so; or the
     /// picture at a time in 0 .. world.duration_s, sharp unless `shutter` is more than 0 (0 .. 1, see
-    /// VideoDef). RGBA8, row 0 on top. States within an exposure are simulated in passing: frames in order of
-    /// time take one more simulation in all, in any other order up to one each. Asks `on_progress` again and
+    /// VideoDef). RGBA8, row 0 on top. States within an exposure are recorded if they fit into half of the
+    /// budget; otherwise they are simulated in passing: frames in order of time take one more simulation in
+    /// all, in any other order up to one each. Asks `on_progress` again and
     /// again if the picture is large or blurred. Throws as state(), and kNoGl, kInterrupted.
     [[nodiscard]] Image frame(std::int64_t k, const OnProgress& on_progress = {}) const;
     [[nodiscard]] Image still(double time_s, const OnProgress& on_progress = {}, double shutter = 0.0) const;

@@ -28,9 +28,7 @@ inline std::optional<view::PlotData> plotted_of(const Film& film) {
     const pipeline::Curves curves(film.scene(), film.system());
     std::vector<MethodDef> methods;
     for (const BodyPlan& body : film.plan().bodies) methods.push_back(body.method);
-    const Scene& scene = film.scene();
-    const Timeline timeline(scene.video.fps, film.last_frame(), curves.times_s());
-    return curves.read(methods, timeline, scene.world.duration_s,
+    return curves.read(methods, film.scene().world.duration_s,
                        [&](double time_s) -> const State& { return film.state_at(time_s); });
 }
 

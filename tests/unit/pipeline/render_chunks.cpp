@@ -71,6 +71,14 @@ TEST_F(RenderChunks, HaveTheSameBytesHoweverManyAreMadeAtATime) {
     EXPECT_TRUE(bytes_of(chunked_scene(1), middle) == bytes_of(chunked_scene(3), middle));
 }
 
+TEST_F(RenderChunks, HaveTheSameBytesIfTheyAreBlurred) {
+    const std::vector<Setting> blur{"video.shutter=0.5", "video.subframes=4"};
+    EXPECT_TRUE(FilmPainter::can_draw_apart(Film(chunked_scene(1, blur)), 130));
+    const std::string expected = bytes_of(chunked_scene(1, blur));
+    EXPECT_TRUE(bytes_of(chunked_scene(3, blur)) == expected);
+    EXPECT_TRUE(bytes_of(chunked_scene(3, blur), {}, 0) == expected);
+}
+
 TEST_F(RenderChunks, BeginWhereTheFilmsDo) {
     const FrameRate fps = chunked_scene(1).video.fps;
     EXPECT_EQ(media::frames_per_chunk(fps), 30);
