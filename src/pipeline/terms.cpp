@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "corda/pipeline/describe.hpp"
+#include "corda/view/number_text.hpp"
 
 namespace corda {
 namespace {
@@ -126,7 +127,8 @@ std::optional<std::string> bound_text(const Film& film) {
     }
     if (!largest_m || plan.horizon_s == 0.0) return std::nullopt;
     const double pixels_per_metre = film.scene().video.height_px / film.camera().height_m.value();
-    std::string text = fmt::format("{:.2g} px, {:.2g} m", pixels_per_metre * *largest_m, *largest_m);
+    std::string text = fmt::format("{:.2g} px, {:.2g} m", view::rounded_up(pixels_per_metre * *largest_m),
+                                   view::rounded_up(*largest_m));
     if (plan.horizon_s) text += fmt::format(", up to {:.6g} s", *plan.horizon_s);
     if (!unbounded.empty()) text += ", but for " + describe(film.system(), unbounded);
     return text;

@@ -121,11 +121,11 @@ void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& li
         write_bottom("energy error " + error, left_px, right_px, list);
     }
     const int end_px = legend_ && scale_ ? draw_legend(list) : width_ - edge_px_;
-    write_top(def_.title, end_px, title_baseline_px(), title_px(), color_, list);
+    write_top(def_.title, " ", end_px, title_baseline_px(), title_px(), color_, list);
     constexpr std::uint8_t kDim = 0xb0;
     if (def_.method)
-        write_top(caption.method, end_px, method_baseline_px(), em_px_, {color_.r, color_.g, color_.b, kDim},
-                  list);
+        write_top(caption.method, ", ", end_px, method_baseline_px(), em_px_,
+                  {color_.r, color_.g, color_.b, kDim}, list);
 }
 
 int Overlay::write_bottom(const std::string& text, int x_px, int end_px, DrawList& list) {
@@ -197,8 +197,8 @@ void Overlay::draw_gradient(const PixelRect& bar, DrawList& list) const {
     }
 }
 
-void Overlay::write_top(std::string text, int end_px, int baseline_px, int size_px, Color color,
-                        DrawList& list) {
+void Overlay::write_top(std::string text, std::string_view separator, int end_px, int baseline_px,
+                        int size_px, Color color, DrawList& list) {
     const int room_px = end_px - edge_px_;
     if (font_.width_px(text, size_px) > room_px) {
         const std::string mark = "…";
@@ -209,6 +209,8 @@ void Overlay::write_top(std::string text, int end_px, int baseline_px, int size_
             end += font_.width_px(std::string_view(text).substr(kept, next - kept), size_px);
             if (end > room_px) break;
         }
+        const std::size_t last = text.rfind(separator, kept);
+        if (last != std::string::npos && last > 0) kept = last;
         text = kept == 0 ? "" : text.substr(0, kept) + mark;
     }
     font_.write({edge_px_, baseline_px, size_px, color, std::move(text)}, list);

@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "corda/view/camera.hpp"
 #include "corda/view/color_scale.hpp"
@@ -61,7 +62,10 @@ class Overlay {
     /// Draws the legend; returns where it begins.
     int draw_legend(DrawList& list);
     void draw_gradient(const PixelRect& bar, DrawList& list) const;
-    void write_top(std::string text, int end_px, int baseline_px, int size_px, Color color, DrawList& list);
+    /// Writes a text at the left of an upper baseline, shortened to end before `end_px`: at a separator if it
+    /// has one.
+    void write_top(std::string text, std::string_view separator, int end_px, int baseline_px, int size_px,
+                   Color color, DrawList& list);
 
     OverlayDef def_;
     bool time_;

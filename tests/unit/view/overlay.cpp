@@ -205,6 +205,25 @@ TEST(Legends, StayInTheirFrameAndKeepClearOfTheTitle) {
     }
 }
 
+TEST(Overlays, ShortenATitleBetweenWordsAndAMethodBetweenItsParts) {
+    OverlayDef def;
+    def.title = "three ropes of very different masses that swing side by side";
+    def.method = true;
+    def.time = def.scale_bar = false;
+    const Caption caption{0.0, {}, "exact, relaxation, error below 0.0012 px"};
+    int shortened = 0;
+    for (int width = 170; width < 700; width += 10) {
+        for (const std::string& text : words(drawn(def, caption, width, 200))) {
+            if (!text.ends_with("…")) continue;
+            ++shortened;
+            const std::string kept = text.substr(0, text.size() - std::string("…").size());
+            const bool is_title = def.title.starts_with(kept + " ");
+            EXPECT_TRUE(is_title || caption.method.starts_with(kept + ", ")) << text;
+        }
+    }
+    EXPECT_GE(shortened, 20);
+}
+
 TEST(Legends, AreLeftOutIfThereIsNoRoomOrNoScale) {
     EXPECT_TRUE(words(with_legend(kilonewtons(), {}, 60, 400)).empty());
     OverlayDef def = bar_alone();
