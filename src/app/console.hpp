@@ -10,7 +10,7 @@ namespace corda::app {
 
 /// How much is said, and whether results are JSON.
 struct ConsoleDef {
-    bool quiet = false;    ///< errors alone on stderr
+    bool quiet = false;    ///< only errors on stderr
     bool verbose = false;  ///< also details
     bool json = false;     ///< results on stdout as JSON in place of words
 };

@@ -60,8 +60,7 @@ CLI::Validator within(double low, double high) {
 void SceneOptions::add_to(CLI::App& command, Need need) {
     command.add_option("SCENE", path, "scene file (TOML)")->required(need == Need::kRequired);
     // One value per flag: a value may have commas and brackets of its own.
-    command
-        .add_option("--set", settings, "put VALUE in the place of a key of the scene, e.g. rope[0].mass=2")
+    command.add_option("--set", settings, "override a key of the scene, e.g. rope[0].mass=2")
         ->type_name("KEY=VALUE")
         ->expected(1)
         ->take_all()
@@ -94,7 +93,9 @@ void SceneOptions::add_size(CLI::App& command) {
 }
 
 void GlOptions::add_to(CLI::App& command) {
-    command.add_option("--backend", backend, "way to OpenGL: auto, device, device:N, surfaceless or default")
+    command
+        .add_option("--backend", backend,
+                    "how to reach OpenGL: auto, device, device:N, surfaceless or default")
         ->envname("CORDA_BACKEND");
     command.add_flag("--require-gpu", require_gpu, "refuse to draw on the CPU (exit 4)");
 }

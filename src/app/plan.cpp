@@ -126,9 +126,7 @@ ExitCode plan(const Console& console, const PlanOptions& options) {
     if (const auto cost = cost_of(film)) {
         json["steps"] = std::llround(cost->steps);
         json["cost_s"] = cost->time_s;
-        console.result(fmt::format("expected cost: {:.0f} steps of {} particles and {} bars, some {:.2g} s",
-                                   cost->steps, film.system().particle_count(), film.system().bars.size(),
-                                   cost->time_s));
+        console.result(fmt::format("expected cost: {:.0f} steps, about {:.2g} s", cost->steps, cost->time_s));
     }
     console.report(json);
     return ExitCode::kOk;
@@ -139,13 +137,13 @@ ExitCode plan(const Console& console, const PlanOptions& options) {
 void add_plan(CLI::App& app, Action& action) {
     auto options = std::make_shared<PlanOptions>();
     CLI::App* command =
-        app.add_subcommand("plan", "say what will be modelled and why, which solver, its error and cost");
+        app.add_subcommand("plan", "show what is modelled and why, by which method, and its error and cost");
     options->scene.add_to(*command);
     options->scene.add_size(*command);
     options->scene.add_shortcut(*command, "--fps", "video.fps", "frames per second");
     options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
     command->add_flag("--toml", options->toml,
-                      "print [solver] and [camera] as they were chosen; put in the place of the scene's own, "
+                      "print [solver] and [camera] as they were chosen; in place of the scene's own, "
                       "they freeze it");
     command->callback([options, &action] {
         action = [options](const Console& console) { return plan(console, *options); };

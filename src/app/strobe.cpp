@@ -19,7 +19,7 @@ ExitCode write_strobe(const Console& console, const FigureOptions& options) {
 void add_strobe(CLI::App& app, Action& action) {
     auto options = std::make_shared<FigureOptions>();
     CLI::App* command =
-        app.add_subcommand("strobe", "draw several poses in one picture, the fainter the earlier");
+        app.add_subcommand("strobe", "draw several poses in one picture, earlier ones fainter");
     options->add_to(*command, "picture: .png, .svg or .pdf");
     command->callback([options, &action] {
         options->shots.require();

@@ -70,4 +70,8 @@ std::string printable(std::string_view bytes) {
     return escaped(bytes, true);
 }
 
+std::string counted(std::int64_t count, const std::string& what) {
+    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 }  // namespace corda

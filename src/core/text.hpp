@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -13,5 +14,8 @@ namespace corda {
 /// title and XML can show. Line separators and what turns the direction of text (U+202E) count as such.
 /// Printable text stays as it is.
 [[nodiscard]] std::string printable(std::string_view bytes);
+
+/// "1 bar", "2 bars".
+[[nodiscard]] std::string counted(std::int64_t count, const std::string& what);
 
 }  // namespace corda

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "corda/core/text.hpp"
 #include "corda/pipeline/freeze.hpp"
 #include "corda/view/number_text.hpp"
 
@@ -66,10 +67,11 @@ std::string_view remedy(Refusal::Reason reason) {
 }  // namespace
 
 std::string describe(const System& system) {
-    const std::size_t nets = system.bodies.size() - rope_count(system);
-    const std::string what = nets == 0 ? "" : fmt::format("{} net{}: ", nets, nets == 1 ? "" : "s");
-    return what + fmt::format("{} particles, {} bars ({} real)", system.particle_count(), system.bars.size(),
-                              system.link_count());
+    const std::int64_t nets = std::ssize(system.bodies) - static_cast<std::int64_t>(rope_count(system));
+    const std::string what = nets == 0 ? "" : counted(nets, "net") + ": ";
+    return what + fmt::format("{}, {} ({} real)",
+                              counted(static_cast<std::int64_t>(system.particle_count()), "particle"),
+                              counted(std::ssize(system.bars), "bar"), system.link_count());
 }
 
 std::string describe(const MethodDef& method) {

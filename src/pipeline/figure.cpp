@@ -107,9 +107,9 @@ void check(const Film& film, const FigureDef& def) {
         sheet_of(def).holds(video.width_px, video.height_px))
         return;
     throw Error(ExitCode::kUsage,
-                fmt::format("{} cells of {}x{} pixels in {} columns do not fit into a contact sheet of {}x{}",
-                            def.times_s.size(), video.width_px, video.height_px, def.columns, def.width_px,
-                            def.height_px));
+                fmt::format("{} cells of {}x{} pixels in {} do not fit into a contact sheet of {}x{}",
+                            def.times_s.size(), video.width_px, video.height_px,
+                            counted(def.columns, "column"), def.width_px, def.height_px));
 }
 
 /// Between the cells: the ground, a little towards the colour of supports.
@@ -261,9 +261,9 @@ FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns) 
     if (columns < 1 || !sheet.has_room()) {
         throw Error(
             ExitCode::kUsage,
-            fmt::format("{} cells in {} columns have no room in a contact sheet of {}x{} pixels (each "
+            fmt::format("{} cells in {} have no room in a contact sheet of {}x{} pixels (each "
                         "takes {} at least); ask for fewer times or a larger size",
-                        count, columns, video.width_px, video.height_px, kSmallestCellPx));
+                        count, counted(columns, "column"), video.width_px, video.height_px, kSmallestCellPx));
     }
     scene.overlay.time = false;  // it stands below the cell
     video.width_px = sheet.cell_width_px();

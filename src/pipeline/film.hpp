@@ -26,7 +26,7 @@ struct FilmDef {
     /// Most memory for recorded states. A motion that needs more is simulated again when it is read, with
     /// the same bits.
     std::size_t motion_budget_bytes = std::size_t{256} << 20;
-    /// The way to OpenGL: "auto", "device", "device:N", "surfaceless" or "default".
+    /// How to reach OpenGL: "auto", "device", "device:N", "surfaceless" or "default".
     std::string backend = "auto";
     bool require_gpu = false;  ///< refuse an OpenGL that runs on the CPU
     Readings readings;         ///< what its states have besides positions
@@ -176,7 +176,7 @@ Rendered render_video(Film& film, const std::string& path, const RenderDef& def 
 struct FigureDef {
     /// In seconds, increasing, at least one; 0 .. world.duration_s.
     std::vector<double> times_s;
-    /// 0: one picture of the film's size, in which the poses are the fainter the earlier they are, and the
+    /// 0: one picture of the film's size, in which earlier poses are fainter, and the
     /// last is as in a still. Otherwise a contact sheet of that many columns, whose cells have the film's
     /// size.
     int columns = 0;

@@ -35,7 +35,7 @@ class FilmPainter {
     Damage draw(double time_s, const OnProgress& on_progress = {});
     /// Draws a list of the film's size.
     void draw(view::DrawList list, const OnProgress& on_progress = {});
-    /// The poses at some times, at least one, in one picture: the fainter the earlier, the last on top in
+    /// The poses at some times, at least one, in one picture: earlier ones fainter, the last on top in
     /// full. Needs no OpenGL. Asks `on_progress` at each. Throws corda::Error as Film::state_at(),
     /// kInterrupted, and kUsage for several poses of more lines than memory is meant for.
     [[nodiscard]] static view::DrawList poses(const Film& film, std::span<const double> times_s,

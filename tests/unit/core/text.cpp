@@ -14,6 +14,12 @@ TEST(Text, OfUtf8StaysAsItIs) {
     }
 }
 
+TEST(Text, CountsInWords) {
+    EXPECT_EQ(counted(1, "bar"), "1 bar");
+    EXPECT_EQ(counted(0, "bar"), "0 bars");
+    EXPECT_EQ(counted(12, "column"), "12 columns");
+}
+
 TEST(Text, OfOtherBytesIsEscaped) {
     EXPECT_EQ(utf8("caf\xe9.toml"), "caf\\xe9.toml");  // Latin-1
     EXPECT_EQ(utf8("\xc3"), "\\xc3");                  // broken off
