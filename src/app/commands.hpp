@@ -35,6 +35,8 @@ void add_report(CLI::App& app, Action& action);
 void add_study(CLI::App& app, Action& action);
 void add_init(CLI::App& app, Action& action);
 void add_examples(CLI::App& app, Action& action);
+void add_schema(CLI::App& app, Action& action);
+void add_completion(CLI::App& app, Action& action);
 void add_help(CLI::App& app, Action& action);
 
 /// The subcommand of that name; null if there is none.

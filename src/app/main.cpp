@@ -127,6 +127,8 @@ int run(int argc, char** argv) {
     add_study(app, action);
     add_init(app, action);
     add_examples(app, action);
+    add_schema(app, action);
+    add_completion(app, action);
     add_help(app, action);
     add_console_flags(app, console_def);
     refuse_empty_values(app);

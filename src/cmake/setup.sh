@@ -39,6 +39,9 @@ if [[ "${1:-build}" == test ]]; then
         libxml2-utils       # whether pages and SVG are well formed: xmllint
         librsvg2-bin        # a second opinion on SVG: rsvg-convert
         poppler-utils       # a second opinion on PDF: pdftoppm
+        python3-jsonschema  # a second opinion on the JSON Schema of scenes
+        zsh                 # whether its completion parses
+        fish                # the same
     )
 fi
 
