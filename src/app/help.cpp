@@ -6,11 +6,13 @@
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/scene/keys.hpp"
+#include "manual.hpp"
 
 namespace corda::app {
 namespace {
 
 constexpr std::string_view kSceneTopic = "scene";
+constexpr std::string_view kManualTopic = "man";
 
 /// The text of `--help`. CLI::App::help would give that of the command that is running.
 std::string help_of(const CLI::App& app) {
@@ -22,9 +24,11 @@ std::string help_of(const CLI::App& app) {
 std::string text_about(const CLI::App& app, const std::string& topic) {
     if (topic.empty()) return help_of(app);
     if (topic == kSceneTopic) return scene::keys_text();
+    if (topic == kManualTopic) return manual_page(app) + "\n";
     if (const CLI::App* const command = find_command(app, topic)) return help_of(*command);
     std::vector<std::string> topics = command_names(app);
     topics.emplace_back(kSceneTopic);
+    topics.emplace_back(kManualTopic);
     throw Error(ExitCode::kUsage,
                 fmt::format("there is no help on \"{}\"; {}", topic, advice(topic, topics)));
 }
@@ -34,7 +38,7 @@ std::string text_about(const CLI::App& app, const std::string& topic) {
 void add_help(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("help", "explain a command, or the keys of a scene file");
     const auto topic = std::make_shared<std::string>();
-    command->add_option("TOPIC", *topic, "a command, or scene: the keys of a scene file");
+    command->add_option("TOPIC", *topic, "a command; scene: the keys of a scene file; man: the manual page");
     command->callback([&app, &action, topic] {
         action = [&app, topic](const Console& console) {
             const std::string text = text_about(app, *topic);

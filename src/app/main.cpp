@@ -1,7 +1,6 @@
 #include <malloc.h>
 
 #include <algorithm>
-#include <array>
 #include <exception>
 #include <new>
 #include <optional>
@@ -14,31 +13,11 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
+#include "exit_codes.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
 namespace {
-
-/// One row of the table that `corda --help` prints.
-struct ExitCodeText {
-    ExitCode code;
-    std::string_view meaning;
-};
-
-constexpr std::array<ExitCodeText, 12> kExitCodes{{
-    {ExitCode::kOk, "success"},
-    {ExitCode::kInternal, "internal error: a bug in corda"},
-    {ExitCode::kUsage, "usage: unknown command, flag or value"},
-    {ExitCode::kInvalidScene, "invalid scene file"},
-    {ExitCode::kNoGl, "no usable OpenGL"},
-    {ExitCode::kEncoder, "codec missing or encoder failed"},
-    {ExitCode::kIo, "input/output error, disk full, or output exists (see --force)"},
-    {ExitCode::kMismatch, "compare or verify found a difference or a problem"},
-    {ExitCode::kDiverged, "the simulation diverged"},
-    {ExitCode::kTemporary, "out of memory, or another temporary failure: try again"},
-    {ExitCode::kInterrupted, "interrupted (SIGINT); what was done is kept"},
-    {ExitCode::kTerminated, "terminated (SIGTERM); what was done is kept"},
-}};
 
 std::string exit_code_table() {
     std::string text = "Exit codes:\n";

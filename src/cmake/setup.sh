@@ -40,6 +40,7 @@ if [[ "${1:-build}" == test ]]; then
         librsvg2-bin        # a second opinion on SVG: rsvg-convert
         poppler-utils       # a second opinion on PDF: pdftoppm
         python3-jsonschema  # a second opinion on the JSON Schema of scenes
+        mandoc              # whether the manual page is one
         zsh                 # whether its completion parses
         fish                # the same
     )

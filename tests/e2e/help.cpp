@@ -33,6 +33,16 @@ TEST(Help, ListsTheKeysOfAScene) {
     EXPECT_EQ(help.at("help"), scene::keys_text());
 }
 
+TEST(Help, WritesAManualPageOfAllCommands) {
+    const test::ScratchFolder folder;
+    const std::string page = folder.write("corda.1", run_corda({"help", "man"}).out);
+    const auto lint = test::run_shell("mandoc -T lint -W error " + page);
+    EXPECT_EQ(lint.exit_code, 0) << lint.out;
+    const std::string text = test::run_shell("mandoc -T ascii " + page + " | sed 's/.\x08//g'").out;
+    for (const char* const words : {"corda render", "corda help", "--width-mm", "130", "CORDA_BACKEND"})
+        EXPECT_THAT(text, HasSubstr(words));
+}
+
 TEST(Help, OfAnUnknownTopicNamesTheNearest) {
     const auto near = run_corda({"help", "scen"});
     EXPECT_EQ(near.exit_code, 2);

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "corda/core/basics.hpp"
+
+namespace corda::app {
+
+/// One row of the table that `corda --help` and the manual page print.
+struct ExitCodeText {
+    ExitCode code;
+    std::string_view meaning;
+};
+
+inline constexpr std::array<ExitCodeText, 12> kExitCodes{{
+    {ExitCode::kOk, "success"},
+    {ExitCode::kInternal, "internal error: a bug in corda"},
+    {ExitCode::kUsage, "usage: unknown command, flag or value"},
+    {ExitCode::kInvalidScene, "invalid scene file"},
+    {ExitCode::kNoGl, "no usable OpenGL"},
+    {ExitCode::kEncoder, "codec missing or encoder failed"},
+    {ExitCode::kIo, "input/output error, disk full, or output exists (see --force)"},
+    {ExitCode::kMismatch, "compare or verify found a difference or a problem"},
+    {ExitCode::kDiverged, "the simulation diverged"},
+    {ExitCode::kTemporary, "out of memory, or another temporary failure: try again"},
+    {ExitCode::kInterrupted, "interrupted (SIGINT); what was done is kept"},
+    {ExitCode::kTerminated, "terminated (SIGTERM); what was done is kept"},
+}};
+
+}  // namespace corda::app
