@@ -17,17 +17,19 @@ corda_add_public_library(
         PkgConfig::CAIRO PkgConfig::EPOXY PkgConfig::FREETYPE PkgConfig::LIBAV PkgConfig::TOMLPLUSPLUS)
 
 install(TARGETS corda_library EXPORT corda_targets
-    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS corda RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+install(TARGETS corda RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}
+    COMPONENT program)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/corda)
-install(EXPORT corda_targets NAMESPACE corda:: DESTINATION ${package_dir})
+install(EXPORT corda_targets NAMESPACE corda:: DESTINATION ${package_dir} COMPONENT development)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/corda-config.cmake.in
     ${PROJECT_BINARY_DIR}/corda-config.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/corda-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/corda-config.cmake ${PROJECT_BINARY_DIR}/corda-config-version.cmake
-    DESTINATION ${package_dir})
+    DESTINATION ${package_dir} COMPONENT development)
 # Users of a static libcorda link what it needs; a shared one carries its own.
 if(BUILD_SHARED_LIBS)
     set(CORDA_PC_REQUIRES Requires.private)
@@ -38,4 +40,4 @@ endif()
 set(pc_dir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig)
 cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${pc_dir} OUTPUT_VARIABLE CORDA_PC_TO_PREFIX)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/corda.pc.in ${PROJECT_BINARY_DIR}/corda.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/corda.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+install(FILES ${PROJECT_BINARY_DIR}/corda.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)

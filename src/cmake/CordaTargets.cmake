@@ -79,7 +79,8 @@ function(corda_add_public_library)
         cmake_path(GET header PARENT_PATH folder)
         file(MAKE_DIRECTORY ${include_dir}/corda/${folder})
         file(CREATE_LINK ${PROJECT_SOURCE_DIR}/src/${header} ${include_dir}/corda/${header} SYMBOLIC)
-        install(FILES ${PROJECT_SOURCE_DIR}/src/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/corda/${folder})
+        install(FILES ${PROJECT_SOURCE_DIR}/src/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/corda/${folder}
+            COMPONENT development)
     endforeach()
     target_include_directories(corda_library PUBLIC $<BUILD_INTERFACE:${include_dir}>
         $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)

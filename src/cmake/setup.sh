@@ -43,6 +43,7 @@ if [[ "${1:-build}" == test ]]; then
         mandoc              # whether the manual page is one
         zsh                 # whether its completion parses
         fish                # the same
+        debootstrap         # a new system to install the packages in, with --long
     )
 fi
 

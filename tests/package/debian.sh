@@ -1,0 +1,56 @@
+#!/usr/bin/env bash
+# Builds the Debian packages and uses what is in them: the program draws an example, the manual and the completions are
+# there, and an outside project builds against the library and gets the same frame.
+# Usage: debian.sh BUILD_FOLDER EXAMPLES_FOLDER
+# With CORDA_TEST_LONG=1 (as root, with debootstrap) they are installed, used and removed in a new Debian 12 system.
+set -euo pipefail
+build=$1
+examples=$2
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+work=$(mktemp -d)
+trap 'rm -rf --one-file-system "$work"' EXIT
+
+cpack --config "$build/CPackConfig.cmake" -B "$work/packages" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+ls "$work/packages"/corda_*.deb "$work/packages"/libcorda-dev_*.deb >/dev/null
+
+use() {  # use COMMAND...: what a user of the program does, in the system that the command enters
+    "$@" corda render /usr/share/doc/corda/examples/first.toml --duration 0.2 --size 320x180 -o /tmp/first.mp4 -q
+    "$@" corda still /usr/share/doc/corda/examples/first.toml --size 320x180 --frame 3 -o /tmp/still.png -q
+    "$@" corda verify /tmp/first.mp4 -q
+}
+
+if [[ -z "${CORDA_TEST_LONG:-}" ]]; then
+    for package in "$work/packages"/*.deb; do dpkg-deb -x "$package" "$work/root"; done
+    scene=$work/root/usr/share/doc/corda/examples/first.toml
+    "$work/root/usr/bin/corda" still "$scene" --size 320x180 --frame 3 -o "$work/still.png" -q >/dev/null
+    "$build/corda" still "$examples/first.toml" --size 320x180 --frame 3 -o "$work/expected.png" -q >/dev/null
+    cmp "$work/still.png" "$work/expected.png"
+    mandoc -T lint -W error "$work/root/usr/share/man/man1/corda.1"
+    bash -n "$work/root/usr/share/bash-completion/completions/corda"
+    for package in "$work/packages"/*.deb; do
+        name=$(dpkg-deb -f "$package" Package)
+        [[ -s "$work/root/usr/share/doc/$name/copyright" ]] || { echo "$name has no copyright file"; exit 1; }
+    done
+    exit 0
+fi
+
+mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/*.{list,sources} 2>/dev/null | grep -v '^#' |
+    grep -oE 'https?://[^ ]*/debian/?( |$)' | head -1 || true)
+[[ -n "$mirror" ]] || { echo "apt has no mirror of Debian to make a new system from"; exit 1; }
+debootstrap --variant=minbase bookworm "$work/system" "$mirror" >"$work/log" 2>&1 || { tail "$work/log"; exit 1; }
+cp /etc/apt/apt.conf.d/* "$work/system/etc/apt/apt.conf.d/" 2>/dev/null || true
+mkdir "$work/system/packages"
+cp "$work/packages"/*.deb "$work/system/packages"
+cp -r "$here/consumer" "$work/system/consumer"
+in_system() { chroot "$work/system" env DEBIAN_FRONTEND=noninteractive PATH=/usr/sbin:/usr/bin:/sbin:/bin "$@"; }
+in_system apt-get update -q >/dev/null
+in_system sh -c 'apt-get install -y -q --no-install-recommends /packages/corda_*.deb' >"$work/log" 2>&1 || { tail "$work/log"; exit 1; }
+use in_system
+in_system sh -c 'apt-get install -y -q --no-install-recommends /packages/libcorda-dev_*.deb g++ cmake make' >"$work/log" 2>&1 ||
+    { tail "$work/log"; exit 1; }
+in_system sh -c 'cmake -S /consumer -B /tmp/consumer >/dev/null && cmake --build /tmp/consumer' >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+in_system sh -c 'corda still /usr/share/doc/corda/examples/swing.toml --size 320x180 --duration 0.5 --frame 10 -o /tmp/swing.png -q'
+in_system /tmp/consumer/consumer /usr/share/doc/corda/examples/swing.toml /tmp/swing.png /tmp/out.mp4
+in_system apt-get purge -y -q corda libcorda-dev >"$work/log" 2>&1 || { tail "$work/log"; exit 1; }
+left=$(chroot "$work/system" find /usr -name '*corda*')
+[[ -z "$left" ]] || { echo "left after the packages were removed: $left"; exit 1; }
