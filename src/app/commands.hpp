@@ -35,9 +35,13 @@ void add_report(CLI::App& app, Action& action);
 void add_study(CLI::App& app, Action& action);
 void add_init(CLI::App& app, Action& action);
 void add_examples(CLI::App& app, Action& action);
+void add_bench(CLI::App& app, Action& action);
 void add_schema(CLI::App& app, Action& action);
 void add_completion(CLI::App& app, Action& action);
 void add_help(CLI::App& app, Action& action);
+
+/// The text of an example that `examples` lists.
+[[nodiscard]] std::string_view example_text(std::string_view name);
 
 /// The subcommand of that name; null if there is none.
 [[nodiscard]] const CLI::App* find_command(const CLI::App& app, std::string_view name);
@@ -66,6 +70,9 @@ struct SceneOptions {
     void add_size(CLI::App& command);
     [[nodiscard]] Scene load() const { return load_scene(path, settings); }
 };
+
+/// "video.size=[640,360]" for "640x360". Throws corda::Error (kUsage).
+[[nodiscard]] std::string size_setting(const std::string& text);
 
 /// Which OpenGL to draw with.
 struct GlOptions {
@@ -100,6 +107,11 @@ struct EmptyPictures {
     /// Warns of them; returns the exit code. `all`: how many pictures there are.
     [[nodiscard]] ExitCode report(const Console& console, std::int64_t all) const;
 };
+
+/// If several chunks of a video are made at a time, they keep all cores busy: llvmpipe's own threads would
+/// wait for each other, a quarter of the time of a blurred render. To be called before OpenGL is opened; a
+/// number of threads that the user sets is kept.
+void leave_cores_to_chunks(const VideoDef& video);
 
 /// Says with -v what draws, and how it was reached.
 void report_gl(const Console& console, const GlInfo& gl);

@@ -72,6 +72,10 @@ ExitCode list_examples(const Console& console) {
 
 }  // namespace
 
+std::string_view example_text(std::string_view name) {
+    return find_example(name)->text;
+}
+
 void add_init(CLI::App& app, Action& action) {
     auto options = std::make_shared<InitOptions>();
     CLI::App* command = app.add_subcommand("init", "write a commented scene to start from, or an example");

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <cstdlib>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,8 +10,6 @@
 #include "corda/scene/keys.hpp"
 
 namespace corda::app {
-namespace {
-
 std::string size_setting(const std::string& text) {
     const auto cross = text.find('x');
     const auto is_number = [](const std::string& part) {
@@ -24,8 +23,6 @@ std::string size_setting(const std::string& text) {
     }
     return fmt::format("video.size=[{},{}]", width, height);
 }
-
-}  // namespace
 
 std::vector<std::string> command_names(const CLI::App& app) {
     std::vector<std::string> names;
@@ -103,6 +100,10 @@ void GlOptions::add_to(CLI::App& command) {
 void GlOptions::apply_to(FilmDef& film) const {
     if (!backend.empty()) film.backend = backend;
     film.require_gpu = require_gpu;
+}
+
+void leave_cores_to_chunks(const VideoDef& video) {
+    if (video.encoder.jobs != 1) setenv("LP_NUM_THREADS", "0", 0);
 }
 
 void report_gl(const Console& console, const GlInfo& gl) {

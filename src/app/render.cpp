@@ -1,4 +1,3 @@
-#include <cstdlib>
 #include <memory>
 #include <string_view>
 
@@ -77,9 +76,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     parse_range(options.frames, def);
     check_render(scene, options.output, def, options.scene.path);
     OnProgress on_progress = show_progress(console, "simulate");
-    // The chunks keep all cores busy: llvmpipe's own threads would wait for each other, a quarter of the time
-    // of a blurred render.
-    if (scene.video.encoder.jobs != 1) setenv("LP_NUM_THREADS", "0", 0);
+    leave_cores_to_chunks(scene.video);
     FilmDef film_def;
     film_def.on_progress = [&on_progress](std::int64_t done, std::int64_t all) {
         return on_progress(done, all);

@@ -115,7 +115,7 @@ struct Film::Impl {
         times_s.insert(times_s.end(), def.stills_s.begin(), def.stills_s.end());
         constexpr std::size_t kMostNumbersPerParticle = 5;
         const std::size_t state_bytes = kMostNumbersPerParticle * sizeof(double) * system.particle_count();
-        const double most_states = 0.5 * static_cast<double>(def.motion_budget_bytes / state_bytes);
+        const auto most_states = static_cast<double>(def.motion_budget_bytes / 2 / state_bytes);
         const bool has_room = static_cast<double>(last_frame + 1) * video.subframes <= most_states;
         for (std::int64_t k = 0; video.shutter > 0.0 && has_room && k <= last_frame; ++k) {
             const double time_s = video.fps.time_s(k);
@@ -418,7 +418,7 @@ bool Film::shows_nothing() const {
 }
 
 GlInfo Film::gl() const {
-    const pipeline::Stage::Use use(impl_->brush.stage);
+    const pipeline::Stage::Use use(impl_->brush.stage, pipeline::Stage::Needs::kContext);
     const gl::Context& context = impl_->brush.stage.context();
     return {context.info().gl_renderer, context.info().gl_vendor, context.info().gl_version,
             context.platform()};

@@ -85,12 +85,13 @@ view::Camera Stage::map_of(const CameraDef& camera) const {
     return {camera, system_->origin_m, scene_->video.width_px, scene_->video.height_px};
 }
 
-void Stage::open() {
-    if (canvas_) {
+void Stage::open(Needs needs) {
+    if (canvas_)
         canvas_->context.make_current();
-    } else {
-        canvas_ = std::make_unique<Canvas>(gl_, scene_->video.width_px, scene_->video.height_px);
-    }
+    else
+        canvas_ = std::make_unique<Canvas>(gl_);
+    if (needs == Needs::kDrawing && !canvas_->renderer)
+        canvas_->renderer.emplace(scene_->video.width_px, scene_->video.height_px);
 }
 
 Damage Stage::draw(const State& state, const view::Camera& map, const view::Caption& caption,
@@ -108,7 +109,7 @@ Damage Stage::draw(view::DrawList list, const OnProgress& on_progress) {
 
 std::int64_t Stage::begin_exposure() {
     shows_nothing_ = true;
-    canvas_->renderer.begin_exposure();
+    canvas_->renderer->begin_exposure();
     return ++pictures_;
 }
 
@@ -121,7 +122,7 @@ void Stage::expose(std::int64_t picture, const State& state, const view::Camera&
     shows_nothing_ = list_.shows_nothing() && shows_nothing_;
     const OnProgress ask = asking(on_progress);
     report_progress(ask, 0, 1);
-    canvas_->renderer.expose(list_, ask);
+    canvas_->renderer->expose(list_, ask);
 }
 
 Damage Stage::develop(std::int64_t picture, const view::Caption& caption, const view::Camera& map) {
@@ -129,14 +130,14 @@ Damage Stage::develop(std::int64_t picture, const view::Caption& caption, const 
     if (picture != pictures_) throw Overdrawn();
     view_.start(list_);
     annotate(caption, map, list_);
-    return canvas_->renderer.develop(list_);
+    return canvas_->renderer->develop(list_);
 }
 
 Damage Stage::paint(const OnProgress& on_progress) {
     canvas_->context.make_current();  // a callback since open() may have left another one
     ++pictures_;
     shows_nothing_ = list_.shows_nothing();
-    return canvas_->renderer.render(list_, asking(on_progress));
+    return canvas_->renderer->render(list_, asking(on_progress));
 }
 
 OnProgress Stage::asking(const OnProgress& on_progress) {

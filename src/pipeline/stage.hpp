@@ -45,11 +45,12 @@ class Stage {
     /// The map to pixels of a camera with center and height.
     [[nodiscard]] view::Camera map_of(const CameraDef& camera) const;
 
-    /// Opens OpenGL; at the end, what was the thread's context before is so again. Uses may nest. Throws
-    /// corda::Error (kNoGl).
+    /// Opens OpenGL, and what draws unless only the context is asked for; at the end, what was the thread's
+    /// context before is so again. Uses may nest. Throws corda::Error (kNoGl).
+    enum class Needs { kDrawing, kContext };
     class Use {
       public:
-        explicit Use(Stage& stage) { stage.open(); }
+        explicit Use(Stage& stage, Needs needs = Needs::kDrawing) { stage.open(needs); }
 
       private:
         gl::SavedContext saved_;
@@ -83,7 +84,7 @@ class Stage {
     void draw_curves(double time_s, view::DrawList& list) const { overlay_.draw_curves(time_s, list); }
     [[nodiscard]] const view::SceneView& view() const { return view_; }
     /// The last picture.
-    [[nodiscard]] const Image& image() const { return canvas_->renderer.image(); }
+    [[nodiscard]] const Image& image() const { return canvas_->renderer->image(); }
     /// Whether nothing was to be drawn on it but the ground.
     [[nodiscard]] bool shows_nothing() const { return shows_nothing_; }
     /// How many pictures were drawn.
@@ -94,13 +95,12 @@ class Stage {
   private:
     /// The context dies after the renderer.
     struct Canvas {
-        Canvas(const gl::ContextDef& def, int width_px, int height_px)
-            : context(def), renderer(width_px, height_px) {}
+        explicit Canvas(const gl::ContextDef& def) : context(def) {}
         gl::Context context;
-        render::FrameRenderer renderer;
+        std::optional<render::FrameRenderer> renderer;
     };
 
-    void open();
+    void open(Needs needs);
     /// Asks `on_progress` whether to go on with the picture that was begun last.
     [[nodiscard]] OnProgress asking(const OnProgress& on_progress);
     Damage paint(const OnProgress& on_progress);

@@ -58,12 +58,12 @@ void watch(const Problem& problem, std::span<const MethodDef> methods, Measureme
 
 /// Seconds that all frames take without the set-up. The bare solver is timed, without the figures that a
 /// Simulation works out.
-Times stepping_s(const Problem& problem, const MethodDef& method, const Timing& timing) {
+report::Times stepping_s(const Problem& problem, const MethodDef& method, const Timing& timing) {
     const System system = problem.system();
     const std::int64_t last_frame = problem.last_frame();
     const GoesOn goes_on = take_step;
     StopCheck stop(goes_on);
-    Times times_s;
+    report::Times times_s;
     for (int repeat = 0; repeat < timing.repeats; ++repeat) {
         double sum_s = 0.0;
         int runs = 0;

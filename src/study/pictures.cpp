@@ -80,10 +80,10 @@ std::vector<SolverSetting> list_settings(double frame_s) {
 
 /// How long the parts of a render take, in ms.
 struct RenderTime {
-    Times simulate_ms;
-    Times draw_ms;
-    Times encode_ms;  ///< up to the verified file
-    Times whole_ms;
+    report::Times simulate_ms;
+    report::Times draw_ms;
+    report::Times encode_ms;  ///< up to the verified file
+    report::Times whole_ms;
 };
 
 FilmDef film_of(const StudyDef& def) {

@@ -123,7 +123,7 @@ report::Table fastest_table(const Sweep& sweep) {
     for (const auto& [error, peer_ms] : kAccuracies) {
         std::vector<report::Cell> row{error, "none", {}, {}, {}, {}, {}};
         if (const Measurement* const best = cheapest_within(sweep.results, error)) {
-            const Times& ms = best->ms_per_simulated_s;
+            const report::Times& ms = best->ms_per_simulated_s;
             row = {error,       best->label, best->parameter, best->rms_error,
                    ms.median(), ms.least(),  ms.largest()};
         }

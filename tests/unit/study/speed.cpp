@@ -24,7 +24,7 @@ TEST(Speed, TakesTheCheapestRunThatMeetsTheError) {
 }
 
 TEST(Times, HaveAMiddleAndEnds) {
-    Times times;
+    report::Times times;
     EXPECT_EQ(times.median(), 0.0);
     for (const double time : {3.0, 1.0, 10.0}) times.add(time);
     EXPECT_EQ(times.median(), 3.0);

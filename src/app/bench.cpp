@@ -1,0 +1,130 @@
+#include "corda/bench/bench.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
+#include "corda/media/format.hpp"
+#include "interrupt.hpp"
+
+namespace corda::app {
+namespace {
+
+struct BenchOptions {
+    SceneOptions scene;
+    GlOptions gl;
+    std::vector<std::string> sizes{"1280x720", "1920x1080", "3840x2160"};
+    std::vector<std::string> presets{"ultrafast", "veryfast", "medium"};
+    bench::BenchDef def;
+
+    /// The scene of one case: the example `first` if none is named.
+    [[nodiscard]] Scene scene_of(const std::string& size, const std::string& preset) const {
+        std::vector<Setting> settings = scene.settings;
+        settings.push_back(size_setting(size));
+        settings.push_back("video.preset=" + preset);
+        return scene.path.empty() ? parse_scene(example_text("first"), "first.toml", settings)
+                                  : load_scene(scene.path, settings);
+    }
+};
+
+nlohmann::json spread_json(const report::Times& times) {
+    return {{"median", times.median()}, {"least", times.least()}, {"largest", times.largest()}};
+}
+
+nlohmann::json to_json(const VideoDef& video, const bench::Measured& measured) {
+    const auto frames = static_cast<double>(measured.frames);
+    nlohmann::json stages = nlohmann::json::array();
+    for (const bench::Stage& stage : measured.stages) {
+        stages.push_back(
+            {{"name", stage.name}, {"ms_per_frame", 1e3 * stage.wall_s / frames}, {"cpu_s", stage.cpu_s}});
+    }
+    return {{"width", video.width_px},
+            {"height", video.height_px},
+            {"preset", video.encoder.preset},
+            {"frames", measured.frames},
+            {"jobs", measured.jobs},
+            {"fps", frames / measured.render_s.median()},
+            {"encoder_fps", frames / measured.encoder_s.median()},
+            {"ratio_to_encoder", measured.ratio.median()},
+            {"render_s", spread_json(measured.render_s)},
+            {"encoder_s", spread_json(measured.encoder_s)},
+            {"ratio", spread_json(measured.ratio)},
+            {"peak_rss_mib", measured.peak_rss_mib},
+            {"encoder_rss_mib", measured.encoder_rss_mib},
+            {"rss_per_job_mib", measured.peak_rss_mib / measured.jobs - measured.encoder_rss_mib},
+            {"stages", stages}};
+}
+
+void report_in_words(const Console& console, const VideoDef& video, const bench::Measured& measured) {
+    const auto frames = static_cast<double>(measured.frames);
+    console.result(fmt::format(
+        "{}x{} {}: {:.1f} frames per second, x264 alone {:.1f}; ratio of times {:.3f} ({:.3f} .. {:.3f})",
+        video.width_px, video.height_px, video.encoder.preset, frames / measured.render_s.median(),
+        frames / measured.encoder_s.median(), measured.ratio.median(), measured.ratio.least(),
+        measured.ratio.largest()));
+    console.result(fmt::format(
+        "  peak of memory {:.0f} MiB; of each of {} at a time the encoder {:.0f} MiB, the rest {:.0f} MiB",
+        measured.peak_rss_mib, counted(measured.jobs, "chunk"), measured.encoder_rss_mib,
+        measured.peak_rss_mib / measured.jobs - measured.encoder_rss_mib));
+    std::string text = "  one thread, ms per frame (CPU):";
+    for (const bench::Stage& stage : measured.stages)
+        text += fmt::format(" {} {:.2f} ({:.2f})", stage.name, 1e3 * stage.wall_s / frames,
+                            1e3 * stage.cpu_s / frames);
+    console.result(text);
+}
+
+ExitCode measure_all(const Console& console, BenchOptions options) {
+    options.def.on_wait = [] { stop_if_asked("interrupted; nothing was kept"); };
+    options.gl.apply_to(options.def.film);
+    leave_cores_to_chunks(options.scene_of(options.sizes.front(), options.presets.front()).video);
+    nlohmann::json cases = nlohmann::json::array();
+    std::vector<Scene> scenes;  // all are checked before the first is measured
+    for (const std::string& size : options.sizes)
+        for (const std::string& preset : options.presets) {
+            scenes.push_back(options.scene_of(size, preset));
+            media::check_video_def(scenes.back().video);
+        }
+    Progress progress(console, "bench", std::ssize(scenes));
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        progress.update(static_cast<std::int64_t>(i));
+        options.def.scene = scenes[i];
+        const bench::Measured measured = bench::measure(options.def);
+        report_in_words(console, scenes[i].video, measured);
+        cases.push_back(to_json(scenes[i].video, measured));
+    }
+    progress.update(std::ssize(scenes));
+    console.report({{"schema", 1}, {"cases", cases}});
+    return ExitCode::kOk;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, Action& action) {
+    auto options = std::make_shared<BenchOptions>();
+    CLI::App* command =
+        app.add_subcommand("bench", "measure renders beside x264 alone: time, stages and memory");
+    options->scene.add_to(*command, SceneOptions::Need::kOptional);
+    command->add_option("--size", options->sizes, "picture sizes in pixels, e.g. 1280x720,1920x1080")
+        ->delimiter(',')
+        ->type_name("WxH");
+    command->add_option("--preset", options->presets, "x264 presets, e.g. veryfast,medium")->delimiter(',');
+    command->add_option("--frames", options->def.frames, "most frames of each video")
+        ->check(within(1, 1e6))
+        ->capture_default_str();
+    command->add_option("--repeats", options->def.repeats, "of each measurement")
+        ->check(within(1, 1000))
+        ->capture_default_str();
+    options->scene.add_shortcut(*command, "--jobs", "video.jobs", "chunks made at a time; 0: one per core");
+    options->gl.add_to(*command);
+    command->callback([options, &action] {
+        action = [options](const Console& console) { return measure_all(console, *options); };
+    });
+}
+
+}  // namespace corda::app

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "corda/pipeline/film.hpp"
+#include "corda/report/times.hpp"
+#include "corda/scene/scene.hpp"
+
+namespace corda::bench {
+
+/// What is measured, and how.
+struct BenchDef {
+    Scene scene;                ///< with the size and the preset of a case
+    FilmDef film;               ///< which OpenGL draws
+    std::int64_t frames = 240;  ///< of each video, if the scene has as many; >= 1
+    int repeats = 3;            ///< of each measurement, in turn; >= 1
+    /// Called at least ten times a second; what it throws ends the measurement.
+    std::function<void()> on_wait;
+};
+
+/// A part of the work on a video, measured by itself in one thread.
+struct Stage {
+    std::string name;
+    double wall_s = 0.0;
+    double cpu_s = 0.0;  ///< of all threads
+};
+
+/// What was measured of videos of one size and preset.
+struct Measured {
+    std::int64_t frames = 0;
+    int jobs = 0;                  ///< chunks at a time
+    report::Times render_s;        ///< from the scene to the verified file
+    report::Times encoder_s;       ///< x264 alone, from memory, with a thread per core
+    report::Times ratio;           ///< of each render to the encoder that ran after it
+    double peak_rss_mib = 0.0;     ///< of a render
+    double encoder_rss_mib = 0.0;  ///< that one encoder of one thread takes
+    std::vector<Stage> stages;
+};
+
+/// Renders and encodes in child processes, one after the other, so that each has its own peak of memory. This
+/// process must have no other thread, and no OpenGL. Throws corda::Error: what a render throws; kTemporary if
+/// a child cannot be started or is ended from outside.
+[[nodiscard]] Measured measure(const BenchDef& def);
+
+}  // namespace corda::bench

@@ -1,0 +1,70 @@
+// `corda bench`: renders beside x264 alone.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "support/command.hpp"
+
+namespace corda {
+namespace {
+
+using test::run_corda;
+using testing::HasSubstr;
+
+TEST(Bench, MeasuresEachSizeAndPresetBesideTheEncoderAlone) {
+    const test::ScratchFolder folder;
+    const auto bench = run_corda({"bench", "--size", "320x180,256x144", "--preset", "ultrafast,veryfast",
+                                  "--frames", "70", "--repeats", "2", "--jobs", "2", "--json"},
+                                 "TMPDIR=" + folder.path());
+    ASSERT_EQ(bench.exit_code, 0) << bench.err;
+    const auto json = nlohmann::json::parse(bench.out);
+    ASSERT_EQ(json.at("cases").size(), 4U);
+    EXPECT_EQ(json["cases"][1]["preset"], "veryfast");
+    EXPECT_EQ(json["cases"][2]["width"], 256);
+    for (const auto& one : json["cases"]) {
+        EXPECT_EQ(one.at("frames"), 70);
+        EXPECT_EQ(one.at("jobs"), 2);
+        EXPECT_GT(one.at("fps"), 0.0);
+        EXPECT_GT(one.at("encoder_fps"), 0.0);
+        EXPECT_GE(one.at("ratio").at("largest"), one.at("ratio_to_encoder"));
+        EXPECT_LE(one.at("ratio").at("least"), one.at("ratio_to_encoder"));
+        EXPECT_GT(one.at("peak_rss_mib"), one.at("encoder_rss_mib"));
+        std::string names;
+        for (const auto& stage : one.at("stages")) names += stage.at("name").get<std::string>() + " ";
+        EXPECT_EQ(names, "simulate open OpenGL draw convert encode verify ");
+    }
+    EXPECT_TRUE(folder.files().empty());  // the videos are removed
+}
+
+TEST(Bench, TellsInWordsAndTakesAScene) {
+    const test::ScratchFolder folder;
+    const std::string scene = folder.write("a.toml", "schema = 1\n[[rope]]\npoints = [[0, 0], [1, 0]]\n");
+    const auto bench = run_corda({"bench", scene, "--set", "world.duration=0.2", "--size", "128x128",
+                                  "--preset", "medium", "--repeats", "1"});
+    EXPECT_EQ(bench.exit_code, 0) << bench.err;
+    EXPECT_THAT(bench.out, HasSubstr("128x128 medium: "));
+    EXPECT_THAT(bench.out, HasSubstr("x264 alone"));
+}
+
+TEST(Bench, RefusesBeforeItMeasures) {
+    EXPECT_EQ(run_corda({"bench", "--size", "320x181"}).exit_code, 2);
+    EXPECT_EQ(run_corda({"bench", "--size", "large"}).exit_code, 2);
+    EXPECT_EQ(run_corda({"bench", "--preset", "quick"}).exit_code, 3);
+    EXPECT_EQ(run_corda({"bench", "--frames", "0"}).exit_code, 2);
+}
+
+TEST(Bench, EndsAtASignalAndKeepsNothing) {
+    const test::ScratchFolder folder;
+    const auto kept =
+        test::run_shell("TMPDIR=" + folder.path() +
+                        " timeout --preserve-status -s INT 2 " CORDA_PROGRAM " bench --size 1920x1080");
+    EXPECT_EQ(kept.exit_code, 130) << kept.err;
+    EXPECT_THAT(kept.err, HasSubstr("interrupted"));
+    EXPECT_TRUE(folder.files().empty());
+}
+
+}  // namespace
+}  // namespace corda
