@@ -115,8 +115,9 @@ struct Film::Impl {
         times_s.insert(times_s.end(), def.stills_s.begin(), def.stills_s.end());
         constexpr std::size_t kMostNumbersPerParticle = 5;
         const std::size_t state_bytes = kMostNumbersPerParticle * sizeof(double) * system.particle_count();
-        const auto most_states = static_cast<double>(def.motion_budget_bytes / 2 / state_bytes);
-        const bool has_room = static_cast<double>(last_frame + 1) * video.subframes <= most_states;
+        const std::size_t most_states = def.motion_budget_bytes / 2 / state_bytes;
+        const auto subframes = static_cast<std::size_t>((last_frame + 1) * video.subframes);
+        const bool has_room = subframes <= most_states;
         for (std::int64_t k = 0; video.shutter > 0.0 && has_room && k <= last_frame; ++k) {
             const double time_s = video.fps.time_s(k);
             for (int i = 0; i < video.subframes; ++i)

@@ -4,6 +4,7 @@
 #include "corda/core/image.hpp"
 #include "corda/scene/rate.hpp"
 #include "corda/scene/readers.hpp"
+#include "corda/view/validate.hpp"
 
 namespace corda::scene {
 
@@ -74,6 +75,8 @@ OverlayDef read_overlay(const TableReader& overlay) {
     overlay.read("scale_bar", def.scale_bar);
     overlay.read("legend", def.legend);
     overlay.read("title", def.title);
+    if (const std::string missing = view::missing_glyph(def.title); !missing.empty())
+        overlay.find("title")->add_problem(missing);
     overlay.read("energy", def.energy);
     overlay.read("method", def.method);
     overlay.read("plot", def.plot);

@@ -96,7 +96,7 @@ struct OverlayDef {
     std::optional<bool> time;
     std::optional<bool> scale_bar;  ///< a length of 1, 2 or 5 times a power of 10; default: as `time`
     std::optional<bool> legend;     ///< the scale of style.color_by; default: as `time`
-    std::string title;              ///< UTF-8; empty: none
+    std::string title;              ///< UTF-8, of characters that DejaVu Sans has; empty: none
     bool energy = false;            ///< the error of the energy (Figures::energy_error)
     bool method = false;            ///< the methods, and the bound of the displayed error
     LivePlot plot = LivePlot::kNone;

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "corda/core/basics.hpp"
 #include "corda/view/font_data.hpp"
 
@@ -98,6 +100,15 @@ Font::Font() : impl_(std::make_unique<Impl>()) {}
 Font::Font(Font&&) noexcept = default;
 Font& Font::operator=(Font&&) noexcept = default;
 Font::~Font() = default;
+
+std::string Font::missing(std::string_view utf8) const {
+    while (!utf8.empty()) {
+        const char32_t character = take_character(utf8);
+        if (FT_Get_Char_Index(impl_->file.face(), character) == 0)
+            return fmt::format("U+{:04X}", static_cast<std::uint32_t>(character));
+    }
+    return {};
+}
 
 int Font::width_px(std::string_view utf8, int size_px) {
     return impl_->for_each_glyph(utf8, 0, 0, size_px, [](const Impl::Glyph&, const PixelRect&) {});

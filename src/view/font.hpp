@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "corda/core/image.hpp"
@@ -21,6 +22,8 @@ class Font {
     Font& operator=(Font&&) noexcept;
     ~Font();
 
+    /// The first character of a text that the font does not have, as "U+1F9F6"; empty if it has all.
+    [[nodiscard]] std::string missing(std::string_view utf8) const;
     /// From the left end of a text to where the next one would begin, in pixels.
     [[nodiscard]] int width_px(std::string_view utf8, int size_px);
     /// The smallest rectangle around what write() paints of a text, wherever the frame ends; empty if that is

@@ -117,7 +117,7 @@ void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& li
         left_px = write_bottom(wide_time_text(*caption.time_s), left_px, right_px, list);
     if (scale_bar_) right_px = draw_scale_bar(pixels_per_metre, left_px, list);
     if (def_.energy && caption.time_s) {
-        const std::string error = caption.energy_error ? power_text(*caption.energy_error) : "unknown";
+        const std::string error = caption.energy_error ? power_text(*caption.energy_error) : "not defined";
         write_bottom("energy error " + error, left_px, right_px, list);
     }
     const int end_px = legend_ && scale_ ? draw_legend(list) : width_ - edge_px_;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "corda/core/basics.hpp"
+#include "corda/view/font.hpp"
 
 namespace corda::view {
 namespace {
@@ -41,6 +42,13 @@ void validate(const OverlayDef& overlay) {
     const auto& text_px = overlay.text_px;
     require_range(!text_px || (*text_px >= kSmallestTextPx && *text_px <= kLargestTextPx), "overlay: text_px",
                   "within 4 .. 400");
+    if (const std::string missing = missing_glyph(overlay.title); !missing.empty())
+        throw Error(ExitCode::kInvalidScene, "overlay: title: " + missing);
+}
+
+std::string missing_glyph(const std::string& text) {
+    const std::string missing = text.empty() ? "" : Font().missing(text);
+    return missing.empty() ? "" : "the font, DejaVu Sans, has no " + missing + "; leave that character out";
 }
 
 void validate(const CameraDef& camera) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "corda/view/defs.hpp"
@@ -12,5 +13,9 @@ namespace corda::view {
 void validate(const StyleDef& style, const std::vector<BodyStyleDef>& body_styles);
 void validate(const OverlayDef& overlay);
 void validate(const CameraDef& camera);
+
+/// Why a text cannot be shown: "the font, DejaVu Sans, has no U+1F9F6; leave that character out". Empty if it
+/// can.
+[[nodiscard]] std::string missing_glyph(const std::string& text);
 
 }  // namespace corda::view

@@ -434,6 +434,8 @@ TEST(SceneErrors, Overlay) {
          "swing.toml:4:9: overlay.title: ", "give the title, at the upper left as one line"},
         {overlay("title = \"a\\nb\""), "swing.toml:4:9: overlay.title: ", "has a control character"},
         {overlay("title = \"a\\u202eb\""), "swing.toml:4:9: overlay.title: ", "has a control character"},
+        {overlay("title = \"yarn \\U0001f9f6\""), "swing.toml:4:9: overlay.title: ",
+         "the font, DejaVu Sans, has no U+1F9F6; leave that character out"},
     });
 }
 
