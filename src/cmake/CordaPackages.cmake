@@ -21,13 +21,14 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOC
     FILES_MATCHING PATTERN "*.toml" PATTERN "pictures" EXCLUDE)
 install(FILES ${CMAKE_CURRENT_LIST_DIR}/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES ${CMAKE_CURRENT_LIST_DIR}/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libcorda-dev COMPONENT development)
+install(FILES ${CMAKE_CURRENT_LIST_DIR}/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/python3-corda COMPONENT python)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The Corda authors <corda@localhost>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL program development)
+set(CPACK_COMPONENTS_ALL program development python)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -36,7 +37,8 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME corda)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 # Loaded at run time, so dpkg-shlibdeps does not see it: OpenGL on the CPU.
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libegl1, libegl-mesa0, libopengl0, libgl1-mesa-dri")
+set(opengl "libegl1, libegl-mesa0, libopengl0, libgl1-mesa-dri")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${opengl}")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS gnuplot-nox)
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "The program: it simulates ropes and nets of particles and bars, draws each frame \
 with OpenGL on a machine without a screen, the same bytes on every run, and encodes video.")
@@ -49,4 +51,11 @@ libegl-mesa0, libgl1-mesa-dri, libeigen3-dev, libepoxy-dev, libfmt-dev, libfreet
 nlohmann-json3-dev, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "The C++ library, with one target, corda::corda, and one header, \
 corda/corda.hpp: load or build a scene, simulate it, draw frames, write stills and video, and compare pictures.")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-corda)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+# A module is for one version of Python: Debian 12's.
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11~), python3 (<< 3.12), python3-numpy, ${opengl}")
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "The Python module corda: films as numpy arrays, as video files, and in notebooks.")
 include(CPack)

@@ -24,6 +24,9 @@ packages=(
     libtomlplusplus-dev     # scene files, with line and column of every value
     nlohmann-json3-dev      # the --json output
     libfmt-dev              # formatted text
+    python3-dev             # the Python module
+    pybind11-dev            # its C++ half
+    python3-numpy           # its arrays, at run time
     gnuplot-nox             # the plots of corda study, at run time
 )
 if [[ "${1:-build}" == test ]]; then
@@ -39,6 +42,9 @@ if [[ "${1:-build}" == test ]]; then
         libxml2-utils       # whether pages and SVG are well formed: xmllint
         librsvg2-bin        # a second opinion on SVG: rsvg-convert
         poppler-utils       # a second opinion on PDF: pdftoppm
+        python3-pytest      # the tests of the Python module
+        jupyter-nbconvert   # runs the example notebook
+        python3-ipykernel   # in which it runs
         python3-jsonschema  # a second opinion on the JSON Schema of scenes
         mandoc              # whether the manual page is one
         zsh                 # whether its completion parses

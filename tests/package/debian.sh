@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Builds the Debian packages and uses what is in them: the program draws an example, the manual and the completions are
-# there, and an outside project builds against the library and gets the same frame.
+# there, and Python imports the module and draws the same frame.
 # Usage: debian.sh BUILD_FOLDER EXAMPLES_FOLDER
-# With CORDA_TEST_LONG=1 (as root, with debootstrap) they are installed, used and removed in a new Debian 12 system.
+# With CORDA_TEST_LONG=1 (as root, with debootstrap) they are installed, used and removed in a new Debian 12 system, where an
+# outside project builds against the library, too.
 set -euo pipefail
 build=$1
 examples=$2
@@ -25,6 +26,10 @@ if [[ -z "${CORDA_TEST_LONG:-}" ]]; then
     "$work/root/usr/bin/corda" still "$scene" --size 320x180 --frame 3 -o "$work/still.png" -q >/dev/null
     "$build/corda" still "$examples/first.toml" --size 320x180 --frame 3 -o "$work/expected.png" -q >/dev/null
     cmp "$work/still.png" "$work/expected.png"
+    PYTHONPATH="$work/root/usr/lib/python3/dist-packages" /usr/bin/python3 -c "
+import corda
+film = corda.Film('$scene', size=(320, 180))
+assert corda.compare(film.frame(3), '$work/still.png').equal"
     mandoc -T lint -W error "$work/root/usr/share/man/man1/corda.1"
     bash -n "$work/root/usr/share/bash-completion/completions/corda"
     for package in "$work/packages"/*.deb; do
@@ -51,6 +56,12 @@ in_system sh -c 'apt-get install -y -q --no-install-recommends /packages/libcord
 in_system sh -c 'cmake -S /consumer -B /tmp/consumer >/dev/null && cmake --build /tmp/consumer' >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 in_system sh -c 'corda still /usr/share/doc/corda/examples/swing.toml --size 320x180 --duration 0.5 --frame 10 -o /tmp/swing.png -q'
 in_system /tmp/consumer/consumer /usr/share/doc/corda/examples/swing.toml /tmp/swing.png /tmp/out.mp4
-in_system apt-get purge -y -q corda libcorda-dev >"$work/log" 2>&1 || { tail "$work/log"; exit 1; }
-left=$(chroot "$work/system" find /usr -name '*corda*')
+in_system sh -c 'apt-get install -y -q --no-install-recommends /packages/python3-corda_*.deb' >"$work/log" 2>&1 || { tail "$work/log"; exit 1; }
+in_system python3 -c "
+import corda
+scene = '/usr/share/doc/corda/examples/first.toml'
+assert corda.compare(corda.Film(scene, size=(320, 180)).frame(3), '/tmp/still.png').equal
+assert corda.Film(scene, size=(320, 180), duration=1).save('/tmp/film.mp4') == 60"
+in_system apt-get purge -y -q corda libcorda-dev python3-corda >"$work/log" 2>&1 || { tail "$work/log"; exit 1; }
+left=$(chroot "$work/system" find /usr -name '*corda*' -not -path '*__pycache__*')
 [[ -z "$left" ]] || { echo "left after the packages were removed: $left"; exit 1; }

@@ -1,0 +1,68 @@
+from collections.abc import Callable, Mapping
+from os import PathLike
+from typing import Any, NamedTuple, TypedDict
+
+import numpy as np
+from numpy.typing import NDArray
+
+__version__: str
+
+class Error(Exception):
+    code: int
+
+class Plan(TypedDict):
+    methods: list[str]
+    error_bound_m: float | None
+    error_bound_px: float | None
+    horizon_s: float | None
+
+class Camera(TypedDict):
+    center: tuple[float, float]
+    height: float
+    margin: float
+
+class Film:
+    largest_embedded: int
+    def __init__(
+        self,
+        path: str | PathLike[str] | None = None,
+        *,
+        text: str | None = None,
+        settings: Mapping[str, Any] | None = None,
+        backend: str | None = None,
+        require_gpu: bool = False,
+        **keys: Any,
+    ) -> None: ...
+    def __len__(self) -> int: ...
+    @property
+    def size(self) -> tuple[int, int]: ...
+    @property
+    def fps(self) -> float: ...
+    def frame(self, k: int) -> NDArray[np.uint8]: ...
+    def still(self, time: float, shutter: float = 0.0) -> NDArray[np.uint8]: ...
+    @property
+    def positions(self) -> NDArray[np.float64]: ...
+    @property
+    def times(self) -> NDArray[np.float64]: ...
+    @property
+    def plan(self) -> Plan: ...
+    @property
+    def camera(self) -> Camera: ...
+    def save(
+        self,
+        path: str | PathLike[str],
+        *,
+        force: bool = False,
+        on_progress: Callable[[int, int], bool | None] | None = None,
+    ) -> int: ...
+
+class Difference(NamedTuple):
+    same_size: bool
+    equal: bool
+    max: int
+    mean: float
+    share: float
+
+def compare(a: NDArray[np.uint8] | str | PathLike[str], b: NDArray[np.uint8] | str | PathLike[str]) -> Difference: ...
+def read_png(path: str | PathLike[str]) -> NDArray[np.uint8]: ...
+def write_png(path: str | PathLike[str], picture: NDArray[np.uint8], *, force: bool = False) -> None: ...

@@ -1,0 +1,322 @@
+// The C++ half of the Python module `corda`: what corda/__init__.py wraps.
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <corda/corda.hpp>
+
+#include <chrono>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace {
+
+namespace py = pybind11;
+using Pixels = py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>;
+
+/// Hands the pixels of a picture to numpy, which frees them.
+py::array_t<std::uint8_t> to_array(corda::Image image) {
+    auto owned = std::make_unique<corda::Image>(std::move(image));
+    const std::vector<py::ssize_t> shape{owned->height(), owned->width(), 4};
+    std::uint8_t* const data = owned->data();
+    const py::capsule owner(owned.release(), [](void* kept) { delete static_cast<corda::Image*>(kept); });
+    return py::array_t<std::uint8_t>(shape, data, owner);
+}
+
+/// A copy of an array of shape (height, width, 3 or 4).
+corda::Image to_image(const Pixels& pixels) {
+    if (pixels.ndim() != 3 || (pixels.shape(2) != 3 && pixels.shape(2) != 4))
+        throw py::value_error(
+            "a picture is an array of uint8 of shape (height, width, 4), or (height, width, 3)");
+    const py::ssize_t most = corda::kLargestSidePx;
+    if (pixels.shape(0) < 1 || pixels.shape(1) < 1 || pixels.shape(0) > most || pixels.shape(1) > most)
+        throw py::value_error("each side of a picture has 1 to " + std::to_string(most) + " pixels");
+    corda::Image image(static_cast<int>(pixels.shape(1)), static_cast<int>(pixels.shape(0)));
+    const bool has_alpha = pixels.shape(2) == 4;
+    if (has_alpha) {
+        std::memcpy(image.data(), pixels.data(), image.size_bytes());
+        return image;
+    }
+    const std::uint8_t* from = pixels.data();
+    for (std::uint8_t* to = image.data(); to != image.data() + image.size_bytes(); to += 4, from += 3) {
+        std::copy(from, from + 3, to);
+        to[3] = 255;
+    }
+    return image;
+}
+
+/// Runs work without the interpreter's lock, and asks Python now and then: for Ctrl-C, and for the answer of
+/// `on_progress`. What those raise ends the work and is raised.
+class Asking {
+  public:
+    explicit Asking(py::object on_progress = py::none()) : on_progress_(std::move(on_progress)) {}
+
+    bool operator()(std::int64_t done, std::int64_t total) {
+        constexpr std::chrono::milliseconds kPause{50};
+        const auto now = std::chrono::steady_clock::now();
+        const bool is_last = done == total;
+        if (raised_ || (now - last_ < kPause && !is_last)) return !raised_;
+        last_ = now;
+        const py::gil_scoped_acquire hold;
+        try {
+            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+            if (on_progress_.is_none()) return true;
+            const py::object answer = on_progress_(done, total);
+            return !(py::isinstance<py::bool_>(answer) && !answer.cast<bool>());
+        } catch (py::error_already_set&) {
+            raised_ = std::current_exception();
+            return false;
+        }
+    }
+
+    /// To be called with the lock.
+    void raise() const {
+        if (raised_) std::rethrow_exception(raised_);
+    }
+
+    template <class Work>
+    auto run(const Work& work) {
+        try {
+            const py::gil_scoped_release release;
+            return work([this](std::int64_t done, std::int64_t total) { return (*this)(done, total); });
+        } catch (const corda::Error&) {
+            raise();
+            throw;
+        }
+    }
+
+  private:
+    py::object on_progress_;
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+    std::exception_ptr raised_;
+};
+
+/// A film that any thread of Python may use: one at a time does.
+class PyFilm {
+  public:
+    PyFilm(const corda::Scene& scene, const std::string& backend, bool require_gpu) {
+        corda::FilmDef def;
+        def.backend = backend;
+        def.require_gpu = require_gpu;
+        def.on_progress = [this](std::int64_t done, std::int64_t total) {
+            return !ask_ || ask_(done, total);
+        };
+        Asking asking;
+        asking.run([&](const corda::OnProgress& ask) {
+            ask_ = ask;
+            film_ = std::make_unique<corda::Film>(scene, def);
+            ask_ = {};
+        });
+    }
+    PyFilm(const PyFilm&) = delete;
+    PyFilm& operator=(const PyFilm&) = delete;
+    ~PyFilm() {
+        const py::gil_scoped_release release;
+        const std::lock_guard lock(mutex_);
+        film_.reset();
+    }
+
+    /// Calls `work` with the film and what asks Python whether to go on.
+    template <class Work>
+    auto with_film(const Work& work, py::object on_progress = py::none()) {
+        Asking asking(std::move(on_progress));
+        auto result = asking.run([&](const corda::OnProgress& ask) {
+            const std::lock_guard lock(mutex_);
+            const Use use(*this, ask);
+            return work(*film_, ask);
+        });
+        asking.raise();
+        return result;
+    }
+
+  private:
+    /// Simulations ask what the call in progress asks.
+    class Use {
+      public:
+        Use(PyFilm& film, const corda::OnProgress& ask)
+            : film_(&film), before_(std::exchange(film.ask_, ask)) {}
+        Use(const Use&) = delete;
+        Use& operator=(const Use&) = delete;
+        ~Use() { film_->ask_ = before_; }
+
+      private:
+        PyFilm* film_;
+        corda::OnProgress before_;
+    };
+
+    std::recursive_mutex mutex_;  ///< on_progress may draw
+    corda::OnProgress ask_;
+    std::unique_ptr<corda::Film> film_;
+};
+
+py::array_t<double> positions(PyFilm& film) {
+    std::int64_t frames = 0;
+    std::size_t particles = 0;
+    film.with_film([&](const corda::Film& its, const corda::OnProgress&) {
+        frames = its.frame_count();
+        particles = its.system().particle_count();
+        return true;
+    });
+    py::array_t<double> all(
+        {static_cast<py::ssize_t>(frames), static_cast<py::ssize_t>(particles), py::ssize_t{2}});
+    double* to = all.mutable_data();
+    film.with_film([&](const corda::Film& its, const corda::OnProgress& ask) {
+        const corda::Vec2 origin_m = its.system().origin_m;
+        for (std::int64_t k = 0; k < frames; ++k) {
+            corda::report_progress(ask, k, frames);
+            const corda::State& state = its.state(k);
+            for (std::size_t i = 0; i < particles; ++i) {
+                *to++ = origin_m.x + state.x_m[i];
+                *to++ = origin_m.y + state.y_m[i];
+            }
+        }
+        return true;
+    });
+    return all;
+}
+
+py::array_t<double> times(PyFilm& film) {
+    return film.with_film([](const corda::Film& its, const corda::OnProgress&) {
+        std::vector<double> all;
+        for (std::int64_t k = 0; k < its.frame_count(); ++k) all.push_back(its.time_s(k));
+        const py::gil_scoped_acquire hold;
+        return py::array_t<double>(static_cast<py::ssize_t>(all.size()), all.data());
+    });
+}
+
+py::dict plan(PyFilm& film) {
+    return film.with_film([](const corda::Film& its, const corda::OnProgress&) {
+        const corda::Plan& chosen = its.plan();
+        const auto bound_px = its.error_bound_px();
+        const py::gil_scoped_acquire hold;
+        py::list methods;
+        for (const corda::BodyPlan& body : chosen.bodies)
+            methods.append(std::string(corda::method_name(body.method)));
+        py::dict all;
+        all["methods"] = methods;
+        all["error_bound_m"] = chosen.error_bound_m;
+        all["error_bound_px"] = bound_px;
+        all["horizon_s"] = chosen.horizon_s;
+        return all;
+    });
+}
+
+py::dict camera(PyFilm& film) {
+    return film.with_film([](const corda::Film& its, const corda::OnProgress&) {
+        const corda::CameraDef& def = its.camera();
+        const py::gil_scoped_acquire hold;
+        py::dict all;
+        all["center"] = py::make_tuple(def.center_m->x, def.center_m->y);
+        all["height"] = *def.height_m;
+        all["margin"] = def.margin;
+        return all;
+    });
+}
+
+std::int64_t save(PyFilm& film, const std::string& path, bool force, py::object on_progress) {
+    const corda::Rendered rendered = film.with_film(
+        [&](corda::Film& its, const corda::OnProgress& ask) {
+            return corda::render_video(its, path, {.force = force, .end = {}, .on_progress = ask});
+        },
+        std::move(on_progress));
+    if (!rendered.complete) {
+        throw corda::Error(corda::ExitCode::kInterrupted,
+                           rendered.kept_part.empty() ? "stopped by on_progress; there is no frame yet"
+                                                      : "stopped by on_progress; the frames so far are in '" +
+                                                            rendered.kept_part + "', which plays");
+    }
+    return rendered.frames;
+}
+
+void add_errors(py::module_& module) {
+    static py::exception<corda::Error> error(module, "Error");
+    py::register_exception_translator(
+        [](std::exception_ptr thrown) {  // NOLINT(performance-unnecessary-value-param): pybind11 wants it so
+            try {
+                if (thrown) std::rethrow_exception(thrown);
+            } catch (const corda::Error& raised) {
+                const py::object instance = py::reinterpret_borrow<py::object>(error.ptr())(raised.what());
+                instance.attr("code") = static_cast<int>(raised.code());
+                PyErr_SetObject(error.ptr(), instance.ptr());
+            }
+        });
+}
+
+void add_film(py::module_& module) {
+    using corda::Film;
+    using corda::OnProgress;
+    py::class_<PyFilm>(module, "Film")
+        .def(py::init([](const std::string& text, const std::string& source, bool is_path,
+                         const std::vector<std::string>& settings, const std::string& backend,
+                         bool require_gpu) {
+            const corda::Scene scene =
+                is_path ? corda::load_scene(source, settings) : corda::parse_scene(text, source, settings);
+            return std::make_unique<PyFilm>(scene, backend, require_gpu);
+        }))
+        .def("frame_count",
+             [](PyFilm& film) {
+                 return film.with_film([](const Film& its, const OnProgress&) { return its.frame_count(); });
+             })
+        .def("size",
+             [](PyFilm& film) {
+                 return film.with_film([](const Film& its, const OnProgress&) {
+                     return std::pair(its.scene().video.width_px, its.scene().video.height_px);
+                 });
+             })
+        .def("fps",
+             [](PyFilm& film) {
+                 return film.with_film([](const Film& its, const OnProgress&) {
+                     const corda::Rational fps = its.scene().video.fps.rational();
+                     return std::pair(fps.num, fps.den);
+                 });
+             })
+        .def("frame",
+             [](PyFilm& film, std::int64_t k) {
+                 return to_array(film.with_film(
+                     [k](const Film& its, const OnProgress& ask) { return its.frame(k, ask); }));
+             })
+        .def("still",
+             [](PyFilm& film, double time_s, double shutter) {
+                 return to_array(film.with_film([=](const Film& its, const OnProgress& ask) {
+                     return its.still(time_s, ask, shutter);
+                 }));
+             })
+        .def("positions", &positions)
+        .def("times", &times)
+        .def("plan", &plan)
+        .def("camera", &camera)
+        .def("save", &save);
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_corda, module) {
+    module.attr("__version__") = CORDA_VERSION;
+    add_errors(module);
+    add_film(module);
+    module.def("compare", [](const Pixels& a, const Pixels& b) {
+        const corda::Image first = to_image(a);
+        const corda::Image second = to_image(b);
+        const corda::Difference difference =
+            Asking().run([&](const corda::OnProgress& ask) { return corda::compare(first, second, ask); });
+        return py::make_tuple(difference.same_size, difference.equal, difference.max, difference.mean,
+                              difference.share);
+    });
+    module.def("write_png", [](const std::string& path, const Pixels& pixels, bool force) {
+        const corda::Image image = to_image(pixels);
+        Asking().run([&](const corda::OnProgress& ask) {
+            corda::write_png(path, image, {}, {.force = force, .on_progress = ask});
+            return true;
+        });
+    });
+    module.def("read_png", [](const std::string& path) {
+        return to_array(
+            Asking().run([&](const corda::OnProgress& ask) { return corda::read_png(path, ask); }));
+    });
+}

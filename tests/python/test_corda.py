@@ -1,0 +1,270 @@
+"""The Python module, against the program: the same frames, positions and videos, byte for byte."""
+
+import ast
+import base64
+import gc
+import inspect
+import os
+import pathlib
+import re
+import resource
+import signal
+import subprocess
+import sys
+import textwrap
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import corda
+
+PROGRAM = os.environ["CORDA_PROGRAM"]
+EXAMPLES = pathlib.Path(os.environ["CORDA_EXAMPLES"])
+SCENE = str(EXAMPLES / "first.toml")
+SMALL = {"size": (320, 180), "duration": 1}
+OPTIONS = ["--size", "320x180", "--duration", "1"]
+
+
+def run(*arguments):
+    subprocess.run([PROGRAM, *map(str, arguments)], check=True, capture_output=True)
+
+
+@pytest.fixture(scope="module")
+def film():
+    return corda.Film(SCENE, **SMALL)
+
+
+def test_frames_are_those_of_the_program(film, tmp_path):
+    run("still", SCENE, *OPTIONS, "--frame", "0,17,59", "-o", tmp_path / "stills")
+    stills = sorted((tmp_path / "stills").iterdir())
+    assert len(stills) == 3
+    for k, path in zip((0, 17, 59), stills):
+        frame = film.frame(k)
+        assert frame.dtype == np.uint8 and frame.shape == (180, 320, 4)
+        assert np.array_equal(frame, corda.read_png(path))
+        assert corda.compare(frame, path).equal
+    run("still", SCENE, *OPTIONS, "--at", "0.123", "-o", tmp_path / "at.png")
+    assert np.array_equal(film.still(0.123), corda.read_png(tmp_path / "at.png"))
+
+
+def test_positions_are_those_of_the_program(film, tmp_path):
+    run("simulate", SCENE, "--set", "video.size=[320,180]", "--duration", "1", "-o", tmp_path / "rows.csv")
+    rows = np.genfromtxt(tmp_path / "rows.csv", delimiter=",", skip_header=1, comments="#")
+    assert np.array_equal(film.times, rows[: len(film), 0])
+    assert film.positions.shape == (60, rows.shape[1] // 2, 2)
+    assert np.array_equal(film.positions.reshape(60, -1), rows[: len(film), 1:])
+
+
+def test_videos_are_those_of_the_program(film, tmp_path):
+    run("render", SCENE, *OPTIONS, "-o", tmp_path / "program.mp4")
+    assert film.save(tmp_path / "module.mp4") == 60
+    assert (tmp_path / "module.mp4").read_bytes() == (tmp_path / "program.mp4").read_bytes()
+
+
+def test_a_film_tells_what_it_is(film):
+    assert len(film) == 60
+    assert film.size == (320, 180)
+    assert film.fps == 60
+    assert repr(film) == "<corda.Film of 60 frames, 320x180 at 60 per second>"
+    assert film.plan["methods"] == ["exact"]
+    assert 0 < film.plan["error_bound_px"] < 0.1
+    assert film.plan["horizon_s"] is None
+    assert film.camera["height"] > 0
+    assert corda.__version__ in subprocess.run([PROGRAM, "--version"], capture_output=True, text=True).stdout
+
+
+def test_settings_are_those_of_the_command_line(tmp_path):
+    settings = {"rope[0].mass": 2, "style.theme": "paper", "overlay.title": 'say "rope"'}
+    film = corda.Film(SCENE, **SMALL, fps="30000/1001", world__drag=0.25, settings=settings)
+    run("still", SCENE, *OPTIONS, "--fps", "30000/1001", "--set", "world.drag=0.25", "--set", "rope[0].mass=2",
+        "--set", "style.theme=paper", "--set", 'overlay.title="say \\"rope\\""', "--frame", "7", "-o", tmp_path / "a.png")
+    assert np.array_equal(film.frame(7), corda.read_png(tmp_path / "a.png"))
+
+
+def test_a_scene_can_be_text(film):
+    text = pathlib.Path(SCENE).read_text()
+    assert np.array_equal(corda.Film(text=text, **SMALL).frame(5), film.frame(5))
+    with pytest.raises(TypeError, match="a path or text"):
+        corda.Film(SCENE, text=text)
+    with pytest.raises(TypeError, match="a path or text"):
+        corda.Film()
+
+
+def test_errors_have_the_exit_codes_of_the_program(film, tmp_path):
+    def code_of(call):
+        with pytest.raises(corda.Error) as raised:
+            call()
+        assert str(raised.value)
+        return raised.value.code
+
+    assert code_of(lambda: corda.Film(tmp_path / "none.toml")) == 6
+    assert code_of(lambda: corda.Film(text="schema = 1")) == 3
+    assert code_of(lambda: corda.Film(SCENE, world__gravty=1)) == 3
+    assert code_of(lambda: corda.Film(SCENE, backend="magic").frame(0)) == 2
+    assert code_of(lambda: film.frame(1000)) == 2
+    assert code_of(lambda: film.still(-1.0)) == 2
+    assert code_of(lambda: film.save(tmp_path / "a.magic")) == 2
+    (tmp_path / "there.mp4").touch()
+    assert code_of(lambda: film.save(tmp_path / "there.mp4")) == 6
+    with pytest.raises(corda.Error, match='did you mean "gravity"'):
+        corda.Film(SCENE, world__gravty=1)
+
+
+def test_pictures_can_be_written_read_and_compared(tmp_path):
+    picture = np.zeros((3, 5, 4), np.uint8)
+    picture[..., 3] = 255
+    other = picture.copy()
+    other[1, 2, 0] = 7
+    assert corda.compare(picture, picture) == (True, True, 0, 0.0, 0.0)
+    difference = corda.compare(picture, other)
+    assert (difference.equal, difference.max, difference.share) == (False, 7, pytest.approx(1 / 15))
+    assert not corda.compare(picture, picture[:2]).same_size
+    corda.write_png(tmp_path / "a.png", other[..., :3])
+    assert np.array_equal(corda.read_png(tmp_path / "a.png"), other)
+    with pytest.raises(corda.Error) as raised:
+        corda.write_png(tmp_path / "a.png", other)
+    assert raised.value.code == 6
+    corda.write_png(tmp_path / "a.png", other, force=True)
+    for wrong in (np.zeros((3, 5)), np.zeros((3, 5, 2)), np.zeros((0, 5, 4))):
+        with pytest.raises(ValueError):
+            corda.write_png(tmp_path / "b.png", wrong)
+
+
+def test_frames_outlive_their_film():
+    film = corda.Film(SCENE, **SMALL)
+    frame = film.frame(3)
+    copy = frame.copy()
+    assert frame.base is not None  # numpy holds the picture itself
+    del film
+    gc.collect()
+    assert np.array_equal(frame, copy)
+
+
+def test_threads_share_films(film):
+    expected = [film.frame(k) for k in range(10)]
+    other = corda.Film(SCENE, size=(160, 90), duration=1)
+    small = [other.frame(k) for k in range(10)]
+    wrong = []
+
+    def draw(which, frames):
+        for k in (*range(10), *reversed(range(10))):
+            if not np.array_equal(which.frame(k), frames[k]):
+                wrong.append(k)
+
+    threads = [threading.Thread(target=draw, args=arguments) for arguments in [(film, expected), (other, small)] * 2]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not wrong
+
+
+def test_other_threads_run_meanwhile(film, tmp_path):
+    counted = 0
+    done = threading.Event()
+
+    def count():
+        nonlocal counted
+        while not done.is_set():
+            counted += 1
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=count)
+    thread.start()
+    film.save(tmp_path / "a.mp4")
+    done.set()
+    thread.join()
+    assert counted > 5
+
+
+def test_progress_is_told_and_can_stop(film, tmp_path):
+    heard = []
+    film.save(tmp_path / "a.mp4", on_progress=lambda done, total: heard.append((done, total)))
+    assert heard[-1] == (60, 60)
+    with pytest.raises(corda.Error) as raised:
+        film.save(tmp_path / "b.mp4", on_progress=lambda done, total: False)
+    assert raised.value.code == 130
+    assert not (tmp_path / "b.mp4").exists()
+
+    def fail(done, total):
+        raise KeyError("mine")
+
+    with pytest.raises(KeyError, match="mine"):
+        film.save(tmp_path / "c.mp4", on_progress=fail)
+    film.save(tmp_path / "d.mp4", on_progress=lambda done, total: film.still(0.5))  # may draw the film itself
+    assert (tmp_path / "d.mp4").read_bytes() == (tmp_path / "a.mp4").read_bytes()
+
+
+def test_ctrl_c_ends_a_render(tmp_path):
+    script = textwrap.dedent(f"""
+        import corda
+        film = corda.Film({SCENE!r}, size=(640, 360), duration=600)
+        print("ready", flush=True)
+        try:
+            film.save({str(tmp_path / "long.mp4")!r})
+        except KeyboardInterrupt:
+            film.frame(7)
+            print("stopped", flush=True)
+    """)
+    child = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
+    assert child.stdout.readline() == "ready\n"
+    time.sleep(1.0)
+    child.send_signal(signal.SIGINT)
+    out, _ = child.communicate(timeout=60)
+    assert out == "stopped\n"
+    assert child.returncode == 0
+    assert not (tmp_path / "long.mp4").exists()
+
+
+def test_a_film_shows_itself_in_a_notebook():
+    film = corda.Film(SCENE, size=(128, 72), duration=0.5)
+    html = film._repr_html_()
+    data = base64.b64decode(re.search(r'src="data:video/mp4;base64,([^"]*)"', html).group(1))
+    assert data[4:8] == b"ftyp"
+    film.largest_embedded = 100
+    assert "film.save" in film._repr_html_()
+
+
+def test_a_thousand_frames_take_no_memory(film):
+    def peak_mib():
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+
+    for k in range(100):
+        film.frame(k % 60)
+    before = peak_mib()
+    for k in range(1000):  # 230 MB of pictures
+        film.frame(k % 60)
+    assert peak_mib() - before < 20  # measured: 0
+
+
+def test_stubs_tell_all_names_and_parameters():
+    stub = ast.parse((pathlib.Path(corda.__file__).parent / "__init__.pyi").read_text())
+    names = {node.name: node for node in stub.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+    assert set(corda.__all__) - {"__version__"} <= set(names)
+
+    def check(function, node):
+        arguments = node.args
+        told = [one.arg for one in arguments.posonlyargs + arguments.args + arguments.kwonlyargs]
+        assert told == [name for name, one in inspect.signature(function).parameters.items()
+                        if one.kind is not inspect.Parameter.VAR_KEYWORD]
+        assert function.__doc__ or function.__name__.startswith("__")
+
+    for name in ("compare", "read_png", "write_png"):
+        check(getattr(corda, name), names[name])
+    methods = {node.name: node for node in names["Film"].body if isinstance(node, ast.FunctionDef)}
+    for name, value in vars(corda.Film).items():
+        if inspect.isfunction(value) and name not in ("_repr_html_", "__repr__"):
+            check(value, methods[name])
+        elif isinstance(value, property):
+            assert name in methods and value.__doc__
+
+
+def test_the_example_notebook_runs(tmp_path):
+    notebook = tmp_path / "notebook.ipynb"  # what it writes goes beside it
+    notebook.write_bytes((EXAMPLES / "notebook.ipynb").read_bytes())
+    subprocess.run([sys.executable, "-m", "nbconvert", "--to", "notebook", "--execute", "--inplace", str(notebook)],
+                   check=True, capture_output=True)
+    text = notebook.read_text()
+    assert "data:video/mp4;base64," in text and "image/png" in text
