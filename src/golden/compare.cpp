@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cstdlib>
+#include <string>
 
 namespace corda {
 namespace {
@@ -40,6 +40,21 @@ std::array<std::uint8_t, kChannels> heat(int difference) {
     return {static_cast<std::uint8_t>(red), static_cast<std::uint8_t>(difference), 0, 255};
 }
 
+void check_mask(const Image& picture, const Image* mask) {
+    if (mask == nullptr || mask->rect() == picture.rect()) return;
+    throw Error(ExitCode::kUsage, "the mask has " + std::to_string(mask->width()) + "x" +
+                                      std::to_string(mask->height()) + " pixels, the pictures have " +
+                                      std::to_string(picture.width()) + "x" +
+                                      std::to_string(picture.height()) + "; give a mask of their size");
+}
+
+/// Black in the mask.
+bool is_left_out(const Image* mask, int x, int y) {
+    if (mask == nullptr) return false;
+    const std::uint8_t* const rgba = mask->pixel(x, y);
+    return rgba[0] == 0 && rgba[1] == 0 && rgba[2] == 0;
+}
+
 }  // namespace
 
 bool Difference::within(const DifferenceLimits& limits) const {
@@ -49,23 +64,26 @@ bool Difference::within(const DifferenceLimits& limits) const {
            (!limits.share || share <= *limits.share);
 }
 
-Difference compare(const Image& a, const Image& b, const OnProgress& on_progress) {
+Difference compare(const Image& a, const Image& b, const OnProgress& on_progress, const Image* mask) {
     Difference result;
     if (a.width() != b.width() || a.height() != b.height()) {
         result.same_size = false;
         result.equal = false;
         return result;
     }
+    check_mask(a, mask);
     std::uint64_t sum = 0;
     std::uint64_t differing = 0;
-    const std::uint64_t pixels = a.size_bytes() / kChannels;
+    std::uint64_t pixels = 0;
     for (int y = 0; y < a.height(); ++y) {
         report_progress(on_progress, y, a.height());
-        for (std::size_t i = 0; i < a.row_bytes(); i += kChannels) {
-            const PixelDifference pixel = difference_of(a.pixel(0, y) + i, b.pixel(0, y) + i);
+        for (int x = 0; x < a.width(); ++x) {
+            if (is_left_out(mask, x, y)) continue;
+            const PixelDifference pixel = difference_of(a.pixel(x, y), b.pixel(x, y));
             result.max = std::max(result.max, pixel.max);
             sum += static_cast<std::uint64_t>(pixel.sum);
             differing += pixel.max > 0 ? 1 : 0;
+            ++pixels;
         }
     }
     result.equal = differing == 0;
@@ -75,17 +93,24 @@ Difference compare(const Image& a, const Image& b, const OnProgress& on_progress
     return result;
 }
 
-Image difference_image(const Image& a, const Image& b, const OnProgress& on_progress) {
-    assert(a.width() == b.width() && a.height() == b.height());
-    Image result(a.width(), a.height());
-    for (std::size_t i = 0; i < a.size_bytes(); i += kChannels) {
-        if (i % a.row_bytes() == 0)
-            report_progress(on_progress, static_cast<std::int64_t>(i / a.row_bytes()), a.height());
-        const PixelDifference pixel = difference_of(a.data() + i, b.data() + i);
-        const std::uint8_t grey = dim_grey(a.data() + i);
-        const std::array<std::uint8_t, kChannels> rgba =
-            pixel.max > 0 ? heat(pixel.max) : std::array<std::uint8_t, kChannels>{grey, grey, grey, 255};
-        std::copy(rgba.begin(), rgba.end(), result.data() + i);
+Image difference_image(const Image& a, const Image& b, const OnProgress& on_progress, const Image* mask) {
+    constexpr std::array<std::uint8_t, kChannels> kOfOne{0, 0, 255, 255};
+    if (a.rect() == b.rect()) check_mask(a, mask);
+    Image result(std::max(a.width(), b.width()), std::max(a.height(), b.height()));
+    const PixelRect both = a.rect().intersected(b.rect());
+    for (int y = 0; y < result.height(); ++y) {
+        report_progress(on_progress, y, result.height());
+        for (int x = 0; x < result.width(); ++x) {
+            std::array<std::uint8_t, kChannels> rgba = kOfOne;
+            if (x < both.x1 && y < both.y1) {
+                const bool counts = a.rect() != b.rect() || !is_left_out(mask, x, y);
+                const int difference = counts ? difference_of(a.pixel(x, y), b.pixel(x, y)).max : 0;
+                const std::uint8_t grey = dim_grey(a.pixel(x, y));
+                rgba = difference > 0 ? heat(difference)
+                                      : std::array<std::uint8_t, kChannels>{grey, grey, grey, 255};
+            }
+            std::copy(rgba.begin(), rgba.end(), result.pixel(x, y));
+        }
     }
     return result;
 }

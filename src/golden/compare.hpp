@@ -23,20 +23,23 @@ struct Difference {
     bool equal = true;      ///< all bytes are the same
     int max = 0;            ///< largest difference of a channel (R, G, B and A)
     double mean = 0.0;      ///< mean difference over all channels and pixels
-    double share = 0.0;     ///< share of the pixels that differ in any channel
+    double share = 0.0;     ///< share of the compared pixels that differ in any channel
 
     /// Whether the difference is within `limits`.
     [[nodiscard]] bool within(const DifferenceLimits& limits) const;
 };
 
-/// Compares all pixels and channels of two pictures. Throws corda::Error (kInterrupted) if `on_progress`,
-/// called with the rows, asks to stop.
-[[nodiscard]] Difference compare(const Image& a, const Image& b, const OnProgress& on_progress = {});
+/// Compares all channels of all pixels of two pictures; with a `mask` of their size, of those that are not
+/// black in it. Throws corda::Error: kUsage for a mask of another size, kInterrupted if `on_progress`, called
+/// with the rows, asks to stop.
+[[nodiscard]] Difference compare(const Image& a, const Image& b, const OnProgress& on_progress = {},
+                                 const Image* mask = nullptr);
 
-/// A picture of where two pictures of the same size differ. Equal pixels are a dim grey copy of `a`. Others
-/// go from red to yellow with the size of the difference; even the smallest is bright enough to be seen.
-/// Throws as compare.
-[[nodiscard]] Image difference_image(const Image& a, const Image& b, const OnProgress& on_progress = {});
+/// A picture of where two pictures differ. Equal pixels are a dim grey copy of `a`, and so are those that the
+/// mask leaves out. Others go from red to yellow with the size of the difference; even the smallest is bright
+/// enough to be seen. What only one of them has is blue. Throws as compare.
+[[nodiscard]] Image difference_image(const Image& a, const Image& b, const OnProgress& on_progress = {},
+                                     const Image* mask = nullptr);
 
 }  // namespace corda
 #pragma GCC visibility pop

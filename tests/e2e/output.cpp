@@ -372,6 +372,47 @@ TEST_F(Output, CompareSaysHowFarApart) {
     EXPECT_FALSE(test::read_file(folder_.file("d.png")).empty());
 }
 
+TEST_F(Output, CompareTakesFoldersAndAMask) {
+    const std::string scene = CORDA_EXAMPLES "/first.toml";
+    const auto draw = [&](const std::string& name, const std::string& folder, const std::string& times) {
+        std::filesystem::create_directories(folder_.file(folder));
+        ASSERT_EQ(run_corda({"still", scene, "--size", "96x54", "--at", times, "-o",
+                             folder_.file(folder + "/" + name)})
+                      .exit_code,
+                  0);
+    };
+    draw("same.png", "a", "0.5");
+    draw("same.png", "b", "0.5");
+    const auto equal = run_corda({"compare", folder_.file("a"), folder_.file("b")});
+    EXPECT_EQ(equal.exit_code, 0);
+    EXPECT_EQ(equal.out, "1 picture: all equal\n");
+    draw("moved.png", "a", "0.5");
+    draw("moved.png", "b", "0.6");
+    draw("gone.png", "a", "0");
+    const std::string diff = folder_.file("diff");
+    const auto result =
+        run_corda({"compare", folder_.file("a"), folder_.file("b"), "--diff", diff, "--json"});
+    EXPECT_EQ(result.exit_code, 7);
+    const auto report = nlohmann::json::parse(result.out);
+    EXPECT_FALSE(report.at("equal"));
+    EXPECT_GT(report.at("max"), 0);
+    ASSERT_EQ(report.at("files").size(), 3U);
+    EXPECT_EQ(report["files"][0]["missing_in"], folder_.file("b"));
+    EXPECT_FALSE(report["files"][1]["passed"]);
+    EXPECT_TRUE(report["files"][2]["passed"]);
+    EXPECT_FALSE(test::read_file(diff + "/moved.png").empty());
+    EXPECT_TRUE(test::read_file(diff + "/same.png").empty());
+    EXPECT_EQ(
+        run_corda({"compare", folder_.file("a/moved.png"), folder_.file("b/moved.png"), "--share", "0.5"})
+            .exit_code,
+        0);
+    EXPECT_EQ(run_corda({"compare", folder_.file("a"), folder_.file("a/same.png")}).exit_code, 2);
+    EXPECT_EQ(
+        run_corda({"compare", folder_.file("a/same.png"), folder_.file("b/same.png"), "--mask", "none.png"})
+            .exit_code,
+        6);
+}
+
 TEST_F(Output, DoctorTellsWhatThisMachineCanDo) {
     const auto result = run_corda({"doctor", "--json"});
     ASSERT_EQ(result.exit_code, 0) << result.err;

@@ -31,6 +31,34 @@ TEST(Compare, EqualPictures) {
     EXPECT_TRUE(result.within({}));
 }
 
+TEST(Compare, LeavesOutWhatIsBlackInTheMask) {
+    Image b = grey(5, 4);
+    b.pixel(4, 3)[0] = 250;
+    b.pixel(1, 1)[1] = 103;
+    Image mask = grey(5, 4, 255);
+    std::fill(mask.pixel(4, 3), mask.pixel(4, 3) + 3, std::uint8_t{0});
+    const Difference result = compare(grey(5, 4), b, {}, &mask);
+    EXPECT_EQ(result.max, 3);
+    EXPECT_EQ(result.mean, 3.0 / 76.0);
+    EXPECT_EQ(result.share, 1.0 / 19.0);
+    const Image shown = difference_image(grey(5, 4), b, {}, &mask);
+    EXPECT_EQ(pixel(shown, 4, 3), pixel(shown, 0, 0));
+    EXPECT_NE(pixel(shown, 1, 1), pixel(shown, 0, 0));
+    const Image small = grey(4, 4, 255);
+    EXPECT_EQ(test::code_of([&] { static_cast<void>(compare(b, b, {}, &small)); }), ExitCode::kUsage);
+    const Image nothing = grey(5, 4, 0);
+    EXPECT_TRUE(compare(grey(5, 4), b, {}, &nothing).equal);
+}
+
+TEST(Compare, ShowsWhatOnlyOnePictureHas) {
+    const Image shown = difference_image(grey(5, 2), grey(3, 4));
+    EXPECT_EQ(shown.width(), 5);
+    EXPECT_EQ(shown.height(), 4);
+    const std::array<int, 4> blue{0, 0, 255, 255};
+    for (int y = 0; y < 4; ++y)
+        for (int x = 0; x < 5; ++x) EXPECT_EQ(pixel(shown, x, y) == blue, x >= 3 || y >= 2) << x << " " << y;
+}
+
 TEST(Compare, StopsIfItIsAsked) {
     const Image a = grey(5, 4);
     for (const std::int64_t last : {0, 3}) {
