@@ -89,6 +89,7 @@ ExitCode measure_all(const Console& console, BenchOptions options) {
         for (const std::string& preset : options.presets) {
             scenes.push_back(options.scene_of(size, preset));
             media::check_video_def(scenes.back().video);
+            static_cast<void>(media::find_format("video.mp4", scenes.back().video));
         }
     Progress progress(console, "bench", std::ssize(scenes));
     for (std::size_t i = 0; i < scenes.size(); ++i) {

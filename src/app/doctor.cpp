@@ -1,5 +1,6 @@
 #include <algorithm>
-#include <set>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -7,7 +8,6 @@
 
 #include "commands.hpp"
 #include "corda/gl/context.hpp"
-#include "corda/media/format.hpp"
 #include "corda/media/probe.hpp"
 
 namespace corda::app {
@@ -46,16 +46,34 @@ nlohmann::json to_json(const gl::Attempt& attempt) {
     return json;
 }
 
-/// The endings of the files that some usable encoder writes.
-std::set<std::string_view> writable_endings(const std::vector<media::EncoderProbe>& encoders) {
-    std::set<std::string_view> endings;
-    for (const media::Format& format : media::formats()) {
-        const bool is_usable = std::any_of(encoders.begin(), encoders.end(), [&](const auto& encoder) {
-            return encoder.usable && encoder.name == format.codec;
-        });
-        if (is_usable) endings.insert(format.ending);
+/// What can be written of an ending, and what is missing.
+struct Writable {
+    std::string ending;
+    std::vector<std::string> usable;
+    std::vector<std::string> missing;  ///< with reasons
+};
+
+std::vector<Writable> writable(const std::vector<media::EncoderProbe>& encoders) {
+    std::vector<Writable> list;
+    for (const media::EncoderProbe& encoder : encoders) {
+        if (list.empty() || list.back().ending != encoder.ending) list.push_back({encoder.ending, {}, {}});
+        if (encoder.usable)
+            list.back().usable.push_back(encoder.name);
+        else
+            list.back().missing.push_back(fmt::format("{}: {}", encoder.name, encoder.reason));
     }
-    return endings;
+    return list;
+}
+
+void print_formats(const Console& console, const std::vector<Writable>& formats) {
+    console.result("Formats of videos, each encoder tried with a small picture, the default first:");
+    for (const Writable& format : formats) {
+        console.result(format.usable.empty()
+                           ? fmt::format("  no   {}", format.ending)
+                           : fmt::format("  yes  {}: {}", format.ending, fmt::join(format.usable, ", ")));
+        for (const std::string& missing : format.missing)
+            console.result(fmt::format("       without {}", missing));
+    }
 }
 
 ExitCode doctor(const Console& console) {
@@ -64,17 +82,14 @@ ExitCode doctor(const Console& console) {
     const bool has_gl = std::any_of(attempts.begin(), attempts.end(),
                                     [](const gl::Attempt& a) { return a.info.has_value(); });
     print_contexts(console, attempts);
-    console.result("Encoders, each tried with a small picture:");
-    for (const media::EncoderProbe& encoder : encoders) {
-        console.result(encoder.usable ? fmt::format("  yes  {}", encoder.name)
-                                      : fmt::format("  no   {}: {}", encoder.name, encoder.reason));
-    }
+    const std::vector<Writable> formats = writable(encoders);
+    print_formats(console, formats);
     console.result(has_gl ? "This machine can draw."
                           : "This machine cannot draw: apt-get install libegl-mesa0 libgl1-mesa-dri");
-    const std::set<std::string_view> written = writable_endings(encoders);
-    std::set<std::string_view> missing;
-    for (const media::Format& format : media::formats())
-        if (!written.contains(format.ending)) missing.insert(format.ending);
+    std::vector<std::string> written;
+    std::vector<std::string> missing;
+    for (const Writable& format : formats)
+        (format.usable.empty() ? missing : written).push_back(format.ending);
     if (!written.empty()) console.result(fmt::format("It can write {}.", fmt::join(written, ", ")));
     if (!missing.empty()) {
         console.result(
@@ -85,8 +100,10 @@ ExitCode doctor(const Console& console) {
     for (const gl::Attempt& attempt : attempts) json["contexts"].push_back(to_json(attempt));
     json["encoders"] = nlohmann::json::array();
     for (const media::EncoderProbe& encoder : encoders) {
-        json["encoders"].push_back(
-            {{"name", encoder.name}, {"usable", encoder.usable}, {"reason", encoder.reason}});
+        json["encoders"].push_back({{"ending", encoder.ending},
+                                    {"name", encoder.name},
+                                    {"usable", encoder.usable},
+                                    {"reason", encoder.reason}});
     }
     console.report(json);
     if (!has_gl) return ExitCode::kNoGl;

@@ -74,18 +74,15 @@ Film FigureOptions::film_of(const Console& console, const Scene& loaded,
 }
 
 PngInfo FigureOptions::describe(const Scene& loaded, const std::vector<Shot>& some, int width_px) const {
-    PngInfo info;
-    info.pixels_per_inch =
-        width_mm ? width_px * kMmPerInch / *width_mm : pixels_per_inch.value_or(kScreenPpi);
     std::string times;
     std::string frames;
     for (const Shot& shot : some) {
         times += fmt::format("{}{}", times.empty() ? "" : ", ", shot.time_s);
         if (shot.frame) frames += fmt::format("{}{}", frames.empty() ? "" : ", ", *shot.frame);
     }
-    info.text = {
-        {"Software", "corda " CORDA_VERSION}, {"Title", printable(loaded.name)}, {"Time", times + " s"}};
-    if (!frames.empty()) info.text.emplace_back("Frame", frames);
+    PngInfo info = picture_info(loaded.name, times, frames);
+    info.pixels_per_inch =
+        width_mm ? width_px * kMmPerInch / *width_mm : pixels_per_inch.value_or(kScreenPpi);
     return info;
 }
 

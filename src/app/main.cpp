@@ -1,6 +1,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <optional>
@@ -150,12 +151,18 @@ void keep_memory() {
     static_cast<void>(mallopt(M_TRIM_THRESHOLD, kMostKept));
 }
 
+/// SVT-AV1 prints its settings for every chunk unless told otherwise; a wish of the user stays.
+void keep_encoders_quiet() {
+    setenv("SVT_LOG", "1", 0);
+}
+
 }  // namespace
 }  // namespace corda::app
 
 int main(int argc, char** argv) {
     try {
         corda::app::keep_memory();
+        corda::app::keep_encoders_quiet();
         corda::app::keep_standard_streams();
         return corda::app::run(argc, argv);
     } catch (...) {

@@ -76,7 +76,12 @@ void SceneOptions::add_shortcut(CLI::App& command, const std::string& name, cons
     };
     command
         .add_option_function<std::string>(
-            name, [this, key](const std::string& value) { settings.push_back(key + "=" + value); },
+            name,
+            [this, key, is_word = row.type.kind == scene::Kind::kChoice](const std::string& value) {
+                // A word may look like a number.
+                const bool is_digits = value.find_first_not_of("0123456789") == std::string::npos;
+                settings.push_back(key + "=" + (is_word && is_digits ? "'" + value + "'" : value));
+            },
             help + " (--set " + key + ")")
         ->check(check);
 }

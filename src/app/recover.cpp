@@ -8,7 +8,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
-#include "corda/media/mp4_remux.hpp"
+#include "corda/media/finish_part.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {

@@ -1,14 +1,21 @@
+#include <unistd.h>
+
 #include <memory>
+#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
+#include "corda/core/output_file.hpp"
+#include "corda/media/format.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
+#include "corda/view/look.hpp"
 #include "interrupt.hpp"
 #include "shots.hpp"
 
@@ -38,14 +45,26 @@ void parse_range(std::string_view text, RenderDef& def) {
                 fmt::format("--frames {}: is not FIRST:END, two frame numbers (END is not drawn)", text));
 }
 
+/// Whether the video is one file, which has a part before.
+bool is_one_file(const std::string& output) {
+    const media::FileKind kind = media::find_ending(output).kind;
+    return kind == media::FileKind::kVideo || kind == media::FileKind::kAnimation;
+}
+
 ExitCode report_interrupted(const Console& console, const RenderOptions& options, std::int64_t first,
                             std::int64_t count, const Rendered& rendered) {
-    console.warning(
-        rendered.frames > 0
-            ? fmt::format("interrupted: frames {}..{} of {} are in {}, which plays; {} was not written "
-                          "(corda recover makes it a video of these frames)",
-                          first, first + rendered.frames - 1, count, rendered.kept_part, options.output)
-            : fmt::format("interrupted before the first frame; {} was not written", options.output));
+    const std::string done = fmt::format("frames {}..{} of {}", first, first + rendered.frames - 1, count);
+    if (rendered.frames == 0) {
+        console.warning(
+            fmt::format("interrupted before the first frame; {} was not written", options.output));
+    } else if (is_one_file(options.output)) {
+        console.warning(
+            fmt::format("interrupted: {} are in {}, which plays; {} was not written (corda recover makes "
+                        "it a video of these frames)",
+                        done, rendered.kept_part, options.output));
+    } else {
+        console.warning(fmt::format("interrupted: {} are in {}", done, rendered.kept_part));
+    }
     return interruption();
 }
 
@@ -67,6 +86,34 @@ nlohmann::json report(const Film& film, const RenderOptions& options, const Rend
     return json;
 }
 
+/// ".mp4 (H.264, ...)" and so on.
+std::string endings_text() {
+    std::string text;
+    for (const media::Ending& ending : media::endings()) {
+        std::set<std::string_view> codecs;
+        for (const char* const name : ending.codecs)
+            if (name != nullptr) codecs.insert(media::find_codec(name)->standard);
+        const bool is_one = ending.kind != media::FileKind::kVideo;
+        text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", ending.text,
+                            is_one ? std::string(ending.words) : fmt::format("{}", fmt::join(codecs, ", ")));
+    }
+    return text;
+}
+
+/// Says what is not as the ending's default would be.
+void report_format(const Console& console, const Scene& scene, const std::string& output) {
+    const bool is_opaque = view::look_of(scene.style).ground.is_opaque();
+    const media::Format format = media::find_format(output, scene.video, !is_opaque);
+    if (format.is_fallback) {
+        console.warning(fmt::format("this libavcodec has no {}, the default of {}: encoding with {} ({})",
+                                    format.ending->codecs.front(), format.ending->text, format.codec->name,
+                                    format.codec->standard));
+    }
+    if (!is_opaque && std::string_view(format.ending->muxer) == "gif")
+        console.warning(
+            "a GIF has no half transparent pixels: edges will be hard; .webp and .apng keep them");
+}
+
 ExitCode render(const Console& console, const RenderOptions& options) {
     const double start_s = now_s();
     Scene scene = options.scene.load();
@@ -74,7 +121,15 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     def.force = options.force;
     def.verify_all = options.verify == "full";
     parse_range(options.frames, def);
+    const bool to_stdout = is_standard_output(options.output);
+    if (to_stdout && isatty(STDOUT_FILENO) == 1)
+        throw Error(ExitCode::kUsage,
+                    "-o -: pixels are not for a terminal; pipe them into a program or a file");
+    if (to_stdout && console.json())
+        throw Error(ExitCode::kUsage,
+                    "-o - and --json both want standard output; give the video a file name");
     check_render(scene, options.output, def, options.scene.path);
+    report_format(console, scene, options.output);
     OnProgress on_progress = show_progress(console, "simulate");
     leave_cores_to_chunks(scene.video);
     FilmDef film_def;
@@ -104,12 +159,14 @@ ExitCode render(const Console& console, const RenderOptions& options) {
         return interruption() == ExitCode::kOk;
     };
     const Rendered rendered = render_video(film, options.output, def);
+    if (rendered.reader_left) return ExitCode::kOk;
     if (!rendered.complete) return report_interrupted(console, options, def.first, count, rendered);
     const double wall_s = now_s() - start_s;
-    console.info(fmt::format("{} frames in {:.3g} s, {:.1f} per second; verified", rendered.frames, wall_s,
-                             static_cast<double>(rendered.frames) / wall_s));
+    console.info(fmt::format("{} frames in {:.3g} s, {:.1f} per second{}", rendered.frames, wall_s,
+                             static_cast<double>(rendered.frames) / wall_s,
+                             is_one_file(options.output) ? "; verified" : ""));
     warn_of_branch(console, film);
-    console.result(options.output);
+    if (!to_stdout) console.result(options.output);
     console.report(report(film, options, rendered, wall_s, gl.renderer));
     const EmptyPictures empty{options.empty.are_failures, rendered.empty_frames, rendered.first_empty_s};
     return empty.report(console, rendered.frames);
@@ -121,13 +178,20 @@ void add_render(CLI::App& app, Action& action) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "turn a scene into a video");
     options->scene.add_to(*command);
-    command->add_option("-o,--output", options->output, "video file (.mp4)")->required();
+    command->add_option("-o,--output", options->output, "the ending chooses the format: " + endings_text())
+        ->required();
     options->scene.add_size(*command);
     options->scene.add_shortcut(*command, "--fps", "video.fps", "frames per second, e.g. 60 or 30000/1001");
     options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
-    options->scene.add_shortcut(*command, "--crf", "video.crf", "x264 quality, 1 (best) .. 51");
-    options->scene.add_shortcut(*command, "--preset", "video.preset", "x264 preset, ultrafast .. placebo");
-    options->scene.add_shortcut(*command, "--codec", "video.codec", "encoder");
+    options->scene.add_shortcut(*command, "--crf", "video.crf",
+                                "quality, 1 (best) .. 51 of H.264 and H.265, .. 63 of AV1 and VP9");
+    options->scene.add_shortcut(*command, "--preset", "video.preset",
+                                "speed: ultrafast .. placebo, of AV1 and VP9 0 (slowest) .. 13, .. 8");
+    options->scene.add_shortcut(*command, "--codec", "video.codec", "encoder, if not the ending's default");
+    options->scene.add_shortcut(
+        *command, "--pix", "video.pix",
+        "pixels: 420, 444 (sharper coloured edges; browsers and QuickTime refuse H.264 "
+        "High 4:4:4) or rgba");
     options->scene.add_shortcut(*command, "--threads", "video.threads", "threads of each encoder");
     options->scene.add_shortcut(*command, "--jobs", "video.jobs", "chunks made at a time; 0: one per core");
     command->add_option("--frames", options->frames, "only frames FIRST <= k < END")->type_name("FIRST:END");

@@ -32,7 +32,8 @@ nlohmann::json to_json(const std::string& path, const media::VerifyReport& repor
             {"primaries", report.primaries},
             {"transfer", report.transfer},
             {"chroma_location", report.chroma_location},
-            {"faststart", report.faststart}};
+            {"faststart", report.faststart},
+            {"alpha", report.alpha}};
 }
 
 ExitCode verify(const Console& console, const std::string& path) {
@@ -54,10 +55,11 @@ ExitCode verify(const Console& console, const std::string& path) {
 
 void add_verify(CLI::App& app, Action& action) {
     auto path = std::make_shared<std::string>();
-    CLI::App* command = app.add_subcommand(
-        "verify",
-        "check a video's structure, times and tags, that every frame decodes, and the colours of the first "
-        "frame alone; exit 7 on a problem");
+    CLI::App* command =
+        app.add_subcommand("verify",
+                           "check the structure of a video of any format that render writes, its times and "
+                           "tags, that every frame decodes, and the colours of the first "
+                           "frame alone; exit 7 on a problem");
     command->add_option("FILE", *path, "video file")->required();
     command->callback(
         [path, &action] { action = [path](const Console& console) { return verify(console, *path); }; });

@@ -47,7 +47,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libcorda-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # What a program needs to link the static library.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libavcodec-dev, libavformat-dev, libavutil-dev, libcairo2-dev, libegl-dev, \
-libegl-mesa0, libgl1-mesa-dri, libeigen3-dev, libepoxy-dev, libfmt-dev, libfreetype-dev, libpng-dev, libtomlplusplus-dev, \
+libwebp-dev, libegl-mesa0, libgl1-mesa-dri, libeigen3-dev, libepoxy-dev, libfmt-dev, libfreetype-dev, libpng-dev, libtomlplusplus-dev, \
 nlohmann-json3-dev, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "The C++ library, with one target, corda::corda, and one header, \
 corda/corda.hpp: load or build a scene, simulate it, draw frames, write stills and video, and compare pictures.")

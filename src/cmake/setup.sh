@@ -12,9 +12,10 @@ packages=(
     libegl-dev              # the EGL headers that epoxy includes
     libegl-mesa0            # EGL without a screen, even without a GPU
     libgl1-mesa-dri         # llvmpipe: OpenGL on the CPU
-    libavcodec-dev          # the H.264 encoder (x264) and the decoder that checks its output
-    libavformat-dev         # the MP4 muxer and demuxer
+    libavcodec-dev          # the encoders and the decoders that check their output
+    libavformat-dev         # muxers and demuxers of MP4, WebM, Matroska, GIF, APNG
     libavutil-dev           # frames and error texts of the two above
+    libwebp-dev             # animated WebP, which libavcodec does not decode
     libeigen3-dev           # sparse factorisation for nets of bars
     libcairo2-dev           # stills as PDF
     libfreetype-dev         # glyphs of text in pictures

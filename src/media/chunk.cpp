@@ -15,8 +15,11 @@ std::int64_t frames_per_chunk(const FrameRate& fps) {
     return std::max<std::int64_t>(1, std::llround(std::clamp(kFrames, per_second, 2.0 * per_second)));
 }
 
-ChunkEncoder::ChunkEncoder(const Format& format, const VideoDef& def)
-    : encoder_(format.make_encoder(format, def)) {}
+std::int64_t frames_per_chunk(const Format& format, const FrameRate& fps) {
+    return format.codec->chunk_frames > 0 ? format.codec->chunk_frames : frames_per_chunk(fps);
+}
+
+ChunkEncoder::ChunkEncoder(std::unique_ptr<Encoder> encoder) : encoder_(std::move(encoder)) {}
 
 void ChunkEncoder::keep(AVPacket& packet) {
     Packet kept = check_allocated(Packet(av_packet_alloc()), "a packet");

@@ -24,15 +24,17 @@ struct Chunk {
 };
 
 /// How many frames a chunk has, the last one of a video but for: 60, but at least as many as a second has and
-/// at most as two have. Frame k is in chunk k / frames_per_chunk() of the whole film, whatever part of it is
-/// rendered and by how many encoders, so that the bytes depend on neither.
+/// at most as two have; fewer of codecs whose frames stand alone. Frame k is in chunk k / frames_per_chunk()
+/// of the whole film, whatever part of it is rendered and by how many encoders, so that the bytes depend on
+/// neither.
 [[nodiscard]] std::int64_t frames_per_chunk(const FrameRate& fps);
+[[nodiscard]] std::int64_t frames_per_chunk(const Format& format, const FrameRate& fps);
 
 /// Makes one chunk. Several may work at a time, in threads of their own.
 class ChunkEncoder {
   public:
-    /// Opens the encoder for a def that was checked. Throws corda::Error (kEncoder), like all below.
-    ChunkEncoder(const Format& format, const VideoDef& def);
+    /// Takes the encoder of a chunk. Throws corda::Error (kEncoder), like all below.
+    explicit ChunkEncoder(std::unique_ptr<Encoder> encoder);
 
     /// Adds the next frame, of the size of the def. `damage` is what may differ from the previous frame (the
     /// first is taken whole).

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,15 +12,24 @@
 #pragma GCC visibility push(default)
 namespace corda {
 
-/// How a video is encoded.
+/// How the pixels of a video are stored.
+enum class PixelChoice {
+    kAuto,  ///< as the ending and its codec do by default
+    k420,   ///< Y'CbCr with colour in half of the resolution: what every player shows
+    k444,   ///< Y'CbCr in full resolution: sharper coloured edges; browsers and QuickTime refuse H.264 so
+    kRgba,  ///< R'G'B' with alpha, exact
+};
+
+/// How a video is encoded. What is left open, the ending of the file decides.
 struct EncoderDef {
-    static constexpr int kLargestCrf = 51;
+    static constexpr int kLargestCrf = 63;
     static constexpr int kMostThreads = 64;
 
-    std::string codec = "libx264";  ///< libav's name of the encoder; `corda doctor` lists them
-    std::string preset = "medium";  ///< x264: ultrafast .. placebo
-    /// x264 constant rate factor, 1 .. kLargestCrf (0 selects High 4:4:4, which browsers refuse).
-    int crf = 18;
+    /// libav's name of the encoder or a short one ("h264"), see `corda doctor`; empty: by the ending.
+    std::string codec;
+    std::string preset;      ///< a word or a number of the encoder; empty: its default
+    std::optional<int> crf;  ///< the encoder's constant rate factor, 0 .. kLargestCrf; empty: its default
+    PixelChoice pix = PixelChoice::kAuto;
     /// Threads of each encoder, 1 .. kMostThreads. Fixed, never "as many as there are cores": x264's bytes
     /// depend on it.
     int threads = 1;
@@ -32,7 +42,7 @@ struct EncoderDef {
 struct VideoDef {
     static constexpr int kMostSubframes = 64;
 
-    int width_px = 1920;  ///< see is_picture_size(); even for H.264
+    int width_px = 1920;  ///< see is_picture_size(); even for 4:2:0
     int height_px = 1080;
     FrameRate fps{Rational{60, 1}};
     /// The share of the interval between frames in which the shutter is open, 0 .. 1: motion is blurred. 0:

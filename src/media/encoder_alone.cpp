@@ -4,6 +4,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/media/chunk.hpp"
+#include "corda/media/format.hpp"
 #include "corda/media/libav_handles.hpp"
 
 namespace corda::media {
@@ -20,7 +21,9 @@ CodecContext open_x264(const VideoDef& video, int threads) {
     context->gop_size = static_cast<int>(frames_per_chunk(video.fps));
     context->thread_count = threads;
     Options options;
-    options.set("preset", video.encoder.preset).set("crf", std::to_string(video.encoder.crf));
+    const Format format{.codec = find_codec("libx264")};
+    options.set("preset", format.preset_of(video.encoder))
+        .set("crf", std::to_string(format.crf_of(video.encoder)));
     check_libav(avcodec_open2(context.get(), codec, options.get()), ExitCode::kEncoder,
                 "libx264 does not open");
     return context;

@@ -4,82 +4,426 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdint>
 #include <filesystem>
-#include <string>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
-#include "corda/media/encoder.hpp"
-#include "corda/media/h264_encoder.hpp"
+#include "corda/core/output_file.hpp"
+#include "corda/media/encoders.hpp"
+#include "corda/media/libav_handles.hpp"
+#include "corda/media/picture_names.hpp"
 
 namespace corda::media {
 namespace {
 
-constexpr std::array<Format, 1> kFormats{{
-    {".mp4", "mp4", "libx264", "yuv420p", false, &check_h264, &make_h264_encoder},
-}};
+constexpr std::array kX26xPresets{"ultrafast", "superfast", "veryfast", "faster",   "fast",
+                                  "medium",    "slow",      "slower",   "veryslow", "placebo"};
+constexpr std::array kNvencPresets{"p1", "p2", "p3", "p4", "p5", "p6", "p7"};
+constexpr std::array kSpeeds{"0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13"};
+constexpr std::span<const char* const> kSpeedsTo8{kSpeeds.data(), 9};
+
+/// Of codecs whose frames stand alone: less is in memory, and more is safe.
+constexpr int kFewFrames = 12;
+
+constexpr std::array kCodecs{
+    Codec{"libx264",
+          "h264",
+          "H.264",
+          {"yuv420p", "yuv444p"},
+          kX26xPresets,
+          "medium",
+          {{1, 51}},
+          18,
+          1,
+          0,
+          false,
+          &x264_settings},
+    Codec{"libx265",
+          "h265",
+          "H.265",
+          {"yuv420p", "yuv444p"},
+          kX26xPresets,
+          "medium",
+          {{1, 51}},
+          20,
+          32,
+          0,
+          false,
+          &x265_settings},
+    Codec{
+        "libsvtav1", "av1", "AV1", {"yuv420p"}, kSpeeds, "8", {{1, 63}}, 24, 64, 0, false, &svt_av1_settings},
+    Codec{"libaom-av1",
+          "av1",
+          "AV1",
+          {"yuv420p", "yuv444p"},
+          kSpeedsTo8,
+          "6",
+          {{1, 63}},
+          20,
+          16,
+          0,
+          false,
+          &aom_av1_settings},
+    Codec{"libvpx-vp9",
+          "vp9",
+          "VP9",
+          {"yuv420p", "yuva420p", "yuv444p"},
+          kSpeedsTo8,
+          "4",
+          {{1, 63}},
+          20,
+          1,
+          0,
+          false,
+          &vp9_settings},
+    Codec{"h264_nvenc",
+          "nvenc",
+          "H.264",
+          {"yuv420p", "yuv444p"},
+          kNvencPresets,
+          "p5",
+          {{1, 51}},
+          18,
+          160,
+          0,
+          true,
+          &nvenc_settings},
+    Codec{"prores_ks",
+          "prores",
+          "ProRes 4444",
+          {"yuv444p10le", "yuva444p10le"},
+          {},
+          "",
+          {},
+          0,
+          1,
+          kFewFrames,
+          false,
+          &prores_settings},
+    Codec{"ffv1", "ffv1", "FFV1", {"bgr0", "bgra"}, {}, "", {}, 0, 1, kFewFrames, false, &ffv1_settings},
+    Codec{"png", "png", "PNG", {"rgba"}, {}, "", {}, 0, 1, kFewFrames, false, nullptr},
+    Codec{"rawvideo",
+          "raw",
+          "raw pictures",
+          {"yuv420p", "yuv444p", "rgba"},
+          {},
+          "",
+          {},
+          0,
+          1,
+          2,
+          false,
+          &raw_settings},
+};
+
+constexpr std::array kEndings{
+    Ending{".mp4",
+           "MP4",
+           FileKind::kVideo,
+           "mp4",
+           "mp4",
+           {"libx264", "libsvtav1", "libx265", "libaom-av1", "h264_nvenc"},
+           "H.264: everything; AV1: browsers; H.265: Safari, QuickTime, TVs"},
+    Ending{".webm",
+           "WebM",
+           FileKind::kVideo,
+           "webm",
+           "matroska",
+           {"libvpx-vp9", "libsvtav1", "libaom-av1"},
+           "browsers, VLC, mpv"},
+    Ending{".mov",
+           "QuickTime",
+           FileKind::kVideo,
+           "mov",
+           "mov",
+           {"prores_ks"},
+           "video editors, QuickTime, Keynote"},
+    Ending{".mkv", "Matroska", FileKind::kVideo, "matroska", "matroska", {"ffv1"}, "VLC, mpv, ffmpeg"},
+    Ending{".gif", "GIF", FileKind::kAnimation, "gif", "matroska", {"ffv1"}, "everything; PowerPoint"},
+    Ending{".apng", "APNG", FileKind::kAnimation, "apng", "matroska", {"ffv1"}, "browsers"},
+    Ending{".webp", "WebP", FileKind::kAnimation, "webp", "matroska", {"ffv1"}, "browsers"},
+    Ending{"%04d.png", "PNG pictures", FileKind::kPictures, "", "", {"png"}, "everything, as pictures"},
+    Ending{"-", "YUV4MPEG2", FileKind::kStream, "", "", {"rawvideo"}, "ffmpeg and other encoders"},
+};
 
 template <typename... Args>
 [[noreturn]] void fail_usage(fmt::format_string<Args...> text, Args&&... args) {
     throw Error(ExitCode::kUsage, fmt::format(text, std::forward<Args>(args)...));
 }
 
-/// The different values of a column in the rows that `is_wanted` takes.
-template <typename Wanted>
-std::vector<std::string_view> values_of(const char* Format::*column, Wanted is_wanted) {
-    std::vector<std::string_view> values;
-    for (const Format& row : kFormats) {
-        if (!is_wanted(row) || std::find(values.begin(), values.end(), row.*column) != values.end()) continue;
-        values.emplace_back(row.*column);
-    }
-    return values;
+std::vector<std::string_view> names_of(const Ending& ending) {
+    std::vector<std::string_view> names;
+    for (const char* const name : ending.codecs)
+        if (name != nullptr) names.emplace_back(name);
+    return names;
 }
 
-bool is_any(const Format& /*row*/) {
+/// Adds names that are not there yet.
+void add_new(std::string_view name, std::vector<std::string_view>& names) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+}
+
+bool is_in_libav(const char* codec) {
+    return find_codec(codec)->settings == nullptr || avcodec_find_encoder_by_name(codec) != nullptr;
+}
+
+const AVPixFmtDescriptor& descriptor_of(const char* pixel_format) {
+    return *av_pix_fmt_desc_get(av_get_pix_fmt(pixel_format));
+}
+
+bool has_alpha_plane(const char* pixel_format) {
+    return (descriptor_of(pixel_format).flags & AV_PIX_FMT_FLAG_ALPHA) != 0;
+}
+
+bool is_of_choice(const char* pixel_format, PixelChoice pix) {
+    const AVPixFmtDescriptor& descriptor = descriptor_of(pixel_format);
+    const bool is_rgb = (descriptor.flags & AV_PIX_FMT_FLAG_RGB) != 0;
+    switch (pix) {
+        case PixelChoice::k420:
+            return !is_rgb && descriptor.log2_chroma_w == 1;
+        case PixelChoice::k444:
+            return !is_rgb && descriptor.log2_chroma_w == 0;
+        case PixelChoice::kRgba:
+            return is_rgb;
+        case PixelChoice::kAuto:
+            break;
+    }
     return true;
 }
 
-void check_size(int width, int height) {
-    if (is_picture_size(width, height)) return;
-    fail_usage("video size {}x{} is out of range: each side is 1 to {}, and a frame has at most {} pixels",
-               width, height, kLargestSidePx, kMostPicturePx);
+const char* word_of(PixelChoice pix) {
+    switch (pix) {
+        case PixelChoice::k420:
+            return "420";
+        case PixelChoice::k444:
+            return "444";
+        case PixelChoice::kRgba:
+            return "rgba";
+        case PixelChoice::kAuto:
+            break;
+    }
+    return "auto";
 }
 
-void check_rate(Rational fps) {
-    if (fps.is_rate()) return;
-    fail_usage("frame rate {} is out of range; use a positive rate such as 60 or 30000/1001", fps.text());
+bool has_choice(const Codec& codec, PixelChoice pix) {
+    return std::any_of(codec.pixel_formats.begin(), codec.pixel_formats.end(),
+                       [pix](const char* name) { return name != nullptr && is_of_choice(name, pix); });
+}
+
+/// The choices of video.pix that a codec has.
+std::vector<const char*> pixel_words(const Codec& codec) {
+    std::vector<const char*> words;
+    for (const PixelChoice pix : {PixelChoice::k420, PixelChoice::k444, PixelChoice::kRgba}) {
+        if (has_choice(codec, pix)) words.push_back(word_of(pix));
+    }
+    return words;
+}
+
+/// The codec that is asked for, or the first of the ending that libavcodec has.
+const Codec& choose_codec(const Ending& ending, std::string_view path, const EncoderDef& def,
+                          bool& is_fallback) {
+    const auto names = names_of(ending);
+    if (def.codec.empty() || ending.kind == FileKind::kAnimation) {
+        for (const std::string_view name : names) {
+            if (is_in_libav(name.data()) && !find_codec(name)->is_hardware) return *find_codec(name);
+            is_fallback = true;
+        }
+        throw Error(
+            ExitCode::kEncoder,
+            fmt::format("'{}': this libavcodec has none of the encoders {}; install one that has them "
+                        "(Debian: apt-get install libavcodec59), and see `corda doctor`",
+                        path, fmt::join(names, ", ")));
+    }
+    const Codec* chosen = nullptr;
+    for (const std::string_view name : names) {
+        const Codec& codec = *find_codec(name);
+        if (def.codec != codec.name && def.codec != codec.short_name) continue;
+        const bool is_better =
+            chosen == nullptr || !is_in_libav(chosen->name) || !has_choice(*chosen, def.pix);
+        if (is_better && (chosen == nullptr || is_in_libav(codec.name))) chosen = &codec;
+    }
+    if (chosen != nullptr && is_in_libav(chosen->name)) return *chosen;
+    if (chosen != nullptr) {
+        throw Error(
+            ExitCode::kEncoder,
+            fmt::format("this libavcodec was built without {}; install one that has it (Debian: apt-get "
+                        "install libavcodec59), and see `corda doctor`",
+                        chosen->name));
+    }
+    fail_usage("'{}' cannot hold the codec '{}'; use {}", path, def.codec, fmt::join(names, ", "));
+}
+
+/// The first pixel format of the codec that is of the choice and, if that is possible, has alpha as wanted.
+const char* choose_pixels(const Format& format, const VideoDef& def, bool is_transparent) {
+    const char* chosen = nullptr;
+    for (const char* const name : format.codec->pixel_formats) {
+        if (name == nullptr || !is_of_choice(name, def.encoder.pix)) continue;
+        if (has_alpha_plane(name) == is_transparent) return name;
+        if (chosen == nullptr) chosen = name;
+    }
+    if (chosen != nullptr) return chosen;
+    const auto words = pixel_words(*format.codec);
+    fail_usage("video.pix {} is not what {} in {} is made of; use {}, another codec, or leave it out",
+               word_of(def.encoder.pix), format.codec->standard, format.ending->words,
+               fmt::join(words, " or "));
+}
+
+/// The even numbers next to an odd side: "1080 or 1082".
+std::string even_sides(int side) {
+    return side % 2 == 0 ? std::to_string(side)
+           : side == 1   ? std::string("2")
+                         : fmt::format("{} or {}", side - 1, side + 1);
+}
+
+void check_size_for(const Format& format, const VideoDef& def) {
+    const Codec& codec = *format.codec;
+    const bool is_odd = def.width_px % 2 != 0 || def.height_px % 2 != 0;
+    if (is_odd && descriptor_of(format.pixel_format).log2_chroma_w == 1) {
+        fail_usage(
+            "video size {}x{} is odd, and {} 4:2:0 needs even sides; use a width of {} and a height of {}",
+            def.width_px, def.height_px, codec.standard, even_sides(def.width_px), even_sides(def.height_px));
+    }
+    if (std::min(def.width_px, def.height_px) < codec.least_side_px) {
+        fail_usage("video size {}x{} is too small for {}; use sides of {} or more, or another codec",
+                   def.width_px, def.height_px, codec.name, codec.least_side_px);
+    }
+}
+
+void check_preset(const Format& format, const EncoderDef& def) {
+    const Codec& codec = *format.codec;
+    const auto& presets = codec.presets;
+    if (def.preset.empty() || std::find(presets.begin(), presets.end(), def.preset) != presets.end()) return;
+    if (presets.empty())
+        fail_usage("preset '{}': {} in {} has no presets; leave it out", def.preset, codec.standard,
+                   format.ending->words);
+    fail_usage("preset '{}' is unknown to {}; use one of {}", def.preset, codec.name,
+               fmt::join(presets, ", "));
+}
+
+void check_crf(const Format& format, const EncoderDef& def) {
+    const Codec& codec = *format.codec;
+    if (!def.crf) return;
+    if (!codec.crf)
+        fail_usage("crf {}: {} in {} has no rate factor; leave it out", *def.crf, codec.standard,
+                   format.ending->words);
+    if (*def.crf >= codec.crf->first && *def.crf <= codec.crf->second) return;
+    fail_usage("crf {} is out of range; use {} to {} for {}{}", *def.crf, codec.crf->first, codec.crf->second,
+               codec.name,
+               std::string_view(codec.name) == "libx264" && *def.crf == 0
+                   ? " (0 is lossless 4:4:4, which browsers refuse; .mkv is lossless)"
+                   : "");
+}
+
+/// The pauses of a GIF are whole hundredths of a second, and what is shorter than two plays slowly.
+void check_gif_rate(Rational fps) {
+    const Rational hundredths = Rational::reduced(100 * fps.den, fps.num);
+    if (hundredths.den == 1 && hundredths.num >= 2 && hundredths.num <= 65535) return;
+    const std::int64_t longer = std::max<std::int64_t>(2, (100 * fps.den + fps.num - 1) / fps.num);
+    const auto rate = [](std::int64_t pause) {
+        return Rational::reduced(100, std::clamp<std::int64_t>(pause, 2, 65535)).text();
+    };
+    const std::string slower = rate(longer);
+    const std::string faster = rate(longer - 1);
+    fail_usage(
+        "a GIF cannot have {} frames per second: its pauses are hundredths of a second, two at least; use {} "
+        "(--fps {}), or .apng or .webp",
+        fps.text(), slower == faster ? slower : slower + " or " + faster, slower);
+}
+
+void check_rate_for(const Format& format, const VideoDef& def) {
+    const Rational fps = def.fps.rational();
+    const std::string_view muxer = format.ending->muxer;
+    if (muxer == "gif") check_gif_rate(fps);
+    if (muxer == "apng" && (fps.num > 65535 || fps.den > 65535))
+        fail_usage(
+            "an APNG cannot have {} frames per second: it counts up to 65535; use a rate such as 30000/1001",
+            fps.text());
+    constexpr double kMostPerSecond = 1000.0;
+    if (std::string_view(format.ending->part_muxer) == "matroska" && fps.value() > kMostPerSecond)
+        fail_usage("{} cannot have {} frames per second: it counts milliseconds; use {} or less, or .mp4",
+                   format.ending->words, fps.text(), kMostPerSecond);
 }
 
 }  // namespace
 
-std::span<const Format> formats() {
-    return kFormats;
+std::string Format::preset_of(const EncoderDef& def) const {
+    return def.preset.empty() ? codec->default_preset : def.preset;
+}
+
+std::span<const Ending> endings() {
+    return kEndings;
+}
+
+std::span<const Codec> codecs() {
+    return kCodecs;
 }
 
 std::vector<std::string_view> codec_names() {
-    return values_of(&Format::codec, is_any);
+    std::vector<std::string_view> names;
+    for (const Codec& codec : kCodecs) add_new(codec.name, names);
+    for (const Codec& codec : kCodecs) add_new(codec.short_name, names);
+    return names;
 }
 
-const Format& find_format(std::string_view path, std::string_view codec) {
-    const std::string ending = std::filesystem::path(path).extension().string();
-    const auto has_ending = [&ending](const Format& row) { return row.ending == ending; };
-    const auto row = std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& candidate) {
-        return has_ending(candidate) && (codec.empty() || codec == candidate.codec);
+std::vector<std::string_view> preset_names() {
+    std::vector<std::string_view> names;
+    for (const Codec& codec : kCodecs)
+        for (const char* const preset : codec.presets) add_new(preset, names);
+    return names;
+}
+
+const Codec* find_codec(std::string_view name) {
+    const auto row = std::find_if(kCodecs.begin(), kCodecs.end(), [name](const Codec& codec) {
+        return name == codec.name || name == codec.short_name;
     });
-    if (row != kFormats.end()) return *row;
-    if (std::none_of(kFormats.begin(), kFormats.end(), has_ending)) {
-        fail_usage("'{}': the ending of the name tells the format, and this one is not known; use {}", path,
-                   fmt::join(values_of(&Format::ending, is_any), ", "));
+    return row == kCodecs.end() ? nullptr : &*row;
+}
+
+const Ending& find_ending(std::string_view path) {
+    const auto row_of = [](FileKind kind) -> const Ending& {
+        return *std::find_if(kEndings.begin(), kEndings.end(),
+                             [kind](const Ending& row) { return row.kind == kind; });
+    };
+    if (is_standard_output(std::string(path))) return row_of(FileKind::kStream);
+    const std::string ending = std::filesystem::path(path).extension().string();
+    if (ending == ".png") {
+        check_picture_names(path);
+        return row_of(FileKind::kPictures);
     }
-    fail_usage("'{}' cannot hold the codec '{}'; use {}", path, codec,
-               fmt::join(values_of(&Format::codec, has_ending), ", "));
+    const auto row = std::find_if(kEndings.begin(), kEndings.end(),
+                                  [&ending](const Ending& candidate) { return ending == candidate.text; });
+    if (row != kEndings.end() && !ending.empty()) return *row;
+    std::vector<std::string_view> known;
+    for (const Ending& candidate : kEndings) known.emplace_back(candidate.text);
+    fail_usage("'{}': the ending of the name tells the format, and this one is not known; use {}", path,
+               fmt::join(known, ", "));
+}
+
+Format find_format(std::string_view path, const VideoDef& def, bool is_transparent) {
+    Format format;
+    format.ending = &find_ending(path);
+    format.codec = &choose_codec(*format.ending, path, def.encoder, format.is_fallback);
+    format.pixel_format = choose_pixels(format, def, is_transparent);
+    format.has_alpha = has_alpha_plane(format.pixel_format);
+    if (format.ending->kind == FileKind::kAnimation && !def.encoder.codec.empty())
+        fail_usage("'{}' cannot hold the codec '{}'; leave it out", path, def.encoder.codec);
+    check_size_for(format, def);
+    check_preset(format, def.encoder);
+    check_crf(format, def.encoder);
+    check_rate_for(format, def);
+    return format;
 }
 
 void check_video_def(const VideoDef& def) {
-    check_size(def.width_px, def.height_px);
-    check_rate(def.fps.rational());
+    if (!is_picture_size(def.width_px, def.height_px)) {
+        fail_usage(
+            "video size {}x{} is out of range: each side is 1 to {}, and a frame has at most {} pixels",
+            def.width_px, def.height_px, kLargestSidePx, kMostPicturePx);
+    }
+    if (!def.fps.rational().is_rate()) {
+        fail_usage("frame rate {} is out of range; use a positive rate such as 60 or 30000/1001",
+                   def.fps.rational().text());
+    }
     if (def.encoder.threads < 1 || def.encoder.threads > EncoderDef::kMostThreads) {
         fail_usage("{} encoder threads are out of range; use 1 to {}", def.encoder.threads,
                    EncoderDef::kMostThreads);
@@ -88,13 +432,20 @@ void check_video_def(const VideoDef& def) {
         fail_usage("{} encoder jobs are out of range; use 0 (one per core) to {}", def.encoder.jobs,
                    EncoderDef::kMostThreads);
     }
-    const auto row = std::find_if(kFormats.begin(), kFormats.end(), [&def](const Format& candidate) {
-        return candidate.codec == def.encoder.codec;
-    });
-    if (row == kFormats.end()) {
+    if (!def.encoder.codec.empty() && find_codec(def.encoder.codec) == nullptr)
         fail_usage("unknown codec '{}'; use {}", def.encoder.codec, fmt::join(codec_names(), ", "));
+}
+
+std::string endings_with_alpha() {
+    std::vector<std::string_view> names;
+    for (const Ending& ending : kEndings) {
+        const auto& formats = find_codec(ending.codecs.front())->pixel_formats;
+        const bool keeps_it = std::any_of(formats.begin(), formats.end(), [](const char* name) {
+            return name != nullptr && has_alpha_plane(name);
+        });
+        if (keeps_it && ending.kind != FileKind::kStream) names.emplace_back(ending.text);
     }
-    row->check(def);
+    return fmt::format("{}", fmt::join(names, ", "));
 }
 
 }  // namespace corda::media

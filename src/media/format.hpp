@@ -1,44 +1,104 @@
 #pragma once
 
-#include <memory>
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "corda/media/defs.hpp"
 
 namespace corda::media {
 
-class Encoder;
+struct Format;
 
-/// A kind of video file that Corda writes: one row of the table of formats. An ending that takes several
-/// codecs has a row for each, its default first. A new codec is a row in format.cpp and a file with its two
-/// functions.
-struct Format {
-    const char* ending;        ///< of the file name: ".mp4"
-    const char* container;     ///< libav's name of the muxer
-    const char* codec;         ///< libav's name of the encoder
-    const char* pixel_format;  ///< libav's name of the pixel format that the encoder is given
-    bool has_alpha;            ///< whether it keeps what is transparent
-
-    /// Checks the fields of a def that mean something to this encoder alone. Throws corda::Error (kUsage).
-    void (*check)(const VideoDef& def);
-    /// Opens the encoder for a def that was checked. Throws corda::Error (kEncoder).
-    std::unique_ptr<Encoder> (*make_encoder)(const Format& format, const VideoDef& def);
+/// What an encoder of libav is told beside size, rate, threads and colours.
+struct EncoderSettings {
+    int profile = -99;                                         ///< libav's FF_PROFILE_UNKNOWN
+    std::vector<std::pair<const char*, std::string>> options;  ///< the encoder's own, by libav's names
+    /// How many frames decoding runs ahead of showing, if the encoder does not tell.
+    std::optional<int> reorder_depth;
 };
 
-/// The table.
-[[nodiscard]] std::span<const Format> formats();
+/// An encoder of libav: one row of the table of codecs.
+struct Codec {
+    const char* name;        ///< libav's: "libx264"
+    const char* short_name;  ///< "h264"
+    const char* standard;    ///< in words: "H.264"
+    /// libav's names of the pixel formats that it is given, the preferred ones first.
+    std::array<const char*, 4> pixel_formats{};
+    std::span<const char* const> presets{};  ///< empty: it has none
+    const char* default_preset = "";
+    std::optional<std::pair<int, int>> crf{};  ///< the least and the largest; empty: it has none
+    int default_crf = 0;
+    int least_side_px = 1;
+    /// Frames of a chunk, for codecs whose frames stand alone; 0: as many as frames_per_chunk() says.
+    int chunk_frames = 0;
+    bool is_hardware = false;  ///< it may be listed and not work
+    EncoderSettings (*settings)(const Format& format, const EncoderDef& def) = nullptr;
+};
 
-/// libav's names of the encoders in the table, each once.
+/// How the packets of a video become files.
+enum class FileKind {
+    kVideo,      ///< one file with the packets of the part
+    kAnimation,  ///< one file made from the exact pictures of the part: its encoder needs the whole film
+    kPictures,   ///< a file for each frame
+    kStream,     ///< standard output
+};
+
+/// An ending of a name: one row of the table of endings.
+struct Ending {
+    const char* text;   ///< ".mp4"; "-" is standard output
+    const char* words;  ///< "MP4"
+    FileKind kind;
+    const char* muxer;       ///< libav's name
+    const char* part_muxer;  ///< of the file that is written while the video is made
+    /// libav's names of the codecs that it takes, the default first; of an animation, what its part holds.
+    std::array<const char*, 5> codecs;
+    const char* players;  ///< who shows it
+};
+
+/// What a name, a definition and a ground together choose.
+struct Format {
+    const Ending* ending = nullptr;
+    const Codec* codec = nullptr;
+    const char* pixel_format = "";  ///< libav's name
+    bool has_alpha = false;
+    bool is_fallback = false;  ///< the ending's own codec is missing in this libavcodec
+
+    [[nodiscard]] std::string preset_of(const EncoderDef& def) const;
+    [[nodiscard]] int crf_of(const EncoderDef& def) const { return def.crf.value_or(codec->default_crf); }
+};
+
+/// The tables.
+[[nodiscard]] std::span<const Ending> endings();
+[[nodiscard]] std::span<const Codec> codecs();
+
+/// Names of codecs that a definition may hold: libav's and the short ones, each once.
 [[nodiscard]] std::vector<std::string_view> codec_names();
+/// The presets of all codecs, each once.
+[[nodiscard]] std::vector<std::string_view> preset_names();
 
-/// The row for the ending of `path` and, if it is not empty, for `codec`. Throws corda::Error (kUsage),
-/// naming the endings or the codecs that are known.
-[[nodiscard]] const Format& find_format(std::string_view path, std::string_view codec = {});
+/// The codec of this name of either kind; null for none. Of those with one short name it is the first.
+[[nodiscard]] const Codec* find_codec(std::string_view name);
 
-/// Checks every field of `def`, so that a bad one is refused before any work is done. Throws corda::Error
-/// (kUsage), naming the field, the value and what is allowed; for an odd size, the nearest even ones.
+/// The row for the ending of `path`: of a name with a number in it ("%04d") that ends in .png, the pictures.
+/// Throws corda::Error (kUsage), naming the endings that are known.
+[[nodiscard]] const Ending& find_ending(std::string_view path);
+
+/// What is written under this name. Throws corda::Error: kUsage, naming the field, the value and what is
+/// allowed, if the ending, the codec, the pixels, the preset, the crf, the size and the rate do not go
+/// together, kEncoder if libavcodec has no codec for it.
+[[nodiscard]] Format find_format(std::string_view path, const VideoDef& def, bool is_transparent = false);
+
+/// Checks the fields that mean the same for every format. Throws corda::Error (kUsage), naming the field, the
+/// value and what is allowed.
 void check_video_def(const VideoDef& def);
+
+/// A ground that has transparency needs a format that keeps it: the endings that do, as ".webm, .mov".
+[[nodiscard]] std::string endings_with_alpha();
 
 }  // namespace corda::media

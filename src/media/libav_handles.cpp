@@ -53,7 +53,9 @@ void fail_libav(ExitCode code, const std::string& what, int status, std::string_
     const std::string_view system_hint = hint_for_errno(AVUNERROR(status));
     const bool out_of_space =
         status == AVERROR(ENOSPC) || status == AVERROR(EDQUOT) || status == AVERROR(EIO);
-    const std::string_view shown_hint = system_hint.empty() ? hint : system_hint;
+    // What an encoder says in numbers of the system is not about files.
+    const bool is_system = !system_hint.empty() && (code != ExitCode::kEncoder || out_of_space);
+    const std::string_view shown_hint = is_system ? system_hint : hint;
     const std::string log = captured_log();
     std::string message = fmt::format("{}: {}", what, libav_text(status));
     if (!log.empty()) message += fmt::format(" ({})", log);

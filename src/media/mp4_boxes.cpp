@@ -151,6 +151,7 @@ Mp4Boxes read_mp4_boxes(const std::string& path) {
         if (!header) break;
         if (i == 0) boxes.is_mp4 = header->type == "ftyp";
         if (!boxes.is_mp4) break;
+        if (i == 0) boxes.is_quicktime = read_range(file.get(), offset + header->header_size, 4) == "qt  ";
         if (header->type == "mdat") saw_data = true;
         if (header->type == "moof") boxes.fragmented = true;
         if (header->size > file_size - offset) break;

@@ -14,8 +14,9 @@ struct Mp4Edit {
 
 /// What the boxes of an MP4 file say, read without libav, because that rounds and repairs.
 struct Mp4Boxes {
-    bool is_mp4 = false;  ///< begins with an ftyp box
-    bool whole = false;   ///< every top-level box ends within the file
+    bool is_mp4 = false;        ///< begins with an ftyp box
+    bool is_quicktime = false;  ///< its brand is QuickTime's: a .mov
+    bool whole = false;         ///< every top-level box ends within the file
     std::uint64_t file_bytes = 0;
     /// End of the last whole box that is of use without the next one, which a moof is not.
     std::uint64_t whole_bytes = 0;

@@ -5,11 +5,15 @@
 #include <csetjmp>
 #include <cstring>
 #include <exception>
+#include <functional>
+#include <string_view>
+#include <utility>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/media/defs.hpp"
+#include "corda/media/png_bytes.hpp"
 
 namespace corda {
 namespace {
@@ -51,7 +55,7 @@ bool is_opaque(const Image& image) {
 struct WriteJob {
     png_structp png = nullptr;
     png_infop info = nullptr;
-    OutputFile* file = nullptr;
+    std::function<void(std::string_view)> sink;
     std::exception_ptr write_error;
     char message[160] = "out of memory";
 
@@ -72,7 +76,7 @@ void on_write_warning(png_structp, png_const_charp) {}
 /// An exception must not pass through libpng, which is C.
 bool write_bytes(WriteJob& job, png_const_bytep bytes, png_size_t count) {
     try {
-        job.file->write({reinterpret_cast<const char*>(bytes), count});
+        job.sink({reinterpret_cast<const char*>(bytes), count});
         return true;
     } catch (...) {
         job.write_error = std::current_exception();
@@ -141,6 +145,26 @@ std::vector<png_text> libpng_texts(const PngInfo& info, std::vector<std::string>
     return texts;
 }
 
+/// Encodes to a sink; `name` is for messages.
+void encode(const std::string& name, const Image& image, const PngInfo& info, const OnProgress& on_progress,
+            std::function<void(std::string_view)> sink) {
+    std::vector<std::string> storage;
+    std::vector<png_text> texts = libpng_texts(info, storage);
+    WriteJob job;
+    job.sink = std::move(sink);
+    job.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &job, on_write_error, on_write_warning);
+    if (job.png != nullptr) job.info = png_create_info_struct(job.png);
+    const auto pixels_per_metre =
+        static_cast<png_uint_32>(std::lround(info.pixels_per_inch * kInchesPerMetre));
+    const bool written =
+        job.info != nullptr && write_picture(job, image, is_opaque(image), pixels_per_metre, texts.data(),
+                                             static_cast<int>(texts.size()), on_progress);
+    if (job.write_error) std::rethrow_exception(job.write_error);
+    if (!written) {
+        throw Error(ExitCode::kIo, fmt::format("cannot write PNG '{}': libpng says: {}", name, job.message));
+    }
+}
+
 }  // namespace
 
 void write_png(const std::string& path, const Image& image, const PngInfo& info,
@@ -149,23 +173,16 @@ void write_png(const std::string& path, const Image& image, const PngInfo& info,
         throw Error(ExitCode::kUsage, fmt::format("cannot write an empty picture to '{}'", path));
     }
     std::vector<std::string> storage;
-    std::vector<png_text> texts = libpng_texts(info, storage);
+    static_cast<void>(libpng_texts(info, storage));  // a wrong text is refused before a file is made
     OutputFile file(path, options);
-
-    WriteJob job;
-    job.file = &file;
-    job.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &job, on_write_error, on_write_warning);
-    if (job.png != nullptr) job.info = png_create_info_struct(job.png);
-    const auto pixels_per_metre =
-        static_cast<png_uint_32>(std::lround(info.pixels_per_inch * kInchesPerMetre));
-    const bool written =
-        job.info != nullptr && write_picture(job, image, is_opaque(image), pixels_per_metre, texts.data(),
-                                             static_cast<int>(texts.size()), options.on_progress);
-    if (job.write_error) std::rethrow_exception(job.write_error);
-    if (!written) {
-        throw Error(ExitCode::kIo, fmt::format("cannot write PNG '{}': libpng says: {}", path, job.message));
-    }
+    encode(path, image, info, options.on_progress, [&file](std::string_view bytes) { file.write(bytes); });
     file.commit();
+}
+
+std::string media::png_bytes(const Image& image, const PngInfo& info, const OnProgress& on_progress) {
+    std::string all;
+    encode("frame", image, info, on_progress, [&all](std::string_view bytes) { all += bytes; });
+    return all;
 }
 
 }  // namespace corda

@@ -31,6 +31,7 @@ struct VerifyReport {
     Rational duration_s{0, 1};  ///< exact: last time stamp plus its duration
     std::string range, matrix, primaries, transfer, chroma_location;
     bool faststart = false;
+    bool alpha = false;                 ///< the first frame is transparent somewhere
     std::vector<std::string> problems;  ///< in words, each with a remedy; empty if the video is sound
     std::vector<std::string> notes;     ///< in words, such as what a browser will do with it
 
@@ -43,11 +44,12 @@ struct VerifyReport {
 /// time stamps.
 enum class VerifyDepth { kKeyFrames, kAllFrames };
 
-/// Opens, decodes and checks a video: that its boxes are whole and in order, that its time stamps have a
-/// constant step from 0 and its clocks an exact duration, profile, pixel format and colour tags, and that
-/// every frame decodes that is to be decoded. If the file's comment says that corda made it, also frame
-/// count, rate and some colours of the first frame against what was rendered. What the other frames show is
-/// not compared with anything: a change that still decodes is not found.
+/// Opens, decodes and checks a video of any kind that Corda writes: that its boxes are whole and in order,
+/// that its time stamps have a constant step from 0 (of a file that counts milliseconds, are the rounded
+/// ones) and its clocks an exact duration, profile, pixel format and colour tags, and that every frame
+/// decodes that is to be decoded. If the file's comment says that corda made it, also frame count, rate and
+/// some colours of the first frame against what was rendered. What the other frames show is not compared with
+/// anything: a change that still decodes is not found.
 ///
 /// Throws corda::Error: kIo if the file cannot be opened for reading (one that is not a video gives a report
 /// with a problem), kInterrupted if `on_progress`, called with the frames, asks to stop. libav ends the

@@ -17,7 +17,7 @@ namespace media {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(VerifyReport, container, codec, profile, pixel_format, width_px, height_px,
                                    fps, frames, duration_s, range, matrix, primaries, transfer,
-                                   chroma_location, faststart, problems, notes)
+                                   chroma_location, faststart, alpha, problems, notes)
 
 namespace {
 

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
 #include <queue>
 
 #include "corda/core/basics.hpp"
+#include "corda/media/apng_times.hpp"
 #include "corda/media/checked.hpp"
 #include "corda/media/color_patch.hpp"
 #include "corda/media/libav_handles.hpp"
-#include "corda/media/open_mp4.hpp"
+#include "corda/media/open_video.hpp"
+#include "corda/media/video_comment.hpp"
 
 namespace corda::media {
 namespace {
@@ -17,14 +20,46 @@ std::string named(const char* name) {
     return name == nullptr ? "unknown" : name;
 }
 
-/// Mean of the samples in a square of an 8-bit plane.
-double plane_mean(const AVFrame& frame, int plane, int x, int y, int side) {
+/// The samples of one component in a square of a frame, of any pixel format, as a mean in 0 .. 255 (of more
+/// bits, in quarters and so on), and the least of them.
+struct Samples {
+    double mean = 0.0;
+    int least = 255;
+};
+
+Samples samples_of(const AVFrame& frame, int component, const PixelRect& part) {
+    const AVPixFmtDescriptor& descriptor = *av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
+    const bool is_chroma =
+        (descriptor.flags & AV_PIX_FMT_FLAG_RGB) == 0 && (component == 1 || component == 2);
+    const int right = is_chroma ? descriptor.log2_chroma_w : 0;
+    const int down = is_chroma ? descriptor.log2_chroma_h : 0;
+    const int depth = descriptor.comp[component].depth;
+    const std::uint8_t* data[4] = {frame.data[0], frame.data[1], frame.data[2], frame.data[3]};
+    std::vector<std::uint16_t> line(static_cast<std::size_t>(part.width() >> right));
     std::int64_t sum = 0;
-    for (int row = y; row < y + side; ++row) {
-        const std::uint8_t* line = frame.data[plane] + std::ptrdiff_t{row} * frame.linesize[plane];
-        for (int column = x; column < x + side; ++column) sum += line[column];
+    std::int64_t count = 0;
+    int least = (1 << depth) - 1;
+    for (int y = part.y0 >> down; y < part.y1 >> down; ++y) {
+        av_read_image_line2(line.data(), data, frame.linesize, &descriptor, part.x0 >> right, y, component,
+                            static_cast<int>(line.size()), 0, 2);
+        for (const std::uint16_t value : line) {
+            sum += value;
+            least = std::min(least, int{value});
+        }
+        count += std::ssize(line);
     }
-    return static_cast<double>(sum) / (side * side);
+    const double scale = static_cast<double>(1 << (depth - 8));
+    return {static_cast<double>(sum) / (scale * static_cast<double>(std::max<std::int64_t>(1, count))),
+            least >> (depth - 8)};
+}
+
+/// Mean R'G'B' of a square.
+std::array<double, 3> mean_rgb_of(const AVFrame& frame, const PixelRect& part) {
+    const AVPixFmtDescriptor& descriptor = *av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
+    std::array<double, 3> means{};
+    for (int c = 0; c < 3; ++c) means[static_cast<std::size_t>(c)] = samples_of(frame, c, part).mean;
+    return (descriptor.flags & AV_PIX_FMT_FLAG_RGB) != 0 ? means
+                                                         : rgb_from_ycbcr(means[0], means[1], means[2]);
 }
 
 /// Decodes one file and fills in a DecodedVideo.
@@ -44,7 +79,9 @@ class Decoding {
             take_stamps(0);
         // libav guesses the duration of the last frame; check_clocks in verify.cpp compares the end with the
         // track's stored duration.
-        if (video_.frames == 1)
+        if (video_.frames == 1 && (rounded_to_ || counts_frames_))
+            video_.step = 1;
+        else if (video_.frames == 1)
             video_.step =
                 is_sane_stamp(file_.stream->duration) ? std::max<std::int64_t>(file_.stream->duration, 0) : 0;
         video_.end = last_pts_ + video_.step;
@@ -54,7 +91,7 @@ class Decoding {
   private:
     bool open(const std::string& path) {
         try {
-            file_ = open_mp4(path);
+            file_ = open_video(path);
         } catch (const Error& error) {
             if (error.code() != ExitCode::kIo) throw;
             video_.open_reason = error.what();
@@ -70,7 +107,36 @@ class Decoding {
         const AVDictionaryEntry* comment = av_dict_get(file_.format->metadata, "comment", nullptr, 0);
         if (comment != nullptr) video_.comment = comment->value;
         video_.tick = {file_.stream->time_base.num, file_.stream->time_base.den};
+        find_rounded_rate();
+        if (file_.format->iformat == av_find_input_format("apng")) take_delays(read_apng_times(path));
         return true;
+    }
+
+    /// Matroska counts milliseconds: then the rate that the file tells decides what is the nearest stamp.
+    void find_rounded_rate() {
+        if (file_.format->iformat != av_find_input_format("matroska")) return;
+        const auto told = told_rate(video_.comment);
+        const AVRational average = file_.stream->avg_frame_rate;
+        const Rational rate = told ? *told : Rational{average.num, average.den};
+        if (rate.num <= 0 || rate.den <= 0) return;
+        rounded_to_ = rate;
+        video_.is_rounded = true;
+        video_.tick = {rate.den, rate.num};
+    }
+
+    /// Of an APNG, whose stamps libav rounds.
+    void take_delays(const ApngTimes& times) {
+        if (times.delay_s.num <= 0) return;
+        counts_frames_ = true;
+        video_.tick = times.delay_s;
+        video_.uneven_at = times.uneven_at;
+    }
+
+    /// The number of the frame that a rounded stamp is the nearest to, or one that fits nowhere.
+    [[nodiscard]] std::int64_t unrounded(std::int64_t pts) const {
+        const AVRational frame = frame_time_base(*rounded_to_);
+        const std::int64_t k = av_rescale_q(pts, file_.stream->time_base, frame);
+        return av_rescale_q(k, frame, file_.stream->time_base) == pts ? k : last_pts_ + kNever;
     }
 
     void note_bad(int status) {
@@ -152,6 +218,8 @@ class Decoding {
                                            : "a frame has the time stamp " + std::to_string(pts));
             return;
         }
+        if (rounded_to_) pts = unrounded(pts);
+        if (counts_frames_) pts = video_.frames;
         if (video_.frames == 0) {
             video_.first_pts = pts;
         } else {
@@ -165,15 +233,23 @@ class Decoding {
     void measure_patches() {
         is_described_ = true;
         describe_first_frame();
-        if (frame_->format != AV_PIX_FMT_YUV420P && frame_->format != AV_PIX_FMT_YUVJ420P) return;
+        const AVPixFmtDescriptor* const descriptor =
+            av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame_->format));
+        const bool is_readable =
+            descriptor != nullptr && descriptor->nb_components >= 3 &&
+            (descriptor->flags & (AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_FLOAT | AV_PIX_FMT_FLAG_HWACCEL)) ==
+                0 &&
+            descriptor->comp[0].depth >= 8;
+        if (!is_readable) return;
+        video_.is_yuv = (descriptor->flags & AV_PIX_FMT_FLAG_RGB) == 0;
+        if ((descriptor->flags & AV_PIX_FMT_FLAG_ALPHA) != 0)
+            video_.has_alpha = samples_of(*frame_, 3, {0, 0, frame_->width, frame_->height}).least < 255;
         for (const ColorPatch& patch : patches_of_(video_.comment)) {
             const bool inside = patch.x >= 0 && patch.y >= 0 && patch.x <= frame_->width - kPatchSide &&
                                 patch.y <= frame_->height - kPatchSide;
             if (!inside) continue;
-            const int half = kPatchSide / 2;
-            video_.patch_means.push_back({plane_mean(*frame_, 0, patch.x, patch.y, kPatchSide),
-                                          plane_mean(*frame_, 1, patch.x / 2, patch.y / 2, half),
-                                          plane_mean(*frame_, 2, patch.x / 2, patch.y / 2, half)});
+            video_.patch_means.push_back(
+                mean_rgb_of(*frame_, {patch.x, patch.y, patch.x + kPatchSide, patch.y + kPatchSide}));
         }
     }
 
@@ -194,6 +270,7 @@ class Decoding {
         video_.profile = named(avcodec_profile_name(file_.context->codec_id, file_.context->profile));
     }
 
+    static constexpr std::int64_t kNever = 1'000'000'000;
     static constexpr std::int64_t kMostBadFrames = 1000;
     /// No codec decodes more frames than that ahead of one that is shown before them.
     static constexpr std::size_t kMostReordered = 32;
@@ -202,10 +279,12 @@ class Decoding {
     VerifyDepth depth_;
     std::vector<ColorPatch> (*patches_of_)(const std::string&);
     LogCapture log_;
-    OpenMp4 file_;
+    OpenVideo file_;
     Frame frame_;
     Packet packet_;
     std::int64_t last_pts_ = 0;
+    std::optional<Rational> rounded_to_;
+    bool counts_frames_ = false;
     bool is_described_ = false;
     /// Of packets, the least on top.
     std::priority_queue<std::int64_t, std::vector<std::int64_t>, std::greater<>> stamps_;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,7 @@
 
 namespace corda::media {
 
-/// What decoding an MP4 file has shown.
+/// What decoding a file has shown.
 struct DecodedVideo {
     bool opened = false;      ///< the demuxer and a decoder accepted the file
     std::string open_reason;  ///< why it was not opened
@@ -28,15 +29,26 @@ struct DecodedVideo {
     std::int64_t bad_frames = 0;  ///< frames or packets that did not decode cleanly or have no sane stamp
     std::string bad_reason;       ///< for the first of them, mostly in libav's words
     std::string comment;          ///< the file's comment
-    /// Mean Y', Cb, Cr in the first frame of each patch inside the picture.
+    bool is_yuv = false;          ///< not R'G'B'
+    bool has_alpha = false;       ///< the first frame is transparent somewhere
+    bool is_rounded = false;      ///< stamps count milliseconds, and each is the nearest to its frame's time
+    /// Mean R'G'B' (0 .. 255, not clipped) in the first frame of each patch inside the picture.
     std::vector<std::array<double, 3>> patch_means;
 };
 
-/// Decodes the frames of the MP4 file at `path`. `patches_of` is called with the file's comment and returns
-/// the patches to measure in the first frame, `on_progress` with the frames. Throws corda::Error: kTemporary
-/// if there is not enough memory, kInterrupted if `on_progress` asks to stop; nothing else for a bad file.
+/// Decodes the frames of the file at `path`, of a kind that libav demuxes. `patches_of` is called with the
+/// file's comment and returns the patches to measure in the first frame, `on_progress` with the frames.
+/// Throws corda::Error: kTemporary if there is not enough memory, kInterrupted if `on_progress` asks to stop;
+/// nothing else for a bad file.
 [[nodiscard]] DecodedVideo decode(const std::string& path, VerifyDepth depth,
                                   std::vector<ColorPatch> (*patches_of)(const std::string& comment),
                                   const OnProgress& on_progress);
+
+/// The same of an animated WebP, by libwebp.
+[[nodiscard]] DecodedVideo decode_webp(const std::string& path, const OnProgress& on_progress);
+
+/// The rate whose frames, rounded to milliseconds, end at these times: of several the usual one. The times
+/// are those of frames 1, 2, ... and of the end; std::nullopt if no rate fits.
+[[nodiscard]] std::optional<Rational> rate_of_ms(const std::vector<std::int64_t>& ends_ms);
 
 }  // namespace corda::media

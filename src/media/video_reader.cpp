@@ -5,7 +5,8 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
-#include "corda/media/open_mp4.hpp"
+#include "corda/media/open_video.hpp"
+#include "corda/media/pixels.hpp"
 
 namespace corda::media {
 namespace {
@@ -28,7 +29,7 @@ void copy_picture(const AVFrame& frame, Yuv420Image& picture) {
 struct VideoReader::Impl {
     QuietLog quiet;
     std::string path;
-    OpenMp4 file;
+    OpenVideo file;
     Packet packet;
     Frame frame;
     bool is_draining = false;
@@ -64,33 +65,50 @@ struct VideoReader::Impl {
                 continue;
             }
             if (status < 0) fail(status);
+            if (frame->decode_error_flags != 0) fail(AVERROR_INVALIDDATA);
             return true;
         }
+    }
+
+    [[noreturn]] void fail_format(const char* wanted) const {
+        throw Error(ExitCode::kIo, fmt::format("{}: is {} of {}x{}; only {} is read", path,
+                                               av_get_pix_fmt_name(static_cast<AVPixelFormat>(frame->format)),
+                                               frame->width, frame->height, wanted));
     }
 };
 
 VideoReader::VideoReader(const std::string& path) : impl_(std::make_unique<Impl>()) {
     impl_->path = path;
-    impl_->file = open_mp4(path);
+    impl_->file = open_video(path);
     impl_->packet = check_allocated(Packet(av_packet_alloc()), "a packet");
     impl_->frame = check_allocated(Frame(av_frame_alloc()), "a frame");
 }
 
 VideoReader::~VideoReader() = default;
 
+bool VideoReader::has_alpha() const {
+    const AVPixFmtDescriptor* const descriptor = av_pix_fmt_desc_get(impl_->file.context->pix_fmt);
+    return descriptor != nullptr && (descriptor->flags & AV_PIX_FMT_FLAG_ALPHA) != 0;
+}
+
 bool VideoReader::read(Yuv420Image& picture) {
     const LogCapture log;
     if (!impl_->receive()) return false;
     const AVFrame& frame = *impl_->frame;
-    if (frame.decode_error_flags != 0) impl_->fail(AVERROR_INVALIDDATA);
     const bool is_known = frame.format == AV_PIX_FMT_YUV420P && frame.width % 2 == 0 && frame.height % 2 == 0;
-    if (!is_known) {
-        throw Error(ExitCode::kIo,
-                    fmt::format("{}: is {} of {}x{}; only yuv420p with even sides is read", impl_->path,
-                                av_get_pix_fmt_name(static_cast<AVPixelFormat>(frame.format)), frame.width,
-                                frame.height));
-    }
+    if (!is_known) impl_->fail_format("yuv420p with even sides");
     copy_picture(frame, picture);
+    av_frame_unref(impl_->frame.get());
+    return true;
+}
+
+bool VideoReader::read(Image& picture) {
+    const LogCapture log;
+    if (!impl_->receive()) return false;
+    const AVFrame& frame = *impl_->frame;
+    if (frame.format != AV_PIX_FMT_BGR0 && frame.format != AV_PIX_FMT_BGRA)
+        impl_->fail_format("bgr0 or bgra");
+    picture = image_of(frame);
     av_frame_unref(impl_->frame.get());
     return true;
 }

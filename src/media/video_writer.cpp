@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -10,9 +11,10 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
+#include "corda/media/animation.hpp"
 #include "corda/media/chunk.hpp"
-#include "corda/media/mp4_output.hpp"
-#include "corda/media/mp4_remux.hpp"
+#include "corda/media/picture_names.hpp"
+#include "corda/media/video_sink.hpp"
 
 namespace corda::media {
 namespace {
@@ -31,6 +33,15 @@ nlohmann::json patches_json(const std::vector<ColorPatch>& patches) {
     return list;
 }
 
+/// Refuses files that are in the way. The folder is made if there is none.
+void check_pictures(const std::string& pattern, const std::string& input, bool force, std::int64_t first,
+                    std::int64_t end) {
+    const std::filesystem::path folder = std::filesystem::path(pattern).parent_path();
+    std::error_code ignored;
+    if (!folder.empty() && !std::filesystem::exists(folder, ignored)) return;
+    for (std::int64_t k = first; k < end; ++k) check_output(picture_name(pattern, k), input, force);
+}
+
 /// Whether a decoder of one takes the other, too.
 bool are_of_one_video(const AVCodecParameters& a, const AVCodecParameters& b) {
     return a.width == b.width && a.height == b.height && a.video_delay == b.video_delay &&
@@ -40,40 +51,57 @@ bool are_of_one_video(const AVCodecParameters& a, const AVCodecParameters& b) {
 
 }  // namespace
 
-void check_video_output(const std::string& path, const VideoDef& def, const std::string& input, bool force) {
+Format check_video_output(const std::string& path, const VideoDef& def, const std::string& input, bool force,
+                          bool is_transparent, std::int64_t first, std::int64_t end) {
     check_video_def(def);
-    static_cast<void>(find_format(path, def.encoder.codec));
-    check_output(path, input, force);
-    PartFile::check(part_path(path), {.force = force});
+    const Format format = find_format(path, def, is_transparent);
+    if (format.codec->is_hardware) static_cast<void>(make_encoder(format, def));
+    check_animation_frames(*format.ending, end - first);
+    switch (format.ending->kind) {
+        case FileKind::kStream:
+            break;
+        case FileKind::kPictures:
+            check_pictures(path, input, force, first, end);
+            break;
+        case FileKind::kVideo:
+        case FileKind::kAnimation:
+            check_output(path, input, force);
+            PartFile::check(part_path(path), {.force = force});
+    }
+    return format;
 }
 
 struct VideoWriter::Impl {
     Impl(std::string final_path, const VideoDef& video, VideoMetadata meta,
          const OutputOptions& output_options, std::int64_t first)
         : path(std::move(final_path)),
-          options(output_options),
           def(video),
-          format(find_format(path, def.encoder.codec)),
-          title(std::move(meta.title)),
-          comment(parsed_comment(meta.comment_json)),
+          metadata(std::move(meta)),
+          format(check_video_output(path, def, "", output_options.force, metadata.is_transparent)),
+          comment(parsed_comment(metadata.comment_json)),
           first_frame(first),
-          encoder(std::make_unique<ChunkEncoder>(format, def)),
-          part(PartFile::create(part_path(path), options)),
-          mp4(part.descriptor(), part.path()) {}
+          encoder(std::make_unique<ChunkEncoder>(chunk_encoder(first))),
+          sink(make_sink(format, path, output_options, first)) {}
+
+    [[nodiscard]] ChunkEncoder chunk_encoder(std::int64_t frame) const {
+        return ChunkEncoder(make_encoder(format, def, frame, metadata.picture_info));
+    }
 
     /// Writes the header, with the colours of the first frame.
     void begin(Chunk& chunk) {
         comment["fps"] = def.fps.rational().text();
-        comment["crf"] = def.encoder.crf;
+        if (format.codec->crf) comment["crf"] = format.crf_of(def.encoder);
         comment["patches"] = patches_json(chunk.patches);
         parameters = std::move(chunk.parameters);
-        mp4.begin(format.container, Mp4Layout::kFragmented, *parameters, def.fps.rational(), title,
-                  comment.dump());
+        sink->begin(*parameters, {.fps = def.fps.rational(),
+                                  .title = metadata.title,
+                                  .comment = comment.dump(),
+                                  .has_alpha = format.has_alpha && parameters->codec_id == AV_CODEC_ID_VP9});
     }
 
     void append(Chunk chunk) {
         if (chunk.frames == 0) return;
-        if (!mp4.begun())
+        if (!parameters)
             begin(chunk);
         else if (!are_of_one_video(*parameters, *chunk.parameters))
             throw Error(ExitCode::kInternal, "two chunks of a video have different parameters");
@@ -85,10 +113,9 @@ struct VideoWriter::Impl {
             packet->duration = 1;
             if (packet->pts < packet->dts || packet->pts >= written + chunk.frames)
                 throw Error(ExitCode::kInternal, "a chunk has a packet at a time that cannot be");
-            mp4.write(*packet);
+            sink->write(*packet);
         }
-        mp4.flush();
-        part.sync();
+        sink->end_chunk();
         written += chunk.frames;
     }
 
@@ -105,35 +132,28 @@ struct VideoWriter::Impl {
 
     void drain() {
         end_chunk();
-        mp4.finish();
+        sink->drain();
         drained = true;
     }
 
     std::string path;
-    OutputOptions options;
     VideoDef def;
-    const Format& format;
-    std::string title;
+    VideoMetadata metadata;
+    Format format;
     nlohmann::json comment;
     std::int64_t first_frame;
     std::unique_ptr<ChunkEncoder> encoder;  ///< of the chunk that write() adds to
     CodecParameters parameters;
-    PartFile part;
-    Mp4Output mp4;
+    std::unique_ptr<VideoSink> sink;
     std::int64_t written = 0;  ///< frames of whole chunks
     bool drained = false;
 };
 
 VideoWriter::VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata,
-                         const OutputOptions& options, std::int64_t first_frame) {
-    check_video_output(path, def, "", options.force);
-    impl_ = std::make_unique<Impl>(std::move(path), def, std::move(metadata), options, first_frame);
-}
+                         const OutputOptions& options, std::int64_t first_frame)
+    : impl_(std::make_unique<Impl>(std::move(path), def, std::move(metadata), options, first_frame)) {}
 
-VideoWriter::~VideoWriter() {
-    // A part without a fragment is of no use, and would be in the way of the next render.
-    if (impl_ && impl_->part.is_empty()) impl_->part.remove();
-}
+VideoWriter::~VideoWriter() = default;
 
 void VideoWriter::write(const Image& frame, const Damage& damage) {
     Impl& impl = *impl_;
@@ -144,9 +164,9 @@ void VideoWriter::write(const Image& frame, const Damage& damage) {
                     fmt::format("a frame of {}x{} was written to a video of {}x{}", frame.width(),
                                 frame.height(), impl.def.width_px, impl.def.height_px));
     }
-    if (!impl.encoder) impl.encoder = std::make_unique<ChunkEncoder>(impl.format, impl.def);
+    if (!impl.encoder) impl.encoder = std::make_unique<ChunkEncoder>(impl.chunk_encoder(impl.next_frame()));
     impl.encoder->encode(frame, damage);
-    if (impl.next_frame() % frames_per_chunk(impl.def.fps) == 0) impl.end_chunk();
+    if (impl.next_frame() % frames_per_chunk() == 0) impl.end_chunk();
 }
 
 void VideoWriter::append(Chunk chunk) {
@@ -158,6 +178,14 @@ void VideoWriter::append(Chunk chunk) {
 
 const Format& VideoWriter::format() const {
     return impl_->format;
+}
+
+std::int64_t VideoWriter::frames_per_chunk() const {
+    return media::frames_per_chunk(impl_->format, impl_->def.fps);
+}
+
+ChunkEncoder VideoWriter::chunk_encoder(std::int64_t frame) const {
+    return impl_->chunk_encoder(frame);
 }
 
 std::int64_t VideoWriter::frames() const {
@@ -173,23 +201,16 @@ void VideoWriter::finish(VerifyDepth depth) {
             fmt::format("'{}' would have no frame; ask for a duration of at least one frame", impl.path));
     }
     impl.drain();
-    try {
-        finish_part(impl.part, impl.path, impl.options, frames(), depth);
-    } catch (const Error& error) {
-        if (error.code() != ExitCode::kIo) throw;
-        throw Error(error.code(),
-                    fmt::format("{}; all frames are in '{}', which plays", error.what(), impl.part.path()));
-    }
+    impl.sink->finish(frames(), depth);
 }
 
 std::string VideoWriter::abandon() {
     if (frames() == 0) {
-        impl_->part.remove();
+        impl_->sink->remove();
         return {};
     }
     if (!impl_->drained) impl_->drain();
-    impl_->part.sync();
-    return impl_->part.path();
+    return impl_->sink->abandon();
 }
 
 }  // namespace corda::media

@@ -8,28 +8,34 @@
 #include "corda/core/image.hpp"
 #include "corda/media/chunk.hpp"
 #include "corda/media/defs.hpp"
+#include "corda/media/encoders.hpp"
 #include "corda/media/format.hpp"
 
 namespace corda::media {
 
-/// Refuses a video that cannot be written, before any work is done: everything that check_video_def and
-/// corda::check_output refuse, an unknown ending, one that cannot hold the codec, and an interrupted render
-/// of the same name, unless `force` is set. Throws corda::Error (kUsage, kIo).
-void check_video_output(const std::string& path, const VideoDef& def, const std::string& input, bool force);
+/// Refuses a video of frames first <= k < end that cannot be written, before any work is done: everything
+/// that check_video_def, find_format and corda::check_output refuse, an encoder of the hardware that does not
+/// open, and an interrupted render of the same name, unless `force` is set. Throws corda::Error (kUsage,
+/// kIo, kEncoder).
+Format check_video_output(const std::string& path, const VideoDef& def, const std::string& input, bool force,
+                          bool is_transparent = false, std::int64_t first = 0, std::int64_t end = 0);
 
 /// What a video file says beside its pictures.
 struct VideoMetadata {
-    std::string title;
+    std::string title{};
     /// Compact JSON that `verify` reads back; VideoWriter adds "frames", "fps", "crf" and "patches" to it
     /// (see verify.hpp).
     std::string comment_json = "{}";
+    bool is_transparent = false;  ///< whether pictures may be; a format that has alpha keeps it then
+    PictureInfo picture_info{};   ///< of formats of a file for each frame
 };
 
 /// Writes a video of one constant rational frame rate, in the format that the ending of its name tells.
 ///
 /// While it runs, whole chunks go to `PATH.part`, which plays at any moment. `finish` ends the last chunk,
-/// copies the stream into a plain faststart MP4 of temporary name, verifies that, and only then gives it the
-/// final name. Whatever has the final name is complete and verified.
+/// copies the stream into a file of temporary name (of an animation, encodes it from the exact pictures of
+/// the part), verifies that, and only then gives it the final name. Whatever has the final name is complete
+/// and verified. Pictures and standard output have no part: each frame is complete as it is.
 class VideoWriter {
   public:
     /// Opens the part file, for a video whose first frame is number `first_frame` of its film. With `force`,
@@ -44,7 +50,8 @@ class VideoWriter {
     ~VideoWriter();
 
     /// Adds the next frame, of the size of `def`. `damage` is what may differ from the previous frame (the
-    /// first is taken whole). Throws kEncoder or kIo.
+    /// first is taken whole). Throws kEncoder or kIo; ReaderLeft (see video_sink.hpp) if whoever reads
+    /// standard output closed it.
     void write(const Image& frame, const Damage& damage);
 
     /// Adds a chunk that was encoded elsewhere, and forces it onto the disk. All of the frames so far are in
@@ -54,6 +61,12 @@ class VideoWriter {
 
     /// What it is written as.
     [[nodiscard]] const Format& format() const;
+
+    /// How many frames a whole chunk has.
+    [[nodiscard]] std::int64_t frames_per_chunk() const;
+
+    /// What encodes a chunk for append(), from frame `frame` of the film on. May be called by any thread.
+    [[nodiscard]] ChunkEncoder chunk_encoder(std::int64_t frame) const;
 
     /// Frames written so far.
     [[nodiscard]] std::int64_t frames() const;

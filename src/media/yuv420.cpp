@@ -188,22 +188,55 @@ Yuv420Image::Yuv420Image(int width, int height) : width_(width), height_(height)
 
 void convert_to_yuv420(const Image& rgb, const PixelRect& damage, Yuv420Image& yuv) {
     assert(rgb.width() == yuv.width() && rgb.height() == yuv.height());
+    convert_to_yuv420(rgb, damage,
+                      {{yuv.plane(0), yuv.plane(1), yuv.plane(2)},
+                       {yuv.plane_width(0), yuv.plane_width(1), yuv.plane_width(2)}});
+}
+
+void convert_to_yuv420(const Image& rgb, const PixelRect& damage, const YuvPlanes& yuv) {
+    assert(rgb.width() % 2 == 0 && rgb.height() % 2 == 0);
     const PixelRect touched = damage.intersected(rgb.rect());
     if (touched.empty()) return;
-    const int chroma_width = yuv.plane_width(1);
     // Sample i reads columns 2i-1 .. 2i+1, so an odd last column reaches one sample further right.
     const int i0 = touched.x0 / 2;
-    const int i1 = std::min(touched.x1 / 2 + 1, chroma_width);
+    const int i1 = std::min(touched.x1 / 2 + 1, rgb.width() / 2);
     const int j0 = touched.y0 / 2;
     const int j1 = (touched.y1 + 1) / 2;
     for (int j = j0; j < j1; ++j) {
         const std::uint8_t* upper = rgb.pixel(0, 2 * j);
         const std::uint8_t* lower = rgb.pixel(0, 2 * j + 1);
-        std::uint8_t* y = yuv.plane(0) + static_cast<std::size_t>(2 * j) * yuv.width();
+        std::uint8_t* y = yuv.data[0] + std::ptrdiff_t{2} * j * yuv.row_bytes[0];
         luma_row(upper, 2 * i0, 2 * i1, y);
-        luma_row(lower, 2 * i0, 2 * i1, y + yuv.width());
-        const std::size_t row = static_cast<std::size_t>(j) * chroma_width;
-        chroma_row(upper, lower, i0, i1, yuv.plane(1) + row, yuv.plane(2) + row);
+        luma_row(lower, 2 * i0, 2 * i1, y + yuv.row_bytes[0]);
+        chroma_row(upper, lower, i0, i1, yuv.data[1] + j * yuv.row_bytes[1],
+                   yuv.data[2] + j * yuv.row_bytes[2]);
+    }
+}
+
+void convert_to_yuv444(const Image& rgb, const PixelRect& damage, int bits, const YuvPlanes& yuv) {
+    assert(bits == 8 || bits == 10);
+    constexpr std::array<std::array<int, 3>, 3> kMatrix{
+        {{kLumaR, kLumaG, kLumaB}, {kCbR, kCbG, kCbB}, {kCrR, kCrG, kCrB}}};
+    constexpr std::array<int, 3> kZero{16, 128, 128};
+    const int more = bits - 8;
+    const PixelRect touched = damage.intersected(rgb.rect());
+    for (int row = touched.y0; row < touched.y1; ++row) {
+        for (int plane = 0; plane < 3; ++plane) {
+            const auto& weights_of = kMatrix[plane];
+            std::uint8_t* const line = yuv.data[plane] + row * yuv.row_bytes[plane];
+            const int bias = (kZero[plane] << (kShift + more)) + (1 << (kShift - 1));
+            for (int x = touched.x0; x < touched.x1; ++x) {
+                const std::uint8_t* p = rgb.pixel(x, row);
+                const int sum = p[0] * weights_of[0] + p[1] * weights_of[1] + p[2] * weights_of[2];
+                const int value = (sum * (1 << more) + bias) >> kShift;
+                if (more == 0) {
+                    line[x] = static_cast<std::uint8_t>(value);
+                } else {
+                    line[std::ptrdiff_t{2} * x] = static_cast<std::uint8_t>(value);
+                    line[std::ptrdiff_t{2} * x + 1] = static_cast<std::uint8_t>(value >> 8);
+                }
+            }
+        }
     }
 }
 

@@ -40,4 +40,17 @@ class Yuv420Image {
 /// columns 2i-1, 2i, 2i+1 (the edge column repeated) and 1-1 over the two rows.
 void convert_to_yuv420(const Image& rgb, const PixelRect& damage, Yuv420Image& yuv);
 
+/// The three planes of a picture in memory of somebody else.
+struct YuvPlanes {
+    std::array<std::uint8_t*, 3> data{};
+    std::array<std::ptrdiff_t, 3> row_bytes{};
+};
+
+/// The same for planes of the size that `rgb` has.
+void convert_to_yuv420(const Image& rgb, const PixelRect& damage, const YuvPlanes& yuv);
+
+/// As convert_to_yuv420, in full resolution, which takes any size. `bits`: 8, or 10 in two bytes per sample,
+/// the lower one first.
+void convert_to_yuv444(const Image& rgb, const PixelRect& damage, int bits, const YuvPlanes& yuv);
+
 }  // namespace corda::media

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/text.hpp"
+#include "corda/core/version.hpp"
 #include "corda/pipeline/freeze.hpp"
 #include "corda/view/number_text.hpp"
 
@@ -158,4 +159,13 @@ Error explained(const Refusal& refusal, const std::string& source) {
 }
 
 }  // namespace pipeline
+PngInfo picture_info(const std::string& scene_name, const std::string& times, const std::string& frames) {
+    PngInfo info;
+    info.text = {{"Software", fmt::format("corda {}", version())},
+                 {"Title", printable(scene_name)},
+                 {"Time", times + " s"}};
+    if (!frames.empty()) info.text.emplace_back("Frame", frames);
+    return info;
+}
+
 }  // namespace corda

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
+#include "corda/media/defs.hpp"
 #include "corda/sim/refusal.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/sim/system.hpp"
@@ -39,6 +40,10 @@ struct MethodGroup {
 
 /// The methods' names: "exact, rattle".
 [[nodiscard]] std::string method_names(const Plan& plan);
+
+/// What a picture file of a scene says of itself: program, scene, time in s and, if it is not empty, frame.
+[[nodiscard]] PngInfo picture_info(const std::string& scene_name, const std::string& times,
+                                   const std::string& frames);
 
 /// The same with the bound of the displayed error: "exact, error below 0.031 px".
 [[nodiscard]] std::string method_caption(const Plan& plan, const std::optional<double>& error_bound_px);

@@ -154,9 +154,10 @@ struct RenderDef {
 /// What render_video has made.
 struct Rendered {
     std::int64_t frames = 0;
-    bool complete = true;   ///< false if on_progress asked to stop
-    std::string kept_part;  ///< where the frames so far are if it is not complete; empty if there are none
-    std::string encoder;
+    bool complete = true;      ///< false if on_progress asked to stop
+    std::string kept_part;     ///< where the frames so far are if it is not complete; empty if there are none
+    bool reader_left = false;  ///< standard output was closed by whoever read it: no more was wanted
+    std::string encoder;       ///< libav's name
     std::int64_t empty_frames = 0;  ///< in which nothing is in view
     double first_empty_s = 0.0;     ///< the time of the first of them
 };

@@ -30,12 +30,12 @@ struct Made {
 /// The chunks of some frames, from whoever makes them to the one who writes them in order.
 class Chunks {
   public:
-    Chunks(const Film& film, const media::Format& format, std::int64_t from, std::int64_t end, int jobs)
+    Chunks(const Film& film, const media::VideoWriter& writer, std::int64_t from, std::int64_t end, int jobs)
         : film_(&film),
+          writer_(&writer),
           from_(from),
           end_(end),
-          length_(media::frames_per_chunk(film.scene().video.fps)),
-          format_(&format),
+          length_(writer.frames_per_chunk()),
           next_(from / length_),
           written_(next_),
           ahead_(2 * static_cast<std::int64_t>(jobs)) {
@@ -120,10 +120,10 @@ class Chunks {
 
     Made make(std::int64_t number, FilmPainter& painter) {
         Made made;
-        media::ChunkEncoder encoder(*format_, film_->scene().video);
         const OnProgress goes_on = [this](std::int64_t, std::int64_t) { return !is_stopped_; };
         const std::int64_t first = std::max(from_, number * length_);
         const std::int64_t end = std::min(end_, (number + 1) * length_);
+        media::ChunkEncoder encoder = writer_->chunk_encoder(first);
         for (std::int64_t k = first; k < end && !is_stopped_; ++k) {
             const double time_s = film_->time_s(k);
             try {
@@ -142,10 +142,10 @@ class Chunks {
     }
 
     const Film* film_;
+    const media::VideoWriter* writer_;
     std::int64_t from_;
     std::int64_t end_;
     std::int64_t length_;
-    const media::Format* format_;
     std::mutex making_;  ///< of painters, one by one
     std::mutex mutex_;   ///< of what follows
     std::condition_variable changed_;
@@ -169,7 +169,7 @@ void add(Made made, media::VideoWriter& writer, Rendered& result) {
 
 void render_chunks(const Film& film, std::int64_t from, std::int64_t end, int jobs,
                    const OnProgress& on_progress, media::VideoWriter& writer, Rendered& result) {
-    Chunks chunks(film, writer.format(), from, end, jobs);
+    Chunks chunks(film, writer, from, end, jobs);
     try {
         while (writer.frames() < end - from) {
             if (auto made = chunks.wait()) add(std::move(*made), writer, result);

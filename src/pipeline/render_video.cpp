@@ -6,8 +6,8 @@
 
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
-#include "corda/media/chunk.hpp"
 #include "corda/media/format.hpp"
+#include "corda/media/video_sink.hpp"
 #include "corda/media/video_writer.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
@@ -21,6 +21,7 @@ namespace {
 
 /// What the file says of itself beside its pictures.
 media::VideoMetadata metadata(const Film& film, std::int64_t first) {
+    const Scene& scene = film.scene();
     const Plan& plan = film.plan();
     const std::string title = printable(film.scene().name);
     nlohmann::json comment = {{"corda", version()},           {"scene", title},
@@ -30,7 +31,10 @@ media::VideoMetadata metadata(const Film& film, std::int64_t first) {
     if (plan.error_bound_m) comment["error_bound_m"] = *plan.error_bound_m;
     if (const auto bound_px = film.error_bound_px()) comment["error_bound_px"] = *bound_px;
     if (plan.horizon_s) comment["horizon_s"] = *plan.horizon_s;
-    return {title, comment.dump()};
+    return {title, comment.dump(), !view::look_of(scene.style).ground.is_opaque(),
+            [name = scene.name, fps = scene.video.fps](std::int64_t frame) {
+                return picture_info(name, fmt::format("{}", fps.time_s(frame)), std::to_string(frame));
+            }};
 }
 
 /// The frames up to a divergence are kept, and the message names their file.
@@ -45,9 +49,8 @@ media::VideoMetadata metadata(const Film& film, std::int64_t first) {
 }
 
 /// How many chunks of so many frames to make at a time.
-int jobs_of(const VideoDef& video, std::int64_t frames) {
+int jobs_of(const VideoDef& video, std::int64_t length, std::int64_t frames) {
     const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    const std::int64_t length = media::frames_per_chunk(video.fps);
     const auto wanted = static_cast<std::int64_t>(video.encoder.jobs == 0 ? cores : video.encoder.jobs);
     return static_cast<int>(std::min(wanted, (frames + length - 1) / length));
 }
@@ -55,7 +58,7 @@ int jobs_of(const VideoDef& video, std::int64_t frames) {
 /// Draws and encodes frames first <= k < end; counts the empty ones.
 void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProgress& on_progress,
                   media::VideoWriter& writer, Rendered& result) {
-    const int jobs = jobs_of(film.scene().video, end - first);
+    const int jobs = jobs_of(film.scene().video, writer.frames_per_chunk(), end - first);
     if (jobs > 1 && FilmPainter::can_draw_apart(film, end)) {
         pipeline::render_chunks(film, first, end, jobs, on_progress, writer, result);
         return;
@@ -75,16 +78,15 @@ void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProg
 }
 
 /// A transparent ground would become black without a word.
-void check_ground(const Scene& scene, const std::string& path) {
+void check_ground(const Scene& scene, const media::Format& format) {
     const Ground ground = view::look_of(scene.style).ground;
-    const media::Format& format = media::find_format(path, scene.video.encoder.codec);
     if (ground.is_opaque() || format.has_alpha) return;
     const Color clear = ground.top.a < 255 ? ground.top : ground.bottom;
     throw Error(
         ExitCode::kUsage,
-        fmt::format("style.background: \"{}\" is transparent, and {} cannot be; give an opaque colour "
-                    "(--set style.background=#ffffff), or draw stills as .png",
-                    clear.text(), format.ending));
+        fmt::format("style.background: \"{}\" is transparent, and {} in {} cannot be; give an opaque colour "
+                    "(--set style.background=#ffffff), draw stills as .png, or a video as {}",
+                    clear.text(), format.codec->standard, format.ending->words, media::endings_with_alpha()));
 }
 
 bool is_interruption(const Error& error) {
@@ -104,8 +106,9 @@ void check_render(const Scene& scene, const std::string& path, const RenderDef& 
             fmt::format("frames {}:{} are not FIRST:END with 0 <= FIRST < END <= {} (END is not drawn)",
                         def.first, end, count));
     }
-    media::check_video_output(path, scene.video, input, def.force);
-    check_ground(scene, path);
+    check_ground(scene,
+                 media::check_video_output(path, scene.video, input, def.force,
+                                           !view::look_of(scene.style).ground.is_opaque(), def.first, end));
 }
 
 Rendered render_video(Film& film, const std::string& path, const RenderDef& def) {
@@ -116,10 +119,12 @@ Rendered render_video(Film& film, const std::string& path, const RenderDef& def)
     media::VideoWriter writer(path, film.scene().video, metadata(film, def.first),
                               {.force = def.force, .on_progress = def.on_progress}, def.first);
     Rendered result;
-    result.encoder = film.scene().video.encoder.codec;
+    result.encoder = writer.format().codec->name;
     try {
         write_frames(film, def.first, end, def.on_progress, writer, result);
         writer.finish(def.verify_all ? media::VerifyDepth::kAllFrames : media::VerifyDepth::kKeyFrames);
+    } catch (const media::ReaderLeft&) {
+        result.reader_left = true;
     } catch (const Error& error) {
         if (error.code() == ExitCode::kDiverged) keep_diverged(error, path, def.first, writer);
         if (!is_interruption(error)) throw;

@@ -8,7 +8,6 @@
 
 #include "corda/core/image.hpp"
 #include "corda/media/format.hpp"
-#include "corda/media/h264_encoder.hpp"
 #include "corda/scene/readers.hpp"
 
 namespace corda::scene {
@@ -313,11 +312,12 @@ std::vector<Key> solver_bodies_keys() {
 
 std::vector<Key> video_keys() {
     const VideoDef def;
-    const auto& presets = media::x264_presets();
+    const std::vector<std::string_view> presets = media::preset_names();
+    const Words pix{"auto", "420", "444", "rgba"};
     Type size = pair("[width, height]", {.low = 1, .high = kLargestSidePx});
     size.kind = Kind::kInteger;
     static const std::string size_note =
-        fmt::format("even for a video; {} pixels in all at most", kMostPicturePx);
+        fmt::format("even for a video in 4:2:0; {} pixels in all at most", kMostPicturePx);
     return {
         {"video", "size", size, "px", at(std::vector<int>{def.width_px, def.height_px}),
          "the size of the picture", size_note},
@@ -328,11 +328,15 @@ std::vector<Key> video_keys() {
          "for motion blur in videos; the exposure is centred on the frame's time"},
         {"video", "subframes", integer(2, VideoDef::kMostSubframes), "", at(def.subframes),
          "the number of pictures that a blurred frame is the mean of"},
-        {"video", "codec", one_of(media::codec_names()), "", at(def.encoder.codec), "the encoder"},
-        {"video", "preset", one_of({presets.begin(), presets.end()}), "", at(def.encoder.preset),
-         "how long the encoder searches for a smaller file"},
-        {"video", "crf", integer(1, EncoderDef::kLargestCrf), "", at(def.encoder.crf),
-         "the constant rate factor", "1 is the best; browsers refuse the profile that 0 selects"},
+        {"video", "codec", one_of(media::codec_names()), "", otherwise("the ending's"), "the encoder",
+         "h264, h265, av1, vp9 and so on stand for libav's names"},
+        {"video", "preset", one_of({presets.begin(), presets.end()}), "", otherwise("the encoder's"),
+         "how long the encoder searches for a smaller file",
+         "words of H.264 and H.265; AV1 and VP9 count from 0, the slowest; the others have none"},
+        {"video", "crf", integer(1, EncoderDef::kLargestCrf), "", otherwise("the encoder's"),
+         "the constant rate factor", "1 is the best; up to 51 of H.264 and H.265"},
+        {"video", "pix", one_of(pix), "", at(pix, def.encoder.pix), "how pixels are stored",
+         "444 sharpens coloured edges; browsers and QuickTime refuse H.264 so"},
         {"video", "threads", integer(1, EncoderDef::kMostThreads), "", at(def.encoder.threads),
          "the number of threads of each encoder", "the bytes depend on it"},
         {"video", "jobs", integer(0, EncoderDef::kMostThreads), "", at(def.encoder.jobs),
@@ -353,7 +357,7 @@ std::vector<Key> style_keys() {
         {"style", "theme", one_of(themes), "", at(themes, Theme::kDark), "the colours",
          "every one below overrides it"},
         {"style", "background", or_pair(of(Kind::kColor), "[top, bottom]"), "", of_theme, "the background",
-         "with alpha for .png, .svg and .pdf"},
+         "with alpha for .png, .svg, .pdf and videos with alpha"},
         {"style", "palette", list(Kind::kColor, 1), "", of_theme,
          "the colours that ropes, then nets take in turn"},
         {"style", "color_by", one_of(color_by), "", at(color_by, def.color_by), "what colours tell",

@@ -35,6 +35,7 @@ VideoDef read_video(const TableReader& video) {
     video.read("codec", def.encoder.codec);
     video.read("preset", def.encoder.preset);
     video.read("crf", def.encoder.crf);
+    video.read("pix", def.encoder.pix);
     video.read("threads", def.encoder.threads);
     video.read("jobs", def.encoder.jobs);
     return def;

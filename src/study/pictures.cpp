@@ -10,6 +10,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
+#include "corda/media/format.hpp"
 #include "corda/media/picture_quality.hpp"
 #include "corda/media/video_reader.hpp"
 #include "corda/media/video_writer.hpp"
@@ -275,7 +276,7 @@ void describe_tables(Pictures& pictures) {
         "without simulating and "
         "drawing. PSNR is of the mean square over all frames; SSIM (Wang and others 2004, windows of 8x8) is "
         "the mean over the frames.",
-        encoder.crf, encoder.threads, pictures.repeats);
+        media::find_format("a.mp4", pictures.scene.video).crf_of(encoder), encoder.threads, pictures.repeats);
     pictures.plot = {"picture_error",
                      "Time of the whole render against displayed error",
                      "largest displayed error [px]",

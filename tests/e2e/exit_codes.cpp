@@ -102,7 +102,7 @@ TEST_F(ExitCodes, TwoForANumberThatIsNone) {
         {{"still", scene_, "--at", "0", "-o", folder_.file("a.png")}, "--duration", "> 0"},
         {{"render", scene_, "-o", video_}, "--duration", "> 0"},
         {{"render", scene_, "-o", video_}, "--fps", "0.001 .. 100000"},
-        {{"render", scene_, "-o", video_}, "--crf", "1 .. 51"},
+        {{"render", scene_, "-o", video_}, "--crf", "1 .. 63"},
         {{"render", scene_, "-o", video_}, "--threads", "1 .. 64"},
         {{"simulate", scene_}, "--duration", "> 0"},
         {{"report", scene_, "-o", folder_.file("report")}, "--at", "0 .. 0.2 s"},

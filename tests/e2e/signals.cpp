@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "corda/media/defs.hpp"
-#include "corda/media/mp4_remux.hpp"
+#include "corda/media/finish_part.hpp"
 #include "support/command.hpp"
 
 namespace corda {

@@ -11,22 +11,22 @@
 namespace corda::media {
 namespace {
 
-constexpr int kWidth = 66;  // not a multiple of 4
-constexpr int kHeight = 50;
+constexpr int kColumns = 66;  // not a multiple of 4
+constexpr int kRows = 50;
 
 /// A picture whose luma at (x, y) is `luma(x, y)`.
 template <typename Luma>
 Yuv420Image picture(Luma luma) {
-    Yuv420Image image(kWidth, kHeight);
-    for (int y = 0; y < kHeight; ++y) {
-        for (int x = 0; x < kWidth; ++x)
-            image.plane(0)[y * kWidth + x] = static_cast<std::uint8_t>(luma(x, y));
+    Yuv420Image image(kColumns, kRows);
+    for (int y = 0; y < kRows; ++y) {
+        for (int x = 0; x < kColumns; ++x)
+            image.plane(0)[y * kColumns + x] = static_cast<std::uint8_t>(luma(x, y));
     }
     return image;
 }
 
 std::string raw_luma(const Yuv420Image& image) {
-    return {reinterpret_cast<const char*>(image.plane(0)), std::size_t{kWidth} * kHeight};
+    return {reinterpret_cast<const char*>(image.plane(0)), std::size_t{kColumns} * kRows};
 }
 
 /// What FFmpeg's filter prints after `key` for two grey pictures.
@@ -76,7 +76,7 @@ TEST(PictureQuality, AgreesWithFfmpeg) {
     const Yuv420Image a =
         picture([](int x, int y) { return 128 + 100 * std::sin(0.2 * x) * std::cos(0.1 * y); });
     const Yuv420Image b = picture(
-        [&](int x, int y) { return a.plane(0)[y * kWidth + x] + static_cast<int>(random() % 21) - 10; });
+        [&](int x, int y) { return a.plane(0)[y * kColumns + x] + static_cast<int>(random() % 21) - 10; });
     // FFmpeg prints six digits and computes SSIM in 32-bit floats.
     EXPECT_NEAR(psnr_db(luma_mean_square(a, b)), by_ffmpeg("psnr", "average", a, b), 1e-5);
     EXPECT_NEAR(luma_ssim(a, b), by_ffmpeg("ssim", "All", a, b), 2e-5);

@@ -8,14 +8,19 @@
 namespace corda::media {
 namespace {
 
-TEST(Probe, TriesTheEncodersOfTheTableAndNoOthers) {
-    std::vector<std::string> names;
+TEST(Probe, TriesEveryEncoderOfEveryEndingTheDefaultFirst) {
+    std::string last;
+    std::string defaults;
     for (const EncoderProbe& probe : probe_encoders()) {
-        EXPECT_TRUE(probe.usable) << probe.name << ": " << probe.reason;
-        EXPECT_EQ(probe.reason, "");
-        names.push_back(probe.name);
+        // The GPU's encoder is listed where there is none.
+        EXPECT_TRUE(probe.usable || probe.name == "h264_nvenc") << probe.name << ": " << probe.reason;
+        EXPECT_EQ(probe.usable, probe.reason.empty());
+        if (probe.ending != last) defaults += probe.ending + " " + probe.name + "; ";
+        last = probe.ending;
     }
-    EXPECT_THAT(names, testing::ElementsAre("libx264"));
+    EXPECT_EQ(defaults,
+              ".mp4 libx264; .webm libvpx-vp9; .mov prores_ks; .mkv ffv1; .gif gif; .apng apng; .webp webp; "
+              "%04d.png png; - rawvideo; ");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "corda/core/basics.hpp"
 #include "support/decode_video.hpp"
+#include "support/failure.hpp"
 #include "video_support.hpp"
 
 namespace corda::media {
@@ -25,15 +26,15 @@ TEST_F(Video, ReaderGivesThePicturesThatLibavGives) {
 }
 
 TEST_F(Video, ReaderRefusesOtherFiles) {
-    for (const std::string& path : {folder_.write("a.mp4", "no video"), file("missing.mp4")}) {
-        try {
-            const VideoReader reader(path);
-            FAIL() << path;
-        } catch (const Error& error) {
-            EXPECT_EQ(error.code(), ExitCode::kIo);
-            EXPECT_THAT(error.what(), testing::HasSubstr("the file does not open: "));
-        }
-    }
+    const auto failure_at = [](const std::string& path) {
+        return test::failure_of([&path] { const VideoReader reader(path); });
+    };
+    const test::Failure text = failure_at(folder_.write("a.mp4", "no video"));
+    EXPECT_EQ(text.code, ExitCode::kIo);
+    EXPECT_THAT(text.message, testing::HasSubstr("is no video of a kind that is known"));
+    const test::Failure missing = failure_at(file("missing.mp4"));
+    EXPECT_EQ(missing.code, ExitCode::kIo);
+    EXPECT_THAT(missing.message, testing::HasSubstr("missing.mp4"));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <csignal>
 #include <filesystem>
 
-#include "corda/media/h264_encoder.hpp"
+#include "corda/media/format.hpp"
 #include "corda/media/yuv420.hpp"
 #include "support/decode_video.hpp"
 #include "support/failure.hpp"
@@ -140,7 +140,7 @@ TEST_F(Video, OneFrame) {
 }
 
 TEST_F(Video, EveryPresetAndExtremeRateFactorsPassTheirOwnCheck) {
-    for (const std::string& preset : x264_presets()) {
+    for (const std::string preset : find_codec("libx264")->presets) {
         if (preset == "placebo") continue;
         VideoDef def = small_video();
         def.encoder.preset = preset;

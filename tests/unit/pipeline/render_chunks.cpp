@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "corda/media/chunk.hpp"
-#include "corda/media/mp4_remux.hpp"
+#include "corda/media/finish_part.hpp"
 #include "corda/media/verify.hpp"
 #include "corda/pipeline/painter.hpp"
 #include "support/command.hpp"

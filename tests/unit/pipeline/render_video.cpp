@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "corda/media/mp4_remux.hpp"
+#include "corda/media/finish_part.hpp"
 #include "corda/media/verify.hpp"
 #include "corda/pipeline/film.hpp"
 #include "support/command.hpp"

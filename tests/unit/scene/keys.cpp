@@ -90,8 +90,9 @@ std::string text(const Scene& scene) {
                std::visit([](const auto& def) { return text(SolverDef(def)); }, group.method);
     const VideoDef& video = scene.video;
     all += text(scene.solver) + text(video.width_px) + text(video.height_px) + video.fps.rational().text() +
-           video.encoder.codec + video.encoder.preset + text(video.encoder.crf) +
-           text(video.encoder.threads) + text(video.shutter) + text(video.subframes);
+           video.encoder.codec + video.encoder.preset + text(video.encoder.crf.value_or(-1)) +
+           text(static_cast<int>(video.encoder.pix)) + text(video.encoder.threads) + text(video.shutter) +
+           text(video.subframes);
     const StyleDef& style = scene.style;
     for (const int choice :
          {static_cast<int>(style.theme.value_or(Theme::kDark)), static_cast<int>(style.payload),

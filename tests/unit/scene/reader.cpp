@@ -34,7 +34,9 @@ TEST(SceneReader, MinimalFileHasAllDefaults) {
     EXPECT_EQ(scene.video.width_px, 1920);
     EXPECT_EQ(scene.video.height_px, 1080);
     EXPECT_EQ(scene.video.fps.rational(), (Rational{60, 1}));
-    EXPECT_EQ(scene.video.encoder.preset, "medium");
+    EXPECT_EQ(scene.video.encoder.codec + scene.video.encoder.preset, "");
+    EXPECT_FALSE(scene.video.encoder.crf);
+    EXPECT_EQ(scene.video.encoder.pix, PixelChoice::kAuto);
     EXPECT_EQ(scene.style.theme, std::nullopt);
     EXPECT_FALSE(scene.style.background);
     EXPECT_TRUE(scene.style.palette.empty());
@@ -101,16 +103,17 @@ TEST(SceneReader, RelaxationHasTheReachOfTheSourceReport) {
 }
 
 TEST(SceneReader, Video) {
-    const Scene scene =
-        parse_scene(with("[video]\nsize = [641, 359]\nfps = \"30000/1001\"\ncodec = \"libx264\"\n"
-                         "preset = \"slow\"\ncrf = 23\nthreads = 4\nshutter = 0.5\nsubframes = 64\n"),
-                    "a");
+    const Scene scene = parse_scene(
+        with("[video]\nsize = [641, 359]\nfps = \"30000/1001\"\ncodec = \"libx264\"\n"
+             "preset = \"slow\"\ncrf = 23\npix = \"444\"\nthreads = 4\nshutter = 0.5\nsubframes = 64\n"),
+        "a");
     EXPECT_EQ(scene.video.width_px, 641);
     EXPECT_EQ(scene.video.height_px, 359);
     EXPECT_EQ(scene.video.fps.rational(), (Rational{30000, 1001}));
     EXPECT_EQ(scene.video.encoder.codec, "libx264");
     EXPECT_EQ(scene.video.encoder.preset, "slow");
     EXPECT_EQ(scene.video.encoder.crf, 23);
+    EXPECT_EQ(scene.video.encoder.pix, PixelChoice::k444);
     EXPECT_EQ(scene.video.encoder.threads, 4);
     EXPECT_EQ(scene.video.shutter, 0.5);
     EXPECT_EQ(scene.video.subframes, 64);

@@ -1,4 +1,4 @@
-#include "corda/media/mp4_remux.hpp"
+#include "corda/media/finish_part.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

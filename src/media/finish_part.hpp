@@ -18,10 +18,12 @@ struct RemuxResult {
 };
 
 /// Makes the part file of an ended run (see VideoWriter) the finished video `path`: copies its whole
-/// fragments, without encoding them again, into a plain faststart MP4, verifies that, gives it its name, and
-/// removes the part. Throws corda::Error: kIo if a file cannot be read or written, or if `path` exists and is
-/// not to be replaced; kMismatch if the part holds no whole fragment, has no constant frame rate, or gives a
-/// video that fails its check; kInterrupted if `options.on_progress` asks to stop. Then the part stays.
+/// fragments, without encoding them again, into a file with its index in front, or makes an animation of its
+/// pictures, verifies that, gives it its name, and removes the part. Throws corda::Error: kIo if a file
+/// cannot be read or written, or if `path` exists and is not to be replaced; kUsage if the ending of `path`
+/// is not that of what the part holds; kMismatch if the part holds no whole fragment, has no constant frame
+/// rate, or gives a video that fails its check; kInterrupted if `options.on_progress` asks to stop. Then the
+/// part stays.
 RemuxResult recover_part(const std::string& part_path, const std::string& path,
                          const OutputOptions& options = {});
 

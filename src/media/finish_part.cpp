@@ -1,21 +1,24 @@
-#include "corda/media/mp4_remux.hpp"
+#include "corda/media/finish_part.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numeric>
 #include <vector>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/output_file.hpp"
+#include "corda/media/animation.hpp"
 #include "corda/media/checked.hpp"
+#include "corda/media/file_kind.hpp"
 #include "corda/media/format.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/mp4_boxes.hpp"
-#include "corda/media/mp4_output.hpp"
+#include "corda/media/open_video.hpp"
+#include "corda/media/track_output.hpp"
 #include "corda/media/verify.hpp"
+#include "corda/media/video_comment.hpp"
 
 namespace corda::media {
 namespace {
@@ -24,6 +27,7 @@ namespace {
 struct PartInput {
     InputFormat format;
     const AVStream* stream = nullptr;
+    bool is_matroska = false;  ///< then stamps are rounded to milliseconds
 };
 
 /// Opens the first `bytes` of a part: libav gives up on a file that ends in the middle of a fragment's
@@ -31,10 +35,13 @@ struct PartInput {
 PartInput open_part(const std::string& path, std::uint64_t bytes) {
     PartInput input;
     AVFormatContext* format = nullptr;
-    const AVInputFormat* mov = av_find_input_format("mov");
+    const std::string kind = file_kind(path);
+    input.is_matroska = kind == "matroska";
+    const AVInputFormat* demuxer = av_find_input_format(input.is_matroska ? "matroska" : "mov");
     const std::string url = fmt::format("subfile,,start,0,end,{},,:{}", bytes, file_url(path));
-    check_libav(avformat_open_input(&format, url.c_str(), mov, nullptr), ExitCode::kMismatch,
-                fmt::format("cannot read '{}' as MP4", path), "it holds no picture that can be recovered");
+    check_libav(avformat_open_input(&format, url.c_str(), demuxer, nullptr), ExitCode::kMismatch,
+                fmt::format("cannot read '{}' as a video", path),
+                "it holds no picture that can be recovered");
     input.format.reset(format);
     const int index = av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
     check_libav(index, ExitCode::kMismatch, fmt::format("no video in '{}'", path));
@@ -43,14 +50,21 @@ PartInput open_part(const std::string& path, std::uint64_t bytes) {
 }
 
 /// Reads the next whole packet of the track; false at the end and at the point where the file breaks off.
-bool read_packet(const PartInput& input, AVPacket& packet) {
-    while (av_read_frame(input.format.get(), &packet) >= 0) {
+bool read_packet(const PartInput& input, AVPacket& packet, bool* is_broken = nullptr) {
+    for (;;) {
+        const int status = av_read_frame(input.format.get(), &packet);
+        if (status < 0) {
+            if (is_broken != nullptr) *is_broken = status != AVERROR_EOF;
+            return false;
+        }
         const bool whole = (packet.flags & AV_PKT_FLAG_CORRUPT) == 0;
         if (whole && packet.stream_index == input.stream->index) return true;
         av_packet_unref(&packet);
-        if (!whole) return false;
+        if (!whole) {
+            if (is_broken != nullptr) *is_broken = true;
+            return false;
+        }
     }
-    return false;
 }
 
 /// The order of the frames in a part: packet i, in decoding order, shows frame frame_of[i].
@@ -58,7 +72,8 @@ struct PartIndex {
     Rational fps;
     std::vector<std::int64_t> frame_of;
     std::int64_t reorder_depth = 0;  ///< how many frames decoding must run ahead of showing
-    std::uint64_t bytes = 0;         ///< length of the beginning that is whole
+    AVCodecID codec = AV_CODEC_ID_NONE;
+    std::uint64_t bytes = 0;  ///< length of the beginning that is whole
     bool truncated = false;
 };
 
@@ -96,6 +111,11 @@ std::string metadata_entry(const AVFormatContext& format, const char* key) {
     return entry == nullptr ? std::string() : std::string(entry->value);
 }
 
+/// The rate that the comment tells.
+std::optional<Rational> told_rate_of(const PartInput& input) {
+    return told_rate(metadata_entry(*input.format, "comment"));
+}
+
 /// Ticks per frame: the greatest common divisor of all distances between stamps. The duration of a packet is
 /// no guide, because libav guesses it at the end of a fragment; for a single frame the comment tells.
 std::int64_t frame_step(const std::vector<std::int64_t>& stamps, const PartInput& input,
@@ -103,24 +123,39 @@ std::int64_t frame_step(const std::vector<std::int64_t>& stamps, const PartInput
     std::int64_t step = 0;
     for (const std::int64_t stamp : stamps) step = std::gcd(step, stamp - stamps.front());
     if (step > 0) return step;
-    const auto comment = nlohmann::json::parse(metadata_entry(*input.format, "comment"), nullptr, false);
-    const auto fps = comment.is_object() && comment.contains("fps") && comment["fps"].is_string()
-                         ? Rational::parse(comment["fps"].get<std::string>())
-                         : std::nullopt;
-    if (!fps || fps->num == 0) return packet_duration;
-    return av_rescale_q(1, frame_time_base(*fps), input.stream->time_base);
+    const auto fps = told_rate_of(input);
+    return fps ? av_rescale_q(1, frame_time_base(*fps), input.stream->time_base) : packet_duration;
+}
+
+/// The rate of the frames with these stamps, which become numbers of frames if they were rounded.
+Rational rate_of(const std::string& path, const PartInput& input, std::int64_t packet_duration,
+                 std::vector<std::int64_t>& stamps, std::int64_t& step) {
+    if (input.is_matroska) {
+        const auto fps = told_rate_of(input);
+        if (!fps) fail_rate(path);
+        for (std::int64_t& stamp : stamps)
+            stamp = av_rescale_q(stamp, input.stream->time_base, frame_time_base(*fps));
+        step = 1;
+        return *fps;
+    }
+    step = frame_step(stamps, input, packet_duration);
+    const auto duration = checked_multiply(step, std::int64_t{input.stream->time_base.num});
+    if (!duration || *duration <= 0) fail_rate(path);
+    return Rational::reduced(input.stream->time_base.den, *duration);
 }
 
 PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
     const Mp4Boxes boxes = read_mp4_boxes(path);
     PartIndex index;
-    index.bytes = boxes.whole_bytes;
+    index.bytes = boxes.is_mp4 ? boxes.whole_bytes : boxes.file_bytes;
     const PartInput input = open_part(path, index.bytes);
     const Packet packet = check_allocated(Packet(av_packet_alloc()), "a packet");
     std::vector<std::int64_t> stamps;
     std::int64_t packet_duration = 0;
+    index.codec = input.stream->codecpar->codec_id;
     bool is_damaged = false;
-    while (read_packet(input, *packet)) {
+    bool is_broken = false;
+    while (read_packet(input, *packet, &is_broken)) {
         report_progress(on_progress, std::ssize(stamps), 0);
         is_damaged = !is_sane_stamp(packet->pts);
         if (is_damaged) break;
@@ -132,26 +167,16 @@ PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
         throw Error(ExitCode::kMismatch,
                     fmt::format("'{}' holds no whole fragment, so no frame can be recovered", path));
     }
-    const std::int64_t step = frame_step(stamps, input, packet_duration);
-    const auto duration = checked_multiply(step, std::int64_t{input.stream->time_base.num});
-    if (!duration || *duration <= 0) fail_rate(path);
-    index.fps = Rational::reduced(input.stream->time_base.den, *duration);
+    std::int64_t step = 0;
+    index.fps = rate_of(path, input, packet_duration, stamps, step);
     if (index.fps.den > std::numeric_limits<int>::max()) fail_rate(path);  // more than libav can count
     number_frames(stamps, step, index);
-    index.truncated =
-        boxes.whole_bytes < boxes.file_bytes || is_damaged || index.frame_of.size() < stamps.size();
+    index.truncated = index.bytes < boxes.file_bytes || is_damaged || index.frame_of.size() < stamps.size();
     return index;
 }
 
-std::string comment_with_frames(const std::string& comment, std::size_t frames) {
-    auto json = nlohmann::json::parse(comment, nullptr, false);
-    if (!json.is_object()) return comment;
-    json["frames"] = frames;
-    return json.dump();
-}
-
-void copy_packets(const PartInput& input, const PartIndex& index, Mp4Output& output, const std::string& path,
-                  const OnProgress& on_progress) {
+void copy_packets(const PartInput& input, const PartIndex& index, TrackOutput& output,
+                  const std::string& path, const OnProgress& on_progress) {
     const Packet packet = check_allocated(Packet(av_packet_alloc()), "a packet");
     for (std::size_t i = 0; i < index.frame_of.size(); ++i) {
         if (!read_packet(input, *packet)) {
@@ -173,15 +198,44 @@ std::string listed(const std::vector<std::string>& lines) {
 
 /// Copies the indexed packets into `output`, with time stamps made anew from frame numbers and the frame
 /// count in the comment.
-void remux(const PartIndex& index, const std::string& part_path, const Format& format,
+void remux(const PartIndex& index, const std::string& part_path, const Ending& ending,
            const OnProgress& on_progress, OutputFile& output) {
     const PartInput input = open_part(part_path, index.bytes);
-    Mp4Output mp4(output.descriptor(), output.temporary_path());
-    mp4.begin(format.container, Mp4Layout::kFaststart, *input.stream->codecpar, index.fps,
-              metadata_entry(*input.format, "title"),
-              comment_with_frames(metadata_entry(*input.format, "comment"), index.frame_of.size()));
-    copy_packets(input, index, mp4, part_path, on_progress);
-    mp4.finish();
+    TrackOutput track(output.descriptor(), output.temporary_path());
+    track.begin(
+        ending.muxer, TrackLayout::kFinal, *input.stream->codecpar,
+        {.fps = index.fps,
+         .title = metadata_entry(*input.format, "title"),
+         .comment = comment_with_frames(metadata_entry(*input.format, "comment"), index.frame_of.size()),
+         .has_alpha = is_marked_as_alpha(*input.stream)});
+    copy_packets(input, index, track, part_path, on_progress);
+    track.finish();
+}
+
+/// A part can become what its codec goes into.
+void check_ending(const PartIndex& index, const std::string& part_path, const std::string& path,
+                  const Ending& ending) {
+    for (const char* const name : ending.codecs) {
+        const AVCodec* const codec = name == nullptr ? nullptr : avcodec_find_encoder_by_name(name);
+        const bool is_file = ending.kind == FileKind::kVideo || ending.kind == FileKind::kAnimation;
+        if (is_file && codec != nullptr && codec->id == index.codec) return;
+    }
+    throw Error(
+        ExitCode::kUsage,
+        fmt::format("'{}' holds {}, which '{}' cannot be made of; give the ending that the render was for",
+                    part_path, avcodec_get_name(index.codec), path));
+}
+
+/// What an animation shows that cannot tell what it was rendered as.
+void check_animation(const PartIndex& index, const Ending& ending, VerifyReport& report) {
+    if (ending.kind != FileKind::kAnimation || !report.ok()) return;
+    const auto frames = std::ssize(index.frame_of);
+    if (report.frames != frames)
+        report.problems.push_back(
+            fmt::format("{} frames were rendered but {} decode", frames, report.frames));
+    if (report.fps != index.fps)
+        report.problems.push_back(fmt::format("it was rendered for {} fps but plays at {} fps",
+                                              index.fps.text(), report.fps.text()));
 }
 
 }  // namespace
@@ -198,9 +252,15 @@ RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOpt
         throw Error(ExitCode::kMismatch, fmt::format("'{}' holds {} frames instead of {}; it stays as it is",
                                                      part.path(), result.frames, *expected_frames));
     }
+    const Ending& ending = find_ending(path);
+    check_ending(index, part.path(), path, ending);
     OutputFile output(path, options);
-    remux(index, part.path(), find_format(path), all_done, output);
-    const VerifyReport report = verify(output.temporary_path(), all_done, depth);
+    if (ending.kind == FileKind::kAnimation)
+        write_animation(part.path(), ending, index.fps, result.frames, all_done, output);
+    else
+        remux(index, part.path(), ending, all_done, output);
+    VerifyReport report = verify(output.temporary_path(), all_done, depth);
+    check_animation(index, ending, report);
     if (!report.ok()) {
         throw Error(ExitCode::kMismatch,
                     fmt::format("the video for '{}' failed its check and stays as '{}':{}", path, part.path(),

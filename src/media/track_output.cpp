@@ -1,4 +1,4 @@
-#include "corda/media/mp4_output.hpp"
+#include "corda/media/track_output.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -34,9 +34,36 @@ std::int64_t seek(void* descriptor, std::int64_t offset, int whence) {
     return position < 0 ? AVERROR(errno) : position;
 }
 
+void set(AVDictionary*& dictionary, const char* key, const std::string& value) {
+    check_libav(av_dict_set(&dictionary, key, value.c_str(), 0), kIo, key);
+}
+
+/// The four characters that name the codec in the file; 0: the muxer's choice.
+std::uint32_t tag_of(const AVCodecParameters& parameters) {
+    if (parameters.codec_id == AV_CODEC_ID_HEVC) return MKTAG('h', 'v', 'c', '1');  // Apple's players want it
+    return parameters.codec_id == AV_CODEC_ID_PRORES ? parameters.codec_tag : 0;    // it tells the profile
+}
+
+/// The muxer's options.
+void set_options(std::string_view container, TrackLayout layout, Rational fps, Options& options) {
+    if (container == "mp4" || container == "mov") {
+        // Both clocks count in units of the rate's numerator, so that no stamp and no duration is ever
+        // rounded.
+        options.set("movflags", layout == TrackLayout::kPart ? kFragmentFlags : kFaststartFlags)
+            .set("video_track_timescale", std::to_string(fps.num))
+            .set("movie_timescale", std::to_string(fps.num));
+    } else if (container == "matroska" || container == "webm") {
+        if (layout == TrackLayout::kFinal) options.set("cues_to_front", "1");
+    } else if (container == "gif") {
+        options.set("loop", "0").set("final_delay", std::to_string(100 * fps.den / fps.num));
+    } else if (container == "apng") {
+        options.set("plays", "0").set("final_delay", fmt::format("{}/{}", fps.den, fps.num));
+    }
+}
+
 }  // namespace
 
-Mp4Output::Mp4Output(int descriptor, std::string path) : descriptor_(descriptor), path_(std::move(path)) {
+TrackOutput::TrackOutput(int descriptor, std::string path) : descriptor_(descriptor), path_(std::move(path)) {
     auto* buffer = static_cast<unsigned char*>(av_malloc(kBufferBytes));
     if (buffer != nullptr) {
         io_.reset(avio_alloc_context(buffer, kBufferBytes, 1, &descriptor_, nullptr, &write_bytes, &seek));
@@ -44,44 +71,44 @@ Mp4Output::Mp4Output(int descriptor, std::string path) : descriptor_(descriptor)
     io_ = check_allocated(std::move(io_), "an output buffer");
 }
 
-void Mp4Output::begin(const char* container, Mp4Layout layout, const AVCodecParameters& parameters,
-                      Rational fps, const std::string& title, const std::string& comment) {
+void TrackOutput::begin(const char* container, TrackLayout layout, const AVCodecParameters& parameters,
+                        const TrackInfo& info) {
     assert(!begun_);
     const LogCapture log;
     AVFormatContext* format = nullptr;
     check_libav(avformat_alloc_output_context2(&format, nullptr, container, file_url(path_).c_str()), kIo,
-                "cannot make an MP4 muxer");
+                fmt::format("this libavformat does not write {}", container));
     format_.reset(format);
     format_->pb = io_.get();
     // No library version and no date: the same input gives the same bytes.
     // The muxer must not move frame 0 away from 0; both layouts can say that decoding starts earlier.
     format_->avoid_negative_ts = AVFMT_AVOID_NEG_TS_DISABLED;
     format_->flags |= AVFMT_FLAG_BITEXACT | AVFMT_FLAG_FLUSH_PACKETS;
-    if (!title.empty()) check_libav(av_dict_set(&format_->metadata, "title", title.c_str(), 0), kIo, "title");
-    check_libav(av_dict_set(&format_->metadata, "comment", comment.c_str(), 0), kIo, "comment");
+    if (!info.title.empty()) set(format_->metadata, "title", info.title);
+    set(format_->metadata, "comment", info.comment);
 
     AVStream* stream = check_allocated(avformat_new_stream(format_.get(), nullptr), "a video track");
     check_libav(avcodec_parameters_copy(stream->codecpar, &parameters), kIo, "cannot copy codec parameters");
-    stream->codecpar->codec_tag = 0;  // the muxer chooses its own
-    frame_base_ = frame_time_base(fps);
+    stream->codecpar->codec_tag = tag_of(parameters);
+    if (info.has_alpha) set(stream->metadata, "alpha_mode", "1");
+    frame_base_ = frame_time_base(info.fps);
     stream->time_base = frame_base_;
-    stream->avg_frame_rate = to_libav(fps);
+    stream->avg_frame_rate = to_libav(info.fps);
 
-    // Both clocks count in units of the rate's numerator, so that no stamp and no duration is ever rounded.
     Options options;
-    options.set("movflags", layout == Mp4Layout::kFragmented ? kFragmentFlags : kFaststartFlags)
-        .set("video_track_timescale", std::to_string(fps.num))
-        .set("movie_timescale", std::to_string(fps.num));
+    set_options(container, layout, info.fps, options);
     check_libav(avformat_write_header(format_.get(), options.get()), kIo,
-                fmt::format("cannot write the MP4 header of '{}'", path_));
+                fmt::format("cannot write the header of '{}'", path_));
     if (const std::string name = options.left_over(); !name.empty()) {
         throw Error(ExitCode::kEncoder,
-                    fmt::format("this libavformat has no MP4 option '{}'; FFmpeg 5.1 or newer has it", name));
+                    fmt::format("this libavformat has no option '{}' of {}; FFmpeg 5.1 or "
+                                "newer has it",
+                                name, container));
     }
     begun_ = true;
 }
 
-void Mp4Output::write(AVPacket& packet) {
+void TrackOutput::write(AVPacket& packet) {
     assert(begun_);
     const LogCapture log;
     const AVStream* stream = format_->streams[0];
@@ -93,7 +120,7 @@ void Mp4Output::write(AVPacket& packet) {
     check_libav(io_->error, kIo, fmt::format("cannot write to '{}'", path_));
 }
 
-void Mp4Output::flush() {
+void TrackOutput::flush() {
     assert(begun_);
     const LogCapture log;
     check_libav(av_write_frame(format_.get(), nullptr), kIo, fmt::format("cannot write to '{}'", path_));
@@ -101,7 +128,7 @@ void Mp4Output::flush() {
     check_libav(io_->error, kIo, fmt::format("cannot write to '{}'", path_));
 }
 
-void Mp4Output::finish() {
+void TrackOutput::finish() {
     assert(begun_);
     const LogCapture log;
     const std::string what = fmt::format("cannot finish '{}'", path_);

@@ -1,6 +1,11 @@
-#include "corda/media/open_mp4.hpp"
+#include "corda/media/open_video.hpp"
+
+#include <string_view>
+
+#include <fmt/format.h>
 
 #include "corda/core/image.hpp"
+#include "corda/media/file_kind.hpp"
 
 namespace corda::media {
 namespace {
@@ -17,7 +22,7 @@ int get_buffer(AVCodecContext* context, AVFrame* frame, int flags) {
 }
 
 /// Opens a decoder for the file's track. Returns libav's status.
-int open_decoder(OpenMp4& file, const AVCodec* codec, int threads) {
+int open_decoder(OpenVideo& file, const AVCodec* codec, int threads) {
     file.context = check_allocated(CodecContext(avcodec_alloc_context3(codec)), "a decoder");
     AVCodecContext& context = *file.context;
     check_libav(avcodec_parameters_to_context(&context, file.stream->codecpar), ExitCode::kIo,
@@ -32,21 +37,36 @@ int open_decoder(OpenMp4& file, const AVCodec* codec, int threads) {
     return avcodec_open2(&context, codec, nullptr);
 }
 
+/// libav's own decoder of VP9 leaves alpha out.
+const AVCodec* with_alpha(const AVStream& stream, const AVCodec* codec) {
+    if (stream.codecpar->codec_id != AV_CODEC_ID_VP9 || !is_marked_as_alpha(stream)) return codec;
+    const AVCodec* const better = avcodec_find_decoder_by_name("libvpx-vp9");
+    return better == nullptr ? codec : better;
+}
+
 }  // namespace
 
-OpenMp4 open_mp4(const std::string& path) {
+bool is_marked_as_alpha(const AVStream& stream) {
+    const AVDictionaryEntry* const entry = av_dict_get(stream.metadata, "alpha_mode", nullptr, 0);
+    return entry != nullptr && std::string_view(entry->value) == "1";
+}
+
+OpenVideo open_video(const std::string& path) {
     const LogCapture log;
-    OpenMp4 file;
+    OpenVideo file;
     AVFormatContext* format = nullptr;
-    // The format is named, because libav by itself would take a text file for ANSI art, or follow a playlist.
-    const AVInputFormat* mov = av_find_input_format("mov");
-    check_libav(avformat_open_input(&format, file_url(path).c_str(), mov, nullptr), ExitCode::kIo,
+    const std::string kind = file_kind(path);
+    const AVInputFormat* demuxer = kind.empty() ? nullptr : av_find_input_format(kind.c_str());
+    if (demuxer == nullptr)
+        throw Error(ExitCode::kIo, fmt::format("'{}' is no video of a kind that is known", path));
+    check_libav(avformat_open_input(&format, file_url(path).c_str(), demuxer, nullptr), ExitCode::kIo,
                 "the file does not open");
     file.format.reset(format);
     const AVCodec* codec = nullptr;
     const int index = check_libav(av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, &codec, 0),
                                   ExitCode::kIo, "there is no video track that can be decoded");
     file.stream = format->streams[index];
+    codec = with_alpha(*file.stream, codec);
     int status = open_decoder(file, codec, kDecoderThreads);
     // The system starts no further thread; one is enough.
     if (status == AVERROR(EAGAIN)) status = open_decoder(file, codec, 1);

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "corda/core/rational.hpp"
+
+namespace corda::media {
+
+/// What the frames of an APNG say of their times; libav rounds them.
+struct ApngTimes {
+    Rational delay_s{0, 1};       ///< of the first frame
+    std::int64_t uneven_at = -1;  ///< index of the first frame that has another; -1: none
+};
+
+/// Reads the chunks of an APNG file, up to one that is not whole. Throws corda::Error (kIo) if it cannot be
+/// opened for reading.
+[[nodiscard]] ApngTimes read_apng_times(const std::string& path);
+
+}  // namespace corda::media

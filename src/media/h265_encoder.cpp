@@ -1,0 +1,19 @@
+#include <fmt/format.h>
+
+#include "corda/media/encoders.hpp"
+
+namespace corda::media {
+
+EncoderSettings x265_settings(const Format& format, const EncoderDef& def) {
+    // One frame at a time: the bytes depend on frame-threads, and pools start threads of all cores. Of
+    // B-frames the presets have a pyramid of two levels at most.
+    const std::string pools = def.threads == 1 ? "none" : std::to_string(def.threads);
+    return {-99,
+            {{"preset", format.preset_of(def)},
+             {"crf", std::to_string(format.crf_of(def))},
+             {"x265-params",
+              fmt::format("pools={}:frame-threads=1:open-gop=0:info=0:log-level=none:chromaloc=0", pools)}},
+            2};
+}
+
+}  // namespace corda::media

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "corda/core/image.hpp"
+
+namespace corda::media {
+
+/// The colours of a GIF: 255 at most, and the last entry, which is transparent.
+class Palette {
+  public:
+    static constexpr std::size_t kSize = 256;
+    static constexpr std::uint8_t kTransparent = 255;
+
+    explicit Palette(std::vector<Color> colors) : colors_(std::move(colors)) {}
+
+    /// Blue, green, red and alpha of an entry; black if it is not used.
+    [[nodiscard]] std::array<std::uint8_t, 4> bgra(std::size_t index) const;
+
+    /// The nearest entry of each of `count` RGBA pixels; what is less than half opaque is transparent.
+    void map(const std::uint8_t* rgba, int count, std::uint8_t* indices);
+
+  private:
+    [[nodiscard]] std::uint8_t nearest(std::uint32_t rgb) const;
+
+    std::vector<Color> colors_;
+    std::unordered_map<std::uint32_t, std::uint8_t> known_;
+};
+
+/// Pixels of colours that agree in their first bits.
+struct PaletteBin {
+    std::uint64_t count = 0;
+    std::array<std::uint64_t, 3> sums{};
+};
+
+/// Chooses the palette of some pictures: their own colours if there are few enough, otherwise the means of
+/// boxes in the colour cube, each cut in two at its widest where most different colours are (P. Heckbert:
+/// Color image quantization for frame buffer display. SIGGRAPH 1982). A colour counts by the logarithm of its
+/// pixels, or a ground would take all entries.
+class PaletteMaker {
+  public:
+    void add(const Image& picture);
+    [[nodiscard]] Palette make() const;
+
+  private:
+    static constexpr int kBits = 6;
+    static constexpr std::size_t kMostColors = Palette::kSize - 1;
+
+    [[nodiscard]] std::vector<Color> cut_boxes() const;
+
+    std::unordered_map<std::uint32_t, std::uint64_t> exact_;  ///< pixels by colour, while there are few
+    std::vector<PaletteBin> bins_ = std::vector<PaletteBin>(std::size_t{1} << (3 * kBits));
+};
+
+}  // namespace corda::media

@@ -1,0 +1,55 @@
+#include <cstring>
+
+#include "corda/media/encoders.hpp"
+#include "corda/media/libav_encoder.hpp"
+#include "corda/media/png_bytes.hpp"
+
+namespace corda::media {
+namespace {
+
+/// Each frame as the file that write_png() writes.
+class PictureEncoder : public Encoder {
+  public:
+    PictureEncoder(const VideoDef& def, std::int64_t first_frame, PictureInfo info)
+        : first_frame_(first_frame),
+          info_(std::move(info)),
+          parameters_(check_allocated(CodecParameters(avcodec_parameters_alloc()), "codec parameters")),
+          packet_(check_allocated(Packet(av_packet_alloc()), "a packet")) {
+        parameters_->codec_type = AVMEDIA_TYPE_VIDEO;
+        parameters_->codec_id = AV_CODEC_ID_PNG;
+        parameters_->width = def.width_px;
+        parameters_->height = def.height_px;
+    }
+
+    void encode(const Image& frame, const Damage& /*damage*/, const PacketSink& sink) override {
+        const std::string bytes = png_bytes(frame, info_ ? info_(first_frame_ + frames_) : PngInfo{});
+        check_libav(av_new_packet(packet_.get(), static_cast<int>(bytes.size())), ExitCode::kTemporary,
+                    "cannot make a packet");
+        std::memcpy(packet_->data, bytes.data(), bytes.size());
+        packet_->pts = frames_++;
+        packet_->duration = 1;
+        packet_->flags |= AV_PKT_FLAG_KEY;
+        sink(*packet_);
+    }
+
+    void drain(const PacketSink& /*sink*/) override {}
+    [[nodiscard]] std::int64_t frames() const override { return frames_; }
+    [[nodiscard]] const AVCodecParameters& parameters() const override { return *parameters_; }
+
+  private:
+    std::int64_t first_frame_;
+    PictureInfo info_;
+    CodecParameters parameters_;
+    Packet packet_;
+    std::int64_t frames_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Encoder> make_encoder(const Format& format, const VideoDef& def, std::int64_t first_frame,
+                                      const PictureInfo& info) {
+    if (format.codec->settings == nullptr) return std::make_unique<PictureEncoder>(def, first_frame, info);
+    return std::make_unique<LibavEncoder>(format, def);
+}
+
+}  // namespace corda::media

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace corda::media {
+
+/// Checks a name of pictures: exactly one %d or %0Nd, N 1 .. 9, in the last part of the path. Throws
+/// corda::Error (kUsage).
+void check_picture_names(std::string_view pattern);
+
+/// The name of a frame: "frames/0007.png" for "frames/%04d.png". Requires a name that was checked.
+[[nodiscard]] std::string picture_name(std::string_view pattern, std::int64_t frame);
+
+}  // namespace corda::media

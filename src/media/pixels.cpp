@@ -1,0 +1,107 @@
+#include "corda/media/pixels.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+
+#include "corda/media/yuv420.hpp"
+
+namespace corda::media {
+namespace {
+
+void copy_alpha(const Image& image, const PixelRect& part, int bits, AVFrame& frame) {
+    for (int y = part.y0; y < part.y1; ++y) {
+        std::uint8_t* const line = frame.data[3] + std::ptrdiff_t{y} * frame.linesize[3];
+        for (int x = part.x0; x < part.x1; ++x) {
+            const int alpha = image.pixel(x, y)[3];
+            if (bits == 8) {
+                line[x] = static_cast<std::uint8_t>(alpha);
+                continue;
+            }
+            const int value = (alpha * 1023 + 127) / 255;
+            line[std::ptrdiff_t{2} * x] = static_cast<std::uint8_t>(value);
+            line[std::ptrdiff_t{2} * x + 1] = static_cast<std::uint8_t>(value >> 8);
+        }
+    }
+}
+
+void copy_bgr(const Image& image, const PixelRect& part, AVFrame& frame) {
+    for (int y = part.y0; y < part.y1; ++y) {
+        std::uint8_t* const line = frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0];
+        for (int x = part.x0; x < part.x1; ++x) {
+            const std::uint8_t* const from = image.pixel(x, y);
+            std::uint8_t* const to = line + std::ptrdiff_t{4} * x;
+            to[0] = from[2];
+            to[1] = from[1];
+            to[2] = from[0];
+            to[3] = from[3];
+        }
+    }
+}
+
+void copy_rgb(const Image& image, const PixelRect& part, AVFrame& frame) {
+    for (int y = part.y0; y < part.y1; ++y) {
+        std::uint8_t* const line = frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0];
+        std::memcpy(line + std::ptrdiff_t{4} * part.x0, image.pixel(part.x0, y),
+                    static_cast<std::size_t>(part.width()) * 4);
+    }
+}
+
+void copy_without_alpha(const Image& image, const PixelRect& part, AVFrame& frame) {
+    for (int y = part.y0; y < part.y1; ++y) {
+        std::uint8_t* const line = frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0];
+        for (int x = part.x0; x < part.x1; ++x)
+            std::copy_n(image.pixel(x, y), 3, line + std::ptrdiff_t{3} * x);
+    }
+}
+
+}  // namespace
+
+void convert_pixels(const Image& image, const PixelRect& part, AVFrame& frame) {
+    assert(image.width() == frame.width && image.height() == frame.height);
+    const PixelRect inside = part.intersected(image.rect());
+    if (inside.empty()) return;
+    const YuvPlanes planes{{frame.data[0], frame.data[1], frame.data[2]},
+                           {frame.linesize[0], frame.linesize[1], frame.linesize[2]}};
+    switch (frame.format) {
+        case AV_PIX_FMT_YUVA420P:
+            copy_alpha(image, inside, 8, frame);
+            [[fallthrough]];
+        case AV_PIX_FMT_YUV420P:
+            return convert_to_yuv420(image, inside, planes);
+        case AV_PIX_FMT_YUV444P:
+            return convert_to_yuv444(image, inside, 8, planes);
+        case AV_PIX_FMT_YUVA444P10LE:
+            copy_alpha(image, inside, 10, frame);
+            [[fallthrough]];
+        case AV_PIX_FMT_YUV444P10LE:
+            return convert_to_yuv444(image, inside, 10, planes);
+        case AV_PIX_FMT_BGR0:
+        case AV_PIX_FMT_BGRA:
+            return copy_bgr(image, inside, frame);
+        case AV_PIX_FMT_RGBA:
+            return copy_rgb(image, inside, frame);
+        case AV_PIX_FMT_RGB24:
+            return copy_without_alpha(image, inside, frame);
+        default:
+            throw Error(ExitCode::kInternal, "frames are not converted to this pixel format");
+    }
+}
+
+Image image_of(const AVFrame& frame) {
+    assert(frame.format == AV_PIX_FMT_BGR0 || frame.format == AV_PIX_FMT_BGRA);
+    Image image(frame.width, frame.height);
+    for (int y = 0; y < frame.height; ++y) {
+        const std::uint8_t* from = frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0];
+        for (int x = 0; x < frame.width; ++x, from += 4) {
+            std::uint8_t* const to = image.pixel(x, y);
+            to[0] = from[2];
+            to[1] = from[1];
+            to[2] = from[0];
+            to[3] = frame.format == AV_PIX_FMT_BGRA ? from[3] : 255;
+        }
+    }
+    return image;
+}
+
+}  // namespace corda::media

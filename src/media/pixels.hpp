@@ -1,0 +1,36 @@
+#pragma once
+
+#include "corda/core/image.hpp"
+#include "corda/media/libav_handles.hpp"
+
+namespace corda::media {
+
+/// Converts the part of `image` that `part` touches to the pixel format of `frame`, which has the same size
+/// and is writable; the rest of it stays. Takes yuv420p, yuva420p, yuv444p, yuv444p10le, yuva444p10le (see
+/// yuv420.hpp), bgr0, bgra, rgba
+/// and rgb24. Alpha stays straight.
+void convert_pixels(const Image& image, const PixelRect& part, AVFrame& frame);
+
+/// The pixels of a frame of FFV1 in bgr0 or bgra.
+[[nodiscard]] Image image_of(const AVFrame& frame);
+
+/// Sets the colour tags that a frame or a context of this pixel format gets: BT.709 in limited range with the
+/// sRGB transfer, or sRGB in R'G'B'.
+template <typename Tagged>
+void set_colors(AVPixelFormat format, Tagged& tagged) {
+    const bool is_rgb =
+        (av_pix_fmt_desc_get(format)->flags & (AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PAL)) != 0;
+    tagged.color_range = is_rgb ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
+    tagged.colorspace = is_rgb ? AVCOL_SPC_RGB : AVCOL_SPC_BT709;
+    tagged.color_primaries = AVCOL_PRI_BT709;
+    // The bt709 transfer tag would be truer to the matrix and wrong on the screen: Safari and QuickTime wash
+    // it out.
+    tagged.color_trc = AVCOL_TRC_IEC61966_2_1;
+}
+
+/// Where the colour of 4:2:0 is sited; unspecified for others.
+[[nodiscard]] inline AVChromaLocation chroma_location(AVPixelFormat format) {
+    return av_pix_fmt_desc_get(format)->log2_chroma_w == 1 ? AVCHROMA_LOC_LEFT : AVCHROMA_LOC_UNSPECIFIED;
+}
+
+}  // namespace corda::media

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "corda/media/defs.hpp"
+
+namespace corda::media {
+
+/// The bytes of the file that write_png() writes. Throws corda::Error (kIo, kInterrupted) as that does.
+[[nodiscard]] std::string png_bytes(const Image& image, const PngInfo& info,
+                                    const OnProgress& on_progress = {});
+
+}  // namespace corda::media

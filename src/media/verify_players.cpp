@@ -1,0 +1,189 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "corda/media/verify_checks.hpp"
+
+namespace corda::media {
+namespace {
+
+/// Who plays a codec of a pixel format in a container.
+struct Players {
+    std::string_view containers;  ///< words, or all of them
+    std::string_view codec;       ///< libav's name
+    std::string_view pixel_format;
+    std::string_view words;
+};
+
+constexpr std::array kPlayers{
+    Players{"mp4", "h264", "yuv420p",
+            "Chrome, Edge, Firefox, Safari, QuickTime and PowerPoint play it, YouTube takes it"},
+    Players{"mp4", "h264", "yuv444p",
+            "4:4:4, High 4:4:4 Predictive: VLC, mpv and ffmpeg play it; browsers, QuickTime and PowerPoint "
+            "refuse it"},
+    Players{"mp4", "hevc", "yuv420p",
+            "Safari, QuickTime and new PowerPoint play it, YouTube takes it; Firefox and many Chromes do not "
+            "play it"},
+    Players{"mp4", "hevc", "yuv444p",
+            "4:4:4: VLC, mpv and ffmpeg play it; browsers, QuickTime and PowerPoint mostly refuse it"},
+    Players{"mp4 webm", "av1", "yuv420p",
+            "Chrome, Edge and Firefox play it, Safari on new devices; YouTube takes it; PowerPoint and old "
+            "QuickTime do not"},
+    Players{
+        "mp4 webm", "av1", "yuv444p",
+        "4:4:4: Chrome, Firefox, VLC and mpv play it; hardware decoders, QuickTime and PowerPoint do not"},
+    Players{
+        "webm", "vp9", "yuv420p",
+        "Chrome, Edge, Firefox and new Safari play it, YouTube takes it; PowerPoint and QuickTime do not"},
+    Players{
+        "webm", "vp9", "yuva420p",
+        "Chrome, Edge and Firefox play it with its transparency; Safari, PowerPoint and QuickTime do not"},
+    Players{"webm", "vp9", "yuv444p",
+            "4:4:4: Chrome, Firefox, VLC and mpv play it; Safari and hardware decoders do not"},
+    Players{"mov", "prores", "",
+            "QuickTime, Keynote and video editors play it, YouTube takes it; browsers and PowerPoint on "
+            "Windows do not"},
+    Players{"matroska", "ffv1", "",
+            "VLC, mpv and ffmpeg play it; browsers, QuickTime, PowerPoint and YouTube do not"},
+    Players{"gif", "gif", "",
+            "browsers and PowerPoint play it; QuickTime does not, and YouTube takes no GIF"},
+    Players{"apng", "apng", "",
+            "browsers play it; PowerPoint, QuickTime and YouTube show its first picture or refuse it"},
+    Players{"webp", "webp", "", "browsers play it; PowerPoint, QuickTime and YouTube do not"},
+    Players{"yuv4mpegpipe", "rawvideo", "",
+            "for encoders such as ffmpeg; browsers, QuickTime and PowerPoint do not play it"},
+};
+
+bool holds_word(std::string_view words, std::string_view word) {
+    for (std::size_t at = words.find(word); at != std::string_view::npos; at = words.find(word, at + 1)) {
+        const bool begins = at == 0 || words[at - 1] == ' ';
+        const bool ends = at + word.size() == words.size() || words[at + word.size()] == ' ';
+        if (begins && ends) return true;
+    }
+    return false;
+}
+
+/// "mp4" of "mp4 (fragmented)".
+std::string_view plain(std::string_view container) {
+    return container.substr(0, container.find(' '));
+}
+
+const Players* players_of(const VerifyReport& report) {
+    const auto* const row =
+        std::find_if(kPlayers.begin(), kPlayers.end(), [&report](const Players& candidate) {
+            return candidate.codec == report.codec &&
+                   holds_word(candidate.containers, plain(report.container)) &&
+                   (candidate.pixel_format.empty() || candidate.pixel_format == report.pixel_format);
+        });
+    return row == kPlayers.end() ? nullptr : row;
+}
+
+void check_tag(VerifyReport& report, const char* name, const std::string& value, std::string_view wanted,
+               std::string_view effect) {
+    if (value == wanted) return;
+    problem(report, "the {} tag is '{}' instead of '{}': {}; render it again, or set the tag", name, value,
+            wanted, effect);
+}
+
+/// Whether colours need tags: kinds of pictures are sRGB by definition, raw video has none.
+bool has_tags(const VerifyReport& report) {
+    return !holds_word("gif apng webp yuv4mpegpipe", report.container);
+}
+
+}  // namespace
+
+void check_picture_format(const DecodedVideo& video, VerifyReport& report) {
+    if (video.frames == 0) return;
+    const auto* const known = std::find_if(kPlayers.begin(), kPlayers.end(), [&report](const Players& row) {
+        return row.codec == report.codec && holds_word(row.containers, plain(report.container));
+    });
+    if (known == kPlayers.end()) {
+        problem(report, "the codec is {}; browsers and QuickTime play H.264 everywhere: render with libx264",
+                report.codec);
+    }
+    static constexpr std::array<std::string_view, 4> kPlayable{"Constrained Baseline", "Baseline", "Main",
+                                                               "High"};
+    const bool is_odd_profile =
+        std::find(kPlayable.begin(), kPlayable.end(), report.profile) == kPlayable.end();
+    const bool is_444 = report.profile == "High 4:4:4 Predictive" && report.pixel_format == "yuv444p";
+    if (report.codec == "h264" && is_odd_profile && !is_444) {
+        problem(report,
+                "the H.264 profile is {}, which browsers and QuickTime refuse; encode High with yuv420p",
+                report.profile);
+    }
+    if (known == kPlayers.end() || players_of(report) == nullptr) {
+        problem(report,
+                "the pixel format is {}; only 8-bit yuv420p plays everywhere: encode with -pix_fmt yuv420p",
+                report.pixel_format);
+    }
+}
+
+void check_tags(const DecodedVideo& video, VerifyReport& report) {
+    if (report.frames == 0 || !has_tags(report)) return;
+    // The colr box of QuickTime has no range.
+    const std::string_view wanted = report.container == "mov" ? "unknown bt709 bt709 iec61966-2-1"
+                                    : video.is_yuv            ? "tv bt709 bt709 iec61966-2-1"
+                                                              : "pc gbr bt709 iec61966-2-1";
+    if (video.container_tags != wanted) {
+        problem(report,
+                "the container's colour tags ({}{}) are not '{}', and "
+                "QuickTime trusts them more than the stream's own; render it again",
+                holds_word("mp4 mov", plain(report.container)) ? "colr box: " : "", video.container_tags,
+                wanted);
+    }
+    if (!video.is_yuv) return;  // the tags of the container are all
+    check_tag(report, "range", report.range, "tv", "players may crush or wash out black and white");
+    check_tag(report, "matrix", report.matrix, "bt709", "players may guess BT.601 and shift the colours");
+    check_tag(report, "primaries", report.primaries, "bt709", "wide-gamut screens may over-saturate");
+    check_tag(report, "transfer", report.transfer, "iec61966-2-1",
+              "Safari and QuickTime change the brightness");
+    // VP9 and AV1 tell no siting, or not this one.
+    if ((report.codec == "h264" || report.codec == "hevc") && report.pixel_format == "yuv420p") {
+        check_tag(report, "chroma location", report.chroma_location, "left",
+                  "coloured edges shift by half a pixel");
+    }
+}
+
+void add_notes(const DecodedVideo& video, bool saw_colors, VerifyDepth depth, VerifyReport& report) {
+    if (!report.ok()) return;
+    report.notes.push_back(
+        fmt::format("checked: structure, time stamps, tags, that {} decodes, and {}; a picture that was "
+                    "changed and still decodes is not found",
+                    depth == VerifyDepth::kAllFrames ? "every frame" : "every key frame",
+                    saw_colors ? "colours at a few places of the first frame alone" : "no colours"));
+    if (const Players* const players = players_of(report))
+        report.notes.push_back(
+            fmt::format("{} {}, {}: {}", report.codec, report.profile, report.pixel_format, players->words));
+    if (report.alpha)
+        report.notes.emplace_back("the first frame is transparent in places; alpha is straight");
+    if (video.is_rounded) {
+        report.notes.emplace_back(
+            "the container counts milliseconds: each frame's time is the nearest one to k/fps, the rate is "
+            "the one that the file tells");
+    }
+    if (report.faststart)
+        report.notes.emplace_back(
+            "the index comes first: a browser starts to play while it loads, and can seek");
+    if (holds_word("mp4 webm mov", report.container))
+        report.notes.push_back(
+            fmt::format("to show frame k in a browser, seek to its middle, (k + 1/2)/fps = {:.6g} s for "
+                        "frame 0: at k/fps browsers may show the frame before",
+                        0.5 / report.fps.value()));
+    if (has_tags(report) && video.is_yuv)
+        report.notes.push_back(fmt::format(
+            "colours are tagged BT.709 with the sRGB transfer: browsers and QuickTime show the rendered sRGB "
+            "values; a player that ignores tags {}",
+            report.height_px >= 720 ? "guesses right"
+                                    : "may shift them, as it does in any video below 720 lines"));
+    if (report.width_px > 4096 || report.height_px > 2304) {
+        report.notes.emplace_back(
+            "larger than 4096x2304: many phones and hardware decoders refuse this size");
+    }
+    if (report.fps.value() > 60.0) {
+        report.notes.emplace_back("more than 60 frames per second: most screens drop frames");
+    }
+}
+
+}  // namespace corda::media

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "corda/core/basics.hpp"
+#include "corda/media/format.hpp"
+#include "corda/media/libav_handles.hpp"
+#include "corda/media/track_output.hpp"
+#include "corda/media/verify.hpp"
+
+namespace corda::media {
+
+/// Whoever reads standard output reads no more: the end of the work, and no fault.
+class ReaderLeft : public Error {
+  public:
+    ReaderLeft() : Error(ExitCode::kIo, "standard output was closed by its reader") {}
+};
+
+/// Where the packets of a video go, whose time stamps count frames from the first one. All throw corda::Error
+/// (kIo), and what is said.
+class VideoSink {
+  public:
+    VideoSink() = default;
+    VideoSink(const VideoSink&) = delete;
+    VideoSink& operator=(const VideoSink&) = delete;
+    virtual ~VideoSink() = default;
+
+    /// Called once, before the first packet.
+    virtual void begin(const AVCodecParameters& parameters, const TrackInfo& info) = 0;
+    virtual void write(AVPacket& packet) = 0;
+    /// All packets so far are to be safe.
+    virtual void end_chunk() = 0;
+    /// No more packets come; what there is so far is whole.
+    virtual void drain() {}
+    /// After drain(): gives the video its name. Throws kMismatch if it is not sound.
+    virtual void finish(std::int64_t /*frames*/, VerifyDepth /*depth*/) {}
+    /// After drain(): leaves what there is, of at least one frame, and tells where.
+    virtual std::string abandon() = 0;
+    /// Nothing was written: leaves no trace.
+    virtual void remove() noexcept {}
+};
+
+/// What a format's packets go to, under this name; pictures are numbered from `first_frame`. Throws
+/// corda::Error (kIo).
+[[nodiscard]] std::unique_ptr<VideoSink> make_sink(const Format& format, const std::string& path,
+                                                   const OutputOptions& options, std::int64_t first_frame);
+
+}  // namespace corda::media
