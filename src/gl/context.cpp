@@ -10,6 +10,16 @@
 
 namespace corda::gl {
 
+namespace {
+
+/// Of everything that OpenGL on the CPU does in this process.
+std::recursive_mutex& software_mutex() {
+    static std::recursive_mutex mutex;
+    return mutex;
+}
+
+}  // namespace
+
 struct Context::Impl {
     std::string platform;
     std::unique_ptr<EglSession> session;
@@ -45,6 +55,7 @@ ContextDef ContextDef::parse(std::string_view text) {
 }
 
 Context::Context(const ContextDef& def) : impl_(std::make_unique<Impl>()) {
+    const std::lock_guard lock(software_mutex());
     std::string reasons;
     bool found_software = false;
     for (const Platform& platform : list_platforms(def)) {
@@ -73,9 +84,17 @@ Context::Context(const ContextDef& def) : impl_(std::make_unique<Impl>()) {
     throw Error(ExitCode::kNoGl, fmt::format("no usable OpenGL. Tried:{}\n{}", reasons, remedy));
 }
 
-Context::~Context() = default;
+Context::~Context() {
+    const std::lock_guard lock(software_mutex());
+    impl_.reset();
+}
+
+std::unique_lock<std::recursive_mutex> Context::exclusive() const {
+    return info().software ? std::unique_lock(software_mutex()) : std::unique_lock<std::recursive_mutex>();
+}
 
 void Context::make_current() const {
+    const auto lock = exclusive();
     impl_->session->make_current();
 }
 
@@ -95,6 +114,7 @@ SavedContext::SavedContext()
       api_(eglQueryAPI()) {}
 
 SavedContext::~SavedContext() {
+    const std::lock_guard lock(software_mutex());
     // A context that has been lost meanwhile cannot come back, and a destructor has nobody to tell.
     if (eglGetCurrentContext() != context_) {
         EGLDisplay display = context_ == EGL_NO_CONTEXT ? eglGetCurrentDisplay() : display_;
@@ -104,6 +124,7 @@ SavedContext::~SavedContext() {
 }
 
 std::vector<Attempt> probe_contexts() {
+    const std::lock_guard lock(software_mutex());
     const SavedContext saved;
     std::vector<Attempt> attempts;
     for (const Platform& platform : list_platforms({})) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -51,6 +52,12 @@ class Context {
     /// Makes this context current on the calling thread. Throws corda::Error (kNoGl), for instance if it is
     /// current on another thread.
     void make_current() const;
+
+    /// Keeps other threads from OpenGL on the CPU while the lock lives; of a GPU's context it is no lock.
+    /// Whoever draws takes it. llvmpipe (Mesa 22.3) looks for a texture in what all contexts of the process
+    /// are drawing, without a lock of its own: one in some hundred videos that were drawn by several threads
+    /// crashed.
+    [[nodiscard]] std::unique_lock<std::recursive_mutex> exclusive() const;
 
     [[nodiscard]] const ContextInfo& info() const;
     /// The platform that provides the context, e.g. "EGL device 0".

@@ -47,6 +47,7 @@ Stage::Stage(const Scene& scene, const System& system, const std::string& backen
 Stage::~Stage() {
     if (!canvas_) return;
     const gl::SavedContext saved;
+    const auto lock = canvas_->context.exclusive();
     try {
         canvas_->context.make_current();
     } catch (const Error&) {
@@ -90,6 +91,7 @@ void Stage::open(Needs needs) {
         canvas_->context.make_current();
     else
         canvas_ = std::make_unique<Canvas>(gl_);
+    const auto lock = canvas_->context.exclusive();
     if (needs == Needs::kDrawing && !canvas_->renderer)
         canvas_->renderer.emplace(scene_->video.width_px, scene_->video.height_px);
 }
@@ -122,6 +124,7 @@ void Stage::expose(std::int64_t picture, const State& state, const view::Camera&
     shows_nothing_ = list_.shows_nothing() && shows_nothing_;
     const OnProgress ask = asking(on_progress);
     report_progress(ask, 0, 1);
+    const auto lock = canvas_->context.exclusive();
     canvas_->renderer->expose(list_, ask);
 }
 
@@ -137,6 +140,7 @@ Damage Stage::paint(const OnProgress& on_progress) {
     canvas_->context.make_current();  // a callback since open() may have left another one
     ++pictures_;
     shows_nothing_ = list_.shows_nothing();
+    const auto lock = canvas_->context.exclusive();
     return canvas_->renderer->render(list_, asking(on_progress));
 }
 
