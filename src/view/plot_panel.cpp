@@ -309,8 +309,8 @@ void PlotPanel::draw_curves(double time_s, DrawList& list) const {
         list.add_capsule({box_.x0 + half_px, label.at_px + half_px},
                          {box_.x1 - half_px, label.at_px + half_px}, half_px);
     const double radius_px = 0.5 * std::max(kThinnestCurvePx, kCurveWidth * std::min(width_px_, height_px_));
-    for (auto curve_at = curves_.rbegin(); curve_at != curves_.rend(); ++curve_at) {
-        const PixelCurve& curve = *curve_at;
+    for (std::size_t i = curves_.size(); i-- > 0;) {
+        const PixelCurve& curve = curves_[i];
         list.add_layer(curve.color);
         list.layers.back().is_note = true;
         const CurvePoint now = curve.at(time_s);
