@@ -160,7 +160,8 @@ struct Film::Impl {
         if (camera) return *camera;
         if (brush.stage.needs_motion()) motion.run_to_end(def.on_progress);
         if (scene.overlay.plot != LivePlot::kNone) {
-            plot = curves.read(motion.methods(), last_s(), [this](double time_s) -> const State& {
+            const std::vector<MethodDef> methods = motion.methods();  // reading may begin the motion anew
+            plot = curves.read(methods, last_s(), [this](double time_s) -> const State& {
                 return motion.at(time_s, def.on_progress);
             });
         }
