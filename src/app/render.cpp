@@ -12,6 +12,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
 #include "corda/core/output_file.hpp"
+#include "corda/core/text.hpp"
 #include "corda/media/format.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
@@ -30,6 +31,7 @@ struct RenderOptions {
     std::string frames;
     std::string verify = "keys";
     bool force = false;
+    bool resume = false;
     bool dry_run = false;
 };
 
@@ -59,8 +61,8 @@ ExitCode report_interrupted(const Console& console, const RenderOptions& options
             fmt::format("interrupted before the first frame; {} was not written", options.output));
     } else if (is_one_file(options.output)) {
         console.warning(
-            fmt::format("interrupted: {} are in {}, which plays; {} was not written (corda recover makes "
-                        "it a video of these frames)",
+            fmt::format("interrupted: {} are in {}, which plays; {} was not written (--resume goes on, "
+                        "corda recover makes it a video of these frames)",
                         done, rendered.kept_part, options.output));
     } else {
         console.warning(fmt::format("interrupted: {} are in {}", done, rendered.kept_part));
@@ -74,6 +76,7 @@ nlohmann::json report(const Film& film, const RenderOptions& options, const Rend
     nlohmann::json json = film_json(film);
     json["output"] = options.output;
     json["frames"] = rendered.frames;
+    json["resumed_frames"] = rendered.resumed_frames;
     json["width"] = video.width_px;
     json["height"] = video.height_px;
     json["fps"] = video.fps.per_second();
@@ -119,6 +122,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     Scene scene = options.scene.load();
     RenderDef def;
     def.force = options.force;
+    def.resume = options.resume;
     def.verify_all = options.verify == "full";
     parse_range(options.frames, def);
     const bool to_stdout = is_standard_output(options.output);
@@ -162,6 +166,9 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     if (rendered.reader_left) return ExitCode::kOk;
     if (!rendered.complete) return report_interrupted(console, options, def.first, count, rendered);
     const double wall_s = now_s() - start_s;
+    if (rendered.resumed_frames > 0)
+        console.info(fmt::format("{} were there from the interrupted render",
+                                 counted(rendered.resumed_frames, "frame")));
     console.info(fmt::format("{} frames in {:.3g} s, {:.1f} per second{}", rendered.frames, wall_s,
                              static_cast<double>(rendered.frames) / wall_s,
                              is_one_file(options.output) ? "; verified" : ""));
@@ -203,6 +210,8 @@ void add_render(CLI::App& app, Action& action) {
     options->gl.add_to(*command);
     options->empty.add_to(*command);
     command->add_flag("--force", options->force, "replace an existing output");
+    command->add_flag("--resume", options->resume,
+                      "go on with what an interrupted render of the same scene has left");
     command->add_flag("--dry-run", options->dry_run, "check everything and write nothing");
     command->callback([options, &action] {
         action = [options](const Console& console) { return render(console, *options); };

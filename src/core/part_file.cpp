@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <utility>
 
 #include "corda/core/basics.hpp"
@@ -56,9 +57,11 @@ void PartFile::check(const std::string& path, const OutputOptions& options) {
     if (!old && errno == ENOENT) return;
     if (old && !lock(old, path, LOCK_SH | LOCK_NB)) fail_busy(path);
     if (options.force) return;
-    throw Error(ExitCode::kIo, "'" + path +
-                                   "' holds an interrupted render; make it a video (corda recover), "
-                                   "move it away, or start anew with force (--force)");
+    throw Error(
+        ExitCode::kIo,
+        "'" + path +
+            "' holds an interrupted render; go on with it (--resume), make it a video (corda recover), "
+            "move it away, or start anew with force (--force)");
 }
 
 PartFile PartFile::create(std::string path, const OutputOptions& options) {
@@ -79,6 +82,13 @@ PartFile PartFile::open(std::string path) {
     if (!file) fail_file("read", path, errno);
     if (!lock(file, path, LOCK_EX | LOCK_NB)) fail_busy(path);
     return {std::move(path), std::move(file)};
+}
+
+void PartFile::take_place_of(PartFile& other) {
+    if (::rename(path_.c_str(), other.path_.c_str()) != 0) fail_file("replace", other.path_, errno);
+    path_ = other.path_;
+    static_cast<void>(other.descriptor_.close());
+    sync_folder_of(path_);
 }
 
 bool PartFile::is_empty() const {

@@ -33,6 +33,9 @@ class PartFile {
     [[nodiscard]] const std::string& path() const { return path_; }
     [[nodiscard]] int descriptor() const { return descriptor_.get(); }
 
+    /// Gives this file the name of another part, which it replaces. Throws corda::Error (kIo).
+    void take_place_of(PartFile& other);
+
     /// Whether no byte was written yet.
     [[nodiscard]] bool is_empty() const;
 

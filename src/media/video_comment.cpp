@@ -59,9 +59,19 @@ std::vector<ColorPatch> told_patches(const std::string& comment) {
     return patches;
 }
 
-std::string comment_with_frames(const std::string& comment, std::size_t frames) {
+std::map<std::string, std::string> told_origin(const std::string& comment) {
+    const Json json = parse_comment(comment);
+    std::map<std::string, std::string> origin;
+    if (!json.contains(kOriginKey) || !json[kOriginKey].is_object()) return origin;
+    for (const auto& [key, value] : json[kOriginKey].items())
+        if (value.is_string()) origin.emplace(key, value.get<std::string>());
+    return origin;
+}
+
+std::string finished_comment(const std::string& comment, std::size_t frames) {
     auto json = Json::parse(comment, nullptr, false);
     if (!json.is_object()) return comment;
+    json.erase(kOriginKey);
     json["frames"] = frames;
     return json.dump();
 }

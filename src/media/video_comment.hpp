@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,9 @@
 
 namespace corda::media {
 
+/// The key of the origin in the comment of a part.
+inline constexpr const char* kOriginKey = "made_from";
+
 // What the comment of a video tells, a JSON object of any origin.
 
 /// The rate; std::nullopt if there is none that libav can count with.
@@ -18,7 +22,10 @@ namespace corda::media {
 [[nodiscard]] std::optional<std::int64_t> told_number(const std::string& comment, const char* key);
 /// The colour patches of the first frame.
 [[nodiscard]] std::vector<ColorPatch> told_patches(const std::string& comment);
-/// The comment with the number of its frames; unchanged if it is no JSON object.
-[[nodiscard]] std::string comment_with_frames(const std::string& comment, std::size_t frames);
+/// What the comment of a part tells of what it was made from, by keys; empty if it does not.
+[[nodiscard]] std::map<std::string, std::string> told_origin(const std::string& comment);
+/// The comment of a finished video, with the number of its frames and without its origin; unchanged if it is
+/// no JSON object.
+[[nodiscard]] std::string finished_comment(const std::string& comment, std::size_t frames);
 
 }  // namespace corda::media

@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string_view>
+#include <utility>
 
 #include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
 #include "corda/media/finish_part.hpp"
+#include "corda/media/open_video.hpp"
+#include "corda/media/part_reader.hpp"
 #include "corda/media/picture_names.hpp"
 
 namespace corda::media {
@@ -19,15 +23,45 @@ std::string_view bytes_of(const AVPacket& packet) {
     return {reinterpret_cast<const char*>(packet.data), static_cast<std::size_t>(packet.size)};
 }
 
+/// Puts the lengths of NAL units in place of the start codes before them, as a track of MP4 has them: what
+/// the muxer does by itself if the header came from the encoder, not from a file. (ISO/IEC 14496-10, annex B;
+/// 14496-15, 5.3.)
+void put_lengths(AVPacket& packet) {
+    const std::string_view bytes = bytes_of(packet);
+    constexpr std::string_view kStartCode("\0\0\1", 3);
+    std::string units;
+    for (std::size_t at = bytes.find(kStartCode); at != std::string_view::npos;) {
+        const std::size_t begin = at + kStartCode.size();
+        at = bytes.find(kStartCode, begin);
+        std::string_view unit = bytes.substr(begin, at == std::string_view::npos ? at : at - begin);
+        if (at != std::string_view::npos && unit.ends_with('\0'))
+            unit.remove_suffix(1);  // of a code of four bytes
+        for (unsigned shift = 32; shift > 0; shift -= 8)
+            units += static_cast<char>((unit.size() >> (shift - 8)) & 0xffU);
+        units += unit;
+    }
+    Packet changed = check_allocated(Packet(av_packet_alloc()), "a packet");
+    check_libav(av_new_packet(changed.get(), static_cast<int>(units.size())), ExitCode::kIo, "a packet");
+    std::copy(units.begin(), units.end(), changed->data);
+    check_libav(av_packet_copy_props(changed.get(), &packet), ExitCode::kIo, "a packet");
+    av_packet_unref(&packet);
+    av_packet_move_ref(&packet, changed.get());
+}
+
 /// The part file of a video, of which it becomes the finished file.
 class PartSink : public VideoSink {
   public:
     PartSink(const Format& format, const std::string& path, const OutputOptions& options)
-        : format_(format),
-          path_(path),
-          options_(options),
-          part_(PartFile::create(part_path(path), options)),
-          track_(part_.descriptor(), part_.path()) {}
+        : PartSink(format, path, options, PartFile::create(part_path(path), options)) {}
+    /// Goes on with `old`, an earlier part: its whole chunks are copied into a new one, which takes its
+    /// place.
+    PartSink(const Format& format, const std::string& path, const OutputOptions& options, PartFile old,
+             const FrameRange& frames)
+        : PartSink(format, path, options, PartFile::create(part_path(path) + ".new", {.force = true})) {
+        resumed_ = copy_chunks(old.path(), frames, options.on_progress);
+        if (resumed_ > 0) part_.sync();
+        part_.take_place_of(old);
+    }
     PartSink(const PartSink&) = delete;
     PartSink& operator=(const PartSink&) = delete;
     /// A part without a chunk is of no use, and would be in the way of the next render.
@@ -35,10 +69,14 @@ class PartSink : public VideoSink {
         if (part_.is_empty()) part_.remove();
     }
 
+    [[nodiscard]] std::int64_t resumed_frames() const override { return resumed_; }
     void begin(const AVCodecParameters& parameters, const TrackInfo& info) override {
         track_.begin(format_.ending->part_muxer, TrackLayout::kPart, parameters, info);
     }
-    void write(AVPacket& packet) override { track_.write(packet); }
+    void write(AVPacket& packet) override {
+        if (has_lengths_) put_lengths(packet);
+        track_.write(packet);
+    }
     void end_chunk() override {
         track_.flush();
         part_.sync();
@@ -60,11 +98,50 @@ class PartSink : public VideoSink {
     void remove() noexcept override { part_.remove(); }
 
   private:
+    PartSink(const Format& format, const std::string& path, const OutputOptions& options, PartFile part)
+        : format_(format),
+          path_(path),
+          options_(options),
+          part_(std::move(part)),
+          track_(part_.descriptor(), part_.path()) {}
+
+    /// Copies the whole chunks of an earlier part; returns their frames.
+    std::int64_t copy_chunks(const std::string& old, const FrameRange& frames,
+                             const OnProgress& on_progress) {
+        const LogCapture log;
+        const PartIndex index = index_part(old, on_progress);
+        const std::int64_t there = std::min(std::ssize(index.frame_of), frames.end - frames.first);
+        const auto is_whole = [&](std::int64_t count) {
+            return (frames.first + count) % frames.per_chunk == 0 || count == frames.end - frames.first;
+        };
+        std::int64_t whole = there;
+        while (whole > 0 && !is_whole(whole)) --whole;
+        if (whole == 0) return 0;
+        const PartInput input = open_part(old, index.bytes);
+        const AVCodecParameters& parameters = *input.stream->codecpar;
+        begin(parameters, {.fps = index.fps,
+                           .title = metadata_entry(*input.format, "title"),
+                           .comment = metadata_entry(*input.format, "comment"),
+                           .has_alpha = is_marked_as_alpha(*input.stream)});
+        const bool has_nal_units =
+            parameters.codec_id == AV_CODEC_ID_H264 || parameters.codec_id == AV_CODEC_ID_HEVC;
+        has_lengths_ = has_nal_units && parameters.extradata_size > 0 && parameters.extradata[0] == 1;
+        PacketCopy copy(old, input, index);
+        for (std::int64_t count = 1; count <= whole; ++count) {
+            if (!is_whole(count)) continue;
+            copy.copy_to(static_cast<std::size_t>(count), track_, on_progress);
+            track_.flush();
+        }
+        return whole;
+    }
+
     Format format_;
     std::string path_;
     OutputOptions options_;
     PartFile part_;
     TrackOutput track_;
+    std::int64_t resumed_ = 0;
+    bool has_lengths_ = false;  ///< whether the track's packets have lengths in place of start codes
 };
 
 /// A file for each frame, complete as soon as it has its name.
@@ -128,17 +205,25 @@ class StreamSink : public VideoSink {
 }  // namespace
 
 std::unique_ptr<VideoSink> make_sink(const Format& format, const std::string& path,
-                                     const OutputOptions& options, std::int64_t first_frame) {
+                                     const OutputOptions& options, const FrameRange& frames, bool resume) {
     switch (format.ending->kind) {
         case FileKind::kPictures:
-            return std::make_unique<PictureSink>(path, options, first_frame);
+            return std::make_unique<PictureSink>(path, options, frames.first);
         case FileKind::kStream:
             return std::make_unique<StreamSink>(format, options);
         case FileKind::kVideo:
         case FileKind::kAnimation:
             break;
     }
-    return std::make_unique<PartSink>(format, path, options);
+    std::error_code ignored;
+    if (!resume || !std::filesystem::exists(part_path(path), ignored))
+        return std::make_unique<PartSink>(format, path, options);
+    PartFile old = PartFile::open(part_path(path));
+    if (old.is_empty()) {
+        old.remove();
+        return std::make_unique<PartSink>(format, path, options);
+    }
+    return std::make_unique<PartSink>(format, path, options, std::move(old), frames);
 }
 
 }  // namespace corda::media

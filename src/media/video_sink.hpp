@@ -27,6 +27,9 @@ class VideoSink {
     VideoSink& operator=(const VideoSink&) = delete;
     virtual ~VideoSink() = default;
 
+    /// How many frames there are from an interrupted render that is gone on with: whole chunks. If there are
+    /// any, begin() is not called.
+    [[nodiscard]] virtual std::int64_t resumed_frames() const { return 0; }
     /// Called once, before the first packet.
     virtual void begin(const AVCodecParameters& parameters, const TrackInfo& info) = 0;
     virtual void write(AVPacket& packet) = 0;
@@ -42,9 +45,18 @@ class VideoSink {
     virtual void remove() noexcept {}
 };
 
-/// What a format's packets go to, under this name; pictures are numbered from `first_frame`. Throws
-/// corda::Error (kIo).
+/// The frames of a video.
+struct FrameRange {
+    std::int64_t first = 0;      ///< number in the film
+    std::int64_t end = 0;        ///< one past the last
+    std::int64_t per_chunk = 1;  ///< chunks begin at multiples of this
+};
+
+/// What a format's packets go to, under this name. With `resume`, a part of an interrupted render of the same
+/// frames is gone on with, if there is one. Throws corda::Error: kIo, and kMismatch for a part that cannot be
+/// read.
 [[nodiscard]] std::unique_ptr<VideoSink> make_sink(const Format& format, const std::string& path,
-                                                   const OutputOptions& options, std::int64_t first_frame);
+                                                   const OutputOptions& options, const FrameRange& frames,
+                                                   bool resume);
 
 }  // namespace corda::media

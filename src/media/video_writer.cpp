@@ -52,11 +52,21 @@ bool are_of_one_video(const AVCodecParameters& a, const AVCodecParameters& b) {
 }  // namespace
 
 Format check_video_output(const std::string& path, const VideoDef& def, const std::string& input, bool force,
-                          bool is_transparent, std::int64_t first, std::int64_t end) {
+                          bool is_transparent, std::int64_t first, std::int64_t end, bool resume) {
     check_video_def(def);
     const Format format = find_format(path, def, is_transparent);
     if (format.codec->is_hardware) static_cast<void>(make_encoder(format, def));
     check_animation_frames(*format.ending, end - first);
+    const bool has_part =
+        format.ending->kind == FileKind::kVideo || format.ending->kind == FileKind::kAnimation;
+    if (resume && !has_part) {
+        throw Error(
+            ExitCode::kUsage,
+            fmt::format(
+                "{} cannot be gone on with (--resume): it has no part file; render the frames that are "
+                "missing (--frames FIRST:END)",
+                path));
+    }
     switch (format.ending->kind) {
         case FileKind::kStream:
             break;
@@ -66,22 +76,31 @@ Format check_video_output(const std::string& path, const VideoDef& def, const st
         case FileKind::kVideo:
         case FileKind::kAnimation:
             check_output(path, input, force);
-            PartFile::check(part_path(path), {.force = force});
+            PartFile::check(part_path(path), {.force = force || resume});
     }
     return format;
 }
 
 struct VideoWriter::Impl {
     Impl(std::string final_path, const VideoDef& video, VideoMetadata meta,
-         const OutputOptions& output_options, std::int64_t first)
+         const OutputOptions& output_options, std::int64_t first, std::int64_t end = 0, bool resume = false)
         : path(std::move(final_path)),
           def(video),
           metadata(std::move(meta)),
-          format(check_video_output(path, def, "", output_options.force, metadata.is_transparent)),
+          format(check_video_output(path, def, "", output_options.force, metadata.is_transparent, first, end,
+                                    resume)),
           comment(parsed_comment(metadata.comment_json)),
           first_frame(first),
           encoder(std::make_unique<ChunkEncoder>(chunk_encoder(first))),
-          sink(make_sink(format, path, output_options, first)) {}
+          sink(make_sink(format, path, output_options, {first, end, media::frames_per_chunk(format, def.fps)},
+                         resume)),
+          written(sink->resumed_frames()) {
+        if (written == 0) return;
+        encoder.reset();
+        parameters = check_allocated(CodecParameters(avcodec_parameters_alloc()), "codec parameters");
+        check_libav(avcodec_parameters_copy(parameters.get(), &make_encoder(format, def)->parameters()),
+                    ExitCode::kEncoder, "cannot copy codec parameters");
+    }
 
     [[nodiscard]] ChunkEncoder chunk_encoder(std::int64_t frame) const {
         return ChunkEncoder(make_encoder(format, def, frame, metadata.picture_info));
@@ -153,7 +172,15 @@ VideoWriter::VideoWriter(std::string path, const VideoDef& def, VideoMetadata me
                          const OutputOptions& options, std::int64_t first_frame)
     : impl_(std::make_unique<Impl>(std::move(path), def, std::move(metadata), options, first_frame)) {}
 
+VideoWriter::VideoWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+VideoWriter::VideoWriter(VideoWriter&&) noexcept = default;
 VideoWriter::~VideoWriter() = default;
+
+VideoWriter VideoWriter::resume(std::string path, const VideoDef& def, VideoMetadata metadata,
+                                const OutputOptions& options, std::int64_t first, std::int64_t end) {
+    return VideoWriter(
+        std::make_unique<Impl>(std::move(path), def, std::move(metadata), options, first, end, true));
+}
 
 void VideoWriter::write(const Image& frame, const Damage& damage) {
     Impl& impl = *impl_;

@@ -18,13 +18,15 @@ namespace corda::media {
 /// open, and an interrupted render of the same name, unless `force` is set. Throws corda::Error (kUsage,
 /// kIo, kEncoder).
 Format check_video_output(const std::string& path, const VideoDef& def, const std::string& input, bool force,
-                          bool is_transparent = false, std::int64_t first = 0, std::int64_t end = 0);
+                          bool is_transparent = false, std::int64_t first = 0, std::int64_t end = 0,
+                          bool resume = false);
 
 /// What a video file says beside its pictures.
 struct VideoMetadata {
     std::string title{};
     /// Compact JSON that `verify` reads back; VideoWriter adds "frames", "fps", "crf" and "patches" to it
-    /// (see verify.hpp).
+    /// (see verify.hpp). What it tells under
+    /// kOriginKey (see video_comment.hpp) stays in the part.
     std::string comment_json = "{}";
     bool is_transparent = false;  ///< whether pictures may be; a format that has alpha keeps it then
     PictureInfo picture_info{};   ///< of formats of a file for each frame
@@ -44,6 +46,13 @@ class VideoWriter {
     /// the file cannot be made, exists, or is being written by another render.
     VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata,
                 const OutputOptions& options = {}, std::int64_t first_frame = 0);
+    /// As above, for frames first <= k < end; goes on with the part of an interrupted render of the same
+    /// video, if there is one: frames() tells how many it has. Its bytes will be those of a render without
+    /// interruption. Also throws kMismatch for a part that cannot be read.
+    [[nodiscard]] static VideoWriter resume(std::string path, const VideoDef& def, VideoMetadata metadata,
+                                            const OutputOptions& options, std::int64_t first,
+                                            std::int64_t end);
+    VideoWriter(VideoWriter&&) noexcept;
     VideoWriter(const VideoWriter&) = delete;
     VideoWriter& operator=(const VideoWriter&) = delete;
     /// Without `finish` or `abandon` the part file stays as it is, unless it is empty.
@@ -82,6 +91,7 @@ class VideoWriter {
 
   private:
     struct Impl;
+    explicit VideoWriter(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;
 };
 

@@ -143,6 +143,10 @@ class Renderer {
 /// Which frames render_video writes, and how.
 struct RenderDef {
     bool force = false;  ///< replace an existing file
+    /// Go on with what an interrupted render of the same scene, frames and name has left, if there is any:
+    /// the file has the bytes that it would have had. Throws kUsage for a part of another render, naming a
+    /// difference.
+    bool resume = false;
     std::int64_t first = 0;
     std::optional<std::int64_t> end;  ///< one past the last frame; default Film::frame_count()
     bool verify_all = false;          ///< decode every frame of the finished video, not key frames alone
@@ -154,7 +158,8 @@ struct RenderDef {
 /// What render_video has made.
 struct Rendered {
     std::int64_t frames = 0;
-    bool complete = true;      ///< false if on_progress asked to stop
+    std::int64_t resumed_frames = 0;  ///< of these, how many an interrupted render had made
+    bool complete = true;             ///< false if on_progress asked to stop
     std::string kept_part;     ///< where the frames so far are if it is not complete; empty if there are none
     bool reader_left = false;  ///< standard output was closed by whoever read it: no more was wanted
     std::string encoder;       ///< libav's name

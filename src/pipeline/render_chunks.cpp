@@ -169,11 +169,12 @@ void add(Made made, media::VideoWriter& writer, Rendered& result) {
 
 void render_chunks(const Film& film, std::int64_t from, std::int64_t end, int jobs,
                    const OnProgress& on_progress, media::VideoWriter& writer, Rendered& result) {
-    Chunks chunks(film, writer, from, end, jobs);
+    const std::int64_t had = writer.frames();
+    Chunks chunks(film, writer, from + had, end, jobs);
     try {
         while (writer.frames() < end - from) {
             if (auto made = chunks.wait()) add(std::move(*made), writer, result);
-            report_progress(on_progress, chunks.drawn(), end - from);
+            report_progress(on_progress, had + chunks.drawn(), end - from);
         }
     } catch (const Error& error) {
         if (error.code() != ExitCode::kInterrupted && error.code() != ExitCode::kTerminated) throw;

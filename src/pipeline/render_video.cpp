@@ -1,12 +1,17 @@
 #include <algorithm>
+#include <filesystem>
+#include <map>
 #include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "corda/core/part_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
 #include "corda/media/format.hpp"
+#include "corda/media/part_reader.hpp"
+#include "corda/media/video_comment.hpp"
 #include "corda/media/video_sink.hpp"
 #include "corda/media/video_writer.hpp"
 #include "corda/pipeline/describe.hpp"
@@ -14,13 +19,45 @@
 #include "corda/pipeline/painter.hpp"
 #include "corda/pipeline/render_chunks.hpp"
 #include "corda/pipeline/validate.hpp"
+#include "corda/scene/digest.hpp"
 #include "corda/view/look.hpp"
 
 namespace corda {
 namespace {
 
+/// All that the bytes of a video follow from, by keys.
+std::map<std::string, std::string> origin_of(const Scene& scene, const media::Format& format,
+                                             std::int64_t first, std::int64_t end) {
+    std::map<std::string, std::string> origin = digest(scene);
+    origin["corda"] = version();
+    origin["encoder"] = format.codec->name;
+    origin["frames"] = fmt::format("{}:{}", first, end);
+    return origin;
+}
+
+/// A part of another render cannot be gone on with.
+void check_part(const std::string& path, const std::map<std::string, std::string>& origin) {
+    const std::string part = part_path(path);
+    std::error_code ignored;
+    const auto bytes = std::filesystem::file_size(part, ignored);
+    if (ignored || bytes == 0) return;
+    const auto fail = [&](const std::string& problem) {
+        throw Error(
+            ExitCode::kUsage,
+            fmt::format(
+                "'{}' {}, so --resume cannot go on with it; render to another name, make it a video (corda "
+                "recover), or start anew (--force)",
+                part, problem));
+    };
+    const std::map<std::string, std::string> its = media::told_origin(media::part_comment(part));
+    if (its.empty()) fail("does not tell what it was rendered from");
+    if (const std::string difference = first_difference(origin, its); !difference.empty())
+        fail("is of another render: " + difference);
+}
+
 /// What the file says of itself beside its pictures.
-media::VideoMetadata metadata(const Film& film, std::int64_t first) {
+media::VideoMetadata metadata(const Film& film, std::int64_t first,
+                              const std::map<std::string, std::string>& origin) {
     const Scene& scene = film.scene();
     const Plan& plan = film.plan();
     const std::string title = printable(film.scene().name);
@@ -31,6 +68,7 @@ media::VideoMetadata metadata(const Film& film, std::int64_t first) {
     if (plan.error_bound_m) comment["error_bound_m"] = *plan.error_bound_m;
     if (const auto bound_px = film.error_bound_px()) comment["error_bound_px"] = *bound_px;
     if (plan.horizon_s) comment["horizon_s"] = *plan.horizon_s;
+    comment[media::kOriginKey] = origin;
     return {title, comment.dump(), !view::look_of(scene.style).ground.is_opaque(),
             [name = scene.name, fps = scene.video.fps](std::int64_t frame) {
                 return picture_info(name, fmt::format("{}", fps.time_s(frame)), std::to_string(frame));
@@ -64,7 +102,7 @@ void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProg
         return;
     }
     FilmPainter painter(film);
-    std::int64_t k = first;
+    std::int64_t k = first + writer.frames();
     const OnProgress ask = [&](std::int64_t, std::int64_t) {
         return !on_progress || on_progress(k - first, end - first);
     };
@@ -95,8 +133,11 @@ bool is_interruption(const Error& error) {
 
 }  // namespace
 
-void check_render(const Scene& scene, const std::string& path, const RenderDef& def,
-                  const std::string& input) {
+namespace {
+
+/// Returns what a render makes.
+media::Format checked_format(const Scene& scene, const std::string& path, const RenderDef& def,
+                             const std::string& input) {
     pipeline::validate(scene, {});
     const std::int64_t count = scene.video.fps.frame_count(scene.world.duration_s);
     const std::int64_t end = def.end.value_or(count);
@@ -106,19 +147,38 @@ void check_render(const Scene& scene, const std::string& path, const RenderDef& 
             fmt::format("frames {}:{} are not FIRST:END with 0 <= FIRST < END <= {} (END is not drawn)",
                         def.first, end, count));
     }
-    check_ground(scene,
-                 media::check_video_output(path, scene.video, input, def.force,
-                                           !view::look_of(scene.style).ground.is_opaque(), def.first, end));
+    const media::Format format =
+        media::check_video_output(path, scene.video, input, def.force,
+                                  !view::look_of(scene.style).ground.is_opaque(), def.first, end, def.resume);
+    check_ground(scene, format);
+    if (def.resume) check_part(path, origin_of(scene, format, def.first, end));
+    return format;
+}
+
+media::VideoWriter make_writer(const Film& film, const std::string& path, const media::Format& format,
+                               const RenderDef& def, std::int64_t end) {
+    const OutputOptions options{.force = def.force, .on_progress = def.on_progress};
+    const VideoDef& video = film.scene().video;
+    media::VideoMetadata data = metadata(film, def.first, origin_of(film.scene(), format, def.first, end));
+    if (def.resume) return media::VideoWriter::resume(path, video, std::move(data), options, def.first, end);
+    return {path, video, std::move(data), options, def.first};
+}
+
+}  // namespace
+
+void check_render(const Scene& scene, const std::string& path, const RenderDef& def,
+                  const std::string& input) {
+    static_cast<void>(checked_format(scene, path, def, input));
 }
 
 Rendered render_video(Film& film, const std::string& path, const RenderDef& def) {
-    check_render(film.scene(), path, def);
+    const media::Format format = checked_format(film.scene(), path, def, {});
     const std::int64_t end = def.end.value_or(film.frame_count());
     static_cast<void>(film.camera());  // what can fail does so before a file is made
     static_cast<void>(film.gl());
-    media::VideoWriter writer(path, film.scene().video, metadata(film, def.first),
-                              {.force = def.force, .on_progress = def.on_progress}, def.first);
+    media::VideoWriter writer = make_writer(film, path, format, def, end);
     Rendered result;
+    result.resumed_frames = writer.frames();
     result.encoder = writer.format().codec->name;
     try {
         write_frames(film, def.first, end, def.on_progress, writer, result);

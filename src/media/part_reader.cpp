@@ -1,0 +1,179 @@
+#include "corda/media/part_reader.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "corda/media/checked.hpp"
+#include "corda/media/file_kind.hpp"
+#include "corda/media/mp4_boxes.hpp"
+#include "corda/media/video_comment.hpp"
+
+namespace corda::media {
+
+// Only the first bytes: libav gives up on a file that ends in the middle of a fragment's header.
+PartInput open_part(const std::string& path, std::uint64_t bytes) {
+    PartInput input;
+    AVFormatContext* format = nullptr;
+    const std::string kind = file_kind(path);
+    input.is_matroska = kind == "matroska";
+    const AVInputFormat* demuxer = av_find_input_format(input.is_matroska ? "matroska" : "mov");
+    const std::string url = fmt::format("subfile,,start,0,end,{},,:{}", bytes, file_url(path));
+    check_libav(avformat_open_input(&format, url.c_str(), demuxer, nullptr), ExitCode::kMismatch,
+                fmt::format("cannot read '{}' as a video", path),
+                "it holds no picture that can be recovered");
+    input.format.reset(format);
+    const int index = av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+    check_libav(index, ExitCode::kMismatch, fmt::format("no video in '{}'", path));
+    input.stream = format->streams[index];
+    return input;
+}
+
+namespace {
+
+/// Reads the next whole packet of the track; false at the end and at the point where the file breaks off.
+bool read_packet(const PartInput& input, AVPacket& packet, bool* is_broken = nullptr) {
+    for (;;) {
+        const int status = av_read_frame(input.format.get(), &packet);
+        if (status < 0) {
+            if (is_broken != nullptr) *is_broken = status != AVERROR_EOF;
+            return false;
+        }
+        const bool whole = (packet.flags & AV_PKT_FLAG_CORRUPT) == 0;
+        if (whole && packet.stream_index == input.stream->index) return true;
+        av_packet_unref(&packet);
+        if (!whole) {
+            if (is_broken != nullptr) *is_broken = true;
+            return false;
+        }
+    }
+}
+
+[[noreturn]] void fail_rate(const std::string& path) {
+    throw Error(
+        ExitCode::kMismatch,
+        fmt::format("'{}' has no constant frame rate, so corda did not write it; use ffmpeg to convert it",
+                    path));
+}
+
+/// Turns stamps (in ticks of the track) into frame numbers, for the longest beginning in which each of 0 ..
+/// n-1 occurs once. This beginning can be decoded, because packets refer only to earlier ones.
+void number_frames(const std::vector<std::int64_t>& stamps, std::int64_t step, PartIndex& index) {
+    std::vector<bool> seen(stamps.size(), false);
+    std::int64_t highest = -1;
+    std::size_t complete = 0;
+    std::int64_t depth = 0;
+    for (std::size_t i = 0; i < stamps.size(); ++i) {
+        const std::int64_t frame = (stamps[i] - stamps.front()) / step;
+        const auto slot = static_cast<std::size_t>(frame);
+        if (slot >= seen.size() || seen[slot]) break;  // a negative number is a huge slot
+        seen[slot] = true;
+        index.frame_of.push_back(frame);
+        highest = std::max(highest, frame);
+        depth = std::max(depth, static_cast<std::int64_t>(i) - frame);
+        if (highest != static_cast<std::int64_t>(i)) continue;
+        complete = i + 1;
+        index.reorder_depth = depth;
+    }
+    index.frame_of.resize(complete);
+}
+
+}  // namespace
+
+std::string metadata_entry(const AVFormatContext& format, const char* key) {
+    const AVDictionaryEntry* entry = av_dict_get(format.metadata, key, nullptr, 0);
+    return entry == nullptr ? std::string() : std::string(entry->value);
+}
+
+namespace {
+
+/// The rate that the comment tells.
+std::optional<Rational> told_rate_of(const PartInput& input) {
+    return told_rate(metadata_entry(*input.format, "comment"));
+}
+
+/// Ticks per frame: the greatest common divisor of all distances between stamps. The duration of a packet is
+/// no guide, because libav guesses it at the end of a fragment; for a single frame the comment tells.
+std::int64_t frame_step(const std::vector<std::int64_t>& stamps, const PartInput& input,
+                        std::int64_t packet_duration) {
+    std::int64_t step = 0;
+    for (const std::int64_t stamp : stamps) step = std::gcd(step, stamp - stamps.front());
+    if (step > 0) return step;
+    const auto fps = told_rate_of(input);
+    return fps ? av_rescale_q(1, frame_time_base(*fps), input.stream->time_base) : packet_duration;
+}
+
+/// The rate of the frames with these stamps, which become numbers of frames if they were rounded.
+Rational rate_of(const std::string& path, const PartInput& input, std::int64_t packet_duration,
+                 std::vector<std::int64_t>& stamps, std::int64_t& step) {
+    if (input.is_matroska) {
+        const auto fps = told_rate_of(input);
+        if (!fps) fail_rate(path);
+        for (std::int64_t& stamp : stamps)
+            stamp = av_rescale_q(stamp, input.stream->time_base, frame_time_base(*fps));
+        step = 1;
+        return *fps;
+    }
+    step = frame_step(stamps, input, packet_duration);
+    const auto duration = checked_multiply(step, std::int64_t{input.stream->time_base.num});
+    if (!duration || *duration <= 0) fail_rate(path);
+    return Rational::reduced(input.stream->time_base.den, *duration);
+}
+
+}  // namespace
+
+PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
+    const Mp4Boxes boxes = read_mp4_boxes(path);
+    PartIndex index;
+    index.bytes = boxes.is_mp4 ? boxes.whole_bytes : boxes.file_bytes;
+    const PartInput input = open_part(path, index.bytes);
+    const Packet packet = check_allocated(Packet(av_packet_alloc()), "a packet");
+    std::vector<std::int64_t> stamps;
+    std::int64_t packet_duration = 0;
+    index.codec = input.stream->codecpar->codec_id;
+    bool is_damaged = false;
+    bool is_broken = false;
+    while (read_packet(input, *packet, &is_broken)) {
+        report_progress(on_progress, std::ssize(stamps), 0);
+        is_damaged = !is_sane_stamp(packet->pts);
+        if (is_damaged) break;
+        packet_duration = packet->duration;
+        stamps.push_back(packet->pts);
+        av_packet_unref(packet.get());
+    }
+    if (stamps.empty()) {
+        throw Error(ExitCode::kMismatch,
+                    fmt::format("'{}' holds no whole fragment, so no frame can be recovered", path));
+    }
+    std::int64_t step = 0;
+    index.fps = rate_of(path, input, packet_duration, stamps, step);
+    if (index.fps.den > std::numeric_limits<int>::max()) fail_rate(path);  // more than libav can count
+    number_frames(stamps, step, index);
+    index.truncated = index.bytes < boxes.file_bytes || is_damaged || index.frame_of.size() < stamps.size();
+    return index;
+}
+
+std::string part_comment(const std::string& path) {
+    const LogCapture log;
+    const Mp4Boxes boxes = read_mp4_boxes(path);
+    return metadata_entry(*open_part(path, boxes.is_mp4 ? boxes.whole_bytes : boxes.file_bytes).format,
+                          "comment");
+}
+
+void PacketCopy::copy_to(std::size_t end, TrackOutput& output, const OnProgress& on_progress) {
+    const Packet packet = check_allocated(Packet(av_packet_alloc()), "a packet");
+    for (; next_ < end; ++next_) {
+        if (!read_packet(*input_, *packet))
+            throw Error(ExitCode::kIo, fmt::format("'{}' changed while it was read", *path_));
+        report_progress(on_progress, static_cast<std::int64_t>(next_), std::ssize(index_->frame_of));
+        packet->pts = index_->frame_of[next_];
+        packet->dts = static_cast<std::int64_t>(next_) - index_->reorder_depth;
+        packet->duration = 1;
+        output.write(*packet);
+    }
+}
+
+}  // namespace corda::media

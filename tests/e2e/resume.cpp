@@ -1,0 +1,153 @@
+// `corda render --resume`: what was killed at any moment becomes what it would have been.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "support/command.hpp"
+
+namespace corda {
+namespace {
+
+using test::quoted;
+using test::read_file;
+using test::run_corda;
+using testing::HasSubstr;
+
+class Resume : public testing::Test {
+  protected:
+    [[nodiscard]] std::string file(const std::string& name) const { return folder_.file(name); }
+
+    [[nodiscard]] std::vector<std::string> render(const std::string& name,
+                                                  const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> all{"render",  CORDA_EXAMPLES "/first.toml", "--size", "480x270", "-o",
+                                     file(name)};
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    }
+
+    /// Begins a render, and sends it a signal after a while.
+    void interrupt(const std::string& name, const std::string& signal, double after_s,
+                   const std::vector<std::string>& more = {}) const {
+        std::string command = CORDA_PROGRAM;
+        for (const std::string& word : render(name, more)) command += " " + quoted(word);
+        const std::string part = quoted(file(name + ".part"));
+        // Until whoever held the part is gone.
+        command += " & p=$!; sleep " + std::to_string(after_s) + "; kill -s " + signal +
+                   " $p; wait $p; [ ! -e " + part + " ] || flock -w 10 " + part + " true";
+        static_cast<void>(test::run_shell(command));
+    }
+
+    [[nodiscard]] std::string bytes_of_a_whole(const std::string& name,
+                                               const std::vector<std::string>& more = {}) const {
+        EXPECT_EQ(run_corda(render(name, more)).exit_code, 0);
+        return read_file(file(name));
+    }
+
+    test::ScratchFolder folder_;
+};
+
+/// Short, or of a hundred kills with CORDA_TEST_LONG.
+TEST_F(Resume, MakesTheSameVideoOfWhatWasKilledAtAnyMoment) {
+    const std::string whole = bytes_of_a_whole("whole.mp4");
+    const int kills = std::getenv("CORDA_TEST_LONG") != nullptr ? 100 : 6;
+    std::mt19937 random(20261123);  // NOLINT(cert-msc51-cpp): the same kills on every run
+    std::uniform_real_distribution<double> moment_s(0.05, 1.5);
+    int parts = 0;
+    for (int i = 0; i < kills; ++i) {
+        const double after_s = moment_s(random);
+        interrupt("a.mp4", "KILL", after_s);
+        // The final name is whole, or not there.
+        if (std::filesystem::exists(file("a.mp4"))) {
+            EXPECT_TRUE(read_file(file("a.mp4")) == whole) << after_s;
+        }
+        const std::string part = read_file(file("a.mp4.part"));
+        if (!part.empty()) {
+            ++parts;
+            test::write_file(file("copy.mp4.part"), part);
+            EXPECT_EQ(run_corda({"recover", file("copy.mp4.part"), "-o", file("copy.mp4")}).exit_code, 0)
+                << after_s;
+            EXPECT_EQ(run_corda({"verify", file("copy.mp4")}).exit_code, 0) << after_s;
+        }
+        if (!std::filesystem::exists(file("a.mp4"))) {
+            const auto resumed = run_corda(render("a.mp4", {"--resume"}));
+            EXPECT_EQ(resumed.exit_code, 0) << after_s << resumed.err;
+        }
+        EXPECT_TRUE(read_file(file("a.mp4")) == whole) << after_s;
+        EXPECT_FALSE(std::filesystem::exists(file("a.mp4.part")));
+        for (const char* const name : {"a.mp4", "copy.mp4"}) std::filesystem::remove(file(name));
+    }
+    EXPECT_GE(parts, kills / 6);
+}
+
+TEST_F(Resume, MakesTheSameVideoInEveryFormat) {
+    using Words = std::vector<std::string>;
+    for (const auto& [name, more] : std::vector<std::pair<std::string, Words>>{
+             {"a.webm", {"--duration", "6"}},
+             {"b.mkv", {"--frames", "7:300"}},
+             {"c.mov", {"--duration", "2"}},
+             {"d.gif", {"--fps", "50", "--duration", "4"}},
+             {"e.mp4", {"--codec", "libx265", "--duration", "4"}},
+         }) {
+        const std::string whole = bytes_of_a_whole("whole" + name, more);
+        interrupt(name, "INT", 0.7, more);
+        const bool had_part = !read_file(file(name + ".part")).empty();
+        Words again = more;
+        again.insert(again.end(), {"--resume", "--json"});
+        if (std::filesystem::exists(file(name))) again.emplace_back("--force");  // it was faster
+        const auto resumed = run_corda(render(name, again));
+        ASSERT_EQ(resumed.exit_code, 0) << name << resumed.err;
+        const auto report = nlohmann::json::parse(resumed.out);
+        EXPECT_EQ(report.at("resumed_frames") > 0, had_part) << name;
+        EXPECT_TRUE(read_file(file(name)) == whole) << name;
+    }
+}
+
+TEST_F(Resume, RefusesAPartOfAnotherRenderNamingTheDifference) {
+    const std::vector<std::string> more{"--duration", "600", "--set", "solver.method=exact"};
+    interrupt("a.mp4", "KILL", 2.5, more);
+    const std::string part = read_file(file("a.mp4.part"));
+    ASSERT_FALSE(part.empty());
+    const auto refused = [&](const std::vector<std::string>& other) {
+        std::vector<std::string> all{"--resume", "--set", "solver.method=exact"};
+        all.insert(all.end(), other.begin(), other.end());
+        const auto result = run_corda(render("a.mp4", all));
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_TRUE(read_file(file("a.mp4.part")) == part);
+        return result.err;
+    };
+    EXPECT_THAT(refused({"--duration", "600", "--crf", "30"}),
+                HasSubstr("video.crf is 30 and was not given"));
+    EXPECT_THAT(refused({}), HasSubstr("frames is 0:600 and was 0:36000"));
+    EXPECT_THAT(refused({"--duration", "600", "--set", "rope[0].mass=2"}),
+                HasSubstr("rope[0].mass has other values"));
+    EXPECT_THAT(refused({"--duration", "600", "--frames", "0:300"}),
+                HasSubstr("frames is 0:300 and was 0:36000"));
+    EXPECT_THAT(run_corda(render("a.mp4")).err, HasSubstr("go on with it (--resume)"));
+}
+
+TEST_F(Resume, BeginsAnewIfThereIsNothingToGoOnWith) {
+    const std::vector<std::string> more{"--duration", "0.5", "--resume", "--json"};
+    const auto anew = run_corda(render("a.mp4", more));
+    EXPECT_EQ(anew.exit_code, 0);
+    EXPECT_EQ(nlohmann::json::parse(anew.out).at("resumed_frames"), 0);
+    EXPECT_EQ(run_corda(render("a.mp4", more)).exit_code, 6);  // it is there
+    test::write_file(file("b.mp4.part"), "");
+    EXPECT_EQ(run_corda(render("b.mp4", more)).exit_code, 0);
+    test::write_file(file("c.mp4.part"), "this is no video");
+    const auto broken = run_corda(render("c.mp4", more));
+    EXPECT_NE(broken.exit_code, 0);
+    EXPECT_EQ(read_file(file("c.mp4.part")), "this is no video");
+    const auto pictures = run_corda(render("frames/%04d.png", more));
+    EXPECT_EQ(pictures.exit_code, 2);
+    EXPECT_THAT(pictures.err, HasSubstr("--frames FIRST:END"));
+}
+
+}  // namespace
+}  // namespace corda
