@@ -10,8 +10,8 @@
 
 namespace corda::render {
 
-// The arithmetic of a pixel. shaders/capsule.frag and shaders/paint.frag do the same steps, so change
-// them together. Allowed are +, - and * in single precision with one rounding each, comparisons and integers:
+// The arithmetic of a pixel. shaders/capsule.frag and render/paint.cpp do the same steps, so change them
+// together. Allowed are +, - and * in single precision with one rounding each, comparisons and integers:
 // what IEEE 754 fixes to the last bit on every driver.
 
 /// Distance of the pixel with centre (center_x, center_y) from a capsule's segment, in pixels.

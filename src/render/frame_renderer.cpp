@@ -21,16 +21,6 @@
 namespace corda::render {
 namespace {
 
-constexpr std::array<float, 4> kNothing{0, 0, 0, 0};
-
-/// Rows of the ground between two questions; a multiple of the tiles' side.
-constexpr int kAskingRows = 1024;
-
-constexpr GLuint kFrameUnit = 0;
-constexpr GLuint kGroundUnit = 1;
-constexpr GLuint kMaskUnit = 2;
-constexpr GLuint kSumsUnit = 3;
-
 /// Whether two stamps look the same, each with the coverage of its own list.
 bool same_look(const view::Stamp& a, const std::vector<std::uint8_t>& a_coverage, const view::Stamp& b,
                const std::vector<std::uint8_t>& b_coverage) {
@@ -54,7 +44,7 @@ int band_rows(const PixelRect& damage, const view::DrawList& list, const Tiles& 
     constexpr std::size_t kCapsule = 40;
     constexpr std::size_t kBand = 8'000'000;
     const std::size_t row = static_cast<std::size_t>(damage.width()) +
-                            tiles.tiles().size() * kTile / static_cast<std::size_t>(damage.height());
+                            tiles.tiles() * kTile / static_cast<std::size_t>(damage.height());
     const std::size_t rows = std::max(kBand, kCapsule * list.capsules.size()) / row;
     return kLlvmpipeTilePx * static_cast<int>(std::clamp<std::size_t>(rows / kLlvmpipeTilePx, 1,
                                                                       kLargestSidePx / kLlvmpipeTilePx));
@@ -78,10 +68,6 @@ void check_size(int width, int height) {
 std::string tinted(std::string source) {
     const std::size_t second_line = source.find('\n') + 1;  // #version stays the first
     return source.insert(second_line, "#define TINTED\n");
-}
-
-gl::Program tinted_program(const std::string& name, const char* vertex, const char* fragment) {
-    return {name, tinted(vertex).c_str(), tinted(fragment).c_str()};
 }
 
 void make_texture(const gl::Texture& texture, GLenum format, const Image& image) {
@@ -112,42 +98,31 @@ std::string making_frame(const Image& image) {
 }  // namespace
 
 FrameRenderer::Tints::Tints()
-    : capsule_program(tinted_program("tinted capsule", shaders::kCapsuleVert, shaders::kCapsuleFrag)),
-      paint_program(tinted_program("tinted paint", shaders::kPaintVert, shaders::kPaintFrag)) {}
+    : capsule_program("tinted capsule", tinted(shaders::kCapsuleVert).c_str(),
+                      tinted(shaders::kCapsuleFrag).c_str()) {}
 
 FrameRenderer::FrameRenderer(int width, int height)
     : image_((check_size(width, height), Image(width, height))),
       bare_(width, height),
       exposure_(width, height),
       capsule_program_("capsule", shaders::kCapsuleVert, shaders::kCapsuleFrag),
-      paint_program_("paint", shaders::kPaintVert, shaders::kPaintFrag),
+      clear_program_("clear", shaders::kClearVert, shaders::kClearFrag),
       last_touched_(tile_count(width, height)) {
-    make_textures();
-    describe_capsules();
-    describe_tiles();
-    set_uniforms();
-    gl::check_errors("preparing the renderer");
-}
-
-void FrameRenderer::make_textures() {
-    make_texture(frame_, GL_RGBA8, image_);
-    make_texture(ground_, GL_RGBA8, image_);
     make_texture(masks_, GL_RG8, image_);
     make_target(mask_target_, {&masks_}, making_frame(image_));
-    make_target(frame_target_, {&frame_, &masks_}, making_frame(image_));
+    describe_capsules();
+    describe_runs();
+    set_frame_size(clear_program_);
+    set_capsule_uniforms(capsule_program_);
+    gl::check_errors("preparing the renderer");
 }
 
 void FrameRenderer::make_tints() {
     auto tints = std::make_unique<Tints>();
     make_texture(tints->sums, GL_RGBA32F, image_);
-    make_target(tints->mask_target, {&masks_, &tints->sums}, making_frame(image_));
-    make_target(tints->frame_target, {&frame_, &masks_, &tints->sums}, making_frame(image_));
+    make_target(tints->target, {&masks_, &tints->sums}, making_frame(image_));
     set_capsule_uniforms(tints->capsule_program);
-    set_paint_uniforms(tints->paint_program);
-    glUniform1i(tints->paint_program.uniform("sums"), kSumsUnit);
     tints_ = std::move(tints);
-    masks_are_empty_ = false;
-    everything_is_stale_ = true;
 }
 
 void FrameRenderer::describe_capsules() {
@@ -166,39 +141,26 @@ void FrameRenderer::describe_capsules() {
     glVertexAttribIFormat(2, 4, GL_UNSIGNED_BYTE, offsetof(view::Capsule, tint));
 }
 
-void FrameRenderer::describe_tiles() {
-    static_assert(std::is_standard_layout_v<Tile> && sizeof(Tile) == 5 * sizeof(float));
-    glBindVertexArray(tile_array_.id());
-    glBindBuffer(GL_ARRAY_BUFFER, tile_buffer_.id());
-    glBindVertexBuffer(0, tile_buffer_.id(), 0, sizeof(Tile));
+void FrameRenderer::describe_runs() {
+    static_assert(std::is_standard_layout_v<TileRun> && sizeof(PixelRect) == 4 * sizeof(GLint));
+    glBindVertexArray(run_array_.id());
+    glBindBuffer(GL_ARRAY_BUFFER, run_buffer_.id());
+    glBindVertexBuffer(0, run_buffer_.id(), 0, sizeof(TileRun));
     glVertexBindingDivisor(0, 1);
-    for (const GLuint attribute : {0U, 1U, 2U}) {
-        glEnableVertexAttribArray(attribute);
-        glVertexAttribBinding(attribute, 0);
-    }
-    glVertexAttribFormat(0, 4, GL_FLOAT, GL_FALSE, offsetof(Tile, x0));
-    glVertexAttribIFormat(1, 4, GL_UNSIGNED_BYTE, offsetof(Tile, color));
+    glEnableVertexAttribArray(0);
+    glVertexAttribBinding(0, 0);
+    glVertexAttribIFormat(0, 4, GL_INT, offsetof(TileRun, rect));
 }
 
-void FrameRenderer::set_uniforms() {
-    set_capsule_uniforms(capsule_program_);
-    set_paint_uniforms(paint_program_);
+void FrameRenderer::set_frame_size(const gl::Program& program) const {
+    program.use();
+    glUniform2f(program.uniform("frame_size"), static_cast<float>(image_.width()),
+                static_cast<float>(image_.height()));
 }
 
 void FrameRenderer::set_capsule_uniforms(const gl::Program& program) const {
-    program.use();
-    glUniform2f(program.uniform("frame_size"), static_cast<float>(image_.width()),
-                static_cast<float>(image_.height()));
+    set_frame_size(program);
     glUniform1f(program.uniform("edge_margin"), view::kEdgeMargin);
-}
-
-void FrameRenderer::set_paint_uniforms(const gl::Program& program) const {
-    program.use();
-    glUniform2f(program.uniform("frame_size"), static_cast<float>(image_.width()),
-                static_cast<float>(image_.height()));
-    glUniform1i(program.uniform("frame"), kFrameUnit);
-    glUniform1i(program.uniform("ground"), kGroundUnit);
-    glUniform1i(program.uniform("masks"), kMaskUnit);
 }
 
 Damage FrameRenderer::stale_parts() const {
@@ -221,7 +183,7 @@ void FrameRenderer::add_changed_stamps(const view::DrawList& list, Damage& damag
 
 Damage FrameRenderer::render(const view::DrawList& list, const OnProgress& on_progress) {
     exposure_.clear();
-    begin(list, on_progress);
+    begin(list);
     tiles_.plan(list);
     touch(tiles_.touched());
     Damage damage = stale_parts();
@@ -231,7 +193,7 @@ Damage FrameRenderer::render(const view::DrawList& list, const OnProgress& on_pr
 
 void FrameRenderer::expose(const view::DrawList& list, const OnProgress& on_progress) {
     try {
-        begin(list, on_progress);
+        begin(list);
         tiles_.plan(list);
         touch(tiles_.touched());
         draw(list, rects_of(tiles_.touched(), list.width, list.height), on_progress);
@@ -244,7 +206,7 @@ void FrameRenderer::expose(const view::DrawList& list, const OnProgress& on_prog
 
 Damage FrameRenderer::develop(const view::DrawList& list) {
     Damage damage = stale_parts();
-    for (const PixelRect& part : damage) write_ground(list.ground, part, bare_);
+    for (const PixelRect& part : damage) ground_->write(part, bare_);
     exposure_.develop(list.ground, bare_);
     return finish(list, exposure_.touched(), std::move(damage));
 }
@@ -276,42 +238,16 @@ void FrameRenderer::upload(const view::DrawList& list) {
                      values.data(), GL_STREAM_DRAW);
     };
     fill(capsule_buffer_, list.capsules);
-    fill(tile_buffer_, tiles_.tiles());
+    fill(run_buffer_, tiles_.runs());
 }
 
-void FrameRenderer::upload_ground(const Ground& ground, const OnProgress& on_progress) {
-    if (last_ground_ == ground) return;
-    last_ground_.reset();
-    const int width = image_.width();
-    const int height = image_.height();
-    std::vector<std::uint8_t> rows(image_.row_bytes() * Tiles::kSidePx);
-    for (int y = 0; y < height; y += Tiles::kSidePx) {
-        const int count = std::min(Tiles::kSidePx, height - y);
-        for (int row = 0; row < count; ++row)
-            write_ground_row(ground, y + row, width, height, &rows[image_.row_bytes() * row]);
-        set_state(image_.rect());
-        glActiveTexture(GL_TEXTURE0);
-        glBindTexture(GL_TEXTURE_2D, ground_.id());
-        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, y, width, count, GL_RGBA, GL_UNSIGNED_BYTE, rows.data());
-        if (y > 0 && y % kAskingRows == 0) report_progress(on_progress, 0, height);
-    }
-    gl::check_errors("drawing the ground");
-    last_ground_ = ground;
-}
-
-void FrameRenderer::begin(const view::DrawList& list, const OnProgress& on_progress) {
+void FrameRenderer::begin(const view::DrawList& list) {
     const bool has_tints = std::any_of(list.layers.begin(), list.layers.end(),
                                        [](const view::Layer& layer) { return layer.is_tinted; });
     if (has_tints && !tints_) make_tints();
-    if (last_ground_ != list.ground) everything_is_stale_ = true;
-    upload_ground(list.ground, on_progress);
-    if (masks_are_empty_) return;
-    set_state(image_.rect());
-    glBindFramebuffer(GL_FRAMEBUFFER, mask_target_.id());
-    glClearBufferfv(GL_COLOR, 0, kNothing.data());
-    if (!tints_) return;
-    glBindFramebuffer(GL_FRAMEBUFFER, tints_->mask_target.id());
-    glClearBufferfv(GL_COLOR, 1, kNothing.data());
+    if (ground_ && ground_->ground() == list.ground) return;
+    ground_.emplace(list.ground, image_.height());
+    everything_is_stale_ = true;
 }
 
 void FrameRenderer::draw(const view::DrawList& list, const Damage& parts, const OnProgress& on_progress) {
@@ -319,7 +255,6 @@ void FrameRenderer::draw(const view::DrawList& list, const Damage& parts, const 
     for (const PixelRect& part : parts) all = all.united(part);
     if (all.empty()) return;
     const bool was_stale = std::exchange(everything_is_stale_, true);  // if it fails on the way
-    masks_are_empty_ = false;
     upload(list);
     const int rows = on_progress ? band_rows(all, list, tiles_) : kLargestSidePx;
     for (PixelRect band = all; band.y0 < all.y1; band.y0 = band.y1) {
@@ -327,32 +262,16 @@ void FrameRenderer::draw(const view::DrawList& list, const Damage& parts, const 
         band.y1 = std::min((band.y0 + rows) / kLlvmpipeTilePx * kLlvmpipeTilePx, all.y1);
         draw_band(band, parts);
     }
-    masks_are_empty_ = true;
     everything_is_stale_ = was_stale;
 }
 
 void FrameRenderer::draw_band(const PixelRect& band, const Damage& parts) {
-    const auto for_each_part = [&](const auto& visit) {
-        for (const PixelRect& part : parts) {
-            const PixelRect rect = part.intersected(band);
-            if (!rect.empty()) visit(rect);
-        }
-    };
+    for (const PixelRect& part : parts) ground_->write(part.intersected(band), bare_);
     set_state(band);
-    for_each_part([&](const PixelRect& rect) {
-        glCopyImageSubData(ground_.id(), GL_TEXTURE_2D, 0, rect.x0, rect.y0, 0, frame_.id(), GL_TEXTURE_2D, 0,
-                           rect.x0, rect.y0, 0, rect.width(), rect.height(), 1);
-    });
     for (const Batch& batch : tiles_.batches()) {
         draw_masks(batch);
-        paint(batch);
+        paint(batch, band);
     }
-    glBindFramebuffer(GL_FRAMEBUFFER, frame_target_.id());
-    // The first waits until the band is drawn.
-    for_each_part([&](const PixelRect& rect) {
-        glReadPixels(rect.x0, rect.y0, rect.width(), rect.height(), GL_RGBA, GL_UNSIGNED_BYTE,
-                     bare_.pixel(rect.x0, rect.y0));
-    });
     gl::check_errors("drawing a frame");
 }
 
@@ -360,51 +279,51 @@ void FrameRenderer::set_state(const PixelRect& band) const {
     glDisable(GL_DITHER);
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
-    glDisable(GL_BLEND);
     glEnable(GL_SCISSOR_TEST);
     glScissor(band.x0, band.y0, band.width(), band.height());
     glViewport(0, 0, image_.width(), image_.height());
-    for (const GLenum alignment : {GL_PACK_ALIGNMENT, GL_UNPACK_ALIGNMENT}) glPixelStorei(alignment, 4);
-    for (const GLenum length : {GL_PACK_ROW_LENGTH, GL_UNPACK_ROW_LENGTH})
-        glPixelStorei(length, image_.width());
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glPixelStorei(GL_PACK_ROW_LENGTH, 0);
     glBlendEquation(GL_MAX);
-    const auto bind = [](GLuint unit, const gl::Texture& texture) {
-        glActiveTexture(GL_TEXTURE0 + unit);
-        glBindTexture(GL_TEXTURE_2D, texture.id());
-        glBindSampler(unit, 0);
-    };
-    bind(kFrameUnit, frame_);
-    bind(kGroundUnit, ground_);
-    bind(kMaskUnit, masks_);
-    if (tints_) bind(kSumsUnit, tints_->sums);
 }
 
 void FrameRenderer::draw_masks(const Batch& batch) const {
-    glBindFramebuffer(GL_FRAMEBUFFER, batch.is_tinted ? tints_->mask_target.id() : mask_target_.id());
-    glEnable(GL_BLEND);
-    draw_capsules(batch);
+    glBindFramebuffer(GL_FRAMEBUFFER, batch.is_tinted ? tints_->target.id() : mask_target_.id());
     glDisable(GL_BLEND);
-}
-
-void FrameRenderer::draw_capsules(const Batch& batch) const {
-    glBindVertexArray(capsule_array_.id());
-    (batch.is_tinted ? tints_->capsule_program : capsule_program_).use();
+    clear_program_.use();
+    glBindVertexArray(run_array_.id());
+    glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.run_count),
+                                      static_cast<GLuint>(batch.first_run));
+    glEnable(GL_BLEND);
     if (batch.is_tinted) {
         glBlendEquationi(1, GL_FUNC_ADD);
         glBlendFunci(1, GL_ONE, GL_ONE);
     }
+    (batch.is_tinted ? tints_->capsule_program : capsule_program_).use();
+    glBindVertexArray(capsule_array_.id());
     glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.capsule_count),
                                       static_cast<GLuint>(batch.first_capsule));
     if (batch.is_tinted) glBlendEquation(GL_MAX);
 }
 
-void FrameRenderer::paint(const Batch& batch) const {
-    glBindFramebuffer(GL_FRAMEBUFFER, batch.is_tinted ? tints_->frame_target.id() : frame_target_.id());
-    glBindVertexArray(tile_array_.id());
-    (batch.is_tinted ? tints_->paint_program : paint_program_).use();
-    glTextureBarrier();  // it reads what it draws on
-    glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.tile_count),
-                                      static_cast<GLuint>(batch.first_tile));
+void FrameRenderer::paint(const Batch& batch, const PixelRect& band) {
+    static_assert(std::is_standard_layout_v<TintSums> && sizeof(TintSums) == 4 * sizeof(float));
+    for (std::size_t i = batch.first_run; i < batch.first_run + batch.run_count; ++i) {
+        const TileRun& run = tiles_.runs()[i];
+        const PixelRect rect = run.rect.intersected(band);
+        if (rect.empty()) continue;
+        const std::size_t pixels = static_cast<std::size_t>(rect.width()) * rect.height();
+        // The first of a batch waits until it is drawn.
+        const auto read = [&rect](GLenum from, GLenum format, GLenum type, auto& values) {
+            glReadBuffer(from);
+            glReadPixels(rect.x0, rect.y0, rect.width(), rect.height(), format, type, values.data());
+        };
+        read_.coverage.resize(2 * pixels);
+        read_.sums.resize(batch.is_tinted ? pixels : 0);
+        if (batch.is_tinted) read(GL_COLOR_ATTACHMENT1, GL_RGBA, GL_FLOAT, read_.sums);
+        read(GL_COLOR_ATTACHMENT0, GL_RG, GL_UNSIGNED_BYTE, read_.coverage);
+        paint_run(rect, run.color, read_, *ground_, bare_);
+    }
 }
 
 }  // namespace corda::render

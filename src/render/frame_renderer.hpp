@@ -11,6 +11,8 @@
 #include "corda/gl/object.hpp"
 #include "corda/gl/program.hpp"
 #include "corda/render/exposure.hpp"
+#include "corda/render/ground.hpp"
+#include "corda/render/paint.hpp"
 #include "corda/render/tiles.hpp"
 #include "corda/view/draw_list.hpp"
 
@@ -19,11 +21,10 @@ namespace corda::render {
 /// Draws draw lists with OpenGL into a picture in memory. Every frame equals that of render_reference() byte
 /// for byte.
 ///
-/// Layer by layer, or many at once if no tile has two of them: the capsules and halos of a layer are united
-/// in two masks, by GL_MAX of values that are exactly k/255; then a pass over its tiles paints it in
-/// integers. A tinted layer has sums of colours beside its masks. Only tiles that may differ from the last
-/// frame are drawn and read back. What is then done without OpenGL, in integers, too: the mean of the
-/// pictures of an exposure; and stamps, which change alone.
+/// Layer by layer, or many at once if no tile has two of them, OpenGL unites the capsules and halos of a
+/// layer in two masks, by GL_MAX of values that are exactly k/255, and for a tinted layer sums the colours
+/// beside them. Only tiles that the layers touch are emptied, drawn and read back; they are painted in
+/// integers (render/paint), as are the mean of the pictures of an exposure and the stamps.
 class FrameRenderer {
   public:
     /// A gl::Context must be current and outlive this. Throws corda::Error (kNoGl) if the driver cannot draw
@@ -52,23 +53,19 @@ class FrameRenderer {
     struct Tints {
         Tints();
         gl::Program capsule_program;
-        gl::Program paint_program;
         gl::Texture sums;
-        gl::Framebuffer mask_target;   ///< masks and sums
-        gl::Framebuffer frame_target;  ///< frame, masks and sums
+        gl::Framebuffer target;  ///< masks and sums
     };
 
-    void make_textures();
     void make_tints();
     void describe_capsules();
-    void describe_tiles();
-    void set_uniforms();
+    void describe_runs();
+    void set_frame_size(const gl::Program& program) const;
     void set_capsule_uniforms(const gl::Program& program) const;
-    void set_paint_uniforms(const gl::Program& program) const;
     /// Sets the state that drawing depends on: another renderer may have drawn in this context meanwhile.
     void set_state(const PixelRect& band) const;
     /// Prepares for drawing on a ground.
-    void begin(const view::DrawList& list, const OnProgress& on_progress);
+    void begin(const view::DrawList& list);
     /// Draws the layers in some rectangles, a multiple of tiles, to bare_.
     void draw(const view::DrawList& list, const Damage& parts, const OnProgress& on_progress);
     /// Adds tiles to last_touched_.
@@ -81,34 +78,30 @@ class FrameRenderer {
     /// that of bare_; returns it with that of the stamps.
     Damage finish(const view::DrawList& list, const std::vector<std::uint8_t>& touched, Damage damage);
     void upload(const view::DrawList& list);
-    void upload_ground(const Ground& ground, const OnProgress& on_progress);
-    void draw_capsules(const Batch& batch) const;
-    /// Draws and reads some rows.
+    /// Draws some rows.
     void draw_band(const PixelRect& band, const Damage& parts);
     void draw_masks(const Batch& batch) const;
-    void paint(const Batch& batch) const;
+    /// Reads the masks of a batch in some rows, and paints its layers.
+    void paint(const Batch& batch, const PixelRect& band);
 
     Image image_;
     Image bare_;  ///< without stamps, colours times alpha
     Tiles tiles_;
     Exposure exposure_;
     gl::Program capsule_program_;
-    gl::Program paint_program_;
+    gl::Program clear_program_;
     gl::VertexArray capsule_array_;
-    gl::VertexArray tile_array_;
+    gl::VertexArray run_array_;
     gl::Buffer capsule_buffer_;
-    gl::Buffer tile_buffer_;
-    gl::Texture ground_;
+    gl::Buffer run_buffer_;
     gl::Texture masks_;
-    gl::Texture frame_;
     gl::Framebuffer mask_target_;
-    gl::Framebuffer frame_target_;
     std::unique_ptr<Tints> tints_;
     std::vector<std::uint8_t> last_touched_;  ///< per tile: 1 if it has not been the ground alone
     std::vector<view::Stamp> last_stamps_;
     std::vector<std::uint8_t> last_coverage_;
-    std::optional<Ground> last_ground_;  ///< that of ground_
-    bool masks_are_empty_ = false;
+    std::optional<GroundRows> ground_;
+    Masks read_;  ///< of one run
     bool everything_is_stale_ = true;
 };
 

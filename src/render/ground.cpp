@@ -41,13 +41,23 @@ void write_ground_row(const Ground& ground, int y, int width, int height, std::u
     }
 }
 
-void write_ground(const Ground& ground, const PixelRect& part, Image& image) {
-    std::array<std::uint8_t, 32> eight{};  // pixels, which repeat
+GroundRows::GroundRows(const Ground& ground, int height)
+    : ground_(ground), rows_(static_cast<std::size_t>(height)) {
+    for (int y = 0; y < height; ++y)
+        write_ground_row(ground, y, kPeriodPx, height, rows_[static_cast<std::size_t>(y)].data());
+}
+
+void GroundRows::write(const PixelRect& part, Image& image) const {
     for (int y = part.y0; y < part.y1; ++y) {
-        write_ground_row(ground, y, 8, image.height(), eight.data());
+        const Row& pixels = row(y);
         std::uint8_t* rgba = image.pixel(part.x0, y);
-        for (int x = part.x0; x < part.x1; ++x, rgba += 4)
-            std::copy_n(&eight[std::size_t{4} * (x & 7)], 4, rgba);
+        for (int x = part.x0; x < part.x1;) {
+            const int first = x % kPeriodPx;
+            const int count = std::min(kPeriodPx - first, part.x1 - x);
+            std::copy_n(&pixels[std::size_t{4} * first], 4 * count, rgba);
+            x += count;
+            rgba += std::ptrdiff_t{4} * count;
+        }
     }
 }
 

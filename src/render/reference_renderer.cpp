@@ -69,7 +69,7 @@ void paint(Color color, bool is_tinted, const PixelRect& box, const Image& groun
 /// The layers alone, colours times alpha.
 Image render_layers(const view::DrawList& list) {
     Image ground(list.width, list.height);
-    write_ground(list.ground, ground.rect(), ground);
+    GroundRows(list.ground, list.height).write(ground.rect(), ground);
     Image image = ground;
     const std::size_t pixels = static_cast<std::size_t>(list.width) * list.height;
     Mask mask{std::vector<std::uint8_t>(pixels), std::vector<std::uint8_t>(pixels), {}};

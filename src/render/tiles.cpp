@@ -34,7 +34,8 @@ void Tiles::for_each_tile(const view::Capsule& capsule, const view::DrawList& li
 void Tiles::plan(const view::DrawList& list) {
     columns_ = (list.width + kSidePx - 1) / kSidePx;
     last_layer_.assign(tile_count(list.width, list.height), 0);
-    tiles_.clear();
+    tiles_ = 0;
+    runs_.clear();
     batches_.clear();
     std::size_t first_layer = 0;  // of the batch
     for (std::size_t l = 0; l < list.layers.size(); ++l) {
@@ -52,22 +53,32 @@ void Tiles::plan(const view::DrawList& list) {
         }
         if (overlaps) {
             batches_.push_back({.first_capsule = layer.first_capsule,
-                                .first_tile = tiles_.size(),
+                                .first_run = runs_.size(),
                                 .is_tinted = layer.is_tinted});
             first_layer = l;
         }
         Batch& batch = batches_.back();
         batch.capsule_count = layer.first_capsule + layer.capsule_count - batch.first_capsule;
-        batch.tile_count += touched_.size();
-        for (const std::size_t tile : touched_) {
-            const PixelRect rect = tile_rect(tile, list.width, list.height);
-            tiles_.push_back({static_cast<float>(rect.x0), static_cast<float>(rect.y0),
-                              static_cast<float>(rect.x1), static_cast<float>(rect.y1), layer.color});
-        }
+        add_runs(list, layer.color);
+        batch.run_count = runs_.size() - batch.first_run;
     }
     touched_by_any_.resize(last_layer_.size());
     std::transform(last_layer_.begin(), last_layer_.end(), touched_by_any_.begin(),
                    [](std::size_t layer) { return static_cast<std::uint8_t>(layer > 0); });
+}
+
+void Tiles::add_runs(const view::DrawList& list, Color color) {
+    tiles_ += touched_.size();
+    std::sort(touched_.begin(), touched_.end());
+    std::size_t last = 0;
+    for (const std::size_t tile : touched_) {
+        const PixelRect rect = tile_rect(tile, list.width, list.height);
+        if (rect.x0 > 0 && tile != touched_.front() && tile == last + 1)
+            runs_.back().rect.x1 = rect.x1;
+        else
+            runs_.push_back({rect, color});
+        last = tile;
+    }
 }
 
 std::size_t tile_count(int width, int height) {

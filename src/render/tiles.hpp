@@ -9,12 +9,9 @@
 
 namespace corda::render {
 
-/// The part of a frame in which one layer is painted.
-struct Tile {
-    float x0 = 0;
-    float y0 = 0;
-    float x1 = 0;
-    float y1 = 0;
+/// Tiles side by side in which one layer is painted.
+struct TileRun {
+    PixelRect rect;
     Color color;
 };
 
@@ -22,8 +19,8 @@ struct Tile {
 struct Batch {
     std::size_t first_capsule = 0;
     std::size_t capsule_count = 0;
-    std::size_t first_tile = 0;
-    std::size_t tile_count = 0;
+    std::size_t first_run = 0;
+    std::size_t run_count = 0;
     bool is_tinted = false;  ///< of its layers
 };
 
@@ -37,23 +34,28 @@ class Tiles {
     /// Memory of the last call is reused.
     void plan(const view::DrawList& list);
 
-    /// Inside the frame.
-    [[nodiscard]] const std::vector<Tile>& tiles() const { return tiles_; }
+    /// Inside the frame; of a batch no two overlap.
+    [[nodiscard]] const std::vector<TileRun>& runs() const { return runs_; }
+    /// How many tiles the runs are.
+    [[nodiscard]] std::size_t tiles() const { return tiles_; }
     /// Per tile of the frame, row by row: whether a layer is painted there, 0 or 1.
     [[nodiscard]] const std::vector<std::uint8_t>& touched() const { return touched_by_any_; }
-    /// In the order in which they are to be painted; contiguous in tiles and capsules.
+    /// In the order in which they are to be painted; contiguous in runs and capsules.
     [[nodiscard]] const std::vector<Batch>& batches() const { return batches_; }
 
   private:
     /// Calls `visit` with the index of every tile that the capsule may touch.
     template <class Visit>
     void for_each_tile(const view::Capsule& capsule, const view::DrawList& list, const Visit& visit) const;
+    /// Adds the tiles of touched_ as runs.
+    void add_runs(const view::DrawList& list, Color color);
 
     int columns_ = 0;
+    std::size_t tiles_ = 0;
     std::vector<std::size_t> last_layer_;  ///< per tile, from 1 on; 0: none
     std::vector<std::size_t> touched_;     ///< by a layer
     std::vector<std::uint8_t> touched_by_any_;
-    std::vector<Tile> tiles_;
+    std::vector<TileRun> runs_;
     std::vector<Batch> batches_;
 };
 

@@ -103,6 +103,6 @@ struct DrawList {
 
 /// How far beyond its radii a capsule can still touch a pixel, in pixels: half a pixel of smooth edge, and
 /// slack for rounding.
-inline constexpr float kEdgeMargin = 2.0F;
+inline constexpr float kEdgeMargin = 1.0F;
 
 }  // namespace corda::view

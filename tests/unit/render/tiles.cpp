@@ -11,11 +11,9 @@ namespace corda::render {
 namespace {
 
 bool holds(const Tiles& tiles, const Batch& batch, int x, int y) {
-    for (std::size_t i = batch.first_tile; i < batch.first_tile + batch.tile_count; ++i) {
-        const Tile& tile = tiles.tiles()[i];
-        if (static_cast<float>(x) >= tile.x0 && static_cast<float>(x) < tile.x1 &&
-            static_cast<float>(y) >= tile.y0 && static_cast<float>(y) < tile.y1)
-            return true;
+    for (std::size_t i = batch.first_run; i < batch.first_run + batch.run_count; ++i) {
+        const PixelRect& rect = tiles.runs()[i].rect;
+        if (x >= rect.x0 && x < rect.x1 && y >= rect.y0 && y < rect.y1) return true;
     }
     return false;
 }
@@ -52,8 +50,9 @@ TEST(Tiles, AreFewAlongALine) {
     list.add_capsule({0.0, 0.0}, {kSide, kSide}, 2.0);
     Tiles tiles;
     tiles.plan(list);
-    EXPECT_EQ(tiles.tiles().size(), 16U + 15U + 15U);  // of 256
-    EXPECT_EQ(tiles.tiles().back().x1, static_cast<float>(kSide));
+    EXPECT_EQ(tiles.tiles(), 16U + 15U + 15U);  // of 256
+    EXPECT_EQ(tiles.runs().size(), 16U);        // one per row
+    EXPECT_EQ(tiles.runs().back().rect.x1, kSide);
 }
 
 TEST(Tiles, OfLayersThatDoNotMeetAreOneBatch) {
@@ -76,11 +75,11 @@ TEST(Tiles, OfLayersThatDoNotMeetAreOneBatch) {
     tiles.plan(list);
     ASSERT_EQ(tiles.batches().size(), 2U);
     EXPECT_EQ(tiles.batches()[0].capsule_count, 3U);
-    EXPECT_EQ(tiles.batches()[0].tile_count, 3U);
+    EXPECT_EQ(tiles.batches()[0].run_count, 3U);
     EXPECT_EQ(tiles.batches()[1].first_capsule, 3U);
     EXPECT_EQ(tiles.batches()[1].capsule_count, 2U);
-    EXPECT_EQ(tiles.batches()[1].first_tile, 3U);
-    EXPECT_EQ(tiles.tiles()[3].color.r, 4);
+    EXPECT_EQ(tiles.batches()[1].first_run, 3U);
+    EXPECT_EQ(tiles.runs()[3].color.r, 4);
 }
 
 }  // namespace

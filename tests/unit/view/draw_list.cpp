@@ -34,10 +34,10 @@ TEST(DrawLists, ShowNothingIfAllIsOutsideTheFrame) {
 
 TEST(DrawLists, ContainTheirCapsulesWithTheirHalos) {
     DrawList list = list_of({50.0, 25.0}, {60.0, 25.0}, 2.0);
-    EXPECT_EQ(test::bounds_of(list).x0, 46);
+    EXPECT_EQ(test::bounds_of(list).x0, 47);
     list.add_layer({1, 2, 3});
     list.add_capsule({50.0, 25.0}, {60.0, 25.0}, 2.0, 5.0);
-    EXPECT_EQ(test::bounds_of(list).x0, 41);
+    EXPECT_EQ(test::bounds_of(list).x0, 42);
     EXPECT_EQ(list.capsules[1].halo_radius, 7.0F);
     ASSERT_EQ(list.layers.size(), 2U);
     EXPECT_EQ(list.layers[1].first_capsule, 1U);

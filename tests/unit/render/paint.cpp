@@ -1,0 +1,105 @@
+#include "corda/render/paint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <random>
+
+namespace corda::render {
+namespace {
+
+using Random = std::mt19937;  // the same numbers with every C++ library
+
+std::uint8_t byte(Random& random) {
+    return static_cast<std::uint8_t>(random() >> 24U);
+}
+
+/// Mostly none or all, as of a layer: rows of both are skipped, or painted at once.
+std::uint8_t coverage(Random& random) {
+    const std::uint8_t kind = byte(random);
+    return kind < 128 ? std::uint8_t{0} : (kind < 160 ? std::uint8_t{255} : byte(random));
+}
+
+Color color(Random& random) {
+    return {byte(random), byte(random), byte(random), byte(random)};
+}
+
+Masks masks_of(Random& random, std::size_t pixels, bool is_tinted) {
+    Masks masks;
+    for (std::size_t i = 0; i < 2 * pixels; ++i)
+        masks.coverage.push_back(i % 2 == 1 && pixels % 3 == 0 ? std::uint8_t{0} : coverage(random));
+    if (!is_tinted) return masks;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        TintSums& sums = masks.sums.emplace_back();
+        for (int links = byte(random) % 3; links >= 0; --links)
+            sums.add({byte(random), byte(random), byte(random)}, 1U + byte(random));
+    }
+    return masks;
+}
+
+/// As the reference renderer does it.
+void paint_pixel(Color own, const std::uint8_t* mask, const std::uint8_t* bare, std::uint8_t* pixel) {
+    const std::array<std::uint8_t, 4> channels{own.r, own.g, own.b, 255};
+    for (int c = 0; c < 4; ++c) {
+        const std::uint32_t below = paint_over(pixel[c], bare[c], own.a, mask[1]);
+        pixel[c] = static_cast<std::uint8_t>(paint_over(below, channels[c], own.a, mask[0]));
+    }
+}
+
+void expect_painted(Random& random, const PixelRect& rect, const Ground& ground, bool is_tinted) {
+    constexpr int kWidth = 45;  // not a multiple of what is painted at a time
+    constexpr int kHeight = 16;
+    const GroundRows rows(ground, kHeight);
+    const Color own = color(random);
+    const Masks masks = masks_of(random, static_cast<std::size_t>(rect.width()) * rect.height(), is_tinted);
+    Image image(kWidth, kHeight);
+    for (int y = 0; y < kHeight; ++y)
+        for (int i = 0; i < 4 * kWidth; ++i) image.pixel(0, y)[i] = byte(random);
+    Image expected = image;
+    std::size_t i = 0;
+    for (int y = rect.y0; y < rect.y1; ++y) {
+        for (int x = rect.x0; x < rect.x1; ++x, ++i) {
+            Color its = own;
+            if (is_tinted) {
+                const TintSums& sums = masks.sums[i];
+                its = {static_cast<std::uint8_t>(sums.mean(sums.r)),
+                       static_cast<std::uint8_t>(sums.mean(sums.g)),
+                       static_cast<std::uint8_t>(sums.mean(sums.b)), own.a};
+            }
+            paint_pixel(its, &masks.coverage[2 * i], &rows.row(y)[4 * (x % GroundRows::kPeriodPx)],
+                        expected.pixel(x, y));
+        }
+    }
+    paint_run(rect, own, masks, rows, image);
+    for (int y = 0; y < kHeight; ++y)
+        for (int x = 0; x < kWidth; ++x)
+            for (int c = 0; c < 4; ++c)
+                ASSERT_EQ(image.pixel(x, y)[c], expected.pixel(x, y)[c]) << x << ',' << y << ',' << c;
+}
+
+TEST(Paint, IsThatOfEveryPixelByItself) {
+    Random random(1);
+    for (int i = 0; i < 200; ++i) {
+        const Ground ground{color(random), color(random)};
+        for (const bool is_tinted : {false, true}) {
+            expect_painted(random, {0, 0, 45, 16}, ground, is_tinted);
+            expect_painted(random, {16, 3, 32, 4}, ground, is_tinted);
+            expect_painted(random, {32, 0, 45, 16}, ground, is_tinted);
+        }
+    }
+}
+
+TEST(Paint, LeavesWhatIsNotCovered) {
+    Random random(2);
+    Image image(16, 16);
+    for (int y = 0; y < 16; ++y)
+        for (int i = 0; i < 64; ++i) image.pixel(0, y)[i] = byte(random);
+    const Image before = image;
+    const Masks none{std::vector<std::uint8_t>(std::size_t{2} * 16 * 16), {}};
+    paint_run(image.rect(), {255, 0, 0, 255}, none, GroundRows({}, 16), image);
+    EXPECT_EQ(image, before);
+}
+
+}  // namespace
+}  // namespace corda::render
