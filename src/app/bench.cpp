@@ -1,4 +1,5 @@
 #include "corda/bench/bench.hpp"
+#include "corda/bench/presets.hpp"
 
 #include <memory>
 #include <string>
@@ -23,11 +24,18 @@ struct BenchOptions {
     std::vector<std::string> presets{"ultrafast", "veryfast", "medium"};
     bench::BenchDef def;
 
-    /// The scene of one case: the example `first` if none is named.
+    bool encodings = false;
+
+    /// The scene of one case: ten seconds of the example `first` if none is named.
     [[nodiscard]] Scene scene_of(const std::string& size, const std::string& preset) const {
-        std::vector<Setting> settings = scene.settings;
-        settings.push_back(size_setting(size));
-        settings.push_back("video.preset=" + preset);
+        return scene_of({size_setting(size), "video.preset=" + preset});
+    }
+
+    [[nodiscard]] Scene scene_of(const std::vector<Setting>& own) const {
+        std::vector<Setting> settings;
+        if (scene.path.empty()) settings.emplace_back("world.duration=10");
+        settings.insert(settings.end(), scene.settings.begin(), scene.settings.end());
+        settings.insert(settings.end(), own.begin(), own.end());
         return scene.path.empty() ? parse_scene(example_text("first"), "first.toml", settings)
                                   : load_scene(scene.path, settings);
     }
@@ -44,21 +52,23 @@ nlohmann::json to_json(const VideoDef& video, const bench::Measured& measured) {
         stages.push_back(
             {{"name", stage.name}, {"ms_per_frame", 1e3 * stage.wall_s / frames}, {"cpu_s", stage.cpu_s}});
     }
-    return {{"width", video.width_px},
-            {"height", video.height_px},
-            {"preset", video.encoder.preset},
-            {"frames", measured.frames},
-            {"jobs", measured.jobs},
-            {"fps", frames / measured.render_s.median()},
-            {"encoder_fps", frames / measured.encoder_s.median()},
-            {"ratio_to_encoder", measured.ratio.median()},
-            {"render_s", spread_json(measured.render_s)},
-            {"encoder_s", spread_json(measured.encoder_s)},
-            {"ratio", spread_json(measured.ratio)},
-            {"peak_rss_mib", measured.peak_rss_mib},
-            {"encoder_rss_mib", measured.encoder_rss_mib},
-            {"rss_per_job_mib", measured.peak_rss_mib / measured.jobs - measured.encoder_rss_mib},
-            {"stages", stages}};
+    return {
+        {"width", video.width_px},
+        {"height", video.height_px},
+        {"preset", video.encoder.preset},
+        {"frames", measured.frames},
+        {"jobs", measured.jobs},
+        {"fps", frames / measured.render_s.median()},
+        {"encoder_fps", frames / measured.encoder_s.median()},
+        {"ratio_to_encoder", measured.ratio.median()},
+        {"render_s", spread_json(measured.render_s)},
+        {"encoder_s", spread_json(measured.encoder_s)},
+        {"ratio", spread_json(measured.ratio)},
+        {"encoder_pictures", measured.pictures},
+        {"peak_rss_mib", measured.peak_rss_mib},
+        {"encoder_rss_mib", measured.encoder_rss_mib},
+        {"rss_per_job_mib", measured.rss_per_job_mib ? nlohmann::json(*measured.rss_per_job_mib) : nullptr},
+        {"stages", stages}};
 }
 
 void report_in_words(const Console& console, const VideoDef& video, const bench::Measured& measured) {
@@ -68,15 +78,28 @@ void report_in_words(const Console& console, const VideoDef& video, const bench:
         video.width_px, video.height_px, video.encoder.preset, frames / measured.render_s.median(),
         frames / measured.encoder_s.median(), measured.ratio.median(), measured.ratio.least(),
         measured.ratio.largest()));
-    console.result(fmt::format(
-        "  peak of memory {:.0f} MiB; of each of {} at a time the encoder {:.0f} MiB, the rest {:.0f} MiB",
-        measured.peak_rss_mib, counted(measured.jobs, "chunk"), measured.encoder_rss_mib,
-        measured.peak_rss_mib / measured.jobs - measured.encoder_rss_mib));
+    std::string memory =
+        fmt::format("  peak of memory {:.0f} MiB with {} at a time; one encoder {:.0f} MiB",
+                    measured.peak_rss_mib, counted(measured.jobs, "chunk"), measured.encoder_rss_mib);
+    if (measured.rss_per_job_mib)
+        memory += fmt::format("; a further chunk adds {:.0f} MiB to it", *measured.rss_per_job_mib);
+    console.result(memory);
     std::string text = "  one thread, ms per frame (CPU):";
     for (const bench::Stage& stage : measured.stages)
         text += fmt::format(" {} {:.2f} ({:.2f})", stage.name, 1e3 * stage.wall_s / frames,
                             1e3 * stage.cpu_s / frames);
     console.result(text);
+}
+
+/// x264 in 4:2:0 is what renders are measured beside.
+void check_comparable(const media::Format& format) {
+    const bool is_x264 = std::string_view(format.codec->name) == "libx264";
+    if (is_x264 && std::string_view(format.pixel_format) == "yuv420p") return;
+    throw Error(
+        ExitCode::kUsage,
+        fmt::format("the scene's video is {} in {}, and bench measures beside x264 in yuv420p; add --set "
+                    "video.codec=h264 --set video.pix=420, or compare codecs with --presets",
+                    format.codec->standard, format.pixel_format));
 }
 
 ExitCode measure_all(const Console& console, BenchOptions options) {
@@ -89,7 +112,7 @@ ExitCode measure_all(const Console& console, BenchOptions options) {
         for (const std::string& preset : options.presets) {
             scenes.push_back(options.scene_of(size, preset));
             media::check_video_def(scenes.back().video);
-            static_cast<void>(media::find_format("video.mp4", scenes.back().video));
+            check_comparable(media::find_format("video.mp4", scenes.back().video));
         }
     Progress progress(console, "bench", std::ssize(scenes));
     for (std::size_t i = 0; i < scenes.size(); ++i) {
@@ -101,6 +124,55 @@ ExitCode measure_all(const Console& console, BenchOptions options) {
     }
     progress.update(std::ssize(scenes));
     console.report({{"schema", 1}, {"cases", cases}});
+    return ExitCode::kOk;
+}
+
+nlohmann::json to_json(const bench::MeasuredEncoding& measured) {
+    return {{"codec", measured.codec},
+            {"preset", measured.preset},
+            {"crf", measured.crf ? nlohmann::json(*measured.crf) : nullptr},
+            {"pixels", measured.pixels},
+            {"frames", measured.frames},
+            {"ms_per_frame", 1e3 * measured.wall_s / static_cast<double>(measured.frames)},
+            {"bytes", measured.bytes},
+            {"edge_psnr_db", measured.edge_psnr_db},
+            {"edge_ssim", measured.edge_ssim}};
+}
+
+/// Renders in the usual ways to encode, at the first size that was named.
+ExitCode measure_encodings(const Console& console, const BenchOptions& options) {
+    bench::EncodingDef def;
+    options.gl.apply_to(def.film);
+    def.frames = options.def.frames;
+    def.on_wait = [] { stop_if_asked("interrupted; nothing was kept"); };
+    const std::vector<bench::Encoding> encodings = bench::usual_encodings();
+    nlohmann::json rows = nlohmann::json::array();
+    console.result("codec  preset     crf  pixels    ms/frame    KB/s  PSNR dB     SSIM   (both at edges)");
+    Progress progress(console, "bench", std::ssize(encodings));
+    for (std::size_t i = 0; i < encodings.size(); ++i) {
+        progress.update(static_cast<std::int64_t>(i));
+        std::vector<Setting> settings = encodings[i].settings;
+        settings.push_back(size_setting(options.sizes.front()));
+        def.scene = options.scene_of(settings);
+        def.ending = encodings[i].ending;
+        leave_cores_to_chunks(def.scene.video);
+        try {
+            const bench::MeasuredEncoding measured = bench::measure_encoding(def);
+            const double duration_s = def.scene.video.fps.time_s(measured.frames);
+            console.result(fmt::format("{:<6} {:<9} {:>4}  {:<8} {:>9.2f} {:>7.1f} {:>8.2f} {:>8.4f}",
+                                       measured.codec, measured.preset,
+                                       measured.crf ? std::to_string(*measured.crf) : "", measured.pixels,
+                                       1e3 * measured.wall_s / static_cast<double>(measured.frames),
+                                       1e-3 * static_cast<double>(measured.bytes) / duration_s,
+                                       measured.edge_psnr_db, measured.edge_ssim));
+            rows.push_back(to_json(measured));
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::kEncoder) throw;
+            console.warning(fmt::format("left out: {}", error.what()));
+        }
+    }
+    progress.update(std::ssize(encodings));
+    console.report({{"schema", 1}, {"encodings", rows}});
     return ExitCode::kOk;
 }
 
@@ -122,9 +194,13 @@ void add_bench(CLI::App& app, Action& action) {
         ->check(within(1, 1000))
         ->capture_default_str();
     options->scene.add_shortcut(*command, "--jobs", "video.jobs", "chunks made at a time; 0: one per core");
+    command->add_flag("--presets", options->encodings,
+                      "compare presets, crf and codecs instead, at the first size: time, bytes and quality");
     options->gl.add_to(*command);
     command->callback([options, &action] {
-        action = [options](const Console& console) { return measure_all(console, *options); };
+        action = [options](const Console& console) {
+            return options->encodings ? measure_encodings(console, *options) : measure_all(console, *options);
+        };
     });
 }
 

@@ -4,21 +4,16 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <sstream>
 #include <thread>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "corda/bench/child.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
-#include "corda/core/file.hpp"
-#include "corda/media/child_process.hpp"
 #include "corda/media/chunk.hpp"
 #include "corda/media/encoder_alone.hpp"
 #include "corda/media/format.hpp"
@@ -34,26 +29,6 @@ using nlohmann::json;
 constexpr double kMib = 1024.0 * 1024.0;
 /// Of the pictures that an encoder is fed from memory.
 constexpr double kMostPictureBytes = 1024.0 * kMib;
-
-/// A folder for videos, removed with them.
-class ScratchFolder {
-  public:
-    ScratchFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "corda-bench-XXXXXX").string();
-        if (mkdtemp(name.data()) == nullptr) fail_file("make", name, errno);
-        path_ = name;
-    }
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-    ~ScratchFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    [[nodiscard]] std::string video() const { return path_ + "/video.mp4"; }
-
-  private:
-    std::string path_;
-};
 
 double cpu_s() {
     rusage usage{};
@@ -82,34 +57,16 @@ void reset_peak_memory() {
     std::ofstream("/proc/self/clear_refs") << "5";
 }
 
-/// What `work` returns, from a child process.
-json in_child(const BenchDef& def, const std::function<json()>& work) {
-    const auto told = [&work] {
-        try {
-            return work().dump();
-        } catch (const Error& error) {
-            return json{{"code", static_cast<int>(error.code())}, {"error", error.what()}}.dump();
-        }
-    };
-    constexpr double kLongestS = 86'400.0;
-    const media::ChildLimits limits{std::uint64_t{1} << 46U, static_cast<std::int64_t>(kLongestS), kLongestS};
-    const auto end = media::run_in_child(told, limits, def.on_wait);
-    if (!end) throw Error(ExitCode::kTemporary, "the system starts no further process; try again");
-    if (!end->finished) throw Error(ExitCode::kTemporary, "the process that measures " + end->text);
-    json result = json::parse(end->text);
-    if (result.contains("error"))
-        throw Error(static_cast<ExitCode>(result["code"].get<int>()), result["error"].get<std::string>());
-    return result;
-}
-
 /// How many frames are made of the scene.
 std::int64_t frames_of(const BenchDef& def) {
     return std::min(def.frames, def.scene.video.fps.frame_count(def.scene.world.duration_s));
 }
 
-json render(const BenchDef& def, const std::string& path) {
+json render(const BenchDef& def, int jobs, const std::string& path) {
+    Scene scene = def.scene;
+    scene.video.encoder.jobs = jobs;
     const double start_s = now_s();
-    Film film(def.scene, def.film);
+    Film film(scene, def.film);
     RenderDef render;
     render.force = true;
     render.end = frames_of(def);
@@ -219,13 +176,15 @@ json measure_stages(const BenchDef& def, const std::string& path) {
 
 Measured measure(const BenchDef& def) {
     const ScratchFolder folder;
+    const std::string path = folder.file("video.mp4");
     Measured measured;
     measured.frames = frames_of(def);
+    measured.pictures = std::min(measured.frames, most_pictures(def.scene.video));
     const int jobs = def.scene.video.encoder.jobs;
     measured.jobs = jobs == 0 ? cores() : jobs;
     for (int i = 0; i < def.repeats; ++i) {
-        const json rendered = in_child(def, [&] { return render(def, folder.video()); });
-        const json encoded = in_child(def, [&] { return encode_alone(def); });
+        const json rendered = in_child(def.on_wait, [&] { return render(def, measured.jobs, path); });
+        const json encoded = in_child(def.on_wait, [&] { return encode_alone(def); });
         const auto render_s = rendered["wall_s"].get<double>();
         const auto encoder_s = encoded["wall_s"].get<double>();
         measured.render_s.add(render_s);
@@ -235,7 +194,12 @@ Measured measure(const BenchDef& def) {
         measured.encoder_rss_mib =
             std::max(measured.encoder_rss_mib, encoded["encoder_rss_mib"].get<double>());
     }
-    for (const json& stage : in_child(def, [&] { return measure_stages(def, folder.video()); }))
+    if (measured.jobs > 1) {
+        const json one = in_child(def.on_wait, [&] { return render(def, 1, path); });
+        const double added_mib = measured.peak_rss_mib - one["peak_rss_mib"].get<double>();
+        measured.rss_per_job_mib = added_mib / (measured.jobs - 1) - measured.encoder_rss_mib;
+    }
+    for (const json& stage : in_child(def.on_wait, [&] { return measure_stages(def, path); }))
         measured.stages.push_back(
             {stage["name"].get<std::string>(), stage["wall_s"].get<double>(), stage["cpu_s"].get<double>()});
     return measured;

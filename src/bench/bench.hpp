@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace corda::bench {
 struct BenchDef {
     Scene scene;                ///< with the size and the preset of a case
     FilmDef film;               ///< which OpenGL draws
-    std::int64_t frames = 240;  ///< of each video, if the scene has as many; >= 1
+    std::int64_t frames = 600;  ///< of each video, if the scene has as many; >= 1
     int repeats = 3;            ///< of each measurement, in turn; >= 1
     /// Called at least ten times a second; what it throws ends the measurement.
     std::function<void()> on_wait;
@@ -35,8 +36,11 @@ struct Measured {
     report::Times render_s;        ///< from the scene to the verified file
     report::Times encoder_s;       ///< x264 alone, from memory, with a thread per core
     report::Times ratio;           ///< of each render to the encoder that ran after it
+    std::int64_t pictures = 0;     ///< different ones that x264 alone encodes, there and back
     double peak_rss_mib = 0.0;     ///< of a render
     double encoder_rss_mib = 0.0;  ///< that one encoder of one thread takes
+    /// What each job beyond the first adds to the peak, less the encoder; empty for one job.
+    std::optional<double> rss_per_job_mib;
     std::vector<Stage> stages;
 };
 

@@ -15,6 +15,7 @@ packages=(
     libavcodec-dev          # the encoders and the decoders that check their output
     libavformat-dev         # muxers and demuxers of MP4, WebM, Matroska, GIF, APNG
     libavutil-dev           # frames and error texts of the two above
+    libswscale-dev          # decoded pictures as a player shows them, for their comparison
     libwebp-dev             # animated WebP, which libavcodec does not decode
     libeigen3-dev           # sparse factorisation for nets of bars
     libcairo2-dev           # stills as PDF

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+
+#include "corda/core/image.hpp"
 #include "corda/media/yuv420.hpp"
 
 namespace corda::media {
@@ -22,5 +25,24 @@ namespace corda::media {
 /// Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli: Image quality assessment: from error visibility to
 /// structural similarity. IEEE Transactions on Image Processing 13(4), 2004, pages 600-612, equation 13.
 [[nodiscard]] double luma_ssim(const Yuv420Image& a, const Yuv420Image& b);
+
+/// How well shown pictures keep the exact ones where something is drawn: most of a frame is ground, which
+/// every encoder keeps, and means over it tell encoders hardly apart. Edges are the windows of 8x8 pixels,
+/// side by side, in which a channel of the exact picture spans at least 32 levels.
+class EdgeQuality {
+  public:
+    /// Adds a picture; both have the same size. Alpha is ignored.
+    void add(const Image& exact, const Image& shown);
+
+    /// Mean squared difference over R, G and B of all edges; 0 if there is none.
+    [[nodiscard]] double mean_square() const;
+    /// Mean structural similarity (see luma_ssim) of the luma of all edges; 1 if there is none.
+    [[nodiscard]] double ssim() const;
+
+  private:
+    double squares_ = 0.0;
+    double similarities_ = 0.0;
+    std::int64_t windows_ = 0;
+};
 
 }  // namespace corda::media

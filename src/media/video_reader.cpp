@@ -32,6 +32,7 @@ struct VideoReader::Impl {
     OpenVideo file;
     Packet packet;
     Frame frame;
+    ShownPictures shown;
     bool is_draining = false;
 
     [[noreturn]] void fail(int status) const {
@@ -109,6 +110,14 @@ bool VideoReader::read(Image& picture) {
     if (frame.format != AV_PIX_FMT_BGR0 && frame.format != AV_PIX_FMT_BGRA)
         impl_->fail_format("bgr0 or bgra");
     picture = image_of(frame);
+    av_frame_unref(impl_->frame.get());
+    return true;
+}
+
+bool VideoReader::read_shown(Image& picture) {
+    const LogCapture log;
+    if (!impl_->receive()) return false;
+    impl_->shown.convert(*impl_->frame, picture);
     av_frame_unref(impl_->frame.get());
     return true;
 }

@@ -27,6 +27,10 @@ class VideoReader {
     /// The same for a video of exact pictures: throws for one that is not bgr0 or bgra.
     [[nodiscard]] bool read(Image& picture);
 
+    /// The next picture as a player shows it, whatever its pixel format: 8-bit RGBA, straight alpha. Throws
+    /// for one that does not decode cleanly.
+    [[nodiscard]] bool read_shown(Image& picture);
+
   private:
     struct Impl;
     std::unique_ptr<Impl> impl_;

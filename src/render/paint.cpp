@@ -9,8 +9,8 @@ namespace {
 
 /// Pixels that are painted at a time: as many as the ground repeats after, in loops that the compiler turns
 /// into vectors of 16-bit integers.
-constexpr int kPixels = GroundRows::kPeriodPx;
-constexpr int kChannels = 4 * kPixels;
+constexpr std::size_t kPixels = GroundRows::kPeriodPx;
+constexpr std::size_t kChannels = 4 * kPixels;
 using Levels = std::array<std::uint8_t, kChannels>;
 using Alphas = std::array<std::uint16_t, kChannels>;
 
@@ -36,15 +36,15 @@ bool is_zero(const std::uint8_t* coverage, std::uint16_t each) {
 /// The alphas of a mask of every other byte, the same for all channels of a pixel.
 Alphas alphas_of(const std::uint8_t* mask, std::uint8_t layer_alpha) {
     Alphas alphas;
-    for (int x = 0; x < kPixels; ++x) {
+    for (std::size_t x = 0; x < kPixels; ++x) {
         const std::uint16_t alpha = over_255_short(static_cast<std::uint16_t>(mask[2 * x] * layer_alpha));
-        for (int c = 0; c < 4; ++c) alphas[4 * x + c] = alpha;
+        for (std::size_t c = 0; c < 4; ++c) alphas[4 * x + c] = alpha;
     }
     return alphas;
 }
 
 void paint(const Alphas& alphas, const std::uint8_t* own, std::uint8_t* rgba) {
-    for (int i = 0; i < kChannels; ++i) {
+    for (std::size_t i = 0; i < kChannels; ++i) {
         const auto below = static_cast<std::uint16_t>(rgba[i] * (255U - alphas[i]));
         const auto above = static_cast<std::uint16_t>(own[i] * alphas[i]);
         rgba[i] = static_cast<std::uint8_t>(over_255_short(static_cast<std::uint16_t>(below + above)));
@@ -53,7 +53,7 @@ void paint(const Alphas& alphas, const std::uint8_t* own, std::uint8_t* rgba) {
 
 Levels filled(Color color) {
     Levels levels;
-    for (int x = 0; x < kPixels; ++x) {
+    for (std::size_t x = 0; x < kPixels; ++x) {
         const std::array<std::uint8_t, 4> pixel{color.r, color.g, color.b, 255};
         std::copy(pixel.begin(), pixel.end(), &levels[4 * x]);
     }
@@ -61,8 +61,8 @@ Levels filled(Color color) {
 }
 
 /// Colours of pixels that a tinted layer covers; of others nothing shows.
-void write_means(const std::uint8_t* coverage, const TintSums* sums, int count, Levels& levels) {
-    for (int x = 0; x < count; ++x) {
+void write_means(const std::uint8_t* coverage, const TintSums* sums, std::size_t count, Levels& levels) {
+    for (std::size_t x = 0; x < count; ++x) {
         if (coverage[2 * x] == 0) continue;
         levels[4 * x] = static_cast<std::uint8_t>(sums[x].mean(sums[x].r));
         levels[4 * x + 1] = static_cast<std::uint8_t>(sums[x].mean(sums[x].g));
@@ -85,8 +85,8 @@ void paint_run(const PixelRect& rect, Color color, const Masks& masks, const Gro
     std::size_t done = 0;  // pixels of the masks
     for (int y = rect.y0; y < rect.y1; ++y) {
         const std::uint8_t* const bare = ground.row(y).data();
-        for (int x = rect.x0; x < rect.x1; x += kPixels) {
-            const int count = std::min(kPixels, rect.x1 - x);
+        for (int x = rect.x0; x < rect.x1; x += GroundRows::kPeriodPx) {
+            const auto count = static_cast<std::size_t>(std::min(GroundRows::kPeriodPx, rect.x1 - x));
             std::array<std::uint8_t, 2 * kPixels> coverage{};
             std::copy_n(&masks.coverage[2 * done], 2 * count, coverage.begin());
             if (!is_zero(coverage.data(), kCapsules | kHalo)) {
@@ -96,7 +96,7 @@ void paint_run(const PixelRect& rect, Color color, const Masks& masks, const Gro
                 paint_pixels(coverage.data(), color.a, own, bare, rgba.data());
                 std::copy_n(rgba.begin(), 4 * count, image.pixel(x, y));
             }
-            done += static_cast<std::size_t>(count);
+            done += count;
         }
     }
 }

@@ -32,6 +32,8 @@ TEST(Bench, MeasuresEachSizeAndPresetBesideTheEncoderAlone) {
         EXPECT_GE(one.at("ratio").at("largest"), one.at("ratio_to_encoder"));
         EXPECT_LE(one.at("ratio").at("least"), one.at("ratio_to_encoder"));
         EXPECT_GT(one.at("peak_rss_mib"), one.at("encoder_rss_mib"));
+        EXPECT_TRUE(one.at("rss_per_job_mib").is_number());
+        EXPECT_EQ(one.at("encoder_pictures"), 70);
         std::string names;
         for (const auto& stage : one.at("stages")) names += stage.at("name").get<std::string>() + " ";
         EXPECT_EQ(names, "simulate open OpenGL draw convert encode verify ");
@@ -49,11 +51,34 @@ TEST(Bench, TellsInWordsAndTakesAScene) {
     EXPECT_THAT(bench.out, HasSubstr("x264 alone"));
 }
 
+TEST(Bench, ComparesPresetsAndCodecs) {
+    const auto bench = run_corda({"bench", "--presets", "--size", "320x180", "--frames", "12", "--json"});
+    ASSERT_EQ(bench.exit_code, 0) << bench.err;
+    const auto json = nlohmann::json::parse(bench.out);
+    double default_db = 0.0;
+    double full_color_db = 0.0;
+    for (const auto& one : json.at("encodings")) {
+        EXPECT_EQ(one.at("frames"), 12);
+        EXPECT_GT(one.at("bytes"), 1000);
+        EXPECT_GT(one.at("ms_per_frame"), 0.0);
+        EXPECT_GT(one.at("edge_ssim"), 0.97) << one;  // 0.980 of the largest crf
+        EXPECT_LE(one.at("edge_ssim"), 1.0);
+        if (one.at("codec") != "h264" || one.at("preset") != "veryfast" || one.at("crf") != 16) continue;
+        const double db = one.at("edge_psnr_db");
+        (one.at("pixels") == "yuv444p" ? full_color_db : default_db) = db;
+    }
+    EXPECT_GT(default_db, 23.0);                 // 25.3
+    EXPECT_GT(full_color_db, default_db + 5.0);  // 32.7
+}
+
 TEST(Bench, RefusesBeforeItMeasures) {
     EXPECT_EQ(run_corda({"bench", "--size", "320x181"}).exit_code, 2);
     EXPECT_EQ(run_corda({"bench", "--size", "large"}).exit_code, 2);
     EXPECT_EQ(run_corda({"bench", "--preset", "quick"}).exit_code, 3);
     EXPECT_EQ(run_corda({"bench", "--frames", "0"}).exit_code, 2);
+    const auto other_codec = run_corda({"bench", "--set", "video.codec=h265"});
+    EXPECT_EQ(other_codec.exit_code, 2);
+    EXPECT_THAT(other_codec.err, HasSubstr("--set video.codec=h264"));
 }
 
 TEST(Bench, EndsAtASignalAndKeepsNothing) {

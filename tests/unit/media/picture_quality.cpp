@@ -82,5 +82,43 @@ TEST(PictureQuality, AgreesWithFfmpeg) {
     EXPECT_NEAR(luma_ssim(a, b), by_ffmpeg("ssim", "All", a, b), 2e-5);
 }
 
+/// A picture of 32x16: black at the left, `level` from column 12 on.
+Image step(std::uint8_t level) {
+    Image image(32, 16);
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 32; ++x) {
+            std::fill_n(image.pixel(x, y), 3, x < 12 ? std::uint8_t{0} : level);
+            image.pixel(x, y)[3] = 255;
+        }
+    return image;
+}
+
+TEST(EdgeQuality, IsThatOfWindowsWithAnEdge) {
+    EdgeQuality same;
+    same.add(step(200), step(200));
+    EXPECT_EQ(same.mean_square(), 0.0);
+    EXPECT_NEAR(same.ssim(), 1.0, 1e-12);
+
+    Image changed_ground = step(200);  // where no edge is
+    changed_ground.pixel(30, 3)[1] = 90;
+    EdgeQuality ground;
+    ground.add(step(200), changed_ground);
+    EXPECT_EQ(ground.mean_square(), 0.0);
+
+    Image changed_edge = step(200);  // by 30 levels in one of the 3 * 128 channels of the two windows
+    changed_edge.pixel(11, 3)[1] = 30;
+    EdgeQuality edge;
+    edge.add(step(200), changed_edge);
+    EXPECT_DOUBLE_EQ(edge.mean_square(), 900.0 / 384.0);
+    EXPECT_LT(edge.ssim(), 1.0);
+}
+
+TEST(EdgeQuality, OfPicturesWithoutEdgesIsPerfect) {
+    EdgeQuality quality;
+    quality.add(step(31), step(90));
+    EXPECT_EQ(quality.mean_square(), 0.0);
+    EXPECT_EQ(quality.ssim(), 1.0);
+}
+
 }  // namespace
 }  // namespace corda::media

@@ -25,6 +25,33 @@ TEST_F(Video, ReaderGivesThePicturesThatLibavGives) {
     EXPECT_FALSE(reader.read(picture));
 }
 
+TEST_F(Video, ReaderShowsThePicturesOfEveryPixelFormat) {
+    const auto video = [](const char* codec, PixelChoice pix) {
+        VideoDef def = small_video();
+        def.encoder.codec = codec;
+        def.encoder.pix = pix;
+        return def;
+    };
+    const std::vector<std::pair<std::string, VideoDef>> videos{
+        {file("420.mp4"), video("h264", PixelChoice::k420)},
+        {file("444.mp4"), video("h264", PixelChoice::k444)},
+        {file("10_bits.mov"), video("prores", PixelChoice::kAuto)},
+        {file("exact.mkv"), video("ffv1", PixelChoice::kAuto)}};
+    for (const auto& [path, def] : videos) {
+        make_video(path, def, 3);
+        VideoReader reader(path);
+        Image shown;
+        ASSERT_TRUE(reader.read_shown(shown)) << path;
+        for (const Patch& patch : patches) {
+            const std::uint8_t* const pixel = shown.pixel(patch.rect.x0 + 24, patch.rect.y0 + 24);
+            for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixel[c], patch.rgb[c], 3) << path << ' ' << c;  // 2
+            EXPECT_EQ(pixel[3], 255);
+        }
+        EXPECT_TRUE(reader.read_shown(shown) && reader.read_shown(shown));
+        EXPECT_FALSE(reader.read_shown(shown)) << path;
+    }
+}
+
 TEST_F(Video, ReaderRefusesOtherFiles) {
     const auto failure_at = [](const std::string& path) {
         return test::failure_of([&path] { const VideoReader reader(path); });

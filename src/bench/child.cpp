@@ -1,0 +1,46 @@
+#include "corda/bench/child.hpp"
+
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/file.hpp"
+#include "corda/media/child_process.hpp"
+
+namespace corda::bench {
+
+using nlohmann::json;
+
+ScratchFolder::ScratchFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "corda-bench-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) fail_file("make", name, errno);
+    path_ = name;
+}
+
+ScratchFolder::~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}
+
+json in_child(const std::function<void()>& on_wait, const std::function<json()>& work) {
+    const auto told = [&work] {
+        try {
+            return work().dump();
+        } catch (const Error& error) {
+            return json{{"code", static_cast<int>(error.code())}, {"error", error.what()}}.dump();
+        }
+    };
+    constexpr double kLongestS = 86'400.0;
+    const media::ChildLimits limits{std::uint64_t{1} << 46U, static_cast<std::int64_t>(kLongestS), kLongestS};
+    const auto end = media::run_in_child(told, limits, on_wait);
+    if (!end) throw Error(ExitCode::kTemporary, "the system starts no further process; try again");
+    if (!end->finished) throw Error(ExitCode::kTemporary, "the process that measures " + end->text);
+    json result = json::parse(end->text);
+    if (result.contains("error"))
+        throw Error(static_cast<ExitCode>(result["code"].get<int>()), result["error"].get<std::string>());
+    return result;
+}
+
+}  // namespace corda::bench

@@ -1,0 +1,90 @@
+#include "corda/bench/presets.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "corda/bench/child.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/clock.hpp"
+#include "corda/media/format.hpp"
+#include "corda/media/picture_quality.hpp"
+#include "corda/media/video_reader.hpp"
+#include "corda/pipeline/painter.hpp"
+
+namespace corda::bench {
+namespace {
+
+using nlohmann::json;
+
+/// Of frames that are compared, the distance.
+constexpr std::int64_t kCompared = 10;
+
+/// The quality of the video at `path`.
+json quality_of(const Film& film, std::int64_t frames, const std::string& path) {
+    FilmPainter painter(film);
+    media::VideoReader reader(path);
+    media::EdgeQuality edges;
+    Image shown;
+    for (std::int64_t k = 0; k < frames; ++k) {
+        if (!reader.read_shown(shown)) throw Error(ExitCode::kEncoder, "the video has too few frames");
+        if (k % kCompared != 0) continue;
+        static_cast<void>(painter.draw(film.time_s(k)));
+        edges.add(painter.image(), shown);
+    }
+    return {{"edge_psnr_db", media::psnr_db(edges.mean_square())}, {"edge_ssim", edges.ssim()}};
+}
+
+json render_and_compare(const EncodingDef& def, std::int64_t frames) {
+    const ScratchFolder folder;
+    const std::string path = folder.file("video" + def.ending);
+    const double start_s = now_s();
+    Film film(def.scene, def.film);
+    RenderDef render;
+    render.end = frames;
+    static_cast<void>(render_video(film, path, render));
+    json result{{"wall_s", now_s() - start_s}, {"bytes", std::filesystem::file_size(path)}};
+    result.update(quality_of(film, frames, path));
+    return result;
+}
+
+}  // namespace
+
+std::vector<Encoding> usual_encodings() {
+    std::vector<Encoding> all;
+    const auto add = [&all](const std::string& ending, std::vector<Setting> settings) {
+        all.push_back({ending, std::move(settings)});
+    };
+    for (const char* const preset :
+         {"ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower"})
+        add(".mp4", {"video.codec=h264", std::string("video.preset=") + preset});
+    for (const char* const crf : {"12", "14", "18", "20", "24"})
+        add(".mp4", {"video.codec=h264", std::string("video.crf=") + crf});
+    add(".mp4", {"video.codec=h264", "video.preset=medium", "video.crf=18"});
+    add(".mp4", {"video.codec=h264", "video.pix=\"444\""});
+    add(".mp4", {"video.codec=h265"});
+    add(".mp4", {"video.codec=av1"});
+    add(".webm", {"video.codec=vp9"});
+    return all;
+}
+
+MeasuredEncoding measure_encoding(const EncodingDef& def) {
+    const VideoDef& video = def.scene.video;
+    const media::Format format = media::find_format("video" + def.ending, video);
+    MeasuredEncoding measured;
+    measured.codec = format.codec->short_name;
+    measured.preset = format.preset_of(video.encoder);
+    if (format.codec->crf) measured.crf = format.crf_of(video.encoder);
+    measured.pixels = format.pixel_format;
+    measured.frames = std::min(def.frames, video.fps.frame_count(def.scene.world.duration_s));
+    const json result = in_child(def.on_wait, [&] { return render_and_compare(def, measured.frames); });
+    measured.wall_s = result["wall_s"].get<double>();
+    measured.bytes = result["bytes"].get<std::uintmax_t>();
+    measured.edge_psnr_db = result["edge_psnr_db"].get<double>();
+    measured.edge_ssim = result["edge_ssim"].get<double>();
+    return measured;
+}
+
+}  // namespace corda::bench
