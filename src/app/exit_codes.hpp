@@ -13,7 +13,7 @@ struct ExitCodeText {
     std::string_view meaning;
 };
 
-inline constexpr std::array<ExitCodeText, 12> kExitCodes{{
+inline constexpr std::array<ExitCodeText, 13> kExitCodes{{
     {ExitCode::kOk, "success"},
     {ExitCode::kInternal, "internal error: a bug in corda"},
     {ExitCode::kUsage, "usage: unknown command, flag or value"},
@@ -24,6 +24,7 @@ inline constexpr std::array<ExitCodeText, 12> kExitCodes{{
     {ExitCode::kMismatch, "compare or verify found a difference or a problem"},
     {ExitCode::kDiverged, "the simulation diverged"},
     {ExitCode::kTemporary, "out of memory, or another temporary failure: try again"},
+    {ExitCode::kHungUp, "hung up (SIGHUP): the terminal closed; what was done is kept"},
     {ExitCode::kInterrupted, "interrupted (SIGINT); what was done is kept"},
     {ExitCode::kTerminated, "terminated (SIGTERM); what was done is kept"},
 }};

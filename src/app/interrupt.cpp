@@ -51,7 +51,11 @@ void ask_to_stop(int signal) {
 }  // namespace
 
 void install_signal_handlers() {
-    for (const int signal : {SIGINT, SIGTERM, SIGALRM}) {
+    for (const int signal : {SIGHUP, SIGINT, SIGTERM, SIGALRM}) {
+        struct sigaction before = {};
+        // nohup(1) has it ignored, so that the work survives its terminal.
+        if (signal == SIGHUP && sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_IGN)
+            continue;
         struct sigaction action = {};  // without SA_RESTART: opening a pipe that nobody writes to must end
         action.sa_handler = ask_to_stop;
         sigemptyset(&action.sa_mask);
@@ -70,6 +74,8 @@ void keep_standard_streams() {
 
 ExitCode interruption() {
     switch (asked_to_stop_by) {
+        case SIGHUP:
+            return ExitCode::kHungUp;
         case SIGINT:
             return ExitCode::kInterrupted;
         case SIGTERM:

@@ -4,9 +4,9 @@
 
 namespace corda::app {
 
-/// From now on the first SIGINT or SIGTERM only asks the program to stop at a point that loses no
-/// work; one that comes more than a tenth of a second later ends it at once. SIGPIPE and SIGXFSZ become
-/// ordinary write errors.
+/// From now on the first SIGINT, SIGTERM or, unless it is ignored, SIGHUP only asks the program to stop at a
+/// point that loses no work; one that comes more than a tenth of a second later ends it at once. SIGPIPE and
+/// SIGXFSZ become ordinary write errors.
 void install_signal_handlers();
 
 /// Opens /dev/null for each closed standard stream: a file opened later would get its number, and with it

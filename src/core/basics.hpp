@@ -20,9 +20,15 @@ enum class ExitCode : int {
     kMismatch = 7,
     kDiverged = 8,
     kTemporary = 75,
+    kHungUp = 129,
     kInterrupted = 130,
     kTerminated = 143,
 };
+
+/// Whether it is that of work which a signal ended and which keeps what was done.
+[[nodiscard]] constexpr bool is_interruption(ExitCode code) {
+    return code == ExitCode::kHungUp || code == ExitCode::kInterrupted || code == ExitCode::kTerminated;
+}
 
 /// Bad input or a bad environment. The message says what failed, the value, the library's own reason and one
 /// hint; `code` is the exit status of the program. A programmer's error is an assert instead, and a physical

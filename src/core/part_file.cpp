@@ -19,6 +19,13 @@ namespace {
                 "another render is writing '" + path + "'; wait for its end, or choose another name");
 }
 
+bool leads_to(const std::string& path, const Descriptor& file) {
+    struct stat open {};
+    struct stat named {};
+    return ::fstat(file.get(), &open) == 0 && ::lstat(path.c_str(), &named) == 0 &&
+           open.st_dev == named.st_dev && open.st_ino == named.st_ino;
+}
+
 /// Locks an open file by flock(2). False if another process holds the lock and `operation` does not wait for
 /// it, or if the name leads to another file by now.
 bool lock(const Descriptor& file, const std::string& path, int operation) {
@@ -27,10 +34,7 @@ bool lock(const Descriptor& file, const std::string& path, int operation) {
     while (status != 0 && errno == EINTR);
     // Every other failure means a file system without locks, where the exclusive creation must do.
     if (status != 0 && errno == EWOULDBLOCK) return false;
-    struct stat locked {};
-    struct stat named {};
-    return ::fstat(file.get(), &locked) == 0 && ::lstat(path.c_str(), &named) == 0 &&
-           locked.st_dev == named.st_dev && locked.st_ino == named.st_ino;
+    return leads_to(path, file);
 }
 
 /// Opens what stands under the name of a part. O_NONBLOCK: a pipe there must not stop us.
@@ -94,6 +98,10 @@ void PartFile::take_place_of(PartFile& other) {
 bool PartFile::is_empty() const {
     struct stat status {};
     return ::fstat(descriptor_.get(), &status) == 0 && status.st_size == 0;
+}
+
+bool PartFile::is_named() const {
+    return leads_to(path_, descriptor_);
 }
 
 void PartFile::sync() const {

@@ -39,6 +39,9 @@ class PartFile {
     /// Whether no byte was written yet.
     [[nodiscard]] bool is_empty() const;
 
+    /// Whether its name still leads to this file: it or its folder may have been removed.
+    [[nodiscard]] bool is_named() const;
+
     /// Forces what was written onto the disk. Throws corda::Error (kIo).
     void sync() const;
 

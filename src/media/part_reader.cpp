@@ -145,7 +145,7 @@ PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
         av_packet_unref(packet.get());
     }
     if (stamps.empty()) {
-        throw Error(ExitCode::kMismatch,
+        throw EmptyPart(ExitCode::kMismatch,
                     fmt::format("'{}' holds no whole fragment, so no frame can be recovered", path));
     }
     std::int64_t step = 0;

@@ -28,11 +28,17 @@ struct PartIndex {
     bool truncated = false;
 };
 
+/// A part without a whole fragment: nothing of it can be used.
+class EmptyPart : public Error {
+  public:
+    using Error::Error;
+};
+
 /// Opens the first `bytes` of a part, which are whole. Throws corda::Error (kMismatch) if there is no video
 /// in them.
 [[nodiscard]] PartInput open_part(const std::string& path, std::uint64_t bytes);
 
-/// Reads all packets of a part. Throws corda::Error: kMismatch if it holds no whole fragment or has no
+/// Reads all packets of a part. Throws EmptyPart (kMismatch), or corda::Error: kMismatch if it has no
 /// constant frame rate, kInterrupted if `on_progress` asks to stop.
 [[nodiscard]] PartIndex index_part(const std::string& path, const OnProgress& on_progress);
 

@@ -123,7 +123,9 @@ void TrackOutput::write(AVPacket& packet) {
 void TrackOutput::flush() {
     assert(begun_);
     const LogCapture log;
-    check_libav(av_write_frame(format_.get(), nullptr), kIo, fmt::format("cannot write to '{}'", path_));
+    // The first flush of an MP4 with delay_moov writes the moov box alone, the second one the frames.
+    for (int i = 0; i < 2; ++i)
+        check_libav(av_write_frame(format_.get(), nullptr), kIo, fmt::format("cannot write to '{}'", path_));
     avio_flush(io_.get());
     check_libav(io_->error, kIo, fmt::format("cannot write to '{}'", path_));
 }

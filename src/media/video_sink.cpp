@@ -59,14 +59,15 @@ class PartSink : public VideoSink {
              const FrameRange& frames)
         : PartSink(format, path, options, PartFile::create(part_path(path) + ".new", {.force = true})) {
         resumed_ = copy_chunks(old.path(), frames, options.on_progress);
-        if (resumed_ > 0) part_.sync();
+        has_chunk_ = resumed_ > 0;
+        if (has_chunk_) part_.sync();
         part_.take_place_of(old);
     }
     PartSink(const PartSink&) = delete;
     PartSink& operator=(const PartSink&) = delete;
     /// A part without a chunk is of no use, and would be in the way of the next render.
     ~PartSink() override {
-        if (part_.is_empty()) part_.remove();
+        if (!has_chunk_) part_.remove();
     }
 
     [[nodiscard]] std::int64_t resumed_frames() const override { return resumed_; }
@@ -74,22 +75,23 @@ class PartSink : public VideoSink {
         track_.begin(format_.ending->part_muxer, TrackLayout::kPart, parameters, info);
     }
     void write(AVPacket& packet) override {
-        if (has_lengths_) put_lengths(packet);
-        track_.write(packet);
+        telling_what_is_kept("the frames before are", [&] {
+            if (has_lengths_) put_lengths(packet);
+            track_.write(packet);
+        });
     }
     void end_chunk() override {
-        track_.flush();
-        part_.sync();
+        telling_what_is_kept("the frames before are", [&] {
+            track_.flush();
+            part_.sync();
+        });
+        has_chunk_ = true;
     }
-    void drain() override { track_.finish(); }
+    void drain() override {
+        telling_what_is_kept("the frames before are", [&] { track_.finish(); });
+    }
     void finish(std::int64_t frames, VerifyDepth depth) override {
-        try {
-            finish_part(part_, path_, options_, frames, depth);
-        } catch (const Error& error) {
-            if (error.code() != ExitCode::kIo) throw;
-            throw Error(error.code(),
-                        fmt::format("{}; all frames are in '{}', which plays", error.what(), part_.path()));
-        }
+        telling_what_is_kept("all frames are", [&] { finish_part(part_, path_, options_, frames, depth); });
     }
     std::string abandon() override {
         part_.sync();
@@ -105,11 +107,31 @@ class PartSink : public VideoSink {
           part_(std::move(part)),
           track_(part_.descriptor(), part_.path()) {}
 
+    /// Adds to a failure to write where the frames are that were written before it.
+    template <class Work>
+    void telling_what_is_kept(const char* which, const Work& work) {
+        try {
+            work();
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::kIo || !has_chunk_) throw;
+            const std::string kept =
+                part_.is_named()
+                    ? fmt::format("{} in '{}', which plays; --resume goes on with it", which, part_.path())
+                    : fmt::format("'{}' was removed meanwhile, and its frames with it", part_.path());
+            throw Error(error.code(), fmt::format("{}; {}", error.what(), kept));
+        }
+    }
+
     /// Copies the whole chunks of an earlier part; returns their frames.
     std::int64_t copy_chunks(const std::string& old, const FrameRange& frames,
                              const OnProgress& on_progress) {
         const LogCapture log;
-        const PartIndex index = index_part(old, on_progress);
+        PartIndex index;
+        try {
+            index = index_part(old, on_progress);
+        } catch (const EmptyPart&) {
+            return 0;
+        }
         const std::int64_t there = std::min(std::ssize(index.frame_of), frames.end - frames.first);
         const auto is_whole = [&](std::int64_t count) {
             return (frames.first + count) % frames.per_chunk == 0 || count == frames.end - frames.first;
@@ -141,6 +163,7 @@ class PartSink : public VideoSink {
     PartFile part_;
     TrackOutput track_;
     std::int64_t resumed_ = 0;
+    bool has_chunk_ = false;    ///< a whole one, on the disk
     bool has_lengths_ = false;  ///< whether the track's packets have lengths in place of start codes
 };
 

@@ -177,7 +177,7 @@ void render_chunks(const Film& film, std::int64_t from, std::int64_t end, int jo
             report_progress(on_progress, had + chunks.drawn(), end - from);
         }
     } catch (const Error& error) {
-        if (error.code() != ExitCode::kInterrupted && error.code() != ExitCode::kTerminated) throw;
+        if (!is_interruption(error.code())) throw;
         chunks.stop();
         bool is_whole = true;
         while (is_whole) {

@@ -127,10 +127,6 @@ void check_ground(const Scene& scene, const media::Format& format) {
                     clear.text(), format.codec->standard, format.ending->words, media::endings_with_alpha()));
 }
 
-bool is_interruption(const Error& error) {
-    return error.code() == ExitCode::kInterrupted || error.code() == ExitCode::kTerminated;
-}
-
 }  // namespace
 
 namespace {
@@ -187,7 +183,7 @@ Rendered render_video(Film& film, const std::string& path, const RenderDef& def)
         result.reader_left = true;
     } catch (const Error& error) {
         if (error.code() == ExitCode::kDiverged) keep_diverged(error, path, def.first, writer);
-        if (!is_interruption(error)) throw;
+        if (!is_interruption(error.code())) throw;
         result.complete = false;
         result.kept_part = writer.abandon();
     }

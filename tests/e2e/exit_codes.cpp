@@ -273,15 +273,48 @@ TEST_F(ExitCodes, SixForInputAndOutput) {
 }
 
 TEST_F(ExitCodes, SixWhenNoMoreCanBeWritten) {
-    // A file may grow to 4 KiB: what a full disk looks like to a program.
-    const auto result = run_shell("trap '' XFSZ; ulimit -f 4; " + test::quoted(CORDA_PROGRAM) + " render " +
-                                  scene_ + " -o " + video_ + " --size 640x360 --crf 1 --duration 2");
-    EXPECT_EQ(result.exit_code, 6) << result.err;
-    const auto files = folder_.files();
-    EXPECT_THAT(files, testing::Not(testing::Contains("out.mp4")));
+    // A file may grow to so many KiB: what a full disk looks like to a program.
+    const auto render = [&](int kib) {
+        return run_shell("trap '' XFSZ; ulimit -f " + std::to_string(kib) + "; " +
+                         test::quoted(CORDA_PROGRAM) + " render " + scene_ + " -o " + video_ +
+                         " --size 640x360 --crf 1 --duration 8");
+    };
+    const auto none = render(4);
+    EXPECT_EQ(none.exit_code, 6) << none.err;
+    EXPECT_THAT(none.err, testing::Not(HasSubstr("which plays")));
+    EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});
+
+    const auto some = render(400);  // of some 700
+    EXPECT_EQ(some.exit_code, 6) << some.err;
+    EXPECT_THAT(some.err, HasSubstr("the frames before are in '" + video_ + ".part', which plays; --resume"));
+    EXPECT_THAT(folder_.files(), testing::Not(testing::Contains("out.mp4")));
+    // With room again, its advice works.
+    const auto resumed = run_shell(test::quoted(CORDA_PROGRAM) + " render " + scene_ + " -o " + video_ +
+                                   " --size 640x360 --crf 1 --duration 8 --resume");
+    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    EXPECT_THAT(resumed.err, HasSubstr("were there from the interrupted render"));
+    EXPECT_EQ(run_corda({"verify", video_}).exit_code, 0);
     const auto csv = run_shell("trap '' XFSZ; ulimit -f 4; " + test::quoted(CORDA_PROGRAM) + " simulate " +
                                scene_ + " -o " + folder_.file("out.csv") + " --duration 5");
     EXPECT_EQ(csv.exit_code, 6) << csv.err;
+}
+
+TEST_F(ExitCodes, SixForAFullDeviceAndAFolderThatNothingCanBeWrittenTo) {
+    EXPECT_EQ(run_shell(test::quoted(CORDA_PROGRAM) + " render " + scene_ + " -o - > /dev/full").exit_code,
+              6);
+    EXPECT_EQ(run_corda({"render", scene_, "-o", "/proc/out.mp4"}).exit_code, 6);
+    EXPECT_EQ(run_corda({"still", scene_, "--at", "0", "-o", "/proc/out.png"}).exit_code, 6);
+    EXPECT_EQ(run_corda({"simulate", scene_, "-o", "/proc/out.csv"}).exit_code, 6);
+}
+
+TEST_F(ExitCodes, SixIfTheFolderIsRemovedMidway) {
+    const std::string folder = folder_.file("gone");
+    const auto result =
+        run_shell("mkdir " + folder + "; " + test::quoted(CORDA_PROGRAM) + " render " + scene_ + " -o " +
+                  folder + "/out.mp4 --duration 200 --size 320x180 & pid=$!; until [ -s " + folder +
+                  "/out.mp4.part ] || ! kill -0 $pid; do sleep 0.01; done; rm -rf " + folder + "; wait $pid");
+    EXPECT_EQ(result.exit_code, 6) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("was removed meanwhile, and its frames with it"));
 }
 
 TEST_F(ExitCodes, SixRatherThanOverwriteWithoutForce) {

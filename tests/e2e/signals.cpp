@@ -16,6 +16,7 @@
 namespace corda {
 namespace {
 
+using test::run_corda;
 using test::run_shell;
 using testing::HasSubstr;
 
@@ -72,7 +73,7 @@ TEST_F(Signals, EndTheWaitForAPipe) {
           "still " + pipe + " --at 0 -o " + folder_.file("a.png"),
           "report " + pipe + " -o " + folder_.file("report"),
           "study " + pipe + " -o " + folder_.file("report"), "compare " + pipe + " " + pipe}) {
-        for (const auto& [signal, exit_code] : {std::pair{"INT", 130}, {"TERM", 143}}) {
+        for (const auto& [signal, exit_code] : {std::pair{"INT", 130}, {"TERM", 143}, {"HUP", 129}}) {
             const Interrupted end = interrupt(arguments, signal, kIsListening);
             EXPECT_EQ(end.result.exit_code, exit_code) << arguments << end.result.err;
             // Measured 4 .. 18, and up to 100 more if the wait begins after the signal.
@@ -80,6 +81,17 @@ TEST_F(Signals, EndTheWaitForAPipe) {
         }
     }
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"pipe", "scene.toml"}));
+}
+
+TEST_F(Signals, ThatAreIgnoredFromTheStartDoNotEnd) {
+    const std::string video = folder_.file("a.mp4");
+    const Interrupted end = interrupt("render " + scene_ + " -o " + video + " -q", "HUP", kIsListening);
+    EXPECT_EQ(end.result.exit_code, 129) << end.result.err;
+    const auto kept = run_shell("trap '' HUP; " + test::quoted(CORDA_PROGRAM) + " render " + scene_ + " -o " +
+                                video + " -q --duration 4 --force & pid=$!; until " + kIsListening +
+                                "; do sleep 0.01; done; kill -HUP $pid; wait $pid");
+    EXPECT_EQ(kept.exit_code, 0) << kept.err;
+    EXPECT_EQ(run_corda({"verify", video}).exit_code, 0);
 }
 
 TEST_F(Signals, EndTheWaitForTheWriterOfAPipe) {

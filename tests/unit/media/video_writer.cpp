@@ -7,6 +7,7 @@
 #include <csignal>
 #include <filesystem>
 
+#include "corda/media/finish_part.hpp"
 #include "corda/media/format.hpp"
 #include "corda/media/yuv420.hpp"
 #include "support/decode_video.hpp"
@@ -234,6 +235,25 @@ TEST_F(Video, AbandonedPlaysAsAPart) {
     ASSERT_EQ(video.pts.size(), 60U);
     for (std::int64_t k = 0; k < 60; ++k) EXPECT_EQ(video.pts[static_cast<std::size_t>(k)], k * 1001);
     EXPECT_THAT(all_problems(verify(file("a.mp4.part"))), HasSubstr("fragments"));
+}
+
+TEST_F(Video, HasEveryChunkOnTheDiskOnceItIsWhole) {
+    for (const char* const name : {"a.mp4", "a.webm", "a.mkv"}) {
+        const std::string part = file(name) + std::string(".part");
+        VideoWriter writer(file(name), small_video({30, 1}), {"A swing", "{}"}, {});
+        const std::int64_t chunk = writer.frames_per_chunk();
+        for (int chunks = 1; chunks <= 2; ++chunks) {
+            write_frames(writer, chunk);
+            // As after a kill: what is in the file now.
+            std::filesystem::copy_file(part, file("copy.part"),
+                                       std::filesystem::copy_options::overwrite_existing);
+            EXPECT_EQ(
+                recover_part(file("copy.part"), file(std::string("copy_") + name), {.force = true}).frames,
+                chunks * chunk)
+                << name;
+        }
+        EXPECT_EQ(writer.abandon(), part);
+    }
 }
 
 TEST_F(Video, AnExistingFileIsReplacedOnlyWithForce) {
