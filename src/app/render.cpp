@@ -169,6 +169,9 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     if (rendered.resumed_frames > 0)
         console.info(fmt::format("{} were there from the interrupted render",
                                  counted(rendered.resumed_frames, "frame")));
+    if (rendered.is_short_of_memory)
+        console.info(fmt::format("only {} at a time: more would not fit into the memory that is free",
+                                 counted(rendered.jobs, "chunk")));
     console.info(fmt::format("{} frames in {:.3g} s, {:.1f} per second{}", rendered.frames, wall_s,
                              static_cast<double>(rendered.frames) / wall_s,
                              is_one_file(options.output) ? "; verified" : ""));

@@ -146,7 +146,7 @@ PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
     }
     if (stamps.empty()) {
         throw EmptyPart(ExitCode::kMismatch,
-                    fmt::format("'{}' holds no whole fragment, so no frame can be recovered", path));
+                        fmt::format("'{}' holds no whole fragment, so no frame can be recovered", path));
     }
     std::int64_t step = 0;
     index.fps = rate_of(path, input, packet_duration, stamps, step);

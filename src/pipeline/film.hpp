@@ -163,8 +163,10 @@ struct Rendered {
     std::string kept_part;     ///< where the frames so far are if it is not complete; empty if there are none
     bool reader_left = false;  ///< standard output was closed by whoever read it: no more was wanted
     std::string encoder;       ///< libav's name
-    std::int64_t empty_frames = 0;  ///< in which nothing is in view
-    double first_empty_s = 0.0;     ///< the time of the first of them
+    std::int64_t empty_frames = 0;    ///< in which nothing is in view
+    double first_empty_s = 0.0;       ///< the time of the first of them
+    int jobs = 1;                     ///< how many chunks were made at a time
+    bool is_short_of_memory = false;  ///< there would have been more jobs
 };
 
 /// Refuses a video of `scene` that render_video would refuse, before there is a film. Throws corda::Error:

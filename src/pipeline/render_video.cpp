@@ -6,10 +6,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "corda/core/memory.hpp"
 #include "corda/core/part_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
 #include "corda/media/format.hpp"
+#include "corda/media/job_memory.hpp"
 #include "corda/media/part_reader.hpp"
 #include "corda/media/video_comment.hpp"
 #include "corda/media/video_sink.hpp"
@@ -24,6 +26,8 @@
 
 namespace corda {
 namespace {
+
+constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
 
 /// All that the bytes of a video follow from, by keys.
 std::map<std::string, std::string> origin_of(const Scene& scene, const media::Format& format,
@@ -93,11 +97,35 @@ int jobs_of(const VideoDef& video, std::int64_t length, std::int64_t frames) {
     return static_cast<int>(std::min(wanted, (frames + length - 1) / length));
 }
 
+/// How many jobs of so many bytes fit into the memory that is there, up to `wanted`.
+int jobs_that_fit(int wanted, std::uint64_t bytes) {
+    const auto available = available_memory_bytes();
+    if (!available) return wanted;
+    return static_cast<int>(std::min(static_cast<std::uint64_t>(wanted), *available / bytes));
+}
+
+/// The machine would run out of memory, and kill this process or another.
+void check_memory(const media::Format& format, const VideoDef& video) {
+    const std::uint64_t bytes = media::bytes_per_job(format, video);
+    if (jobs_that_fit(1, bytes) == 1) return;
+    throw Error(
+        ExitCode::kTemporary,
+        fmt::format(
+            "{} of {}x{} pixels takes some {:.1f} GiB of memory, and {:.1f} are free; choose a smaller "
+            "size, a faster preset (--preset ultrafast), or a machine with more",
+            format.codec->standard, video.width_px, video.height_px, static_cast<double>(bytes) / kGib,
+            static_cast<double>(available_memory_bytes().value_or(0)) / kGib));
+}
+
 /// Draws and encodes frames first <= k < end; counts the empty ones.
 void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProgress& on_progress,
                   media::VideoWriter& writer, Rendered& result) {
-    const int jobs = jobs_of(film.scene().video, writer.frames_per_chunk(), end - first);
+    const VideoDef& video = film.scene().video;
+    const int wanted = jobs_of(video, writer.frames_per_chunk(), end - first);
+    const int jobs = jobs_that_fit(wanted, media::bytes_per_job(writer.format(), video));
+    result.is_short_of_memory = jobs < wanted;
     if (jobs > 1 && FilmPainter::can_draw_apart(film, end)) {
+        result.jobs = jobs;
         pipeline::render_chunks(film, first, end, jobs, on_progress, writer, result);
         return;
     }
@@ -147,6 +175,7 @@ media::Format checked_format(const Scene& scene, const std::string& path, const 
         media::check_video_output(path, scene.video, input, def.force,
                                   !view::look_of(scene.style).ground.is_opaque(), def.first, end, def.resume);
     check_ground(scene, format);
+    check_memory(format, scene.video);
     if (def.resume) check_part(path, origin_of(scene, format, def.first, end));
     return format;
 }
