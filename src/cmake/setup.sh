@@ -48,6 +48,7 @@ if [[ "${1:-build}" == test ]]; then
         jupyter-nbconvert   # runs the example notebook
         python3-ipykernel   # in which it runs
         python3-jsonschema  # a second opinion on the JSON Schema of scenes
+        chromium            # plays videos, and shows pages with scripts
         mandoc              # whether the manual page is one
         zsh                 # whether its completion parses
         fish                # the same
