@@ -219,10 +219,11 @@ py::dict camera(PyFilm& film) {
     });
 }
 
-std::int64_t save(PyFilm& film, const std::string& path, bool force, py::object on_progress) {
+std::int64_t save(PyFilm& film, const std::string& path, bool force, bool resume, py::object on_progress) {
     const corda::Rendered rendered = film.with_film(
         [&](corda::Film& its, const corda::OnProgress& ask) {
-            return corda::render_video(its, path, {.force = force, .end = {}, .on_progress = ask});
+            return corda::render_video(its, path,
+                                       {.force = force, .resume = resume, .end = {}, .on_progress = ask});
         },
         std::move(on_progress));
     if (!rendered.complete) {

@@ -173,9 +173,11 @@ def test_other_threads_run_meanwhile(film, tmp_path):
 
     thread = threading.Thread(target=count)
     thread.start()
-    film.save(tmp_path / "a.mp4")
-    done.set()
-    thread.join()
+    try:
+        film.save(tmp_path / "a.mp4")
+    finally:
+        done.set()
+        thread.join()
     assert counted > 5
 
 
@@ -195,6 +197,22 @@ def test_progress_is_told_and_can_stop(film, tmp_path):
         film.save(tmp_path / "c.mp4", on_progress=fail)
     film.save(tmp_path / "d.mp4", on_progress=lambda done, total: film.still(0.5))  # may draw the film itself
     assert (tmp_path / "d.mp4").read_bytes() == (tmp_path / "a.mp4").read_bytes()
+
+
+def test_an_interrupted_video_is_gone_on_with(tmp_path):
+    film = corda.Film(SCENE, size=(320, 180), fps=60, duration=5)
+    film.save(tmp_path / "whole.mp4")
+    with pytest.raises(corda.Error) as raised:
+        film.save(tmp_path / "a.mp4", on_progress=lambda done, total: done < 200)
+    assert raised.value.code == 130
+    assert (tmp_path / "a.mp4.part").exists()
+    with pytest.raises(corda.Error, match="interrupted render"):
+        film.save(tmp_path / "a.mp4")
+    heard = []
+    assert film.save(tmp_path / "a.mp4", resume=True, on_progress=lambda done, total: heard.append(done)) == 300
+    assert min(done for done in heard if done > 0) > 60  # what was there is not drawn again
+    assert (tmp_path / "a.mp4").read_bytes() == (tmp_path / "whole.mp4").read_bytes()
+    assert not (tmp_path / "a.mp4.part").exists()
 
 
 def test_ctrl_c_ends_a_render(tmp_path):

@@ -111,13 +111,14 @@ class Film:
         """center (x, y) and height in metres, and margin, a share of the shorter side."""
         return self._film.camera()
 
-    def save(self, path, *, force=False, on_progress=None):
+    def save(self, path, *, force=False, resume=False, on_progress=None):
         """Renders the video; the ending of `path` chooses the format. Returns the number of frames.
 
-        force: replace an existing file. on_progress: called with the frames done and all; returning False stops, which
+        force: replace an existing file. resume: go on with what an interrupted render of the same film has left beside
+        `path`, to the bytes of a whole one; without such a part it begins anew. on_progress: called with the frames done and all; returning False stops, which
         raises Error (code 130) and keeps what is done beside `path`.
         """
-        return self._film.save(_os.fspath(path), force, on_progress)
+        return self._film.save(_os.fspath(path), force, resume, on_progress)
 
     def _repr_html_(self):
         """The film as a video in a notebook."""

@@ -53,6 +53,7 @@ class Film:
         path: str | PathLike[str],
         *,
         force: bool = False,
+        resume: bool = False,
         on_progress: Callable[[int, int], bool | None] | None = None,
     ) -> int: ...
 
