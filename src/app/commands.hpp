@@ -27,6 +27,7 @@ void add_strobe(CLI::App& app, Action& action);
 void add_sheet(CLI::App& app, Action& action);
 void add_simulate(CLI::App& app, Action& action);
 void add_compare(CLI::App& app, Action& action);
+void add_golden(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);
 void add_recover(CLI::App& app, Action& action);
 void add_doctor(CLI::App& app, Action& action);

@@ -99,6 +99,7 @@ int run(int argc, char** argv) {
     add_sheet(app, action);
     add_simulate(app, action);
     add_compare(app, action);
+    add_golden(app, action);
     add_verify(app, action);
     add_recover(app, action);
     add_doctor(app, action);

@@ -127,6 +127,7 @@ std::vector<Key> root_keys() {
         {"", "style", table, "", none(), "how it looks"},
         {"", "overlay", table, "", none(), "words, a scale bar and a plot beside the picture"},
         {"", "camera", table, "", none(), "where the camera looks"},
+        {"", "golden", table, "", none(), "which pictures `corda golden` keeps and compares"},
     };
 }
 
@@ -419,6 +420,25 @@ std::vector<Key> camera_keys() {
     };
 }
 
+std::vector<Key> golden_keys() {
+    const GoldenDef def;
+    Type size = pair("[width, height]", {.low = 1, .high = kLargestSidePx});
+    size.kind = Kind::kInteger;
+    Type times = list(Kind::kNumber, 1);
+    times.range = kFrom0;
+    const Default exact = otherwise("only equal pictures pass");
+    return {
+        {"golden", "at", times, "s", required(), "the times of the pictures",
+         "increasing, none after world.duration"},
+        {"golden", "size", size, "px", at(std::vector<int>{def.width_px, def.height_px}),
+         "the size of the pictures"},
+        {"golden", "max", number({.low = 0.0, .high = 255.0}), "", exact,
+         "the largest difference of a channel that passes"},
+        {"golden", "share", number({.low = 0.0, .high = 1.0}), "", exact,
+         "the share of differing pixels that passes", "given without golden.max it bounds the share alone"},
+    };
+}
+
 }  // namespace
 
 const std::vector<Key>& all_keys() {
@@ -427,8 +447,8 @@ const std::vector<Key>& all_keys() {
         for (const std::vector<Key>& part :
              {root_keys(), world_keys(), body_keys("rope", rope_shapes(), "style.rope_width_px"), rope_keys(),
               rope_shape_keys(), body_keys("net", net_shapes(), "style.net_width_px"), net_keys(),
-              solver_keys(), solver_bodies_keys(), video_keys(), style_keys(), overlay_keys(),
-              camera_keys()}) {
+              solver_keys(), solver_bodies_keys(), video_keys(), style_keys(), overlay_keys(), camera_keys(),
+              golden_keys()}) {
             all.insert(all.end(), part.begin(), part.end());
         }
         return all;

@@ -93,6 +93,37 @@ CameraDef read_camera(const TableReader& camera) {
     return def;
 }
 
+GoldenDef read_golden(const Sections& sections) {
+    const TableReader& golden = sections.golden;
+    GoldenDef def;
+    WorldDef world;
+    sections.world.read("duration", world.duration_s);
+    if (!golden.is_given("at")) golden.add_missing("at");
+    const auto times = golden.find("at");
+    for (std::size_t i = 0; times && i < times->size(); ++i) {
+        const double at_s = times->at(i).as<double>();
+        if (!def.at_s.empty() && at_s <= def.at_s.back())
+            times->at(i).add_problem(
+                fmt::format("{} s after {} s; give times that increase", at_s, def.at_s.back()));
+        else if (at_s > world.duration_s && sections.world.is_sound("duration"))
+            times->at(i).add_problem(
+                fmt::format("{} s is after the end of the motion, {} s; give an earlier time or a longer "
+                            "world.duration",
+                            at_s, world.duration_s));
+        def.at_s.push_back(at_s);
+    }
+    if (const auto size = golden.find("size")) {
+        def.width_px = size->at(0).as<int>();
+        def.height_px = size->at(1).as<int>();
+        if (!is_picture_size(def.width_px, def.height_px))
+            size->add_problem(
+                fmt::format("over the limit of {} pixels; give a smaller size", kMostPicturePx));
+    }
+    golden.read("max", def.max);
+    golden.read("share", def.share);
+    return def;
+}
+
 BodyStyleDef read_body_style(const TableReader& body, bool takes_link_colors) {
     BodyStyleDef def;
     if (const auto color = body.find("color"); color && color->is_list()) {

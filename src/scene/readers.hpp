@@ -34,6 +34,7 @@ struct Sections {
     TableReader style;
     TableReader overlay;
     TableReader camera;
+    TableReader golden;
     std::vector<TableReader> ropes;
     std::vector<TableReader> nets;
 };
@@ -63,6 +64,8 @@ struct SolverSection {
 [[nodiscard]] StyleDef read_style(const TableReader& style);
 [[nodiscard]] OverlayDef read_overlay(const TableReader& overlay);
 [[nodiscard]] CameraDef read_camera(const TableReader& camera);
+/// Refuses times after world.duration, and such as do not increase.
+[[nodiscard]] GoldenDef read_golden(const Sections& sections);
 [[nodiscard]] BodyStyleDef read_body_style(const TableReader& body, bool takes_link_colors);
 /// Adds a problem if colours tell what a named method does not know.
 void check_color_by(const Sections& sections, const SolverSection& solver, const StyleDef& style);

@@ -19,8 +19,9 @@ namespace {
 
 Sections sections_of(const toml::table& document, Problems& problems) {
     const TableReader root(problems, document, "", "");
-    return {root.table("world"),   root.table("solver"), root.table("video"), root.table("style"),
-            root.table("overlay"), root.table("camera"), root.tables("rope"), root.tables("net")};
+    return {root.table("world"),  root.table("solver"),  root.table("video"),
+            root.table("style"),  root.table("overlay"), root.table("camera"),
+            root.table("golden"), root.tables("rope"),   root.tables("net")};
 }
 
 /// Ropes and nets, with their styles.
@@ -62,6 +63,7 @@ Scene parse_scene(std::string_view toml, const std::string& source_name,
     scene.style = read_style(sections.style);
     scene.overlay = read_overlay(sections.overlay);
     scene.camera = read_camera(sections.camera);
+    if (document.contains("golden")) scene.golden = read_golden(sections);
     const SceneSize size = count_bodies(sections, solver, scene);
     check_work(sections, solver, size, scene);
     check_color_by(sections, solver, scene.style);

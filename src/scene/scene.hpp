@@ -35,6 +35,16 @@ struct BodySolverDef {
 /// The name a scene file uses for it.
 [[nodiscard]] std::string_view solver_name(const SolverDef& solver);
 
+/// What makes a scene a golden test: which pictures are kept, and how far new ones may be from them.
+struct GoldenDef {
+    std::vector<double> at_s;  ///< times in seconds, increasing, at least one; 0 .. world.duration_s
+    int width_px = 320;        ///< see is_picture_size()
+    int height_px = 180;
+    // If neither limit is given, pictures must be equal; otherwise those given count.
+    std::optional<double> max;    ///< largest difference of a channel, 0 .. 255
+    std::optional<double> share;  ///< share of the pixels that differ at all, 0 .. 1
+};
+
 /// A whole scene file, validated: the Defs of the modules that it speaks to.
 struct Scene {
     std::string name;    ///< the file's name without folder and ending
@@ -49,6 +59,7 @@ struct Scene {
     OverlayDef overlay;
     CameraDef camera;
     VideoDef video;
+    std::optional<GoldenDef> golden;  ///< empty: the scene is no golden test
 };
 
 /// One `--set key=value` of the command line, e.g. "video.fps=30" or "rope[0].mass=2". The value is read as

@@ -29,6 +29,7 @@ Scene scene_with(const Key& key, const std::string& value) {
     if (key.section == "solver.bodies") toml += "[[solver.bodies]]\nropes = [0]\nmethod = \"exact\"\n";
     if (key.section == "solver.bodies" && key.name == "ropes")
         toml = "schema = 1\n" + grid + rope + "[[solver.bodies]]\nnets = [0]\nmethod = \"exact\"\n";
+    if (key.section == "golden" && key.name != "at") toml += "[golden]\nat = [0]\n";
     std::string path = path_of(key);
     if (const std::size_t list = path.find("[]"); list != std::string::npos) path.insert(list + 1, "0");
     std::vector<Setting> settings;
@@ -102,7 +103,8 @@ std::string text(const Scene& scene) {
     const OverlayDef& overlay = scene.overlay;
     all += overlay.title + text(static_cast<int>(overlay.energy)) + text(static_cast<int>(overlay.method));
     return all + text(static_cast<int>(style.markers)) + text(static_cast<int>(style.bars)) +
-           text(scene.camera.margin);
+           text(scene.camera.margin) +
+           (scene.golden ? text(scene.golden->width_px) + text(scene.golden->height_px) : "");
 }
 
 TEST(SceneKeys, AreUniqueInTheirSections) {

@@ -1,0 +1,150 @@
+#include "corda/suite/provenance.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+
+#include "corda/core/version.hpp"
+
+namespace corda::suite {
+namespace {
+
+constexpr std::size_t kDigits = 16;  // of a double's bits
+
+/// The lines of a TOML table as one inline table.
+std::string inlined(std::string_view lines) {
+    std::string table = "{";
+    std::string bodies;
+    bool in_bodies = false;
+    while (!lines.empty()) {
+        const std::size_t end = std::min(lines.find('\n'), lines.size());
+        const std::string_view line = lines.substr(0, end);
+        lines.remove_prefix(std::min(end + 1, lines.size()));
+        if (line.empty() || line == "[solver]") continue;
+        if (line == "[[solver.bodies]]") {
+            bodies += bodies.empty() ? "{" : "}, {";
+            in_bodies = true;
+            continue;
+        }
+        std::string& target = in_bodies ? bodies : table;
+        if (target.back() != '{') target += ", ";
+        target += line;
+    }
+    if (in_bodies) table += fmt::format(", bodies = [{}}}]", bodies);
+    return table + "}";
+}
+
+std::string hash_of(const std::vector<double>& values) {
+    std::uint64_t hash = 0xcbf29ce484222325U;
+    for (const double value : values) {
+        const auto bits = std::bit_cast<std::uint64_t>(value);
+        for (int byte = 0; byte < 8; ++byte) hash = (hash ^ ((bits >> (8 * byte)) & 0xffU)) * 0x100000001b3U;
+    }
+    return fmt::format("{:016x}", hash);
+}
+
+std::string hex_of(const std::vector<double>& values) {
+    std::string text;
+    text.reserve(values.size() * kDigits);
+    for (const double value : values)
+        fmt::format_to(std::back_inserter(text), "{:016x}", std::bit_cast<std::uint64_t>(value));
+    return text;
+}
+
+std::vector<double> from_hex(std::string_view text) {
+    std::vector<double> values;
+    for (; text.size() >= kDigits; text.remove_prefix(kDigits)) {
+        std::uint64_t bits = 0;
+        const auto [end, failure] = std::from_chars(text.data(), text.data() + kDigits, bits, 16);
+        const auto value = std::bit_cast<double>(bits);
+        if (failure != std::errc() || end != text.data() + kDigits || !std::isfinite(value)) return {};
+        values.push_back(value);
+    }
+    return values;
+}
+
+}  // namespace
+
+Provenance provenance_of(const Film& film, double time_s) {
+    const std::string toml = frozen_toml(film);
+    const CameraDef& camera = film.camera();
+    Provenance made{.version = std::string(version()),
+                    .renderer = film.gl().renderer,
+                    .solver = "solver=" + inlined(std::string_view(toml).substr(0, toml.find("\n[camera]"))),
+                    .center = fmt::format("camera.center=[{}, {}]", camera.center_m->x, camera.center_m->y),
+                    .height = fmt::format("camera.height={}", *camera.height_m),
+                    .state = {},
+                    .positions_m = {}};
+    const State& state = film.state_at(time_s);
+    for (std::size_t i = 0; i < state.x_m.size(); ++i) {
+        made.positions_m.push_back(state.x_m[i]);
+        made.positions_m.push_back(state.y_m[i]);
+    }
+    made.state = hash_of(made.positions_m);
+    if (state.x_m.size() > Provenance::kMostKept) made.positions_m.clear();
+    return made;
+}
+
+PngInfo to_png_info(const Provenance& made, const std::string& scene, double time_s) {
+    PngInfo info;
+    info.text = {{"Software", "corda " + made.version}, {"Title", scene},
+                 {"Time", fmt::format("{} s", time_s)}, {"Renderer", made.renderer},
+                 {"Corda-Solver", made.solver},         {"Corda-Center", made.center},
+                 {"Corda-Height", made.height},         {"Corda-State", made.state}};
+    if (!made.positions_m.empty()) info.text.emplace_back("Corda-Positions", hex_of(made.positions_m));
+    return info;
+}
+
+Provenance from_png_info(const PngInfo& info) {
+    Provenance made;
+    for (const auto& [key, text] : info.text) {
+        if (key == "Software" && text.starts_with("corda ")) made.version = text.substr(6);
+        if (key == "Renderer") made.renderer = text;
+        if (key == "Corda-Solver" && text.starts_with("solver=")) made.solver = text;
+        if (key == "Corda-Center" && text.starts_with("camera.center=")) made.center = text;
+        if (key == "Corda-Height" && text.starts_with("camera.height=")) made.height = text;
+        if (key == "Corda-State") made.state = text;
+        if (key == "Corda-Positions") made.positions_m = from_hex(text);
+    }
+    return made;
+}
+
+std::vector<Setting> freezing(const Scene& scene, const Provenance& made) {
+    std::vector<Setting> settings;
+    const bool is_open = std::holds_alternative<AutoDef>(scene.solver) && scene.body_solvers.empty();
+    if (is_open && !made.solver.empty()) settings.push_back(made.solver);
+    if (!scene.camera.center_m && !made.center.empty()) settings.push_back(made.center);
+    if (!scene.camera.height_m && !made.height.empty()) settings.push_back(made.height);
+    return settings;
+}
+
+std::optional<double> largest_distance_m(const Provenance& a, const Provenance& b) {
+    if (a.positions_m.empty() || a.positions_m.size() != b.positions_m.size()) return std::nullopt;
+    double largest = 0.0;
+    for (std::size_t i = 0; i + 1 < a.positions_m.size(); i += 2)
+        largest = std::max(largest, std::hypot(a.positions_m[i] - b.positions_m[i],
+                                               a.positions_m[i + 1] - b.positions_m[i + 1]));
+    return largest;
+}
+
+std::string cause_of(const Provenance& reference, const Provenance& now) {
+    if (reference.state.empty()) return "pixels differ; the reference does not say how it was made";
+    if (reference.state != now.state) {
+        const auto distance_m = largest_distance_m(reference, now);
+        const std::string why = reference.solver == now.solver ? "" : ", by another solver";
+        if (distance_m) return fmt::format("positions differ by {:.2g} m{}", *distance_m, why);
+        return fmt::format("positions differ{}", why);
+    }
+    if (reference.center != now.center || reference.height != now.height)
+        return "same positions, other camera";
+    if (reference.version != now.version)
+        return fmt::format("same positions and camera, drawn by another version of Corda: {}, now {}",
+                           reference.version, now.version);
+    return "same positions, camera and version, but pixels differ";
+}
+
+}  // namespace corda::suite

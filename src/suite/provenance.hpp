@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "corda/media/defs.hpp"
+#include "corda/pipeline/film.hpp"
+
+namespace corda::suite {
+
+/// What a golden picture says about how it was made.
+struct Provenance {
+    std::string version;   ///< of Corda
+    std::string renderer;  ///< GL_RENDERER
+    std::string solver;    ///< setting "solver={...}"; empty if it is not known
+    std::string center;    ///< setting "camera.center=[...]"
+    std::string height;    ///< setting "camera.height=..."
+    std::string state;     ///< FNV-1a of the positions' bits, in hexadecimal
+    /// x and y of each particle in turn; empty beyond kMostKept particles.
+    std::vector<double> positions_m;
+
+    static constexpr std::size_t kMostKept = 50'000;
+};
+
+/// How a film's picture at a time is made.
+[[nodiscard]] Provenance provenance_of(const Film& film, double time_s);
+
+/// As the texts of a PNG. Positions are the bits of their numbers, so that they are read back exactly.
+[[nodiscard]] PngInfo to_png_info(const Provenance& provenance, const std::string& scene, double time_s);
+
+/// Texts that are missing, or not what to_png_info() writes, leave their fields empty.
+[[nodiscard]] Provenance from_png_info(const PngInfo& info);
+
+/// Settings that give `scene` the solver and the camera of `made`, as far as the scene itself leaves them
+/// open: a method or a camera that the scene names is what a golden test checks.
+[[nodiscard]] std::vector<Setting> freezing(const Scene& scene, const Provenance& made);
+
+/// Why two pictures may differ, in words: from what is most likely the cause.
+[[nodiscard]] std::string cause_of(const Provenance& reference, const Provenance& now);
+
+/// The largest distance between particles in m; empty if positions are not known or differ in number.
+[[nodiscard]] std::optional<double> largest_distance_m(const Provenance& a, const Provenance& b);
+
+}  // namespace corda::suite
