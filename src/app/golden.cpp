@@ -22,7 +22,11 @@ struct GoldenOptions {
     suite::SuiteDef def;
     GlOptions gl;
     std::string junit;
+    std::string html;
 };
+
+/// A page of more pictures is too large to open.
+constexpr int kMostOnPage = 200;
 
 const char* word_of(Verdict verdict) {
     switch (verdict) {
@@ -41,17 +45,19 @@ const char* word_of(Verdict verdict) {
 }
 
 std::string line_of(const Checked& picture, const GoldenOptions& options) {
+    std::string line = picture.name + ": ";
     if (picture.changed) {
-        const char* const what = picture.verdict == Verdict::kStale ? "removed" : "written";
-        return fmt::format("{}: {}{}", picture.name, options.def.dry_run ? "would be " : "", what);
+        line += options.def.dry_run ? "would be " : "";
+        line += picture.verdict == Verdict::kStale ? "removed: " : "written: ";
     }
-    std::string line = fmt::format("{}: {}", picture.name, word_of(picture.verdict));
-    if (picture.verdict == Verdict::kMissing) return line + "; --update adds it";
-    if (picture.verdict == Verdict::kStale) return line + ": no scene asks for it; --update removes it";
+    if (!picture.changed || picture.verdict != Verdict::kPassed) line += word_of(picture.verdict);
     if (picture.verdict == Verdict::kDifferent && picture.difference.same_size)
         line += fmt::format(": max {}, mean {:.6g}, share {:.6g}", picture.difference.max,
                             picture.difference.mean, picture.difference.share);
-    return line + "; " + picture.cause;
+    if (!picture.cause.empty()) line += (line.ends_with(' ') ? "" : "; ") + picture.cause;
+    if (picture.failed() && picture.verdict == Verdict::kMissing) line += "; --update adds it";
+    if (picture.failed() && picture.verdict == Verdict::kStale) line += "; --update removes it";
+    return line;
 }
 
 nlohmann::json to_json(const Checked& picture) {
@@ -72,36 +78,36 @@ nlohmann::json to_json(const Checked& picture) {
     return json;
 }
 
-void write_junit(const std::string& path, const suite::SuiteResult& result) {
+void write_text(const std::string& path, const std::string& text) {
     OutputFile file(path, {.force = true});
-    file.write(suite::junit_xml(result));
+    file.write(text);
     file.commit();
 }
 
-ExitCode run_suite(const Console& console, GoldenOptions options) {
-    if (options.def.dry_run && !options.def.update)
-        throw Error(ExitCode::kUsage, "--dry-run shows what --update would change; give both");
-    if (!options.junit.empty()) check_output(options.junit, "", true);
-    options.gl.apply_to(options.def.film);
-    leave_cores_to_chunks({});
-    options.def.film.on_progress = stopping_if_asked(kSomethingWritten);
-    options.def.on_progress = stopping_if_asked(kSomethingWritten);
-    const suite::SuiteResult result = suite::run(options.def);
-    if (!options.junit.empty()) write_junit(options.junit, result);
+/// Prints what did not pass, what has changed and the sums.
+void tell(const Console& console, const GoldenOptions& options, const suite::SuiteResult& result) {
     nlohmann::json pictures = nlohmann::json::array();
     std::int64_t changed = 0;
     for (const Checked& picture : result.pictures) {
-        if (picture.verdict != Verdict::kPassed || picture.changed) console.result(line_of(picture, options));
+        if (picture.failed() || picture.changed) console.result(line_of(picture, options));
         changed += picture.changed ? 1 : 0;
         pictures.push_back(to_json(picture));
     }
-    for (const std::string& frozen : result.frozen) console.detail(frozen);
+    for (const std::string& frozen : result.frozen) {
+        if (changed > 0)
+            console.result(frozen);
+        else
+            console.detail(frozen);
+    }
     const std::int64_t passed = result.count(Verdict::kPassed);
     const std::int64_t failed = result.count(Verdict::kDifferent) + result.count(Verdict::kEmpty);
     const std::int64_t missing = result.count(Verdict::kMissing);
-    const std::int64_t stale = options.def.update ? 0 : result.count(Verdict::kStale);
-    console.result(fmt::format("{}: {} failed, {} missing, {} stale", counted(passed, "picture") + " passed",
-                               failed, missing, stale));
+    const std::int64_t stale = result.count(Verdict::kStale);
+    std::string sums = fmt::format("{}: {} failed, {} missing, {} stale",
+                                   counted(passed, "picture") + " passed", failed, missing, stale);
+    if (options.def.update)
+        sums += fmt::format("; {}{} changed", changed, options.def.dry_run ? " would be" : "");
+    console.result(sums);
     console.report({{"schema", 1},
                     {"passed", passed},
                     {"failed", failed},
@@ -110,7 +116,25 @@ ExitCode run_suite(const Console& console, GoldenOptions options) {
                     {"changed", changed},
                     {"frozen", result.frozen},
                     {"pictures", pictures}});
-    return failed + missing + stale == 0 ? ExitCode::kOk : ExitCode::kMismatch;
+}
+
+ExitCode run_suite(const Console& console, GoldenOptions options) {
+    if ((options.def.dry_run || options.def.replan) && !options.def.update)
+        throw Error(ExitCode::kUsage, "--dry-run and --replan say how --update works; add --update");
+    for (const std::string& path : {options.junit, options.html})
+        if (!path.empty()) check_output(path, "", true);
+    if (!options.html.empty()) options.def.most_drawn = kMostOnPage;
+    options.gl.apply_to(options.def.film);
+    leave_cores_to_chunks({});
+    options.def.film.on_progress = stopping_if_asked(kSomethingWritten);
+    options.def.on_progress = stopping_if_asked(kSomethingWritten);
+    const suite::SuiteResult result = suite::run(options.def);
+    if (!options.junit.empty()) write_text(options.junit, suite::junit_xml(result));
+    if (!options.html.empty()) write_text(options.html, suite::page_html(result, options.def.folder));
+    tell(console, options, result);
+    const bool failed = std::any_of(result.pictures.begin(), result.pictures.end(),
+                                    [](const Checked& picture) { return picture.failed(); });
+    return failed ? ExitCode::kMismatch : ExitCode::kOk;
 }
 
 }  // namespace
@@ -124,6 +148,10 @@ void add_golden(CLI::App& app, Action& action) {
     command->add_flag("--update", options->def.update,
                       "write pictures that are missing or differ, and remove stale ones");
     command->add_flag("--dry-run", options->def.dry_run, "with --update: only say what would change");
+    command->add_flag("--replan", options->def.replan,
+                      "with --update: choose all solvers and cameras anew, in place of the kept pictures'");
+    command->add_option("--html", options->html,
+                        "also write a page of the failed pictures: reference, new and difference");
     command->add_option("--junit", options->junit, "also write the results as JUnit XML to this file");
     command->add_option("--set", options->def.settings, "key=value in place of what the scenes say")
         ->type_name("KEY=VALUE");

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
 
 namespace corda::suite {
@@ -73,6 +74,7 @@ Provenance provenance_of(const Film& film, double time_s) {
     const std::string toml = frozen_toml(film);
     const CameraDef& camera = film.camera();
     Provenance made{.version = std::string(version()),
+                    .scene = printable(film.scene().name),
                     .renderer = film.gl().renderer,
                     .solver = "solver=" + inlined(std::string_view(toml).substr(0, toml.find("\n[camera]"))),
                     .center = fmt::format("camera.center=[{}, {}]", camera.center_m->x, camera.center_m->y),
@@ -85,17 +87,23 @@ Provenance provenance_of(const Film& film, double time_s) {
         made.positions_m.push_back(state.y_m[i]);
     }
     made.state = hash_of(made.positions_m);
-    if (state.x_m.size() > Provenance::kMostKept) made.positions_m.clear();
+    const std::size_t count = state.x_m.size();
+    const std::size_t stride = (count + Provenance::kMostKept - 1) / Provenance::kMostKept;
+    if (stride < 2) return made;
+    std::vector<double> some;
+    for (std::size_t i = 0; i < count; i += stride)
+        some.insert(some.end(), {made.positions_m[2 * i], made.positions_m[2 * i + 1]});
+    made.positions_m = std::move(some);
     return made;
 }
 
-PngInfo to_png_info(const Provenance& made, const std::string& scene, double time_s) {
+PngInfo to_png_info(const Provenance& made, double time_s) {
     PngInfo info;
-    info.text = {{"Software", "corda " + made.version}, {"Title", scene},
+    info.text = {{"Software", "corda " + made.version}, {"Title", made.scene},
                  {"Time", fmt::format("{} s", time_s)}, {"Renderer", made.renderer},
                  {"Corda-Solver", made.solver},         {"Corda-Center", made.center},
                  {"Corda-Height", made.height},         {"Corda-State", made.state}};
-    if (!made.positions_m.empty()) info.text.emplace_back("Corda-Positions", hex_of(made.positions_m));
+    info.text.emplace_back("Corda-Positions", hex_of(made.positions_m));
     return info;
 }
 
@@ -103,6 +111,7 @@ Provenance from_png_info(const PngInfo& info) {
     Provenance made;
     for (const auto& [key, text] : info.text) {
         if (key == "Software" && text.starts_with("corda ")) made.version = text.substr(6);
+        if (key == "Title") made.scene = text;
         if (key == "Renderer") made.renderer = text;
         if (key == "Corda-Solver" && text.starts_with("solver=")) made.solver = text;
         if (key == "Corda-Center" && text.starts_with("camera.center=")) made.center = text;
@@ -132,18 +141,22 @@ std::optional<double> largest_distance_m(const Provenance& a, const Provenance& 
 }
 
 std::string cause_of(const Provenance& reference, const Provenance& now) {
-    if (reference.state.empty()) return "pixels differ; the reference does not say how it was made";
+    if (!reference.is_golden()) return "pixels differ; the reference does not say how it was made";
     if (reference.state != now.state) {
         const auto distance_m = largest_distance_m(reference, now);
         const std::string why = reference.solver == now.solver ? "" : ", by another solver";
-        if (distance_m) return fmt::format("positions differ by {:.2g} m{}", *distance_m, why);
-        return fmt::format("positions differ{}", why);
+        if (!distance_m) return fmt::format("another number of particles{}", why);
+        if (*distance_m > 0.0) return fmt::format("positions differ by {:.2g} m{}", *distance_m, why);
+        return fmt::format("positions differ, if not those of the particles that are kept{}", why);
     }
     if (reference.center != now.center || reference.height != now.height)
         return "same positions, other camera";
     if (reference.version != now.version)
         return fmt::format("same positions and camera, drawn by another version of Corda: {}, now {}",
                            reference.version, now.version);
+    if (reference.renderer != now.renderer)
+        return fmt::format("same positions and camera, drawn by another OpenGL: {}, now {}",
+                           reference.renderer, now.renderer);
     return "same positions, camera and version, but pixels differ";
 }
 

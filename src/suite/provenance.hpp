@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,22 +14,30 @@ namespace corda::suite {
 /// What a golden picture says about how it was made.
 struct Provenance {
     std::string version;   ///< of Corda
+    std::string scene;     ///< its name
     std::string renderer;  ///< GL_RENDERER
     std::string solver;    ///< setting "solver={...}"; empty if it is not known
     std::string center;    ///< setting "camera.center=[...]"
     std::string height;    ///< setting "camera.height=..."
     std::string state;     ///< FNV-1a of the positions' bits, in hexadecimal
-    /// x and y of each particle in turn; empty beyond kMostKept particles.
+    /// x and y of each particle in turn; of more than kMostKept, of every second, third, ... alone.
     std::vector<double> positions_m;
 
-    static constexpr std::size_t kMostKept = 50'000;
+    static constexpr std::size_t kMostKept = 256;
+
+    /// Whether `corda golden` wrote this; other pictures are none of its business.
+    [[nodiscard]] bool is_golden() const { return !state.empty(); }
+    /// Whether both have the same solver and camera.
+    [[nodiscard]] bool is_frozen_as(const Provenance& other) const {
+        return solver == other.solver && center == other.center && height == other.height;
+    }
 };
 
 /// How a film's picture at a time is made.
 [[nodiscard]] Provenance provenance_of(const Film& film, double time_s);
 
 /// As the texts of a PNG. Positions are the bits of their numbers, so that they are read back exactly.
-[[nodiscard]] PngInfo to_png_info(const Provenance& provenance, const std::string& scene, double time_s);
+[[nodiscard]] PngInfo to_png_info(const Provenance& provenance, double time_s);
 
 /// Texts that are missing, or not what to_png_info() writes, leave their fields empty.
 [[nodiscard]] Provenance from_png_info(const PngInfo& info);

@@ -3,210 +3,227 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
+#include <cstring>
 #include <filesystem>
+#include <memory>
 #include <mutex>
-#include <set>
 #include <thread>
 
-#include "corda/core/file.hpp"
-#include "corda/core/text.hpp"
+#include "corda/pipeline/painter.hpp"
+#include "corda/suite/cases.hpp"
+#include "corda/suite/crew.hpp"
 #include "corda/suite/provenance.hpp"
+#include "corda/suite/staging.hpp"
 
 namespace corda::suite {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kEnding = ".png";
+/// A thread of its own draws no fewer pictures: the context that it needs takes as long as some of them.
+constexpr std::size_t kFewestApart = 8;
 
-struct Case {
-    std::string path;
-    std::vector<Setting> settings;
-    Scene scene;
-    std::vector<Checked> pictures;
-    std::string frozen;
-};
-
-/// Files of a folder with this ending, sorted.
-std::vector<std::string> files_in(const std::string& folder, std::string_view ending) {
-    std::vector<std::string> paths;
-    std::error_code failure;
-    for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
-         entry.increment(failure))
-        if (entry->path().extension() == ending) paths.push_back(entry->path().string());
-    if (failure) fail_file("read", folder, failure.value());
-    std::sort(paths.begin(), paths.end());
-    return paths;
+bool has_one_color(const Image& image) {
+    for (std::size_t i = 4; i < image.size_bytes(); i += 4)
+        if (std::memcmp(image.data(), image.data() + i, 4) != 0) return false;
+    return true;
 }
 
-std::string name_of(const std::string& scene, double time_s) {
-    std::string name = fmt::format("{}_t{:011.6f}", scene, time_s);
-    std::replace(name.end() - 7, name.end(), '.', '_');
-    return name;
-}
-
-Case make_case(const std::string& path, const SuiteDef& def, std::set<std::string>& names) {
-    Case made{.path = path,
-              .settings = def.settings,
-              .scene = load_scene(path, def.settings),
-              .pictures = {},
-              .frozen = {}};
-    if (!made.scene.golden) return made;
-    made.settings.push_back(
-        fmt::format("video.size=[{},{}]", made.scene.golden->width_px, made.scene.golden->height_px));
-    made.scene.video.width_px = made.scene.golden->width_px;
-    made.scene.video.height_px = made.scene.golden->height_px;
-    for (const double time_s : made.scene.golden->at_s) {
-        made.pictures.push_back({.scene = made.scene.name,
-                                 .name = name_of(made.scene.name, time_s) + std::string(kEnding),
-                                 .time_s = time_s});
-        if (!names.insert(made.pictures.back().name).second)
-            throw Error(ExitCode::kUsage,
-                        fmt::format("two pictures would both be {}; rename '{}', or give times that differ "
-                                    "by 1e-6 s or more",
-                                    made.pictures.back().name, path));
+/// Compares a picture with one of its references; false if it does not pass.
+bool passes(const Image& drawn, const Provenance& now, const DifferenceLimits& limits,
+            const std::string& path, Checked& picture) {
+    picture.variant = fs::path(path).filename().string();
+    Image reference;
+    try {
+        reference = read_png(path);
+    } catch (const Error& error) {
+        picture.difference = {.same_size = false, .equal = false};
+        picture.cause = error.what();
+        return false;
     }
-    return made;
+    picture.difference = compare(reference, drawn);
+    if (picture.difference.within(limits)) return true;
+    picture.cause = cause_of(from_png_info(read_png_info(path)), now);
+    if (!picture.difference.same_size)
+        picture.cause = fmt::format("{}x{} pixels, now {}x{}", reference.width(), reference.height(),
+                                    drawn.width(), drawn.height());
+    return false;
 }
 
-std::vector<Case> load_cases(const SuiteDef& def) {
-    std::vector<Case> cases;
-    std::set<std::string> names;
-    for (const std::string& path : def.paths) {
-        const bool is_folder = fs::is_directory(path);
-        const std::vector<std::string> files = is_folder ? files_in(path, ".toml") : std::vector{path};
-        for (const std::string& file : files) {
-            Case made = make_case(file, def, names);
-            if (made.scene.golden)
-                cases.push_back(std::move(made));
-            else if (!is_folder)
-                throw Error(ExitCode::kUsage, fmt::format("'{}' has no table [golden]; add one, for instance "
-                                                          "[golden] with at = [0.0, 1.0]",
-                                                          file));
-        }
-    }
-    if (cases.empty())
-        throw Error(ExitCode::kUsage,
-                    fmt::format("no scene in '{}' has a table [golden]; add one, for instance [golden] with "
-                                "at = [0.0, 1.0]",
-                                def.paths.front()));
-    return cases;
-}
-
-/// NAME.png and every NAME.CAUSE.png that there is.
-std::vector<std::string> variants_of(const std::vector<std::string>& references, const std::string& name) {
-    const std::string stem = name.substr(0, name.size() - kEnding.size()) + ".";
-    std::vector<std::string> variants;
-    for (const std::string& path : references)
-        if (fs::path(path).filename().string().starts_with(stem)) variants.push_back(path);
-    return variants;
-}
-
-/// Compares a picture with its references until one matches; otherwise tells of the plain one, if there is.
+/// Compares a picture with its references until one passes; otherwise tells of the plain one, if there is.
 void judge(const Image& drawn, const Provenance& now, const GoldenDef& golden,
            const std::vector<std::string>& variants, Checked& picture) {
     const DifferenceLimits limits{.max = golden.max, .mean = {}, .share = golden.share};
     picture.verdict = variants.empty() ? Verdict::kMissing : Verdict::kDifferent;
+    std::optional<Checked> told;
     for (const std::string& path : variants) {
-        const std::string file = fs::path(path).filename().string();
-        const Image reference = read_png(path);
-        const Difference difference = compare(reference, drawn);
-        const bool passes = difference.within(limits);
-        if (!passes && !picture.variant.empty() && file != picture.name) continue;
-        picture.difference = difference;
-        picture.variant = file;
-        picture.cause = passes ? "" : cause_of(from_png_info(read_png_info(path)), now);
-        if (!passes && !difference.same_size)
-            picture.cause = fmt::format("{}x{} pixels, now {}x{}", reference.width(), reference.height(),
-                                        drawn.width(), drawn.height());
-        if (passes) picture.verdict = Verdict::kPassed;
-        if (passes) return;
+        Checked result = picture;
+        if (passes(drawn, now, limits, path, result)) {
+            picture = result;
+            picture.verdict = Verdict::kPassed;
+            picture.cause.clear();
+            return;
+        }
+        if (!told || result.variant == picture.name) told = result;
     }
+    if (told) picture = *told;
 }
+
+/// A scene that is being drawn.
+struct Job {
+    Case* scene;
+    std::vector<Setting> frozen;
+    std::optional<Film> film;
+    std::vector<Provenance> made;  ///< per picture
+    std::size_t left;              ///< pictures to draw
+};
 
 class Runner {
   public:
-    Runner(const SuiteDef& def, std::vector<std::string> references, std::int64_t all)
-        : def_(def), references_(std::move(references)), all_(all) {}
+    Runner(const SuiteDef& def, const std::vector<std::string>& references, std::int64_t all)
+        : def_(def), references_(references), staging_(def.folder), all_(all) {}
 
-    void check(Case& one) {
-        const std::vector<Setting> frozen = frozen_settings(one);
-        const Film film = film_of(one, frozen);
-        for (Checked& picture : one.pictures) {
-            const Image drawn = film.still(picture.time_s);
-            const bool is_empty = film.shows_nothing();
-            judge(drawn, provenance_of(film, picture.time_s), *one.scene.golden,
-                  variants_of(references_, picture.name), picture);
-            if (is_empty) picture.verdict = Verdict::kEmpty;
-            if (is_empty) picture.cause = "the picture is empty: nothing is in view";
-            count_one();
-        }
-        tell_since_when(one);
-        if (def_.update) update(one, frozen);
+    void check(std::vector<Case>& cases) {
+        for (Case& one : cases) crew_.later([this, &one] { begin(one); });
+        crew_.run(threads_);
     }
 
+    /// Writes what an update has drawn, and removes what is stale.
+    void publish(const std::vector<std::string>& stale) { staging_.publish(stale); }
+
   private:
+    /// Makes the film of a scene, and pieces of work of its pictures.
+    void begin(Case& one) {
+        auto job = std::make_shared<Job>();
+        job->scene = &one;
+        job->left = one.pictures.size();
+        job->frozen = def_.replan ? std::vector<Setting>{} : frozen_settings(one);
+        make_film(*job);
+        if (def_.update) tell_frozen(one, freezing(one.scene, job->made.front()), "its pictures freeze");
+        const std::size_t count = one.pictures.size();
+        const bool may_split = job->film->scene().video.shutter == 0.0;
+        const std::size_t pieces =
+            may_split ? std::clamp<std::size_t>(count / kFewestApart, 1, threads_) : std::size_t{1};
+        for (std::size_t i = 0; i < pieces; ++i)
+            crew_.next([this, job, first = count * i / pieces, end = count * (i + 1) / pieces, pieces] {
+                draw(*job, first, end, pieces > 1);
+            });
+    }
+
+    /// The film with what is frozen, or without if that does not fit the scene any more.
+    void make_film(Job& job) {
+        try {
+            make_film(job, job.frozen);
+        } catch (const Error& error) {
+            const bool may_not_fit = error.code() == ExitCode::kInvalidScene ||
+                                     error.code() == ExitCode::kDiverged || error.code() == ExitCode::kUsage;
+            if (job.frozen.empty() || !may_not_fit) throw;
+            job.scene->frozen =
+                fmt::format("{}: what its references freeze does not fit the scene any more: {}",
+                            job.scene->scene.name, error.what());
+            make_film(job, {});
+        }
+    }
+
+    void make_film(Job& job, const std::vector<Setting>& frozen) {
+        const Case& one = *job.scene;
+        std::vector<Setting> settings = one.settings;
+        settings.insert(settings.end(), frozen.begin(), frozen.end());
+        FilmDef def = def_.film;
+        def.stills_s = one.scene.golden->at_s;
+        job.film.emplace(load_scene(one.path, settings), def);
+        FilmPainter::keep(*job.film, def.stills_s);
+        job.made.clear();
+        for (const double time_s : def.stills_s) job.made.push_back(provenance_of(*job.film, time_s));
+    }
+
+    void draw(Job& job, std::size_t first, std::size_t end, bool apart) {
+        std::optional<FilmPainter> painter;
+        {
+            const std::lock_guard lock(mutex_);  // painters of a film are made one at a time
+            if (apart)
+                painter.emplace(*job.film, FilmPainter::Apart{});
+            else
+                painter.emplace(*job.film);
+        }
+        for (std::size_t i = first; i < end; ++i) {
+            Checked& picture = job.scene->pictures[i];
+            painter->draw(picture.time_s);
+            const Image& drawn = painter->image();
+            judge(drawn, job.made[i], *job.scene->scene.golden, variants_of(references_, picture.name),
+                  picture);
+            if (painter->shows_nothing() || has_one_color(drawn)) {
+                picture.verdict = Verdict::kEmpty;
+                picture.cause = "the picture is empty: nothing is in view";
+            } else if (def_.update) {
+                update(job.made[i], drawn, picture);
+            }
+            if (picture.failed()) keep(drawn, picture);
+            count_one();
+        }
+        painter.reset();
+        const std::lock_guard lock(mutex_);
+        job.left -= end - first;
+        if (job.left > 0) return;
+        tell_since_when(job);
+        job.film.reset();
+    }
+
     /// What the references of a scene freeze; from the first that says it.
-    std::vector<Setting> frozen_settings(Case& one) {
+    std::vector<Setting> frozen_settings(Case& one) const {
         for (const Checked& picture : one.pictures) {
             for (const std::string& path : variants_of(references_, picture.name)) {
-                const auto frozen = freezing(one.scene, from_png_info(read_png_info(path)));
-                if (frozen.empty()) continue;
-                one.frozen = fmt::format("{}: frozen by {}:", one.scene.name, picture.name);
-                for (const Setting& setting : frozen) one.frozen += " " + setting;
-                return frozen;
+                try {
+                    const auto frozen = freezing(one.scene, from_png_info(read_png_info(path)));
+                    if (frozen.empty()) continue;
+                    tell_frozen(one, frozen, "frozen by " + picture.name);
+                    return frozen;
+                } catch (const Error& error) {
+                    if (error.code() != ExitCode::kIo) throw;  // otherwise the comparison tells
+                }
             }
         }
         return {};
     }
 
-    /// The film of a scene with what is frozen, if that still fits it.
-    [[nodiscard]] Film film_of(Case& one, const std::vector<Setting>& frozen) const {
-        std::vector<Setting> settings = one.settings;
-        settings.insert(settings.end(), frozen.begin(), frozen.end());
-        FilmDef def = def_.film;
-        def.stills_s = one.scene.golden->at_s;
-        try {
-            return Film(load_scene(one.path, settings), def);
-        } catch (const Error& error) {
-            if (frozen.empty() || error.code() != ExitCode::kInvalidScene) throw;
-            one.frozen =
-                fmt::format("{}: what its references freeze does not fit the scene any more", one.scene.name);
-            return Film(load_scene(one.path, one.settings), def);
-        }
+    static void tell_frozen(Case& one, const std::vector<Setting>& frozen, const std::string& how) {
+        if (frozen.empty()) return;
+        one.frozen = fmt::format("{}: {}:", one.scene.name, how);
+        for (const Setting& setting : frozen) one.frozen += " " + setting;
     }
 
-    /// Adds to the causes from when on positions differ.
-    static void tell_since_when(Case& one) {
+    /// Writes a picture that is missing, differs, or freezes something else.
+    void update(const Provenance& made, const Image& drawn, Checked& picture) {
+        if (picture.verdict == Verdict::kPassed) {
+            const std::string path = (fs::path(def_.folder) / picture.name).string();
+            const bool is_kept =
+                picture.variant != picture.name || from_png_info(read_png_info(path)).is_frozen_as(made);
+            if (is_kept) return;
+            picture.cause = "the same pixels, by another solver or camera";
+        }
+        picture.changed = true;
+        if (!def_.dry_run) staging_.add(picture.name, drawn, to_png_info(made, picture.time_s));
+    }
+
+    /// Adds to the causes from when on positions differ, be it not enough to fail a picture.
+    void tell_since_when(const Job& job) const {
+        std::vector<Checked>& pictures = job.scene->pictures;
         const auto moved = [](const Checked& picture) { return picture.cause.starts_with("positions"); };
-        const auto first = std::find_if(one.pictures.begin(), one.pictures.end(), moved);
-        for (auto picture = first; picture != one.pictures.end(); ++picture)
-            if (moved(*picture)) picture->cause += fmt::format(", from t = {} s on", first->time_s);
+        if (std::none_of(pictures.begin(), pictures.end(), moved)) return;
+        std::size_t first = 0;
+        const auto is_the_same = [&](std::size_t i) {
+            if (pictures[i].verdict != Verdict::kPassed) return !moved(pictures[i]);
+            const auto path = (fs::path(def_.folder) / pictures[i].variant).string();
+            return from_png_info(read_png_info(path)).state == job.made[i].state;
+        };
+        while (is_the_same(first)) ++first;
+        for (Checked& picture : pictures)
+            if (moved(picture)) picture.cause += fmt::format(", from t = {} s on", pictures[first].time_s);
     }
 
-    /// Writes what is missing; if a picture differs, all of the scene anew, with nothing frozen, so that they
-    /// have one solver and one camera.
-    void update(Case& one, const std::vector<Setting>& frozen) const {
-        const auto has = [&](Verdict verdict) {
-            return std::any_of(one.pictures.begin(), one.pictures.end(),
-                               [&](const Checked& picture) { return picture.verdict == verdict; });
-        };
-        const bool anew = has(Verdict::kDifferent);
-        if (!anew && !has(Verdict::kMissing)) return;
-        const Film film = film_of(one, anew ? std::vector<Setting>{} : frozen);
-        for (Checked& picture : one.pictures) {
-            if (!anew && picture.verdict != Verdict::kMissing) continue;
-            const Image drawn = film.still(picture.time_s);
-            if (film.shows_nothing()) continue;
-            picture.changed = true;
-            picture.verdict = Verdict::kPassed;
-            if (def_.dry_run) continue;
-            write_png(
-                (fs::path(def_.folder) / picture.name).string(), drawn,
-                to_png_info(provenance_of(film, picture.time_s), printable(one.scene.name), picture.time_s),
-                {.force = true});
-        }
+    void keep(const Image& drawn, Checked& picture) {
+        const std::lock_guard lock(mutex_);
+        if (drawn_++ < def_.most_drawn) picture.drawn = drawn;
     }
 
     void count_one() {
@@ -215,100 +232,47 @@ class Runner {
     }
 
     const SuiteDef& def_;
-    std::vector<std::string> references_;
+    const std::vector<std::string>& references_;
+    Staging staging_;
     std::int64_t all_;
-    std::int64_t done_ = 0;
+    unsigned threads_ = std::max(1U, std::thread::hardware_concurrency());
     std::mutex mutex_;
+    std::int64_t done_ = 0;
+    int drawn_ = 0;
+    Crew crew_;
 };
-
-/// Runs the scenes on as many threads as there are cores; throws what the first scene that failed threw.
-void check_all(Runner& runner, std::vector<Case>& cases) {
-    std::atomic<std::size_t> next = 0;
-    std::atomic<bool> failed = false;
-    std::vector<std::exception_ptr> errors(cases.size());
-    const auto work = [&] {
-        for (std::size_t i = next++; i < cases.size() && !failed; i = next++) {
-            try {
-                runner.check(cases[i]);
-            } catch (...) {
-                errors[i] = std::current_exception();
-                failed = true;
-            }
-        }
-    };
-    {
-        std::vector<std::jthread> threads;
-        const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
-        for (std::size_t i = 0; i < std::min(cores, cases.size()); ++i) threads.emplace_back(work);
-    }
-    for (const std::exception_ptr& error : errors)
-        if (error) std::rethrow_exception(error);
-}
-
-/// Whether a file is called NAME_tSSSS_SSSSSS[.CAUSE].png; `scene` becomes NAME.
-bool is_golden_name(const std::string& file, std::string& scene) {
-    constexpr std::size_t kTimeDigits = 11;
-    const std::string stem = file.substr(0, file.size() - kEnding.size());
-    const std::size_t mark = stem.rfind("_t");
-    if (mark == std::string::npos) return false;
-    const std::string time = stem.substr(mark + 2, stem.find('.', mark) - mark - 2);
-    scene = stem.substr(0, mark);
-    return time.size() >= kTimeDigits && time.find_first_not_of("0123456789_") == std::string::npos;
-}
-
-/// References that no scene asks for; if scenes are named one by one, of these alone.
-std::vector<std::string> stale_ones(const SuiteDef& def, const std::vector<Case>& cases,
-                                    const std::vector<std::string>& references) {
-    std::set<std::string> used;
-    std::set<std::string> scenes;
-    for (const Case& one : cases) {
-        scenes.insert(one.scene.name);
-        for (const Checked& picture : one.pictures)
-            for (const std::string& path : variants_of(references, picture.name)) used.insert(path);
-    }
-    const bool has_folder = std::any_of(def.paths.begin(), def.paths.end(),
-                                        [](const std::string& path) { return fs::is_directory(path); });
-    std::vector<std::string> stale;
-    for (const std::string& path : references) {
-        std::string scene;
-        if (used.contains(path) || !is_golden_name(fs::path(path).filename().string(), scene)) continue;
-        if (has_folder || scenes.contains(scene)) stale.push_back(path);
-    }
-    return stale;
-}
 
 }  // namespace
 
 std::int64_t SuiteResult::count(Verdict verdict) const {
-    return std::count_if(pictures.begin(), pictures.end(),
-                         [&](const Checked& picture) { return picture.verdict == verdict; });
+    return std::count_if(pictures.begin(), pictures.end(), [&](const Checked& picture) {
+        return picture.verdict == verdict && (verdict == Verdict::kPassed || !picture.changed);
+    });
 }
 
 SuiteResult run(const SuiteDef& def) {
     std::vector<Case> cases = load_cases(def);
-    if (def.update && !def.dry_run) make_folder(def.folder);
-    const bool exists = fs::exists(def.folder);
-    if (!exists && !def.update)
+    if (!def.update && !fs::is_directory(def.folder))
         throw Error(ExitCode::kIo,
                     fmt::format("there is no folder '{}'; --update makes it and its pictures", def.folder));
-    const auto references = exists ? files_in(def.folder, kEnding) : std::vector<std::string>{};
+    const std::vector<std::string> references = references_in(def.folder);
     std::int64_t all = 0;
     for (const Case& one : cases) all += std::ssize(one.pictures);
     Runner runner(def, references, all);
-    check_all(runner, cases);
+    runner.check(cases);
+    const std::vector<std::string> stale = stale_ones(def, cases, references);
     SuiteResult result;
-    for (const Case& one : cases) {
-        result.pictures.insert(result.pictures.end(), one.pictures.begin(), one.pictures.end());
+    for (Case& one : cases) {
+        std::move(one.pictures.begin(), one.pictures.end(), std::back_inserter(result.pictures));
         if (!one.frozen.empty()) result.frozen.push_back(one.frozen);
     }
-    for (const std::string& path : stale_ones(def, cases, references)) {
-        if (def.update && !def.dry_run && !fs::remove(path)) fail_file("remove", path, ENOENT);
+    for (const std::string& path : stale)
         result.pictures.push_back({.scene = {},
                                    .name = fs::path(path).filename().string(),
                                    .verdict = Verdict::kStale,
                                    .cause = "no scene asks for it",
                                    .changed = def.update});
-    }
+    if (def.update && !def.dry_run) runner.publish(stale);
     return result;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,9 @@ struct SuiteDef {
     std::vector<Setting> settings;  ///< of all scenes
     std::string folder;             ///< of the references
     bool update = false;            ///< replace references that differ, add missing ones, remove stale ones
+    bool replan = false;            ///< with `update`: choose solver and camera of all scenes anew
     bool dry_run = false;           ///< with `update`: change nothing
+    int most_drawn = 0;             ///< of so many failed pictures what was drawn is kept, for a page
     FilmDef film;
     OnProgress on_progress;  ///< called with the pictures done, by one thread at a time; false stops
 };
@@ -29,24 +32,33 @@ struct Checked {
     double time_s = 0.0;
     Verdict verdict = Verdict::kPassed;
     Difference difference{};
-    std::string variant{};  ///< the file that it was compared with last, NAME.png or NAME.CAUSE.png
-    std::string cause{};    ///< why it differs, in words
-    bool changed = false;   ///< written or removed by an update, or to be
+    std::string variant{};         ///< the file that it was compared with last, NAME.png or NAME.CAUSE.png
+    std::string cause{};           ///< why it failed, in words
+    bool changed = false;          ///< written or removed by an update, or to be: then it is no failure
+    std::optional<Image> drawn{};  ///< if it failed, see SuiteDef::most_drawn
+
+    [[nodiscard]] bool failed() const { return verdict != Verdict::kPassed && !changed; }
 };
 
 struct SuiteResult {
     std::vector<Checked> pictures;    ///< scene by scene in order of time; stale ones last
     std::vector<std::string> frozen;  ///< per scene whose solver or camera its references fix: in words
 
+    /// The pictures of a verdict, without those that an update has put right.
     [[nodiscard]] std::int64_t count(Verdict verdict) const;
 };
 
-/// Draws all pictures of a suite, several scenes at a time, and compares them with their references. Throws
+/// Draws all pictures of a suite, one per core at a time, as frames of a video: exposed as video.shutter
+/// says. Compares them with their references. An update is written when all is drawn, or not at all. Throws
 /// corda::Error: kUsage if there is no scene with a table [golden] or two pictures have one name, what
 /// load_scene() and Film throw, kIo.
 [[nodiscard]] SuiteResult run(const SuiteDef& def);
 
 /// As JUnit's XML: a test suite per scene, a test case per picture.
 [[nodiscard]] std::string junit_xml(const SuiteResult& result);
+
+/// One page of HTML that needs no other file: per failed picture the reference, what was drawn and sixteen
+/// times their difference, beside each other, blinking, or under a slider. `folder`: of the references.
+[[nodiscard]] std::string page_html(const SuiteResult& result, const std::string& folder);
 
 }  // namespace corda::suite

@@ -1,0 +1,124 @@
+#include "corda/suite/cases.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "corda/core/file.hpp"
+#include "corda/core/text.hpp"
+#include "corda/suite/provenance.hpp"
+
+namespace corda::suite {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Files of a folder with this ending, sorted.
+std::vector<std::string> files_in(const std::string& folder, const std::string& ending) {
+    std::vector<std::string> paths;
+    std::error_code failure;
+    for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
+         entry.increment(failure))
+        if (entry->path().extension() == ending) paths.push_back(entry->path().string());
+    if (failure) fail_file("read", folder, failure.value());
+    std::sort(paths.begin(), paths.end());
+    return paths;
+}
+
+std::string name_of(const std::string& scene, double time_s) {
+    std::string name = fmt::format("{}_t{:011.6f}", scene, time_s);
+    std::replace(name.end() - 7, name.end(), '.', '_');
+    return name;
+}
+
+Case make_case(const std::string& path, const SuiteDef& def, std::set<std::string>& names) {
+    Case made{.path = path,
+              .settings = def.settings,
+              .scene = load_scene(path, def.settings),
+              .pictures = {},
+              .frozen = {}};
+    if (!made.scene.golden) return made;
+    made.settings.push_back(
+        fmt::format("video.size=[{},{}]", made.scene.golden->width_px, made.scene.golden->height_px));
+    for (const double time_s : made.scene.golden->at_s) {
+        made.pictures.push_back(
+            {.scene = made.scene.name, .name = name_of(made.scene.name, time_s) + kEnding, .time_s = time_s});
+        if (!names.insert(made.pictures.back().name).second)
+            throw Error(ExitCode::kUsage,
+                        fmt::format("two pictures would both be {}; rename '{}', or give times that differ "
+                                    "by 1e-6 s or more",
+                                    made.pictures.back().name, path));
+    }
+    return made;
+}
+
+/// What a picture says of how it was made; nothing if it cannot be read.
+Provenance provenance_in(const std::string& path) {
+    try {
+        return from_png_info(read_png_info(path));
+    } catch (const Error&) {
+        return {};
+    }
+}
+
+}  // namespace
+
+std::vector<Case> load_cases(const SuiteDef& def) {
+    std::vector<Case> cases;
+    std::set<std::string> names;
+    for (const std::string& path : def.paths) {
+        const bool is_folder = fs::is_directory(path);
+        const std::vector<std::string> files = is_folder ? files_in(path, ".toml") : std::vector{path};
+        for (const std::string& file : files) {
+            Case made = make_case(file, def, names);
+            if (made.scene.golden)
+                cases.push_back(std::move(made));
+            else if (!is_folder)
+                throw Error(ExitCode::kUsage, fmt::format("'{}' has no table [golden]; add one, for instance "
+                                                          "[golden] with at = [0.0, 1.0]",
+                                                          file));
+        }
+    }
+    if (cases.empty())
+        throw Error(ExitCode::kUsage,
+                    fmt::format("no scene in '{}' has a table [golden]; add one, for instance [golden] with "
+                                "at = [0.0, 1.0]",
+                                def.paths.front()));
+    return cases;
+}
+
+std::vector<std::string> references_in(const std::string& folder) {
+    return fs::exists(folder) ? files_in(folder, kEnding) : std::vector<std::string>{};
+}
+
+std::vector<std::string> variants_of(const std::vector<std::string>& references, const std::string& name) {
+    const std::string stem = fs::path(name).stem().string() + ".";
+    std::vector<std::string> variants;
+    for (const std::string& path : references)
+        if (fs::path(path).filename().string().starts_with(stem)) variants.push_back(path);
+    return variants;
+}
+
+std::vector<std::string> stale_ones(const SuiteDef& def, const std::vector<Case>& cases,
+                                    const std::vector<std::string>& references) {
+    std::set<std::string> used;
+    std::set<std::string> scenes;
+    for (const Case& one : cases) {
+        scenes.insert(printable(one.scene.name));
+        for (const Checked& picture : one.pictures)
+            for (const std::string& path : variants_of(references, picture.name)) used.insert(path);
+    }
+    const bool has_folder = std::any_of(def.paths.begin(), def.paths.end(),
+                                        [](const std::string& path) { return fs::is_directory(path); });
+    std::vector<std::string> stale;
+    for (const std::string& path : references) {
+        if (used.contains(path)) continue;
+        const Provenance made = provenance_in(path);
+        if (made.is_golden() && (has_folder || scenes.contains(made.scene))) stale.push_back(path);
+    }
+    return stale;
+}
+
+}  // namespace corda::suite

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "corda/suite/suite.hpp"
+
+namespace corda::suite {
+
+/// The ending of a reference.
+inline constexpr const char* kEnding = ".png";
+
+/// A scene of a suite and its pictures.
+struct Case {
+    std::string path;
+    std::vector<Setting> settings;  ///< those of the suite, and the picture size
+    Scene scene;                    ///< with these settings
+    std::vector<Checked> pictures;
+    std::string frozen;  ///< what its references freeze, in words
+};
+
+/// The scenes of a suite. Throws corda::Error as run().
+[[nodiscard]] std::vector<Case> load_cases(const SuiteDef& def);
+
+/// The pictures of the folder of references, sorted; none if there is no folder. Throws corda::Error (kIo).
+[[nodiscard]] std::vector<std::string> references_in(const std::string& folder);
+
+/// Those of `references` that are NAME.png or NAME.CAUSE.png; `name`: NAME.png.
+[[nodiscard]] std::vector<std::string> variants_of(const std::vector<std::string>& references,
+                                                   const std::string& name);
+
+/// References that `corda golden` made and no scene asks for; if scenes are named one by one, of these alone.
+[[nodiscard]] std::vector<std::string> stale_ones(const SuiteDef& def, const std::vector<Case>& cases,
+                                                  const std::vector<std::string>& references);
+
+}  // namespace corda::suite

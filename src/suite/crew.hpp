@@ -1,0 +1,34 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+
+namespace corda::suite {
+
+/// Pieces of work that a few threads do, and that may add more of them.
+class Crew {
+  public:
+    using Work = std::function<void()>;
+
+    /// Work for when nothing of next() is left.
+    void later(Work work);
+    /// Work that is done before all that waits.
+    void next(Work work);
+    /// Does all of it on so many threads. Throws what the first piece that failed threw; what was not begun
+    /// by then is dropped.
+    void run(unsigned threads);
+
+  private:
+    void help();
+
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<Work> waiting_;
+    unsigned busy_ = 0;
+    std::exception_ptr error_;
+};
+
+}  // namespace corda::suite

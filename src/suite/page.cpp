@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "corda/core/file.hpp"
+#include "corda/core/text.hpp"
+#include "corda/core/version.hpp"
+#include "corda/media/png_bytes.hpp"
+#include "corda/suite/markup.hpp"
+#include "corda/suite/page_text.hpp"
+#include "corda/suite/suite.hpp"
+
+namespace corda::suite {
+namespace {
+
+constexpr int kGain = 16;  // of the difference: one step of 255 is seen
+
+std::string base64(std::string_view bytes) {
+    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::string_view three = bytes.substr(i, 3);
+        unsigned bits = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            bits = bits << 8U | (k < three.size() ? static_cast<unsigned char>(three[k]) : 0U);
+        for (std::size_t k = 0; k < 4; ++k)
+            text += k <= three.size() ? kDigits[bits >> (18 - 6 * k) & 63U] : '=';
+    }
+    return text;
+}
+
+/// Sixteen times the difference of each channel on black, that of alpha in all three. Blue: what only one of
+/// them has.
+Image amplified(const Image& a, const Image& b) {
+    Image result(std::max(a.width(), b.width()), std::max(a.height(), b.height()));
+    for (int y = 0; y < result.height(); ++y) {
+        for (int x = 0; x < result.width(); ++x) {
+            std::uint8_t* const to = result.pixel(x, y);
+            to[3] = 255;
+            const bool in_both = x < std::min(a.width(), b.width()) && y < std::min(a.height(), b.height());
+            if (!in_both) {
+                to[2] = 255;
+                continue;
+            }
+            const std::uint8_t* const p = a.pixel(x, y);
+            const std::uint8_t* const q = b.pixel(x, y);
+            const int alpha = std::abs(p[3] - q[3]);
+            for (int c = 0; c < 3; ++c)
+                to[c] =
+                    static_cast<std::uint8_t>(std::min(255, kGain * std::max(alpha, std::abs(p[c] - q[c]))));
+        }
+    }
+    return result;
+}
+
+std::string figure_html(const char* kind, const std::string& caption, const Image& image) {
+    return fmt::format(
+        "<figure class=\"{}\"><img alt=\"{}\" width=\"{}\" height=\"{}\" "
+        "src=\"data:image/png;base64,{}\"><figcaption>{}</figcaption></figure>\n",
+        kind, caption, image.width(), image.height(), base64(media::png_bytes(image, {})), caption);
+}
+
+/// The reference of a picture, if it can be read.
+std::optional<Image> reference_of(const Checked& picture, const std::string& folder) {
+    const std::string& name = picture.verdict == Verdict::kStale ? picture.name : picture.variant;
+    if (name.empty()) return std::nullopt;
+    try {
+        return read_png((std::filesystem::path(folder) / name).string());
+    } catch (const Error&) {
+        return std::nullopt;
+    }
+}
+
+std::string figures_of(const Checked& picture) {
+    if (picture.variant.empty() || !picture.difference.same_size) return "";
+    return fmt::format("<p class=\"figures\">max {}, mean {:.6g}, share {:.6g}</p>\n", picture.difference.max,
+                       picture.difference.mean, picture.difference.share);
+}
+
+std::string case_html(const Checked& picture, const std::string& folder) {
+    const std::string cause = picture.verdict == Verdict::kMissing ? "there is no reference" : picture.cause;
+    std::string html = fmt::format("<section id=\"{0}\">\n<h2>{0}</h2>\n<p class=\"cause\">{1}</p>\n{2}",
+                                   markup_text(picture.name), markup_text(cause), figures_of(picture));
+    const bool is_shown = picture.drawn || picture.verdict == Verdict::kStale;
+    const auto reference = is_shown ? reference_of(picture, folder) : std::nullopt;
+    if (!is_shown) html += "<p>Too many pictures failed to show all of them; check this scene alone.</p>\n";
+    if (reference && picture.drawn) html += kPageModes;
+    html += "<div class=\"pictures\">\n";
+    if (reference) html += figure_html("reference", "reference", *reference);
+    if (picture.drawn) html += figure_html("drawn", "new", *picture.drawn);
+    if (reference && picture.drawn)
+        html += figure_html("difference", "difference × 16", amplified(*reference, *picture.drawn));
+    return html + "</div>\n</section>\n";
+}
+
+}  // namespace
+
+std::string page_html(const SuiteResult& result, const std::string& folder) {
+    const std::int64_t failed = std::count_if(result.pictures.begin(), result.pictures.end(),
+                                              [](const Checked& picture) { return picture.failed(); });
+    std::string html = kPageHead;
+    html += fmt::format("<h1>Golden pictures: {} failed</h1>\n<p>{} passed. Drawn by corda {}.</p>\n", failed,
+                        counted(result.count(Verdict::kPassed), "picture"), version());
+    for (const Checked& picture : result.pictures)
+        if (picture.failed()) html += case_html(picture, folder);
+    if (!result.frozen.empty()) html += "<section><h2>Frozen</h2>\n";
+    for (const std::string& frozen : result.frozen)
+        html += "<p class=\"figures\">" + markup_text(frozen) + "</p>\n";
+    if (!result.frozen.empty()) html += "</section>\n";
+    return html + kPageTail;
+}
+
+}  // namespace corda::suite
