@@ -6,6 +6,9 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
+#include "corda/media/defs.hpp"
 #include "support/command.hpp"
 
 namespace corda {
@@ -13,6 +16,7 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* kGoldenScene = R"(schema = 1
 [world]
@@ -22,6 +26,8 @@ hang = { links = 10, length = 1.0, angle_deg = 45.0 }
 [golden]
 at = [0.0, 0.5, 1.0]
 )";
+
+constexpr const char* kMiddle = "swing_t0000_500000.png";
 
 /// A suite of one scene whose pictures are kept.
 class GoldenSuite : public testing::Test {
@@ -36,6 +42,15 @@ class GoldenSuite : public testing::Test {
         std::vector<std::string> arguments{"golden", folder_.file("scenes"), "--dir", folder_.file("ref")};
         arguments.insert(arguments.end(), options.begin(), options.end());
         return test::run_corda(arguments);
+    }
+
+    /// Writes a reference anew with other pixels or texts.
+    template <typename Change>
+    void change_reference(const std::string& name, Change change) const {
+        Image image = read_png(reference(name));
+        PngInfo info = read_png_info(reference(name));
+        change(image, info);
+        write_png(reference(name), image, info, {.force = true});
     }
 
     [[nodiscard]] std::string reference(const std::string& name) const { return folder_.file("ref/" + name); }
@@ -67,6 +82,101 @@ TEST_F(GoldenSuite, TellsOtherPositionsFromAnotherCamera) {
     EXPECT_THAT(style.out, HasSubstr("same positions, camera and version, but pixels differ"));
 }
 
+TEST_F(GoldenSuite, TellsSinceWhenPositionsDifferThoughNoPixelDoes) {
+    const auto result = run({"--set", "world.drag=1e-6", "--set", "golden.max=1"});
+    EXPECT_EQ(result.exit_code, 0);
+    const auto more = run({"--set", "world.drag=3e-4", "--set", "golden.max=2"});
+    EXPECT_EQ(more.exit_code, 7);
+    EXPECT_THAT(more.out, AllOf(Not(HasSubstr("_500000.png")), HasSubstr("from t = 0.5 s on")));
+}
+
+TEST_F(GoldenSuite, TellsAnotherVersionAndAnotherOpenGl) {
+    const auto recolor = [](Image& image) { image.pixel(5, 5)[0] ^= 1U; };
+    change_reference(kMiddle, [&](Image& image, PngInfo& info) {
+        recolor(image);
+        info.text.front().second = "corda 0.0.7";
+    });
+    EXPECT_THAT(run().out, HasSubstr("max 1, mean 4.34028e-06, share 1.73611e-05; same positions and camera, "
+                                     "drawn by another version of Corda: 0.0.7, now"));
+    EXPECT_EQ(run({"--update"}).exit_code, 0);
+    change_reference(kMiddle, [&](Image& image, PngInfo& info) {
+        recolor(image);
+        for (auto& [key, text] : info.text)
+            if (key == "Renderer") text = "Voodoo";
+    });
+    EXPECT_THAT(run().out, HasSubstr("drawn by another OpenGL: Voodoo, now"));
+}
+
+TEST_F(GoldenSuite, TellsAnotherSizeAndWhatCannotBeRead) {
+    const auto size = run({"--set", "golden.size=[64,36]"});
+    EXPECT_EQ(size.exit_code, 7);
+    EXPECT_THAT(size.out, HasSubstr("different; 320x180 pixels, now 64x36"));
+    test::write_file(reference(kMiddle), "no picture");
+    const auto damaged = run({"--json"});
+    EXPECT_EQ(damaged.exit_code, 7);
+    const auto told = nlohmann::json::parse(damaged.out);
+    EXPECT_EQ(told["passed"], 2);
+    EXPECT_THAT(told["pictures"][1]["cause"].get<std::string>(), HasSubstr(kMiddle));
+    EXPECT_EQ(run({"--update"}).exit_code, 0);
+    EXPECT_EQ(run().exit_code, 0);
+}
+
+TEST_F(GoldenSuite, SurvivesAnyTextInAReference) {
+    change_reference("swing_t0000_000000.png", [](Image&, PngInfo& info) {
+        for (auto& [key, text] : info.text) {
+            if (key == "Corda-Solver") text = "solver={method = \"none\"}\n[world]\nduration = 1e9";
+            if (key == "Corda-Center") text = "camera.center=[nan, {}]";
+            if (key == "Corda-Positions") text = "7ff0000000000000zz";
+        }
+    });
+    const auto result = run({"-v"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;  // planned anew, as when they were made
+    EXPECT_THAT(result.err, HasSubstr("does not fit the scene any more"));
+}
+
+TEST_F(GoldenSuite, UpdatesOnlyWhatDiffersWithWhatIsFrozen) {
+    const std::string first = test::read_file(reference("swing_t0000_000000.png"));
+    const auto shown = run({"--update", "--dry-run", "--set", "world.drag=0.001"});
+    EXPECT_EQ(shown.exit_code, 0);
+    EXPECT_THAT(shown.out, AllOf(HasSubstr("swing_t0000_500000.png: would be written: different: max"),
+                                 HasSubstr("2 would be changed")));
+    EXPECT_EQ(run().exit_code, 0);
+    const auto result = run({"--update", "--set", "world.drag=0.001"});
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_THAT(result.out, AllOf(HasSubstr("its pictures freeze: solver={"), HasSubstr("; 2 changed")));
+    EXPECT_EQ(test::read_file(reference("swing_t0000_000000.png")), first);
+    EXPECT_EQ(run({"--set", "world.drag=0.001"}).exit_code, 0);
+    const auto planned = run({"--update", "--replan", "--set", "world.drag=0.3"});
+    EXPECT_EQ(planned.exit_code, 0);
+    EXPECT_THAT(planned.out, HasSubstr("; 3 changed"));
+    EXPECT_EQ(run({"--set", "world.drag=0.3"}).exit_code, 0);
+}
+
+TEST_F(GoldenSuite, ChangesNothingIfAnUpdateFails) {
+    test::write_file(folder_.file("scenes/late.toml"),
+                     std::string(kGoldenScene) + "[camera]\nheight = 2\n[style]\ntheme = \"none\"\n");
+    const std::string kept = test::read_file(reference(kMiddle));
+    EXPECT_EQ(run({"--update", "--set", "world.drag=0.3"}).exit_code, 3);
+    EXPECT_EQ(test::read_file(reference(kMiddle)), kept);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.file("ref")), {}), 3);
+}
+
+TEST_F(GoldenSuite, LeavesPicturesOfOthersAlone) {
+    write_png(reference("swing_t0009_000000.png"), Image(4, 4));
+    EXPECT_EQ(run().exit_code, 0);
+    EXPECT_EQ(run({"--update"}).exit_code, 0);
+    EXPECT_TRUE(std::filesystem::exists(reference("swing_t0009_000000.png")));
+}
+
+TEST_F(GoldenSuite, DrawsTheTimesOfOneSceneBySeveralThreads) {
+    std::string times = "golden.at=[0";
+    for (int i = 1; i < 40; ++i) times += "," + std::to_string(i / 20.0);
+    EXPECT_EQ(run({"--update", "--set", times + "]"}).exit_code, 0);
+    const auto result = run({"--json", "--set", times + "]"});
+    EXPECT_EQ(nlohmann::json::parse(result.out)["passed"], 40);
+    EXPECT_EQ(run({"--json"}).exit_code, 7);  // the others are stale
+}
+
 TEST_F(GoldenSuite, FailsForAnEmptyPictureEvenInAnUpdate) {
     for (const char* const option : {"--json", "--update"}) {
         const auto result = run({option, "--set", "camera.center=[100,100]"});
@@ -82,6 +192,7 @@ TEST_F(GoldenSuite, AddsMissingPicturesAndRemovesStaleOnes) {
     EXPECT_EQ(result.exit_code, 7);
     EXPECT_THAT(result.out, AllOf(HasSubstr("swing_t0001_000000.png: missing"),
                                   HasSubstr("swing_t0003_000000.png: stale")));
+    EXPECT_EQ(test::run_shell("xmllint --noout " + test::quoted(folder_.file("junit.xml"))).exit_code, 0);
     EXPECT_THAT(test::read_file(folder_.file("junit.xml")),
                 AllOf(HasSubstr("<testsuite name=\"swing\" tests=\"3\" failures=\"1\">"),
                       HasSubstr("<testsuite name=\"stale\" tests=\"1\" failures=\"1\">")));
@@ -107,6 +218,71 @@ TEST_F(GoldenSuite, RefusesWhatIsNoSuite) {
     const auto late = run({"--set", "golden.at=[9]"});
     EXPECT_EQ(late.exit_code, 3);
     EXPECT_THAT(late.err, HasSubstr("after the end of the motion"));
+}
+
+/// What a reader does with the page, and what is to be seen then; the result is the page's title.
+constexpr const char* kVisitor = R"html(<script>
+const pixels = (section, kind) => {
+  const image = section.querySelector("." + kind + " img");
+  const canvas = document.createElement("canvas");
+  canvas.width = image.naturalWidth;
+  canvas.height = image.naturalHeight;
+  const context = canvas.getContext("2d");
+  context.drawImage(image, 0, 0);
+  return context.getImageData(0, 0, canvas.width, canvas.height).data;
+};
+const isSeen = (section, kind) => getComputedStyle(section.querySelector("." + kind)).visibility === "visible";
+addEventListener("load", () => {
+  const seen = {sections: document.querySelectorAll("section[id]").length, wrong: 0, different: 0, blinks: []};
+  const section = document.getElementById("swing_t0000_500000.png");
+  const [a, b, d] = ["reference", "drawn", "difference"].map((kind) => pixels(section, kind));
+  for (let i = 0; i < a.length; ++i) {
+    if (i % 4 === 3) continue;
+    seen.wrong += d[i] !== Math.min(255, 16 * Math.abs(a[i] - b[i]));
+    seen.different += a[i] !== b[i];
+  }
+  seen.both = isSeen(section, "reference") && isSeen(section, "drawn");
+  section.querySelector("[data-mode=slide]").click();
+  const range = section.querySelector("input");
+  range.value = 25;
+  range.dispatchEvent(new Event("input"));
+  seen.cut = getComputedStyle(section.querySelector(".drawn img")).clipPath;
+  section.querySelector("[data-mode=blink]").click();
+  const overlap = ["reference", "drawn"].map((kind) => section.querySelector("." + kind + " img").getBoundingClientRect());
+  seen.onePlace = overlap[0].x === overlap[1].x && overlap[0].y === overlap[1].y;
+  let looks = 0;
+  const look = () => {
+    seen.blinks.push(isSeen(section, "reference") + "/" + isSeen(section, "drawn"));
+    if (++looks < 3) setTimeout(look, 500);
+    else document.title = "SEEN" + JSON.stringify(seen) + "SEEN";
+  };
+  look();
+});
+</script>)html";
+
+TEST_F(GoldenSuite, ShowsFailuresOnOnePage) {
+    const auto result = run({"--html", folder_.file("page.html"), "--set", "style.rope_width_px=9"});
+    EXPECT_EQ(result.exit_code, 7);
+    const std::string page = test::read_file(folder_.file("page.html"));
+    EXPECT_THAT(page, AllOf(HasSubstr("same positions, camera and version, but pixels differ"),
+                            Not(HasSubstr("http")), Not(HasSubstr("src=\"/"))));
+    const std::string visited = folder_.write("visited.html", page + kVisitor);
+    const auto shown =
+        test::run_shell("chromium --headless --no-sandbox --disable-gpu --user-data-dir=" +
+                        test::quoted(folder_.file("profile")) + " --virtual-time-budget=20000 --dump-dom " +
+                        test::quoted("file://" + visited));
+    const std::size_t begin = shown.out.find("SEEN{");
+    ASSERT_NE(begin, std::string::npos) << shown.out.substr(0, 2000) << shown.err;
+    const std::size_t end = shown.out.find("}SEEN", begin);
+    const auto seen = nlohmann::json::parse(shown.out.substr(begin + 4, end - begin - 3));
+    EXPECT_EQ(seen["sections"], 3);
+    EXPECT_EQ(seen["wrong"], 0);
+    EXPECT_GT(seen["different"], 1000);
+    EXPECT_EQ(seen["both"], true);
+    EXPECT_EQ(seen["cut"], "inset(0px 0px 0px 25%)");
+    EXPECT_EQ(seen["onePlace"], true);
+    EXPECT_NE(seen["blinks"][0], seen["blinks"][1]);
+    EXPECT_EQ(seen["blinks"][0], seen["blinks"][2]);
 }
 
 }  // namespace
