@@ -3,7 +3,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 corda_add_public_library(
-    FOLDERS core sim view gl render media golden scene pipeline
+    FOLDERS core sim view gl render media golden scene pipeline suite
     HEADERS
         corda.hpp
         core/basics.hpp core/image.hpp core/rational.hpp
@@ -12,6 +12,7 @@ corda_add_public_library(
         pipeline/film.hpp
         scene/scene.hpp
         sim/defs.hpp sim/simulation.hpp sim/system.hpp
+        suite/check_golden.hpp testing.hpp
         view/defs.hpp
     PRIVATE Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json PNG::PNG
         PkgConfig::CAIRO PkgConfig::EPOXY PkgConfig::FREETYPE PkgConfig::LIBAV PkgConfig::WEBP PkgConfig::TOMLPLUSPLUS)
@@ -26,9 +27,10 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DEST
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/corda)
 install(EXPORT corda_targets NAMESPACE corda:: DESTINATION ${package_dir} COMPONENT development)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/corda-config.cmake.in
-    ${PROJECT_BINARY_DIR}/corda-config.cmake INSTALL_DESTINATION ${package_dir})
+    ${PROJECT_BINARY_DIR}/corda-config.cmake INSTALL_DESTINATION ${package_dir}
+    PATH_VARS CMAKE_INSTALL_BINDIR)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/corda-config-version.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${PROJECT_BINARY_DIR}/corda-config.cmake ${PROJECT_BINARY_DIR}/corda-config-version.cmake
+install(FILES ${PROJECT_SOURCE_DIR}/src/cmake/CordaGolden.cmake ${PROJECT_BINARY_DIR}/corda-config.cmake ${PROJECT_BINARY_DIR}/corda-config-version.cmake
     DESTINATION ${package_dir} COMPONENT development)
 # Users of a static libcorda link what it needs; a shared one carries its own.
 if(BUILD_SHARED_LIBS)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <set>
 
@@ -99,6 +100,12 @@ std::vector<std::string> variants_of(const std::vector<std::string>& references,
     for (const std::string& path : references)
         if (fs::path(path).filename().string().starts_with(stem)) variants.push_back(path);
     return variants;
+}
+
+bool has_one_color(const Image& image) {
+    for (std::size_t i = 4; i < image.size_bytes(); i += 4)
+        if (std::memcmp(image.data(), image.data() + i, 4) != 0) return false;
+    return true;
 }
 
 std::vector<std::string> stale_ones(const SuiteDef& def, const std::vector<Case>& cases,

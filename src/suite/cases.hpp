@@ -29,6 +29,9 @@ struct Case {
 [[nodiscard]] std::vector<std::string> variants_of(const std::vector<std::string>& references,
                                                    const std::string& name);
 
+/// Whether a picture shows nothing but its ground.
+[[nodiscard]] bool has_one_color(const Image& image);
+
 /// References that `corda golden` made and no scene asks for; if scenes are named one by one, of these alone.
 [[nodiscard]] std::vector<std::string> stale_ones(const SuiteDef& def, const std::vector<Case>& cases,
                                                   const std::vector<std::string>& references);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -22,12 +21,6 @@ namespace fs = std::filesystem;
 
 /// A thread of its own draws no fewer pictures: the context that it needs takes as long as some of them.
 constexpr std::size_t kFewestApart = 8;
-
-bool has_one_color(const Image& image) {
-    for (std::size_t i = 4; i < image.size_bytes(); i += 4)
-        if (std::memcmp(image.data(), image.data() + i, 4) != 0) return false;
-    return true;
-}
 
 /// Compares a picture with one of its references; false if it does not pass.
 bool passes(const Image& drawn, const Provenance& now, const DifferenceLimits& limits,
@@ -99,6 +92,7 @@ class Runner {
         job->left = one.pictures.size();
         job->frozen = def_.replan ? std::vector<Setting>{} : frozen_settings(one);
         make_film(*job);
+        if (def_.update) freeze(*job);
         if (def_.update) tell_frozen(one, freezing(one.scene, job->made.front()), "its pictures freeze");
         const std::size_t count = one.pictures.size();
         const bool may_split = job->film->scene().video.shutter == 0.0;
@@ -121,8 +115,17 @@ class Runner {
             job.scene->frozen =
                 fmt::format("{}: what its references freeze does not fit the scene any more: {}",
                             job.scene->scene.name, error.what());
+            job.frozen.clear();
             make_film(job, {});
         }
+    }
+
+    /// Draws with what has been chosen as if it were frozen already, as checks will: a picture may say by
+    /// which method it is.
+    void freeze(Job& job) {
+        if (!job.frozen.empty()) return;
+        job.frozen = freezing(job.scene->scene, job.made.front());
+        if (!job.frozen.empty()) make_film(job, job.frozen);
     }
 
     void make_film(Job& job, const std::vector<Setting>& frozen) {

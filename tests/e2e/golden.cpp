@@ -65,6 +65,11 @@ TEST_F(GoldenSuite, PassesWithWhatItHasKept) {
                                   HasSubstr("\"missing\": 0"), HasSubstr("\"stale\": 0")));
 }
 
+TEST_F(GoldenSuite, PassesThoughThePictureSaysByWhichMethodItIs) {
+    EXPECT_EQ(run({"--update", "--replan", "--set", "overlay.method=true"}).exit_code, 0);
+    EXPECT_EQ(run({"--set", "overlay.method=true"}).exit_code, 0);
+}
+
 TEST_F(GoldenSuite, PassesIfOnlyTheDurationGrows) {
     EXPECT_EQ(run({"--set", "world.duration=5"}).exit_code, 0);
 }

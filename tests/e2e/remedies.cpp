@@ -16,7 +16,7 @@ TEST_P(Remedies, Work) {
     test::expect_to_work(GetParam());
 }
 
-const std::string kPicture = CORDA_GOLDENS "/stills/plain.png";
+const std::string kPicture = CORDA_GOLDENS "/stills/plain_t0000_700000.png";
 
 const std::string kStringRope = "[[rope]]\n" + kHang + "string = true\n";
 

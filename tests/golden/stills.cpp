@@ -1,6 +1,7 @@
-// Golden stills: every scene of golden/scenes at 128x128 (live plots have no room there: 256x144) and 0.7 s
-// is the picture kept in golden/stills, byte for byte, and at 1920x1080 it has the hash in
-// golden/stills_1080p. CORDA_UPDATE_GOLDENS=1 writes both anew; look at the pictures before committing.
+// Golden stills, beside the test that `corda golden` makes of the same scenes and pictures
+// (tests/CMakeLists.txt): Film and the reference renderer draw the pictures of golden/stills, and at
+// 1920x1080 each has the hash in golden/stills_1080p. The target update_golden_stills writes the pictures
+// anew, CORDA_UPDATE_GOLDENS=1 the hashes; look at the pictures before committing.
 
 #include <gtest/gtest.h>
 
@@ -12,14 +13,14 @@
 #include <string>
 #include <vector>
 
-#include "corda/golden/compare.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/render/reference_renderer.hpp"
+#include "corda/suite/provenance.hpp"
+#include "corda/testing.hpp"
 #include "support/command.hpp"
 #include "support/draw_list_of.hpp"
 #include "support/files.hpp"
-#include "support/image_matchers.hpp"
 
 namespace corda {
 namespace {
@@ -49,31 +50,20 @@ std::string hash_of(const Image& image) {
     return fmt::format("{:016x}\n", hash);
 }
 
-Setting size_of(const std::string& scene) {
-    return test::test_name(scene).starts_with("plot_") ? "video.size=[256,144]" : "video.size=[128,128]";
-}
-
-class GoldenStill : public testing::TestWithParam<std::string> {};
+class GoldenStill : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(GoldenStill, IsUnchanged) {
-    const std::string golden_path =
-        std::string(CORDA_GOLDENS) + "/stills/" + test::test_name(GetParam()) + ".png";
-    const Film film(load_scene(GetParam(), {size_of(GetParam()), "world.duration=1.0"}));
+    const std::string folder = std::string(CORDA_GOLDENS) + "/stills";
+    const std::string name = test::test_name(GetParam()) + "_t0000_700000.png";
+    std::vector<Setting> settings{"world.duration=1.0"};
+    const Scene scene = load_scene(GetParam(), settings);
+    settings.push_back(fmt::format("video.size=[{},{}]", scene.golden->width_px, scene.golden->height_px));
+    const auto made = suite::from_png_info(read_png_info(folder + "/" + name));
+    for (const Setting& frozen : suite::freezing(scene, made)) settings.push_back(frozen);
+    const Film film(load_scene(GetParam(), settings));
     const Image drawn = film.still(kTimeSeconds, {}, film.scene().video.shutter);
-    if (std::getenv("CORDA_UPDATE_GOLDENS") != nullptr) {
-        PngInfo info;
-        info.text = {{"Scene", film.scene().name}, {"Renderer", film.gl().renderer}};
-        write_png(golden_path, drawn, info, {.force = true});
-    }
-    const Image golden = read_png(golden_path);
-    EXPECT_TRUE(test::equal_images(drawn, golden)) << golden_path;
-    EXPECT_TRUE(test::equal_images(reference_of(film), golden)) << golden_path;
-    // Not a blank picture.
-    Image blank(golden.width(), golden.height());
-    for (int y = 0; y < golden.height(); ++y) {
-        for (int x = 0; x < golden.width(); ++x) std::copy_n(golden.pixel(0, 0), 4, blank.pixel(x, y));
-    }
-    EXPECT_GT(compare(golden, blank).share, 0.002);
+    EXPECT_THAT(drawn, corda::testing::MatchesGolden(name, {.folder = folder}));
+    EXPECT_THAT(reference_of(film), corda::testing::MatchesGolden(name, {.folder = folder}));
 }
 
 TEST_P(GoldenStill, IsUnchangedAt1080p) {
@@ -86,7 +76,7 @@ TEST_P(GoldenStill, IsUnchangedAt1080p) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, GoldenStill,
-                         testing::ValuesIn(test::list_files(CORDA_GOLDENS "/scenes", ".toml")),
+                         ::testing::ValuesIn(test::list_files(CORDA_GOLDENS "/scenes", ".toml")),
                          [](const auto& param) { return test::test_name(param.param); });
 
 }  // namespace

@@ -1,0 +1,99 @@
+#include "corda/suite/check_golden.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "corda/core/file.hpp"
+#include "corda/core/version.hpp"
+#include "corda/media/defs.hpp"
+#include "corda/suite/cases.hpp"
+#include "corda/suite/provenance.hpp"
+
+namespace corda::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string environment(const char* name) {
+    const char* const value = std::getenv(name);
+    return value == nullptr ? "" : value;
+}
+
+bool is_update() {
+    const std::string value = environment("CORDA_UPDATE_GOLDENS");
+    return !value.empty() && value != "0";
+}
+
+fs::path folder_of(const GoldenOptions& options) {
+    if (!options.folder.empty()) return options.folder;
+    const std::string folder = environment("CORDA_GOLDEN_DIR");
+    return folder.empty() ? "." : folder;
+}
+
+std::string text_of(const Difference& difference, const Image& golden, const Image& drawn) {
+    if (!difference.same_size)
+        return fmt::format("{}x{} pixels, the golden picture {}x{}", drawn.width(), drawn.height(),
+                           golden.width(), golden.height());
+    return fmt::format("max {}, mean {:.6g}, share {:.6g}", difference.max, difference.mean,
+                       difference.share);
+}
+
+/// Writes the pictures that show a failure; says where.
+std::string keep_artifacts(const std::string& name, const Image& drawn, const std::optional<Image>& golden) {
+    const std::string folder = environment("CORDA_GOLDEN_ARTIFACTS");
+    if (folder.empty())
+        return "; set CORDA_GOLDEN_ARTIFACTS to a folder for the new picture and the difference";
+    const fs::path stem = (fs::path(folder) / name).replace_extension();
+    make_folder(stem.parent_path().string());
+    const std::string drawn_path = stem.string() + ".new.png";
+    write_png(drawn_path, drawn, {}, {.force = true});
+    if (!golden) return "; see " + drawn_path;
+    const std::string difference_path = stem.string() + ".difference.png";
+    write_png(difference_path, difference_image(*golden, drawn), {}, {.force = true});
+    return fmt::format("; see {} and {}", drawn_path, difference_path);
+}
+
+GoldenOutcome update(const fs::path& path, const Image& drawn, const std::string& why) {
+    if (fs::exists(path) && suite::from_png_info(read_png_info(path.string())).is_golden())
+        return {.matches = false,
+                .written = false,
+                .message = why + "; update it by corda golden --update, which made it"};
+    make_folder(path.parent_path().string());
+    PngInfo info;
+    info.text = {{"Software", fmt::format("corda {}", version())}};
+    write_png(path.string(), drawn, info, {.force = true});
+    return {.matches = true, .written = true, .message = fmt::format("{}: written: {}", path.string(), why)};
+}
+
+}  // namespace
+
+GoldenOutcome check_golden(const Image& drawn, const std::string& name, const GoldenOptions& options) {
+    if (!name.ends_with(suite::kEnding))
+        throw Error(ExitCode::kUsage,
+                    fmt::format("a golden picture's name ends in .png, and '{}' does not", name));
+    const fs::path path = folder_of(options) / name;
+    const std::string file = path.filename().string();
+    if (suite::has_one_color(drawn))
+        return {.matches = false,
+                .written = false,
+                .message = "the picture has one colour alone: nothing is in view" +
+                           keep_artifacts(name, drawn, std::nullopt)};
+    const std::string folder = path.parent_path().empty() ? "." : path.parent_path().string();
+    std::string why = fmt::format("there is no golden picture '{}'", path.string());
+    std::optional<Image> golden;
+    for (const std::string& variant : suite::variants_of(suite::references_in(folder), file)) {
+        Image one = read_png(variant);
+        const Difference difference = compare(one, drawn);
+        if (difference.within(options.limits)) return {.matches = true, .written = false, .message = {}};
+        if (golden && fs::path(variant).filename() != file) continue;
+        why = fmt::format("differs from '{}': {}", variant, text_of(difference, one, drawn));
+        golden = std::move(one);
+    }
+    if (is_update()) return update(path, drawn, why);
+    if (!golden) why += "; CORDA_UPDATE_GOLDENS=1 writes it";
+    return {.matches = false, .written = false, .message = why + keep_artifacts(name, drawn, golden)};
+}
+
+}  // namespace corda::testing

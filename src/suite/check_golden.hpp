@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+
+#include "corda/core/image.hpp"
+#include "corda/golden/compare.hpp"
+
+#pragma GCC visibility push(default)
+namespace corda::testing {
+
+/// Where a golden picture is kept, and what may differ from it.
+struct GoldenOptions {
+    std::string folder{};       ///< empty: the environment's CORDA_GOLDEN_DIR, or else the current folder
+    DifferenceLimits limits{};  ///< none given: pictures must be equal
+};
+
+/// How a picture compares with a golden one.
+struct GoldenOutcome {
+    bool matches = false;
+    bool written = false;  ///< an update wrote it
+    std::string message;   ///< why it does not match, and where to see it; what an update wrote
+};
+
+/// Compares a picture with NAME.png, and with each NAME.CAUSE.png there is; `name` ends in .png and may begin
+/// with folders. A picture of one colour never matches: nothing is in view. The environment says what to do
+/// if no golden picture matches:
+///   CORDA_UPDATE_GOLDENS     anything but empty or 0: write it, in place of NAME.png. A picture that `corda
+///                            golden` keeps is not written: it says how it was made, which a picture does not.
+///   CORDA_GOLDEN_ARTIFACTS   a folder for NAME.new.png and NAME.difference.png
+/// Throws corda::Error: kUsage for another ending, kIo if a picture cannot be read or written.
+[[nodiscard]] GoldenOutcome check_golden(const Image& drawn, const std::string& name,
+                                         const GoldenOptions& options = {});
+
+}  // namespace corda::testing
+#pragma GCC visibility pop

@@ -1,0 +1,63 @@
+#pragma once
+
+/// Golden pictures in GoogleTest:
+///
+///     #include <corda/corda.hpp>
+///     #include <corda/testing.hpp>
+///
+///     EXPECT_THAT(film.frame(120), corda::testing::MatchesGolden("swing_0120.png"));
+///
+/// Needs gmock, which corda::corda does not bring: link GTest::gmock_main too. What the environment says is
+/// told at check_golden().
+
+#include <gmock/gmock.h>
+
+#include <cstdio>
+#include <ostream>
+#include <string>
+#include <utility>
+
+#include "corda/core/image.hpp"
+#include "corda/suite/check_golden.hpp"
+
+namespace corda {
+
+/// How GoogleTest prints a picture.
+inline void PrintTo(const Image& image, std::ostream* out) {
+    *out << "a picture of " << image.width() << "x" << image.height() << " pixels";
+}
+
+namespace testing {
+
+/// See MatchesGolden().
+class GoldenMatcher {
+  public:
+    using is_gtest_matcher = void;
+
+    GoldenMatcher(std::string name, GoldenOptions options)
+        : name_(std::move(name)), options_(std::move(options)) {}
+
+    bool MatchAndExplain(const Image& drawn, ::testing::MatchResultListener* listener) const {
+        const GoldenOutcome outcome = check_golden(drawn, name_, options_);
+        if (outcome.written) std::fprintf(stderr, "%s\n", outcome.message.c_str());
+        *listener << outcome.message;
+        return outcome.matches;
+    }
+    void DescribeTo(std::ostream* out) const { *out << "matches the golden picture " << name_; }
+    void DescribeNegationTo(std::ostream* out) const {
+        *out << "does not match the golden picture " << name_;
+    }
+
+  private:
+    std::string name_;
+    GoldenOptions options_;
+};
+
+/// Matches a picture that is the golden one of this name, "swing_0120.png", or within the limits of
+/// `options`; see check_golden().
+inline ::testing::Matcher<const Image&> MatchesGolden(std::string name, GoldenOptions options = {}) {
+    return GoldenMatcher(std::move(name), std::move(options));
+}
+
+}  // namespace testing
+}  // namespace corda
