@@ -49,6 +49,8 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libavcodec-dev, libavformat-dev, libavutil-dev, libswscale-dev, libcairo2-dev, libegl-dev, \
 libwebp-dev, libegl-mesa0, libgl1-mesa-dri, libeigen3-dev, libepoxy-dev, libfmt-dev, libfreetype-dev, libpng-dev, libtomlplusplus-dev, \
 nlohmann-json3-dev, pkg-config")
+# For golden tests: corda_add_golden_tests, and the matcher of corda/testing.hpp.
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "corda, libgmock-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "The C++ library, with one target, corda::corda, and one header, \
 corda/corda.hpp: load or build a scene, simulate it, draw frames, write stills and video, and compare pictures.")
 

@@ -64,11 +64,11 @@ void judge(const Image& drawn, const Provenance& now, const GoldenDef& golden,
 
 /// A scene that is being drawn.
 struct Job {
-    Case* scene;
+    Case* scene = nullptr;
     std::vector<Setting> frozen;
     std::optional<Film> film;
     std::vector<Provenance> made;  ///< per picture
-    std::size_t left;              ///< pictures to draw
+    std::size_t left = 0;          ///< pictures to draw
 };
 
 class Runner {
@@ -177,7 +177,7 @@ class Runner {
         for (const Checked& picture : one.pictures) {
             for (const std::string& path : variants_of(references_, picture.name)) {
                 try {
-                    const auto frozen = freezing(one.scene, from_png_info(read_png_info(path)));
+                    auto frozen = freezing(one.scene, from_png_info(read_png_info(path)));
                     if (frozen.empty()) continue;
                     tell_frozen(one, frozen, "frozen by " + picture.name);
                     return frozen;

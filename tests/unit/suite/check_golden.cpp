@@ -1,0 +1,106 @@
+// The comparison behind MatchesGolden, and the matcher itself.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include "corda/media/defs.hpp"
+#include "corda/testing.hpp"
+#include "support/command.hpp"
+#include "support/failure.hpp"
+
+namespace corda {
+namespace {
+
+using corda::testing::check_golden;
+using corda::testing::MatchesGolden;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+Image with_dot(std::uint8_t level) {
+    Image image(8, 6);
+    for (std::size_t i = 3; i < image.size_bytes(); i += 4) image.data()[i] = 255;
+    image.pixel(3, 2)[1] = level;
+    return image;
+}
+
+class CheckGolden : public ::testing::Test {
+  protected:
+    CheckGolden() {
+        for (const char* const name : {"CORDA_GOLDEN_DIR", "CORDA_UPDATE_GOLDENS", "CORDA_GOLDEN_ARTIFACTS"})
+            unsetenv(name);
+        std::filesystem::create_directory(folder_.file("ref"));
+        write_png(folder_.file("ref/dot.png"), with_dot(200));
+        setenv("CORDA_GOLDEN_DIR", folder_.file("ref").c_str(), 1);
+    }
+    ~CheckGolden() override {
+        for (const char* const name : {"CORDA_GOLDEN_DIR", "CORDA_UPDATE_GOLDENS", "CORDA_GOLDEN_ARTIFACTS"})
+            unsetenv(name);
+    }
+    CheckGolden(const CheckGolden&) = delete;
+    CheckGolden& operator=(const CheckGolden&) = delete;
+
+    test::ScratchFolder folder_;
+};
+
+TEST_F(CheckGolden, MatchesEqualPicturesAndThoseWithinLimits) {
+    EXPECT_THAT(with_dot(200), MatchesGolden("dot.png"));
+    EXPECT_THAT(with_dot(201), Not(MatchesGolden("dot.png")));
+    EXPECT_THAT(with_dot(201), MatchesGolden("dot.png", {.limits = {.max = 1.0, .mean = {}, .share = {}}}));
+    EXPECT_THAT(check_golden(with_dot(203), "dot.png").message, HasSubstr("max 3, "));
+    EXPECT_THAT(check_golden(Image(8, 6), "dot.png").message, HasSubstr("one colour alone"));
+}
+
+TEST_F(CheckGolden, MatchesAnyVariant) {
+    write_png(folder_.file("ref/dot.older.png"), with_dot(90));
+    EXPECT_THAT(with_dot(90), MatchesGolden("dot.png"));
+    EXPECT_THAT(with_dot(200), MatchesGolden("dot.png"));
+    EXPECT_THAT(check_golden(with_dot(91), "dot.png").message, HasSubstr("ref/dot.png': max 109"));
+}
+
+TEST_F(CheckGolden, SaysWhatIsMissingAndWhereTheNewPictureIs) {
+    EXPECT_THAT(check_golden(with_dot(1), "no/such.png").message,
+                AllOf(HasSubstr("there is no golden picture"), HasSubstr("CORDA_UPDATE_GOLDENS=1 writes it"),
+                      HasSubstr("set CORDA_GOLDEN_ARTIFACTS")));
+    setenv("CORDA_GOLDEN_ARTIFACTS", folder_.file("out").c_str(), 1);
+    EXPECT_THAT(check_golden(with_dot(1), "no/such.png").message, HasSubstr("out/no/such.new.png"));
+    EXPECT_EQ(read_png(folder_.file("out/no/such.new.png")), with_dot(1));
+    EXPECT_THAT(with_dot(199), Not(MatchesGolden("dot.png")));
+    EXPECT_EQ(read_png(folder_.file("out/dot.new.png")), with_dot(199));
+    EXPECT_EQ(read_png(folder_.file("out/dot.difference.png")),
+              difference_image(with_dot(200), with_dot(199)));
+}
+
+TEST_F(CheckGolden, UpdatesWhatItMade) {
+    setenv("CORDA_UPDATE_GOLDENS", "0", 1);
+    EXPECT_FALSE(check_golden(with_dot(7), "dot.png").matches);
+    setenv("CORDA_UPDATE_GOLDENS", "1", 1);
+    EXPECT_FALSE(check_golden(with_dot(200), "dot.png").written);
+    EXPECT_FALSE(check_golden(Image(8, 6), "dot.png").matches);
+    EXPECT_TRUE(check_golden(with_dot(7), "dot.png").written);
+    EXPECT_TRUE(check_golden(with_dot(7), "new/dot.png").written);
+    EXPECT_EQ(read_png(folder_.file("ref/dot.png")), with_dot(7));
+    EXPECT_EQ(read_png(folder_.file("ref/new/dot.png")), with_dot(7));
+}
+
+TEST_F(CheckGolden, LeavesPicturesOfTheCommandToIt) {
+    PngInfo info;
+    info.text = {{"Corda-State", "0123"}};
+    write_png(folder_.file("ref/dot.png"), with_dot(200), info, {.force = true});
+    setenv("CORDA_UPDATE_GOLDENS", "1", 1);
+    const auto outcome = check_golden(with_dot(7), "dot.png");
+    EXPECT_FALSE(outcome.matches);
+    EXPECT_THAT(outcome.message, HasSubstr("corda golden --update"));
+    EXPECT_EQ(read_png(folder_.file("ref/dot.png")), with_dot(200));
+}
+
+TEST_F(CheckGolden, RefusesAnotherEndingAndADamagedPicture) {
+    EXPECT_EQ(test::code_of([] { (void)check_golden(with_dot(7), "dot.jpg"); }), ExitCode::kUsage);
+    test::write_file(folder_.file("ref/dot.png"), "no picture");
+    EXPECT_EQ(test::code_of([] { (void)check_golden(with_dot(7), "dot.png"); }), ExitCode::kIo);
+}
+
+}  // namespace
+}  // namespace corda
