@@ -30,14 +30,15 @@ input[type=range] { width: 16rem; visibility: hidden; }
 .pictures { display: flex; flex-wrap: wrap; gap: 1rem; }
 figure { margin: 0; }
 figcaption { color: var(--soft); font-size: .875rem; }
-img { display: block; max-width: 100%; image-rendering: pixelated;
+img { display: block; max-width: 100%; height: auto; image-rendering: pixelated;
   background: repeating-conic-gradient(#bbb 0 25%, #eee 0 50%) 0 0 / 16px 16px; }
 .blink .pictures, .slide .pictures { display: grid; justify-content: start; }
 .blink figure, .slide figure { grid-area: 1 / 1; }
 .blink .difference, .slide .difference { grid-area: 1 / 2; }
 .blink.now .reference, .blink:not(.now) .drawn { visibility: hidden; }
 .slide .drawn img { clip-path: inset(0 0 0 var(--cut, 50%)); }
-.slide .drawn figcaption, .slide .reference figcaption { visibility: hidden; }
+.slide .drawn figcaption { visibility: hidden; }
+.slide .reference figcaption::after { content: " on the left, new on the right"; }
 </style>
 </head>
 <body>
