@@ -1,6 +1,9 @@
 // What ropes and nets have in common.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "corda/scene/readers.hpp"
 
 namespace corda::scene {
@@ -42,6 +45,30 @@ MaterialDef read_material(const TableReader& body) {
     body.read("compliance", def.compliance_1_n);
     body.read("string", def.is_string);
     return def;
+}
+
+void read_points(const TableReader& body, Vec2& origin_m, std::vector<Vec2>& points_m) {
+    const Value points = *body.find("points");
+    points_m.reserve(points.size());
+    if (const auto origin = body.find("origin")) {
+        origin_m = origin->as<Vec2>();
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            points_m.push_back(points.at(i).as<Vec2>());
+            const Vec2 at = origin_m + points_m.back();
+            if (std::max(std::abs(at.x), std::abs(at.y)) > Limits::kCoordinateMetres)
+                points.at(i).add_problem(fmt::format(
+                    "with the origin it is at [{}, {}], beyond the limit of {:g} m; move it closer", at.x,
+                    at.y, Limits::kCoordinateMetres));
+        }
+        return;
+    }
+    origin_m = points.at(0).as<Vec2>();
+    for (std::size_t i = 0; i < points.size(); ++i) points_m.push_back(points.at(i).as<Vec2>() - origin_m);
+}
+
+void refuse_origin(const TableReader& body) {
+    if (const auto origin = body.find("origin"); origin && !body.is_given("points"))
+        origin->add_problem("only points are relative to an origin; give \"from\" in the shape's table");
 }
 
 std::optional<std::uint32_t> read_index(const Value& entry, std::int64_t count, std::string_view owner) {

@@ -152,6 +152,8 @@ std::vector<Key> body_keys(std::string_view section, std::vector<Key> keys, std:
     const std::vector<Key> common{
         {section, "points", pairs(Kind::kNumber, "[x, y]", 2, kCoordinate), "m", none(),
          "the positions of the particles"},
+        {section, "origin", pair("[x, y]", kCoordinate), "m", otherwise("points are in the world"),
+         "the position that points are relative to", "only for points"},
         {section, "mass", mass, "kg", at(kDefaultMassKg), "the mass of a particle"},
         {section, "velocity", velocity, "m/s", at(Vec2{}), "the velocity of the particles at the start"},
         {section, "compliance", number({.low = 0.0, .high = 1e6}), "1/N", at(MaterialDef{}.compliance_1_n),

@@ -106,13 +106,6 @@ void read_point_pins(const TableReader& net, std::int64_t particles, std::vector
                              [&](const Value& entry) { return read_point_pin(entry, particles); });
 }
 
-void read_points(const Value& points, NetDef& def) {
-    def.points_m.reserve(points.size());
-    def.origin_m = points.at(0).as<Vec2>();
-    for (std::size_t i = 0; i < points.size(); ++i)
-        def.points_m.push_back(points.at(i).as<Vec2>() - def.origin_m);
-}
-
 std::optional<NetBar> read_bar(const Value& entry, const NetDef& def) {
     const auto count = static_cast<std::int64_t>(def.points_m.size());
     const auto a = read_index(entry.at(0), count, "the net has particles");
@@ -188,6 +181,7 @@ NetDef read_net(const TableReader& net, const std::optional<BodySize>& size) {
     if (!size) return def;
     def.mass_kg = read_mass(net, size->particles);
     def.velocity_m_s = read_velocity(net, size->particles);
+    refuse_origin(net);
     if (net.has("grid")) {
         const TableReader table = net.table("grid");
         const auto grid = read_grid(table);
@@ -195,7 +189,7 @@ NetDef read_net(const TableReader& net, const std::optional<BodySize>& size) {
         add_grid_bars(*grid, def.bars);
         read_grid_pins(net, *grid, def.pinned);
     } else {
-        read_points(*net.find("points"), def);
+        read_points(net, def.origin_m, def.points_m);
         read_bars(*net.find("bars"), def);
         read_point_pins(net, size->particles, def.pinned);
     }

@@ -98,6 +98,11 @@ bool read_rope_shape(const TableReader& rope, std::int64_t particles, RopeDef& d
 [[nodiscard]] std::vector<double> read_mass(const TableReader& body, std::int64_t particles);
 [[nodiscard]] std::vector<Vec2> read_velocity(const TableReader& body, std::int64_t particles);
 [[nodiscard]] MaterialDef read_material(const TableReader& body);
+/// The points of a body that has them, relative to `origin_m`: the key `origin`, or the first point. Adds a
+/// problem if one is beyond the limit.
+void read_points(const TableReader& body, Vec2& origin_m, std::vector<Vec2>& points_m);
+/// Adds a problem if a body of another shape has the key `origin`.
+void refuse_origin(const TableReader& body);
 
 /// An index below `count`, negative ones counted from the end, as one from the beginning. If it is out of
 /// range, `owner`, e.g. "the rope has particles", begins the rest of the message.

@@ -122,14 +122,6 @@ bool check_short_bars(const Value& points, const RopeDef& def) {
     return true;
 }
 
-bool read_points(const Value& points, RopeDef& def) {
-    def.points_m.reserve(points.size());
-    def.origin_m = points.at(0).as<Vec2>();
-    for (std::size_t i = 0; i < points.size(); ++i)
-        def.points_m.push_back(points.at(i).as<Vec2>() - def.origin_m);
-    return check_short_bars(points, def);
-}
-
 bool has_one_shape(const TableReader& rope) {
     std::vector<std::string_view> given;
     std::copy_if(kShapes.begin(), kShapes.end(), std::back_inserter(given),
@@ -177,9 +169,11 @@ std::optional<BodySize> read_rope_size(const TableReader& rope, int reach) {
 }
 
 bool read_rope_shape(const TableReader& rope, std::int64_t particles, RopeDef& def) {
+    refuse_origin(rope);
     if (rope.has("line")) return read_line(rope.table("line"), particles, def);
     if (rope.has("hang")) return read_hang(rope.table("hang"), particles, def);
-    return read_points(*rope.find("points"), def);
+    read_points(rope, def.origin_m, def.points_m);
+    return check_short_bars(*rope.find("points"), def);
 }
 
 }  // namespace corda::scene

@@ -1,0 +1,120 @@
+// What is written reads as the same scene, bit for bit.
+#include "corda/scene/write_scene.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "corda/scene/digest.hpp"
+#include "support.hpp"
+
+namespace corda {
+namespace {
+
+/// Expects that `scene` is what its text says; returns the text.
+std::string expect_round_trip(const Scene& scene) {
+    const std::string toml = write_scene(scene);
+    const Scene again = parse_scene(toml, "again.toml");
+    EXPECT_EQ(first_difference(digest(scene), digest(again)), "");
+    EXPECT_EQ(write_scene(again), toml);
+    return toml;
+}
+
+TEST(WriteScene, EveryExampleAndGoldenComesBack) {
+    int count = 0;
+    for (const std::string folder : {CORDA_EXAMPLES, CORDA_GOLDENS "/scenes"}) {
+        for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+            if (entry.path().extension() != ".toml") continue;
+            SCOPED_TRACE(entry.path().string());
+            expect_round_trip(load_scene(entry.path().string()));
+            ++count;
+        }
+    }
+    EXPECT_GE(count, 40);  // measured: 46
+}
+
+TEST(WriteScene, EveryKeyComesBack) {
+    for (const std::string& toml : {
+             scene::rope_with(
+                 "mass = [1, 2.5, 0.1]\nvelocity = [[0, 0], [1e-17, -3], [0.1, 0]]\npinned = [0, -1]\n"
+                 "[solver]\nmethod = \"exact\"\ntolerance = 1e-12\n"),
+             scene::square_with(
+                 "closed = true\ncompliance = 1e-5\nlink_length = [1, 1.1, 1.2, 1.30000000001]\n"
+                 "color = [\"#ff000080\", \"#00ff0080\"]\nwidth_px = 3.5\n"
+                 "[style]\ncolor_by = \"link\"\n"),
+             scene::square_with("origin = [0.1, 1e8]\nbending = 1e-3\n"),
+             scene::grid_with(
+                 "compliance = 1e-4\nstring = true\n[solver]\nmethod = \"relaxation\"\nreach = 3\n"),
+             scene::graph_with("[[0, 1], [1, 2], [2, 3]]", "pinned = []\n"),
+             scene::with(
+                 "net = [{ points = [[0, 0], [1, 0]], bars = [[0, 1]] }]\n"
+                 "[solver]\nmethod = \"rattle\"\norder = 6\nstep = 1e-3\n"
+                 "[[solver.bodies]]\nnets = [0]\nmethod = \"relaxation\"\nforce = [0, -1]\n"
+                 "[video]\nfps = \"30000/1001\"\nsize = [64, 36]\ncodec = \"h265\"\ncrf = 20\npix = \"444\"\n"
+                 "[style]\nbackground = [\"#102030\", \"#405060\"]\npalette = [\"red\"]\ntheme = \"paper\"\n"
+                 "[overlay]\ntitle = 'a \"quoted\" \\ title: Ä'\ntime = false\nplot = \"tip\"\n"
+                 "[camera]\ncenter = [0.1, -0.3]\nheight = 3.3\nmargin = 0.1\n"),
+         }) {
+        SCOPED_TRACE(toml);
+        expect_round_trip(parse_scene(toml, "scene.toml"));
+    }
+}
+
+TEST(WriteScene, KeepsPointsFarFromTheirOrigin) {
+    // 100.1 + 0.1 and back is not 0.1: the offsets must stand in the file.
+    const std::string toml =
+        "schema = 1\n[[rope]]\nhang = { links = 7, length = 0.7, angle_deg = 33, "
+        "from = [100.1, -1e6] }\n";
+    expect_round_trip(parse_scene(toml, "scene.toml"));
+}
+
+TEST(WriteScene, StraightRopesAndGridsStayShort) {
+    const Scene line = parse_scene(scene::rope_with(""), "scene.toml");
+    EXPECT_THAT(write_scene(line), testing::HasSubstr("line = { particles = 3,"));
+    const Scene grid = parse_scene(
+        "schema = 1\n[[net]]\ngrid = { columns = 200, rows = 100, spacing = 0.1, "
+        "from = [3, 0.1] }\npinned = [0]\n",
+        "scene.toml");
+    const std::string toml = expect_round_trip(grid);
+    EXPECT_THAT(toml, testing::HasSubstr("grid = { columns = 200, rows = 100, from = [3, 0.1]"));
+    EXPECT_LT(toml.size(), 1500U);  // measured: 760
+}
+
+TEST(WriteScene, SceneFilledInCodeComesBack) {
+    Scene scene;
+    RopeDef& rope = scene.ropes.emplace_back();
+    rope.origin_m = {0.3, 0.7};
+    rope.points_m = {{0.1, -0.0}, {1.0 / 3.0, 1e-9}};
+    const Scene again = parse_scene(write_scene(scene), "again.toml");
+    EXPECT_EQ(again.ropes[0].origin_m, (Vec2{0.3, 0.7}));
+    EXPECT_EQ(again.ropes[0].points_m, rope.points_m);
+}
+
+TEST(WriteScene, RefusesWhatAFileCannotSay) {
+    const Scene sound = parse_scene(scene::rope_with("[solver]\nmethod = \"rattle\"\n"), "scene.toml");
+    const auto refused = [](const Scene& scene) {
+        try {
+            return write_scene(scene).empty();
+        } catch (const Error& error) {
+            return error.code() == ExitCode::kUsage;
+        }
+    };
+    EXPECT_FALSE(refused(sound));
+    Scene scene = sound;
+    std::get<RattleDef>(scene.solver).guard = 0.3;
+    EXPECT_TRUE(refused(scene));
+    scene = sound;
+    scene.ropes[0].reach = 2;
+    EXPECT_TRUE(refused(scene));
+    scene = sound;
+    scene.overlay.title = "two\nlines";
+    EXPECT_TRUE(refused(scene));
+    scene = sound;
+    NetDef& net = scene.nets.emplace_back();
+    net.points_m = {{0, 0}, {1, 0}, {0, 3}};
+    net.bars = {{0, 1, true}, {0, 2, false}};
+    EXPECT_TRUE(refused(scene));
+}
+
+}  // namespace
+}  // namespace corda
