@@ -13,6 +13,7 @@
 #include "console.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/pipeline/film.hpp"
+#include "corda/pipeline/provenance.hpp"
 #include "corda/scene/scene.hpp"
 
 namespace corda::app {
@@ -69,7 +70,21 @@ struct SceneOptions {
                       const std::string& help);
     /// `--size WxH` for `--set video.size=[W,H]`.
     void add_size(CLI::App& command);
-    [[nodiscard]] Scene load() const { return load_scene(path, settings); }
+    /// `--from FILE`, in place of a scene file.
+    void add_from(CLI::App& command);
+    /// Throws CLI::RequiredError if there is neither. To be called when the command line is parsed.
+    void require() const;
+    /// Whether the scene is that of a picture or a video.
+    [[nodiscard]] bool is_from() const { return !from.empty(); }
+    /// What the file of `--from` carries, read once; warns if another version made it.
+    [[nodiscard]] const Provenance& provenance(const Console& console) const;
+    [[nodiscard]] Scene load(const Console& console) const;
+    /// The file that no output may replace.
+    [[nodiscard]] const std::string& input() const { return is_from() ? from : path; }
+
+  private:
+    std::string from;
+    mutable std::optional<Provenance> provenance_;
 };
 
 /// "video.size=[640,360]" for "640x360". Throws corda::Error (kUsage).

@@ -22,6 +22,7 @@ constexpr double kPrintPpi = 300.0;
 
 void FigureOptions::add_to(CLI::App& command, const std::string& output_help) {
     scene.add_to(command);
+    scene.add_from(command);
     shots.add_to(command);
     command.add_option("-o,--output", output, output_help)->required();
     scene.add_size(command);
@@ -40,8 +41,39 @@ void FigureOptions::add_to(CLI::App& command, const std::string& output_help) {
     command.add_flag("--dry-run", dry_run, "check everything and write nothing");
 }
 
-Scene FigureOptions::load() const {
-    Scene loaded = scene.load();
+void FigureOptions::require() const {
+    scene.require();
+    if (!scene.is_from()) shots.require();
+}
+
+void FigureOptions::take_origin(const Console& console, std::string_view command) {
+    if (!scene.is_from() || !shots.times_s.empty() || !shots.frames.empty()) return;
+    const std::optional<PictureOrigin>& picture = scene.provenance(console).picture;
+    if (!picture) {
+        throw Error(
+            ExitCode::kUsage,
+            fmt::format("'{}' does not tell which moment it shows; give --at or --frame", scene.input()));
+    }
+    const bool is_frame = picture->command == "frame" && command == "still";
+    if (picture->command != command && !is_frame) {
+        throw Error(ExitCode::kUsage,
+                    fmt::format("'{}' was made by `corda {}`; use that, or give --at or --frame",
+                                scene.input(), picture->command == "frame" ? "render" : picture->command));
+    }
+    for (const PictureTime& time : picture->times) {
+        if (time.frame)
+            shots.frames.push_back(std::to_string(*time.frame));
+        else
+            shots.times_s.push_back(time.time_s);
+    }
+    film_times_of_origin = picture->film_times_s;
+    columns_of_origin = picture->columns;
+    if (shutter == 0.0) shutter = is_frame ? load(console).video.shutter : picture->shutter;
+    if (!pixels_per_inch && !width_mm) pixels_per_inch = picture->pixels_per_inch;
+}
+
+Scene FigureOptions::load(const Console& console) const {
+    Scene loaded = scene.load(console);
     if (!width_mm) return loaded;
     VideoDef& video = loaded.video;
     const double width_px = std::round(*width_mm / kMmPerInch * pixels_per_inch.value_or(kPrintPpi));
@@ -65,6 +97,8 @@ Film FigureOptions::film_of(const Console& console, const Scene& loaded,
     FilmDef def;
     def.on_progress = show_progress(console, "simulate");
     for (const Shot& shot : some) def.stills_s.push_back(shot.time_s);
+    for (const double time_s : film_times_of_origin)
+        if (time_s <= loaded.world.duration_s) def.stills_s.push_back(time_s);
     gl.apply_to(def);
     Film film(loaded, def);
     report_plan(console, film);
@@ -73,16 +107,37 @@ Film FigureOptions::film_of(const Console& console, const Scene& loaded,
     return film;
 }
 
-PngInfo FigureOptions::describe(const Scene& loaded, const std::vector<Shot>& some, int width_px) const {
+std::vector<double> FigureOptions::film_times(const std::vector<Shot>& some) const {
+    std::vector<double> times_s = film_times_of_origin;
+    for (const Shot& shot : some)
+        if (!shot.frame) times_s.push_back(shot.time_s);
+    std::sort(times_s.begin(), times_s.end());
+    times_s.erase(std::unique(times_s.begin(), times_s.end()), times_s.end());
+    return times_s;
+}
+
+PngInfo FigureOptions::describe(const Scene& loaded, const std::vector<Shot>& some, PictureOrigin origin,
+                                const std::vector<double>& all_s) const {
     std::string times;
     std::string frames;
     for (const Shot& shot : some) {
         times += fmt::format("{}{}", times.empty() ? "" : ", ", shot.time_s);
         if (shot.frame) frames += fmt::format("{}{}", frames.empty() ? "" : ", ", *shot.frame);
     }
-    PngInfo info = picture_info(loaded.name, times, frames);
-    info.pixels_per_inch =
-        width_mm ? width_px * kMmPerInch / *width_mm : pixels_per_inch.value_or(kScreenPpi);
+    const double ppi =
+        width_mm ? loaded.video.width_px * kMmPerInch / *width_mm : pixels_per_inch.value_or(kScreenPpi);
+    for (const Shot& shot : some) origin.times.push_back({shot.frame, shot.frame ? 0.0 : shot.time_s});
+    const bool are_its_own = std::all_of(all_s.begin(), all_s.end(), [&](double time_s) {
+        return std::any_of(origin.times.begin(), origin.times.end(),
+                           [&](const PictureTime& its) { return !its.frame && its.time_s == time_s; });
+    });
+    if (!are_its_own) origin.film_times_s = all_s;
+    if (ppi != kScreenPpi) origin.pixels_per_inch = ppi;
+    if (!made_) made_ = provenance_of(loaded);
+    Provenance made = *made_;
+    made.picture = std::move(origin);
+    PngInfo info = picture_info(loaded.name, times, frames, provenance_text(std::move(made)));
+    info.pixels_per_inch = ppi;
     return info;
 }
 
@@ -92,15 +147,19 @@ ExitCode FigureOptions::write_one(const Console& console, const Scene& loaded, c
         throw Error(ExitCode::kUsage,
                     fmt::format("-o {}: is one picture, .png, .svg or .pdf; give such a name", output));
     }
-    check_output(output, scene.path, force);
+    check_output(output, scene.input(), force);
     const bool is_sheet = def.columns > 0;
     const int width_px = is_sheet ? def.width_px : loaded.video.width_px;
     const int height_px = is_sheet ? def.height_px : loaded.video.height_px;
+    Scene whole = loaded;
+    whole.video.width_px = width_px;
+    whole.video.height_px = height_px;
+    const PictureOrigin origin{.command = is_sheet ? "sheet" : "strobe", .columns = def.columns};
     const Film film = film_of(console, loaded, some);
     EmptyPictures empties = empty;
     if (!dry_run) {
         if (output.ends_with(".png")) report_gl(console, film.gl());
-        const auto empty_s = write_figure(output, film, def, describe(loaded, some, width_px),
+        const auto empty_s = write_figure(output, film, def, describe(whole, some, origin, film_times(some)),
                                           {.force = force, .on_progress = stopping_if_asked()});
         empties.count = static_cast<std::int64_t>(empty_s.size());
         if (!empty_s.empty()) empties.first_s = empty_s.front();

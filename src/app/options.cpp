@@ -7,7 +7,9 @@
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/nearest.hpp"
+#include "corda/core/version.hpp"
 #include "corda/scene/keys.hpp"
+#include "interrupt.hpp"
 
 namespace corda::app {
 std::string size_setting(const std::string& text) {
@@ -62,6 +64,33 @@ void SceneOptions::add_to(CLI::App& command, Need need) {
         ->expected(1)
         ->take_all()
         ->allow_extra_args(false);
+}
+
+void SceneOptions::add_from(CLI::App& command) {
+    CLI::Option* scene = command.get_option("SCENE")->required(false);
+    CLI::Option* file =
+        command
+            .add_option("--from", from,
+                        "a picture or a video that corda has written, in place of SCENE: the same again")
+            ->type_name("FILE");
+    file->excludes(scene);
+}
+
+void SceneOptions::require() const {
+    if (path.empty() && from.empty()) throw CLI::RequiredError("SCENE, or --from,");
+}
+
+const Provenance& SceneOptions::provenance(const Console& console) const {
+    if (provenance_) return *provenance_;
+    provenance_ = read_provenance(from, stopping_if_asked());
+    if (provenance_->corda != version())
+        console.warning(fmt::format("{} was made by corda {}, this is {}: pixels may differ", from,
+                                    provenance_->corda, version()));
+    return *provenance_;
+}
+
+Scene SceneOptions::load(const Console& console) const {
+    return is_from() ? scene_of(provenance(console), from, settings) : load_scene(path, settings);
 }
 
 void SceneOptions::add_shortcut(CLI::App& command, const std::string& name, const std::string& key,

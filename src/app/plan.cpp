@@ -103,7 +103,7 @@ void report_in_words(const Console& console, const Film& film, const std::vector
 ExitCode plan(const Console& console, const PlanOptions& options) {
     FilmDef def;
     def.on_progress = show_progress(console, "plan");
-    const Film film(options.scene.load(), def);
+    const Film film(options.scene.load(console), def);
     report_plan(console, film);
     const CameraDef& camera = film.camera();
     if (options.toml) {

@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <memory>
 #include <set>
 #include <string_view>
@@ -45,6 +46,18 @@ void parse_range(std::string_view text, RenderDef& def) {
     }
     throw Error(ExitCode::kUsage,
                 fmt::format("--frames {}: is not FIRST:END, two frame numbers (END is not drawn)", text));
+}
+
+/// "FIRST:END" of the command line; of a file that is rendered again its own, unless the scene gets another
+/// number of frames.
+std::string range_of(const Console& console, const RenderOptions& options) {
+    const std::vector<std::string>& settings = options.scene.settings;
+    const bool has_its_frames =
+        std::none_of(settings.begin(), settings.end(), [](const std::string& setting) {
+            return setting.starts_with("world.duration") || setting.starts_with("video.fps");
+        });
+    const bool takes_its = options.scene.is_from() && options.frames.empty() && has_its_frames;
+    return takes_its ? options.scene.provenance(console).frames : options.frames;
 }
 
 /// Whether the video is one file, which has a part before.
@@ -119,12 +132,12 @@ void report_format(const Console& console, const Scene& scene, const std::string
 
 ExitCode render(const Console& console, const RenderOptions& options) {
     const double start_s = now_s();
-    Scene scene = options.scene.load();
+    Scene scene = options.scene.load(console);
     RenderDef def;
     def.force = options.force;
     def.resume = options.resume;
     def.verify_all = options.verify == "full";
-    parse_range(options.frames, def);
+    parse_range(range_of(console, options), def);
     const bool to_stdout = is_standard_output(options.output);
     if (to_stdout && isatty(STDOUT_FILENO) == 1)
         throw Error(ExitCode::kUsage,
@@ -132,7 +145,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     if (to_stdout && console.json())
         throw Error(ExitCode::kUsage,
                     "-o - and --json both want standard output; give the video a file name");
-    check_render(scene, options.output, def, options.scene.path);
+    check_render(scene, options.output, def, options.scene.input());
     report_format(console, scene, options.output);
     OnProgress on_progress = show_progress(console, "simulate");
     leave_cores_to_chunks(scene.video);
@@ -188,6 +201,7 @@ void add_render(CLI::App& app, Action& action) {
     auto options = std::make_shared<RenderOptions>();
     CLI::App* command = app.add_subcommand("render", "turn a scene into a video");
     options->scene.add_to(*command);
+    options->scene.add_from(*command);
     command->add_option("-o,--output", options->output, "the ending chooses the format: " + endings_text())
         ->required();
     options->scene.add_size(*command);
@@ -217,6 +231,7 @@ void add_render(CLI::App& app, Action& action) {
                       "go on with what an interrupted render of the same scene has left");
     command->add_flag("--dry-run", options->dry_run, "check everything and write nothing");
     command->callback([options, &action] {
+        options->scene.require();
         action = [options](const Console& console) { return render(console, *options); };
     });
 }

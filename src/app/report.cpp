@@ -67,7 +67,7 @@ std::optional<Error> write_report(const Console& console, const Film& film, cons
 
 ExitCode report_command(const Console& console, const ReportOptions& options) {
     const double start_s = now_s();
-    Scene scene = options.scene.load();
+    Scene scene = options.scene.load(console);
     figures::prefer_paper(scene);
     const std::vector<Shot> shots = options.shots.list(scene);
     report::check_gnuplot();

@@ -10,8 +10,10 @@ struct SheetOptions : FigureOptions {
     int columns = 0;
 };
 
-ExitCode write_sheet(const Console& console, const SheetOptions& options) {
-    Scene scene = options.load();
+ExitCode write_sheet(const Console& console, SheetOptions options) {
+    options.take_origin(console, "sheet");
+    if (options.columns == 0) options.columns = options.columns_of_origin;
+    Scene scene = options.load(console);
     const std::vector<Shot> shots = options.shots.list(scene);
     std::vector<double> times_s;
     for (const Shot& shot : shots) times_s.push_back(shot.time_s);
@@ -30,7 +32,7 @@ void add_sheet(CLI::App& app, Action& action) {
                      "cells side by side; default: what fills the picture best")
         ->check(within(1.0, 1000.0));
     command->callback([options, &action] {
-        options->shots.require();
+        options->require();
         action = [options](const Console& console) { return write_sheet(console, *options); };
     });
 }

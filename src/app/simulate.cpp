@@ -168,7 +168,7 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
         throw Error(ExitCode::kUsage, "-o - and --json both want standard output; give the CSV a file name");
     }
     check_ending(options.output);
-    Scene scene = options.scene.load();
+    Scene scene = options.scene.load(console);
     const bool to_file = !options.output.empty() && !to_stdout;
     if (to_file) check_output(options.output, options.scene.path, options.force, OutputKind::kStream);
     OnProgress on_progress = show_progress(console, "plan");

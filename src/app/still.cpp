@@ -67,7 +67,7 @@ void set_paths(const FigureOptions& options, std::vector<Still>& stills) {
         if (!options.dry_run) make_folder(options.output);
     }
     if (options.dry_run && !std::filesystem::is_directory(options.output)) return;
-    for (const Still& still : stills) check_output(still.path, options.scene.path, options.force);
+    for (const Still& still : stills) check_output(still.path, options.scene.input(), options.force);
 }
 
 /// Draws and writes the stills, and counts the empty ones. If interrupted, the message says how many were
@@ -75,13 +75,16 @@ void set_paths(const FigureOptions& options, std::vector<Still>& stills) {
 void write_each(const std::vector<Still>& stills, const FigureOptions& options, const Film& film,
                 EmptyPictures& empty) {
     std::size_t written = 0;
+    const std::vector<double> stills_s = options.film_times({stills.begin(), stills.end()});
     try {
         for (const Still& still : stills) {
             stop_if_asked();
             const FigureDef def{.times_s = {still.time_s}, .shutter = options.shutter};
-            const auto empty_s = write_figure(
-                still.path, film, def, options.describe(film.scene(), {still}, film.scene().video.width_px),
-                {.force = options.force, .on_progress = stopping_if_asked()});
+            const auto empty_s =
+                write_figure(still.path, film, def,
+                             options.describe(film.scene(), {still},
+                                              {.command = "still", .shutter = options.shutter}, stills_s),
+                             {.force = options.force, .on_progress = stopping_if_asked()});
             ++written;
             if (!empty_s.empty() && empty.count++ == 0) empty.first_s = still.time_s;
         }
@@ -92,8 +95,9 @@ void write_each(const std::vector<Still>& stills, const FigureOptions& options, 
     }
 }
 
-ExitCode write_stills(const Console& console, const FigureOptions& options) {
-    const Scene scene = options.load();
+ExitCode write_stills(const Console& console, FigureOptions options) {
+    options.take_origin(console, "still");
+    const Scene scene = options.load(console);
     const std::vector<Shot> shots = options.shots.list(scene);
     std::vector<Still> stills = list_stills(shots, scene);
     set_paths(options, stills);
@@ -129,7 +133,7 @@ void add_still(CLI::App& app, Action& action) {
                      "blur the motion as a video of this video.shutter does; stills are sharp otherwise")
         ->check(within(0.0, 1.0));
     command->callback([options, &action] {
-        options->shots.require();
+        options->require();
         action = [options](const Console& console) { return write_stills(console, *options); };
     });
 }

@@ -6,8 +6,9 @@
 namespace corda::app {
 namespace {
 
-ExitCode write_strobe(const Console& console, const FigureOptions& options) {
-    const Scene scene = options.load();
+ExitCode write_strobe(const Console& console, FigureOptions options) {
+    options.take_origin(console, "strobe");
+    const Scene scene = options.load(console);
     const std::vector<Shot> shots = options.shots.list(scene);
     FigureDef def;
     for (const Shot& shot : shots) def.times_s.push_back(shot.time_s);
@@ -22,7 +23,7 @@ void add_strobe(CLI::App& app, Action& action) {
         app.add_subcommand("strobe", "draw several poses in one picture, earlier ones fainter");
     options->add_to(*command, "picture: .png, .svg or .pdf");
     command->callback([options, &action] {
-        options->shots.require();
+        options->require();
         action = [options](const Console& console) { return write_strobe(console, *options); };
     });
 }

@@ -58,7 +58,7 @@ void measure(const Console& console, study::Study& study, report::ReportFolder& 
 ExitCode study_command(const Console& console, StudyOptions options) {
     const double start_s = now_s();
     if (!options.scene.path.empty()) {
-        options.def.scene = options.scene.load();
+        options.def.scene = options.scene.load(console);
     } else if (!options.scene.settings.empty()) {
         throw Error(ExitCode::kUsage, "--set changes a scene; name its file");
     }

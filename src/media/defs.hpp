@@ -55,8 +55,8 @@ struct VideoDef {
 
 /// What a PNG says beside its pixels.
 struct PngInfo {
-    /// tEXt chunks in file order: keyword (1..79 Latin-1 characters) and UTF-8 text; bytes that are not UTF-8
-    /// are written as "\xe9".
+    /// Texts in file order: keyword (1..79 Latin-1 characters) and UTF-8 text; bytes that are not UTF-8
+    /// are written as "\xe9". Long ones are compressed.
     std::vector<std::pair<std::string, std::string>> text;
     double pixels_per_inch = 96.0;  ///< written as pHYs; > 0
 };
@@ -73,7 +73,7 @@ void write_png(const std::string& path, const Image& image, const PngInfo& info 
 /// `on_progress`, called with its rows, asks to stop.
 [[nodiscard]] Image read_png(const std::string& path, const OnProgress& on_progress = {});
 
-/// The tEXt chunks of a PNG. Throws as read_png.
+/// The texts of a PNG: tEXt, zTXt and iTXt. Throws as read_png.
 [[nodiscard]] PngInfo read_png_info(const std::string& path);
 
 }  // namespace corda

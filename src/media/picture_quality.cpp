@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "corda/core/similarity.hpp"
+
 namespace corda::media {
 namespace {
 
@@ -14,8 +16,6 @@ constexpr double kPeak = 255.0;
 constexpr int kWindow = 8;
 constexpr std::int64_t kWindowSamples = 64;
 constexpr int kStride = 4;
-constexpr double kC1 = (0.01 * kPeak) * (0.01 * kPeak);
-constexpr double kC2 = (0.03 * kPeak) * (0.03 * kPeak);
 
 double window_ssim(const std::uint8_t* a, const std::uint8_t* b, int row_bytes) {
     std::int64_t sum_a = 0;
@@ -40,10 +40,8 @@ double window_ssim(const std::uint8_t* a, const std::uint8_t* b, int row_bytes) 
     const auto covariance = [](std::int64_t products, std::int64_t u, std::int64_t v) {
         return static_cast<double>(kWindowSamples * products - u * v) / (kCount * (kCount - 1.0));
     };
-    const double luminance = (2.0 * mean_a * mean_b + kC1) / (mean_a * mean_a + mean_b * mean_b + kC1);
-    const double structure = (2.0 * covariance(sum_ab, sum_a, sum_b) + kC2) /
-                             (covariance(sum_aa, sum_a, sum_a) + covariance(sum_bb, sum_b, sum_b) + kC2);
-    return luminance * structure;
+    return structural_similarity(mean_a, mean_b, covariance(sum_aa, sum_a, sum_a),
+                                 covariance(sum_bb, sum_b, sum_b), covariance(sum_ab, sum_a, sum_b));
 }
 
 /// A window of a picture of 8-bit RGBA.

@@ -15,6 +15,10 @@ namespace {
 // Deflate shrinks by at most 1032 to 1, so a file that promises more is not whole.
 constexpr double kLargestRatio = 1032.0;
 
+// What texts and profiles may take; libpng leaves out what is larger.
+constexpr png_uint_32 kMostTexts = 100;
+constexpr png_alloc_size_t kLargestChunkBytes = png_alloc_size_t{4} << 20;
+
 /// What libpng's callbacks work with. It lives outside the functions that longjmp returns to.
 struct ReadJob {
     png_structp png = nullptr;
@@ -42,6 +46,8 @@ bool read_header(ReadJob& job) {
     if (setjmp(png_jmpbuf(job.png)) != 0) return false;
     png_init_io(job.png, job.file);
     png_set_user_limits(job.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // check_png_size has better words
+    png_set_chunk_cache_max(job.png, kMostTexts);
+    png_set_chunk_malloc_max(job.png, kLargestChunkBytes);
     png_read_info(job.png, job.info);
     return true;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "corda/core/basics.hpp"
 #include "corda/core/rational.hpp"
 #include "corda/media/verify.hpp"
 
@@ -27,5 +28,11 @@ inline constexpr const char* kOriginKey = "made_from";
 /// The comment of a finished video, with the number of its frames and without its origin; unchanged if it is
 /// no JSON object.
 [[nodiscard]] std::string finished_comment(const std::string& comment, std::size_t frames);
+
+/// The comment of a video of any origin, read in a child process with limits on memory and time; empty if it
+/// has none. `on_progress` is asked at least ten times a second. Throws corda::Error: kIo if the file cannot
+/// be read or is no video, and what run_in_child throws, which also says why this process must have no other
+/// thread.
+[[nodiscard]] std::string comment_in_child(const std::string& path, const OnProgress& on_progress = {});
 
 }  // namespace corda::media

@@ -1,4 +1,5 @@
 #include "corda/pipeline/describe.hpp"
+#include "corda/pipeline/provenance.hpp"
 
 #include <algorithm>
 #include <map>
@@ -159,12 +160,14 @@ Error explained(const Refusal& refusal, const std::string& source) {
 }
 
 }  // namespace pipeline
-PngInfo picture_info(const std::string& scene_name, const std::string& times, const std::string& frames) {
+PngInfo picture_info(const std::string& scene_name, const std::string& times, const std::string& frames,
+                     const std::string& provenance) {
     PngInfo info;
     info.text = {{"Software", fmt::format("corda {}", version())},
                  {"Title", printable(scene_name)},
                  {"Time", times + " s"}};
     if (!frames.empty()) info.text.emplace_back("Frame", frames);
+    info.text.emplace_back(kProvenanceKeyword, provenance);
     return info;
 }
 

@@ -41,9 +41,10 @@ struct MethodGroup {
 /// The methods' names: "exact, rattle".
 [[nodiscard]] std::string method_names(const Plan& plan);
 
-/// What a picture file of a scene says of itself: program, scene, time in s and, if it is not empty, frame.
+/// What a picture file of a scene says of itself: program, scene, time in s, if it is not empty, frame, and
+/// what it was made from (provenance_text).
 [[nodiscard]] PngInfo picture_info(const std::string& scene_name, const std::string& times,
-                                   const std::string& frames);
+                                   const std::string& frames, const std::string& provenance);
 
 /// The same with the bound of the displayed error: "exact, error below 0.031 px".
 [[nodiscard]] std::string method_caption(const Plan& plan, const std::optional<double>& error_bound_px);

@@ -19,6 +19,7 @@
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/provenance.hpp"
 #include "corda/pipeline/render_chunks.hpp"
 #include "corda/pipeline/validate.hpp"
 #include "corda/scene/digest.hpp"
@@ -60,7 +61,7 @@ void check_part(const std::string& path, const std::map<std::string, std::string
 }
 
 /// What the file says of itself beside its pictures.
-media::VideoMetadata metadata(const Film& film, std::int64_t first,
+media::VideoMetadata metadata(const Film& film, std::int64_t first, std::int64_t end,
                               const std::map<std::string, std::string>& origin) {
     const Scene& scene = film.scene();
     const Plan& plan = film.plan();
@@ -73,9 +74,14 @@ media::VideoMetadata metadata(const Film& film, std::int64_t first,
     if (const auto bound_px = film.error_bound_px()) comment["error_bound_px"] = *bound_px;
     if (plan.horizon_s) comment["horizon_s"] = *plan.horizon_s;
     comment[media::kOriginKey] = origin;
+    Provenance made = provenance_of(scene);
+    made.frames = fmt::format("{}:{}", first, end);
+    const std::string provenance = provenance_text(std::move(made));
+    comment[kProvenanceKey] = nlohmann::json::parse(provenance);
     return {title, comment.dump(), !view::look_of(scene.style).ground.is_opaque(),
-            [name = scene.name, fps = scene.video.fps](std::int64_t frame) {
-                return picture_info(name, fmt::format("{}", fps.time_s(frame)), std::to_string(frame));
+            [name = scene.name, fps = scene.video.fps, provenance](std::int64_t frame) {
+                return picture_info(name, fmt::format("{}", fps.time_s(frame)), std::to_string(frame),
+                                    provenance);
             }};
 }
 
@@ -184,7 +190,8 @@ media::VideoWriter make_writer(const Film& film, const std::string& path, const 
                                const RenderDef& def, std::int64_t end) {
     const OutputOptions options{.force = def.force, .on_progress = def.on_progress};
     const VideoDef& video = film.scene().video;
-    media::VideoMetadata data = metadata(film, def.first, origin_of(film.scene(), format, def.first, end));
+    media::VideoMetadata data =
+        metadata(film, def.first, end, origin_of(film.scene(), format, def.first, end));
     if (def.resume) return media::VideoWriter::resume(path, video, std::move(data), options, def.first, end);
     return {path, video, std::move(data), options, def.first};
 }

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "corda/core/basics.hpp"
+#include "corda/core/image.hpp"
+
+#pragma GCC visibility push(default)
+namespace corda {
+
+/// Pixels per degree of the field of view in which flip() is meant: a 4K screen of 0.7 m seen from 0.7 m.
+inline constexpr double kFlipPixelsPerDegree = 67.0;
+/// The least side of pictures that have an ssim().
+inline constexpr int kLeastSsimSidePx = 11;
+
+/// Mean of LDR-FLIP, the difference that one sees who flips between two sRGB pictures of one size: 0 for
+/// equal ones, at most 1. Transparent pictures are laid over black and over white, and the larger figure
+/// counts. A pixel that has no differing one within the reach of the filters counts as 0, which it is. The
+/// figure does not depend on `threads`, nor on the CPU. 0 for pictures without pixels.
+///
+/// P. Andersson, J. Nilsson, T. Akenine-Moller, M. Oskarsson, K. Astrom, M. D. Fairchild: FLIP: A difference
+/// evaluator for alternating images. Proceedings of the ACM on Computer Graphics and Interactive Techniques
+/// 3(2), 2020. Throws corda::Error: kUsage for different sizes, kInterrupted if `on_progress` asks to stop.
+[[nodiscard]] double flip(const Image& a, const Image& b, const OnProgress& on_progress = {}, int threads = 1,
+                          double pixels_per_degree = kFlipPixelsPerDegree);
+
+/// Mean structural similarity of the luma 0.299 R + 0.587 G + 0.114 B of two pictures of one size, over
+/// black: at most 1, for equal ones. Windows are Gaussian, of 11x11 pixels and standard deviation 1.5, inside
+/// of the picture; K1 = 0.01, K2 = 0.03.
+///
+/// Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli: Image quality assessment: from error visibility to
+/// structural similarity. IEEE Transactions on Image Processing 13(4), 2004, pages 600-612. Throws
+/// corda::Error: kUsage for different sizes, and a side below kLeastSsimSidePx; kInterrupted.
+[[nodiscard]] double ssim(const Image& a, const Image& b, const OnProgress& on_progress = {});
+
+}  // namespace corda
+#pragma GCC visibility pop

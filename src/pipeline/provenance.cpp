@@ -1,0 +1,206 @@
+#include "corda/pipeline/provenance.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/file.hpp"
+#include "corda/core/text.hpp"
+#include "corda/core/version.hpp"
+#include "corda/media/defs.hpp"
+#include "corda/media/video_comment.hpp"
+#include "corda/scene/write_scene.hpp"
+
+namespace corda {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Larger scenes are not even tried: most have more text than there is room for.
+constexpr std::size_t kMostParticles = 100'000;
+constexpr std::size_t kMostTimes = 1000;
+constexpr std::size_t kLongestName = 200;
+
+[[noreturn]] void fail_at(const std::string& path, const std::string& problem) {
+    throw Error(
+        ExitCode::kUsage,
+        fmt::format("'{}' {}; give a PNG or a video that corda has written, or a scene file", path, problem));
+}
+
+Json json_of(const PictureOrigin& picture) {
+    Json times = Json::array();
+    for (const PictureTime& time : picture.times)
+        times.push_back(time.frame ? Json{{"frame", *time.frame}} : Json(time.time_s));
+    Json json{{"command", picture.command}, {"times", times}};
+    if (!picture.film_times_s.empty()) json["film_times"] = picture.film_times_s;
+    if (picture.columns > 0) json["columns"] = picture.columns;
+    if (picture.shutter > 0.0) json["shutter"] = picture.shutter;
+    if (picture.pixels_per_inch) json["pixels_per_inch"] = *picture.pixels_per_inch;
+    return json;
+}
+
+/// Throws what the JSON library throws for other types.
+PictureOrigin picture_of(const Json& json) {
+    PictureOrigin picture;
+    picture.command = json.at("command").get<std::string>();
+    for (const Json& time : json.at("times")) {
+        if (time.is_object())
+            picture.times.push_back({time.at("frame").get<std::int64_t>(), 0.0});
+        else
+            picture.times.push_back({std::nullopt, time.get<double>()});
+    }
+    if (json.contains("film_times")) picture.film_times_s = json["film_times"].get<std::vector<double>>();
+    picture.columns = json.value("columns", 0);
+    picture.shutter = json.value("shutter", 0.0);
+    if (json.contains("pixels_per_inch")) picture.pixels_per_inch = json["pixels_per_inch"].get<double>();
+    const bool is_known =
+        picture.command == "still" || picture.command == "strobe" || picture.command == "sheet";
+    const bool is_sound =
+        is_known && !picture.times.empty() && picture.columns >= 0 && picture.columns <= 1000 &&
+        picture.shutter >= 0.0 && picture.shutter <= 1.0 &&
+        (!picture.pixels_per_inch || (*picture.pixels_per_inch > 0.0 && *picture.pixels_per_inch <= 10000.0));
+    if (!is_sound) throw Error(ExitCode::kUsage, "its picture is not what corda writes");
+    return picture;
+}
+
+/// Names of files are made of it.
+bool is_sound_name(const std::string& name) {
+    return !name.empty() && name.size() <= kLongestName && name != "." && name != ".." &&
+           std::none_of(name.begin(), name.end(),
+                        [](char c) { return c == '/' || static_cast<unsigned char>(c) < 0x20; });
+}
+
+Provenance parsed(const Json& json) {
+    Provenance provenance;
+    provenance.corda = printable(json.at("corda").get<std::string>());
+    provenance.name = json.at("name").get<std::string>();
+    provenance.scene = json.value("scene", "");
+    provenance.left_out = json.value("left_out", "");
+    provenance.frames = json.value("frames", "");
+    if (json.contains("picture")) provenance.picture = picture_of(json["picture"]);
+    if (!is_sound_name(provenance.name)) throw Error(ExitCode::kUsage, "its name is none of a scene");
+    return provenance;
+}
+
+/// What a PNG carries.
+struct PngTexts {
+    std::string provenance;  ///< empty if there is none
+    std::string frame;       ///< its number, in words
+};
+
+PngTexts texts_in_png(const std::string& path) {
+    PngTexts texts;
+    for (const auto& [keyword, text] : read_png_info(path).text) {
+        if (keyword == kProvenanceKeyword) texts.provenance = text;
+        if (keyword == "Frame") texts.frame = text;
+    }
+    return texts;
+}
+
+/// A picture of a sequence.
+std::optional<PictureOrigin> frame_of_sequence(const std::string& number) {
+    std::int64_t frame = 0;
+    const auto [stop, status] = std::from_chars(number.data(), number.data() + number.size(), frame);
+    if (status != std::errc{} || stop != number.data() + number.size()) return std::nullopt;
+    return PictureOrigin{.command = "frame", .times = {{frame, 0.0}}};
+}
+
+std::string text_in_video(const std::string& path, const OnProgress& on_progress) {
+    const Json comment = Json::parse(media::comment_in_child(path, on_progress), nullptr, false);
+    if (!comment.is_object() || !comment.contains(kProvenanceKey)) return {};
+    return comment[kProvenanceKey].dump();
+}
+
+bool is_png(const std::string& path) {
+    constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n", 8);
+    const FileHandle file = open_for_reading(path);
+    std::array<char, 8> begin{};
+    const std::size_t count = std::fread(begin.data(), 1, begin.size(), file.get());
+    return std::string_view(begin.data(), count) == kSignature;
+}
+
+}  // namespace
+
+Provenance provenance_of(const Scene& scene) {
+    Provenance provenance;
+    provenance.corda = version();
+    provenance.name = printable(scene.name);
+    std::size_t particles = 0;
+    for (const RopeDef& rope : scene.ropes) particles += rope.points_m.size();
+    for (const NetDef& net : scene.nets) particles += net.points_m.size();
+    if (particles > kMostParticles) {
+        provenance.left_out =
+            fmt::format("the scene has {} particles, more than {}", particles, kMostParticles);
+        return provenance;
+    }
+    try {
+        provenance.scene = write_scene(scene);
+    } catch (const Error& error) {
+        provenance.left_out = utf8(error.what());
+    }
+    return provenance;
+}
+
+std::string provenance_text(Provenance provenance) {
+    constexpr std::size_t kMostReason = 500;
+    if (provenance.picture && (provenance.picture->times.size() > kMostTimes ||
+                               provenance.picture->film_times_s.size() > kMostTimes))
+        provenance.picture.reset();
+    const auto text_of = [&] {
+        Json json{{"corda", provenance.corda}, {"name", provenance.name}};
+        if (!provenance.scene.empty()) json["scene"] = provenance.scene;
+        if (!provenance.left_out.empty()) json["left_out"] = provenance.left_out;
+        if (!provenance.frames.empty()) json["frames"] = provenance.frames;
+        if (provenance.picture) json["picture"] = json_of(*provenance.picture);
+        return json.dump(-1, ' ', true, Json::error_handler_t::replace);
+    };
+    if (provenance.left_out.size() > kMostReason) provenance.left_out.resize(kMostReason);
+    std::string text = text_of();
+    if (text.size() <= Provenance::kMostBytes) return text;
+    provenance.left_out = fmt::format("the scene takes {} bytes, more than {}", provenance.scene.size(),
+                                      Provenance::kMostBytes);
+    provenance.scene.clear();
+    text = text_of();
+    if (text.size() <= Provenance::kMostBytes) return text;
+    provenance.picture.reset();
+    return text_of();
+}
+
+Provenance read_provenance(const std::string& path, const OnProgress& on_progress) {
+    PngTexts png;
+    if (is_png(path))
+        png = texts_in_png(path);
+    else
+        png.provenance = text_in_video(path, on_progress);
+    const std::string& text = png.provenance;
+    if (text.empty()) fail_at(path, "does not tell what it was made from");
+    if (text.size() > 2 * Provenance::kMostBytes) fail_at(path, "tells more than corda writes");
+    Provenance provenance;
+    try {
+        provenance = parsed(Json::parse(text));
+    } catch (const std::exception& error) {
+        fail_at(path, fmt::format("tells what it was made from in a way that is damaged ({})",
+                                  printable(error.what())));
+    }
+    if (!provenance.picture) provenance.picture = frame_of_sequence(png.frame);
+    if (provenance.scene.empty()) {
+        fail_at(path,
+                fmt::format("does not carry its scene, because {}",
+                            provenance.left_out.empty() ? "it is damaged" : printable(provenance.left_out)));
+    }
+    return provenance;
+}
+
+Scene scene_of(const Provenance& provenance, const std::string& path, const std::vector<Setting>& settings) {
+    Scene scene = parse_scene(provenance.scene, path, settings);
+    scene.name = provenance.name;
+    return scene;
+}
+
+}  // namespace corda

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "corda/scene/scene.hpp"
+
+namespace corda {
+
+/// A moment that a picture shows: a frame, or a time.
+struct PictureTime {
+    std::optional<std::int64_t> frame;
+    double time_s = 0.0;  ///< if it is no frame
+
+    friend bool operator==(const PictureTime&, const PictureTime&) = default;
+};
+
+/// How a picture was drawn of its scene.
+struct PictureOrigin {
+    std::string command = {};             ///< "still", "strobe" or "sheet"; "frame" of a sequence
+    std::vector<PictureTime> times = {};  ///< that it shows
+    /// Other times of the same command: they are part of the motion that the camera is fitted to.
+    std::vector<double> film_times_s = {};
+    int columns = 0;  ///< of a sheet; 0: not given
+    double shutter = 0.0;
+    std::optional<double> pixels_per_inch = {};
+
+    friend bool operator==(const PictureOrigin&, const PictureOrigin&) = default;
+};
+
+/// What a file was made from.
+struct Provenance {
+    /// Of the text that a file carries. QuickTime's comments end at 64 KiB.
+    static constexpr std::size_t kMostBytes = std::size_t{32} << 10;
+
+    std::string corda;     ///< the version that made it
+    std::string name;      ///< Scene::name, printable
+    std::string scene;     ///< a scene file (write_scene)
+    std::string left_out;  ///< why there is no scene; empty if there is one
+    std::string frames;    ///< of a video or a sequence of pictures: "FIRST:END"
+    std::optional<PictureOrigin> picture;
+};
+
+/// The keyword of the text in a PNG, and the key in the comment of a video.
+inline constexpr const char* kProvenanceKeyword = "Provenance";
+inline constexpr const char* kProvenanceKey = "provenance";
+
+/// What this version makes of `scene`: without the scene if that takes too much space or code alone can say
+/// it. No folder, host or date is part of it.
+[[nodiscard]] Provenance provenance_of(const Scene& scene);
+
+/// As a JSON object of at most kMostBytes: without the scene, or without the picture, if they do not fit.
+[[nodiscard]] std::string provenance_text(Provenance provenance);
+
+/// Reads what a PNG or a video carries; a video in a child process (see media/child_process.hpp), and
+/// `on_progress` is asked meanwhile. Throws corda::Error: kIo if the file cannot be read, kUsage if it
+/// carries nothing or no scene, or what it carries is damaged.
+[[nodiscard]] Provenance read_provenance(const std::string& path, const OnProgress& on_progress = {});
+
+/// The scene of a file, with `settings` in place of what it says; messages name the file.
+[[nodiscard]] Scene scene_of(const Provenance& provenance, const std::string& path,
+                             const std::vector<Setting>& settings = {});
+
+}  // namespace corda
