@@ -1,169 +1,73 @@
-#include "corda/golden/compare.hpp"
+#include "compare.hpp"
 
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <optional>
-#include <set>
+#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
-#include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
+#include "corda/golden/perceived.hpp"
 #include "corda/media/defs.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
 namespace {
 
-struct CompareOptions {
-    std::string a;
-    std::string b;
-    DifferenceLimits limits;
-    std::string mask;
-    std::string diff;
-    bool force = false;
-};
-
 bool is_png(const std::filesystem::path& path) {
     return path.extension() == ".png";
 }
 
-nlohmann::json to_json(const Difference& difference) {
-    nlohmann::json json{{"equal", difference.equal},
-                        {"same_size", difference.same_size},
-                        {"max", nullptr},
-                        {"mean", nullptr},
-                        {"share", nullptr}};
-    if (!difference.same_size) return json;
-    json["max"] = difference.max;
-    json["mean"] = difference.mean;
-    json["share"] = difference.share;
-    return json;
-}
-
-/// Two pictures that were compared.
-struct Compared {
-    Difference difference;
-    bool passed = false;
-    std::string words;
-};
-
-/// Compares two files; writes the picture of their difference to `diff`, if it is not empty.
-Compared compare_files(const CompareOptions& options, const std::string& path_a, const std::string& path_b,
-                       const std::optional<Image>& mask, const std::string& diff) {
-    const OnProgress goes_on = stopping_if_asked();
-    const Image a = read_png(path_a, goes_on);
-    const Image b = read_png(path_b, goes_on);
-    const Image* const its_mask = mask ? &*mask : nullptr;
-    Compared compared;
-    compared.difference = compare(a, b, goes_on, its_mask);
+std::string words_of(const ComparedPicture& compared, const Image& a, const Image& b) {
     const Difference& difference = compared.difference;
-    compared.passed = difference.within(options.limits);
+    std::string words;
     if (!difference.same_size)
-        compared.words =
-            fmt::format("different sizes: {}x{} and {}x{}", a.width(), a.height(), b.width(), b.height());
+        words = fmt::format("different sizes: {}x{} and {}x{}", a.width(), a.height(), b.width(), b.height());
     else if (difference.equal)
-        compared.words = "equal";
+        words = "equal";
     else
-        compared.words = fmt::format("{}: max {}, mean {:.6g}, share {:.6g}",
-                                     compared.passed ? "within the limits" : "different", difference.max,
-                                     difference.mean, difference.share);
-    if (!diff.empty())
-        write_png(diff, difference_image(a, b, goes_on, its_mask), {},
-                  {.force = options.force, .on_progress = goes_on});
-    return compared;
+        words = fmt::format("{}: {}", compared.passed ? "within the limits" : "different",
+                            figures_text(difference));
+    if (!compared.variant.empty()) words += fmt::format(" (variant {})", compared.variant);
+    return words;
 }
 
 ExitCode compare_pictures(const Console& console, const CompareOptions& options,
                           const std::optional<Image>& mask) {
-    if (!options.diff.empty()) {
-        if (!is_png(options.diff)) {
-            throw Error(
-                ExitCode::kUsage,
-                fmt::format("--diff {}: the picture is written as .png; give such a name", options.diff));
-        }
-        check_output(options.diff, options.a, options.force);
-        check_output(options.diff, options.b, options.force);
-    }
-    const Compared compared = compare_files(options, options.a, options.b, mask, options.diff);
+    std::vector<std::string> references{options.b};
+    references.insert(references.end(), options.variants.begin(), options.variants.end());
+    const int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const ComparedPicture compared =
+        compare_picture(options, options.a, references, mask, options.diff, threads);
     console.result(compared.words);
     if (!options.diff.empty()) console.info(fmt::format("difference picture: {}", options.diff));
-    nlohmann::json json = to_json(compared.difference);
+    nlohmann::json json = figures_json(compared.difference);
     json["schema"] = 1;
     json["passed"] = compared.passed;
+    json["reference"] = printable(compared.reference);
+    json["variant"] =
+        compared.variant.empty() ? nlohmann::json() : nlohmann::json(printable(compared.variant));
     console.report(json);
     return compared.passed ? ExitCode::kOk : ExitCode::kMismatch;
 }
 
-/// The names of the PNG files in a folder.
-std::set<std::string> pictures_in(const std::string& folder) {
-    std::set<std::string> names;
-    std::error_code failure;
-    for (std::filesystem::directory_iterator entry(folder, failure), end; !failure && entry != end;
-         entry.increment(failure))
-        if (is_png(entry->path())) names.insert(entry->path().filename().string());
-    if (failure) fail_file("read", folder, failure.value());
-    return names;
-}
-
-ExitCode compare_folders(const Console& console, const CompareOptions& options,
-                         const std::optional<Image>& mask) {
-    const std::set<std::string> of_a = pictures_in(options.a);
-    const std::set<std::string> of_b = pictures_in(options.b);
-    std::set<std::string> all = of_a;
-    all.insert(of_b.begin(), of_b.end());
-    if (all.empty())
+void check_diff(const CompareOptions& options) {
+    if (options.diff.empty()) return;
+    if (!is_png(options.diff)) {
         throw Error(ExitCode::kUsage,
-                    fmt::format("neither '{}' nor '{}' has a PNG file", options.a, options.b));
-    if (!options.diff.empty()) make_folder(options.diff);
-    Difference worst;
-    std::int64_t failed = 0;
-    nlohmann::json files = nlohmann::json::array();
-    for (const std::string& name : all) {
-        const std::string path_a = options.a + "/" + name;
-        const std::string path_b = options.b + "/" + name;
-        nlohmann::json file{{"name", printable(name)}};
-        if (!of_a.contains(name) || !of_b.contains(name)) {
-            const std::string& where = of_a.contains(name) ? options.b : options.a;
-            console.result(fmt::format("{}: missing in {}", name, where));
-            file["missing_in"] = printable(where);
-            file["passed"] = false;
-            worst.equal = false;
-            ++failed;
-            files.push_back(file);
-            continue;
-        }
-        Compared compared = compare_files(options, path_a, path_b, mask, "");
-        if (!options.diff.empty() && !compared.difference.equal)
-            compared = compare_files(options, path_a, path_b, mask, options.diff + "/" + name);
-        const Difference& difference = compared.difference;
-        if (!difference.equal) console.result(fmt::format("{}: {}", name, compared.words));
-        failed += compared.passed ? 0 : 1;
-        worst.equal &= difference.equal;
-        worst.same_size &= difference.same_size;
-        worst.max = std::max(worst.max, difference.max);
-        worst.mean = std::max(worst.mean, difference.mean);
-        worst.share = std::max(worst.share, difference.share);
-        file.update(to_json(difference));
-        file["passed"] = compared.passed;
-        files.push_back(file);
+                    fmt::format("--diff {}: the picture is written as .png; give such a name", options.diff));
     }
-    console.result(fmt::format("{}: {}", counted(std::ssize(all), "picture"),
-                               worst.equal   ? "all equal"
-                               : failed == 0 ? "all within the limits"
-                                             : fmt::format("{} failed", failed)));
-    nlohmann::json json = to_json(worst);
-    json.update({{"schema", 1}, {"passed", failed == 0}, {"files", files}});
-    console.report(json);
-    return failed == 0 ? ExitCode::kOk : ExitCode::kMismatch;
+    check_output(options.diff, options.a, options.force);
+    check_output(options.diff, options.b, options.force);
 }
 
-ExitCode compare(const Console& console, const CompareOptions& options) {
+ExitCode compare(const Console& console, CompareOptions options) {
+    options.json = console.json();
     std::optional<Image> mask;
     if (!options.mask.empty()) mask = read_png(options.mask, stopping_if_asked());
     const bool is_folder = std::filesystem::is_directory(options.a);
@@ -172,18 +76,110 @@ ExitCode compare(const Console& console, const CompareOptions& options) {
                     fmt::format("'{}' is a folder and '{}' is none; name two pictures, or two folders",
                                 is_folder ? options.a : options.b, is_folder ? options.b : options.a));
     }
-    return is_folder ? compare_folders(console, options, mask) : compare_pictures(console, options, mask);
+    if (is_folder && !options.variants.empty())
+        throw Error(ExitCode::kUsage,
+                    "--variant is for files; in a folder NAME.CAUSE.png is a variant of NAME.png");
+    if (is_folder) return compare_folders(console, options, mask);
+    const bool is_video = is_video_name(options.a);
+    for (const std::string& other : options.variants)
+        if (cause_of(other).empty())
+            throw Error(ExitCode::kUsage,
+                        fmt::format("--variant {}: does not name its cause; call it NAME.CAUSE.png, e.g. "
+                                    "swing.nvidia.png",
+                                    other));
+    if (is_video != is_video_name(options.b)) {
+        throw Error(ExitCode::kUsage,
+                    fmt::format("'{}' is a video and '{}' is none; name two videos, or two pictures",
+                                is_video ? options.a : options.b, is_video ? options.b : options.a));
+    }
+    check_diff(options);
+    return is_video ? compare_videos(console, options, mask) : compare_pictures(console, options, mask);
 }
 
 }  // namespace
+
+std::string cause_of(const std::string& path) {
+    const std::string stem = std::filesystem::path(path).stem().string();
+    const std::size_t dot = stem.rfind('.');
+    return dot == std::string::npos || dot == 0 ? "" : stem.substr(dot + 1);
+}
+
+nlohmann::json figures_json(const Difference& difference) {
+    nlohmann::json json{{"equal", difference.equal},
+                        {"same_size", difference.same_size},
+                        {"max", nullptr},
+                        {"mean", nullptr},
+                        {"share", nullptr},
+                        {"flip", nullptr},
+                        {"ssim", nullptr}};
+    if (!difference.same_size) return json;
+    json["max"] = difference.max;
+    json["mean"] = difference.mean;
+    json["share"] = difference.share;
+    if (difference.flip) json["flip"] = *difference.flip;
+    if (difference.ssim) json["ssim"] = *difference.ssim;
+    return json;
+}
+
+std::string figures_text(const Difference& difference) {
+    std::string text =
+        fmt::format("max {}, mean {:.6g}, share {:.6g}", difference.max, difference.mean, difference.share);
+    if (difference.flip) text += fmt::format(", FLIP {:.6g}", *difference.flip);
+    if (difference.ssim) text += fmt::format(", SSIM {:.6g}", *difference.ssim);
+    return text;
+}
+
+PerceivedFigures figures_for(const CompareOptions& options) {
+    return {.flip = options.json || options.limits.flip, .ssim = options.json || options.limits.ssim};
+}
+
+ComparedPicture compare_picture(const CompareOptions& options, const std::string& picture,
+                                const std::vector<std::string>& references, const std::optional<Image>& mask,
+                                const std::string& diff, int threads) {
+    const OnProgress goes_on = stopping_if_asked();
+    const Image a = read_png(picture, goes_on);
+    const Image* const its_mask = mask ? &*mask : nullptr;
+    PerceivedFigures figures = figures_for(options);
+    figures.threads = threads;
+    std::optional<ComparedPicture> chosen;
+    Image chosen_picture;
+    for (const std::string& path : references) {
+        Image b = read_png(path, goes_on);
+        // Small pictures have no SSIM; only who asks for it is told.
+        const bool is_small = std::min(a.width(), a.height()) < kLeastSsimSidePx;
+        if (is_small && !options.limits.ssim) figures.ssim = false;
+        ComparedPicture compared;
+        compared.difference = compare_perceived(a, b, figures, goes_on, its_mask);
+        compared.passed = compared.difference.within(options.limits);
+        compared.reference = path;
+        if (compared.passed && path != references.front()) compared.variant = cause_of(path);
+        compared.words = words_of(compared, a, b);
+        if (chosen && !compared.passed) continue;
+        chosen = std::move(compared);
+        chosen_picture = std::move(b);
+        if (chosen->passed) break;
+    }
+    if (!diff.empty())
+        write_png(diff, difference_image(a, chosen_picture, goes_on, its_mask), {},
+                  {.force = options.force, .on_progress = goes_on});
+    return *chosen;
+}
 
 void add_compare(CLI::App& app, Action& action) {
     auto options = std::make_shared<CompareOptions>();
     CLI::App* command = app.add_subcommand(
         "compare",
-        "compare two PNG files, or those of two folders; exit 7 if they differ (by more than the limits)");
-    command->add_option("A", options->a, "PNG file, or folder")->required();
-    command->add_option("B", options->b, "PNG file, or folder")->required();
+        "compare two PNG files, those of two folders, or the frames of two videos; exit 7 if they differ (by "
+        "more than the limits). In folders NAME.CAUSE.png beside NAME.png in B may match, too");
+    command->add_option("A", options->a, "PNG file, folder, or video")->required();
+    command->add_option("B", options->b, "PNG file, folder, or video: the reference")->required();
+    command
+        ->add_option("--variant", options->variants,
+                     "another reference that may match in place of B, named by its cause: NAME.CAUSE.png")
+        ->type_name("FILE")
+        ->expected(1)
+        ->take_all()
+        ->allow_extra_args(false);
     command
         ->add_option("--max", options->limits.max,
                      "largest difference of a channel that passes; with no limit only equal pictures pass")
@@ -192,11 +188,20 @@ void add_compare(CLI::App& app, Action& action) {
         ->check(within(0.0, 255.0));
     command->add_option("--share", options->limits.share, "share of differing pixels that passes")
         ->check(within(0.0, 1.0));
+    command
+        ->add_option("--flip", options->limits.flip,
+                     "mean FLIP, what one sees who flips between both at 67 pixels per degree, that passes")
+        ->check(within(0.0, 1.0));
+    command
+        ->add_option("--ssim", options->limits.ssim,
+                     "least structural similarity that passes; equal pictures have 1")
+        ->check(within(-1.0, 1.0));
     command->add_option("--mask", options->mask,
                         "PNG file of the same size: what is black in it is not compared");
     command->add_option(
         "--diff", options->diff,
-        "write a picture of the differences to this PNG file, or of each pair that differs to this folder");
+        "write a picture of the differences to this PNG file, of two videos that of the worst "
+        "frame, or of each pair that differs to this folder");
     command->add_flag("--force", options->force, "replace existing pictures of differences");
     command->callback([options, &action] {
         action = [options](const Console& console) { return compare(console, *options); };

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <cstring>
 #include <string>
+
+#include "corda/golden/perceived.hpp"
 
 namespace corda {
 namespace {
@@ -59,9 +62,10 @@ bool is_left_out(const Image* mask, int x, int y) {
 
 bool Difference::within(const DifferenceLimits& limits) const {
     if (!same_size) return false;
-    if (!limits.max && !limits.mean && !limits.share) return equal;
+    if (!limits.max && !limits.mean && !limits.share && !limits.flip && !limits.ssim) return equal;
     return (!limits.max || max <= *limits.max) && (!limits.mean || mean <= *limits.mean) &&
-           (!limits.share || share <= *limits.share);
+           (!limits.share || share <= *limits.share) && (!limits.flip || (flip && *flip <= *limits.flip)) &&
+           (!limits.ssim || (ssim && *ssim >= *limits.ssim));
 }
 
 Difference compare(const Image& a, const Image& b, const OnProgress& on_progress, const Image* mask) {
@@ -77,6 +81,11 @@ Difference compare(const Image& a, const Image& b, const OnProgress& on_progress
     std::uint64_t pixels = 0;
     for (int y = 0; y < a.height(); ++y) {
         report_progress(on_progress, y, a.height());
+        // Most rows of most pictures are equal, and this finds it a hundred times faster.
+        if (mask == nullptr && std::memcmp(a.pixel(0, y), b.pixel(0, y), a.row_bytes()) == 0) {
+            pixels += static_cast<std::uint64_t>(a.width());
+            continue;
+        }
         for (int x = 0; x < a.width(); ++x) {
             if (is_left_out(mask, x, y)) continue;
             const PixelDifference pixel = difference_of(a.pixel(x, y), b.pixel(x, y));
@@ -90,6 +99,29 @@ Difference compare(const Image& a, const Image& b, const OnProgress& on_progress
     if (pixels == 0) return result;
     result.mean = static_cast<double>(sum) / static_cast<double>(pixels * kChannels);
     result.share = static_cast<double>(differing) / static_cast<double>(pixels);
+    return result;
+}
+
+Difference compare_perceived(const Image& a, const Image& b, const PerceivedFigures& figures,
+                             const OnProgress& on_progress, const Image* mask) {
+    Difference result = compare(a, b, on_progress, mask);
+    if (!result.same_size) return result;
+    if (result.equal) {
+        if (figures.flip) result.flip = 0.0;
+        if (figures.ssim) result.ssim = 1.0;
+        return result;
+    }
+    // What the mask leaves out must not show in its neighbours.
+    Image masked;
+    if (mask != nullptr) {
+        masked = b;
+        for (int y = 0; y < a.height(); ++y)
+            for (int x = 0; x < a.width(); ++x)
+                if (is_left_out(mask, x, y)) std::copy_n(a.pixel(x, y), kChannels, masked.pixel(x, y));
+    }
+    const Image& other = mask == nullptr ? b : masked;
+    if (figures.flip) result.flip = flip(a, other, on_progress, figures.threads);
+    if (figures.ssim) result.ssim = ssim(a, other, on_progress);
     return result;
 }
 

@@ -1,5 +1,7 @@
 #include "corda/media/video_reader.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -22,6 +24,19 @@ void copy_picture(const AVFrame& frame, Yuv420Image& picture) {
                         frame.data[plane] + std::ptrdiff_t{row} * frame.linesize[plane], width);
         }
     }
+}
+
+/// The samples of a component, from `samples` on.
+void copy_component(const AVFrame& frame, const AVPixFmtDescriptor& descriptor, int component, int width,
+                    int height, std::uint16_t* samples) {
+    const std::uint8_t* data[4] = {frame.data[0], frame.data[1], frame.data[2], frame.data[3]};
+    for (int y = 0; y < height; ++y)
+        av_read_image_line2(samples + std::ptrdiff_t{y} * width, data, frame.linesize, &descriptor, 0, y,
+                            component, width, 0, sizeof(std::uint16_t));
+}
+
+int ceiling_shift(int value, int shift) {
+    return (value + (1 << shift) - 1) >> shift;
 }
 
 }  // namespace
@@ -90,6 +105,86 @@ VideoReader::~VideoReader() = default;
 bool VideoReader::has_alpha() const {
     const AVPixFmtDescriptor* const descriptor = av_pix_fmt_desc_get(impl_->file.context->pix_fmt);
     return descriptor != nullptr && (descriptor->flags & AV_PIX_FMT_FLAG_ALPHA) != 0;
+}
+
+Rational VideoReader::rate() const {
+    const AVRational rate = impl_->file.stream->avg_frame_rate;
+    return rate.den > 0 ? Rational::reduced(rate.num, rate.den) : Rational{0, 1};
+}
+
+bool VideoReader::read(StoredPicture& picture) {
+    const LogCapture log;
+    if (!impl_->receive()) return false;
+    const AVFrame& frame = *impl_->frame;
+    const AVPixFmtDescriptor* const format = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
+    constexpr std::uint64_t kUnread = AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_HWACCEL | AV_PIX_FMT_FLAG_FLOAT |
+                                      AV_PIX_FMT_FLAG_BITSTREAM | AV_PIX_FMT_FLAG_BAYER;
+    const bool is_known = format != nullptr && (format->flags & kUnread) == 0 &&
+                          format->comp[0].depth <= 16 &&
+                          (format->nb_components == 1 || format->nb_components >= 3);
+    if (!is_known || !is_picture_size(frame.width, frame.height))
+        impl_->fail_format("grey, R'G'B' or Y'CbCr of up to 16 bits");
+    picture.width_px = frame.width;
+    picture.height_px = frame.height;
+    picture.format = format->name;
+    picture.components = format->nb_components;
+    picture.is_rgb = (format->flags & AV_PIX_FMT_FLAG_RGB) != 0;
+    picture.is_full_range = frame.color_range == AVCOL_RANGE_JPEG;
+    picture.bits = format->comp[0].depth;
+    picture.chroma_shift_x = format->log2_chroma_w;
+    picture.chroma_shift_y = format->log2_chroma_h;
+    const AVRational base = impl_->file.stream->time_base;
+    const bool has_time = frame.best_effort_timestamp != AV_NOPTS_VALUE;
+    picture.time_s = has_time ? static_cast<double>(frame.best_effort_timestamp) * av_q2d(base) : 0.0;
+    const auto pixels = static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
+    picture.samples.assign(pixels * static_cast<std::size_t>(picture.components), 0);
+    for (int c = 0; c < picture.components; ++c) {
+        const bool is_chroma = !picture.is_rgb && (c == 1 || c == 2);
+        copy_component(frame, *format, c, ceiling_shift(frame.width, is_chroma ? format->log2_chroma_w : 0),
+                       ceiling_shift(frame.height, is_chroma ? format->log2_chroma_h : 0),
+                       picture.samples.data() + static_cast<std::size_t>(c) * pixels);
+    }
+    av_frame_unref(impl_->frame.get());
+    return true;
+}
+
+Image StoredPicture::rgba() const {
+    Image image(width_px, height_px);
+    const auto pixels = static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
+    const double largest = static_cast<double>((1 << bits) - 1);
+    const double step = static_cast<double>(1 << (bits - 8));  // of 8-bit levels
+    const auto byte = [](double value) {
+        return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255.0));
+    };
+    for (int y = 0; y < height_px; ++y) {
+        for (int x = 0; x < width_px; ++x) {
+            const auto sample = [&](int c, int shift_x, int shift_y) -> double {
+                const std::size_t width = static_cast<std::size_t>(ceiling_shift(width_px, shift_x));
+                return samples[static_cast<std::size_t>(c) * pixels +
+                               static_cast<std::size_t>(y >> shift_y) * width +
+                               static_cast<std::size_t>(x >> shift_x)];
+            };
+            std::uint8_t* const rgba = image.pixel(x, y);
+            rgba[3] = components == 4 ? byte(sample(3, 0, 0) / largest) : 255;
+            if (is_rgb) {
+                for (int c = 0; c < 3; ++c) rgba[c] = byte(sample(c, 0, 0) / largest);
+                continue;
+            }
+            const double luma =
+                is_full_range ? sample(0, 0, 0) / largest : (sample(0, 0, 0) / step - 16.0) / 219.0;
+            const auto chroma = [&](int c) {
+                if (components < 3) return 0.0;
+                const double level = sample(c, chroma_shift_x, chroma_shift_y) / step - 128.0;
+                return level / (is_full_range ? 255.0 : 224.0);
+            };
+            const double blue = chroma(1);
+            const double red = chroma(2);
+            rgba[0] = byte(luma + 1.5748 * red);
+            rgba[1] = byte(luma - 0.1873243 * blue - 0.4681243 * red);
+            rgba[2] = byte(luma + 1.8556 * blue);
+        }
+    }
+    return image;
 }
 
 bool VideoReader::read(Yuv420Image& picture) {

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "console.hpp"
+#include "corda/golden/compare.hpp"
+
+namespace corda::app {
+
+/// What the command line of `compare` says.
+struct CompareOptions {
+    std::string a;
+    std::string b;
+    std::vector<std::string> variants;
+    DifferenceLimits limits;
+    std::string mask;
+    std::string diff;
+    bool force = false;
+    bool json = false;  ///< figures that take long are wanted, too
+};
+
+/// "nvidia" of "NAME.nvidia.png", a variant of NAME.png; empty if the name says none.
+[[nodiscard]] std::string cause_of(const std::string& path);
+
+/// The figures of a difference; null for those that were not computed.
+[[nodiscard]] nlohmann::json figures_json(const Difference& difference);
+/// "max 3, mean 0.1, share 0.02", and what else was computed.
+[[nodiscard]] std::string figures_text(const Difference& difference);
+/// Which figures the limits ask for.
+[[nodiscard]] PerceivedFigures figures_for(const CompareOptions& options);
+
+/// Whether the name is that of a video.
+[[nodiscard]] bool is_video_name(const std::string& path);
+[[nodiscard]] ExitCode compare_videos(const Console& console, const CompareOptions& options,
+                                      const std::optional<Image>& mask);
+[[nodiscard]] ExitCode compare_folders(const Console& console, const CompareOptions& options,
+                                       const std::optional<Image>& mask);
+
+/// A picture against those that it may be equal to.
+struct ComparedPicture {
+    Difference difference;
+    bool passed = false;
+    std::string reference;  ///< the file that the figures are of
+    std::string variant;    ///< the cause of the variant that passed; empty: none, or the first reference
+    std::string words;
+};
+
+/// Compares `picture` with `references`: the first that passes counts, or else the first of all. Writes the
+/// picture of the difference to `diff`, if that is not empty. `threads` is for each comparison.
+[[nodiscard]] ComparedPicture compare_picture(const CompareOptions& options, const std::string& picture,
+                                              const std::vector<std::string>& references,
+                                              const std::optional<Image>& mask, const std::string& diff,
+                                              int threads);
+
+}  // namespace corda::app

@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "compare.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/file.hpp"
+#include "corda/core/output_file.hpp"
+#include "corda/core/text.hpp"
+
+namespace corda::app {
+namespace {
+
+/// The names of the PNG files in a folder.
+std::set<std::string> pictures_in(const std::string& folder) {
+    std::set<std::string> names;
+    std::error_code failure;
+    for (std::filesystem::directory_iterator entry(folder, failure), end; !failure && entry != end;
+         entry.increment(failure))
+        if (entry->path().extension() == ".png") names.insert(entry->path().filename().string());
+    if (failure) fail_file("read", folder, failure.value());
+    return names;
+}
+
+/// A name that stands in one of the folders at least.
+struct Pair {
+    std::string name;
+    bool is_in_a = false;
+    bool is_in_b = false;
+    std::vector<std::string> variants;  ///< names in B
+    ComparedPicture compared = {};
+    std::exception_ptr failure = {};
+};
+
+/// NAME.CAUSE.png beside NAME.png in B is a variant of it, unless A has a picture of that name.
+std::vector<Pair> pairs_of(const std::set<std::string>& a, const std::set<std::string>& b) {
+    std::map<std::string, std::vector<std::string>> variants;
+    std::set<std::string> all = a;
+    for (const std::string& name : b) {
+        const std::string cause = cause_of(name);
+        const std::string base = cause.empty() ? "" : name.substr(0, name.size() - cause.size() - 5) + ".png";
+        if (!base.empty() && b.contains(base) && !a.contains(name))
+            variants[base].push_back(name);
+        else
+            all.insert(name);
+    }
+    std::vector<Pair> pairs;
+    for (const std::string& name : all)
+        pairs.push_back({.name = name,
+                         .is_in_a = a.contains(name),
+                         .is_in_b = b.contains(name),
+                         .variants = variants[name]});
+    return pairs;
+}
+
+void compare_pair(const CompareOptions& options, const std::optional<Image>& mask, Pair& pair) {
+    const std::string picture = options.a + "/" + pair.name;
+    std::vector<std::string> references{options.b + "/" + pair.name};
+    for (const std::string& variant : pair.variants) references.push_back(options.b + "/" + variant);
+    pair.compared = compare_picture(options, picture, references, mask, "", 1);
+    if (!options.diff.empty() && !pair.compared.difference.equal)
+        pair.compared =
+            compare_picture(options, picture, references, mask, options.diff + "/" + pair.name, 1);
+}
+
+/// Compares pairs at a time, as many as there are cores.
+void compare_all(const CompareOptions& options, const std::optional<Image>& mask, std::vector<Pair>& pairs) {
+    std::atomic<std::size_t> next = 0;
+    std::atomic<bool> stops = false;
+    const auto work = [&] {
+        for (std::size_t i = next++; i < pairs.size() && !stops; i = next++) {
+            if (!pairs[i].is_in_a || !pairs[i].is_in_b) continue;
+            try {
+                compare_pair(options, mask, pairs[i]);
+            } catch (...) {
+                pairs[i].failure = std::current_exception();
+                stops = true;
+            }
+        }
+    };
+    {
+        std::vector<std::jthread> helpers;
+        const std::size_t threads =
+            std::min<std::size_t>(std::max(1U, std::thread::hardware_concurrency()), pairs.size());
+        for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back(work);
+        work();
+    }
+    for (const Pair& pair : pairs)
+        if (pair.failure) std::rethrow_exception(pair.failure);
+}
+
+/// The figures of the worst.
+void take_worst(const Difference& difference, Difference& worst) {
+    worst.equal &= difference.equal;
+    worst.same_size &= difference.same_size;
+    worst.max = std::max(worst.max, difference.max);
+    worst.mean = std::max(worst.mean, difference.mean);
+    worst.share = std::max(worst.share, difference.share);
+    if (difference.flip) worst.flip = std::max(worst.flip.value_or(0.0), *difference.flip);
+    if (difference.ssim) worst.ssim = std::min(worst.ssim.value_or(1.0), *difference.ssim);
+}
+
+}  // namespace
+
+ExitCode compare_folders(const Console& console, const CompareOptions& options,
+                         const std::optional<Image>& mask) {
+    std::vector<Pair> pairs = pairs_of(pictures_in(options.a), pictures_in(options.b));
+    if (pairs.empty())
+        throw Error(ExitCode::kUsage,
+                    fmt::format("neither '{}' nor '{}' has a PNG file", options.a, options.b));
+    if (!options.diff.empty()) make_folder(options.diff);
+    compare_all(options, mask, pairs);
+    Difference worst;
+    std::int64_t failed = 0;
+    nlohmann::json files = nlohmann::json::array();
+    for (const Pair& pair : pairs) {
+        nlohmann::json file{{"name", printable(pair.name)}};
+        if (!pair.is_in_a || !pair.is_in_b) {
+            const std::string& where = pair.is_in_a ? options.b : options.a;
+            console.result(fmt::format("{}: missing in {}", pair.name, where));
+            file["missing_in"] = printable(where);
+            file["passed"] = false;
+            worst.equal = false;
+            ++failed;
+            files.push_back(file);
+            continue;
+        }
+        const ComparedPicture& compared = pair.compared;
+        if (!compared.difference.equal || !compared.variant.empty())
+            console.result(fmt::format("{}: {}", pair.name, compared.words));
+        failed += compared.passed ? 0 : 1;
+        take_worst(compared.difference, worst);
+        file.update(figures_json(compared.difference));
+        file["passed"] = compared.passed;
+        file["variant"] =
+            compared.variant.empty() ? nlohmann::json() : nlohmann::json(printable(compared.variant));
+        files.push_back(file);
+    }
+    console.result(fmt::format("{}: {}", counted(std::ssize(pairs), "picture"),
+                               worst.equal   ? "all equal"
+                               : failed == 0 ? "all within the limits"
+                                             : fmt::format("{} failed", failed)));
+    nlohmann::json json = figures_json(worst);
+    json.update({{"schema", 1}, {"passed", failed == 0}, {"files", files}});
+    console.report(json);
+    return failed == 0 ? ExitCode::kOk : ExitCode::kMismatch;
+}
+
+}  // namespace corda::app

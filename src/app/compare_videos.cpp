@@ -1,0 +1,250 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <new>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "compare.hpp"
+#include "corda/core/output_file.hpp"
+#include "corda/core/text.hpp"
+#include "corda/media/child_process.hpp"
+#include "corda/media/defs.hpp"
+#include "corda/media/video_reader.hpp"
+#include "interrupt.hpp"
+
+namespace corda::app {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Matroska counts milliseconds.
+constexpr double kSameTimeS = 1e-3;
+constexpr double kSameRate = 1e-4;
+
+/// What the comparison of two videos has found so far.
+struct VideoDifference {
+    std::array<std::int64_t, 2> frames{};
+    std::array<Rational, 2> rates{};
+    std::array<std::array<int, 2>, 2> sizes{};
+    double time_s = 0.0;  ///< largest difference of the times of two frames
+    std::int64_t differing = 0;
+    std::int64_t failed = 0;  ///< frames beyond the limits
+    Difference worst;         ///< of the worst frame; of equal videos that of the first
+    std::int64_t worst_frame = 0;
+    double worst_time_s = 0.0;
+    std::array<Image, 2> worst_pictures;
+};
+
+bool are_same_rate(const std::array<Rational, 2>& rates) {
+    return rates[0] == rates[1] ||
+           std::abs(rates[0].value() - rates[1].value()) <= kSameRate * rates[0].value();
+}
+
+/// Takes the frames that both have.
+void take_frames(const CompareOptions& options, const std::array<media::StoredPicture, 2>& pictures,
+                 const std::optional<Image>& mask, VideoDifference& result) {
+    const std::int64_t frame = result.frames[0] - 1;
+    result.time_s = std::max(result.time_s, std::abs(pictures[0].time_s - pictures[1].time_s));
+    const bool is_stored_alike = pictures[0].format == pictures[1].format &&
+                                 pictures[0].width_px == pictures[1].width_px &&
+                                 pictures[0].height_px == pictures[1].height_px &&
+                                 pictures[0].is_full_range == pictures[1].is_full_range;
+    if (is_stored_alike && pictures[0].samples == pictures[1].samples) return;
+    std::array<Image, 2> images{pictures[0].rgba(), pictures[1].rgba()};
+    PerceivedFigures figures = figures_for(options);
+    figures.flip = options.limits.flip.has_value();
+    figures.ssim = options.limits.ssim.has_value();
+    Difference difference = compare_perceived(images[0], images[1], figures, {}, mask ? &*mask : nullptr);
+    // Of one format, other samples can have the same bytes of colour; a mask tells no samples apart.
+    if (is_stored_alike && !mask) difference.equal = false;
+    if (difference.equal) return;
+    result.failed += difference.within(options.limits) ? 0 : 1;
+    const bool is_worse =
+        !difference.same_size || difference.mean > result.worst.mean || result.differing == 0;
+    ++result.differing;
+    if (!is_worse || !result.worst.same_size) return;
+    result.worst = difference;
+    result.worst_frame = frame;
+    result.worst_time_s = pictures[0].time_s;
+    result.worst_pictures = std::move(images);
+}
+
+VideoDifference compare_all_frames(const CompareOptions& options, const std::string& path_b,
+                                   const std::optional<Image>& mask) {
+    media::VideoReader a(options.a);
+    media::VideoReader b(path_b);
+    VideoDifference result;
+    result.rates = {a.rate(), b.rate()};
+    std::array<media::StoredPicture, 2> pictures;
+    for (;;) {
+        const bool has_a = a.read(pictures[0]);
+        const bool has_b = b.read(pictures[1]);
+        if (!has_a && !has_b) break;
+        result.frames[0] += has_a ? 1 : 0;
+        result.frames[1] += has_b ? 1 : 0;
+        for (std::size_t i = 0; i < 2; ++i) result.sizes[i] = {pictures[i].width_px, pictures[i].height_px};
+        if (has_a && has_b) take_frames(options, pictures, mask, result);
+    }
+    PerceivedFigures figures = figures_for(options);
+    figures.threads = 1;
+    if (result.differing > 0 && result.worst.same_size && options.json) {
+        const bool equal = result.worst.equal;
+        result.worst = compare_perceived(result.worst_pictures[0], result.worst_pictures[1], figures, {},
+                                         mask ? &*mask : nullptr);
+        result.worst.equal = equal;
+    }
+    return result;
+}
+
+Json json_of(const VideoDifference& found, const CompareOptions& options) {
+    const bool same_size = found.sizes[0] == found.sizes[1];
+    const bool same_frames = found.frames[0] == found.frames[1];
+    const bool same_times = are_same_rate(found.rates) && found.time_s <= kSameTimeS;
+    Json json = figures_json(found.worst);
+    json["equal"] = found.differing == 0 && same_size && same_frames && same_times;
+    json["same_size"] = same_size;
+    json["passed"] = found.failed == 0 && same_size && same_frames && same_times;
+    json["frames"] = found.frames;
+    json["sizes"] = found.sizes;
+    json["fps"] = {found.rates[0].text(), found.rates[1].text()};
+    json["time_difference_s"] = found.time_s;
+    json["differing_frames"] = found.differing;
+    json["failed_frames"] = found.failed;
+    json["worst_frame"] = found.differing > 0 ? Json(found.worst_frame) : Json();
+    json["worst_time_s"] = found.differing > 0 ? Json(found.worst_time_s) : Json();
+    std::vector<std::string> words;
+    if (!same_size)
+        words.push_back(fmt::format("different sizes: {}x{} and {}x{}", found.sizes[0][0], found.sizes[0][1],
+                                    found.sizes[1][0], found.sizes[1][1]));
+    if (!same_frames)
+        words.push_back(
+            fmt::format("different numbers of frames: {} and {}", found.frames[0], found.frames[1]));
+    if (!are_same_rate(found.rates))
+        words.push_back(fmt::format("different rates: {} and {} frames per second", found.rates[0].text(),
+                                    found.rates[1].text()));
+    if (same_frames && found.time_s > kSameTimeS)
+        words.push_back(fmt::format("the times of frames differ by up to {:.6g} s", found.time_s));
+    if (found.differing > 0 && found.worst.same_size) {
+        words.push_back(fmt::format("{} of {} frames differ{}; worst is frame {} at {:.6g} s: {}",
+                                    found.differing, std::min(found.frames[0], found.frames[1]),
+                                    found.failed == 0 ? " within the limits" : "", found.worst_frame,
+                                    found.worst_time_s, figures_text(found.worst)));
+    }
+    if (words.empty()) words.push_back(fmt::format("equal: {} frames", found.frames[0]));
+    (void)options;
+    json["words"] = words;
+    return json;
+}
+
+/// What the child tells: a report, or an error; and after it the picture of the differences.
+std::string told_of_videos(const CompareOptions& options, const std::string& path_b,
+                           const std::optional<Image>& mask) {
+    Json json;
+    std::string pixels;
+    try {
+        const VideoDifference found = compare_all_frames(options, path_b, mask);
+        json = json_of(found, options);
+        if (!options.diff.empty() && found.differing > 0) {
+            const Image picture = difference_image(found.worst_pictures[0], found.worst_pictures[1], {},
+                                                   mask && found.worst.same_size ? &*mask : nullptr);
+            json["picture"] = {picture.width(), picture.height()};
+            pixels.assign(reinterpret_cast<const char*>(picture.data()), picture.size_bytes());
+        }
+    } catch (const Error& error) {
+        json = {{"error", printable(error.what())}, {"code", static_cast<int>(error.code())}};
+    } catch (const std::bad_alloc&) {
+        json = {{"error", "a video asks for more memory than it may have"},
+                {"code", static_cast<int>(ExitCode::kIo)}};
+    }
+    return json.dump(-1, ' ', true, Json::error_handler_t::replace) + '\n' + pixels;
+}
+
+media::ChildLimits limits_of_videos(const std::string& a, const std::string& b) {
+    constexpr std::int64_t kLeastS = 60;
+    constexpr std::int64_t kBytesPerS = 500;  // a still scene has small frames, each of which takes its time
+    std::uintmax_t bytes = 0;
+    for (const std::string& path : {a, b}) {
+        std::error_code none;
+        const std::uintmax_t size = std::filesystem::file_size(path, none);
+        if (!none) bytes += size;
+    }
+    const std::int64_t cpu_s = kLeastS + static_cast<std::int64_t>(bytes) / kBytesPerS;
+    return {std::uint64_t{8} << 30, cpu_s, 3.0 * static_cast<double>(cpu_s)};
+}
+
+/// The report of the child; writes the picture of the differences.
+Json compare_two(const CompareOptions& options, const std::string& path_b, const std::optional<Image>& mask,
+                 std::string& pixels) {
+    const auto end = media::run_in_child([&] { return told_of_videos(options, path_b, mask); },
+                                         limits_of_videos(options.a, path_b), [] { stop_if_asked(); });
+    if (end && !end->finished) {
+        throw Error(ExitCode::kIo,
+                    fmt::format("cannot compare '{}' with '{}': decoding {}; `corda verify` says "
+                                "which is damaged",
+                                options.a, path_b, end->text));
+    }
+    const std::string told = end ? end->text : told_of_videos(options, path_b, mask);
+    const std::size_t line = told.find('\n');
+    Json json = Json::parse(told.substr(0, line));
+    if (json.contains("error"))
+        throw Error(static_cast<ExitCode>(json["code"].get<int>()), json["error"].get<std::string>());
+    pixels = told.substr(line + 1);
+    return json;
+}
+
+void write_difference(const CompareOptions& options, const Json& json, const std::string& pixels) {
+    Image picture(json["picture"][0].get<int>(), json["picture"][1].get<int>());
+    std::memcpy(picture.data(), pixels.data(), std::min(picture.size_bytes(), pixels.size()));
+    write_png(options.diff, picture, {}, {.force = options.force, .on_progress = stopping_if_asked()});
+}
+
+}  // namespace
+
+bool is_video_name(const std::string& path) {
+    const std::string ending = std::filesystem::path(path).extension().string();
+    constexpr std::array<std::string_view, 10> kEndings{".mp4",  ".mov",  ".mkv", ".webm", ".gif",
+                                                        ".apng", ".webp", ".m4v", ".avi",  ".y4m"};
+    return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+}
+
+ExitCode compare_videos(const Console& console, const CompareOptions& options,
+                        const std::optional<Image>& mask) {
+    std::vector<std::string> references{options.b};
+    references.insert(references.end(), options.variants.begin(), options.variants.end());
+    std::optional<Json> chosen;
+    std::string pixels;
+    std::string reference;
+    for (const std::string& path : references) {
+        std::string its_pixels;
+        Json json = compare_two(options, path, mask, its_pixels);
+        const bool passed = json["passed"].get<bool>();
+        if (!chosen || passed) {
+            chosen = std::move(json);
+            pixels = std::move(its_pixels);
+            reference = path;
+        }
+        if (passed) break;
+    }
+    Json& json = *chosen;
+    const bool is_variant = reference != options.b;
+    for (const Json& words : json["words"])
+        console.result(words.get<std::string>() +
+                       (is_variant ? fmt::format(" (variant {})", cause_of(reference)) : ""));
+    if (json.contains("picture")) {
+        write_difference(options, json, pixels);
+        console.info(fmt::format("difference picture: {}", options.diff));
+    }
+    json.erase("words");
+    json.erase("picture");
+    json["schema"] = 1;
+    json["reference"] = printable(reference);
+    json["variant"] = is_variant ? Json(printable(cause_of(reference))) : Json();
+    console.report(json);
+    return json["passed"].get<bool>() ? ExitCode::kOk : ExitCode::kMismatch;
+}
+
+}  // namespace corda::app

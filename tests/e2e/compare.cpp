@@ -1,0 +1,222 @@
+// `corda compare` on pictures made by hand, on videos, and with variants.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "corda/media/defs.hpp"
+#include "support/command.hpp"
+
+namespace corda {
+namespace {
+
+using test::run_corda;
+using test::run_shell;
+using testing::HasSubstr;
+
+class CompareFiles : public testing::Test {
+  private:
+    test::ScratchFolder folder_;
+
+  protected:
+    std::string file(const std::string& name) { return folder_.file(name); }
+
+    /// A rectangle on a grey ground, 40x30.
+    static Image drawn(int left = 10, int level = 100, int width = 40) {
+        Image image(width, 30);
+        for (int y = 0; y < 30; ++y) {
+            for (int x = 0; x < width; ++x) {
+                std::uint8_t* const rgba = image.pixel(x, y);
+                const bool is_inside = x >= left && x < left + 9 && y >= 5 && y < 20;
+                std::fill(rgba, rgba + 3, static_cast<std::uint8_t>(is_inside ? 220 : level));
+                rgba[3] = 255;
+            }
+        }
+        return image;
+    }
+
+    std::string put(const std::string& name, const Image& image) {
+        write_png(file(name), image);
+        return file(name);
+    }
+
+    static int code(std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "compare");
+        return run_corda(arguments).exit_code;
+    }
+
+    static nlohmann::json report(std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "compare");
+        arguments.emplace_back("--json");
+        const auto result = run_corda(arguments);
+        EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 7) << result.err;
+        return nlohmann::json::parse(result.out, nullptr, false);
+    }
+
+    /// A video by ffmpeg's own generator.
+    std::string video(const std::string& name, const std::string& options) {
+        const auto made = run_shell("ffmpeg -v error -f lavfi -i " + options + " " + file(name));
+        EXPECT_EQ(made.exit_code, 0) << made.err;
+        return file(name);
+    }
+};
+
+TEST_F(CompareFiles, OnePixelOffByOne) {
+    const std::string a = put("a.png", drawn());
+    Image other = drawn();
+    other.pixel(3, 4)[2] += 1;
+    const std::string b = put("b.png", other);
+    EXPECT_EQ(code({a, a}), 0);
+    EXPECT_EQ(code({a, b}), 7);
+    EXPECT_EQ(code({a, b, "--max", "1"}), 0);
+    EXPECT_EQ(code({a, b, "--flip", "0.001"}), 0);
+    EXPECT_EQ(code({a, b, "--flip", "0"}), 7);
+    EXPECT_EQ(code({a, b, "--ssim", "1"}), 7);
+    EXPECT_EQ(code({a, b, "--ssim", "0.999"}), 0);
+    EXPECT_EQ(code({a, a, "--ssim", "1", "--flip", "0"}), 0);
+}
+
+TEST_F(CompareFiles, ShiftedByOne) {
+    const auto json = report({put("a.png", drawn(10)), put("b.png", drawn(11))});
+    EXPECT_EQ(json["max"], 120);
+    EXPECT_EQ(json["share"], 2.0 * 15 / (40 * 30));
+    EXPECT_GT(json["flip"], 0.005);
+    EXPECT_LT(json["flip"], 0.2);
+    EXPECT_LT(json["ssim"], 0.99);
+    EXPECT_GT(json["ssim"], 0.5);
+}
+
+TEST_F(CompareFiles, AnotherSizeHasADifferencePictureToo) {
+    const std::string a = put("a.png", drawn());
+    const std::string b = put("b.png", drawn(10, 100, 44));
+    EXPECT_EQ(code({a, b, "--max", "255", "--diff", file("d.png")}), 7);
+    EXPECT_EQ(read_png(file("d.png")).width(), 44);
+    EXPECT_EQ(report({a, b})["flip"], nullptr);
+}
+
+TEST_F(CompareFiles, SixteenBitsGreyAndAlpha) {
+    Image half = drawn();
+    half.pixel(0, 0)[3] = 128;
+    const std::string a = put("a.png", drawn());
+    EXPECT_EQ(report({a, put("half.png", half)})["max"], 127);
+    for (const std::string format : {"gray", "rgb48be", "rgba64be", "gray16be", "rgba"}) {
+        const std::string other = file(format + ".png");
+        const auto made = run_shell("ffmpeg -v error -i " + a + " -pix_fmt " + format + " " + other);
+        ASSERT_EQ(made.exit_code, 0) << made.err;
+        EXPECT_EQ(code({a, other, "--max", "1"}), 0) << format;  // grey by ffmpeg may be off by 1
+    }
+}
+
+TEST_F(CompareFiles, CorruptPicturesAreNoMismatch) {
+    const std::string a = put("a.png", drawn());
+    std::string bytes = test::read_file(a);
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x55);
+    test::write_file(file("flipped.png"), bytes);
+    test::write_file(file("cut.png"), bytes.substr(0, 60));
+    for (const std::string bad : {"flipped.png", "cut.png"}) {
+        EXPECT_EQ(code({a, file(bad)}), 6) << bad;
+        EXPECT_EQ(code({file(bad), file(bad)}), 6) << bad;
+    }
+}
+
+TEST_F(CompareFiles, SsimNeedsElevenPixels) {
+    const std::string a = put("a.png", Image(5, 5));
+    Image other(5, 5);
+    other.pixel(1, 1)[0] = 9;
+    const std::string b = put("b.png", other);
+    const auto result = run_corda({"compare", a, b, "--ssim", "0.5"});
+    EXPECT_EQ(result.exit_code, 2);
+    EXPECT_THAT(result.err, HasSubstr("11x11"));
+    EXPECT_EQ(report({a, b})["ssim"], nullptr);
+}
+
+TEST_F(CompareFiles, AVariantMayMatch) {
+    const std::string a = put("new.png", drawn(11));
+    const std::string b = put("ref.png", drawn(10));
+    const std::string variant = put("ref.nvidia.png", drawn(11));
+    const std::string other = put("ref.amd.png", drawn(12));
+    EXPECT_EQ(code({a, b, "--variant", other}), 7);
+    const auto json = report({a, b, "--variant", other, "--variant", variant});
+    EXPECT_EQ(json["passed"], true);
+    EXPECT_EQ(json["variant"], "nvidia");
+    EXPECT_THAT(json["reference"].get<std::string>(), testing::EndsWith("ref.nvidia.png"));
+    EXPECT_THAT(run_corda({"compare", a, b, "--variant", variant}).out, HasSubstr("equal (variant nvidia)"));
+    EXPECT_EQ(report({b, b, "--variant", variant})["variant"], nullptr);
+    EXPECT_EQ(code({a, b, "--variant", put("plain.png", drawn())}), 2);
+}
+
+TEST_F(CompareFiles, VariantsInFolders) {
+    for (const std::string folder : {"a", "b"}) std::filesystem::create_directory(file(folder));
+    put("a/one.png", drawn(11));
+    put("b/one.png", drawn(10));
+    put("a/two.png", drawn(10));
+    put("b/two.png", drawn(10));
+    EXPECT_EQ(code({file("a"), file("b")}), 7);
+    put("b/one.old-mesa.png", drawn(11));
+    const auto json = report({file("a"), file("b")});
+    EXPECT_EQ(json["passed"], true);
+    ASSERT_EQ(json["files"].size(), 2U);
+    EXPECT_EQ(json["files"][0]["variant"], "old-mesa");
+    EXPECT_EQ(json["files"][1]["variant"], nullptr);
+    put("b/three.nvidia.png", drawn());  // a variant of nothing
+    EXPECT_EQ(code({file("a"), file("b")}), 7);
+}
+
+TEST_F(CompareFiles, VideosFrameByFrame) {
+    const std::string source = "testsrc=size=64x48:rate=25:duration=0.4";
+    const std::string lossless = " -c:v ffv1 -pix_fmt bgr0";
+    const std::string a = video("a.mkv", source + lossless);
+    const std::string same = video("same.mkv", source + lossless);
+    EXPECT_EQ(code({a, same}), 0);
+    EXPECT_THAT(run_corda({"compare", a, same}).out, HasSubstr("equal: 10 frames"));
+    const std::string box = "\"" + source + ",drawbox=x=8:y=8:w=4:h=4:c=red:t=fill:enable='eq(n,7)'\"";
+    const std::string b = video("b.mkv", box + lossless);
+    const auto json = report({a, b, "--diff", file("d.png")});
+    EXPECT_EQ(json["passed"], false);
+    EXPECT_EQ(json["differing_frames"], 1);
+    EXPECT_EQ(json["worst_frame"], 7);
+    EXPECT_NEAR(json["worst_time_s"].get<double>(), 0.28, 1e-9);
+    EXPECT_GT(json["flip"], 0.0);
+    EXPECT_EQ(read_png(file("d.png")).width(), 64);
+    EXPECT_EQ(code({a, b, "--share", "0.01"}), 0);
+    EXPECT_EQ(code({a, b, "--share", "0.001"}), 7);
+    EXPECT_EQ(report({a, b, "--variant", video("ref.other.mkv", source + lossless)})["variant"], "other");
+}
+
+TEST_F(CompareFiles, VideosOfOtherCountsSizesRatesAndFormats) {
+    const std::string a = video("a.mp4", "testsrc=size=64x48:rate=25:duration=0.4 -pix_fmt yuv420p");
+    const auto words = [&](const std::string& name, const std::string& options) {
+        const auto result = run_corda({"compare", a, video(name, options), "--max", "255"});
+        EXPECT_EQ(result.exit_code, 7) << result.err;
+        return result.out;
+    };
+    EXPECT_THAT(words("longer.mp4", "testsrc=size=64x48:rate=25:duration=0.6 -pix_fmt yuv420p"),
+                HasSubstr("different numbers of frames: 10 and 15"));
+    EXPECT_THAT(words("larger.mp4", "testsrc=size=64x64:rate=25:duration=0.4 -pix_fmt yuv420p"),
+                HasSubstr("different sizes: 64x48 and 64x64"));
+    EXPECT_THAT(words("faster.mp4", "testsrc=size=64x48:rate=50:duration=0.2 -pix_fmt yuv420p"),
+                HasSubstr("different rates: 25 and 50"));
+    const std::string exact = video("b.mp4", "testsrc=size=64x48:rate=25:duration=0.4 -pix_fmt yuv444p");
+    EXPECT_EQ(code({a, exact}), 7);
+    EXPECT_EQ(code({a, exact, "--mean", "10"}), 0);
+}
+
+TEST_F(CompareFiles, DamagedVideosEndInOrder) {
+    const std::string a = video("a.mp4", "testsrc=size=64x48:rate=25:duration=0.4 -c:v mpeg4 -bf 2");
+    std::string bytes = test::read_file(a);
+    const std::size_t data = bytes.find("mdat");
+    for (std::size_t i = data + 300; i < data + 1500; i += 100) bytes[i] = static_cast<char>(bytes[i] ^ 0x5a);
+    test::write_file(file("bad.mp4"), bytes);
+    for (const auto& pair : {std::pair{a, file("bad.mp4")}, {file("bad.mp4"), a}}) {
+        const auto result = run_corda({"compare", pair.first, pair.second});
+        EXPECT_EQ(result.exit_code, 6) << result.out;
+        EXPECT_THAT(result.err, HasSubstr("corda: error:"));
+    }
+    EXPECT_EQ(code({a, put("a.png", drawn())}), 2);
+}
+
+}  // namespace
+}  // namespace corda
