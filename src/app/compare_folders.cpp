@@ -69,7 +69,10 @@ void compare_pair(const CompareOptions& options, const std::optional<Image>& mas
             compare_picture(options, picture, references, mask, options.diff + "/" + pair.name, 1);
 }
 
-/// Compares pairs at a time, as many as there are cores.
+/// Two pictures may take 512 MiB.
+constexpr unsigned kMostThreads = 4;
+
+/// Compares several pairs at a time.
 void compare_all(const CompareOptions& options, const std::optional<Image>& mask, std::vector<Pair>& pairs) {
     std::atomic<std::size_t> next = 0;
     std::atomic<bool> stops = false;
@@ -86,8 +89,8 @@ void compare_all(const CompareOptions& options, const std::optional<Image>& mask
     };
     {
         std::vector<std::jthread> helpers;
-        const std::size_t threads =
-            std::min<std::size_t>(std::max(1U, std::thread::hardware_concurrency()), pairs.size());
+        const std::size_t threads = std::min<std::size_t>(
+            std::clamp(std::thread::hardware_concurrency(), 1U, kMostThreads), pairs.size());
         for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back(work);
         work();
     }

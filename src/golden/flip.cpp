@@ -1,4 +1,4 @@
-// LDR-FLIP, section by section of the paper that perceived.hpp names. All filters are products of one for
+// LDR-FLIP, by the paper that perceived.hpp names. All filters are products of one for
 // rows and one for columns. Arithmetic is float +, -, *, / and square roots alone, so that the CPU does not
 // matter.
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 constexpr int kStripeRows = 64;  // 32: a quarter slower; 128: too few for several threads of small pictures
 constexpr double kPi = std::numbers::pi;
 
-// Section 4.2: exponents and the point that splits the range of errors.
+// The paper on final errors: exponents and the point that splits the range of errors.
 constexpr float kColorExponent = 0.7F;
 constexpr float kSplitColor = 0.4F;
 constexpr float kSplitError = 0.95F;
@@ -107,8 +107,8 @@ Kernel balanced(std::vector<double> weights) {
 struct Filters {
     int radius = 0;
     int feature_radius = 0;
-    Kernel a, rg, by1, by2, by1_columns, by2_columns;  ///< contrast sensitivity, section 4.1.1
-    Kernel blur, edge, point;                          ///< features, section 4.2.1
+    Kernel a, rg, by1, by2, by1_columns, by2_columns;  ///< contrast sensitivity
+    Kernel blur, edge, point;                          ///< features
 };
 
 Filters make_filters(double ppd) {
@@ -278,7 +278,7 @@ class Filtered {
 
   private:
     [[nodiscard]] std::size_t stride() const {
-        return static_cast<std::size_t>(count_ + 2 * constants_.reach);
+        return static_cast<std::size_t>(count_) + 2 * static_cast<std::size_t>(constants_.reach);
     }
 
     [[nodiscard]] float* slot(std::size_t part, int y) {
@@ -338,7 +338,7 @@ Lab perceived(const Matrix& matrix, float y, float cx, float cz) {
     return hunt_lab(component(0), component(1), component(2));
 }
 
-/// Section 4.2: the error of a pixel by those of colour and features.
+/// The error of a pixel by those of colour and features.
 float combined(float distance, float feature, float largest) {
     const float error = distance > 0.0F ? power(distance, kColorExponent) : 0.0F;
     const float split = kSplitColor * largest;

@@ -16,10 +16,11 @@ constexpr std::size_t kMoments = 5;
 
 std::array<double, kTaps> gaussian() {
     constexpr double kDeviation = 1.5;
+    constexpr int kMiddle = kTaps / 2;
     std::array<double, kTaps> weights{};
     double sum = 0.0;
     for (int i = 0; i < kTaps; ++i) {
-        const double x = (i - kTaps / 2) / kDeviation;
+        const double x = (i - kMiddle) / kDeviation;
         weights[static_cast<std::size_t>(i)] = std::exp(-0.5 * x * x);
         sum += weights[static_cast<std::size_t>(i)];
     }
