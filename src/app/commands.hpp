@@ -75,15 +75,15 @@ struct SceneOptions {
     /// Throws CLI::RequiredError if there is neither. To be called when the command line is parsed.
     void require() const;
     /// Whether the scene is that of a picture or a video.
-    [[nodiscard]] bool is_from() const { return !from.empty(); }
+    [[nodiscard]] bool is_from() const { return !from_.empty(); }
     /// What the file of `--from` carries, read once; warns if another version made it.
     [[nodiscard]] const Provenance& provenance(const Console& console) const;
     [[nodiscard]] Scene load(const Console& console) const;
     /// The file that no output may replace.
-    [[nodiscard]] const std::string& input() const { return is_from() ? from : path; }
+    [[nodiscard]] const std::string& input() const { return is_from() ? from_ : path; }
 
   private:
-    std::string from;
+    std::string from_;
     mutable std::optional<Provenance> provenance_;
 };
 

@@ -135,7 +135,11 @@ PngInfo FigureOptions::describe(const Scene& loaded, const std::vector<Shot>& so
     if (ppi != kScreenPpi) origin.pixels_per_inch = ppi;
     if (!made_) made_ = provenance_of(loaded);
     Provenance made = *made_;
-    made.picture = std::move(origin);
+    // A still of a frame has the bytes of the frame, which tells its number elsewhere.
+    const bool is_frame = origin.command == "still" && origin.times.front().frame &&
+                          origin.shutter == loaded.video.shutter && origin.film_times_s.empty() &&
+                          !origin.pixels_per_inch;
+    if (!is_frame) made.picture = std::move(origin);
     PngInfo info = picture_info(loaded.name, times, frames, provenance_text(std::move(made)));
     info.pixels_per_inch = ppi;
     return info;

@@ -70,27 +70,27 @@ void SceneOptions::add_from(CLI::App& command) {
     CLI::Option* scene = command.get_option("SCENE")->required(false);
     CLI::Option* file =
         command
-            .add_option("--from", from,
+            .add_option("--from", from_,
                         "a picture or a video that corda has written, in place of SCENE: the same again")
             ->type_name("FILE");
     file->excludes(scene);
 }
 
 void SceneOptions::require() const {
-    if (path.empty() && from.empty()) throw CLI::RequiredError("SCENE, or --from,");
+    if (path.empty() && from_.empty()) throw CLI::RequiredError("SCENE, or --from,");
 }
 
 const Provenance& SceneOptions::provenance(const Console& console) const {
     if (provenance_) return *provenance_;
-    provenance_ = read_provenance(from, stopping_if_asked());
+    provenance_ = read_provenance(from_, stopping_if_asked());
     if (provenance_->corda != version())
-        console.warning(fmt::format("{} was made by corda {}, this is {}: pixels may differ", from,
+        console.warning(fmt::format("{} was made by corda {}, this is {}: pixels may differ", from_,
                                     provenance_->corda, version()));
     return *provenance_;
 }
 
 Scene SceneOptions::load(const Console& console) const {
-    return is_from() ? scene_of(provenance(console), from, settings) : load_scene(path, settings);
+    return is_from() ? scene_of(provenance(console), from_, settings) : load_scene(path, settings);
 }
 
 void SceneOptions::add_shortcut(CLI::App& command, const std::string& name, const std::string& key,

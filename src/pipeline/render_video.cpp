@@ -75,13 +75,15 @@ media::VideoMetadata metadata(const Film& film, std::int64_t first, std::int64_t
     if (plan.horizon_s) comment["horizon_s"] = *plan.horizon_s;
     comment[media::kOriginKey] = origin;
     Provenance made = provenance_of(scene);
+    // A picture tells its own frame alone: it has the bytes of the still.
+    const std::string of_picture = provenance_text(made);
     made.frames = fmt::format("{}:{}", first, end);
     const std::string provenance = provenance_text(std::move(made));
     comment[kProvenanceKey] = nlohmann::json::parse(provenance);
     return {title, comment.dump(), !view::look_of(scene.style).ground.is_opaque(),
-            [name = scene.name, fps = scene.video.fps, provenance](std::int64_t frame) {
+            [name = scene.name, fps = scene.video.fps, of_picture](std::int64_t frame) {
                 return picture_info(name, fmt::format("{}", fps.time_s(frame)), std::to_string(frame),
-                                    provenance);
+                                    of_picture);
             }};
 }
 

@@ -84,7 +84,6 @@ TEST_F(ProvenanceOfFiles, FramesComeBackAllTogetherOrOne) {
     run({"render", "--from", folder().file("old/004.png"), "-o", folder().file("new/%03d.png")});
     for (const std::string name : {"003.png", "004.png", "005.png"})
         expect_same("old/" + name, "new/" + name);
-    EXPECT_FALSE(std::filesystem::exists(folder().file("new/006.png")));
     run({"still", "--from", folder().file("old/004.png"), "-o", folder().file("one.png")});
     run({"compare", folder().file("old/004.png"), folder().file("one.png")});
 }
