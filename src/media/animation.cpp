@@ -14,7 +14,7 @@
 namespace corda::media {
 namespace {
 
-EncoderSettings no_settings(const Format& /*format*/, const EncoderDef& /*def*/) {
+EncoderSettings no_settings(const Format& /*format*/, const VideoDef& /*def*/) {
     return {-99, {}, 0};
 }
 

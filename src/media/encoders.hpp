@@ -10,15 +10,15 @@
 namespace corda::media {
 
 // What the encoders of each family are told: Codec::settings.
-[[nodiscard]] EncoderSettings x264_settings(const Format& format, const EncoderDef& def);
-[[nodiscard]] EncoderSettings nvenc_settings(const Format& format, const EncoderDef& def);
-[[nodiscard]] EncoderSettings x265_settings(const Format& format, const EncoderDef& def);
-[[nodiscard]] EncoderSettings svt_av1_settings(const Format& format, const EncoderDef& def);
-[[nodiscard]] EncoderSettings aom_av1_settings(const Format& format, const EncoderDef& def);
-[[nodiscard]] EncoderSettings vp9_settings(const Format& format, const EncoderDef& def);
-[[nodiscard]] EncoderSettings prores_settings(const Format& format, const EncoderDef& def);
-[[nodiscard]] EncoderSettings ffv1_settings(const Format& format, const EncoderDef& def);
-[[nodiscard]] EncoderSettings raw_settings(const Format& format, const EncoderDef& def);
+[[nodiscard]] EncoderSettings x264_settings(const Format& format, const VideoDef& def);
+[[nodiscard]] EncoderSettings nvenc_settings(const Format& format, const VideoDef& def);
+[[nodiscard]] EncoderSettings x265_settings(const Format& format, const VideoDef& def);
+[[nodiscard]] EncoderSettings svt_av1_settings(const Format& format, const VideoDef& def);
+[[nodiscard]] EncoderSettings aom_av1_settings(const Format& format, const VideoDef& def);
+[[nodiscard]] EncoderSettings vp9_settings(const Format& format, const VideoDef& def);
+[[nodiscard]] EncoderSettings prores_settings(const Format& format, const VideoDef& def);
+[[nodiscard]] EncoderSettings ffv1_settings(const Format& format, const VideoDef& def);
+[[nodiscard]] EncoderSettings raw_settings(const Format& format, const VideoDef& def);
 
 /// What a picture says of itself, by its number in the film.
 using PictureInfo = std::function<PngInfo(std::int64_t frame)>;

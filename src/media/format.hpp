@@ -38,7 +38,7 @@ struct Codec {
     /// Frames of a chunk, for codecs whose frames stand alone; 0: as many as frames_per_chunk() says.
     int chunk_frames = 0;
     bool is_hardware = false;  ///< it may be listed and not work
-    EncoderSettings (*settings)(const Format& format, const EncoderDef& def) = nullptr;
+    EncoderSettings (*settings)(const Format& format, const VideoDef& def) = nullptr;
 };
 
 /// How the packets of a video become files.

@@ -91,7 +91,7 @@ LibavEncoder::LibavEncoder(const Format& format, const VideoDef& def, Convert co
             ExitCode::kEncoder,
             fmt::format("this libavcodec was built without {}; see `corda doctor`", format.codec->name));
     context_ = check_allocated(CodecContext(avcodec_alloc_context3(codec)), "an encoder");
-    const EncoderSettings settings = format.codec->settings(format, def.encoder);
+    const EncoderSettings settings = format.codec->settings(format, def);
     context_->profile = settings.profile;
     configure(*context_, format, def);
     open(*context_, def, settings);

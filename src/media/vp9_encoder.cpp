@@ -2,11 +2,11 @@
 
 namespace corda::media {
 
-EncoderSettings vp9_settings(const Format& format, const EncoderDef& def) {
+EncoderSettings vp9_settings(const Format& format, const VideoDef& def) {
     // libvpx keeps alpha in a second stream, which has no frames that are not shown.
     return {-99,
-            {{"cpu-used", format.preset_of(def)},
-             {"crf", std::to_string(format.crf_of(def))},
+            {{"cpu-used", format.preset_of(def.encoder)},
+             {"crf", std::to_string(format.crf_of(def.encoder))},
              {"b", "0"},
              {"deadline", "good"},
              {"row-mt", "0"},
