@@ -130,6 +130,29 @@ void report_format(const Console& console, const Scene& scene, const std::string
             "a GIF has no half transparent pixels: edges will be hard; .webp and .apng keep them");
 }
 
+void check_standard_output(const Console& console, const std::string& output) {
+    if (!is_standard_output(output)) return;
+    if (isatty(STDOUT_FILENO) == 1)
+        throw Error(ExitCode::kUsage,
+                    "-o -: pixels are not for a terminal; pipe them into a program or a file");
+    if (console.json())
+        throw Error(ExitCode::kUsage,
+                    "-o - and --json both want standard output; give the video a file name");
+}
+
+void report_rendered(const Console& console, const std::string& output, const Rendered& rendered,
+                     double wall_s) {
+    if (rendered.resumed_frames > 0)
+        console.info(fmt::format("{} were there from the interrupted render",
+                                 counted(rendered.resumed_frames, "frame")));
+    if (rendered.is_short_of_memory)
+        console.info(fmt::format("only {} at a time: more would not fit into the memory that is free",
+                                 counted(rendered.jobs, "chunk")));
+    console.info(fmt::format("{} frames in {:.3g} s, {:.1f} per second{}", rendered.frames, wall_s,
+                             static_cast<double>(rendered.frames) / wall_s,
+                             is_one_file(output) ? "; verified" : ""));
+}
+
 ExitCode render(const Console& console, const RenderOptions& options) {
     const double start_s = now_s();
     Scene scene = options.scene.load(console);
@@ -138,13 +161,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     def.resume = options.resume;
     def.verify_all = options.verify == "full";
     parse_range(range_of(console, options), def);
-    const bool to_stdout = is_standard_output(options.output);
-    if (to_stdout && isatty(STDOUT_FILENO) == 1)
-        throw Error(ExitCode::kUsage,
-                    "-o -: pixels are not for a terminal; pipe them into a program or a file");
-    if (to_stdout && console.json())
-        throw Error(ExitCode::kUsage,
-                    "-o - and --json both want standard output; give the video a file name");
+    check_standard_output(console, options.output);
     check_render(scene, options.output, def, options.scene.input());
     report_format(console, scene, options.output);
     OnProgress on_progress = show_progress(console, "simulate");
@@ -179,17 +196,9 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     if (rendered.reader_left) return ExitCode::kOk;
     if (!rendered.complete) return report_interrupted(console, options, def.first, count, rendered);
     const double wall_s = now_s() - start_s;
-    if (rendered.resumed_frames > 0)
-        console.info(fmt::format("{} were there from the interrupted render",
-                                 counted(rendered.resumed_frames, "frame")));
-    if (rendered.is_short_of_memory)
-        console.info(fmt::format("only {} at a time: more would not fit into the memory that is free",
-                                 counted(rendered.jobs, "chunk")));
-    console.info(fmt::format("{} frames in {:.3g} s, {:.1f} per second{}", rendered.frames, wall_s,
-                             static_cast<double>(rendered.frames) / wall_s,
-                             is_one_file(options.output) ? "; verified" : ""));
+    report_rendered(console, options.output, rendered, wall_s);
     warn_of_branch(console, film);
-    if (!to_stdout) console.result(options.output);
+    if (!is_standard_output(options.output)) console.result(options.output);
     console.report(report(film, options, rendered, wall_s, gl.renderer));
     const EmptyPictures empty{options.empty.are_failures, rendered.empty_frames, rendered.first_empty_s};
     return empty.report(console, rendered.frames);
