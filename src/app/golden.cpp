@@ -108,6 +108,7 @@ void tell(const Console& console, const GoldenOptions& options, const suite::Sui
     if (options.def.update)
         sums += fmt::format("; {}{} changed", changed, options.def.dry_run ? " would be" : "");
     console.result(sums);
+    if (missing > 0) console.info("--update draws what is missing, and keeps it");
     console.report({{"schema", 1},
                     {"passed", passed},
                     {"failed", failed},

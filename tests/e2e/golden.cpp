@@ -65,6 +65,15 @@ TEST_F(GoldenSuite, PassesWithWhatItHasKept) {
                                   HasSubstr("\"missing\": 0"), HasSubstr("\"stale\": 0")));
 }
 
+TEST_F(GoldenSuite, MissesEveryPictureOfAFolderThatIsNotThere) {
+    std::filesystem::remove_all(folder_.file("ref"));
+    const auto result = run();
+    EXPECT_EQ(result.exit_code, 7);
+    EXPECT_THAT(result.out, HasSubstr("0 failed, 3 missing"));
+    EXPECT_THAT(result.err, HasSubstr("--update"));
+    EXPECT_FALSE(std::filesystem::exists(folder_.file("ref")));
+}
+
 TEST_F(GoldenSuite, PassesThoughThePictureSaysByWhichMethodItIs) {
     EXPECT_EQ(run({"--update", "--replan", "--set", "overlay.method=true"}).exit_code, 0);
     EXPECT_EQ(run({"--set", "overlay.method=true"}).exit_code, 0);

@@ -44,6 +44,7 @@ hang = { links = 20, length = 1.0, angle_deg = 45.0, from = [0.0, 0.0] }
 pinned = []
 [[rope]]
 points = [[0.0, 0.0], [0.1, -1.0], [0.3, -1.5]]
+origin = [2.0, -1.0]
 mass = [1, 2.5, 3]
 velocity = [[0, 0], [1, 2], [3.0, -4.0]]
 width_px = 3.5
