@@ -30,6 +30,14 @@ if [[ -z "${CORDA_TEST_LONG:-}" ]]; then
 import corda
 film = corda.Film('$scene', size=(320, 180))
 assert corda.compare(film.frame(3), '$work/still.png').equal"
+    cp -r "$here/pytest" "$work/pytest"
+    (   # an outside project
+        cd "$work/pytest"
+        export PATH="$work/root/usr/bin:/usr/bin:/bin" PYTHONPATH="$work/root/usr/lib/python3/dist-packages"
+        corda golden scenes --dir ref --update -q >/dev/null
+        corda still scenes/swing.toml --size 320x180 --at 0.5 -o kept.png -q >/dev/null
+        python3 -m pytest -q -p no:cacheprovider
+    )
     mandoc -T lint -W error "$work/root/usr/share/man/man1/corda.1"
     bash -n "$work/root/usr/share/bash-completion/completions/corda"
     for package in "$work/packages"/*.deb; do
