@@ -273,7 +273,11 @@ TEST_F(Figures, OfOnePoseAreStills) {
         const std::string strobe = folder_.file("b.") + ending;
         ASSERT_EQ(run_corda({"still", scene_, "--at", "0.5", "-o", still}).exit_code, 0);
         ASSERT_EQ(run_corda({"strobe", scene_, "--at", "0.5", "-o", strobe}).exit_code, 0);
-        EXPECT_EQ(test::read_file(still), test::read_file(strobe)) << ending;
+        if (std::string_view(ending) == "png") {  // it says by what it was made
+            EXPECT_TRUE(read_png(still) == read_png(strobe));
+        } else {
+            EXPECT_TRUE(test::read_file(still) == test::read_file(strobe)) << ending;
+        }
     }
 }
 
