@@ -61,14 +61,16 @@ class Resume : public testing::Test {
 
 /// Short, or of a hundred kills with CORDA_TEST_LONG.
 TEST_F(Resume, MakesTheSameVideoOfWhatWasKilledAtAnyMoment) {
-    const std::string whole = bytes_of_a_whole("whole.mp4");
+    // So long that most moments are before its end.
+    const std::vector<std::string> slowly{"--preset", "medium", "--duration", "15"};
+    const std::string whole = bytes_of_a_whole("whole.mp4", slowly);
     const int kills = std::getenv("CORDA_TEST_LONG") != nullptr ? 100 : 6;
     std::mt19937 random(20261123);  // NOLINT(cert-msc51-cpp): the same kills on every run
     std::uniform_real_distribution<double> moment_s(0.0, 1.5);
     int parts = 0;
     for (int i = 0; i < kills; ++i) {
         const double after_s = moment_s(random);
-        interrupt("a.mp4", "KILL", after_s, i % 2 == 0 ? From::kStart : From::kFirstChunk);
+        interrupt("a.mp4", "KILL", after_s, i % 2 == 0 ? From::kStart : From::kFirstChunk, slowly);
         // The final name is whole, or not there; between its naming and the removal of the part both are.
         const bool is_finished = std::filesystem::exists(file("a.mp4"));
         if (is_finished) {
@@ -83,7 +85,9 @@ TEST_F(Resume, MakesTheSameVideoOfWhatWasKilledAtAnyMoment) {
             EXPECT_EQ(run_corda({"verify", file("copy.mp4")}).exit_code, 0) << after_s;
         }
         if (!is_finished) {
-            const auto resumed = run_corda(render("a.mp4", {"--resume"}));
+            std::vector<std::string> again = slowly;
+            again.emplace_back("--resume");
+            const auto resumed = run_corda(render("a.mp4", again));
             EXPECT_EQ(resumed.exit_code, 0) << after_s << resumed.err;
             EXPECT_FALSE(std::filesystem::exists(file("a.mp4.part")));
         }
