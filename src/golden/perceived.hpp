@@ -1,13 +1,16 @@
 #pragma once
 
+#include <numbers>
+
 #include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
 
 #pragma GCC visibility push(default)
 namespace corda {
 
-/// Pixels per degree of the field of view in which flip() is meant: a 4K screen of 0.7 m seen from 0.7 m.
-inline constexpr double kFlipPixelsPerDegree = 67.0;
+/// Pixels per degree of the field of view in which flip() is meant: a screen 0.7 m and 3840 pixels wide, seen
+/// from 0.7 m, as in the authors' program.
+inline constexpr double kFlipPixelsPerDegree = 3840.0 * std::numbers::pi / 180.0;
 /// The least side of pictures that have an ssim().
 inline constexpr int kLeastSsimSidePx = 11;
 

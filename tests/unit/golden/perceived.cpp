@@ -51,21 +51,22 @@ Image box(int left) {
     return image;
 }
 
-// The figures of the next two tests are those of another program: the paper's formulas in double precision,
-// filters as sums in two dimensions, in numpy 1.24 and scipy 1.10 (ndimage.correlate, mode "nearest").
+// The figures of the next two tests are those of the authors' program (NVIDIA's flip.py of 2021, numpy 1.24,
+// OpenCV 4.6), in single precision. flip() is 7.4e-6 away from them for grey, 3.6e-6 for black and white, and
+// below 1e-7 for pictures with edges.
 
 TEST(Flip, OfEvenPicturesIsThatOfTheirColors) {
     const Image black = filled(8, 8, 0, 0, 0);
-    EXPECT_NEAR(flip(black, filled(8, 8, 255, 255, 255)), 0.9673797621793768, 1e-5);
-    EXPECT_NEAR(flip(filled(8, 8, 0, 255, 0), filled(8, 8, 0, 0, 255)), 1.0, 1e-5);  // the paper's largest
-    EXPECT_NEAR(flip(filled(8, 8, 255, 0, 0), filled(8, 8, 0, 255, 0)), 0.9866622753570652, 1e-5);
-    EXPECT_NEAR(flip(filled(8, 8, 100, 100, 100), filled(8, 8, 101, 101, 101)), 0.03078356237570817, 1e-5);
+    EXPECT_NEAR(flip(black, filled(8, 8, 255, 255, 255)), 0.96738285, 5e-6);
+    EXPECT_NEAR(flip(filled(8, 8, 0, 255, 0), filled(8, 8, 0, 0, 255)), 1.0, 1e-6);  // the paper's largest
+    EXPECT_NEAR(flip(filled(8, 8, 255, 0, 0), filled(8, 8, 0, 255, 0)), 0.98666322, 5e-6);
+    EXPECT_NEAR(flip(filled(8, 8, 100, 100, 100), filled(8, 8, 101, 101, 101)), 0.03078431, 1e-5);
 }
 
-TEST(Flip, OfPicturesWithEdgesIsThatOfTheFormulas) {
-    EXPECT_NEAR(flip(pattern(0), pattern(1)), 0.36641437515508796, 1e-5);
-    EXPECT_NEAR(flip(box(20), box(21)), 0.03757161795938533, 1e-5);
-    EXPECT_NEAR(flip(box(20), box(21), {}, 1, 30.0), 0.027369581237584307, 1e-5);
+TEST(Flip, OfPicturesWithEdgesIsThatOfTheAuthorsProgram) {
+    EXPECT_NEAR(flip(pattern(0), pattern(1)), 0.36631644, 1e-6);
+    EXPECT_NEAR(flip(box(20), box(21)), 0.03757543, 1e-6);
+    EXPECT_NEAR(flip(box(20), box(21), {}, 1, 30.0), 0.02736959, 1e-6);
 }
 
 TEST(Flip, IsZeroForEqualPicturesAloneAndHasNoOrder) {
@@ -87,7 +88,7 @@ TEST(Flip, DoesNotDependOnThreads) {
 TEST(Flip, SeesWhatIsBehindTransparentPictures) {
     // What is fully transparent has no colour; a black veil shows on white alone.
     EXPECT_EQ(flip(filled(9, 9, 255, 0, 0, 0), filled(9, 9, 0, 0, 255, 0)), 0.0);
-    EXPECT_NEAR(flip(filled(9, 9, 0, 0, 0, 0), filled(9, 9, 0, 0, 0, 255)), 0.9673797621793768, 1e-5);
+    EXPECT_NEAR(flip(filled(9, 9, 0, 0, 0, 0), filled(9, 9, 0, 0, 0, 255)), 0.96738285, 1e-5);
 }
 
 TEST(Flip, RefusesOtherSizesAndStops) {
