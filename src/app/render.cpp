@@ -121,7 +121,7 @@ void report_format(const Console& console, const Scene& scene, const std::string
     const bool is_opaque = view::look_of(scene.style).ground.is_opaque();
     const media::Format format = media::find_format(output, scene.video, !is_opaque);
     if (format.is_fallback) {
-        console.warning(fmt::format("this libavcodec has no {}, the default of {}: encoding with {} ({})",
+        console.warning(fmt::format("{}, the default of {}, is not here: encoding with {} ({})",
                                     format.ending->codecs.front(), format.ending->text, format.codec->name,
                                     format.codec->standard));
     }

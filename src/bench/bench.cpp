@@ -17,7 +17,7 @@
 #include "corda/media/chunk.hpp"
 #include "corda/media/encoder_alone.hpp"
 #include "corda/media/format.hpp"
-#include "corda/media/verify.hpp"
+#include "corda/media/video_writer.hpp"
 #include "corda/media/yuv420.hpp"
 #include "corda/pipeline/painter.hpp"
 
@@ -145,7 +145,7 @@ class StageClock {
     std::vector<Stage> stages_;
 };
 
-/// The stages, each by itself, on the video at `path`.
+/// The stages, each by itself, one thread for all; the video is made anew at `path`.
 json measure_stages(const BenchDef& def, const std::string& path) {
     const VideoDef& video = def.scene.video;
     const std::int64_t frames = frames_of(def);
@@ -158,17 +158,14 @@ json measure_stages(const BenchDef& def, const std::string& path) {
     clock.measure("open OpenGL", [&] { static_cast<void>(film->gl()); });
     clock.measure("draw", [&] { draw_frames(*film, frames, [](const Image&, const Damage&) {}); });
     media::Yuv420Image converted(video.width_px, video.height_px);
-    media::EncoderAlone encoder(video);
-    std::int64_t kept = most_pictures(video);
+    media::VideoWriter writer(path, video, {}, {.force = true});
     draw_frames(*film, frames, [&](const Image& picture, const Damage& damage) {
         clock.measure("convert", [&] {
             for (const PixelRect& part : damage) media::convert_to_yuv420(picture, part, converted);
         });
-        if (kept-- > 0) encoder.add(picture);
+        clock.measure("encode", [&] { writer.write(picture, damage); });
     });
-    clock.measure("encode", [&] { static_cast<void>(encoder.encode(frames, 1)); });
-    clock.measure("verify",
-                  [&] { static_cast<void>(media::verify(path, {}, media::VerifyDepth::kKeyFrames)); });
+    clock.measure("copy and verify", [&] { writer.finish(); });
     return clock.to_json();
 }
 

@@ -22,7 +22,8 @@ struct BenchDef {
     std::function<void()> on_wait;
 };
 
-/// A part of the work on a video, measured by itself in one thread.
+/// A part of the work on a video, measured by itself in one thread: simulate, open OpenGL, draw, convert (to
+/// 4:2:0), encode (with conversion and the writing of the part), copy and verify.
 struct Stage {
     std::string name;
     double wall_s = 0.0;

@@ -15,7 +15,7 @@ corda_add_public_library(
         suite/check_golden.hpp testing.hpp
         view/defs.hpp
     PRIVATE Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json PNG::PNG
-        PkgConfig::CAIRO PkgConfig::EPOXY PkgConfig::FREETYPE PkgConfig::LIBAV PkgConfig::WEBP PkgConfig::TOMLPLUSPLUS)
+        PkgConfig::CAIRO PkgConfig::EPOXY PkgConfig::FREETYPE PkgConfig::LIBAV PkgConfig::WEBP PkgConfig::TOMLPLUSPLUS ${CORDA_X264_TARGET})
 
 install(TARGETS corda_library EXPORT corda_targets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development

@@ -39,11 +39,13 @@ function(corda_link_sanitizer target)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:corda_keep_modules>)
 endfunction()
 
-# corda_add_library(<folder> [PUBLIC <targets>] [PRIVATE <targets>]): all .cpp files of the folder and those below it.
+# corda_add_library(<folder> [PUBLIC <targets>] [PRIVATE <targets>] [EXCEPT <file>]): all .cpp files of the folder and
+# those below it.
 # Compiled once, as objects, which the public library (corda_add_public_library) takes too.
 function(corda_add_library folder)
-    cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
+    cmake_parse_arguments(ARG "" "EXCEPT" "PUBLIC;PRIVATE" ${ARGN})
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+    list(REMOVE_ITEM sources "${CMAKE_CURRENT_SOURCE_DIR}/${ARG_EXCEPT}")
     set(include_dir ${PROJECT_BINARY_DIR}/include/${folder})
     file(MAKE_DIRECTORY ${include_dir}/corda)
     file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${include_dir}/corda/${folder} SYMBOLIC)

@@ -16,6 +16,7 @@ packages=(
     libavformat-dev         # muxers and demuxers of MP4, WebM, Matroska, GIF, APNG
     libavutil-dev           # frames and error texts of the two above
     libswscale-dev          # decoded pictures as a player shows them, for their comparison
+    libx264-dev             # H.264, told which macroblocks did not change, which libavcodec cannot tell it
     libwebp-dev             # animated WebP, which libavcodec does not decode
     libeigen3-dev           # sparse factorisation for nets of bars
     libcairo2-dev           # stills as PDF

@@ -18,8 +18,10 @@ EncoderSettings no_settings(const Format& /*format*/, const VideoDef& /*def*/) {
     return {-99, {}, 0};
 }
 
-constexpr Codec kGif{"gif", "gif", "GIF", {"pal8"}, {}, "", {}, 0, 1, 0, false, &no_settings};
-constexpr Codec kApng{"apng", "apng", "APNG", {"rgb24", "rgba"}, {}, "", {}, 0, 1, 0, false, &no_settings};
+constexpr Codec kGif{"gif",       "gif", "GIF", {"pal8"}, {}, "", {}, 0, 1, 0, false, EncoderOrigin::kLibav,
+                     &no_settings};
+constexpr Codec kApng{"apng", "apng", "APNG", {"rgb24", "rgba"},     {},          "", {}, 0,
+                      1,      0,      false,  EncoderOrigin::kLibav, &no_settings};
 
 /// Calls visit(picture, has_alpha) for the first pictures of a part, in order.
 template <typename Visit>

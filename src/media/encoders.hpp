@@ -9,8 +9,7 @@
 
 namespace corda::media {
 
-// What the encoders of each family are told: Codec::settings.
-[[nodiscard]] EncoderSettings x264_settings(const Format& format, const VideoDef& def);
+// What libav's encoders of each family are told: Codec::settings.
 [[nodiscard]] EncoderSettings nvenc_settings(const Format& format, const VideoDef& def);
 [[nodiscard]] EncoderSettings x265_settings(const Format& format, const VideoDef& def);
 [[nodiscard]] EncoderSettings svt_av1_settings(const Format& format, const VideoDef& def);

@@ -12,6 +12,7 @@
 #include "corda/media/encoders.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/picture_names.hpp"
+#include "corda/media/x264_encoder.hpp"
 
 namespace corda::media {
 namespace {
@@ -37,7 +38,7 @@ constexpr std::array kCodecs{
           1,
           0,
           false,
-          &x264_settings},
+          EncoderOrigin::kX264},
     Codec{"libx265",
           "h265",
           "H.265",
@@ -49,9 +50,21 @@ constexpr std::array kCodecs{
           32,
           0,
           false,
+          EncoderOrigin::kLibav,
           &x265_settings},
-    Codec{
-        "libsvtav1", "av1", "AV1", {"yuv420p"}, kSpeeds, "8", {{1, 63}}, 32, 64, 0, false, &svt_av1_settings},
+    Codec{"libsvtav1",
+          "av1",
+          "AV1",
+          {"yuv420p"},
+          kSpeeds,
+          "8",
+          {{1, 63}},
+          32,
+          64,
+          0,
+          false,
+          EncoderOrigin::kLibav,
+          &svt_av1_settings},
     Codec{"libaom-av1",
           "av1",
           "AV1",
@@ -63,6 +76,7 @@ constexpr std::array kCodecs{
           16,
           0,
           false,
+          EncoderOrigin::kLibav,
           &aom_av1_settings},
     Codec{"libvpx-vp9",
           "vp9",
@@ -75,6 +89,7 @@ constexpr std::array kCodecs{
           1,
           0,
           false,
+          EncoderOrigin::kLibav,
           &vp9_settings},
     Codec{"h264_nvenc",
           "nvenc",
@@ -87,6 +102,7 @@ constexpr std::array kCodecs{
           160,
           0,
           true,
+          EncoderOrigin::kLibav,
           &nvenc_settings},
     Codec{"prores_ks",
           "prores",
@@ -99,9 +115,22 @@ constexpr std::array kCodecs{
           1,
           kFewFrames,
           false,
+          EncoderOrigin::kLibav,
           &prores_settings},
-    Codec{"ffv1", "ffv1", "FFV1", {"bgr0", "bgra"}, {}, "", {}, 0, 1, kFewFrames, false, &ffv1_settings},
-    Codec{"png", "png", "PNG", {"rgba"}, {}, "", {}, 0, 1, kFewFrames, false, nullptr},
+    Codec{"ffv1",
+          "ffv1",
+          "FFV1",
+          {"bgr0", "bgra"},
+          {},
+          "",
+          {},
+          0,
+          1,
+          kFewFrames,
+          false,
+          EncoderOrigin::kLibav,
+          &ffv1_settings},
+    Codec{"png", "png", "PNG", {"rgba"}, {}, "", {}, 0, 1, kFewFrames, false, EncoderOrigin::kPng},
     Codec{"rawvideo",
           "raw",
           "raw pictures",
@@ -113,6 +142,7 @@ constexpr std::array kCodecs{
           1,
           2,
           false,
+          EncoderOrigin::kLibav,
           &raw_settings},
 };
 
@@ -163,8 +193,26 @@ void add_new(std::string_view name, std::vector<std::string_view>& names) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
-bool is_in_libav(const char* codec) {
-    return find_codec(codec)->settings == nullptr || avcodec_find_encoder_by_name(codec) != nullptr;
+bool is_available(const Codec& codec) {
+    switch (codec.origin) {
+        case EncoderOrigin::kX264:
+            return has_x264();
+        case EncoderOrigin::kPng:
+            return true;
+        case EncoderOrigin::kLibav:
+            break;
+    }
+    return avcodec_find_encoder_by_name(codec.name) != nullptr;
+}
+
+/// What to say of a codec that is missing.
+std::string missing_text(const Codec& codec) {
+    if (codec.origin == EncoderOrigin::kX264)
+        return "this Corda was built without libx264; build it with CORDA_X264, or use --codec libsvtav1";
+    return fmt::format(
+        "this libavcodec was built without {}; install one that has it (Debian: apt-get install "
+        "libavcodec59), and see `corda doctor`",
+        codec.name);
 }
 
 const AVPixFmtDescriptor& descriptor_of(const char* pixel_format) {
@@ -225,31 +273,25 @@ const Codec& choose_codec(const Ending& ending, std::string_view path, const Enc
     const auto names = names_of(ending);
     if (def.codec.empty() || ending.kind == FileKind::kAnimation) {
         for (const std::string_view name : names) {
-            if (is_in_libav(name.data()) && !find_codec(name)->is_hardware) return *find_codec(name);
+            const Codec& codec = *find_codec(name);
+            if (is_available(codec) && !codec.is_hardware) return codec;
             is_fallback = true;
         }
         throw Error(
             ExitCode::kEncoder,
-            fmt::format("'{}': this libavcodec has none of the encoders {}; install one that has them "
-                        "(Debian: apt-get install libavcodec59), and see `corda doctor`",
+            fmt::format("'{}': none of the encoders {} is here; install a libavcodec that has them (Debian: "
+                        "apt-get install libavcodec59), and see `corda doctor`",
                         path, fmt::join(names, ", ")));
     }
     const Codec* chosen = nullptr;
     for (const std::string_view name : names) {
         const Codec& codec = *find_codec(name);
         if (def.codec != codec.name && def.codec != codec.short_name) continue;
-        const bool is_better =
-            chosen == nullptr || !is_in_libav(chosen->name) || !has_choice(*chosen, def.pix);
-        if (is_better && (chosen == nullptr || is_in_libav(codec.name))) chosen = &codec;
+        const bool is_better = chosen == nullptr || !is_available(*chosen) || !has_choice(*chosen, def.pix);
+        if (is_better && (chosen == nullptr || is_available(codec))) chosen = &codec;
     }
-    if (chosen != nullptr && is_in_libav(chosen->name)) return *chosen;
-    if (chosen != nullptr) {
-        throw Error(
-            ExitCode::kEncoder,
-            fmt::format("this libavcodec was built without {}; install one that has it (Debian: apt-get "
-                        "install libavcodec59), and see `corda doctor`",
-                        chosen->name));
-    }
+    if (chosen != nullptr && is_available(*chosen)) return *chosen;
+    if (chosen != nullptr) throw Error(ExitCode::kEncoder, missing_text(*chosen));
     fail_usage("'{}' cannot hold the codec '{}'; use {}", path, def.codec, fmt::join(names, ", "));
 }
 

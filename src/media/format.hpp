@@ -23,7 +23,10 @@ struct EncoderSettings {
     std::optional<int> reorder_depth;
 };
 
-/// An encoder of libav: one row of the table of codecs.
+/// Whose encoder it is.
+enum class EncoderOrigin { kLibav, kX264, kPng };
+
+/// An encoder: one row of the table of codecs.
 struct Codec {
     const char* name;        ///< libav's: "libx264"
     const char* short_name;  ///< "h264"
@@ -38,7 +41,8 @@ struct Codec {
     /// Frames of a chunk, for codecs whose frames stand alone; 0: as many as frames_per_chunk() says.
     int chunk_frames = 0;
     bool is_hardware = false;  ///< it may be listed and not work
-    EncoderSettings (*settings)(const Format& format, const VideoDef& def) = nullptr;
+    EncoderOrigin origin = EncoderOrigin::kLibav;
+    EncoderSettings (*settings)(const Format& format, const VideoDef& def) = nullptr;  ///< of libav's
 };
 
 /// How the packets of a video become files.
@@ -67,7 +71,7 @@ struct Format {
     const Codec* codec = nullptr;
     const char* pixel_format = "";  ///< libav's name
     bool has_alpha = false;
-    bool is_fallback = false;  ///< the ending's own codec is missing in this libavcodec
+    bool is_fallback = false;  ///< the ending's own codec is missing
 
     [[nodiscard]] std::string preset_of(const EncoderDef& def) const;
     [[nodiscard]] int crf_of(const EncoderDef& def) const { return def.crf.value_or(codec->default_crf); }

@@ -47,27 +47,7 @@ void open(AVCodecContext& context, const VideoDef& def, const EncoderSettings& s
     }
 }
 
-/// profile_idc of the sequence parameter set in Annex B extradata; -1 if there is none.
-int profile_idc(const AVCodecContext& context) {
-    const std::uint8_t* data = context.extradata;
-    for (int i = 0; i + 4 < context.extradata_size; ++i) {
-        const bool start_code = data[i] == 0 && data[i + 1] == 0 && data[i + 2] == 1;
-        if (start_code && (data[i + 3] & 0x1f) == 7) return data[i + 4];
-    }
-    return -1;
-}
-
-/// Browsers and QuickTime play H.264 in 8-bit 4:2:0 only, and x264 may choose otherwise without a word.
-void check_playable(const AVCodecContext& context, const Format& format) {
-    if (context.codec_id != AV_CODEC_ID_H264 || context.pix_fmt != AV_PIX_FMT_YUV420P) return;
-    const int idc = profile_idc(context);
-    if (idc == FF_PROFILE_H264_BASELINE || idc == FF_PROFILE_H264_MAIN || idc == FF_PROFILE_H264_HIGH) return;
-    throw Error(ExitCode::kEncoder,
-                fmt::format("{} chose profile_idc {}, which browsers and QuickTime refuse; use another crf",
-                            format.codec->name, idc));
-}
-
-Frame make_frame(const AVCodecContext& context) {
+Frame frame_for(const AVCodecContext& context) {
     Frame frame = check_allocated(Frame(av_frame_alloc()), "a frame");
     frame->format = context.pix_fmt;
     frame->width = context.width;
@@ -95,13 +75,12 @@ LibavEncoder::LibavEncoder(const Format& format, const VideoDef& def, Convert co
     context_->profile = settings.profile;
     configure(*context_, format, def);
     open(*context_, def, settings);
-    check_playable(*context_, format);
     if (settings.reorder_depth) context_->has_b_frames = *settings.reorder_depth;
     parameters_ = check_allocated(CodecParameters(avcodec_parameters_alloc()), "codec parameters");
     check_libav(avcodec_parameters_from_context(parameters_.get(), context_.get()), ExitCode::kEncoder,
                 "cannot read the encoder's parameters");
     packet_ = check_allocated(Packet(av_packet_alloc()), "a packet");
-    frame_ = make_frame(*context_);
+    frame_ = frame_for(*context_);
 }
 
 LibavEncoder::~LibavEncoder() {

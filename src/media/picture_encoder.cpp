@@ -3,6 +3,7 @@
 #include "corda/media/encoders.hpp"
 #include "corda/media/libav_encoder.hpp"
 #include "corda/media/png_bytes.hpp"
+#include "corda/media/x264_encoder.hpp"
 
 namespace corda::media {
 namespace {
@@ -48,7 +49,14 @@ class PictureEncoder : public Encoder {
 
 std::unique_ptr<Encoder> make_encoder(const Format& format, const VideoDef& def, std::int64_t first_frame,
                                       const PictureInfo& info) {
-    if (format.codec->settings == nullptr) return std::make_unique<PictureEncoder>(def, first_frame, info);
+    switch (format.codec->origin) {
+        case EncoderOrigin::kX264:
+            return make_x264_encoder(format, def);
+        case EncoderOrigin::kPng:
+            return std::make_unique<PictureEncoder>(def, first_frame, info);
+        case EncoderOrigin::kLibav:
+            break;
+    }
     return std::make_unique<LibavEncoder>(format, def);
 }
 

@@ -36,7 +36,7 @@ TEST(Bench, MeasuresEachSizeAndPresetBesideTheEncoderAlone) {
         EXPECT_EQ(one.at("encoder_pictures"), 70);
         std::string names;
         for (const auto& stage : one.at("stages")) names += stage.at("name").get<std::string>() + " ";
-        EXPECT_EQ(names, "simulate open OpenGL draw convert encode verify ");
+        EXPECT_EQ(names, "simulate open OpenGL draw convert encode copy and verify ");
     }
     EXPECT_TRUE(folder.files().empty());  // the videos are removed
 }

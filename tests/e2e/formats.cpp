@@ -132,22 +132,25 @@ TEST_F(FormatsOfRender, JsonAndAVideoCannotShareStandardOutput) {
 }
 
 TEST_F(FormatsOfRender, WithoutX264AnotherEncoderIsUsedAndNamed) {
+    const auto run = [](const std::string& arguments) {
+        return run_shell(CORDA_WITHOUT_X264 " " + arguments);
+    };
     const std::string video = folder_.file("a.mp4");
-    const auto result = run_corda({"render", scene_, "-o", video, "--json"}, "LD_PRELOAD=" NO_X264);
+    const auto result = run("render " + scene_ + " -o " + video + " --json");
     ASSERT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_THAT(result.err, HasSubstr("has no libx264, the default of .mp4: encoding with libsvtav1 (AV1)"));
+    EXPECT_THAT(result.err,
+                HasSubstr("libx264, the default of .mp4, is not here: encoding with libsvtav1 (AV1)"));
     EXPECT_EQ(json::parse(result.out)["encoder"], "libsvtav1");
     EXPECT_EQ(json::parse(run_corda({"verify", video, "--json"}).out)["codec"], "av1");
 
-    const auto asked = run_corda({"render", scene_, "-o", folder_.file("b.mp4"), "--codec", "libx264"},
-                                 "LD_PRELOAD=" NO_X264);
+    const auto asked = run("render " + scene_ + " -o " + folder_.file("b.mp4") + " --codec libx264");
     EXPECT_EQ(asked.exit_code, 5);
-    EXPECT_THAT(asked.err, HasSubstr("was built without libx264"));
+    EXPECT_THAT(asked.err, HasSubstr("this Corda was built without libx264"));
 
-    const auto doctor = run_corda({"doctor"}, "LD_PRELOAD=" NO_X264);
+    const auto doctor = run("doctor");
     EXPECT_EQ(doctor.exit_code, 0);
     EXPECT_THAT(doctor.out, HasSubstr("  yes  .mp4: libsvtav1, libx265"));
-    EXPECT_THAT(doctor.out, HasSubstr("without libx264: this libavcodec was built without libx264"));
+    EXPECT_THAT(doctor.out, HasSubstr("without libx264: this Corda was built without libx264"));
 }
 
 TEST_F(FormatsOfRender, AnEncoderOfHardwareThatDoesNotOpenIsRefusedBeforeTheWork) {

@@ -104,13 +104,18 @@ TEST_F(Video, ColorsComeBack) {
 }
 
 TEST_F(Video, FramesGivenByDamageEqualWholeFrames) {
-    make_video(file("a.mp4"), small_video(), 30);
-    {
-        VideoWriter writer(file("b.mp4"), small_video(), {"A swing", R"({"scene":"test"})"});
-        for (int k = 0; k < 30; ++k) writer.write(frame_image(k), {{0, 0, kWidth, kHeight}});
-        writer.finish();
+    for (const PixelChoice pix : {PixelChoice::k420, PixelChoice::k444}) {
+        VideoDef def = small_video();
+        def.encoder.pix = pix;
+        make_video(file("a.mp4"), def, 30);
+        {
+            VideoWriter writer(file("b.mp4"), def, {"A swing", R"({"scene":"test"})"}, {.force = true});
+            for (int k = 0; k < 30; ++k) writer.write(frame_image(k), {{0, 0, kWidth, kHeight}});
+            writer.finish();
+        }
+        EXPECT_EQ(test::read_file(file("a.mp4")), test::read_file(file("b.mp4")));
+        std::filesystem::remove(file("a.mp4"));
     }
-    EXPECT_EQ(test::read_file(file("a.mp4")), test::read_file(file("b.mp4")));
 }
 
 TEST_F(Video, FirstFrameIsTakenWholeAndEmptyDamageRepeatsIt) {

@@ -1,0 +1,16 @@
+// In place of x264_encoder.cpp in a build without libx264.
+
+#include "corda/core/basics.hpp"
+#include "corda/media/x264_encoder.hpp"
+
+namespace corda::media {
+
+bool has_x264() {
+    return false;
+}
+
+std::unique_ptr<Encoder> make_x264_encoder(const Format& /*format*/, const VideoDef& /*def*/) {
+    throw Error(ExitCode::kEncoder, "this Corda was built without libx264");
+}
+
+}  // namespace corda::media
