@@ -27,9 +27,9 @@ void ChunkEncoder::keep(AVPacket& packet) {
     chunk_.packets.push_back(std::move(kept));
 }
 
-void ChunkEncoder::encode(const Image& frame, const Damage& damage) {
+void ChunkEncoder::encode(const Image& frame, const Damage& damage, bool is_last) {
     assert(encoder_);
-    if (chunk_.frames == 0) chunk_.patches = choose_patches(frame);
+    if (chunk_.frames == 0 || is_last) chunk_.colors.push_back({chunk_.frames, choose_patches(frame)});
     encoder_->encode(frame, damage, [this](AVPacket& packet) { keep(packet); });
     ++chunk_.frames;
 }

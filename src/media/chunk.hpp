@@ -20,7 +20,7 @@ struct Chunk {
     /// In the order of decoding. Their stamps and durations count frames from the first one of the chunk.
     std::vector<Packet> packets;
     CodecParameters parameters;       ///< the same for all chunks of a video; null without a frame
-    std::vector<ColorPatch> patches;  ///< of the first frame
+    std::vector<FrameColors> colors;  ///< of the first frame and of the one that was said to be the last
 };
 
 /// How many frames a chunk has, the last one of a video but for: 60, but at least as many as a second has and
@@ -38,7 +38,7 @@ class ChunkEncoder {
 
     /// Adds the next frame, of the size of the def. `damage` is what may differ from the previous frame (the
     /// first is taken whole).
-    void encode(const Image& frame, const Damage& damage);
+    void encode(const Image& frame, const Damage& damage, bool is_last = false);
     [[nodiscard]] std::int64_t frames() const { return chunk_.frames; }
     /// Drains the encoder. Nothing can be added afterwards.
     [[nodiscard]] Chunk finish();

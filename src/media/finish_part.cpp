@@ -39,14 +39,18 @@ void remux(const PartIndex& index, const std::string& part_path, const Ending& e
     track.finish();
 }
 
+AVCodecID codec_id_of(const Codec& codec) {
+    if (codec.origin == EncoderOrigin::kX264) return AV_CODEC_ID_H264;
+    const AVCodec* const encoder = avcodec_find_encoder_by_name(codec.name);
+    return encoder == nullptr ? AV_CODEC_ID_NONE : encoder->id;
+}
+
 /// A part can become what its codec goes into.
 void check_ending(const PartIndex& index, const std::string& part_path, const std::string& path,
                   const Ending& ending) {
-    for (const char* const name : ending.codecs) {
-        const AVCodec* const codec = name == nullptr ? nullptr : avcodec_find_encoder_by_name(name);
-        const bool is_file = ending.kind == FileKind::kVideo || ending.kind == FileKind::kAnimation;
-        if (is_file && codec != nullptr && codec->id == index.codec) return;
-    }
+    const bool is_file = ending.kind == FileKind::kVideo || ending.kind == FileKind::kAnimation;
+    for (const char* const name : ending.codecs)
+        if (is_file && name != nullptr && codec_id_of(*find_codec(name)) == index.codec) return;
     throw Error(
         ExitCode::kUsage,
         fmt::format("'{}' holds {}, which '{}' cannot be made of; give the ending that the render was for",
@@ -68,7 +72,8 @@ void check_animation(const PartIndex& index, const Ending& ending, VerifyReport&
 }  // namespace
 
 RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOptions& options,
-                        std::optional<std::int64_t> expected_frames, VerifyDepth depth) {
+                        std::optional<std::int64_t> expected_frames, VerifyDepth depth,
+                        const std::vector<FrameColors>& rendered) {
     const LogCapture log;
     const OnProgress all_done = [&options, frames = expected_frames.value_or(0)](std::int64_t, std::int64_t) {
         return !options.on_progress || options.on_progress(frames, frames);
@@ -86,7 +91,7 @@ RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOpt
         write_animation(part.path(), ending, index.fps, result.frames, all_done, output);
     else
         remux(index, part.path(), ending, all_done, output);
-    VerifyReport report = verify(output.temporary_path(), all_done, depth);
+    VerifyReport report = verify(output.temporary_path(), all_done, depth, rendered);
     check_animation(index, ending, report);
     if (!report.ok()) {
         throw Error(ExitCode::kMismatch,

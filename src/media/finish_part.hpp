@@ -28,9 +28,11 @@ RemuxResult recover_part(const std::string& part_path, const std::string& path,
                          const OutputOptions& options = {});
 
 /// As recover_part, for a part that this process holds. Also throws kMismatch if it has another number of
-/// frames than `expected_frames`, if given. `options.on_progress` hears that all of them are done.
+/// frames than `expected_frames`, if given. For `depth` and `rendered` see verify(). `options.on_progress`
+/// hears that all of them are done.
 RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOptions& options,
                         std::optional<std::int64_t> expected_frames = std::nullopt,
-                        VerifyDepth depth = VerifyDepth::kAllFrames);
+                        VerifyDepth depth = VerifyDepth::kAllFrames,
+                        const std::vector<FrameColors>& rendered = {});
 
 }  // namespace corda::media

@@ -11,11 +11,17 @@
 
 namespace corda::media {
 
-/// A few pixels of the first frame whose colour is known: the mean RGB of the 16x16 pixels at (x, y).
+/// A few pixels of a frame whose colour is known: the mean RGB of the 16x16 pixels at (x, y).
 struct ColorPatch {
     int x = 0;
     int y = 0;
     std::array<std::uint8_t, 3> rgb{};
+};
+
+/// What a frame was rendered as, at a few places.
+struct FrameColors {
+    std::int64_t frame = 0;
+    std::vector<ColorPatch> patches;
 };
 
 /// What `verify` found in a video file.
@@ -48,14 +54,16 @@ enum class VerifyDepth { kKeyFrames, kAllFrames };
 /// that its time stamps have a constant step from 0 (of a file that counts milliseconds, are the rounded
 /// ones) and its clocks an exact duration, profile, pixel format and colour tags, and that every frame
 /// decodes that is to be decoded. If the file's comment says that corda made it, also frame count, rate and
-/// some colours of the first frame against what was rendered. What the other frames show is not compared with
-/// anything: a change that still decodes is not found.
+/// some colours of the first frame against what was rendered; whoever rendered it can tell more of them in
+/// `rendered`, in the order of the frames. What the other frames show is not compared with anything: a change
+/// that still decodes is not found.
 ///
 /// Throws corda::Error: kIo if the file cannot be opened for reading (one that is not a video gives a report
 /// with a problem), kInterrupted if `on_progress`, called with the frames, asks to stop. libav ends the
 /// process at some damaged files: one of unknown origin is for verify_in_child.
 [[nodiscard]] VerifyReport verify(const std::string& path, const OnProgress& on_progress = {},
-                                  VerifyDepth depth = VerifyDepth::kAllFrames);
+                                  VerifyDepth depth = VerifyDepth::kAllFrames,
+                                  const std::vector<FrameColors>& rendered = {});
 
 /// As `verify`, in a child process with limits on memory and time. If that crashes or exceeds a limit, the
 /// file is damaged: a report with a problem. If the system starts no further process, it verifies in this

@@ -65,9 +65,8 @@ std::array<double, 3> mean_rgb_of(const AVFrame& frame, const PixelRect& part) {
 /// Decodes one file and fills in a DecodedVideo.
 class Decoding {
   public:
-    Decoding(DecodedVideo& video, VerifyDepth depth,
-             std::vector<ColorPatch> (*patches_of)(const std::string&))
-        : video_(video), depth_(depth), patches_of_(patches_of) {}
+    Decoding(DecodedVideo& video, VerifyDepth depth, const std::vector<FrameColors>& rendered)
+        : video_(video), depth_(depth), rendered_(rendered) {}
 
     void run(const std::string& path, const OnProgress& on_progress) {
         if (!open(path)) return;
@@ -175,6 +174,7 @@ class Decoding {
             avcodec_flush_buffers(file_.context.get());
         }
         stamps_.push(packet.pts);
+        ++packets_;
         take_stamps(kMostReordered);
     }
 
@@ -206,9 +206,11 @@ class Decoding {
         const AVFrame& frame = *frame_;
         if (frame.decode_error_flags != 0 || (frame.flags & AV_FRAME_FLAG_CORRUPT) != 0)
             note_bad(AVERROR_INVALIDDATA);
-        if (!is_described_) measure_patches();
-        // Only the first frame's pixels are measured; for the others it is enough that they decode.
-        file_.context->skip_loop_filter = AVDISCARD_ALL;
+        if (!is_described_) describe_first_frame();
+        // Chunks are closed: as many frames are shown before a key frame as packets came before it.
+        if (is_readable_) measure_patches(depth_ == VerifyDepth::kAllFrames ? video_.frames : packets_);
+        // If no further pixels are measured, it is enough that frames decode.
+        if (rendered_.empty()) file_.context->skip_loop_filter = AVDISCARD_ALL;
         if (depth_ == VerifyDepth::kAllFrames) take_stamp(frame.pts);
     }
 
@@ -230,30 +232,27 @@ class Decoding {
         ++video_.frames;
     }
 
-    void measure_patches() {
-        is_described_ = true;
-        describe_first_frame();
-        const AVPixFmtDescriptor* const descriptor =
-            av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame_->format));
-        const bool is_readable =
-            descriptor != nullptr && descriptor->nb_components >= 3 &&
-            (descriptor->flags & (AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_FLOAT | AV_PIX_FMT_FLAG_HWACCEL)) ==
-                0 &&
-            descriptor->comp[0].depth >= 8;
-        if (!is_readable) return;
-        video_.is_yuv = (descriptor->flags & AV_PIX_FMT_FLAG_RGB) == 0;
-        if ((descriptor->flags & AV_PIX_FMT_FLAG_ALPHA) != 0)
-            video_.has_alpha = samples_of(*frame_, 3, {0, 0, frame_->width, frame_->height}).least < 255;
-        for (const ColorPatch& patch : patches_of_(video_.comment)) {
-            const bool inside = patch.x >= 0 && patch.y >= 0 && patch.x <= frame_->width - kPatchSide &&
-                                patch.y <= frame_->height - kPatchSide;
-            if (!inside) continue;
-            video_.patch_means.push_back(
-                mean_rgb_of(*frame_, {patch.x, patch.y, patch.x + kPatchSide, patch.y + kPatchSide}));
+    void measure_patches(std::int64_t number) {
+        for (const ColorPatch& patch : patches_of(number)) {
+            ShownPatch& shown = video_.patches.emplace_back(ShownPatch{number, patch, std::nullopt});
+            const bool is_inside = patch.x >= 0 && patch.y >= 0 && patch.x <= frame_->width - kPatchSide &&
+                                   patch.y <= frame_->height - kPatchSide;
+            if (!is_inside) continue;
+            shown.rgb = mean_rgb_of(*frame_, {patch.x, patch.y, patch.x + kPatchSide, patch.y + kPatchSide});
         }
     }
 
+    /// What is known of a frame.
+    [[nodiscard]] std::vector<ColorPatch> patches_of(std::int64_t number) const {
+        const auto known = std::lower_bound(
+            rendered_.begin(), rendered_.end(), number,
+            [](const FrameColors& colors, std::int64_t frame) { return colors.frame < frame; });
+        if (known != rendered_.end() && known->frame == number) return known->patches;
+        return number == 0 ? told_patches(video_.comment) : std::vector<ColorPatch>();
+    }
+
     void describe_first_frame() {
+        is_described_ = true;
         const AVFrame& frame = *frame_;
         video_.width_px = frame.width;
         video_.height_px = frame.height;
@@ -263,6 +262,16 @@ class Decoding {
         video_.primaries = named(av_color_primaries_name(frame.color_primaries));
         video_.transfer = named(av_color_transfer_name(frame.color_trc));
         video_.chroma_location = named(av_chroma_location_name(frame.chroma_location));
+        const AVPixFmtDescriptor* const descriptor =
+            av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
+        is_readable_ = descriptor != nullptr && descriptor->nb_components >= 3 &&
+                       (descriptor->flags &
+                        (AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_FLOAT | AV_PIX_FMT_FLAG_HWACCEL)) == 0 &&
+                       descriptor->comp[0].depth >= 8;
+        if (!is_readable_) return;
+        video_.is_yuv = (descriptor->flags & AV_PIX_FMT_FLAG_RGB) == 0;
+        if ((descriptor->flags & AV_PIX_FMT_FLAG_ALPHA) != 0)
+            video_.has_alpha = samples_of(frame, 3, {0, 0, frame.width, frame.height}).least < 255;
     }
 
     void describe() {
@@ -277,7 +286,7 @@ class Decoding {
 
     DecodedVideo& video_;
     VerifyDepth depth_;
-    std::vector<ColorPatch> (*patches_of_)(const std::string&);
+    const std::vector<FrameColors>& rendered_;
     LogCapture log_;
     OpenVideo file_;
     Frame frame_;
@@ -286,17 +295,18 @@ class Decoding {
     std::optional<Rational> rounded_to_;
     bool counts_frames_ = false;
     bool is_described_ = false;
+    bool is_readable_ = false;  ///< its colours can be measured
+    std::int64_t packets_ = 0;  ///< so far, of kKeyFrames
     /// Of packets, the least on top.
     std::priority_queue<std::int64_t, std::vector<std::int64_t>, std::greater<>> stamps_;
 };
 
 }  // namespace
 
-DecodedVideo decode(const std::string& path, VerifyDepth depth,
-                    std::vector<ColorPatch> (*patches_of)(const std::string& comment),
+DecodedVideo decode(const std::string& path, VerifyDepth depth, const std::vector<FrameColors>& rendered,
                     const OnProgress& on_progress) {
     DecodedVideo video;
-    Decoding(video, depth, patches_of).run(path, on_progress);
+    Decoding(video, depth, rendered).run(path, on_progress);
     return video;
 }
 

@@ -10,6 +10,14 @@
 
 namespace corda::media {
 
+/// A patch as it is in the video.
+struct ShownPatch {
+    std::int64_t frame = 0;
+    ColorPatch rendered;
+    /// Mean R'G'B' (0 .. 255, not clipped); std::nullopt outside of the picture.
+    std::optional<std::array<double, 3>> rgb;
+};
+
 /// What decoding a file has shown.
 struct DecodedVideo {
     bool opened = false;      ///< the demuxer and a decoder accepted the file
@@ -32,17 +40,15 @@ struct DecodedVideo {
     bool is_yuv = false;          ///< not R'G'B'
     bool has_alpha = false;       ///< the first frame is transparent somewhere
     bool is_rounded = false;      ///< stamps count milliseconds, and each is the nearest to its frame's time
-    /// Mean R'G'B' (0 .. 255, not clipped) in the first frame of each patch inside the picture.
-    std::vector<std::array<double, 3>> patch_means;
+    std::vector<ShownPatch> patches;
 };
 
-/// Decodes the frames of the file at `path`, of a kind that libav demuxes. `patches_of` is called with the
-/// file's comment and returns the patches to measure in the first frame, `on_progress` with the frames.
-/// Throws corda::Error: kTemporary if there is not enough memory, kInterrupted if `on_progress` asks to stop;
-/// nothing else for a bad file.
+/// Decodes the frames of the file at `path`, of a kind that libav demuxes, and measures the patches of
+/// `rendered`, as far as these frames are decoded, and else those that the file's comment tells of the first
+/// one. `on_progress` is called with the frames. Throws corda::Error: kTemporary if there is not enough
+/// memory, kInterrupted if `on_progress` asks to stop; nothing else for a bad file.
 [[nodiscard]] DecodedVideo decode(const std::string& path, VerifyDepth depth,
-                                  std::vector<ColorPatch> (*patches_of)(const std::string& comment),
-                                  const OnProgress& on_progress);
+                                  const std::vector<FrameColors>& rendered, const OnProgress& on_progress);
 
 /// The same of an animated WebP, by libwebp.
 [[nodiscard]] DecodedVideo decode_webp(const std::string& path, const OnProgress& on_progress);

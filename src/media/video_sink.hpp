@@ -38,7 +38,8 @@ class VideoSink {
     /// No more packets come; what there is so far is whole.
     virtual void drain() {}
     /// After drain(): gives the video its name. Throws kMismatch if it is not sound.
-    virtual void finish(std::int64_t /*frames*/, VerifyDepth /*depth*/) {}
+    virtual void finish(std::int64_t /*frames*/, VerifyDepth /*depth*/,
+                        const std::vector<FrameColors>& /*rendered*/) {}
     /// After drain(): leaves what there is, of at least one frame, and tells where.
     virtual std::string abandon() = 0;
     /// Nothing was written: leaves no trace.

@@ -110,7 +110,7 @@ struct VideoWriter::Impl {
     void begin(Chunk& chunk) {
         comment["fps"] = def.fps.rational().text();
         if (format.codec->crf) comment["crf"] = format.crf_of(def.encoder);
-        comment["patches"] = patches_json(chunk.patches);
+        comment["patches"] = patches_json(chunk.colors.front().patches);
         parameters = std::move(chunk.parameters);
         sink->begin(*parameters, {.fps = def.fps.rational(),
                                   .title = metadata.title,
@@ -135,6 +135,10 @@ struct VideoWriter::Impl {
             sink->write(*packet);
         }
         sink->end_chunk();
+        for (FrameColors& frame : chunk.colors) {
+            frame.frame += written;
+            colors.push_back(std::move(frame));
+        }
         written += chunk.frames;
     }
 
@@ -164,7 +168,8 @@ struct VideoWriter::Impl {
     std::unique_ptr<ChunkEncoder> encoder;  ///< of the chunk that write() adds to
     CodecParameters parameters;
     std::unique_ptr<VideoSink> sink;
-    std::int64_t written = 0;  ///< frames of whole chunks
+    std::int64_t written = 0;         ///< frames of whole chunks
+    std::vector<FrameColors> colors;  ///< of frames in them
     bool drained = false;
 };
 
@@ -192,8 +197,9 @@ void VideoWriter::write(const Image& frame, const Damage& damage) {
                                 frame.height(), impl.def.width_px, impl.def.height_px));
     }
     if (!impl.encoder) impl.encoder = std::make_unique<ChunkEncoder>(impl.chunk_encoder(impl.next_frame()));
-    impl.encoder->encode(frame, damage);
-    if (impl.next_frame() % frames_per_chunk() == 0) impl.end_chunk();
+    const bool is_last = (impl.next_frame() + 1) % frames_per_chunk() == 0;
+    impl.encoder->encode(frame, damage, is_last);
+    if (is_last) impl.end_chunk();
 }
 
 void VideoWriter::append(Chunk chunk) {
@@ -228,7 +234,7 @@ void VideoWriter::finish(VerifyDepth depth) {
             fmt::format("'{}' would have no frame; ask for a duration of at least one frame", impl.path));
     }
     impl.drain();
-    impl.sink->finish(frames(), depth);
+    impl.sink->finish(frames(), depth, impl.colors);
 }
 
 std::string VideoWriter::abandon() {

@@ -129,7 +129,7 @@ class Chunks {
             try {
                 const Damage damage = painter.draw(time_s, goes_on);
                 if (painter.shows_nothing() && made.empty_frames++ == 0) made.first_empty_s = time_s;
-                encoder.encode(painter.image(), damage);
+                encoder.encode(painter.image(), damage, k + 1 == end);
             } catch (const Error& error) {
                 if (error.code() != ExitCode::kInterrupted || !is_stopped_) throw;
                 break;

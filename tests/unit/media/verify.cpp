@@ -3,9 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "corda/core/basics.hpp"
+#include "corda/media/chunk.hpp"
 #include "corda/media/defs.hpp"
 #include "support/decode_video.hpp"
+#include "support/failure.hpp"
 #include "video_support.hpp"
 
 namespace corda::media {
@@ -94,6 +98,38 @@ TEST_F(Video, VerifyComparesWithWhatWasRendered) {
     EXPECT_THAT(with("\"fps\":\"60\"", "\"fps\":\"50\""), HasSubstr("rendered for 50 fps"));
     EXPECT_THAT(with("255,0,0]", "248,0,0]"), HasSubstr("shows R'G'B'"));
     EXPECT_THAT(with("\"fps\":\"60\"", "\"fps\":\"60\""), IsEmpty());
+}
+
+TEST_F(Video, VerifyComparesFramesThatItIsToldOf) {
+    make_video(file("a.mp4"), small_video(), 150);
+    const auto red_at = [&](std::int64_t frame, std::uint8_t red, VerifyDepth depth) {
+        return all_problems(verify(file("a.mp4"), {}, depth, {{frame, {{32, 32, {red, 0, 0}}}}}));
+    };
+    for (const VerifyDepth depth : {VerifyDepth::kKeyFrames, VerifyDepth::kAllFrames}) {
+        EXPECT_THAT(red_at(60, 255, depth), IsEmpty());
+        EXPECT_THAT(red_at(60, 248, depth), HasSubstr("at (32, 32) frame 60 shows R'G'B' 25"));
+    }
+    EXPECT_THAT(red_at(59, 255, VerifyDepth::kAllFrames), IsEmpty());
+    EXPECT_THAT(red_at(59, 248, VerifyDepth::kAllFrames), HasSubstr("frame 59 shows"));
+    EXPECT_THAT(red_at(59, 248, VerifyDepth::kKeyFrames), IsEmpty());  // it is not decoded
+}
+
+TEST_F(Video, AChunkThatDoesNotShowWhatWasDrawnGetsNoName) {
+    for (const VerifyDepth depth : {VerifyDepth::kKeyFrames, VerifyDepth::kAllFrames}) {
+        VideoWriter writer(file("a.mp4"), small_video(), {});
+        write_frames(writer, 60);
+        ChunkEncoder encoder = writer.chunk_encoder(60);
+        for (int k = 60; k < 120; ++k) encoder.encode(frame_image(k), {{0, 0, kWidth, kHeight}}, k == 119);
+        Chunk chunk = encoder.finish();
+        ASSERT_EQ(chunk.colors.size(), 2U);
+        const bool is_first = depth == VerifyDepth::kKeyFrames;
+        chunk.colors[is_first ? 0 : 1].patches[0].rgb[1] ^= 0x40;
+        writer.append(std::move(chunk));
+        EXPECT_THAT(test::failure_of([&] { writer.finish(depth); }).message,
+                    HasSubstr(is_first ? "frame 60 shows" : "frame 119 shows"));
+        EXPECT_FALSE(std::filesystem::exists(file("a.mp4")));
+        std::filesystem::remove(file("a.mp4.part"));
+    }
 }
 
 TEST_F(Video, VerifyFindsTheSameByKeyFrames) {
