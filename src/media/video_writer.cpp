@@ -91,12 +91,10 @@ struct VideoWriter::Impl {
                                     resume)),
           comment(parsed_comment(metadata.comment_json)),
           first_frame(first),
-          encoder(std::make_unique<ChunkEncoder>(chunk_encoder(first))),
           sink(make_sink(format, path, output_options, {first, end, media::frames_per_chunk(format, def.fps)},
                          resume)),
           written(sink->resumed_frames()) {
         if (written == 0) return;
-        encoder.reset();
         parameters = check_allocated(CodecParameters(avcodec_parameters_alloc()), "codec parameters");
         check_libav(avcodec_parameters_copy(parameters.get(), &make_encoder(format, def)->parameters()),
                     ExitCode::kEncoder, "cannot copy codec parameters");
@@ -165,7 +163,7 @@ struct VideoWriter::Impl {
     Format format;
     nlohmann::json comment;
     std::int64_t first_frame;
-    std::unique_ptr<ChunkEncoder> encoder;  ///< of the chunk that write() adds to
+    std::unique_ptr<ChunkEncoder> encoder;  ///< of the chunk that write() adds to; null between chunks
     CodecParameters parameters;
     std::unique_ptr<VideoSink> sink;
     std::int64_t written = 0;         ///< frames of whole chunks

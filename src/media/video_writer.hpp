@@ -42,8 +42,9 @@ class VideoWriter {
   public:
     /// Opens the part file, for a video whose first frame is number `first_frame` of its film. With `force`,
     /// an existing video is replaced at the end, and the part of an interrupted render now. Throws
-    /// corda::Error: kUsage for an unknown ending or a bad def, kEncoder if the encoder is missing, kIo if
-    /// the file cannot be made, exists, or is being written by another render.
+    /// corda::Error: kUsage for an unknown ending or a bad def, kEncoder if the encoder is missing (one that
+    /// does not open shows with the first frame), kIo if the file cannot be made, exists, or is being written
+    /// by another render.
     VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata,
                 const OutputOptions& options = {}, std::int64_t first_frame = 0);
     /// As above, for frames first <= k < end; goes on with the part of an interrupted render of the same
