@@ -46,7 +46,7 @@ constexpr std::array kCodecs{
           kX26xPresets,
           "medium",
           {{1, 51}},
-          20,
+          23,
           32,
           0,
           false,
