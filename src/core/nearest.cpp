@@ -14,8 +14,11 @@ char lower(char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
-bool is_prefix(std::string_view a, std::string_view b) {
-    return std::min(a.size(), b.size()) >= kShortestPrefix && (a.starts_with(b) || b.starts_with(a));
+/// Whether a word is the beginning of a candidate, or a candidate of which it has half and more.
+bool is_prefix(std::string_view word, std::string_view candidate) {
+    if (std::min(word.size(), candidate.size()) < kShortestPrefix) return false;
+    return candidate.starts_with(word) ||
+           (word.starts_with(candidate) && 2 * candidate.size() >= word.size());
 }
 
 }  // namespace

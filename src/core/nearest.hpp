@@ -12,7 +12,8 @@ namespace corda {
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// The candidate that someone who wrote `word` most likely meant; std::nullopt if none is close. Close is at
-/// most a third of the letters wrong, or one of the two being the beginning of the other.
+/// most a third of the letters wrong, the word being the beginning of the candidate, or the candidate that of
+/// the word and half of it.
 [[nodiscard]] std::optional<std::string_view> nearest(std::string_view word,
                                                       std::span<const std::string_view> candidates);
 

@@ -128,7 +128,9 @@ bool has_one_shape(const TableReader& rope) {
                  [&](std::string_view shape) { return rope.is_given(shape); });
     if (given.empty())
         rope.add_problem(fmt::format("the rope has no shape; give one of: {}", fmt::join(kShapes, ", ")));
-    if (given.size() > 1)
+    const auto here =
+        std::count_if(given.begin(), given.end(), [&](std::string_view shape) { return rope.has(shape); });
+    if (here > 1)  // of a shape beside a misspelt key one is told enough
         rope.add_problem(fmt::format("the rope has {} shapes ({}); keep one of them", given.size(),
                                      fmt::join(given, ", ")));
     return given.size() == 1;

@@ -37,6 +37,7 @@ TEST(Nearest, FindsTheWordThatWasMeant) {
 TEST(Nearest, IsEmptyIfNoneIsClose) {
     EXPECT_FALSE(nearest("", kWords));
     EXPECT_FALSE(nearest("weight", kWords));
+    EXPECT_FALSE(nearest("mass_of_balls", kWords));
     EXPECT_FALSE(nearest("ab", kWords));
     EXPECT_FALSE(nearest(std::string(100'000, 'm'), kWords));
     EXPECT_FALSE(nearest("mass", {}));
