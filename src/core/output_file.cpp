@@ -1,6 +1,7 @@
 #include "corda/core/output_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,6 +10,7 @@
 #include <charconv>
 #include <filesystem>
 #include <random>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -22,10 +24,32 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 16;
 constexpr std::size_t kLongestStem = 230;  // file systems allow 255 bytes; ".12345678.tmp" needs 13
+constexpr std::string_view kTemporaryEnding = ".tmp";
 
 fs::path folder_of(const std::string& path) {
     const fs::path folder = fs::path(path).parent_path();
     return folder.empty() ? fs::path(".") : folder;
+}
+
+/// What the names of the temporary files of an output begin with.
+std::string temporary_stem(const std::string& path) {
+    const fs::path whole(path);
+    return (whole.parent_path() / whole.filename().string().substr(0, kLongestStem)).string() + ".";
+}
+
+/// Whether a name is a stem, hexadecimal digits and the ending of temporary files.
+bool is_temporary(std::string_view name, std::string_view stem) {
+    if (!name.starts_with(stem) || !name.ends_with(kTemporaryEnding)) return false;
+    if (name.size() <= stem.size() + kTemporaryEnding.size()) return false;
+    name.remove_prefix(stem.size());
+    name.remove_suffix(kTemporaryEnding.size());
+    return name.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+/// Removes a temporary file unless somebody holds it.
+void remove_unheld(const std::string& path) {
+    const Descriptor file(::open(path.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC));
+    if (file && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0) ::unlink(path.c_str());
 }
 
 /// The file that `path` leads to through symbolic links; it may be missing.
@@ -120,6 +144,16 @@ void check_output(const std::string& path, const std::string& input, bool force,
     }
 }
 
+void remove_leftovers(const std::string& path) noexcept {
+    try {
+        const std::string stem = fs::path(temporary_stem(follow_links(path))).filename().string();
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder_of(follow_links(path))))
+            if (is_temporary(entry.path().filename().string(), stem)) remove_unheld(entry.path().string());
+    } catch (const std::exception&) {
+        return;
+    }
+}
+
 OutputFile::OutputFile(std::string path, const OutputOptions& options)
     : path_(std::move(path)), target_(path_), options_(options) {
     if (is_standard_output(path_)) {
@@ -158,14 +192,17 @@ void OutputFile::open_directly() {
 void OutputFile::open_temporary() {
     // Nobody may read a new version of a private file before it has the old one's permissions.
     const mode_t mode = replaced_ ? 0600 : 0666;
-    const fs::path target(target_);
-    const std::string stem =
-        (target.parent_path() / target.filename().string().substr(0, kLongestStem)).string();
-    do {
-        temporary_ = stem + "." + random_text() + ".tmp";
+    const std::string stem = temporary_stem(target_);
+    for (;;) {
+        temporary_ = stem + random_text() + std::string(kTemporaryEnding);
         descriptor_ = create_new(temporary_, mode);
-    } while (!descriptor_ && errno == EEXIST);
-    if (descriptor_) return;
+        if (!descriptor_ && errno == EEXIST) continue;
+        if (!descriptor_) break;
+        // Where files cannot be locked nobody removes it either. Before it was locked somebody may have.
+        static_cast<void>(::flock(descriptor_.get(), LOCK_EX | LOCK_NB));
+        struct stat status {};
+        if (::fstat(descriptor_.get(), &status) == 0 && status.st_nlink > 0) return;
+    }
     temporary_.clear();
     fail_file("write", path_, errno);
 }

@@ -24,12 +24,16 @@ enum class OutputKind {
 void check_output(const std::string& path, const std::string& input, bool force,
                   OutputKind kind = OutputKind::kFile);
 
+/// Removes the temporary files that killed processes have left of outputs of this name. Those of living ones
+/// are locked, and stay. Never throws: they do no harm.
+void remove_leftovers(const std::string& path) noexcept;
+
 /// A file that gets its name only when it is complete.
 ///
-/// The bytes go to a temporary file of unique name in the same folder. `commit` gives it the final name; a
-/// file that already has this name, even one that appeared meanwhile, is replaced only with `force`. Then its
-/// permissions stay, and if the name is a symbolic link, the file it leads to is replaced. A device, a pipe
-/// or standard output is written to directly.
+/// The bytes go to a temporary file of unique name in the same folder, which is locked. `commit` gives it the
+/// final name; a file that already has this name, even one that appeared meanwhile, is replaced only with
+/// `force`. Then its permissions stay, and if the name is a symbolic link, the file it leads to is replaced.
+/// A device, a pipe or standard output is written to directly.
 class OutputFile {
   public:
     /// Creates the temporary file. Throws corda::Error (kIo), like all below.

@@ -86,6 +86,7 @@ RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOpt
     }
     const Ending& ending = find_ending(path);
     check_ending(index, part.path(), path, ending);
+    remove_leftovers(path);
     OutputFile output(path, options);
     if (ending.kind == FileKind::kAnimation)
         write_animation(part.path(), ending, index.fps, result.frames, all_done, output);

@@ -90,6 +90,7 @@ TEST_F(Resume, MakesTheSameVideoOfWhatWasKilledAtAnyMoment) {
             const auto resumed = run_corda(render("a.mp4", again));
             EXPECT_EQ(resumed.exit_code, 0) << after_s << resumed.err;
             EXPECT_FALSE(std::filesystem::exists(file("a.mp4.part")));
+            for (const std::string& left : folder_.files()) EXPECT_FALSE(left.ends_with(".tmp")) << left;
         }
         EXPECT_TRUE(read_file(file("a.mp4")) == whole) << after_s;
         for (const char* const name : {"a.mp4", "a.mp4.part", "copy.mp4"})

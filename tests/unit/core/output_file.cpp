@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -120,6 +121,31 @@ TEST_F(OutputFiles, NamesOfAnyLengthWork) {
     const std::string name(255, 'n');
     save(file(name), "text");
     EXPECT_THAT(folder_.files(), ElementsAre(name));
+}
+
+TEST_F(OutputFiles, LeftoversOfKilledProcessesAreRemovedAndNoOthers) {
+    const auto leave_one = [this] {
+        if (::fork() == 0) {
+            OutputFile output(file("a"));
+            output.write(std::string(100'000, 'x'));
+            ::_exit(0);  // as SIGKILL would: nothing is destroyed
+        }
+        int status = 0;
+        ::wait(&status);
+    };
+    leave_one();
+    leave_one();
+    EXPECT_EQ(folder_.files().size(), 2U);
+    OutputFile living(file("a"));
+    const std::vector<std::string> others{"a.12g4.tmp", "a..tmp", "a.tmp", "b.1234.tmp", "a.1234.tmp.png"};
+    for (const std::string& name : others) test::write_file(file(name), "precious");
+    fs::create_symlink("b.1234.tmp", file("a.77.tmp"));
+    remove_leftovers(file("a"));
+    std::vector<std::string> kept = others;
+    kept.emplace_back("a.77.tmp");
+    kept.push_back(fs::path(living.temporary_path()).filename().string());
+    EXPECT_THAT(folder_.files(), testing::UnorderedElementsAreArray(kept));
+    remove_leftovers(file("no/such/folder/a"));
 }
 
 TEST_F(OutputFiles, TemporaryNamesAreUnique) {
