@@ -48,8 +48,10 @@ struct Encoded {
 void encode(const Image& image, const PixelRect& part, Encoded& bytes) {
     WebPConfig config;
     WebPPicture picture;
-    if (WebPConfigInit(&config) == 0 || WebPPictureInit(&picture) == 0) fail_webp("has another version");
-    config.lossless = 1;
+    constexpr int kEffort = 1;  // of 9: 6, libwebp's own, takes twice the time for 10 to 14 % fewer bytes
+    if (WebPConfigInit(&config) == 0 || WebPPictureInit(&picture) == 0 ||
+        WebPConfigLosslessPreset(&config, kEffort) == 0)
+        fail_webp("has another version");
     config.exact = 1;
     picture.use_argb = 1;
     picture.width = part.width();
