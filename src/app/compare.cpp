@@ -16,6 +16,7 @@
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/golden/perceived.hpp"
+#include "corda/golden/variant.hpp"
 #include "corda/media/defs.hpp"
 #include "interrupt.hpp"
 
@@ -121,7 +122,7 @@ ExitCode compare(const Console& console, CompareOptions options) {
     if (is_folder) return compare_folders(console, options, mask);
     const bool is_video = is_video_name(options.a);
     for (const std::string& other : options.variants)
-        if (cause_of(other).empty())
+        if (variant_cause(other).empty())
             throw Error(ExitCode::kUsage,
                         fmt::format("--variant {}: does not name its cause; call it NAME.CAUSE.png, e.g. "
                                     "swing.nvidia.png",
@@ -136,12 +137,6 @@ ExitCode compare(const Console& console, CompareOptions options) {
 }
 
 }  // namespace
-
-std::string cause_of(const std::string& path) {
-    const std::string stem = std::filesystem::path(path).stem().string();
-    const std::size_t dot = stem.rfind('.');
-    return dot == std::string::npos || dot == 0 ? "" : stem.substr(dot + 1);
-}
 
 nlohmann::json figures_json(const Difference& difference) {
     nlohmann::json json{{"equal", difference.equal},
@@ -158,14 +153,6 @@ nlohmann::json figures_json(const Difference& difference) {
     if (difference.flip) json["flip"] = *difference.flip;
     if (difference.ssim) json["ssim"] = *difference.ssim;
     return json;
-}
-
-std::string figures_text(const Difference& difference) {
-    std::string text =
-        fmt::format("max {}, mean {:.6g}, share {:.6g}", difference.max, difference.mean, difference.share);
-    if (difference.flip) text += fmt::format(", FLIP {:.6g}", *difference.flip);
-    if (difference.ssim) text += fmt::format(", SSIM {:.6g}", *difference.ssim);
-    return text;
 }
 
 PerceivedFigures figures_for(const CompareOptions& options) {
@@ -191,7 +178,7 @@ ComparedPicture compare_picture(const CompareOptions& options, const std::string
         compared.difference = difference_of(picture, a, path, b, figures, goes_on, its_mask, !diff.empty());
         compared.passed = compared.difference.within(options.limits);
         compared.reference = path;
-        if (compared.passed && path != references.front()) compared.variant = cause_of(path);
+        if (compared.passed && path != references.front()) compared.variant = variant_cause(path);
         compared.words = words_of(compared, a, b);
         if (chosen && !compared.passed) continue;
         chosen = std::move(compared);

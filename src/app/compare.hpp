@@ -23,13 +23,8 @@ struct CompareOptions {
     bool json = false;  ///< figures that take long are wanted, too
 };
 
-/// "nvidia" of "NAME.nvidia.png", a variant of NAME.png; empty if the name says none.
-[[nodiscard]] std::string cause_of(const std::string& path);
-
 /// The figures of a difference; null for those that were not computed.
 [[nodiscard]] nlohmann::json figures_json(const Difference& difference);
-/// "max 3, mean 0.1, share 0.02", and what else was computed.
-[[nodiscard]] std::string figures_text(const Difference& difference);
 /// Which figures the limits ask for.
 [[nodiscard]] PerceivedFigures figures_for(const CompareOptions& options);
 

@@ -13,6 +13,7 @@
 #include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
+#include "corda/golden/variant.hpp"
 
 namespace corda::app {
 namespace {
@@ -43,8 +44,7 @@ std::vector<Pair> pairs_of(const std::set<std::string>& a, const std::set<std::s
     std::map<std::string, std::vector<std::string>> variants;
     std::set<std::string> all = a;
     for (const std::string& name : b) {
-        const std::string cause = cause_of(name);
-        const std::string base = cause.empty() ? "" : name.substr(0, name.size() - cause.size() - 5) + ".png";
+        const std::string base = base_of_variant(name);
         if (!base.empty() && b.contains(base) && !a.contains(name))
             variants[base].push_back(name);
         else

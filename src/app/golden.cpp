@@ -52,8 +52,7 @@ std::string line_of(const Checked& picture, const GoldenOptions& options) {
     }
     if (!picture.changed || picture.verdict != Verdict::kPassed) line += word_of(picture.verdict);
     if (picture.verdict == Verdict::kDifferent && picture.difference.same_size)
-        line += fmt::format(": max {}, mean {:.6g}, share {:.6g}", picture.difference.max,
-                            picture.difference.mean, picture.difference.share);
+        line += ": " + figures_text(picture.difference);
     if (!picture.cause.empty()) line += (line.ends_with(' ') ? "" : "; ") + picture.cause;
     if (picture.failed() && picture.verdict == Verdict::kMissing) line += "; --update adds it";
     if (picture.failed() && picture.verdict == Verdict::kStale) line += "; --update removes it";

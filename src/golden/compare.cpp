@@ -1,5 +1,7 @@
 #include "corda/golden/compare.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -66,6 +68,14 @@ bool Difference::within(const DifferenceLimits& limits) const {
     return (!limits.max || max <= *limits.max) && (!limits.mean || mean <= *limits.mean) &&
            (!limits.share || share <= *limits.share) && (!limits.flip || (flip && *flip <= *limits.flip)) &&
            (!limits.ssim || (ssim && *ssim >= *limits.ssim));
+}
+
+std::string figures_text(const Difference& difference) {
+    std::string text =
+        fmt::format("max {}, mean {:.6g}, share {:.6g}", difference.max, difference.mean, difference.share);
+    if (difference.flip) text += fmt::format(", FLIP {:.6g}", *difference.flip);
+    if (difference.ssim) text += fmt::format(", SSIM {:.6g}", *difference.ssim);
+    return text;
 }
 
 Difference compare(const Image& a, const Image& b, const OnProgress& on_progress, const Image* mask) {

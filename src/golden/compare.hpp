@@ -34,9 +34,12 @@ struct Difference {
     [[nodiscard]] bool within(const DifferenceLimits& limits) const;
 };
 
+/// "max 3, mean 0.1, share 0.02", and FLIP and SSIM if they were computed.
+[[nodiscard]] std::string figures_text(const Difference& difference);
+
 /// Compares all channels of all pixels of two pictures; with a `mask` of their size, of those that are not
-/// black in it. Throws corda::Error: kUsage for a mask of another size, kInterrupted if `on_progress`, called
-/// with the rows, asks to stop.
+/// black in it. Throws corda::Error: kUsage for a mask of another size or without a pixel to compare,
+/// kInterrupted if `on_progress`, called with the rows, asks to stop.
 [[nodiscard]] Difference compare(const Image& a, const Image& b, const OnProgress& on_progress = {},
                                  const Image* mask = nullptr);
 

@@ -9,6 +9,7 @@
 
 #include "corda/core/file.hpp"
 #include "corda/core/text.hpp"
+#include "corda/golden/variant.hpp"
 #include "corda/suite/provenance.hpp"
 
 namespace corda::suite {
@@ -95,10 +96,9 @@ std::vector<std::string> references_in(const std::string& folder) {
 }
 
 std::vector<std::string> variants_of(const std::vector<std::string>& references, const std::string& name) {
-    const std::string stem = fs::path(name).stem().string() + ".";
     std::vector<std::string> variants;
     for (const std::string& path : references)
-        if (fs::path(path).filename().string().starts_with(stem)) variants.push_back(path);
+        if (fs::path(path).filename() == name || base_of_variant(path) == name) variants.push_back(path);
     return variants;
 }
 

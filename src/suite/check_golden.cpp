@@ -36,8 +36,7 @@ std::string text_of(const Difference& difference, const Image& golden, const Ima
     if (!difference.same_size)
         return fmt::format("{}x{} pixels, the golden picture {}x{}", drawn.width(), drawn.height(),
                            golden.width(), golden.height());
-    return fmt::format("max {}, mean {:.6g}, share {:.6g}", difference.max, difference.mean,
-                       difference.share);
+    return figures_text(difference);
 }
 
 /// Writes the pictures that show a failure; says where.

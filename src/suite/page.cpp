@@ -76,8 +76,7 @@ std::optional<Image> reference_of(const Checked& picture, const std::string& fol
 
 std::string figures_of(const Checked& picture) {
     if (picture.variant.empty() || !picture.difference.same_size) return "";
-    return fmt::format("<p class=\"figures\">max {}, mean {:.6g}, share {:.6g}</p>\n", picture.difference.max,
-                       picture.difference.mean, picture.difference.share);
+    return fmt::format("<p class=\"figures\">{}</p>\n", figures_text(picture.difference));
 }
 
 std::string case_html(const Checked& picture, const std::string& folder) {
