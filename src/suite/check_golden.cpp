@@ -40,12 +40,21 @@ std::string text_of(const Difference& difference, const Image& golden, const Ima
 }
 
 /// Writes the pictures that show a failure; says where.
-std::string keep_artifacts(const std::string& name, const Image& drawn, const std::optional<Image>& golden) {
+std::string keep_artifacts(const std::string& name, const fs::path& golden_folder, const Image& drawn,
+                           const std::optional<Image>& golden) {
     const std::string folder = environment("CORDA_GOLDEN_ARTIFACTS");
     if (folder.empty())
         return "; set CORDA_GOLDEN_ARTIFACTS to a folder for the new picture and the difference";
-    const fs::path stem = (fs::path(folder) / name).replace_extension();
+    // A name that begins with / is put inside the folder, too.
+    const fs::path stem = (fs::path(folder) / fs::path(name).relative_path()).replace_extension();
     make_folder(stem.parent_path().string());
+    std::error_code none;
+    if (fs::equivalent(stem.parent_path(), golden_folder, none))
+        throw Error(
+            ExitCode::kUsage,
+            fmt::format("CORDA_GOLDEN_ARTIFACTS is '{}', where the golden pictures are, and the next run "
+                        "would take {}.new.png for one of them; name another folder",
+                        folder, stem.filename().string()));
     const std::string drawn_path = stem.string() + ".new.png";
     write_png(drawn_path, drawn, {}, {.force = true});
     if (!golden) return "; see " + drawn_path;
@@ -73,18 +82,19 @@ GoldenOutcome check_golden(const Image& drawn, const std::string& name, const Go
         throw Error(ExitCode::kUsage,
                     fmt::format("a golden picture's name ends in .png, and '{}' does not", name));
     const fs::path path = folder_of(options) / name;
+    const fs::path folder = path.parent_path().empty() ? "." : path.parent_path();
     const std::string file = path.filename().string();
     if (suite::has_one_color(drawn))
         return {.matches = false,
                 .written = false,
                 .message = "the picture has one colour alone: nothing is in view" +
-                           keep_artifacts(name, drawn, std::nullopt)};
-    const std::string folder = path.parent_path().empty() ? "." : path.parent_path().string();
+                           keep_artifacts(name, folder, drawn, std::nullopt)};
     std::string why = fmt::format("there is no golden picture '{}'", path.string());
     std::optional<Image> golden;
-    for (const std::string& variant : suite::variants_of(suite::references_in(folder), file)) {
+    for (const std::string& variant : suite::variants_of(suite::references_in(folder.string()), file)) {
         Image one = read_png(variant);
-        const Difference difference = compare(one, drawn);
+        const Difference difference = compare_perceived(
+            one, drawn, {.flip = options.limits.flip.has_value(), .ssim = options.limits.ssim.has_value()});
         if (difference.within(options.limits)) return {.matches = true, .written = false, .message = {}};
         if (golden && fs::path(variant).filename() != file) continue;
         why = fmt::format("differs from '{}': {}", variant, text_of(difference, one, drawn));
@@ -92,7 +102,7 @@ GoldenOutcome check_golden(const Image& drawn, const std::string& name, const Go
     }
     if (is_update()) return update(path, drawn, why);
     if (!golden) why += "; CORDA_UPDATE_GOLDENS=1 writes it";
-    return {.matches = false, .written = false, .message = why + keep_artifacts(name, drawn, golden)};
+    return {.matches = false, .written = false, .message = why + keep_artifacts(name, folder, drawn, golden)};
 }
 
 }  // namespace corda::testing

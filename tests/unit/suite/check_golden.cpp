@@ -53,6 +53,23 @@ TEST_F(CheckGolden, MatchesEqualPicturesAndThoseWithinLimits) {
     EXPECT_THAT(check_golden(Image(8, 6), "dot.png").message, HasSubstr("one colour alone"));
 }
 
+TEST_F(CheckGolden, TakesFlipAndSsimAsLimits) {
+    Image golden(16, 16);
+    for (std::size_t i = 3; i < golden.size_bytes(); i += 4) golden.data()[i] = 255;
+    Image drawn = golden;
+    golden.pixel(8, 8)[1] = 200;
+    drawn.pixel(8, 8)[1] = 190;
+    write_png(folder_.file("ref/large.png"), golden);
+    EXPECT_THAT(drawn,
+                MatchesGolden("large.png", {.limits = {.max = {}, .mean = {}, .share = {}, .flip = 0.5}}));
+    EXPECT_THAT(drawn,
+                MatchesGolden("large.png", {.limits = {.max = {}, .mean = {}, .share = {}, .ssim = 0.5}}));
+    const auto outcome =
+        check_golden(drawn, "large.png", {.limits = {.max = {}, .mean = {}, .share = {}, .flip = 0.0}});
+    EXPECT_FALSE(outcome.matches);
+    EXPECT_THAT(outcome.message, HasSubstr(", FLIP "));
+}
+
 TEST_F(CheckGolden, MatchesAnyVariant) {
     write_png(folder_.file("ref/dot.older.png"), with_dot(90));
     EXPECT_THAT(with_dot(90), MatchesGolden("dot.png"));
@@ -71,6 +88,17 @@ TEST_F(CheckGolden, SaysWhatIsMissingAndWhereTheNewPictureIs) {
     EXPECT_EQ(read_png(folder_.file("out/dot.new.png")), with_dot(199));
     EXPECT_EQ(read_png(folder_.file("out/dot.difference.png")),
               difference_image(with_dot(200), with_dot(199)));
+}
+
+TEST_F(CheckGolden, RefusesArtifactsAmongGoldenPictures) {
+    setenv("CORDA_GOLDEN_ARTIFACTS", folder_.file("ref/../ref").c_str(), 1);
+    for (int run = 0; run < 2; ++run)  // what the first one kept would be a variant for the second
+        EXPECT_EQ(test::code_of([] { (void)check_golden(with_dot(7), "dot.png"); }), ExitCode::kUsage);
+    setenv("CORDA_GOLDEN_ARTIFACTS", folder_.file("out").c_str(), 1);
+    const std::string name = folder_.file("ref/dot.png");  // which is no reason to write beside it
+    EXPECT_FALSE(check_golden(with_dot(7), name).matches);
+    EXPECT_EQ(read_png(folder_.file("out" + folder_.file("ref/dot.new.png"))), with_dot(7));
+    EXPECT_FALSE(check_golden(with_dot(7), name).matches);
 }
 
 TEST_F(CheckGolden, UpdatesWhatItMade) {
