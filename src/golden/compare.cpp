@@ -106,6 +106,10 @@ Difference compare(const Image& a, const Image& b, const OnProgress& on_progress
         }
     }
     result.equal = differing == 0;
+    if (pixels == 0 && mask != nullptr)
+        throw Error(ExitCode::kUsage,
+                    "the mask is black everywhere, which leaves nothing to compare; what is to "
+                    "be compared must not be black in it");
     if (pixels == 0) return result;
     result.mean = static_cast<double>(sum) / static_cast<double>(pixels * kChannels);
     result.share = static_cast<double>(differing) / static_cast<double>(pixels);
