@@ -1,13 +1,13 @@
 #include "corda/suite/staging.hpp"
 
-#include <unistd.h>
+#include <fcntl.h>
+#include <sys/file.h>
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <utility>
-
-#include "corda/core/file.hpp"
 
 namespace corda::suite {
 namespace {
@@ -23,13 +23,26 @@ Staging::~Staging() {
     if (!inside_.empty()) fs::remove_all(inside_, ignored);
 }
 
+void Staging::begin() {
+    make_folder(folder_);
+    lock_ = Descriptor(::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!lock_) fail_file("open", folder_, errno);
+    // A file system without locks has no other update to find either.
+    if (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+        throw Error(ExitCode::kTemporary,
+                    fmt::format("another update is writing to '{}'; try again when it has ended", folder_));
+    const std::string inside = (fs::path(folder_) / ".update").string();
+    std::error_code failure;
+    fs::remove_all(inside, failure);  // of an update that was killed
+    if (failure) fail_file("remove", inside, failure.value());
+    make_folder(inside);
+    inside_ = inside;
+}
+
 void Staging::add(const std::string& name, const Image& image, const PngInfo& info) {
     {
         const std::lock_guard lock(mutex_);
-        if (inside_.empty()) {
-            inside_ = (fs::path(folder_) / fmt::format(".update_{}", getpid())).string();
-            make_folder(inside_);
-        }
+        if (inside_.empty()) begin();
         names_.push_back(name);
     }
     write_png((fs::path(inside_) / name).string(), image, info, {.force = true});

@@ -1,4 +1,7 @@
 // `corda golden`: suites that pass, fail for each cause, miss pictures and go stale.
+#include <fcntl.h>
+#include <sys/file.h>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "corda/core/file.hpp"
 #include "corda/media/defs.hpp"
 #include "support/command.hpp"
 
@@ -173,6 +177,24 @@ TEST_F(GoldenSuite, ChangesNothingIfAnUpdateFails) {
     EXPECT_EQ(run({"--update", "--set", "world.drag=0.3"}).exit_code, 3);
     EXPECT_EQ(test::read_file(reference(kMiddle)), kept);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.file("ref")), {}), 3);
+}
+
+TEST_F(GoldenSuite, RemovesWhatAKilledUpdateHasLeft) {
+    std::filesystem::create_directory(reference(".update"));
+    test::write_file(reference(".update/swing_t0009_000000.png"), "half a picture");
+    EXPECT_EQ(run({"--update", "--set", "world.drag=0.3"}).exit_code, 0);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.file("ref")), {}), 3);
+}
+
+TEST_F(GoldenSuite, LetsOneUpdateWriteAtATime) {
+    const std::string kept = test::read_file(reference(kMiddle));
+    const Descriptor other(open(folder_.file("ref").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    ASSERT_EQ(flock(other.get(), LOCK_EX), 0);
+    const auto result = run({"--update", "--set", "world.drag=0.3"});
+    EXPECT_EQ(result.exit_code, 75);
+    EXPECT_THAT(result.err, HasSubstr("another update is writing to"));
+    EXPECT_EQ(test::read_file(reference(kMiddle)), kept);
+    EXPECT_EQ(run().exit_code, 0);
 }
 
 TEST_F(GoldenSuite, LeavesPicturesOfOthersAlone) {
