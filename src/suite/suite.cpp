@@ -217,7 +217,8 @@ class Runner {
         const auto is_the_same = [&](std::size_t i) {
             if (pictures[i].verdict != Verdict::kPassed) return !moved(pictures[i]);
             const auto path = (fs::path(def_.folder) / pictures[i].variant).string();
-            return from_png_info(read_png_info(path)).state == job.made[i].state;
+            const Provenance reference = from_png_info(read_png_info(path));
+            return !reference.is_golden() || reference.state == job.made[i].state;
         };
         while (is_the_same(first)) ++first;
         for (Checked& picture : pictures)

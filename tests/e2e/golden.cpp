@@ -108,6 +108,13 @@ TEST_F(GoldenSuite, TellsSinceWhenPositionsDifferThoughNoPixelDoes) {
     EXPECT_THAT(more.out, AllOf(Not(HasSubstr("_500000.png")), HasSubstr("from t = 0.5 s on")));
 }
 
+TEST_F(GoldenSuite, TakesNoPositionsFromAReferenceThatTellsNone) {
+    change_reference("swing_t0000_000000.png", [](Image&, PngInfo& info) { info.text.clear(); });
+    const auto result = run({"--set", "world.drag=0.3"});  // which the first picture does not show
+    EXPECT_EQ(result.exit_code, 7);
+    EXPECT_THAT(result.out, AllOf(HasSubstr("from t = 0.5 s on"), Not(HasSubstr("from t = 0 s on"))));
+}
+
 TEST_F(GoldenSuite, TellsAnotherVersionAndAnotherOpenGl) {
     const auto recolor = [](Image& image) { image.pixel(5, 5)[0] ^= 1U; };
     change_reference(kMiddle, [&](Image& image, PngInfo& info) {
