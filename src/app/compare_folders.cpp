@@ -98,6 +98,18 @@ void compare_all(const CompareOptions& options, const std::optional<Image>& mask
         if (pair.failure) std::rethrow_exception(pair.failure);
 }
 
+/// Makes the folder of the differences, which must not take the place of what is compared.
+void check_diff_folder(const CompareOptions& options) {
+    if (options.diff.empty()) return;
+    make_folder(options.diff);
+    std::error_code none;
+    for (const std::string& folder : {options.a, options.b})
+        if (std::filesystem::equivalent(options.diff, folder, none))
+            throw Error(ExitCode::kUsage, fmt::format("--diff {}: holds the pictures that are compared; name "
+                                                      "another folder",
+                                                      options.diff));
+}
+
 /// The figures of the worst.
 void take_worst(const Difference& difference, Difference& worst) {
     worst.equal &= difference.equal;
@@ -117,7 +129,7 @@ ExitCode compare_folders(const Console& console, const CompareOptions& options,
     if (pairs.empty())
         throw Error(ExitCode::kUsage,
                     fmt::format("neither '{}' nor '{}' has a PNG file", options.a, options.b));
-    if (!options.diff.empty()) make_folder(options.diff);
+    check_diff_folder(options);
     compare_all(options, mask, pairs);
     Difference worst;
     std::int64_t failed = 0;

@@ -165,6 +165,17 @@ TEST_F(CompareFiles, VariantsInFolders) {
     EXPECT_EQ(code({file("a"), file("b")}), 7);
 }
 
+TEST_F(CompareFiles, LeavesComparedFoldersAlone) {
+    for (const std::string folder : {"a", "b"}) std::filesystem::create_directory(file(folder));
+    put("a/one.png", drawn(11));
+    put("b/one.png", drawn(10));
+    for (const std::string folder : {"a", "b"})
+        EXPECT_EQ(code({file("a"), file("b"), "--diff", file("b/../" + folder), "--force"}), 2);
+    EXPECT_EQ(read_png(file("b/one.png")), drawn(10));
+    EXPECT_EQ(code({file("a"), file("b"), "--diff", file("diff")}), 7);
+    EXPECT_TRUE(std::filesystem::exists(file("diff/one.png")));
+}
+
 TEST_F(CompareFiles, VideosFrameByFrame) {
     const std::string source = "testsrc=size=64x48:rate=25:duration=0.4";
     const std::string lossless = " -c:v ffv1 -pix_fmt bgr0";
