@@ -87,7 +87,9 @@ VideoDifference compare_all_frames(const CompareOptions& options, const std::str
         if (!has_a && !has_b) break;
         result.frames[0] += has_a ? 1 : 0;
         result.frames[1] += has_b ? 1 : 0;
-        for (std::size_t i = 0; i < 2; ++i) result.sizes[i] = {pictures[i].width_px, pictures[i].height_px};
+        // Sizes may change amid a video; the first that differ are told.
+        for (std::size_t i = 0; i < 2 && result.worst.same_size; ++i)
+            result.sizes[i] = {pictures[i].width_px, pictures[i].height_px};
         if (has_a && has_b) take_frames(options, pictures, mask, result);
     }
     PerceivedFigures figures = figures_for(options);
@@ -101,7 +103,7 @@ VideoDifference compare_all_frames(const CompareOptions& options, const std::str
     return result;
 }
 
-Json json_of(const VideoDifference& found, const CompareOptions& options) {
+Json json_of(const VideoDifference& found) {
     const bool same_size = found.sizes[0] == found.sizes[1];
     const bool same_frames = found.frames[0] == found.frames[1];
     const bool same_times = are_same_rate(found.rates) && found.time_s <= kSameTimeS;
@@ -136,7 +138,6 @@ Json json_of(const VideoDifference& found, const CompareOptions& options) {
                                     found.worst_time_s, figures_text(found.worst)));
     }
     if (words.empty()) words.push_back(fmt::format("equal: {} frames", found.frames[0]));
-    (void)options;
     json["words"] = words;
     return json;
 }
@@ -148,7 +149,7 @@ std::string told_of_videos(const CompareOptions& options, const std::string& pat
     std::string pixels;
     try {
         const VideoDifference found = compare_all_frames(options, path_b, mask);
-        json = json_of(found, options);
+        json = json_of(found);
         if (!options.diff.empty() && found.differing > 0) {
             const Image picture = difference_image(found.worst_pictures[0], found.worst_pictures[1], {},
                                                    mask && found.worst.same_size ? &*mask : nullptr);

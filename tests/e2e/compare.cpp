@@ -215,6 +215,19 @@ TEST_F(CompareFiles, VideosOfOtherCountsSizesRatesAndFormats) {
     EXPECT_EQ(code({a, exact, "--mean", "10"}), 0);
 }
 
+TEST_F(CompareFiles, SizesThatChangeAmidAVideo) {
+    const auto made =
+        run_shell("cd " + test::quoted(file("")) +
+                  " && for size in 64x48 32x48; do ffmpeg -v error -f lavfi -i "
+                  "testsrc=size=$size:rate=25:duration=0.12 -c:v mjpeg $size.mjpeg; done && "
+                  "cat 64x48.mjpeg 32x48.mjpeg 64x48.mjpeg | ffmpeg -v error -f mjpeg -i - -c copy a.mkv && "
+                  "cat 64x48.mjpeg 64x48.mjpeg 64x48.mjpeg | ffmpeg -v error -f mjpeg -i - -c copy b.mkv");
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    const auto result = run_corda({"compare", file("a.mkv"), file("b.mkv")});
+    EXPECT_EQ(result.exit_code, 7);
+    EXPECT_THAT(result.out, HasSubstr("different sizes: 32x48 and 64x48"));
+}
+
 TEST_F(CompareFiles, DamagedVideosEndInOrder) {
     const std::string a = video("a.mp4", "testsrc=size=64x48:rate=25:duration=0.4 -c:v mpeg4 -bf 2");
     std::string bytes = test::read_file(a);
