@@ -110,8 +110,9 @@ ExitCode compare(const Console& console, CompareOptions options) {
     options.json = console.json();
     std::optional<Image> mask;
     if (!options.mask.empty()) mask = read_png(options.mask, stopping_if_asked());
-    const bool is_folder = std::filesystem::is_directory(options.a);
-    if (is_folder != std::filesystem::is_directory(options.b)) {
+    std::error_code none;  // who reads it tells what is wrong
+    const bool is_folder = std::filesystem::is_directory(options.a, none);
+    if (is_folder != std::filesystem::is_directory(options.b, none)) {
         throw Error(ExitCode::kUsage,
                     fmt::format("'{}' is a folder and '{}' is none; name two pictures, or two folders",
                                 is_folder ? options.a : options.b, is_folder ? options.b : options.a));

@@ -133,6 +133,12 @@ TEST_F(CompareFiles, SsimNeedsElevenPixels) {
     EXPECT_EQ(report({a, b})["ssim"], nullptr);
 }
 
+TEST_F(CompareFiles, NamesThatNoFileCanHaveAreNoInternalError) {
+    const std::string a = put("a.png", drawn());
+    EXPECT_EQ(code({a, file(std::string(300, 'n'))}), 6);
+    EXPECT_EQ(run_corda({"golden", file(std::string(300, 'n')), "--dir", file("ref")}).exit_code, 6);
+}
+
 TEST_F(CompareFiles, AVariantMayMatch) {
     const std::string a = put("new.png", drawn(11));
     const std::string b = put("ref.png", drawn(10));
