@@ -18,7 +18,7 @@
 namespace {
 
 namespace py = pybind11;
-using Pixels = py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>;
+using Pixels = py::array_t<std::uint8_t, py::array::c_style>;
 
 /// Hands the pixels of a picture to numpy, which frees them.
 py::array_t<std::uint8_t> to_array(corda::Image image) {
@@ -30,7 +30,12 @@ py::array_t<std::uint8_t> to_array(corda::Image image) {
 }
 
 /// A copy of an array of shape (height, width, 3 or 4).
-corda::Image to_image(const Pixels& pixels) {
+corda::Image to_image(const py::object& picture) {
+    // Other numbers are refused: 0.0 .. 1.0 as bytes would all be black, and equal.
+    if (!py::isinstance<py::array_t<std::uint8_t>>(picture))
+        throw py::type_error(
+            "a picture is a numpy array of uint8; convert it, for instance by .astype(numpy.uint8)");
+    const Pixels pixels(picture);
     if (pixels.ndim() != 3 || (pixels.shape(2) != 3 && pixels.shape(2) != 4))
         throw py::value_error(
             "a picture is an array of uint8 of shape (height, width, 4), or (height, width, 3)");
@@ -301,7 +306,7 @@ PYBIND11_MODULE(_corda, module) {
     module.attr("__version__") = CORDA_VERSION;
     add_errors(module);
     add_film(module);
-    module.def("compare", [](const Pixels& a, const Pixels& b) {
+    module.def("compare", [](const py::object& a, const py::object& b) {
         const corda::Image first = to_image(a);
         const corda::Image second = to_image(b);
         const corda::Difference difference =
@@ -309,8 +314,8 @@ PYBIND11_MODULE(_corda, module) {
         return py::make_tuple(difference.same_size, difference.equal, difference.max, difference.mean,
                               difference.share);
     });
-    module.def("write_png", [](const std::string& path, const Pixels& pixels, bool force) {
-        const corda::Image image = to_image(pixels);
+    module.def("write_png", [](const std::string& path, const py::object& picture, bool force) {
+        const corda::Image image = to_image(picture);
         Asking().run([&](const corda::OnProgress& ask) {
             corda::write_png(path, image, {}, {.force = force, .on_progress = ask});
             return true;

@@ -127,7 +127,7 @@ def test_pictures_can_be_written_read_and_compared(tmp_path):
         corda.write_png(tmp_path / "a.png", other)
     assert raised.value.code == 6
     corda.write_png(tmp_path / "a.png", other, force=True)
-    for wrong in (np.zeros((3, 5)), np.zeros((3, 5, 2)), np.zeros((0, 5, 4))):
+    for wrong in (np.zeros((3, 5), np.uint8), np.zeros((3, 5, 2), np.uint8), np.zeros((0, 5, 4), np.uint8)):
         with pytest.raises(ValueError):
             corda.write_png(tmp_path / "b.png", wrong)
 
@@ -277,6 +277,14 @@ def test_stubs_tell_all_names_and_parameters():
             check(value, methods[name])
         elif isinstance(value, property):
             assert name in methods and value.__doc__
+
+
+def test_pictures_are_of_bytes(film):
+    frame = film.frame(0)
+    for other in (frame / 255.0, frame.astype(int), frame.tolist()):
+        with pytest.raises(TypeError, match="uint8"):
+            corda.compare(frame, other)
+    assert corda.compare(frame[:, ::-1], frame[:, ::-1].copy()).equal  # strides of any kind
 
 
 def test_the_example_notebook_runs(tmp_path):
