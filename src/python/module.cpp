@@ -5,13 +5,17 @@
 #include <pybind11/stl.h>
 
 #include <corda/corda.hpp>
+#include <corda/suite/check_golden.hpp>
 
+#include <array>
 #include <chrono>
 #include <cstring>
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -321,6 +325,16 @@ PYBIND11_MODULE(_corda, module) {
             return true;
         });
     });
+    module.def("check_golden",
+               [](const py::object& picture, const std::string& name, const std::string& folder,
+                  const std::array<std::optional<double>, 5>& limits) {
+                   const corda::Image image = to_image(picture);
+                   const corda::testing::GoldenOptions options{
+                       .folder = folder, .limits = {limits[0], limits[1], limits[2], limits[3], limits[4]}};
+                   const py::gil_scoped_release release;
+                   const auto outcome = corda::testing::check_golden(image, name, options);
+                   return std::tuple(outcome.matches, outcome.written, outcome.message);
+               });
     module.def("read_png", [](const std::string& path) {
         return to_array(
             Asking().run([&](const corda::OnProgress& ask) { return corda::read_png(path, ask); }));

@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 
 import corda
+import corda.testing
 
 PROGRAM = os.environ["CORDA_PROGRAM"]
 EXAMPLES = pathlib.Path(os.environ["CORDA_EXAMPLES"])
@@ -257,6 +258,30 @@ def test_a_thousand_frames_take_no_memory(film):
     assert peak_mib() - before < 20  # measured: 0
 
 
+def test_golden_pictures(film, tmp_path, monkeypatch, capfd):
+    check = corda.testing.assert_matches_golden
+    monkeypatch.setenv("CORDA_GOLDEN_DIR", str(tmp_path / "ref"))
+    with pytest.raises(AssertionError, match="there is no golden picture"):
+        check(film.frame(17), "first.png")
+    monkeypatch.setenv("CORDA_UPDATE_GOLDENS", "1")
+    check(film.frame(17), "first.png")
+    assert "written" in capfd.readouterr().err
+    monkeypatch.delenv("CORDA_UPDATE_GOLDENS")
+    check(film.frame(17), "first.png")
+    check(tmp_path / "ref/first.png", "first.png", folder=tmp_path / "ref")
+    monkeypatch.setenv("CORDA_GOLDEN_ARTIFACTS", str(tmp_path / "out"))
+    with pytest.raises(AssertionError, match="max [1-9]"):
+        check(film.frame(18), "first.png")
+    assert np.array_equal(corda.read_png(tmp_path / "out/first.new.png"), film.frame(18))
+    check(film.frame(18), "first.png", max=255)
+    with pytest.raises(AssertionError):
+        check(film.frame(18), "first.png", max=255, ssim=1)
+    with pytest.raises(AssertionError, match="FLIP"):
+        check(film.frame(18), "first.png", flip=0)
+    with pytest.raises(corda.Error, match="ends in .png"):
+        check(film.frame(18), "first.jpg")
+
+
 def test_stubs_tell_all_names_and_parameters():
     stub = ast.parse((pathlib.Path(corda.__file__).parent / "__init__.pyi").read_text())
     names = {node.name: node for node in stub.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
@@ -271,6 +296,8 @@ def test_stubs_tell_all_names_and_parameters():
 
     for name in ("compare", "read_png", "write_png"):
         check(getattr(corda, name), names[name])
+    of_testing = ast.parse((pathlib.Path(corda.__file__).parent / "testing.pyi").read_text()).body
+    check(corda.testing.assert_matches_golden, of_testing[-1])
     methods = {node.name: node for node in names["Film"].body if isinstance(node, ast.FunctionDef)}
     for name, value in vars(corda.Film).items():
         if inspect.isfunction(value) and name not in ("_repr_html_", "__repr__"):

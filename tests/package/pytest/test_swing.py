@@ -3,6 +3,8 @@
 import subprocess
 
 import corda
+import corda.testing
+import pytest
 
 
 def test_golden():
@@ -11,5 +13,6 @@ def test_golden():
 
 def test_a_frame_is_the_kept_one():
     film = corda.Film("scenes/swing.toml", size=(320, 180))
-    assert corda.compare(film.still(0.5), "kept.png").equal
-    assert not corda.compare(film.still(0.6), "kept.png").equal
+    corda.testing.assert_matches_golden(film.still(0.5), "kept.png")
+    with pytest.raises(AssertionError, match="differs from './kept.png': max"):
+        corda.testing.assert_matches_golden(film.still(0.6), "kept.png")

@@ -1,0 +1,35 @@
+"""Golden pictures in pytest, and in any other tests:
+
+    import corda
+    import corda.testing
+
+    def test_swing():
+        film = corda.Film("scenes/swing.toml")
+        corda.testing.assert_matches_golden(film.frame(120), "swing_0120.png")
+"""
+
+import os as _os
+import sys as _sys
+
+from . import _corda, _pixels
+
+__all__ = ["assert_matches_golden"]
+
+
+def assert_matches_golden(picture, name, *, folder=None, max=None, mean=None, share=None, flip=None, ssim=None):
+    """Raises AssertionError unless a picture equals the golden one NAME.png, or one of its variants NAME.CAUSE.png.
+
+    picture: an array, or the path of a PNG file. folder: where golden pictures are; without it the environment's
+    CORDA_GOLDEN_DIR, or else the current folder. max, mean, share, flip, ssim: limits as of `corda compare`; with one or
+    more of them pictures within all of these match, too. A picture of one colour never matches.
+
+    CORDA_UPDATE_GOLDENS=1 in the environment writes pictures that are missing or differ, CORDA_GOLDEN_ARTIFACTS names a
+    folder for NAME.new.png and NAME.difference.png. Raises corda.Error for a picture that cannot be read or written.
+    """
+    __tracebackhide__ = True  # pytest shows the line of the test
+    matches, written, message = _corda.check_golden(_pixels(picture), _os.fspath(name), _os.fspath(folder or ""),
+                                                    (max, mean, share, flip, ssim))
+    if written:
+        print(message, file=_sys.stderr)
+    if not matches:
+        raise AssertionError(message)
