@@ -18,15 +18,29 @@
 namespace corda::app {
 namespace {
 
-/// The names of the PNG files in a folder.
-std::set<std::string> pictures_in(const std::string& folder) {
+namespace fs = std::filesystem;
+
+/// The PNG files in a folder and the folders in it, but for `diff`, which may be one of them; by their paths
+/// from the folder on.
+std::set<std::string> pictures_in(const std::string& folder, const std::string& diff) {
     std::set<std::string> names;
     std::error_code failure;
-    for (std::filesystem::directory_iterator entry(folder, failure), end; !failure && entry != end;
-         entry.increment(failure))
-        if (entry->path().extension() == ".png") names.insert(entry->path().filename().string());
+    for (fs::recursive_directory_iterator entry(folder, failure), end; !failure && entry != end;
+         entry.increment(failure)) {
+        std::error_code none;
+        if (!diff.empty() && fs::equivalent(entry->path(), diff, none)) entry.disable_recursion_pending();
+        const std::string extension = entry->path().extension().string();
+        if (extension == ".png" || extension == ".PNG")
+            names.insert(entry->path().lexically_relative(folder).string());
+    }
     if (failure) fail_file("read", folder, failure.value());
     return names;
+}
+
+/// The picture of which NAME.CAUSE.png is a variant, in the same folder; empty if it is none by its name.
+std::string base_of(const std::string& name) {
+    const std::string base = base_of_variant(name);
+    return base.empty() ? "" : (fs::path(name).parent_path() / base).string();
 }
 
 /// A name that stands in one of the folders at least.
@@ -44,7 +58,7 @@ std::vector<Pair> pairs_of(const std::set<std::string>& a, const std::set<std::s
     std::map<std::string, std::vector<std::string>> variants;
     std::set<std::string> all = a;
     for (const std::string& name : b) {
-        const std::string base = base_of_variant(name);
+        const std::string base = base_of(name);
         if (!base.empty() && b.contains(base) && !a.contains(name))
             variants[base].push_back(name);
         else
@@ -64,9 +78,10 @@ void compare_pair(const CompareOptions& options, const std::optional<Image>& mas
     std::vector<std::string> references{options.b + "/" + pair.name};
     for (const std::string& variant : pair.variants) references.push_back(options.b + "/" + variant);
     pair.compared = compare_picture(options, picture, references, mask, "", 1);
-    if (!options.diff.empty() && !pair.compared.difference.equal)
-        pair.compared =
-            compare_picture(options, picture, references, mask, options.diff + "/" + pair.name, 1);
+    if (options.diff.empty() || pair.compared.difference.equal) return;
+    const fs::path diff = fs::path(options.diff) / pair.name;
+    make_folder(diff.parent_path().string());
+    pair.compared = compare_picture(options, picture, references, mask, diff.string(), 1);
 }
 
 /// Two pictures may take 512 MiB.
@@ -104,7 +119,7 @@ void check_diff_folder(const CompareOptions& options) {
     make_folder(options.diff);
     std::error_code none;
     for (const std::string& folder : {options.a, options.b})
-        if (std::filesystem::equivalent(options.diff, folder, none))
+        if (fs::equivalent(options.diff, folder, none))
             throw Error(ExitCode::kUsage, fmt::format("--diff {}: holds the pictures that are compared; name "
                                                       "another folder",
                                                       options.diff));
@@ -125,7 +140,8 @@ void take_worst(const Difference& difference, Difference& worst) {
 
 ExitCode compare_folders(const Console& console, const CompareOptions& options,
                          const std::optional<Image>& mask) {
-    std::vector<Pair> pairs = pairs_of(pictures_in(options.a), pictures_in(options.b));
+    std::vector<Pair> pairs =
+        pairs_of(pictures_in(options.a, options.diff), pictures_in(options.b, options.diff));
     if (pairs.empty())
         throw Error(ExitCode::kUsage,
                     fmt::format("neither '{}' nor '{}' has a PNG file", options.a, options.b));

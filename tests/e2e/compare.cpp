@@ -171,6 +171,24 @@ TEST_F(CompareFiles, VariantsInFolders) {
     EXPECT_EQ(code({file("a"), file("b")}), 7);
 }
 
+TEST_F(CompareFiles, FoldersInFolders) {
+    for (const std::string folder : {"a/deep/in", "b/deep/in"})
+        std::filesystem::create_directories(file(folder));
+    for (const std::string name : {"a/one.png", "b/one.png", "a/deep/in/two.PNG", "b/deep/in/two.PNG"})
+        put(name, drawn(10));
+    EXPECT_EQ(report({file("a"), file("b")})["files"].size(), 2U);
+    std::filesystem::remove(file("b/deep/in/two.PNG"));
+    put("b/deep/in/two.PNG", drawn(11));
+    // The second time the first one's differences are not compared.
+    for (int i = 0; i < 2; ++i)
+        EXPECT_EQ(code({file("a"), file("b"), "--diff", file("a/diff"), "--force"}), 7);
+    EXPECT_TRUE(std::filesystem::exists(file("a/diff/deep/in/two.PNG")));
+    put("b/deep/in/two.old-mesa.PNG", drawn(10));
+    EXPECT_EQ(report({file("a/deep"), file("b/deep")})["files"][0]["variant"], "old-mesa");
+    put("b/deep/three.png", drawn());
+    EXPECT_EQ(code({file("a/deep"), file("b/deep")}), 7);
+}
+
 TEST_F(CompareFiles, LeavesComparedFoldersAlone) {
     for (const std::string folder : {"a", "b"}) std::filesystem::create_directory(file(folder));
     put("a/one.png", drawn(11));
