@@ -110,11 +110,15 @@ Progress::~Progress() {
 
 double Progress::seconds_left(std::int64_t done) const {
     return (now_s() - start_s_) * static_cast<double>(total_ - done) /
-           static_cast<double>(std::max<std::int64_t>(1, done));
+           static_cast<double>(std::max<std::int64_t>(1, done - first_done_.value_or(0)));
 }
 
 void Progress::update(std::int64_t done) {
     if (console_->quiet()) return;
+    if (!first_done_) {
+        first_done_ = done;
+        next_line_percent_ += 100 * done / total_ / 10 * 10;
+    }
     if (console_->draws_bar()) {
         const double now = now_s();
         if (now - last_drawn_s_ < kSecondsBetweenBars && done < total_) return;
