@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -10,6 +11,8 @@
 
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
+#include "corda/pipeline/provenance.hpp"
+#include "corda/scene/digest.hpp"
 
 namespace corda::suite {
 namespace {
@@ -97,13 +100,19 @@ Provenance provenance_of(const Film& film, double time_s) {
     return made;
 }
 
-PngInfo to_png_info(const Provenance& made, double time_s) {
+PngInfo to_png_info(const Provenance& made, const Film& film, double time_s) {
+    corda::Provenance origin = corda::provenance_of(film.scene());
+    origin.picture = PictureOrigin{.command = "still",
+                                   .times = {{.frame = {}, .time_s = time_s}},
+                                   .shutter = film.scene().video.shutter};
+    if (film.scene().golden) origin.picture->film_times_s = film.scene().golden->at_s;
     PngInfo info;
     info.text = {{"Software", "corda " + made.version}, {"Title", made.scene},
                  {"Time", fmt::format("{} s", time_s)}, {"Renderer", made.renderer},
                  {"Corda-Solver", made.solver},         {"Corda-Center", made.center},
                  {"Corda-Height", made.height},         {"Corda-State", made.state}};
     info.text.emplace_back("Corda-Positions", hex_of(made.positions_m));
+    info.text.emplace_back(kProvenanceKeyword, provenance_text(std::move(origin)));
     return info;
 }
 
@@ -138,6 +147,24 @@ std::optional<double> largest_distance_m(const Provenance& a, const Provenance& 
         largest = std::max(largest, std::hypot(a.positions_m[i] - b.positions_m[i],
                                                a.positions_m[i + 1] - b.positions_m[i + 1]));
     return largest;
+}
+
+std::string scene_change(const std::string& reference, const Scene& now) {
+    const auto of_pixels = [](const Scene& scene) {
+        auto all = digest(scene);
+        std::erase_if(all, [](const auto& entry) {
+            constexpr std::array kOfPixels{"video.size", "video.shutter", "video.subframes"};
+            const std::string& key = entry.first;
+            return key.starts_with("video.") &&
+                   std::find(kOfPixels.begin(), kOfPixels.end(), key) == kOfPixels.end();
+        });
+        return all;
+    };
+    try {
+        return first_difference(of_pixels(now), of_pixels(scene_of(read_provenance(reference), reference)));
+    } catch (const Error&) {  // of another Corda, whose scenes this one does not read
+        return "";
+    }
 }
 
 std::string cause_of(const Provenance& reference, const Provenance& now) {

@@ -36,8 +36,9 @@ struct Provenance {
 /// How a film's picture at a time is made.
 [[nodiscard]] Provenance provenance_of(const Film& film, double time_s);
 
-/// As the texts of a PNG. Positions are the bits of their numbers, so that they are read back exactly.
-[[nodiscard]] PngInfo to_png_info(const Provenance& provenance, double time_s);
+/// As the texts of a PNG. Positions are the bits of their numbers, so that they are read back exactly. `film`
+/// is what the picture was drawn from: `still --from` draws it again.
+[[nodiscard]] PngInfo to_png_info(const Provenance& provenance, const Film& film, double time_s);
 
 /// Texts that are missing, or not what to_png_info() writes, leave their fields empty.
 [[nodiscard]] Provenance from_png_info(const PngInfo& info);
@@ -45,6 +46,10 @@ struct Provenance {
 /// Settings that give `scene` the solver and the camera of `made`, as far as the scene itself leaves them
 /// open: a method or a camera that the scene names is what a golden test checks.
 [[nodiscard]] std::vector<Setting> freezing(const Scene& scene, const Provenance& made);
+
+/// What a picture's scene says that the one of a kept picture did not, as "world.drag is 0.2 and was 0": the
+/// first of what may change pixels. Empty if there is nothing, or the kept picture does not tell its scene.
+[[nodiscard]] std::string scene_change(const std::string& reference, const Scene& now);
 
 /// Why two pictures may differ, in words: from what is most likely the cause.
 [[nodiscard]] std::string cause_of(const Provenance& reference, const Provenance& now);

@@ -22,9 +22,15 @@ namespace fs = std::filesystem;
 /// A thread of its own draws no fewer pictures: the context that it needs takes as long as some of them.
 constexpr std::size_t kFewestApart = 8;
 
+/// A picture as it was drawn.
+struct Drawn {
+    const Image& image;
+    const Provenance& made;
+    const Scene& scene;  ///< that of its film
+};
+
 /// Compares a picture with one of its references; false if it does not pass.
-bool passes(const Image& drawn, const Provenance& now, const DifferenceLimits& limits,
-            const std::string& path, Checked& picture) {
+bool passes(const Drawn& drawn, const DifferenceLimits& limits, const std::string& path, Checked& picture) {
     picture.variant = fs::path(path).filename().string();
     Image reference;
     try {
@@ -34,27 +40,29 @@ bool passes(const Image& drawn, const Provenance& now, const DifferenceLimits& l
         picture.cause = error.what();
         return false;
     }
-    picture.difference = compare(reference, drawn);
+    picture.difference = compare(reference, drawn.image);
     if (picture.difference.within(limits)) return true;
-    picture.cause = cause_of(from_png_info(read_png_info(path)), now);
+    picture.cause = cause_of(from_png_info(read_png_info(path)), drawn.made);
+    picture.change = scene_change(path, drawn.scene);
     if (!picture.difference.same_size)
         picture.cause = fmt::format("{}x{} pixels, now {}x{}", reference.width(), reference.height(),
-                                    drawn.width(), drawn.height());
+                                    drawn.image.width(), drawn.image.height());
     return false;
 }
 
 /// Compares a picture with its references until one passes; otherwise tells of the plain one, if there is.
-void judge(const Image& drawn, const Provenance& now, const GoldenDef& golden,
-           const std::vector<std::string>& variants, Checked& picture) {
+void judge(const Drawn& drawn, const std::vector<std::string>& variants, Checked& picture) {
+    const GoldenDef& golden = *drawn.scene.golden;
     const DifferenceLimits limits{.max = golden.max, .mean = {}, .share = golden.share};
     picture.verdict = variants.empty() ? Verdict::kMissing : Verdict::kDifferent;
     std::optional<Checked> told;
     for (const std::string& path : variants) {
         Checked result = picture;
-        if (passes(drawn, now, limits, path, result)) {
+        if (passes(drawn, limits, path, result)) {
             picture = result;
             picture.verdict = Verdict::kPassed;
             picture.cause.clear();
+            picture.change.clear();
             return;
         }
         if (!told || result.variant == picture.name) told = result;
@@ -153,13 +161,12 @@ class Runner {
             Checked& picture = job.scene->pictures[i];
             painter->draw(picture.time_s);
             const Image& drawn = painter->image();
-            judge(drawn, job.made[i], *job.scene->scene.golden, variants_of(references_, picture.name),
-                  picture);
+            judge({drawn, job.made[i], job.film->scene()}, variants_of(references_, picture.name), picture);
             if (painter->shows_nothing() || has_one_color(drawn)) {
                 picture.verdict = Verdict::kEmpty;
                 picture.cause = "the picture is empty: nothing is in view";
             } else if (def_.update) {
-                update(job.made[i], drawn, picture);
+                update(job, i, drawn, picture);
             }
             if (picture.failed()) keep(drawn, picture);
             count_one();
@@ -169,6 +176,8 @@ class Runner {
         job.left -= end - first;
         if (job.left > 0) return;
         tell_since_when(job);
+        for (Checked& picture : job.scene->pictures)
+            if (!picture.change.empty()) picture.cause += "; " + picture.change;
         job.film.reset();
     }
 
@@ -196,7 +205,8 @@ class Runner {
     }
 
     /// Writes a picture that is missing, differs, or freezes something else.
-    void update(const Provenance& made, const Image& drawn, Checked& picture) {
+    void update(const Job& job, std::size_t i, const Image& drawn, Checked& picture) {
+        const Provenance& made = job.made[i];
         if (picture.verdict == Verdict::kPassed) {
             const std::string path = (fs::path(def_.folder) / picture.name).string();
             const bool is_kept =
@@ -205,7 +215,7 @@ class Runner {
             picture.cause = "the same pixels, by another solver or camera";
         }
         picture.changed = true;
-        if (!def_.dry_run) staging_.add(picture.name, drawn, to_png_info(made, picture.time_s));
+        if (!def_.dry_run) staging_.add(picture.name, drawn, to_png_info(made, *job.film, picture.time_s));
     }
 
     /// Adds to the causes from when on positions differ, be it not enough to fail a picture.

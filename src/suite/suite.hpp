@@ -34,6 +34,7 @@ struct Checked {
     Difference difference{};
     std::string variant{};         ///< the file that it was compared with last, NAME.png or NAME.CAUSE.png
     std::string cause{};           ///< why it failed, in words
+    std::string change{};          ///< what its scene says that the kept one's did not
     bool changed = false;          ///< written or removed by an update, or to be: then it is no failure
     std::optional<Image> drawn{};  ///< if it failed, see SuiteDef::most_drawn
 

@@ -91,13 +91,14 @@ TEST_F(GoldenSuite, TellsOtherPositionsFromAnotherCamera) {
     const auto drag = run({"--set", "world.drag=0.001"});
     EXPECT_EQ(drag.exit_code, 7);
     EXPECT_THAT(drag.out, AllOf(HasSubstr("1 picture passed"), HasSubstr("positions differ by 0.000"),
-                                HasSubstr("from t = 0.5 s on")));
+                                HasSubstr("from t = 0.5 s on; world.drag is 0.001 and was 0")));
     const auto camera = run({"--set", "camera.height=5"});
     EXPECT_EQ(camera.exit_code, 7);
     EXPECT_THAT(camera.out, HasSubstr("same positions, other camera"));
     const auto style = run({"--set", "style.rope_width_px=9"});
     EXPECT_EQ(style.exit_code, 7);
-    EXPECT_THAT(style.out, HasSubstr("same positions, camera and version, but pixels differ"));
+    EXPECT_THAT(style.out, HasSubstr("same positions, camera and version, but pixels differ; "
+                                     "style.rope_width_px is 9 and was not given"));
 }
 
 TEST_F(GoldenSuite, TellsSinceWhenPositionsDifferThoughNoPixelDoes) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "corda/suite/provenance.hpp"
+#include "support/command.hpp"
 
 namespace corda::suite {
 namespace {
@@ -21,14 +22,28 @@ Film swing(int links = 5, const std::vector<Setting>& settings = {}) {
 }
 
 TEST(SuiteProvenance, IsReadBackAsItWasWritten) {
-    const Provenance made = provenance_of(swing(), 0.25);
-    const Provenance read = from_png_info(to_png_info(made, 0.25));
+    const Film film = swing();
+    const Provenance made = provenance_of(film, 0.25);
+    const Provenance read = from_png_info(to_png_info(made, film, 0.25));
     EXPECT_TRUE(read.is_golden());
     EXPECT_EQ(read.scene, "swing");
     EXPECT_EQ(read.state, made.state);
     EXPECT_EQ(read.positions_m, made.positions_m);
     EXPECT_TRUE(read.is_frozen_as(made));
     EXPECT_EQ(cause_of(read, made), "same positions, camera and version, but pixels differ");
+}
+
+TEST(SuiteProvenance, NamesTheKeyOfTheSceneThatChanged) {
+    const test::ScratchFolder folder;
+    const std::string kept = folder.file("kept.png");
+    const Film film = swing();
+    write_png(kept, Image(2, 2), to_png_info(provenance_of(film, 0.25), film, 0.25));
+    EXPECT_EQ(scene_change(kept, swing().scene()), "");
+    EXPECT_EQ(scene_change(kept, swing(5, {"world.drag=0.5"}).scene()), "world.drag is 0.5 and was 0");
+    EXPECT_EQ(scene_change(kept, swing(5, {"video.crf=30"}).scene()), "");  // of videos alone
+    EXPECT_EQ(scene_change(kept, swing(5, {"video.shutter=0.5"}).scene()), "video.shutter is 0.5 and was 0");
+    write_png(folder.file("plain.png"), Image(2, 2));
+    EXPECT_EQ(scene_change(folder.file("plain.png"), film.scene()), "");
 }
 
 TEST(SuiteProvenance, KeepsSomeParticlesOfALongRope) {
