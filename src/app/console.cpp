@@ -115,8 +115,9 @@ double Progress::seconds_left(std::int64_t done) const {
 
 void Progress::update(std::int64_t done) {
     if (console_->quiet()) return;
-    if (!first_done_) {
+    if (!first_done_ && done > 0) {
         first_done_ = done;
+        start_s_ = now_s();
         next_line_percent_ += 100 * done / total_ / 10 * 10;
     }
     if (console_->draws_bar()) {

@@ -70,7 +70,7 @@ class Progress {
     std::int64_t total_;
     std::int64_t next_line_percent_ = 10;
     double start_s_;
-    std::optional<std::int64_t> first_done_;  ///< before start_s_, as by an earlier run
+    std::optional<std::int64_t> first_done_;  ///< at start_s_; an earlier run may have done much
     double last_drawn_s_ = 0.0;
     bool bar_is_drawn_ = false;
 };

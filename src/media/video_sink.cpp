@@ -58,7 +58,11 @@ class PartSink : public VideoSink {
     PartSink(const Format& format, const std::string& path, const OutputOptions& options, PartFile old,
              const FrameRange& frames)
         : PartSink(format, path, options, PartFile::create(part_path(path) + ".new", {.force = true})) {
-        resumed_ = copy_chunks(old.path(), frames, options.on_progress);
+        // Copying is no progress of the frames that are still to be drawn.
+        const OnProgress nothing_done = [&](std::int64_t, std::int64_t) {
+            return !options.on_progress || options.on_progress(0, frames.end - frames.first);
+        };
+        resumed_ = copy_chunks(old.path(), frames, nothing_done);
         has_chunk_ = resumed_ > 0;
         if (has_chunk_) part_.sync();
         part_.take_place_of(old);
