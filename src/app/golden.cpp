@@ -92,12 +92,7 @@ void tell(const Console& console, const GoldenOptions& options, const suite::Sui
         changed += picture.changed ? 1 : 0;
         pictures.push_back(to_json(picture));
     }
-    for (const std::string& frozen : result.frozen) {
-        if (changed > 0)
-            console.result(frozen);
-        else
-            console.detail(frozen);
-    }
+    for (const std::string& frozen : result.frozen) console.detail(frozen);
     const std::int64_t passed = result.count(Verdict::kPassed);
     const std::int64_t failed = result.count(Verdict::kDifferent) + result.count(Verdict::kEmpty);
     const std::int64_t missing = result.count(Verdict::kMissing);
@@ -105,9 +100,13 @@ void tell(const Console& console, const GoldenOptions& options, const suite::Sui
     std::string sums = fmt::format("{}: {} failed, {} missing, {} stale",
                                    counted(passed, "picture") + " passed", failed, missing, stale);
     if (options.def.update)
-        sums += fmt::format("; {}{} changed", changed, options.def.dry_run ? " would be" : "");
+        sums += fmt::format("; {}{} written or removed", changed, options.def.dry_run ? " would be" : "");
     console.result(sums);
-    if (missing > 0) console.info("--update draws what is missing, and keeps it");
+    std::error_code none;
+    if (missing > 0 && !std::filesystem::exists(options.def.folder, none))
+        console.warning(fmt::format("there is no folder '{}'; --update makes it", options.def.folder));
+    else if (missing > 0)
+        console.info("--update draws what is missing, and keeps it");
     console.report({{"schema", 1},
                     {"passed", passed},
                     {"failed", failed},
@@ -143,7 +142,9 @@ void add_golden(CLI::App& app, Action& action) {
     auto options = std::make_shared<GoldenOptions>();
     CLI::App* command = app.add_subcommand(
         "golden", "draw the scenes that have a table [golden] and compare them with kept pictures");
-    command->add_option("SCENE", options->def.paths, "scene files, or folders of them")->required();
+    command
+        ->add_option("SCENE", options->def.paths, "scene files, or folders with them in it or in its folders")
+        ->required();
     command->add_option("--dir", options->def.folder, "folder of the kept pictures")->required();
     command->add_flag("--update", options->def.update,
                       "write pictures that are missing or differ, and remove stale ones");

@@ -30,7 +30,7 @@ std::string exit_code_table() {
 void add_console_flags(CLI::App& app, ConsoleDef& def) {
     for (CLI::App* command : app.get_subcommands({})) {
         command->add_flag("--json", def.json, "print the result as JSON on standard output");
-        command->add_flag("-q,--quiet", def.quiet, "print only errors");
+        command->add_flag("-q,--quiet", def.quiet, "print only results and errors");
         command->add_flag("-v,--verbose", def.verbose, "print more details");
     }
 }

@@ -30,7 +30,7 @@ constexpr std::size_t kLongestName = 200;
 [[noreturn]] void fail_at(const std::string& path, const std::string& problem) {
     throw Error(
         ExitCode::kUsage,
-        fmt::format("'{}' {}; give a PNG or a video that corda has written, or a scene file", path, problem));
+        fmt::format("'{}' {}; give a PNG or a video that a command of corda has written", path, problem));
 }
 
 Json json_of(const PictureOrigin& picture) {
@@ -173,6 +173,8 @@ std::string provenance_text(Provenance provenance) {
 }
 
 Provenance read_provenance(const std::string& path, const OnProgress& on_progress) {
+    if (path.ends_with(".toml"))
+        throw Error(ExitCode::kUsage, fmt::format("'{}' is a scene file; give it without --from", path));
     PngTexts png;
     if (is_png(path))
         png = texts_in_png(path);

@@ -96,8 +96,6 @@ CameraDef read_camera(const TableReader& camera) {
 GoldenDef read_golden(const Sections& sections) {
     const TableReader& golden = sections.golden;
     GoldenDef def;
-    WorldDef world;
-    sections.world.read("duration", world.duration_s);
     if (!golden.is_given("at")) golden.add_missing("at");
     const auto times = golden.find("at");
     for (std::size_t i = 0; times && i < times->size(); ++i) {
@@ -105,11 +103,6 @@ GoldenDef read_golden(const Sections& sections) {
         if (!def.at_s.empty() && at_s <= def.at_s.back())
             times->at(i).add_problem(
                 fmt::format("{} s after {} s; give times that increase", at_s, def.at_s.back()));
-        else if (at_s > world.duration_s && sections.world.is_sound("duration"))
-            times->at(i).add_problem(
-                fmt::format("{} s is after the end of the motion, {} s; give an earlier time or a longer "
-                            "world.duration",
-                            at_s, world.duration_s));
         def.at_s.push_back(at_s);
     }
     if (const auto size = golden.find("size")) {

@@ -17,12 +17,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files of a folder with this ending, sorted.
+/// Files of a folder with this ending, sorted; with Iterator also those of the folders in it.
+template <class Iterator = fs::directory_iterator>
 std::vector<std::string> files_in(const std::string& folder, const std::string& ending) {
     std::vector<std::string> paths;
     std::error_code failure;
-    for (fs::directory_iterator entry(folder, failure), end; !failure && entry != end;
-         entry.increment(failure))
+    for (Iterator entry(folder, failure), end; !failure && entry != end; entry.increment(failure))
         if (entry->path().extension() == ending) paths.push_back(entry->path().string());
     if (failure) fail_file("read", folder, failure.value());
     std::sort(paths.begin(), paths.end());
@@ -45,6 +45,12 @@ Case make_case(const std::string& path, const SuiteDef& def, std::set<std::strin
     made.settings.push_back(
         fmt::format("video.size=[{},{}]", made.scene.golden->width_px, made.scene.golden->height_px));
     for (const double time_s : made.scene.golden->at_s) {
+        if (time_s > made.scene.world.duration_s)
+            throw Error(
+                ExitCode::kInvalidScene,
+                fmt::format("{}: golden.at: {} s is after the end of the motion, {} s; give an earlier time "
+                            "or a longer world.duration",
+                            path, time_s, made.scene.world.duration_s));
         made.pictures.push_back(
             {.scene = made.scene.name, .name = name_of(made.scene.name, time_s) + kEnding, .time_s = time_s});
         if (!names.insert(made.pictures.back().name).second)
@@ -73,7 +79,8 @@ std::vector<Case> load_cases(const SuiteDef& def) {
     for (const std::string& path : def.paths) {
         std::error_code none;  // who reads it tells what is wrong
         const bool is_folder = fs::is_directory(path, none);
-        const std::vector<std::string> files = is_folder ? files_in(path, ".toml") : std::vector{path};
+        const std::vector<std::string> files =
+            is_folder ? files_in<fs::recursive_directory_iterator>(path, ".toml") : std::vector{path};
         for (const std::string& file : files) {
             Case made = make_case(file, def, names);
             if (made.scene.golden)

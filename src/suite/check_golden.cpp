@@ -63,8 +63,28 @@ std::string keep_artifacts(const std::string& name, const fs::path& golden_folde
     return fmt::format("; see {} and {}", drawn_path, difference_path);
 }
 
+/// Whether `corda golden` made a picture.
+bool is_of_suite(const std::string& path) {
+    try {
+        return suite::from_png_info(read_png_info(path)).is_golden();
+    } catch (const Error&) {  // it is missing, or damaged
+        return false;
+    }
+}
+
+/// What to say of a golden picture that cannot be read; empty if it can.
+std::string read_golden(const std::string& path, Image& golden) {
+    try {
+        golden = read_png(path);
+        return "";
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::kIo) throw;
+        return error.what();
+    }
+}
+
 GoldenOutcome update(const fs::path& path, const Image& drawn, const std::string& why) {
-    if (fs::exists(path) && suite::from_png_info(read_png_info(path.string())).is_golden())
+    if (is_of_suite(path.string()))
         return {.matches = false,
                 .written = false,
                 .message = why + "; update it by corda golden --update, which made it"};
@@ -92,7 +112,11 @@ GoldenOutcome check_golden(const Image& drawn, const std::string& name, const Go
     std::string why = fmt::format("there is no golden picture '{}'", path.string());
     std::optional<Image> golden;
     for (const std::string& variant : suite::variants_of(suite::references_in(folder.string()), file)) {
-        Image one = read_png(variant);
+        Image one;
+        if (const std::string damage = read_golden(variant, one); !damage.empty()) {
+            if (!golden) why = damage;
+            continue;
+        }
         const Difference difference = compare_perceived(
             one, drawn, {.flip = options.limits.flip.has_value(), .ssim = options.limits.ssim.has_value()});
         if (difference.within(options.limits)) return {.matches = true, .written = false, .message = {}};

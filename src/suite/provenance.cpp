@@ -82,6 +82,7 @@ Provenance provenance_of(const Film& film, double time_s) {
                     .solver = "solver=" + inlined(std::string_view(toml).substr(0, toml.find("\n[camera]"))),
                     .center = fmt::format("camera.center=[{}, {}]", camera.center_m->x, camera.center_m->y),
                     .height = fmt::format("camera.height={}", *camera.height_m),
+                    .margin = fmt::format("{}", camera.margin),
                     .state = {},
                     .positions_m = {}};
     const State& state = film.state_at(time_s);
@@ -107,10 +108,15 @@ PngInfo to_png_info(const Provenance& made, const Film& film, double time_s) {
                                    .shutter = film.scene().video.shutter};
     if (film.scene().golden) origin.picture->film_times_s = film.scene().golden->at_s;
     PngInfo info;
-    info.text = {{"Software", "corda " + made.version}, {"Title", made.scene},
-                 {"Time", fmt::format("{} s", time_s)}, {"Renderer", made.renderer},
-                 {"Corda-Solver", made.solver},         {"Corda-Center", made.center},
-                 {"Corda-Height", made.height},         {"Corda-State", made.state}};
+    info.text = {{"Software", "corda " + made.version},
+                 {"Title", made.scene},
+                 {"Time", fmt::format("{} s", time_s)},
+                 {"Renderer", made.renderer},
+                 {"Corda-Solver", made.solver},
+                 {"Corda-Center", made.center},
+                 {"Corda-Height", made.height},
+                 {"Corda-Margin", made.margin},
+                 {"Corda-State", made.state}};
     info.text.emplace_back("Corda-Positions", hex_of(made.positions_m));
     info.text.emplace_back(kProvenanceKeyword, provenance_text(std::move(origin)));
     return info;
@@ -125,6 +131,7 @@ Provenance from_png_info(const PngInfo& info) {
         if (key == "Corda-Solver" && text.starts_with("solver=")) made.solver = text;
         if (key == "Corda-Center" && text.starts_with("camera.center=")) made.center = text;
         if (key == "Corda-Height" && text.starts_with("camera.height=")) made.height = text;
+        if (key == "Corda-Margin") made.margin = text;
         if (key == "Corda-State") made.state = text;
         if (key == "Corda-Positions") made.positions_m = from_hex(text);
     }
@@ -135,6 +142,8 @@ std::vector<Setting> freezing(const Scene& scene, const Provenance& made) {
     std::vector<Setting> settings;
     const bool is_open = std::holds_alternative<AutoDef>(scene.solver) && scene.body_solvers.empty();
     if (is_open && !made.solver.empty()) settings.push_back(made.solver);
+    // Of a picture with another border the camera is none of this scene's.
+    if (!made.margin.empty() && made.margin != fmt::format("{}", scene.camera.margin)) return settings;
     if (!scene.camera.center_m && !made.center.empty()) settings.push_back(made.center);
     if (!scene.camera.height_m && !made.height.empty()) settings.push_back(made.height);
     return settings;

@@ -19,6 +19,7 @@ struct Provenance {
     std::string solver;    ///< setting "solver={...}"; empty if it is not known
     std::string center;    ///< setting "camera.center=[...]"
     std::string height;    ///< setting "camera.height=..."
+    std::string margin;    ///< camera.margin, to which both were fitted; empty if it is not known
     std::string state;     ///< FNV-1a of the positions' bits, in hexadecimal
     /// x and y of each particle in turn; of more than kMostKept, of every second, third, ... alone.
     std::vector<double> positions_m;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -37,7 +38,8 @@ bool passes(const Drawn& drawn, const DifferenceLimits& limits, const std::strin
         reference = read_png(path);
     } catch (const Error& error) {
         picture.difference = {.same_size = false, .equal = false};
-        picture.cause = error.what();
+        picture.cause =
+            fmt::format("the kept picture is damaged, and --update draws it anew ({})", error.what());
         return false;
     }
     picture.difference = compare(reference, drawn.image);
@@ -100,6 +102,11 @@ class Runner {
         job->left = one.pictures.size();
         job->frozen = def_.replan ? std::vector<Setting>{} : frozen_settings(one);
         make_film(*job);
+        // A camera that was fitted to another motion may miss this one.
+        if (def_.update && !job->frozen.empty() && leaves_frame(*job)) {
+            job->frozen.clear();
+            make_film(*job, {});
+        }
         if (def_.update) freeze(*job);
         if (def_.update) tell_frozen(one, freezing(one.scene, job->made.front()), "its pictures freeze");
         const std::size_t count = one.pictures.size();
@@ -126,6 +133,23 @@ class Runner {
             job.frozen.clear();
             make_film(job, {});
         }
+    }
+
+    /// Whether a particle is outside of one of the pictures, and the scene itself does not say where to look.
+    static bool leaves_frame(const Job& job) {
+        const CameraDef& own = job.scene->scene.camera;
+        if (own.center_m || own.height_m) return false;
+        const CameraDef& camera = job.film->camera();
+        const VideoDef& video = job.film->scene().video;
+        const double y_m = *camera.height_m / 2;
+        const double x_m = y_m * video.width_px / video.height_px;
+        return std::any_of(job.made.begin(), job.made.end(), [&](const Provenance& made) {
+            for (std::size_t i = 0; i + 1 < made.positions_m.size(); i += 2)
+                if (std::abs(made.positions_m[i] - camera.center_m->x) > x_m ||
+                    std::abs(made.positions_m[i + 1] - camera.center_m->y) > y_m)
+                    return true;
+            return false;
+        });
     }
 
     /// Draws with what has been chosen as if it were frozen already, as checks will: a picture may say by
@@ -164,7 +188,7 @@ class Runner {
             judge({drawn, job.made[i], job.film->scene()}, variants_of(references_, picture.name), picture);
             if (painter->shows_nothing() || has_one_color(drawn)) {
                 picture.verdict = Verdict::kEmpty;
-                picture.cause = "the picture is empty: nothing is in view";
+                picture.cause = "nothing is in view";
             } else if (def_.update) {
                 update(job, i, drawn, picture);
             }
@@ -176,8 +200,12 @@ class Runner {
         job.left -= end - first;
         if (job.left > 0) return;
         tell_since_when(job);
-        for (Checked& picture : job.scene->pictures)
+        const bool is_cut = !job.frozen.empty() && leaves_frame(job);
+        for (Checked& picture : job.scene->pictures) {
             if (!picture.change.empty()) picture.cause += "; " + picture.change;
+            if (is_cut && picture.failed())
+                picture.cause += "; it leaves the frozen frame, and --update fits another";
+        }
         job.film.reset();
     }
 

@@ -11,7 +11,7 @@ namespace corda::suite {
 
 /// Scenes with a table [golden], and the pictures that are kept of them.
 struct SuiteDef {
-    /// Scene files, and folders whose .toml files with a table [golden] count.
+    /// Scene files, and folders: their .toml files with a table [golden] count, and those of folders in them.
     std::vector<std::string> paths;
     std::vector<Setting> settings;  ///< of all scenes
     std::string folder;             ///< of the references

@@ -165,17 +165,44 @@ TEST_F(GoldenSuite, UpdatesOnlyWhatDiffersWithWhatIsFrozen) {
     const auto shown = run({"--update", "--dry-run", "--set", "world.drag=0.001"});
     EXPECT_EQ(shown.exit_code, 0);
     EXPECT_THAT(shown.out, AllOf(HasSubstr("swing_t0000_500000.png: would be written: different: max"),
-                                 HasSubstr("2 would be changed")));
+                                 HasSubstr("2 would be written or removed")));
     EXPECT_EQ(run().exit_code, 0);
     const auto result = run({"--update", "--set", "world.drag=0.001"});
     EXPECT_EQ(result.exit_code, 0);
-    EXPECT_THAT(result.out, AllOf(HasSubstr("its pictures freeze: solver={"), HasSubstr("; 2 changed")));
+    EXPECT_THAT(result.out, HasSubstr("; 2 written or removed"));
     EXPECT_EQ(test::read_file(reference("swing_t0000_000000.png")), first);
     EXPECT_EQ(run({"--set", "world.drag=0.001"}).exit_code, 0);
     const auto planned = run({"--update", "--replan", "--set", "world.drag=0.3"});
     EXPECT_EQ(planned.exit_code, 0);
-    EXPECT_THAT(planned.out, HasSubstr("; 3 changed"));
+    EXPECT_THAT(planned.out, HasSubstr("; 3 written or removed"));
     EXPECT_EQ(run({"--set", "world.drag=0.3"}).exit_code, 0);
+}
+
+TEST_F(GoldenSuite, AnUpdateFitsTheCameraAnewIfTheMotionLeavesTheFrame) {
+    const std::vector<std::string> higher{"--set", "rope[0].hang.angle_deg=170"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.end(), higher.begin(), higher.end());
+        return run(more);
+    };
+    const auto told = with({});
+    EXPECT_EQ(told.exit_code, 7);
+    EXPECT_THAT(told.out, HasSubstr("it leaves the frozen frame, and --update fits another"));
+    EXPECT_EQ(with({"--update"}).exit_code, 0);
+    EXPECT_EQ(with({}).exit_code, 0);
+    // As if it had been fitted from the beginning.
+    const Image kept = read_png(reference(kMiddle));
+    EXPECT_EQ(with({"--update", "--replan"}).exit_code, 0);
+    EXPECT_EQ(read_png(reference(kMiddle)), kept);
+}
+
+TEST_F(GoldenSuite, FindsScenesInFoldersInFolders) {
+    std::filesystem::create_directories(folder_.file("scenes/deep/in"));
+    test::write_file(folder_.file("scenes/deep/in/other.toml"), std::string(kGoldenScene));
+    EXPECT_THAT(run().out, HasSubstr("other_t0000_500000.png: missing"));
+}
+
+TEST_F(GoldenSuite, AFrozenCameraIsNotThatOfAnotherMargin) {
+    EXPECT_THAT(run({"--set", "camera.margin=0.3"}).out, HasSubstr("same positions, other camera"));
 }
 
 TEST_F(GoldenSuite, ChangesNothingIfAnUpdateFails) {
