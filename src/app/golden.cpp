@@ -40,6 +40,8 @@ const char* word_of(Verdict verdict) {
             return "empty";
         case Verdict::kStale:
             return "stale";
+        case Verdict::kInvalid:
+            return "invalid";
     }
     return "";
 }
@@ -88,7 +90,10 @@ void tell(const Console& console, const GoldenOptions& options, const suite::Sui
     nlohmann::json pictures = nlohmann::json::array();
     std::int64_t changed = 0;
     for (const Checked& picture : result.pictures) {
-        if (picture.failed() || picture.changed) console.result(line_of(picture, options));
+        if (picture.verdict == Verdict::kInvalid)
+            console.error(picture.cause);
+        else if (picture.failed() || picture.changed)
+            console.result(line_of(picture, options));
         changed += picture.changed ? 1 : 0;
         pictures.push_back(to_json(picture));
     }
@@ -97,8 +102,10 @@ void tell(const Console& console, const GoldenOptions& options, const suite::Sui
     const std::int64_t failed = result.count(Verdict::kDifferent) + result.count(Verdict::kEmpty);
     const std::int64_t missing = result.count(Verdict::kMissing);
     const std::int64_t stale = result.count(Verdict::kStale);
+    const std::int64_t invalid = result.count(Verdict::kInvalid);
     std::string sums = fmt::format("{}: {} failed, {} missing, {} stale",
                                    counted(passed, "picture") + " passed", failed, missing, stale);
+    if (invalid > 0) sums += fmt::format("; {} invalid", counted(invalid, "scene"));
     if (options.def.update)
         sums += fmt::format("; {}{} written or removed", changed, options.def.dry_run ? " would be" : "");
     console.result(sums);
@@ -112,6 +119,7 @@ void tell(const Console& console, const GoldenOptions& options, const suite::Sui
                     {"failed", failed},
                     {"missing", missing},
                     {"stale", stale},
+                    {"invalid", invalid},
                     {"changed", changed},
                     {"frozen", result.frozen},
                     {"pictures", pictures}});
@@ -131,6 +139,7 @@ ExitCode run_suite(const Console& console, GoldenOptions options) {
     if (!options.junit.empty()) write_text(options.junit, suite::junit_xml(result));
     if (!options.html.empty()) write_text(options.html, suite::page_html(result, options.def.folder));
     tell(console, options, result);
+    if (result.count(Verdict::kInvalid) > 0) return ExitCode::kInvalidScene;
     const bool failed = std::any_of(result.pictures.begin(), result.pictures.end(),
                                     [](const Checked& picture) { return picture.failed(); });
     return failed ? ExitCode::kMismatch : ExitCode::kOk;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <set>
 
 #include "corda/core/file.hpp"
@@ -73,25 +74,38 @@ Provenance provenance_in(const std::string& path) {
 
 }  // namespace
 
-std::vector<Case> load_cases(const SuiteDef& def) {
+std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid) {
     std::vector<Case> cases;
     std::set<std::string> names;
+    const auto load = [&](const std::string& file) -> std::optional<Case> {
+        try {
+            return make_case(file, def, names);
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::kInvalidScene || def.update) throw;
+            invalid.push_back({.scene = fs::path(file).stem().string(),
+                               .name = file,
+                               .verdict = Verdict::kInvalid,
+                               .cause = error.what()});
+            return std::nullopt;
+        }
+    };
     for (const std::string& path : def.paths) {
         std::error_code none;  // who reads it tells what is wrong
         const bool is_folder = fs::is_directory(path, none);
         const std::vector<std::string> files =
             is_folder ? files_in<fs::recursive_directory_iterator>(path, ".toml") : std::vector{path};
         for (const std::string& file : files) {
-            Case made = make_case(file, def, names);
-            if (made.scene.golden)
-                cases.push_back(std::move(made));
+            std::optional<Case> made = load(file);
+            if (!made) continue;
+            if (made->scene.golden)
+                cases.push_back(std::move(*made));
             else if (!is_folder)
                 throw Error(ExitCode::kUsage, fmt::format("'{}' has no table [golden]; add one, for instance "
                                                           "[golden] with at = [0.0, 1.0]",
                                                           file));
         }
     }
-    if (cases.empty())
+    if (cases.empty() && invalid.empty())
         throw Error(ExitCode::kUsage,
                     fmt::format("no scene in '{}' has a table [golden]; add one, for instance [golden] with "
                                 "at = [0.0, 1.0]",

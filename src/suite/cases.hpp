@@ -19,8 +19,9 @@ struct Case {
     std::string frozen;  ///< what its references freeze, in words
 };
 
-/// The scenes of a suite. Throws corda::Error as run().
-[[nodiscard]] std::vector<Case> load_cases(const SuiteDef& def);
+/// The scenes of a suite; those that are invalid go to `invalid`, but for those of an update. Throws
+/// corda::Error as run().
+[[nodiscard]] std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid);
 
 /// The pictures of the folder of references, sorted; none if there is no folder. Throws corda::Error (kIo).
 [[nodiscard]] std::vector<std::string> references_in(const std::string& folder);

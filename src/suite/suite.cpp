@@ -293,13 +293,15 @@ std::int64_t SuiteResult::count(Verdict verdict) const {
 }
 
 SuiteResult run(const SuiteDef& def) {
-    std::vector<Case> cases = load_cases(def);
+    std::vector<Checked> invalid;
+    std::vector<Case> cases = load_cases(def, invalid);
     const std::vector<std::string> references = references_in(def.folder);
     std::int64_t all = 0;
     for (const Case& one : cases) all += std::ssize(one.pictures);
     Runner runner(def, references, all);
     runner.check(cases);
-    const std::vector<std::string> stale = stale_ones(def, cases, references);
+    const std::vector<std::string> stale =
+        invalid.empty() ? stale_ones(def, cases, references) : std::vector<std::string>{};
     SuiteResult result;
     for (Case& one : cases) {
         std::move(one.pictures.begin(), one.pictures.end(), std::back_inserter(result.pictures));
@@ -311,6 +313,7 @@ SuiteResult run(const SuiteDef& def) {
                                    .verdict = Verdict::kStale,
                                    .cause = "no scene asks for it",
                                    .changed = def.update});
+    std::move(invalid.begin(), invalid.end(), std::back_inserter(result.pictures));
     if (def.update && !def.dry_run) runner.publish(stale);
     return result;
 }

@@ -23,12 +23,12 @@ struct SuiteDef {
     OnProgress on_progress;  ///< called with the pictures done, by one thread at a time; false stops
 };
 
-enum class Verdict { kPassed, kDifferent, kMissing, kEmpty, kStale };
+enum class Verdict { kPassed, kDifferent, kMissing, kEmpty, kStale, kInvalid };
 
-/// One picture of a suite.
+/// One picture of a suite, or a scene file that is invalid.
 struct Checked {
     std::string scene;
-    std::string name;  ///< of its file in the folder of references
+    std::string name;  ///< of its file in the folder of references; of a scene, its path
     double time_s = 0.0;
     Verdict verdict = Verdict::kPassed;
     Difference difference{};
@@ -42,7 +42,7 @@ struct Checked {
 };
 
 struct SuiteResult {
-    std::vector<Checked> pictures;    ///< scene by scene in order of time; stale ones last
+    std::vector<Checked> pictures;    ///< scene by scene in order of time; stale ones, invalid scenes last
     std::vector<std::string> frozen;  ///< per scene whose solver or camera its references fix: in words
 
     /// The pictures of a verdict, without those that an update has put right.
@@ -50,9 +50,10 @@ struct SuiteResult {
 };
 
 /// Draws all pictures of a suite, one per core at a time, as frames of a video: exposed as video.shutter
-/// says. Compares them with their references. An update is written when all is drawn, or not at all. Throws
-/// corda::Error: kUsage if there is no scene with a table [golden] or two pictures have one name, what
-/// load_scene() and Film throw, kIo.
+/// says. Compares them with their references. An update is written when all is drawn, or not at all. Beside
+/// an invalid scene the others are checked, but nothing is updated or stale. Throws corda::Error: kUsage if
+/// there is no scene with a table [golden] or two pictures have one name, what load_scene() and Film throw,
+/// kIo.
 [[nodiscard]] SuiteResult run(const SuiteDef& def);
 
 /// As JUnit's XML: a test suite per scene, a test case per picture.

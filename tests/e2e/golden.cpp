@@ -195,6 +195,18 @@ TEST_F(GoldenSuite, AnUpdateFitsTheCameraAnewIfTheMotionLeavesTheFrame) {
     EXPECT_EQ(read_png(reference(kMiddle)), kept);
 }
 
+TEST_F(GoldenSuite, ChecksTheOthersBesideAnInvalidScene) {
+    test::write_file(folder_.file("scenes/typo.toml"), "schema = 1\n[[rop]]\n");
+    test::write_file(folder_.file("scenes/typo2.toml"), "schema = 1\n[worl]\n");
+    const auto result = run({"--junit", folder_.file("j.xml"), "--set", "style.rope_width_px=9"});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_THAT(result.err, AllOf(HasSubstr("typo.toml:2:"), HasSubstr("typo2.toml:2:")));
+    EXPECT_THAT(result.out, AllOf(HasSubstr("3 failed"), HasSubstr("0 stale; 2 scenes invalid")));
+    const std::string junit = test::read_file(folder_.file("j.xml"));
+    EXPECT_THAT(junit, AllOf(HasSubstr("<testcase classname=\"typo\""), HasSubstr("pixels differ")));
+    EXPECT_EQ(run({"--update"}).exit_code, 3);
+}
+
 TEST_F(GoldenSuite, FindsScenesInFoldersInFolders) {
     std::filesystem::create_directories(folder_.file("scenes/deep/in"));
     test::write_file(folder_.file("scenes/deep/in/other.toml"), std::string(kGoldenScene));
