@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -13,6 +14,7 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
+#include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/golden/perceived.hpp"
@@ -111,6 +113,8 @@ ExitCode compare(const Console& console, CompareOptions options) {
     std::optional<Image> mask;
     if (!options.mask.empty()) mask = read_png(options.mask, stopping_if_asked());
     std::error_code none;  // who reads it tells what is wrong
+    for (const std::string& path : {options.a, options.b})
+        if (!std::filesystem::exists(path, none)) fail_file("read", path, none ? none.value() : ENOENT);
     const bool is_folder = std::filesystem::is_directory(options.a, none);
     if (is_folder != std::filesystem::is_directory(options.b, none)) {
         throw Error(ExitCode::kUsage,
