@@ -1,11 +1,8 @@
 #include "compare.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <thread>
 
@@ -20,6 +17,7 @@
 #include "corda/golden/perceived.hpp"
 #include "corda/golden/variant.hpp"
 #include "corda/media/defs.hpp"
+#include "corda/media/png_chunks.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -29,32 +27,11 @@ bool is_png(const std::filesystem::path& path) {
     return path.extension() == ".png";
 }
 
-/// Whether two files hold the same bytes: then one of them need not be decoded.
-bool have_same_bytes(const std::string& a, const std::string& b) {
-    std::error_code failure;
-    const bool are_files =
-        std::filesystem::is_regular_file(a, failure) && std::filesystem::is_regular_file(b, failure);
-    if (!are_files || std::filesystem::file_size(a, failure) != std::filesystem::file_size(b, failure))
-        return false;
-    std::ifstream of_a(a, std::ios::binary);
-    std::ifstream of_b(b, std::ios::binary);
-    std::array<char, 65536> block_a{};
-    std::array<char, 65536> block_b{};
-    while (of_a && of_b) {
-        of_a.read(block_a.data(), block_a.size());
-        of_b.read(block_b.data(), block_b.size());
-        const auto count = static_cast<std::size_t>(of_a.gcount());
-        if (of_a.gcount() != of_b.gcount() || std::memcmp(block_a.data(), block_b.data(), count) != 0)
-            return false;
-    }
-    return of_a.eof() && of_b.eof();
-}
-
 /// Compares two pictures of files, the first of which is decoded. `keeps_b`: `b` is wanted in any case.
 Difference difference_of(const std::string& path_a, const Image& a, const std::string& path_b, Image& b,
                          const PerceivedFigures& figures, const OnProgress& goes_on, const Image* mask,
                          bool keeps_b) {
-    if (mask == nullptr && have_same_bytes(path_a, path_b)) {
+    if (mask == nullptr && media::have_same_picture_chunks(path_a, path_b)) {
         if (keeps_b) b = a;
         Difference none;
         if (figures.flip) none.flip = 0.0;

@@ -10,6 +10,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/media/child_process.hpp"
 #include "corda/media/defs.hpp"
+#include "corda/media/png_chunks.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"
 
@@ -227,6 +228,34 @@ TEST_F(Png, StopsIfItIsAsked) {
                   ExitCode::kInterrupted);
     }
     EXPECT_EQ(folder_.files(), std::vector<std::string>{"a.png"});
+}
+
+TEST_F(Png, SamePictureChunksAreThoseOfTheSamePixels) {
+    const Image image = random_image(300, 200, false);
+    PngInfo info;
+    info.text = {{"Title", "a"}};
+    info.pixels_per_inch = 300.0;
+    write_png(file("a.png"), image);
+    write_png(file("b.png"), image, info);
+    const std::string whole = test::read_file(file("a.png"));
+    EXPECT_NE(whole, test::read_file(file("b.png")));
+    EXPECT_TRUE(have_same_picture_chunks(file("a.png"), file("b.png")));
+    for (const std::size_t at :
+         {std::size_t{3}, whole.find("IHDR") + 5, whole.find("IDAT") + 100, whole.size() - 6}) {
+        std::string changed = whole;
+        changed[at] = static_cast<char>(changed[at] ^ 1);
+        test::write_file(file("c.png"), changed);
+        EXPECT_FALSE(have_same_picture_chunks(file("b.png"), file("c.png"))) << at;
+    }
+    for (const std::size_t size : {std::size_t{0}, std::size_t{20}, whole.size() / 2, whole.size() - 1}) {
+        test::write_file(file("c.png"), whole.substr(0, size));
+        EXPECT_FALSE(have_same_picture_chunks(file("a.png"), file("c.png"))) << size;
+        EXPECT_FALSE(have_same_picture_chunks(file("c.png"), file("c.png"))) << size;
+    }
+    // Of a length that no file has.
+    test::write_file(file("c.png"), whole.substr(0, 8) + std::string("\x7f\xff\xff\xfftEXt", 8));
+    EXPECT_FALSE(have_same_picture_chunks(file("c.png"), file("c.png")));
+    EXPECT_FALSE(have_same_picture_chunks(file("a.png"), file("no.png")));
 }
 
 TEST_F(Png, TextsAreUtf8) {
