@@ -1,0 +1,123 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "corda/core/basics.hpp"
+
+namespace corda {
+
+/// Numbered things that several threads make and one takes in order. Few wait to be taken at a time: a thread
+/// that is too far ahead waits.
+template <class Thing>
+class InOrder {
+  public:
+    /// Makes the thing of a number, on the thread that made the maker; `all` tells whether to stop.
+    using Make = std::function<Thing(std::int64_t number, const InOrder& all)>;
+
+    /// Begins to make things first <= i < end. Every thread calls `new_maker` once. Throws corda::Error
+    /// (kTemporary) if the system starts no thread.
+    InOrder(std::int64_t first, std::int64_t end, int threads, std::function<Make()> new_maker)
+        : new_maker_(std::move(new_maker)), end_(end), ahead_(2 * threads), next_(first), taken_(first) {
+        try {
+            for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
+        } catch (const std::system_error&) {  // fewer will do
+            if (threads_.empty())
+                throw Error(ExitCode::kTemporary,
+                            "the system starts no thread; make one chunk at a time (--jobs 1)");
+        }
+    }
+    InOrder(const InOrder&) = delete;
+    InOrder& operator=(const InOrder&) = delete;
+    ~InOrder() {
+        stop();
+        for (std::thread& thread : threads_) thread.join();
+    }
+
+    /// The next thing in order; std::nullopt if it is not there after a moment. Throws what making it threw.
+    std::optional<Thing> wait() {
+        constexpr std::chrono::milliseconds kMoment{50};
+        std::unique_lock lock(mutex_);
+        changed_.wait_for(lock, kMoment, [this] { return is_ready(); });
+        if (!is_ready()) return std::nullopt;
+        if (const auto failed = failures_.find(taken_); failed != failures_.end())
+            std::rethrow_exception(failed->second);
+        auto node = made_.extract(taken_++);
+        changed_.notify_all();
+        return std::move(node.mapped());
+    }
+
+    /// Makes the threads end.
+    void stop() {
+        const std::lock_guard lock(mutex_);
+        is_stopped_ = true;
+        changed_.notify_all();
+    }
+    [[nodiscard]] bool is_stopped() const { return is_stopped_; }
+    /// The number of the next thing to be taken.
+    [[nodiscard]] std::int64_t taken() const { return taken_; }
+
+    /// After stop(): the next thing in order, as far as it got; std::nullopt if there is none.
+    std::optional<Thing> rest() {
+        for (std::thread& thread : threads_) thread.join();
+        threads_.clear();
+        auto node = made_.extract(taken_++);
+        return node.empty() ? std::nullopt : std::optional(std::move(node.mapped()));
+    }
+
+  private:
+    [[nodiscard]] bool is_ready() const { return made_.contains(taken_) || failures_.contains(taken_); }
+
+    /// The number of the next thing to make, once it is not too far ahead; std::nullopt at the end.
+    std::optional<std::int64_t> take_number() {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [this] { return is_stopped_ || next_ < taken_ + ahead_; });
+        if (is_stopped_ || next_ >= end_) return std::nullopt;
+        return next_++;
+    }
+
+    void work() {
+        Make make;
+        while (const auto number = take_number()) {
+            std::optional<Thing> thing;
+            std::exception_ptr failure;
+            try {
+                if (!make) make = new_maker_();
+                thing.emplace(make(*number, *this));
+            } catch (...) {
+                failure = std::current_exception();
+            }
+            const std::lock_guard lock(mutex_);
+            if (failure)
+                failures_.emplace(*number, failure);
+            else
+                made_.emplace(*number, std::move(*thing));
+            changed_.notify_all();
+        }
+    }
+
+    std::function<Make()> new_maker_;
+    std::int64_t end_;
+    std::int64_t ahead_;  ///< how many may be made or waiting at a time
+    std::mutex mutex_;    ///< of what follows
+    std::condition_variable changed_;
+    std::int64_t next_;                ///< to be made
+    std::atomic<std::int64_t> taken_;  ///< all before this one
+    std::map<std::int64_t, Thing> made_;
+    std::map<std::int64_t, std::exception_ptr> failures_;
+    std::atomic<bool> is_stopped_ = false;
+    std::vector<std::thread> threads_;
+};
+
+}  // namespace corda
