@@ -45,6 +45,9 @@ class OutputFile {
 
     void write(std::string_view bytes);
 
+    /// Writes out what `write` has buffered, for whoever reads the file before it has its name.
+    void flush();
+
     /// Writes out what `write` has buffered, forces it onto the disk, closes, and gives the file its name.
     /// If the name was taken meanwhile, without `force` by anything, with it by a device or a pipe, the
     /// complete file is kept as by `keep`, and the message says where.
@@ -72,7 +75,6 @@ class OutputFile {
     void find_target();
     void open_directly();
     void open_temporary();
-    void flush();
     void restore_permissions();
     void close();
     [[nodiscard]] int rename_to(const std::string& name) const;

@@ -17,7 +17,7 @@ namespace corda::media {
 [[nodiscard]] EncoderSettings vp9_settings(const Format& format, const VideoDef& def);
 [[nodiscard]] EncoderSettings prores_settings(const Format& format, const VideoDef& def);
 [[nodiscard]] EncoderSettings ffv1_settings(const Format& format, const VideoDef& def);
-[[nodiscard]] EncoderSettings raw_settings(const Format& format, const VideoDef& def);
+[[nodiscard]] EncoderSettings exact_settings(const Format& format, const VideoDef& def);
 
 /// What a picture says of itself, by its number in the film.
 using PictureInfo = std::function<PngInfo(std::int64_t frame)>;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <thread>
 #include <vector>
 
 #include "corda/core/basics.hpp"
@@ -39,6 +41,10 @@ void remux(const PartIndex& index, const std::string& part_path, const Ending& e
     track.finish();
 }
 
+int threads_of(int jobs) {
+    return jobs > 0 ? jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
 AVCodecID codec_id_of(const Codec& codec) {
     if (codec.origin == EncoderOrigin::kX264) return AV_CODEC_ID_H264;
     const AVCodec* const encoder = avcodec_find_encoder_by_name(codec.name);
@@ -72,27 +78,27 @@ void check_animation(const PartIndex& index, const Ending& ending, VerifyReport&
 }  // namespace
 
 RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOptions& options,
-                        std::optional<std::int64_t> expected_frames, VerifyDepth depth,
-                        const std::vector<FrameColors>& rendered) {
+                        const FinishDef& def) {
     const LogCapture log;
-    const OnProgress all_done = [&options, frames = expected_frames.value_or(0)](std::int64_t, std::int64_t) {
+    const OnProgress all_done = [&options, frames = def.frames.value_or(0)](std::int64_t, std::int64_t) {
         return !options.on_progress || options.on_progress(frames, frames);
     };
     const PartIndex index = index_part(part.path(), all_done);
     const RemuxResult result{static_cast<std::int64_t>(index.frame_of.size()), index.truncated};
-    if (expected_frames && *expected_frames != result.frames) {
+    if (def.frames && *def.frames != result.frames) {
         throw Error(ExitCode::kMismatch, fmt::format("'{}' holds {} frames instead of {}; it stays as it is",
-                                                     part.path(), result.frames, *expected_frames));
+                                                     part.path(), result.frames, *def.frames));
     }
     const Ending& ending = find_ending(path);
     check_ending(index, part.path(), path, ending);
     remove_leftovers(path);
     OutputFile output(path, options);
     if (ending.kind == FileKind::kAnimation)
-        write_animation(part.path(), ending, index.fps, result.frames, all_done, output);
+        write_animation(ending, {part.path(), result.frames, index.fps, threads_of(def.jobs)}, all_done,
+                        output);
     else
         remux(index, part.path(), ending, all_done, output);
-    VerifyReport report = verify(output.temporary_path(), all_done, depth, rendered);
+    VerifyReport report = verify(output.temporary_path(), all_done, def.depth, def.rendered);
     check_animation(index, ending, report);
     if (!report.ok()) {
         throw Error(ExitCode::kMismatch,
@@ -107,7 +113,7 @@ RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOpt
 RemuxResult recover_part(const std::string& part_path, const std::string& path,
                          const OutputOptions& options) {
     PartFile part = PartFile::open(part_path);
-    return finish_part(part, path, options);
+    return finish_part(part, path, options, {});
 }
 
 }  // namespace corda::media

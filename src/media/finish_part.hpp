@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/part_file.hpp"
@@ -27,12 +28,17 @@ struct RemuxResult {
 RemuxResult recover_part(const std::string& part_path, const std::string& path,
                          const OutputOptions& options = {});
 
+/// How a part becomes the finished video.
+struct FinishDef {
+    std::optional<std::int64_t> frames;  ///< how many it is to have; empty: as many as are there
+    VerifyDepth depth = VerifyDepth::kAllFrames;
+    std::vector<FrameColors> rendered;  ///< as verify() takes them
+    int jobs = 0;                       ///< threads that encode an animation; 0: one per core
+};
+
 /// As recover_part, for a part that this process holds. Also throws kMismatch if it has another number of
-/// frames than `expected_frames`, if given. For `depth` and `rendered` see verify(). `options.on_progress`
-/// hears that all of them are done.
+/// frames than it is to have. `options.on_progress` hears that all of them are done.
 RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOptions& options,
-                        std::optional<std::int64_t> expected_frames = std::nullopt,
-                        VerifyDepth depth = VerifyDepth::kAllFrames,
-                        const std::vector<FrameColors>& rendered = {});
+                        const FinishDef& def);
 
 }  // namespace corda::media

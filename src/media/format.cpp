@@ -9,172 +9,12 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
 #include "corda/core/output_file.hpp"
-#include "corda/media/encoders.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/picture_names.hpp"
 #include "corda/media/x264_encoder.hpp"
 
 namespace corda::media {
 namespace {
-
-constexpr std::array kX26xPresets{"ultrafast", "superfast", "veryfast", "faster",   "fast",
-                                  "medium",    "slow",      "slower",   "veryslow", "placebo"};
-constexpr std::array kNvencPresets{"p1", "p2", "p3", "p4", "p5", "p6", "p7"};
-constexpr std::array kSpeeds{"0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13"};
-constexpr std::span<const char* const> kSpeedsTo8{kSpeeds.data(), 9};
-
-/// Of codecs whose frames stand alone: less is in memory, and more is safe.
-constexpr int kFewFrames = 12;
-
-constexpr std::array kCodecs{
-    Codec{"libx264",
-          "h264",
-          "H.264",
-          {"yuv420p", "yuv444p"},
-          kX26xPresets,
-          "veryfast",
-          {{1, 51}},
-          16,
-          1,
-          0,
-          false,
-          EncoderOrigin::kX264},
-    Codec{"libx265",
-          "h265",
-          "H.265",
-          {"yuv420p", "yuv444p"},
-          kX26xPresets,
-          "medium",
-          {{1, 51}},
-          23,
-          32,
-          0,
-          false,
-          EncoderOrigin::kLibav,
-          &x265_settings},
-    Codec{"libsvtav1",
-          "av1",
-          "AV1",
-          {"yuv420p"},
-          kSpeeds,
-          "8",
-          {{1, 63}},
-          32,
-          64,
-          0,
-          false,
-          EncoderOrigin::kLibav,
-          &svt_av1_settings},
-    Codec{"libaom-av1",
-          "av1",
-          "AV1",
-          {"yuv420p", "yuv444p"},
-          kSpeedsTo8,
-          "6",
-          {{1, 63}},
-          20,
-          16,
-          0,
-          false,
-          EncoderOrigin::kLibav,
-          &aom_av1_settings},
-    Codec{"libvpx-vp9",
-          "vp9",
-          "VP9",
-          {"yuv420p", "yuva420p", "yuv444p"},
-          kSpeedsTo8,
-          "4",
-          {{1, 63}},
-          32,
-          1,
-          0,
-          false,
-          EncoderOrigin::kLibav,
-          &vp9_settings},
-    Codec{"h264_nvenc",
-          "nvenc",
-          "H.264",
-          {"yuv420p", "yuv444p"},
-          kNvencPresets,
-          "p5",
-          {{1, 51}},
-          18,
-          160,
-          0,
-          true,
-          EncoderOrigin::kLibav,
-          &nvenc_settings},
-    Codec{"prores_ks",
-          "prores",
-          "ProRes 4444",
-          {"yuv444p10le", "yuva444p10le"},
-          {},
-          "",
-          {},
-          0,
-          1,
-          kFewFrames,
-          false,
-          EncoderOrigin::kLibav,
-          &prores_settings},
-    Codec{"ffv1",
-          "ffv1",
-          "FFV1",
-          {"bgr0", "bgra"},
-          {},
-          "",
-          {},
-          0,
-          1,
-          kFewFrames,
-          false,
-          EncoderOrigin::kLibav,
-          &ffv1_settings},
-    Codec{"png", "png", "PNG", {"rgba"}, {}, "", {}, 0, 1, kFewFrames, false, EncoderOrigin::kPng},
-    Codec{"rawvideo",
-          "raw",
-          "raw pictures",
-          {"yuv420p", "yuv444p", "rgba"},
-          {},
-          "",
-          {},
-          0,
-          1,
-          2,
-          false,
-          EncoderOrigin::kLibav,
-          &raw_settings},
-};
-
-constexpr std::array kEndings{
-    Ending{".mp4",
-           "MP4",
-           FileKind::kVideo,
-           "mp4",
-           "mp4",
-           {"libx264", "libsvtav1", "libx265", "libaom-av1", "h264_nvenc"},
-           "H.264: everything; AV1: browsers; H.265: Safari, QuickTime, TVs"},
-    Ending{".webm",
-           "WebM",
-           FileKind::kVideo,
-           "webm",
-           "matroska",
-           {"libvpx-vp9", "libsvtav1", "libaom-av1"},
-           "browsers, VLC, mpv"},
-    Ending{".mov",
-           "QuickTime",
-           FileKind::kVideo,
-           "mov",
-           "mov",
-           {"prores_ks"},
-           "video editors, QuickTime, Keynote"},
-    Ending{".mkv", "Matroska", FileKind::kVideo, "matroska", "matroska", {"ffv1"}, "VLC, mpv, ffmpeg"},
-    Ending{".gif", "GIF", FileKind::kAnimation, "gif", "matroska", {"ffv1"}, "everything; PowerPoint"},
-    Ending{".apng", "APNG", FileKind::kAnimation, "apng", "matroska", {"ffv1"}, "browsers"},
-    Ending{".webp", "WebP", FileKind::kAnimation, "webp", "matroska", {"ffv1"}, "browsers"},
-    Ending{"%04d.png", "PNG pictures", FileKind::kPictures, "", "", {"png"}, "everything, as pictures"},
-    Ending{"-", "YUV4MPEG2", FileKind::kStream, "", "", {"rawvideo"}, "ffmpeg and other encoders"},
-};
 
 template <typename... Args>
 [[noreturn]] void fail_usage(fmt::format_string<Args...> text, Args&&... args) {
@@ -381,7 +221,8 @@ void check_rate_for(const Format& format, const VideoDef& def) {
             "an APNG cannot have {} frames per second: it counts up to 65535; use a rate such as 30000/1001",
             fps.text());
     constexpr double kMostPerSecond = 1000.0;
-    if (std::string_view(format.ending->part_muxer) == "matroska" && fps.value() > kMostPerSecond)
+    const bool counts_ms = muxer == "matroska" || muxer == "webm" || muxer == "webp";
+    if (counts_ms && fps.value() > kMostPerSecond)
         fail_usage("{} cannot have {} frames per second: it counts milliseconds; use {} or less, or .mp4",
                    format.ending->words, fps.text(), kMostPerSecond);
 }
@@ -392,38 +233,39 @@ std::string Format::preset_of(const EncoderDef& def) const {
     return def.preset.empty() ? codec->default_preset : def.preset;
 }
 
-std::span<const Ending> endings() {
-    return kEndings;
-}
-
-std::span<const Codec> codecs() {
-    return kCodecs;
-}
-
 std::vector<std::string_view> codec_names() {
     std::vector<std::string_view> names;
-    for (const Codec& codec : kCodecs) add_new(codec.name, names);
-    for (const Codec& codec : kCodecs) add_new(codec.short_name, names);
+    const auto can_be_asked_for = [](const Codec& codec) {
+        return std::any_of(endings().begin(), endings().end(), [&codec](const Ending& ending) {
+            const auto of_ending = names_of(ending);
+            return ending.kind != FileKind::kAnimation &&
+                   std::find(of_ending.begin(), of_ending.end(), codec.name) != of_ending.end();
+        });
+    };
+    for (const Codec& codec : codecs())
+        if (can_be_asked_for(codec)) add_new(codec.name, names);
+    for (const Codec& codec : codecs())
+        if (can_be_asked_for(codec)) add_new(codec.short_name, names);
     return names;
 }
 
 std::vector<std::string_view> preset_names() {
     std::vector<std::string_view> names;
-    for (const Codec& codec : kCodecs)
+    for (const Codec& codec : codecs())
         for (const char* const preset : codec.presets) add_new(preset, names);
     return names;
 }
 
 const Codec* find_codec(std::string_view name) {
-    const auto row = std::find_if(kCodecs.begin(), kCodecs.end(), [name](const Codec& codec) {
+    const auto row = std::find_if(codecs().begin(), codecs().end(), [name](const Codec& codec) {
         return name == codec.name || name == codec.short_name;
     });
-    return row == kCodecs.end() ? nullptr : &*row;
+    return row == codecs().end() ? nullptr : &*row;
 }
 
 const Ending& find_ending(std::string_view path) {
     const auto row_of = [](FileKind kind) -> const Ending& {
-        return *std::find_if(kEndings.begin(), kEndings.end(),
+        return *std::find_if(endings().begin(), endings().end(),
                              [kind](const Ending& row) { return row.kind == kind; });
     };
     if (is_standard_output(std::string(path))) return row_of(FileKind::kStream);
@@ -432,11 +274,11 @@ const Ending& find_ending(std::string_view path) {
         check_picture_names(path);
         return row_of(FileKind::kPictures);
     }
-    const auto row = std::find_if(kEndings.begin(), kEndings.end(),
+    const auto row = std::find_if(endings().begin(), endings().end(),
                                   [&ending](const Ending& candidate) { return ending == candidate.text; });
-    if (row != kEndings.end() && !ending.empty()) return *row;
+    if (row != endings().end() && !ending.empty()) return *row;
     std::vector<std::string_view> known;
-    for (const Ending& candidate : kEndings) known.emplace_back(candidate.text);
+    for (const Ending& candidate : endings()) known.emplace_back(candidate.text);
     fail_usage("'{}': the ending of the name tells the format, and this one is not known; use {}", path,
                fmt::join(known, ", "));
 }
@@ -480,7 +322,7 @@ void check_video_def(const VideoDef& def) {
 
 std::string endings_with_alpha() {
     std::vector<std::string_view> names;
-    for (const Ending& ending : kEndings) {
+    for (const Ending& ending : endings()) {
         const auto& formats = find_codec(ending.codecs.front())->pixel_formats;
         const bool keeps_it = std::any_of(formats.begin(), formats.end(), [](const char* name) {
             return name != nullptr && has_alpha_plane(name);

@@ -11,7 +11,7 @@ EncoderSettings ffv1_settings(const Format& /*format*/, const VideoDef& /*def*/)
     return {-99, {{"level", "3"}, {"g", "1"}, {"slices", "4"}, {"slicecrc", "1"}, {"context", "0"}}, 0};
 }
 
-EncoderSettings raw_settings(const Format& /*format*/, const VideoDef& /*def*/) {
+EncoderSettings exact_settings(const Format& /*format*/, const VideoDef& /*def*/) {
     return {-99, {}, 0};
 }
 

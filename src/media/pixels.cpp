@@ -49,6 +49,18 @@ void copy_rgb(const Image& image, const PixelRect& part, AVFrame& frame) {
     }
 }
 
+void copy_argb(const Image& image, const PixelRect& part, AVFrame& frame) {
+    for (int y = part.y0; y < part.y1; ++y) {
+        std::uint8_t* const line = frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0];
+        for (int x = part.x0; x < part.x1; ++x) {
+            const std::uint8_t* const from = image.pixel(x, y);
+            std::uint8_t* const to = line + std::ptrdiff_t{4} * x;
+            to[0] = from[3];
+            std::copy_n(from, 3, to + 1);
+        }
+    }
+}
+
 void copy_without_alpha(const Image& image, const PixelRect& part, AVFrame& frame) {
     for (int y = part.y0; y < part.y1; ++y) {
         std::uint8_t* const line = frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0];
@@ -81,6 +93,8 @@ void convert_pixels(const Image& image, const PixelRect& part, AVFrame& frame) {
         case AV_PIX_FMT_BGR0:
         case AV_PIX_FMT_BGRA:
             return copy_bgr(image, inside, frame);
+        case AV_PIX_FMT_ARGB:
+            return copy_argb(image, inside, frame);
         case AV_PIX_FMT_RGBA:
             return copy_rgb(image, inside, frame);
         case AV_PIX_FMT_RGB24:
@@ -90,20 +104,34 @@ void convert_pixels(const Image& image, const PixelRect& part, AVFrame& frame) {
     }
 }
 
-Image image_of(const AVFrame& frame) {
-    assert(frame.format == AV_PIX_FMT_BGR0 || frame.format == AV_PIX_FMT_BGRA);
-    Image image(frame.width, frame.height);
-    for (int y = 0; y < frame.height; ++y) {
-        const std::uint8_t* from = frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0];
-        for (int x = 0; x < frame.width; ++x, from += 4) {
-            std::uint8_t* const to = image.pixel(x, y);
-            to[0] = from[2];
-            to[1] = from[1];
-            to[2] = from[0];
-            to[3] = frame.format == AV_PIX_FMT_BGRA ? from[3] : 255;
+bool copy_exact(const AVFrame& frame, Image& picture) {
+    if (picture.width() != frame.width || picture.height() != frame.height)
+        picture = Image(frame.width, frame.height);
+    const auto copy = [&](std::ptrdiff_t bytes, int red, int green, int blue, int alpha) {
+        for (int y = 0; y < frame.height; ++y) {
+            const std::uint8_t* from = frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0];
+            std::uint8_t* to = picture.pixel(0, y);
+            for (int x = 0; x < frame.width; ++x, from += bytes, to += 4) {
+                to[0] = from[red];
+                to[1] = from[green];
+                to[2] = from[blue];
+                to[3] = alpha < 0 ? 255 : from[alpha];
+            }
         }
+        return true;
+    };
+    switch (frame.format) {
+        case AV_PIX_FMT_BGR0:
+            return copy(4, 2, 1, 0, -1);
+        case AV_PIX_FMT_BGRA:
+            return copy(4, 2, 1, 0, 3);
+        case AV_PIX_FMT_ARGB:
+            return copy(4, 1, 2, 3, 0);
+        case AV_PIX_FMT_RGB24:
+            return copy(3, 0, 1, 2, -1);
+        default:
+            return false;
     }
-    return image;
 }
 
 void ShownPictures::convert(const AVFrame& frame, Image& picture) {

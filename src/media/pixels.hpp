@@ -7,12 +7,12 @@ namespace corda::media {
 
 /// Converts the part of `image` that `part` touches to the pixel format of `frame`, which has the same size
 /// and is writable; the rest of it stays. Takes yuv420p, yuva420p, yuv444p, yuv444p10le, yuva444p10le (see
-/// yuv420.hpp), bgr0, bgra, rgba
-/// and rgb24. Alpha stays straight.
+/// yuv420.hpp), bgr0, bgra, argb, rgba and rgb24. Alpha stays straight.
 void convert_pixels(const Image& image, const PixelRect& part, AVFrame& frame);
 
-/// The pixels of a frame of FFV1 in bgr0 or bgra.
-[[nodiscard]] Image image_of(const AVFrame& frame);
+/// Copies a frame in bgr0, bgra, argb or rgb24 to a picture, which gets its size; returns false for another
+/// pixel format.
+[[nodiscard]] bool copy_exact(const AVFrame& frame, Image& picture);
 
 /// Turns decoded frames of any pixel format into what a player shows: 8-bit RGBA, straight alpha.
 class ShownPictures {

@@ -6,8 +6,9 @@
 
 namespace corda::media {
 
-/// The bytes of the file that write_png() writes. Throws corda::Error (kIo, kInterrupted) as that does.
+/// The bytes of the file that write_png() writes; with `keeps_alpha`, an opaque picture has alpha, too.
+/// Throws corda::Error (kIo, kInterrupted) as that does.
 [[nodiscard]] std::string png_bytes(const Image& image, const PngInfo& info,
-                                    const OnProgress& on_progress = {});
+                                    const OnProgress& on_progress = {}, bool keeps_alpha = false);
 
 }  // namespace corda::media

@@ -149,8 +149,8 @@ std::vector<png_text> libpng_texts(const PngInfo& info, std::vector<std::string>
 }
 
 /// Encodes to a sink; `name` is for messages.
-void encode(const std::string& name, const Image& image, const PngInfo& info, const OnProgress& on_progress,
-            std::function<void(std::string_view)> sink) {
+void encode(const std::string& name, const Image& image, bool has_alpha, const PngInfo& info,
+            const OnProgress& on_progress, std::function<void(std::string_view)> sink) {
     std::vector<std::string> storage;
     std::vector<png_text> texts = libpng_texts(info, storage);
     WriteJob job;
@@ -160,7 +160,7 @@ void encode(const std::string& name, const Image& image, const PngInfo& info, co
     const auto pixels_per_metre =
         static_cast<png_uint_32>(std::lround(info.pixels_per_inch * kInchesPerMetre));
     const bool written =
-        job.info != nullptr && write_picture(job, image, is_opaque(image), pixels_per_metre, texts.data(),
+        job.info != nullptr && write_picture(job, image, !has_alpha, pixels_per_metre, texts.data(),
                                              static_cast<int>(texts.size()), on_progress);
     if (job.write_error) std::rethrow_exception(job.write_error);
     if (!written) {
@@ -178,13 +178,16 @@ void write_png(const std::string& path, const Image& image, const PngInfo& info,
     std::vector<std::string> storage;
     static_cast<void>(libpng_texts(info, storage));  // a wrong text is refused before a file is made
     OutputFile file(path, options);
-    encode(path, image, info, options.on_progress, [&file](std::string_view bytes) { file.write(bytes); });
+    encode(path, image, !is_opaque(image), info, options.on_progress,
+           [&file](std::string_view bytes) { file.write(bytes); });
     file.commit();
 }
 
-std::string media::png_bytes(const Image& image, const PngInfo& info, const OnProgress& on_progress) {
+std::string media::png_bytes(const Image& image, const PngInfo& info, const OnProgress& on_progress,
+                             bool keeps_alpha) {
     std::string all;
-    encode("frame", image, info, on_progress, [&all](std::string_view bytes) { all += bytes; });
+    encode("frame", image, keeps_alpha || !is_opaque(image), info, on_progress,
+           [&all](std::string_view bytes) { all += bytes; });
     return all;
 }
 

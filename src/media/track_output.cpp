@@ -56,8 +56,6 @@ void set_options(std::string_view container, TrackLayout layout, Rational fps, O
         if (layout == TrackLayout::kFinal) options.set("cues_to_front", "1");
     } else if (container == "gif") {
         options.set("loop", "0").set("final_delay", std::to_string(100 * fps.den / fps.num));
-    } else if (container == "apng") {
-        options.set("plays", "0").set("final_delay", fmt::format("{}/{}", fps.den, fps.num));
     }
 }
 

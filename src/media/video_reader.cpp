@@ -201,12 +201,15 @@ bool VideoReader::read(Yuv420Image& picture) {
 bool VideoReader::read(Image& picture) {
     const LogCapture log;
     if (!impl_->receive()) return false;
-    const AVFrame& frame = *impl_->frame;
-    if (frame.format != AV_PIX_FMT_BGR0 && frame.format != AV_PIX_FMT_BGRA)
-        impl_->fail_format("bgr0 or bgra");
-    picture = image_of(frame);
+    if (!copy_exact(*impl_->frame, picture)) impl_->fail_format("bgr0, bgra, argb or rgb24");
     av_frame_unref(impl_->frame.get());
     return true;
+}
+
+void VideoReader::skip() {
+    const LogCapture log;
+    if (!impl_->receive()) impl_->fail(AVERROR_EOF);
+    av_frame_unref(impl_->frame.get());
 }
 
 bool VideoReader::read_shown(Image& picture) {

@@ -53,8 +53,11 @@ class VideoReader {
     /// corda::Error (kIo) for a picture that does not decode cleanly or is not yuv420p with even sides.
     [[nodiscard]] bool read(Yuv420Image& picture);
 
-    /// The same for a video of exact pictures: throws for one that is not bgr0 or bgra.
+    /// The same for a video of exact pictures: throws for one that copy_exact() does not take.
     [[nodiscard]] bool read(Image& picture);
+
+    /// Leaves the next picture out. Throws as read() does, also after the last one.
+    void skip();
 
     /// The next picture as a player shows it, whatever its pixel format: 8-bit RGBA, straight alpha. Throws
     /// for one that does not decode cleanly.

@@ -94,9 +94,8 @@ class PartSink : public VideoSink {
     void drain() override {
         telling_what_is_kept("the frames before are", [&] { track_.finish(); });
     }
-    void finish(std::int64_t frames, VerifyDepth depth, const std::vector<FrameColors>& rendered) override {
-        telling_what_is_kept("all frames are",
-                             [&] { finish_part(part_, path_, options_, frames, depth, rendered); });
+    void finish(const FinishDef& def) override {
+        telling_what_is_kept("all frames are", [&] { finish_part(part_, path_, options_, def); });
     }
     std::string abandon() override {
         part_.sync();

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "corda/core/basics.hpp"
+#include "corda/media/finish_part.hpp"
 #include "corda/media/format.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/track_output.hpp"
-#include "corda/media/verify.hpp"
 
 namespace corda::media {
 
@@ -38,8 +38,7 @@ class VideoSink {
     /// No more packets come; what there is so far is whole.
     virtual void drain() {}
     /// After drain(): gives the video its name. Throws kMismatch if it is not sound.
-    virtual void finish(std::int64_t /*frames*/, VerifyDepth /*depth*/,
-                        const std::vector<FrameColors>& /*rendered*/) {}
+    virtual void finish(const FinishDef& /*def*/) {}
     /// After drain(): leaves what there is, of at least one frame, and tells where.
     virtual std::string abandon() = 0;
     /// Nothing was written: leaves no trace.

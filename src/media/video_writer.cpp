@@ -232,7 +232,7 @@ void VideoWriter::finish(VerifyDepth depth) {
             fmt::format("'{}' would have no frame; ask for a duration of at least one frame", impl.path));
     }
     impl.drain();
-    impl.sink->finish(frames(), depth, impl.colors);
+    impl.sink->finish({frames(), depth, impl.colors, impl.def.encoder.jobs});
 }
 
 std::string VideoWriter::abandon() {

@@ -2,13 +2,12 @@
 #include <webp/encode.h>
 #include <webp/mux.h>
 
-#include <cstring>
 #include <memory>
 #include <utility>
 
-#include "corda/core/file.hpp"
 #include "corda/media/animation.hpp"
-#include "corda/media/video_reader.hpp"
+#include "corda/media/animation_frames.hpp"
+#include "corda/media/exact_pictures.hpp"
 
 namespace corda::media {
 namespace {
@@ -17,22 +16,6 @@ using Mux = std::unique_ptr<WebPMux, decltype(&WebPMuxDelete)>;
 
 [[noreturn]] void fail_webp(const std::string& what) {
     throw Error(ExitCode::kEncoder, fmt::format("libwebp {}; use a smaller picture or .apng", what));
-}
-
-/// The smallest rectangle in which two pictures differ, from even columns and rows on, as WebP wants it; one
-/// pixel if they are equal.
-PixelRect difference(const Image& a, const Image& b) {
-    PixelRect changed;
-    for (int y = 0; y < a.height(); ++y) {
-        if (std::memcmp(a.pixel(0, y), b.pixel(0, y), a.row_bytes()) == 0) continue;
-        int x0 = 0;
-        int x1 = a.width();
-        while (std::memcmp(a.pixel(x0, y), b.pixel(x0, y), 4) == 0) ++x0;
-        while (std::memcmp(a.pixel(x1 - 1, y), b.pixel(x1 - 1, y), 4) == 0) --x1;
-        changed = changed.united({x0, y, x1, y + 1});
-    }
-    if (changed.empty()) return {0, 0, 1, 1};
-    return {changed.x0 / 2 * 2, changed.y0 / 2 * 2, changed.x1, changed.y1};
 }
 
 /// What libwebp frees by itself.
@@ -44,8 +27,15 @@ struct Encoded {
     WebPMemoryWriter writer{};
 };
 
-/// A part of a picture as a lossless WebP.
-void encode(const Image& image, const PixelRect& part, Encoded& bytes) {
+/// A frame, as far as it does not depend on those before.
+struct WebpFrame {
+    PixelRect part;
+    bool is_blended = false;
+    std::unique_ptr<Encoded> bytes;  ///< of a lossless picture
+};
+
+WebpFrame encode_webp(const PictureChange& change) {
+    WebpFrame frame{change.part, change.is_blended, std::make_unique<Encoded>()};
     WebPConfig config;
     WebPPicture picture;
     constexpr int kEffort = 1;  // of 9: 6, libwebp's own, takes twice the time for 10 to 14 % fewer bytes
@@ -54,58 +44,53 @@ void encode(const Image& image, const PixelRect& part, Encoded& bytes) {
         fail_webp("has another version");
     config.exact = 1;
     picture.use_argb = 1;
-    picture.width = part.width();
-    picture.height = part.height();
+    picture.width = change.picture.width();
+    picture.height = change.picture.height();
     picture.writer = WebPMemoryWrite;
-    picture.custom_ptr = &bytes.writer;
-    const bool is_done = WebPPictureImportRGBA(&picture, image.pixel(part.x0, part.y0),
-                                               static_cast<int>(image.row_bytes())) != 0 &&
+    picture.custom_ptr = &frame.bytes->writer;
+    const bool is_done = WebPPictureImportRGBA(&picture, change.picture.data(),
+                                               static_cast<int>(change.picture.row_bytes())) != 0 &&
                          WebPEncode(&config, &picture) != 0;
     const int code = picture.error_code;
     WebPPictureFree(&picture);
     if (!is_done) fail_webp(fmt::format("does not encode a frame (its error {})", code));
+    return frame;
 }
 
 }  // namespace
 
-void write_webp(const std::string& part_path, Rational fps, std::int64_t frames,
-                const OnProgress& on_progress, OutputFile& output) {
+void write_webp(const AnimationDef& def, const OnProgress& on_progress, OutputFile& output) {
     const Mux mux(WebPMuxNew(), &WebPMuxDelete);
     if (!mux) throw Error(ExitCode::kTemporary, "out of memory");
-    VideoReader reader(part_path);
-    Image last;
-    Image picture;
-    const auto ms = [fps](std::int64_t k) {
+    const auto ms = [fps = def.fps](std::int64_t k) {
         return (std::int64_t{2000} * k * fps.den + fps.num) / (2 * fps.num);
     };
-    for (std::int64_t k = 0; k < frames; ++k) {
-        report_progress(on_progress, k, frames);
-        if (!reader.read(picture))
-            throw Error(ExitCode::kIo, fmt::format("'{}' changed while it was read", part_path));
-        const PixelRect part = k == 0 ? picture.rect() : difference(picture, last);
-        Encoded bytes;
-        encode(picture, part, bytes);
+    std::int64_t k = 0;
+    PixelRect canvas;
+    const auto add = [&](const WebpFrame& made) {
+        if (k == 0) canvas = made.part;
         WebPMuxFrameInfo frame{};
-        frame.bitstream = {bytes.writer.mem, bytes.writer.size};
-        frame.x_offset = part.x0;
-        frame.y_offset = part.y0;
+        frame.bitstream = {made.bytes->writer.mem, made.bytes->writer.size};
+        frame.x_offset = made.part.x0;
+        frame.y_offset = made.part.y0;
         frame.duration = static_cast<int>(ms(k + 1) - ms(k));
         frame.id = WEBP_CHUNK_ANMF;
         frame.dispose_method = WEBP_MUX_DISPOSE_NONE;
-        frame.blend_method = WEBP_MUX_NO_BLEND;
+        frame.blend_method = made.is_blended ? WEBP_MUX_BLEND : WEBP_MUX_NO_BLEND;
         if (WebPMuxPushFrame(mux.get(), &frame, 1) != WEBP_MUX_OK) fail_webp("takes no further frame");
-        std::swap(last, picture);
-    }
+        ++k;
+    };
+    for_each_frame<WebpFrame>(
+        def, on_progress, [](const ExactPictures& pictures) { return encode_webp(pictures.change()); }, add);
     const WebPMuxAnimParams forever{0, 0};
     if (WebPMuxSetAnimationParams(mux.get(), &forever) != WEBP_MUX_OK ||
-        WebPMuxSetCanvasSize(mux.get(), last.width(), last.height()) != WEBP_MUX_OK)
+        WebPMuxSetCanvasSize(mux.get(), canvas.width(), canvas.height()) != WEBP_MUX_OK)
         fail_webp("takes no picture of this size");
     WebPData whole{};
     if (WebPMuxAssemble(mux.get(), &whole) != WEBP_MUX_OK) fail_webp("does not assemble the frames");
-    const int status =
-        write_all(output.descriptor(), {reinterpret_cast<const char*>(whole.bytes), whole.size}, on_progress);
-    WebPDataClear(&whole);
-    if (status != 0) fail_file("write to", output.temporary_path(), status);
+    const std::unique_ptr<WebPData, decltype(&WebPDataClear)> clear(&whole, &WebPDataClear);
+    output.write({reinterpret_cast<const char*>(whole.bytes), whole.size});
+    output.flush();
 }
 
 }  // namespace corda::media

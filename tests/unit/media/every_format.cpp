@@ -59,7 +59,8 @@ constexpr std::array kVariants{
     Variant{"webp_alpha", ".webp", "", kAny, true, 0.0},
 };
 
-constexpr int kVideoFrames = 14;  // more than one chunk of the codecs whose frames stand alone
+/// More than one chunk of the codecs whose frames stand alone, and than one section of an animation.
+constexpr int kVideoFrames = 14;
 
 /// A moving square on a ground with a half transparent strip, or on an opaque one.
 Image picture_of(std::int64_t k, bool is_transparent) {

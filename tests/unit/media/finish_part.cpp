@@ -47,7 +47,8 @@ TEST_F(Video, APartThatIsBeingWrittenIsNotRecovered) {
 TEST_F(Video, APartWithAnotherNumberOfFramesStays) {
     abandon_video(file("a.mp4"), small_video(), 8);
     PartFile part = PartFile::open(file("a.mp4.part"));
-    const test::Failure failure = failure_of([&] { finish_part(part, file("a.mp4"), {}, 9); });
+    const test::Failure failure =
+        failure_of([&] { finish_part(part, file("a.mp4"), {}, {.frames = 9, .rendered = {}}); });
     EXPECT_EQ(failure.code, ExitCode::kMismatch);
     EXPECT_THAT(failure.message, HasSubstr("8 frames instead of 9"));
     EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.part"));

@@ -1,0 +1,122 @@
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "corda/media/animation.hpp"
+#include "corda/media/animation_frames.hpp"
+#include "corda/media/exact_pictures.hpp"
+#include "corda/media/libav_encoder.hpp"
+#include "corda/media/libav_handles.hpp"
+#include "corda/media/palette.hpp"
+#include "corda/media/track_output.hpp"
+
+namespace corda::media {
+namespace {
+
+EncoderSettings no_settings(const Format& /*format*/, const VideoDef& /*def*/) {
+    return {-99, {}, 0};
+}
+
+constexpr Codec kGif{"gif",       "gif", "GIF", {"pal8"}, {}, "", {}, 0, 1, 0, false, EncoderOrigin::kLibav,
+                     &no_settings};
+
+/// The colours of a GIF, and how pictures get them.
+class Colors {
+  public:
+    explicit Colors(Palette palette) : palette_(std::move(palette)) {}
+
+    void convert(const Image& image, AVFrame& frame) {
+        for (std::size_t i = 0; i < Palette::kSize; ++i) {
+            const auto [b, g, r, a] = palette_.bgra(i);
+            const std::array<std::uint8_t, 4> entry{b, g, r, a};
+            std::copy(entry.begin(), entry.end(), frame.data[1] + 4 * i);
+        }
+        for (int y = 0; y < image.height(); ++y)
+            palette_.map(image.pixel(0, y), image.width(),
+                         frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0]);
+    }
+
+  private:
+    Palette palette_;
+};
+
+using SharedColors = std::shared_ptr<Colors>;
+
+std::unique_ptr<LibavEncoder> open_encoder(const Ending& ending, Rational fps, const Image& picture,
+                                           const SharedColors& colors) {
+    const Format format{.ending = &ending, .codec = &kGif, .pixel_format = "pal8"};
+    VideoDef video;
+    video.width_px = picture.width();
+    video.height_px = picture.height();
+    video.fps = FrameRate(fps);
+    return std::make_unique<LibavEncoder>(
+        format, video,
+        [colors](const Image& image, const PixelRect&, AVFrame& frame) { colors->convert(image, frame); });
+}
+
+/// Encodes sections of the frames.
+class SectionEncoder {
+  public:
+    SectionEncoder(const Ending& ending, const AnimationDef& def, const Palette& palette)
+        : ending_(&ending),
+          fps_(def.fps),
+          pictures_(def.part_path),
+          colors_(std::make_shared<Colors>(palette)) {}
+
+    [[nodiscard]] std::vector<Packet> encode(std::int64_t first, std::int64_t end) {
+        std::vector<Packet> packets;
+        std::unique_ptr<LibavEncoder> encoder;
+        // A frame is encoded as what it changes of the one before.
+        for (std::int64_t k = std::max<std::int64_t>(first - 1, 0); k < end; ++k) {
+            if (k != last_) pictures_.go_to(k);
+            last_ = k;
+            const Image& picture = pictures_.picture();
+            if (!encoder) encoder = open_encoder(*ending_, fps_, picture, colors_);
+            encoder->encode(picture, {picture.rect()}, [&](AVPacket& packet) {
+                if (k < first) return av_packet_unref(&packet);
+                packet.pts = packet.dts = k;
+                packets.push_back(check_allocated(Packet(av_packet_alloc()), "a packet"));
+                av_packet_move_ref(packets.back().get(), &packet);
+            });
+        }
+        return packets;
+    }
+
+  private:
+    const Ending* ending_;
+    Rational fps_;
+    ExactPictures pictures_;
+    SharedColors colors_;
+    std::int64_t last_ = -1;
+};
+
+}  // namespace
+
+void write_gif(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
+               OutputFile& output) {
+    PaletteMaker colors;
+    ExactPictures pictures(def.part_path);
+    for (std::int64_t k = 0; k < def.frames; ++k) {
+        report_progress(on_progress, k, def.frames);
+        pictures.go_to(k);
+        colors.add(pictures.picture());
+    }
+    const Palette palette = colors.make();
+    TrackOutput track(output.descriptor(), output.temporary_path());
+    track.begin(
+        ending.muxer, TrackLayout::kFinal,
+        open_encoder(ending, def.fps, pictures.picture(), std::make_shared<Colors>(palette))->parameters(),
+        {.fps = def.fps, .title = {}, .comment = {}});
+    using Packets = std::vector<Packet>;
+    const auto new_maker = [&] {
+        return [encoder = std::make_shared<SectionEncoder>(ending, def, palette)](
+                   std::int64_t first, std::int64_t end) { return encoder->encode(first, end); };
+    };
+    for_each_section<Packets>(def, on_progress, new_maker, [&track](const Packets& packets) {
+        for (const Packet& packet : packets) track.write(*packet);
+    });
+    track.finish();
+}
+
+}  // namespace corda::media
