@@ -7,10 +7,9 @@
 namespace corda::media {
 
 void check_animation_frames(const Ending& ending, std::int64_t frames) {
-    const std::string_view muxer = ending.muxer;
-    if (frames != 1 || (muxer != "apng" && muxer != "webp")) return;
+    if (frames != 1 || std::string_view(ending.muxer) != "webp") return;
     throw Error(ExitCode::kUsage,
-                fmt::format("{} holds one frame as a picture, which has no duration; use .gif, or .png "
+                fmt::format("{} holds one frame as a picture, which has no duration; use .apng, or .png "
                             "(corda still)",
                             ending.words));
 }

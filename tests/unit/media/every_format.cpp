@@ -195,20 +195,18 @@ TEST_F(Video, EveryContainerKeepsRatesThatAreNoWholeNumbers) {
 }
 
 TEST_F(Video, OneFrameIsAVideoWhereAContainerHoldsOne) {
-    for (const char* const ending : {".mp4", ".mov", ".webm", ".mkv", ".gif"}) {
+    for (const char* const ending : {".mp4", ".mov", ".webm", ".mkv", ".gif", ".apng"}) {
         const std::string path = file(std::string("a") + ending);
         EXPECT_NO_THROW(make_video(path, small_video({25, 1}), 1)) << path;
         EXPECT_EQ(verify(path).frames, 1) << path;
     }
-    for (const char* const ending : {".apng", ".webp"}) {  // which would be a picture
-        const std::string path = file(std::string("a") + ending);
-        const auto check = [&] { check_video_output(path, small_video({25, 1}), "", false, false, 7, 8); };
-        for (const test::Failure& failure : {test::failure_of(check), test::failure_of([&] {
-                                                 make_video(path, small_video({25, 1}), 1);
-                                             })}) {
-            EXPECT_EQ(failure.code, ExitCode::kUsage) << path;
-            EXPECT_THAT(failure.message, testing::HasSubstr("use .gif, or .png (corda still)")) << path;
-        }
+    const std::string path = file("a.webp");  // which would be a picture
+    const auto check = [&] { check_video_output(path, small_video({25, 1}), "", false, false, 7, 8); };
+    for (const test::Failure& failure : {test::failure_of(check), test::failure_of([&] {
+                                             make_video(path, small_video({25, 1}), 1);
+                                         })}) {
+        EXPECT_EQ(failure.code, ExitCode::kUsage);
+        EXPECT_THAT(failure.message, testing::HasSubstr("use .apng, or .png (corda still)"));
     }
 }
 
