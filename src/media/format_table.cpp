@@ -15,6 +15,8 @@ constexpr std::span<const char* const> kSpeedsTo8{kSpeeds.data(), 9};
 
 /// Of codecs whose frames stand alone: less is in memory, and more is safe.
 constexpr int kFewFrames = 12;
+/// Of FFV1, whose encoder clears 148 bytes per pixel when it opens.
+constexpr int kFfv1Frames = 36;
 
 constexpr std::array kCodecs{
     Codec{"libx264",
@@ -116,7 +118,7 @@ constexpr std::array kCodecs{
           {},
           0,
           1,
-          kFewFrames,
+          kFfv1Frames,
           false,
           EncoderOrigin::kLibav,
           &ffv1_settings},

@@ -46,8 +46,8 @@ struct VerifyReport {
     friend bool operator==(const VerifyReport&, const VerifyReport&) = default;
 };
 
-/// Which frames verify() decodes: the first one of each chunk, or all. Of the others it reads the packets'
-/// time stamps.
+/// Which frames verify() decodes: those that can be decoded alone, of a chunk with known colours the first
+/// and, if it is a key frame too, the last; or all. Of the others it reads the packets' time stamps.
 enum class VerifyDepth { kKeyFrames, kAllFrames };
 
 /// Opens, decodes and checks a video of any kind that Corda writes: that its boxes are whole and in order,

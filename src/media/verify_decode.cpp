@@ -166,9 +166,12 @@ class Decoding {
         return true;
     }
 
-    /// Decodes a packet of a key frame, apart from all others, and notes the stamp of any packet.
+    /// Decodes a packet of a key frame, apart from all others, and notes the stamp of any packet. If it is
+    /// known what was rendered, other key frames of that are left out.
     void read_alone(const AVPacket& packet) {
-        if ((packet.flags & AV_PKT_FLAG_KEY) != 0) {
+        const bool is_wanted =
+            rendered_.empty() || packets_ < rendered_.front().frame || find_rendered(packets_) != nullptr;
+        if (is_wanted && (packet.flags & AV_PKT_FLAG_KEY) != 0) {
             receive(&packet);
             receive(nullptr);
             avcodec_flush_buffers(file_.context.get());
@@ -242,12 +245,16 @@ class Decoding {
         }
     }
 
-    /// What is known of a frame.
-    [[nodiscard]] std::vector<ColorPatch> patches_of(std::int64_t number) const {
+    /// What a frame was rendered as; null if that is not known.
+    [[nodiscard]] const FrameColors* find_rendered(std::int64_t number) const {
         const auto known = std::lower_bound(
             rendered_.begin(), rendered_.end(), number,
             [](const FrameColors& colors, std::int64_t frame) { return colors.frame < frame; });
-        if (known != rendered_.end() && known->frame == number) return known->patches;
+        return known != rendered_.end() && known->frame == number ? &*known : nullptr;
+    }
+
+    [[nodiscard]] std::vector<ColorPatch> patches_of(std::int64_t number) const {
+        if (const FrameColors* const known = find_rendered(number)) return known->patches;
         return number == 0 ? told_patches(video_.comment) : std::vector<ColorPatch>();
     }
 
