@@ -91,18 +91,31 @@ class SectionEncoder {
     std::int64_t last_ = -1;
 };
 
+Palette choose_palette(const AnimationDef& def, const OnProgress& on_progress) {
+    PaletteMaker all;
+    const auto new_maker = [&def] {
+        return [pictures = std::make_shared<ExactPictures>(def.part_path)](std::int64_t first,
+                                                                           std::int64_t end) {
+            PaletteMaker colors;
+            for (std::int64_t k = first; k < end; ++k) {
+                pictures->go_to(k);
+                colors.add(pictures->picture());
+            }
+            return colors;
+        };
+    };
+    for_each_section<PaletteMaker>(def, on_progress, new_maker,
+                                   [&all](const PaletteMaker& colors) { all.add(colors); });
+    return all.make();
+}
+
 }  // namespace
 
 void write_gif(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
                OutputFile& output) {
-    PaletteMaker colors;
+    const Palette palette = choose_palette(def, on_progress);
     ExactPictures pictures(def.part_path);
-    for (std::int64_t k = 0; k < def.frames; ++k) {
-        report_progress(on_progress, k, def.frames);
-        pictures.go_to(k);
-        colors.add(pictures.picture());
-    }
-    const Palette palette = colors.make();
+    pictures.go_to(0);
     TrackOutput track(output.descriptor(), output.temporary_path());
     track.begin(
         ending.muxer, TrackLayout::kFinal,

@@ -128,17 +128,38 @@ void Palette::map(const std::uint8_t* rgba, int count, std::uint8_t* indices) {
     }
 }
 
+void PaletteMaker::add(std::uint32_t rgb, std::uint64_t count) {
+    if (exact_.size() <= kMostColors) exact_.insert(rgb);
+    constexpr unsigned kDropped = 8 - kBits;
+    const std::array<std::uint64_t, 3> levels{rgb >> 16U, rgb >> 8U & 0xffU, rgb & 0xffU};
+    PaletteBin& bin =
+        bins_[levels[0] >> kDropped << (2 * kBits) | levels[1] >> kDropped << kBits | levels[2] >> kDropped];
+    bin.count += count;
+    for (std::size_t c = 0; c < 3; ++c) bin.sums[c] += count * levels[c];
+}
+
 void PaletteMaker::add(const Image& picture) {
     const std::uint8_t* p = picture.data();
-    constexpr int kDropped = 8 - kBits;
+    std::uint32_t run_rgb = 0;
+    std::uint64_t run = 0;
     for (std::size_t i = 0; i < picture.size_bytes(); i += 4, p += 4) {
         if (p[3] < kHalfOpaque) continue;
-        if (exact_.size() <= kMostColors) ++exact_[packed(p)];
-        PaletteBin& bin = bins_[static_cast<std::size_t>(p[0] >> kDropped) << (2 * kBits) |
-                                static_cast<std::size_t>(p[1] >> kDropped) << kBits |
-                                static_cast<std::size_t>(p[2] >> kDropped)];
-        ++bin.count;
-        for (std::size_t c = 0; c < 3; ++c) bin.sums[c] += p[c];
+        const std::uint32_t rgb = packed(p);
+        if (rgb != run_rgb && run > 0) {
+            add(run_rgb, run);
+            run = 0;
+        }
+        run_rgb = rgb;
+        ++run;
+    }
+    if (run > 0) add(run_rgb, run);
+}
+
+void PaletteMaker::add(const PaletteMaker& other) {
+    if (exact_.size() <= kMostColors) exact_.insert(other.exact_.begin(), other.exact_.end());
+    for (std::size_t i = 0; i < bins_.size(); ++i) {
+        bins_[i].count += other.bins_[i].count;
+        for (std::size_t c = 0; c < 3; ++c) bins_[i].sums[c] += other.bins_[i].sums[c];
     }
 }
 
@@ -164,9 +185,8 @@ std::vector<Color> PaletteMaker::cut_boxes() const {
 
 Palette PaletteMaker::make() const {
     if (exact_.size() > kMostColors) return Palette(cut_boxes());
-    std::vector<std::uint32_t> sorted;
-    for (const auto& [rgb, count] : exact_) sorted.push_back(rgb);
-    std::sort(sorted.begin(), sorted.end());  // the order of the map is no order
+    std::vector<std::uint32_t> sorted(exact_.begin(), exact_.end());
+    std::sort(sorted.begin(), sorted.end());  // the order of the set is no order
     std::vector<Color> colors;
     for (const std::uint32_t rgb : sorted) colors.push_back(color_of(rgb));
     return Palette(std::move(colors));

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "corda/core/image.hpp"
@@ -44,15 +45,18 @@ struct PaletteBin {
 class PaletteMaker {
   public:
     void add(const Image& picture);
+    /// Adds all pictures of another one.
+    void add(const PaletteMaker& other);
     [[nodiscard]] Palette make() const;
 
   private:
     static constexpr int kBits = 6;
     static constexpr std::size_t kMostColors = Palette::kSize - 1;
 
+    void add(std::uint32_t rgb, std::uint64_t count);
     [[nodiscard]] std::vector<Color> cut_boxes() const;
 
-    std::unordered_map<std::uint32_t, std::uint64_t> exact_;  ///< pixels by colour, while there are few
+    std::unordered_set<std::uint32_t> exact_;  ///< all colours, while there are few
     std::vector<PaletteBin> bins_ = std::vector<PaletteBin>(std::size_t{1} << (3 * kBits));
 };
 
