@@ -230,7 +230,8 @@ void add_render(CLI::App& app, Action& action) {
     command->add_option("--frames", options->frames, "only frames FIRST <= k < END")->type_name("FIRST:END");
     command
         ->add_option("--verify", options->verify,
-                     "what of the finished video is decoded: key frames (keys), or all (full)")
+                     "what of a finished H.264, ProRes or FFV1 video is decoded: key frames (keys), or all "
+                     "(full), as of others")
         ->check(CLI::IsMember({"keys", "full"}))
         ->capture_default_str();
     options->gl.add_to(*command);

@@ -30,6 +30,7 @@ void ChunkEncoder::keep(AVPacket& packet) {
 void ChunkEncoder::encode(const Image& frame, const Damage& damage, bool is_last) {
     assert(encoder_);
     if (chunk_.frames == 0 || is_last) chunk_.colors.push_back({chunk_.frames, choose_patches(frame)});
+    if (is_last) encoder_->expect(chunk_.colors.back().patches);
     encoder_->encode(frame, damage, [this](AVPacket& packet) { keep(packet); });
     ++chunk_.frames;
 }

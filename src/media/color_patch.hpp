@@ -20,7 +20,11 @@ inline constexpr int kPatchSide = 16;
 /// R'G'B' (0 .. 255, not clipped) of BT.709 limited range Y'CbCr: the inverse of convert_to_yuv420.
 [[nodiscard]] std::array<double, 3> rgb_from_ycbcr(double y, double cb, double cr);
 
-/// The largest error, in 1/255, that a patch of a correct video may have at this x264 rate factor.
-[[nodiscard]] double patch_tolerance(int crf);
+/// How far a shown R'G'B' is from a patch: the largest of the three differences, in 1/255.
+[[nodiscard]] double patch_error(const ColorPatch& patch, const std::array<double, 3>& shown);
+
+/// The largest error that a patch of a correct video may have at this x264 rate factor; more with chroma in
+/// full resolution (4:4:4).
+[[nodiscard]] double patch_tolerance(int crf, bool has_full_chroma = false);
 
 }  // namespace corda::media

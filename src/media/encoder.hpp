@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "corda/core/image.hpp"
 #include "corda/media/libav_handles.hpp"
+#include "corda/media/verify.hpp"
 
 namespace corda::media {
 
@@ -21,6 +23,10 @@ class Encoder {
     /// Encodes the next frame: `frame` inside `damage` and the previous frame elsewhere; the first frame is
     /// taken whole. Packets that become ready go to `sink`. Throws corda::Error (kEncoder).
     virtual void encode(const Image& frame, const Damage& damage, const PacketSink& sink) = 0;
+
+    /// The next frame is one whose colours are known. An encoder that knows what a decoder will show compares
+    /// it, as soon as the frame is encoded, and throws corda::Error (kEncoder).
+    virtual void expect(const std::vector<ColorPatch>& /*patches*/) {}
 
     /// Ends the stream; the remaining packets go to `sink`. Throws corda::Error (kEncoder).
     virtual void drain(const PacketSink& sink) = 0;

@@ -49,6 +49,13 @@ bool are_of_one_video(const AVCodecParameters& a, const AVCodecParameters& b) {
                       b.extradata + b.extradata_size);
 }
 
+/// Whether decoding a video takes a small part of the time that encoding takes: AV1, VP9 and H.265.
+bool is_decoded_at_no_cost(const Format& format) {
+    const Codec& codec = *format.codec;
+    return format.ending->kind == FileKind::kVideo && codec.origin == EncoderOrigin::kLibav &&
+           !codec.is_hardware && codec.chunk_frames == 0;
+}
+
 }  // namespace
 
 Format check_video_output(const std::string& path, const VideoDef& def, const std::string& input, bool force,
@@ -232,6 +239,8 @@ void VideoWriter::finish(VerifyDepth depth) {
             fmt::format("'{}' would have no frame; ask for a duration of at least one frame", impl.path));
     }
     impl.drain();
+    const bool takes_all = depth == VerifyDepth::kKeyFrames && is_decoded_at_no_cost(impl.format);
+    if (takes_all) depth = VerifyDepth::kAllFrames;
     impl.sink->finish({frames(), depth, impl.colors, impl.def.encoder.jobs});
 }
 

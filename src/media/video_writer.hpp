@@ -81,9 +81,10 @@ class VideoWriter {
     /// Frames written so far.
     [[nodiscard]] std::int64_t frames() const;
 
-    /// Ends the last chunk, copies, verifies, and gives the video its name. Needs at least one frame. Throws
-    /// kEncoder, kIo, kMismatch (the check found a problem), or kInterrupted if the options' `on_progress`
-    /// asks to stop; then the frames stay in `PATH.part`.
+    /// Ends the last chunk, copies, verifies, and gives the video its name. Of codecs that take much longer
+    /// to encode than to decode (AV1, VP9, H.265) all frames are verified in any case. Needs at least one
+    /// frame. Throws kEncoder, kIo, kMismatch (the check found a problem), or kInterrupted if the options'
+    /// `on_progress` asks to stop; then the frames stay in `PATH.part`.
     void finish(VerifyDepth depth = VerifyDepth::kKeyFrames);
 
     /// Drains and ends the part file unless `finish` has, so that it stays as a playable `PATH.part`, and

@@ -1,6 +1,7 @@
 #include "corda/media/x264_encoder.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -18,6 +19,7 @@ extern "C" {
 
 #include "corda/core/basics.hpp"
 #include "corda/media/chunk.hpp"
+#include "corda/media/color_patch.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/pixels.hpp"
 
@@ -114,6 +116,7 @@ class X264Encoder : public Encoder {
                             format.preset_of(def.encoder), format.crf_of(def.encoder), reason));
         }
         csp_ = params.i_csp;
+        tolerance_ = patch_tolerance(format.crf_of(def.encoder), csp_ == X264_CSP_I444);
         describe(def);
     }
 
@@ -140,6 +143,8 @@ class X264Encoder : public Encoder {
         encode(&picture, sink);
         ++frames_;
     }
+
+    void expect(const std::vector<ColorPatch>& patches) override { expected_ = {frames_, patches}; }
 
     void drain(const PacketSink& sink) override {
         while (x264_encoder_delayed_frames(x264_.get()) > 0) encode(nullptr, sink);
@@ -239,6 +244,7 @@ class X264Encoder : public Encoder {
             throw Error(ExitCode::kEncoder,
                         fmt::format("libx264 failed near frame {} ({})", frames_, log.text()));
         if (bytes == 0) return;
+        if (shown.i_pts == expected_.frame) compare(shown.img);
         check_libav(av_new_packet(packet_.get(), static_cast<int>(sei_.size()) + bytes), ExitCode::kTemporary,
                     "cannot make a packet");
         std::uint8_t* const end = std::copy(sei_.begin(), sei_.end(), packet_->data);
@@ -249,6 +255,38 @@ class X264Encoder : public Encoder {
         packet_->duration = 1;
         if (shown.b_keyframe != 0) packet_->flags |= AV_PKT_FLAG_KEY;
         sink(*packet_);
+    }
+
+    /// That a decoder will show what was drawn: x264 gives the picture as it has decoded it.
+    void compare(const x264_image_t& shown) const {
+        for (const ColorPatch& patch : expected_.patches) {
+            const std::array<double, 3> rgb = mean_rgb(shown, patch);
+            if (patch_error(patch, rgb) <= tolerance_) continue;
+            throw Error(
+                ExitCode::kEncoder,
+                fmt::format("libx264 shows R'G'B' {:.1f} {:.1f} {:.1f} at ({}, {}) where {} was drawn; "
+                            "try another preset or crf",
+                            rgb[0], rgb[1], rgb[2], patch.x, patch.y, fmt::join(patch.rgb, " ")));
+        }
+    }
+
+    /// Mean R'G'B' of a square of a picture of x264's own.
+    [[nodiscard]] std::array<double, 3> mean_rgb(const x264_image_t& shown, const ColorPatch& patch) const {
+        const int chroma_shift = csp_ == X264_CSP_I420 ? 1 : 0;
+        // Of 4:2:0 the samples of Cb and Cr take turns in one plane.
+        const auto mean = [&](int plane, int shift, int first, int step) {
+            const int side = kPatchSide >> shift;
+            std::int64_t sum = 0;
+            for (int y = 0; y < side; ++y) {
+                const std::uint8_t* const row =
+                    shown.plane[plane] + std::ptrdiff_t{(patch.y >> shift) + y} * shown.i_stride[plane];
+                for (int x = 0; x < side; ++x) sum += row[((patch.x >> shift) + x) * step + first];
+            }
+            return static_cast<double>(sum) / (side * side);
+        };
+        const bool takes_turns = chroma_shift == 1;
+        return rgb_from_ycbcr(mean(0, 0, 0, 1), mean(1, chroma_shift, 0, takes_turns ? 2 : 1),
+                              takes_turns ? mean(1, chroma_shift, 1, 2) : mean(2, chroma_shift, 0, 1));
     }
 
     QuietLog quiet_;
@@ -262,6 +300,8 @@ class X264Encoder : public Encoder {
     int csp_ = 0;
     std::string sei_;
     std::int64_t frames_ = 0;
+    FrameColors expected_{-1, {}};
+    double tolerance_ = 0.0;  ///< of their patches
 };
 
 }  // namespace

@@ -132,6 +132,28 @@ TEST_F(Video, AChunkThatDoesNotShowWhatWasDrawnGetsNoName) {
     }
 }
 
+TEST_F(Video, AChunkWhoseLastFrameIsNotWhatWasDrawnIsNotMade) {
+    for (const PixelChoice pix : {PixelChoice::k420, PixelChoice::k444}) {
+        VideoDef def = small_video();
+        def.encoder.pix = pix;
+        VideoWriter writer(file("a.mp4"), def, {});
+        for (const bool is_told : {true, false}) {
+            ChunkEncoder encoder = writer.chunk_encoder(0);
+            encoder.encode(frame_image(0), {}, false);
+            Image other = frame_image(1);
+            for (std::size_t i = 0; i < other.size_bytes(); i += 4) other.data()[i] ^= 0x40U;
+            const auto end = [&] {
+                encoder.encode(other, is_told ? Damage{other.rect()} : Damage{}, true);
+                static_cast<void>(encoder.finish());
+            };
+            if (is_told)
+                EXPECT_NO_THROW(end());
+            else
+                EXPECT_THAT(test::failure_of(end).message, HasSubstr("libx264 shows R'G'B'"));
+        }
+    }
+}
+
 TEST_F(Video, VerifyFindsTheSameByKeyFrames) {
     for (const Rational fps : {Rational{30, 1}, Rational{24000, 1001}}) {
         for (const int frames : {1, 7, 150}) {
