@@ -188,8 +188,8 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     report_gl(console, gl);
     on_progress = stopping_if_asked();  // what is simulated from now on shows as frames that are drawn
     Progress progress(console, "render", count);
-    def.on_progress = [&](std::int64_t done, std::int64_t) {
-        progress.update(done);
+    def.on_progress = [&](std::int64_t done, std::int64_t total) {
+        progress.update(total > 0 ? done * count / total : done);
         return interruption() == ExitCode::kOk;
     };
     const Rendered rendered = render_video(film, options.output, def);

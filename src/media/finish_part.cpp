@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/memory.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/media/animation.hpp"
 #include "corda/media/format.hpp"
@@ -41,8 +42,15 @@ void remux(const PartIndex& index, const std::string& part_path, const Ending& e
     track.finish();
 }
 
-int threads_of(int jobs) {
-    return jobs > 0 ? jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+/// How many threads make an animation: those that are asked for, and whose pictures fit into memory.
+int animation_threads(int jobs, const PartInput& part) {
+    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const auto wanted = static_cast<std::uint64_t>(jobs > 0 ? jobs : cores);
+    constexpr std::uint64_t kBytesPerPixel = 50;  // the first thread of a WebP; a further one adds 26
+    const std::uint64_t bytes = kBytesPerPixel * static_cast<std::uint64_t>(part.stream->codecpar->width) *
+                                static_cast<std::uint64_t>(part.stream->codecpar->height);
+    const std::uint64_t fitting = available_memory_bytes().value_or(bytes * wanted) / bytes;
+    return static_cast<int>(std::clamp<std::uint64_t>(fitting, 1, wanted));
 }
 
 AVCodecID codec_id_of(const Codec& codec) {
@@ -80,25 +88,33 @@ void check_animation(const PartIndex& index, const Ending& ending, VerifyReport&
 RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOptions& options,
                         const FinishDef& def) {
     const LogCapture log;
-    const OnProgress all_done = [&options, frames = def.frames.value_or(0)](std::int64_t, std::int64_t) {
-        return !options.on_progress || options.on_progress(frames, frames);
+    const Ending& ending = find_ending(path);
+    const std::int64_t total = passes(ending) * def.frames.value_or(0);
+    std::int64_t done = def.frames.value_or(0);
+    const OnProgress still_done = [&](std::int64_t, std::int64_t) {
+        return !options.on_progress || options.on_progress(done, total);
     };
-    const PartIndex index = index_part(part.path(), all_done);
+    const PartIndex index = index_part(part.path(), still_done);
     const RemuxResult result{static_cast<std::int64_t>(index.frame_of.size()), index.truncated};
     if (def.frames && *def.frames != result.frames) {
         throw Error(ExitCode::kMismatch, fmt::format("'{}' holds {} frames instead of {}; it stays as it is",
                                                      part.path(), result.frames, *def.frames));
     }
-    const Ending& ending = find_ending(path);
     check_ending(index, part.path(), path, ending);
     remove_leftovers(path);
     OutputFile output(path, options);
-    if (ending.kind == FileKind::kAnimation)
-        write_animation(ending, {part.path(), result.frames, index.fps, threads_of(def.jobs)}, all_done,
-                        output);
-    else
-        remux(index, part.path(), ending, all_done, output);
-    VerifyReport report = verify(output.temporary_path(), all_done, def.depth, def.rendered);
+    if (ending.kind == FileKind::kAnimation) {
+        const OnProgress encoded = [&](std::int64_t frame, std::int64_t) {
+            if (def.frames) done = result.frames + frame;
+            return still_done(0, 0);
+        };
+        const int threads = animation_threads(def.jobs, open_part(part.path(), index.bytes));
+        write_animation(ending, {part.path(), result.frames, index.fps, threads}, encoded, output);
+    } else {
+        remux(index, part.path(), ending, still_done, output);
+    }
+    done = total;
+    VerifyReport report = verify(output.temporary_path(), still_done, def.depth, def.rendered);
     check_animation(index, ending, report);
     if (!report.ok()) {
         throw Error(ExitCode::kMismatch,

@@ -37,7 +37,8 @@ struct FinishDef {
 };
 
 /// As recover_part, for a part that this process holds. Also throws kMismatch if it has another number of
-/// frames than it is to have. `options.on_progress` hears that all of them are done.
+/// frames than it is to have. `options.on_progress` hears that all of them are done; of an animation,
+/// that they are as far as passes() says, and how far they are encoded.
 RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOptions& options,
                         const FinishDef& def);
 

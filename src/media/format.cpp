@@ -229,6 +229,10 @@ void check_rate_for(const Format& format, const VideoDef& def) {
 
 }  // namespace
 
+std::int64_t passes(const Ending& ending) {
+    return ending.kind == FileKind::kAnimation ? 2 : 1;
+}
+
 std::string Format::preset_of(const EncoderDef& def) const {
     return def.preset.empty() ? codec->default_preset : def.preset;
 }

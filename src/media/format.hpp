@@ -65,6 +65,9 @@ struct Ending {
     const char* players;  ///< who shows it
 };
 
+/// How many times all frames are gone through: those of an animation are drawn, and encoded afterwards.
+[[nodiscard]] std::int64_t passes(const Ending& ending);
+
 /// What a name, a definition and a ground together choose.
 struct Format {
     const Ending* ending = nullptr;

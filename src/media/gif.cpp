@@ -64,11 +64,12 @@ class SectionEncoder {
           pictures_(def.part_path),
           colors_(std::make_shared<Colors>(palette)) {}
 
-    [[nodiscard]] std::vector<Packet> encode(std::int64_t first, std::int64_t end) {
+    [[nodiscard]] std::vector<Packet> encode(std::int64_t first, std::int64_t end,
+                                             const InOrder<std::vector<Packet>>& all) {
         std::vector<Packet> packets;
         std::unique_ptr<LibavEncoder> encoder;
         // A frame is encoded as what it changes of the one before.
-        for (std::int64_t k = std::max<std::int64_t>(first - 1, 0); k < end; ++k) {
+        for (std::int64_t k = std::max<std::int64_t>(first - 1, 0); k < end && !all.is_stopped(); ++k) {
             if (k != last_) pictures_.go_to(k);
             last_ = k;
             const Image& picture = pictures_.picture();
@@ -94,10 +95,10 @@ class SectionEncoder {
 Palette choose_palette(const AnimationDef& def, const OnProgress& on_progress) {
     PaletteMaker all;
     const auto new_maker = [&def] {
-        return [pictures = std::make_shared<ExactPictures>(def.part_path)](std::int64_t first,
-                                                                           std::int64_t end) {
+        return [pictures = std::make_shared<ExactPictures>(def.part_path)](
+                   std::int64_t first, std::int64_t end, const InOrder<PaletteMaker>& every) {
             PaletteMaker colors;
-            for (std::int64_t k = first; k < end; ++k) {
+            for (std::int64_t k = first; k < end && !every.is_stopped(); ++k) {
                 pictures->go_to(k);
                 colors.add(pictures->picture());
             }
@@ -113,7 +114,13 @@ Palette choose_palette(const AnimationDef& def, const OnProgress& on_progress) {
 
 void write_gif(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
                OutputFile& output) {
-    const Palette palette = choose_palette(def, on_progress);
+    // The palette is the first half of the work.
+    const auto half = [&](std::int64_t begin) {
+        return [&, begin](std::int64_t k, std::int64_t all) {
+            return !on_progress || on_progress(begin + k / 2, all);
+        };
+    };
+    const Palette palette = choose_palette(def, half(0));
     ExactPictures pictures(def.part_path);
     pictures.go_to(0);
     TrackOutput track(output.descriptor(), output.temporary_path());
@@ -124,9 +131,11 @@ void write_gif(const Ending& ending, const AnimationDef& def, const OnProgress& 
     using Packets = std::vector<Packet>;
     const auto new_maker = [&] {
         return [encoder = std::make_shared<SectionEncoder>(ending, def, palette)](
-                   std::int64_t first, std::int64_t end) { return encoder->encode(first, end); };
+                   std::int64_t first, std::int64_t end, const InOrder<Packets>& all) {
+            return encoder->encode(first, end, all);
+        };
     };
-    for_each_section<Packets>(def, on_progress, new_maker, [&track](const Packets& packets) {
+    for_each_section<Packets>(def, half(def.frames / 2), new_maker, [&track](const Packets& packets) {
         for (const Packet& packet : packets) track.write(*packet);
     });
     track.finish();

@@ -211,11 +211,15 @@ Rendered render_video(Film& film, const std::string& path, const RenderDef& def)
     static_cast<void>(film.camera());  // what can fail does so before a file is made
     static_cast<void>(film.gl());
     media::VideoWriter writer = make_writer(film, path, format, def, end);
+    const OnProgress drawn = [&def, passes = media::passes(*format.ending)](std::int64_t k,
+                                                                            std::int64_t all) {
+        return !def.on_progress || def.on_progress(k, passes * all);
+    };
     Rendered result;
     result.resumed_frames = writer.frames();
     result.encoder = writer.format().codec->name;
     try {
-        write_frames(film, def.first, end, def.on_progress, writer, result);
+        write_frames(film, def.first, end, drawn, writer, result);
         writer.finish(def.verify_all ? media::VerifyDepth::kAllFrames : media::VerifyDepth::kKeyFrames);
     } catch (const media::ReaderLeft&) {
         result.reader_left = true;
