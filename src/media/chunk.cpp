@@ -16,7 +16,8 @@ std::int64_t frames_per_chunk(const FrameRate& fps) {
 }
 
 std::int64_t frames_per_chunk(const Format& format, const FrameRate& fps) {
-    return format.codec->chunk_frames > 0 ? format.codec->chunk_frames : frames_per_chunk(fps);
+    const std::int64_t most = frames_per_chunk(fps);
+    return format.codec->chunk_frames > 0 ? std::min<std::int64_t>(format.codec->chunk_frames, most) : most;
 }
 
 ChunkEncoder::ChunkEncoder(std::unique_ptr<Encoder> encoder) : encoder_(std::move(encoder)) {}

@@ -145,9 +145,8 @@ const char* choose_pixels(const Format& format, const VideoDef& def, bool is_tra
     }
     if (chosen != nullptr) return chosen;
     const auto words = pixel_words(*format.codec);
-    fail_usage("video.pix {} is not what {} in {} is made of; use {}, another codec, or leave it out",
-               word_of(def.encoder.pix), format.codec->standard, format.ending->words,
-               fmt::join(words, " or "));
+    fail_usage("video.pix {} is not what {} is made of; use {}, another codec, or leave it out",
+               word_of(def.encoder.pix), format.words(), fmt::join(words, " or "));
 }
 
 /// The even numbers next to an odd side: "1080 or 1082".
@@ -176,8 +175,7 @@ void check_preset(const Format& format, const EncoderDef& def) {
     const auto& presets = codec.presets;
     if (def.preset.empty() || std::find(presets.begin(), presets.end(), def.preset) != presets.end()) return;
     if (presets.empty())
-        fail_usage("preset '{}': {} in {} has no presets; leave it out", def.preset, codec.standard,
-                   format.ending->words);
+        fail_usage("preset '{}': {} has no presets; leave it out", def.preset, format.words());
     fail_usage("preset '{}' is unknown to {}; use one of {}", def.preset, codec.name,
                fmt::join(presets, ", "));
 }
@@ -185,9 +183,7 @@ void check_preset(const Format& format, const EncoderDef& def) {
 void check_crf(const Format& format, const EncoderDef& def) {
     const Codec& codec = *format.codec;
     if (!def.crf) return;
-    if (!codec.crf)
-        fail_usage("crf {}: {} in {} has no rate factor; leave it out", *def.crf, codec.standard,
-                   format.ending->words);
+    if (!codec.crf) fail_usage("crf {}: {} has no rate factor; leave it out", *def.crf, format.words());
     if (*def.crf >= codec.crf->first && *def.crf <= codec.crf->second) return;
     fail_usage("crf {} is out of range; use {} to {} for {}{}", *def.crf, codec.crf->first, codec.crf->second,
                codec.name,
@@ -228,6 +224,15 @@ void check_rate_for(const Format& format, const VideoDef& def) {
 }
 
 }  // namespace
+
+std::string Format::words() const {
+    if (ending->kind == FileKind::kAnimation) return ending->words;
+    return fmt::format("{} in {}", codec->standard, ending->words);
+}
+
+std::string Format::encoder_name() const {
+    return ending->kind == FileKind::kAnimation ? ending->muxer : codec->name;
+}
 
 std::int64_t passes(const Ending& ending) {
     return ending.kind == FileKind::kAnimation ? 2 : 1;

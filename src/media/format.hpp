@@ -38,7 +38,7 @@ struct Codec {
     std::optional<std::pair<int, int>> crf{};  ///< the least and the largest; empty: it has none
     int default_crf = 0;
     int least_side_px = 1;
-    /// Frames of a chunk, for codecs whose frames stand alone; 0: as many as frames_per_chunk() says.
+    /// Most frames of a chunk, for codecs whose frames stand alone; 0: as many as frames_per_chunk() says.
     int chunk_frames = 0;
     bool is_hardware = false;  ///< it may be listed and not work
     EncoderOrigin origin = EncoderOrigin::kLibav;
@@ -78,6 +78,10 @@ struct Format {
 
     [[nodiscard]] std::string preset_of(const EncoderDef& def) const;
     [[nodiscard]] int crf_of(const EncoderDef& def) const { return def.crf.value_or(codec->default_crf); }
+    /// "H.264 in MP4", "GIF".
+    [[nodiscard]] std::string words() const;
+    /// Who makes what is in the file: "libx264", "gif".
+    [[nodiscard]] std::string encoder_name() const;
 };
 
 /// The tables.

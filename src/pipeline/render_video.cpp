@@ -35,7 +35,7 @@ std::map<std::string, std::string> origin_of(const Scene& scene, const media::Fo
                                              std::int64_t first, std::int64_t end) {
     std::map<std::string, std::string> origin = digest(scene);
     origin["corda"] = version();
-    origin["encoder"] = format.codec->name;
+    origin["encoder"] = format.encoder_name();
     origin["frames"] = fmt::format("{}:{}", first, end);
     return origin;
 }
@@ -121,7 +121,7 @@ void check_memory(const media::Format& format, const VideoDef& video) {
         fmt::format(
             "{} of {}x{} pixels takes some {:.1f} GiB of memory, and {:.1f} are free; choose a smaller "
             "size, a faster preset (--preset ultrafast), or a machine with more",
-            format.codec->standard, video.width_px, video.height_px, static_cast<double>(bytes) / kGib,
+            format.words(), video.width_px, video.height_px, static_cast<double>(bytes) / kGib,
             static_cast<double>(available_memory_bytes().value_or(0)) / kGib));
 }
 
@@ -158,9 +158,9 @@ void check_ground(const Scene& scene, const media::Format& format) {
     const Color clear = ground.top.a < 255 ? ground.top : ground.bottom;
     throw Error(
         ExitCode::kUsage,
-        fmt::format("style.background: \"{}\" is transparent, and {} in {} cannot be; give an opaque colour "
+        fmt::format("style.background: \"{}\" is transparent, and {} cannot be; give an opaque colour "
                     "(--set style.background=#ffffff), draw stills as .png, or a video as {}",
-                    clear.text(), format.codec->standard, format.ending->words, media::endings_with_alpha()));
+                    clear.text(), format.words(), media::endings_with_alpha()));
 }
 
 }  // namespace
@@ -217,7 +217,7 @@ Rendered render_video(Film& film, const std::string& path, const RenderDef& def)
     };
     Rendered result;
     result.resumed_frames = writer.frames();
-    result.encoder = writer.format().codec->name;
+    result.encoder = writer.format().encoder_name();
     try {
         write_frames(film, def.first, end, drawn, writer, result);
         writer.finish(def.verify_all ? media::VerifyDepth::kAllFrames : media::VerifyDepth::kKeyFrames);

@@ -143,8 +143,15 @@ TEST(ChunkLength, IsOneToTwoSeconds) {
                                        {{30000, 1001}, 60},
                                        {{120, 1}, 120},
                                        {{5, 1}, 10},
-                                       {{1, 10}, 1}})
+                                       {{1, 10}, 1}}) {
         EXPECT_EQ(media::frames_per_chunk(FrameRate(rate)), frames) << rate.text();
+        for (const std::string ending : {".mov", ".mkv", ".apng"}) {  // at most
+            VideoDef def;
+            def.fps = FrameRate(rate);
+            const media::Format format = media::find_format("a" + ending, def, false);
+            EXPECT_LE(media::frames_per_chunk(format, def.fps), frames) << ending << " " << rate.text();
+        }
+    }
 }
 
 TEST(FilmPainters, DrawTheSameApart) {

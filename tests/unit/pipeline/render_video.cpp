@@ -80,6 +80,38 @@ TEST_F(RenderVideo, WritesEveryFrameOnce) {
     EXPECT_THAT(folder_.files(), ElementsAre("a.mp4"));
 }
 
+TEST_F(RenderVideo, CountsTheFramesOfAnAnimationTwiceAndCanBeStoppedWhereverItIs) {
+    for (const std::string name : {"a.gif", "a.apng", "a.webp"}) {
+        Scene scene = parse_scene(kVideoRope, "rope.toml");
+        scene.video.encoder.preset.clear();
+        Film film(scene);
+        const std::int64_t frames = film.frame_count();
+        std::vector<std::int64_t> heard;
+        RenderDef def;
+        def.on_progress = [&](std::int64_t done, std::int64_t total) {
+            EXPECT_EQ(total, 2 * frames);
+            heard.push_back(done);
+            return true;
+        };
+        EXPECT_EQ(render_video(film, file(name), def).encoder, name.substr(2));
+        EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end())) << name;
+        EXPECT_EQ(heard.front(), 0) << name;
+        EXPECT_EQ(heard.back(), 2 * frames) << name;
+        const std::string bytes = test::read_file(file(name));
+        for (std::size_t calls = 1; calls < heard.size(); calls += 5) {
+            std::size_t asked = 0;
+            def.force = true;
+            def.on_progress = [&](std::int64_t, std::int64_t) { return asked++ < calls; };
+            const Rendered stopped = render_video(film, file(name), def);
+            if (stopped.complete) break;  // what it is asked depends on how fast its threads are
+            EXPECT_TRUE(test::read_file(file(name)) == bytes) << name;  // the old one
+            if (stopped.frames < frames) continue;
+            media::recover_part(stopped.kept_part, file(name), {.force = true});
+            EXPECT_TRUE(test::read_file(file(name)) == bytes) << name;
+        }
+    }
+}
+
 TEST_F(RenderVideo, WritesARange) {
     Film film = rope_film();
     EXPECT_EQ(render_video(film, file("a.mp4"), range(15, std::nullopt)).frames, 5);
