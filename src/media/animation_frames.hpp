@@ -17,9 +17,8 @@ namespace corda::media {
 template <class Section>
 using MakeSection = std::function<Section(std::int64_t first, std::int64_t end, const InOrder<Section>& all)>;
 
-/// Makes something of sections of the frames on the threads of `def`, and takes it in order
-/// on this one. `new_maker` is called on each thread. Throws what they throw, and corda::Error
-/// (kInterrupted).
+/// Makes something of sections of the frames on the threads of `def`, and takes it in order on this one.
+/// `new_maker` is called on each thread. Throws what they throw, and corda::Error (kInterrupted).
 template <class Section>
 void for_each_section(const AnimationDef& def, const OnProgress& on_progress,
                       const std::function<MakeSection<Section>()>& new_maker,
