@@ -22,6 +22,7 @@ using test::failure_of;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::StartsWith;
 
 double luma_psnr(const Yuv420Image& a, const Yuv420Image& b) {
     double sum = 0.0;
@@ -114,7 +115,7 @@ TEST_F(Video, FramesGivenByDamageEqualWholeFrames) {
             writer.finish();
         }
         EXPECT_EQ(test::read_file(file("a.mp4")), test::read_file(file("b.mp4")));
-        std::filesystem::remove(file("a.mp4"));
+        fs::remove(file("a.mp4"));
     }
 }
 
@@ -159,6 +160,24 @@ TEST_F(Video, EveryPresetAndExtremeRateFactorsPassTheirOwnCheck) {
             def.encoder.preset = preset;
             EXPECT_NO_THROW(make_video(file("crf.mp4"), def, 8)) << crf << " " << preset;
         }
+    }
+}
+
+// x264 writes into a video what it was asked for.
+TEST_F(Video, QuantizerOfUltrafastIsConstant) {
+    for (const auto& [preset, crf, words] : {std::tuple{"ultrafast", 18, " rc=cqp mbtree=0 qp=14 "},
+                                             {"ultrafast", 2, " rc=cqp mbtree=0 qp=1 "},
+                                             {"superfast", 18, " rc=crf mbtree=0 crf=18.0 "},
+                                             {"veryfast", 18, " rc=crf mbtree=1 crf=18.0 "}}) {
+        VideoDef def = small_video();
+        def.encoder.preset = preset;
+        def.encoder.crf = crf;
+        make_video(file("a.mp4"), def, 2);
+        const std::string bytes = test::read_file(file("a.mp4"));
+        const std::size_t told = bytes.find(" rc=");
+        ASSERT_NE(told, std::string::npos) << preset;
+        EXPECT_THAT(bytes.substr(told, 60), StartsWith(words)) << preset;
+        fs::remove(file("a.mp4"));
     }
 }
 
