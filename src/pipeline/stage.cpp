@@ -93,7 +93,7 @@ void Stage::open(Needs needs) {
         canvas_ = std::make_unique<Canvas>(gl_);
     const auto lock = canvas_->context.exclusive();
     if (needs == Needs::kDrawing && !canvas_->renderer)
-        canvas_->renderer.emplace(scene_->video.width_px, scene_->video.height_px);
+        canvas_->renderer.emplace(canvas_->context, scene_->video.width_px, scene_->video.height_px);
 }
 
 Damage Stage::draw(const State& state, const view::Camera& map, const view::Caption& caption,
@@ -124,7 +124,6 @@ void Stage::expose(std::int64_t picture, const State& state, const view::Camera&
     shows_nothing_ = list_.shows_nothing() && shows_nothing_;
     const OnProgress ask = asking(on_progress);
     report_progress(ask, 0, 1);
-    const auto lock = canvas_->context.exclusive();
     canvas_->renderer->expose(list_, ask);
 }
 
@@ -140,7 +139,6 @@ Damage Stage::paint(const OnProgress& on_progress) {
     canvas_->context.make_current();  // a callback since open() may have left another one
     ++pictures_;
     shows_nothing_ = list_.shows_nothing();
-    const auto lock = canvas_->context.exclusive();
     return canvas_->renderer->render(list_, asking(on_progress));
 }
 

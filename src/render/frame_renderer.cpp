@@ -101,8 +101,9 @@ FrameRenderer::Tints::Tints()
     : capsule_program("tinted capsule", tinted(shaders::kCapsuleVert).c_str(),
                       tinted(shaders::kCapsuleFrag).c_str()) {}
 
-FrameRenderer::FrameRenderer(int width, int height)
-    : image_((check_size(width, height), Image(width, height))),
+FrameRenderer::FrameRenderer(const gl::Context& context, int width, int height)
+    : context_(&context),
+      image_((check_size(width, height), Image(width, height))),
       bare_(width, height),
       exposure_(width, height),
       capsule_program_("capsule", shaders::kCapsuleVert, shaders::kCapsuleFrag),
@@ -118,6 +119,7 @@ FrameRenderer::FrameRenderer(int width, int height)
 }
 
 void FrameRenderer::make_tints() {
+    const auto lock = context_->exclusive();
     auto tints = std::make_unique<Tints>();
     make_texture(tints->sums, GL_RGBA32F, image_);
     make_target(tints->target, {&masks_, &tints->sums}, making_frame(image_));
@@ -232,6 +234,7 @@ void FrameRenderer::touch(const std::vector<std::uint8_t>& tiles) {
 }
 
 void FrameRenderer::upload(const view::DrawList& list) {
+    const auto lock = context_->exclusive();
     const auto fill = [](const gl::Buffer& buffer, const auto& values) {
         glBindBuffer(GL_ARRAY_BUFFER, buffer.id());
         glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(values.size() * sizeof(values[0])),
@@ -267,12 +270,22 @@ void FrameRenderer::draw(const view::DrawList& list, const Damage& parts, const 
 
 void FrameRenderer::draw_band(const PixelRect& band, const Damage& parts) {
     for (const PixelRect& part : parts) ground_->write(part.intersected(band), bare_);
-    set_state(band);
     for (const Batch& batch : tiles_.batches()) {
-        draw_masks(batch);
-        paint(batch, band);
+        const std::size_t end = batch.first_run + batch.run_count;
+        for (std::size_t run = batch.first_run; run < end;) {
+            const std::size_t first = run;
+            {
+                const auto lock = context_->exclusive();
+                if (run == batch.first_run) {
+                    set_state(band);
+                    draw_masks(batch);
+                }
+                run = read_masks(batch, run, band);
+                gl::check_errors("drawing a frame");
+            }
+            paint(first, run, band);
+        }
     }
-    gl::check_errors("drawing a frame");
 }
 
 void FrameRenderer::set_state(const PixelRect& band) const {
@@ -306,23 +319,35 @@ void FrameRenderer::draw_masks(const Batch& batch) const {
     if (batch.is_tinted) glBlendEquation(GL_MAX);
 }
 
-void FrameRenderer::paint(const Batch& batch, const PixelRect& band) {
+std::size_t FrameRenderer::read_masks(const Batch& batch, std::size_t run, const PixelRect& band) {
     static_assert(std::is_standard_layout_v<TintSums> && sizeof(TintSums) == 4 * sizeof(float));
-    for (std::size_t i = batch.first_run; i < batch.first_run + batch.run_count; ++i) {
-        const TileRun& run = tiles_.runs()[i];
-        const PixelRect rect = run.rect.intersected(band);
+    constexpr std::size_t kEnoughPixels = 1 << 20;
+    if (!batch.is_tinted) read_.sums.clear();
+    const std::size_t end = batch.first_run + batch.run_count;
+    for (std::size_t pixels = 0; run < end && pixels < kEnoughPixels; ++run) {
+        const PixelRect rect = tiles_.runs()[run].rect.intersected(band);
         if (rect.empty()) continue;
-        const std::size_t pixels = static_cast<std::size_t>(rect.width()) * rect.height();
         // The first of a batch waits until it is drawn.
-        const auto read = [&rect](GLenum from, GLenum format, GLenum type, auto& values) {
+        const auto read = [&rect](GLenum from, GLenum format, GLenum type, auto* values) {
             glReadBuffer(from);
-            glReadPixels(rect.x0, rect.y0, rect.width(), rect.height(), format, type, values.data());
+            glReadPixels(rect.x0, rect.y0, rect.width(), rect.height(), format, type, values);
         };
-        read_.coverage.resize(2 * pixels);
-        read_.sums.resize(batch.is_tinted ? pixels : 0);
-        if (batch.is_tinted) read(GL_COLOR_ATTACHMENT1, GL_RGBA, GL_FLOAT, read_.sums);
-        read(GL_COLOR_ATTACHMENT0, GL_RG, GL_UNSIGNED_BYTE, read_.coverage);
-        paint_run(rect, run.color, read_, *ground_, bare_);
+        const std::size_t first = pixels;
+        pixels += static_cast<std::size_t>(rect.width()) * rect.height();
+        read_.coverage.resize(std::max(read_.coverage.size(), 2 * pixels));
+        if (batch.is_tinted) read_.sums.resize(std::max(read_.sums.size(), pixels));
+        if (batch.is_tinted) read(GL_COLOR_ATTACHMENT1, GL_RGBA, GL_FLOAT, &read_.sums[first]);
+        read(GL_COLOR_ATTACHMENT0, GL_RG, GL_UNSIGNED_BYTE, &read_.coverage[2 * first]);
+    }
+    return run;
+}
+
+void FrameRenderer::paint(std::size_t run, std::size_t end, const PixelRect& band) {
+    std::size_t pixels = 0;
+    for (; run < end; ++run) {
+        const TileRun& tiles = tiles_.runs()[run];
+        const PixelRect rect = tiles.rect.intersected(band);
+        if (!rect.empty()) pixels = paint_run(rect, tiles.color, read_, pixels, *ground_, bare_);
     }
 }
 

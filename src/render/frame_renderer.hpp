@@ -8,6 +8,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
+#include "corda/gl/context.hpp"
 #include "corda/gl/object.hpp"
 #include "corda/gl/program.hpp"
 #include "corda/render/exposure.hpp"
@@ -27,9 +28,10 @@ namespace corda::render {
 /// integers (render/paint), as are the mean of the pictures of an exposure and the stamps.
 class FrameRenderer {
   public:
-    /// A gl::Context must be current and outlive this. Throws corda::Error (kNoGl) if the driver cannot draw
-    /// a frame of that size.
-    FrameRenderer(int width, int height);
+    /// The context must be current whenever this draws, and outlive it. Of one that draws on the CPU, only
+    /// whoever holds exclusive() makes or destroys a renderer; one that draws takes it for as long as OpenGL
+    /// works. Throws corda::Error (kNoGl) if the driver cannot draw a frame of that size.
+    FrameRenderer(const gl::Context& context, int width, int height);
 
     /// Draws the next frame; `list` has this renderer's size. Returns what may differ from the last frame. A
     /// large one is drawn in bands, and `on_progress` is asked between them. Throws corda::Error: kNoGl,
@@ -81,9 +83,12 @@ class FrameRenderer {
     /// Draws some rows.
     void draw_band(const PixelRect& band, const Damage& parts);
     void draw_masks(const Batch& batch) const;
-    /// Reads the masks of a batch in some rows, and paints its layers.
-    void paint(const Batch& batch, const PixelRect& band);
+    /// Reads masks of a batch in some rows, from a run on. Returns the run to go on with.
+    [[nodiscard]] std::size_t read_masks(const Batch& batch, std::size_t run, const PixelRect& band);
+    /// Paints the layers of some runs, whose masks were read.
+    void paint(std::size_t run, std::size_t end, const PixelRect& band);
 
+    const gl::Context* context_;
     Image image_;
     Image bare_;  ///< without stamps, colours times alpha
     Tiles tiles_;
@@ -101,7 +106,7 @@ class FrameRenderer {
     std::vector<view::Stamp> last_stamps_;
     std::vector<std::uint8_t> last_coverage_;
     std::optional<GroundRows> ground_;
-    Masks read_;  ///< of one run
+    Masks read_;  ///< what is being painted
     bool everything_is_stale_ = true;
 };
 

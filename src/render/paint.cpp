@@ -79,10 +79,10 @@ void paint_pixels(const std::uint8_t* coverage, std::uint8_t layer_alpha, const 
 
 }  // namespace
 
-void paint_run(const PixelRect& rect, Color color, const Masks& masks, const GroundRows& ground,
-               Image& image) {
+std::size_t paint_run(const PixelRect& rect, Color color, const Masks& masks, std::size_t first,
+                      const GroundRows& ground, Image& image) {
     Levels own = filled(color);
-    std::size_t done = 0;  // pixels of the masks
+    std::size_t done = first;  // pixels of the masks
     for (int y = rect.y0; y < rect.y1; ++y) {
         const std::uint8_t* const bare = ground.row(y).data();
         for (int x = rect.x0; x < rect.x1; x += GroundRows::kPeriodPx) {
@@ -99,6 +99,7 @@ void paint_run(const PixelRect& rect, Color color, const Masks& masks, const Gro
             done += count;
         }
     }
+    return done;
 }
 
 }  // namespace corda::render

@@ -26,7 +26,7 @@ class RandomCapsules : public testing::TestWithParam<std::tuple<int, int, std::s
 TEST_P(RandomCapsules, EqualTheReferenceByteForByte) {
     const auto [width, height, layers] = GetParam();
     const gl::Context context;
-    render::FrameRenderer renderer(width, height);
+    render::FrameRenderer renderer(context, width, height);
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
         const view::DrawList list = test::random_draw_list(seed, width, height, layers, 60, 12);
         renderer.render(list);
@@ -46,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, RandomCapsules,
 
 TEST(TransparentGrounds, EqualTheReferenceByteForByte) {
     const gl::Context context;
-    render::FrameRenderer renderer(333, 177);
+    render::FrameRenderer renderer(context, 333, 177);
     for (std::uint32_t seed = 1; seed <= 6; ++seed) {
         view::DrawList list = test::random_draw_list(seed, 333, 177, 5, seed % 2 == 0 ? 3 : 40);
         list.ground.top.a = seed < 3 ? 0 : 130;
@@ -62,7 +62,7 @@ TEST(TransparentGrounds, EqualTheReferenceByteForByte) {
 
 TEST(TintedLayers, EqualTheReferenceByteForByte) {
     const gl::Context context;
-    render::FrameRenderer renderer(641, 359);
+    render::FrameRenderer renderer(context, 641, 359);
     for (std::uint32_t seed = 1; seed <= 8; ++seed) {
         // Plain lists, then some with tinted layers, from the second frame on with less damage.
         view::DrawList list = test::random_draw_list(seed, 641, 359, 6, seed % 2 == 0 ? 4 : 60, 3, seed % 3);
@@ -75,7 +75,7 @@ TEST(TintedLayers, EqualTheReferenceByteForByte) {
 TEST(TintedLayers, EqualTheReferenceIfManyCapsulesCoverAPixel) {
     // Beyond 257 the sums are rounded, in the order of the capsules.
     const gl::Context context;
-    render::FrameRenderer renderer(64, 48);
+    render::FrameRenderer renderer(context, 64, 48);
     view::DrawList list = test::random_draw_list(1, 64, 48, 1, 3000, 0, 1);
     renderer.render(list);
     EXPECT_TRUE(equal_images(renderer.image(), render::render_reference(list)));
@@ -90,7 +90,7 @@ TEST(Bands, EqualTheReferenceByteForByte) {
     constexpr int kWidth = 16384;
     constexpr int kHeight = 1000;
     const gl::Context context;
-    render::FrameRenderer renderer(kWidth, kHeight);
+    render::FrameRenderer renderer(context, kWidth, kHeight);
     for (std::uint32_t seed = 1; seed <= 2; ++seed) {
         view::DrawList list = test::random_draw_list(seed, kWidth, seed == 1 ? kHeight : 600, 2, 60);
         list.height = kHeight;
@@ -119,7 +119,7 @@ TEST(Bands, StopAndThenTheWholeFrameIsDrawn) {
     constexpr int kWidth = 16384;
     constexpr int kHeight = 1000;
     const gl::Context context;
-    render::FrameRenderer renderer(kWidth, kHeight);
+    render::FrameRenderer renderer(context, kWidth, kHeight);
     renderer.render(test::random_draw_list(1, kWidth, kHeight, 2, 20));
     view::DrawList list = test::random_draw_list(2, kWidth, kHeight, 2, 20);
     for (const std::int64_t enough : {0, 1, 400}) {
@@ -135,7 +135,7 @@ TEST(Bands, StopAndThenTheWholeFrameIsDrawn) {
 
 TEST(Bands, AreNotAskedForSmallFrames) {
     const gl::Context context;
-    render::FrameRenderer renderer(640, 360);
+    render::FrameRenderer renderer(context, 640, 360);
     int asked = 0;
     renderer.render(test::random_draw_list(1, 640, 360, 1, 20), [&](std::int64_t, std::int64_t) {
         ++asked;
@@ -148,13 +148,13 @@ TEST(DamagedRedraw, EqualsTheFullRedrawByteForByte) {
     constexpr int kWidth = 320;
     constexpr int kHeight = 200;
     const gl::Context context;
-    render::FrameRenderer damaged(kWidth, kHeight);
+    render::FrameRenderer damaged(context, kWidth, kHeight);
     for (std::uint32_t seed = 1; seed <= 20; ++seed) {
         // A few capsules, so that frames leave most of the picture alone; every fifth frame is empty.
         view::DrawList list = test::random_draw_list(seed, kWidth, kHeight, 3, seed % 5 == 0 ? 0 : 2);
         list.ground = {{10, 20, 30}, {90, 20, 0}};
         damaged.render(list);
-        render::FrameRenderer full(kWidth, kHeight);
+        render::FrameRenderer full(context, kWidth, kHeight);
         EXPECT_EQ(full.render(list), Damage{damaged.image().rect()});
         EXPECT_TRUE(equal_images(damaged.image(), full.image())) << "frame " << seed;
     }
@@ -164,7 +164,7 @@ TEST(DamagedRedraw, EqualsTheFullRedrawOfStampsThatChange) {
     constexpr int kWidth = 320;
     constexpr int kHeight = 200;
     const gl::Context context;
-    render::FrameRenderer damaged(kWidth, kHeight);
+    render::FrameRenderer damaged(context, kWidth, kHeight);
     for (std::uint32_t seed = 1; seed <= 20; ++seed) {
         view::DrawList list = test::random_draw_list(seed, kWidth, kHeight, 1, 1, seed % 4);
         list.ground = {{10, 20, 30}, {90, 20, 0}};
@@ -175,7 +175,7 @@ TEST(DamagedRedraw, EqualsTheFullRedrawOfStampsThatChange) {
 
 TEST(DamagedRedraw, IsOfTheStampsThatDiffer) {
     const gl::Context context;
-    render::FrameRenderer renderer(200, 100);
+    render::FrameRenderer renderer(context, 200, 100);
     view::Font font;
     const auto list_of = [&font](const char* changing, Color color) {
         view::DrawList list;
@@ -199,7 +199,7 @@ TEST(DamagedRedraw, IsOfTheStampsThatDiffer) {
 
 TEST(DamagedRedraw, LeavesAnUnchangedFrameAlone) {
     const gl::Context context;
-    render::FrameRenderer renderer(64, 64);
+    render::FrameRenderer renderer(context, 64, 64);
     view::DrawList list = test::random_draw_list(1, 64, 64, 1, 0);
     EXPECT_EQ(renderer.render(list), (Damage{{0, 0, 64, 64}}));
     EXPECT_TRUE(renderer.render(list).empty());
@@ -214,7 +214,7 @@ TEST(DamagedRedraw, AfterAFailureDrawsTheWholeFrame) {
         return list;
     };
     const gl::Context context;
-    render::FrameRenderer renderer(64, 64);
+    render::FrameRenderer renderer(context, 64, 64);
     renderer.render(list_of(1, 1, 20));
     glEnable(GL_NONE);  // what OpenGL reports next: when the frame has been drawn
     EXPECT_EQ(test::failure_of([&] { renderer.render(list_of(2, 1, 5)); }).code, ExitCode::kNoGl);
@@ -237,7 +237,7 @@ std::vector<view::DrawList> exposed_lists(std::uint32_t seed, std::size_t count,
 
 TEST(Exposures, EqualTheReferenceWhateverWasDrawnBefore) {
     const gl::Context context;
-    render::FrameRenderer renderer(320, 200);
+    render::FrameRenderer renderer(context, 320, 200);
     for (std::uint32_t seed = 1; seed <= 12; ++seed) {
         const Ground ground{{10, 20, 30}, {90, 20, 0, static_cast<std::uint8_t>(seed < 9 ? 255 : 80)}};
         const auto lists = exposed_lists(seed, seed < 3 ? 64 : seed, ground);
@@ -256,7 +256,7 @@ TEST(Exposures, EqualTheReferenceWhateverWasDrawnBefore) {
 
 TEST(Exposures, DamageHoldsWhatDiffers) {
     const gl::Context context;
-    render::FrameRenderer renderer(320, 200);
+    render::FrameRenderer renderer(context, 320, 200);
     Image shown(320, 200);
     for (std::uint32_t seed = 1; seed <= 12; ++seed) {
         const auto lists = exposed_lists(seed, 3, {{10, 20, 30}, {90, 20, 0}});
@@ -271,8 +271,8 @@ TEST(Exposures, DamageHoldsWhatDiffers) {
 
 TEST(TwoRenderers, OfDifferentSizeShareAContext) {
     const gl::Context context;
-    render::FrameRenderer small(33, 17);
-    render::FrameRenderer large(640, 360);
+    render::FrameRenderer small(context, 33, 17);
+    render::FrameRenderer large(context, 640, 360);
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
         const view::DrawList small_list = test::random_draw_list(seed, 33, 17, 2, 5);
         const view::DrawList large_list = test::random_draw_list(seed + 100, 640, 360, 3, 20);
@@ -286,7 +286,7 @@ TEST(TwoRenderers, OfDifferentSizeShareAContext) {
 TEST(TwoContexts, LiveAndDieIndependently) {
     auto first = std::make_unique<gl::Context>();
     const gl::Context second;
-    render::FrameRenderer renderer(64, 64);
+    render::FrameRenderer renderer(second, 64, 64);
     first.reset();  // ends neither the display nor the context of the other
     second.make_current();
     const view::DrawList list = test::random_draw_list(1, 64, 64, 2, 20);

@@ -71,7 +71,12 @@ void expect_painted(Random& random, const PixelRect& rect, const Ground& ground,
                         expected.pixel(x, y));
         }
     }
-    paint_run(rect, own, masks, rows, image);
+    // The masks of another rectangle come before.
+    constexpr std::size_t kBefore = 5;
+    Masks both = masks;
+    both.coverage.insert(both.coverage.begin(), 2 * kBefore, 255);
+    if (is_tinted) both.sums.insert(both.sums.begin(), kBefore, TintSums{});
+    EXPECT_EQ(paint_run(rect, own, both, kBefore, rows, image), kBefore + i);
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x)
             for (int c = 0; c < 4; ++c)
@@ -97,7 +102,7 @@ TEST(Paint, LeavesWhatIsNotCovered) {
         for (int i = 0; i < 64; ++i) image.pixel(0, y)[i] = byte(random);
     const Image before = image;
     const Masks none{std::vector<std::uint8_t>(std::size_t{2} * 16 * 16), {}};
-    paint_run(image.rect(), {255, 0, 0, 255}, none, GroundRows({}, 16), image);
+    EXPECT_EQ(paint_run(image.rect(), {255, 0, 0, 255}, none, 0, GroundRows({}, 16), image), 16U * 16U);
     EXPECT_EQ(image, before);
 }
 
