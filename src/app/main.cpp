@@ -47,6 +47,17 @@ void refuse_empty_values(CLI::App& app) {
     }
 }
 
+/// Of an option that stands twice the last one counts, so that a script's can be overridden; of lists, all.
+void take_last_values(CLI::App& app) {
+    for (CLI::App* command : app.get_subcommands({})) {
+        for (CLI::Option* option : command->get_options()) {
+            const bool is_one = option->get_expected_min() == 1 && option->get_items_expected_max() == 1;
+            if (is_one && option->get_multi_option_policy() == CLI::MultiOptionPolicy::Throw)
+                option->take_last();
+        }
+    }
+}
+
 /// Why the first word is no command; std::nullopt if it is one, or an option.
 std::optional<std::string> unknown_command(const CLI::App& app, int argc, char** argv) {
     if (argc < 2 || argv[1][0] == '-') return std::nullopt;
@@ -114,6 +125,7 @@ int run(int argc, char** argv) {
     add_help(app, action);
     add_console_flags(app, console_def);
     refuse_empty_values(app);
+    take_last_values(app);
     // What the options say is not known until they are parsed, and that may fail.
     const Console early({.json = std::find(argv, argv + argc, std::string_view("--json")) != argv + argc});
     if (const auto word = unknown_command(app, argc, argv)) return fail(early, ExitCode::kUsage, *word);

@@ -148,7 +148,7 @@ void report_rendered(const Console& console, const std::string& output, const Re
     if (rendered.is_short_of_memory)
         console.info(fmt::format("only {} at a time: more would not fit into the memory that is free",
                                  counted(rendered.jobs, "chunk")));
-    console.info(fmt::format("{} frames in {:.3g} s, {:.1f} per second{}", rendered.frames, wall_s,
+    console.info(fmt::format("{} in {:.3g} s, {:.1f} per second{}", counted(rendered.frames, "frame"), wall_s,
                              static_cast<double>(rendered.frames) / wall_s,
                              is_one_file(output) ? "; verified" : ""));
 }
@@ -175,9 +175,9 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     report_plan(console, film);
     const std::int64_t count = def.end.value_or(film.frame_count()) - def.first;
     const VideoDef& video = film.scene().video;
-    console.info(fmt::format("{}: {}, method {}; {} frames of {}x{} at {} per second", film.scene().name,
-                             describe(film.system()), method_names(film.plan()), count, video.width_px,
-                             video.height_px, video.fps.rational().text()));
+    console.info(fmt::format("{}: {}, method {}; {} of {}x{} at {} per second", film.scene().name,
+                             describe(film.system()), method_names(film.plan()), counted(count, "frame"),
+                             video.width_px, video.height_px, video.fps.rational().text()));
     static_cast<void>(film.camera());
     if (options.dry_run) {
         console.report(film_json(film));

@@ -38,6 +38,13 @@ TEST_F(ExitCodes, ZeroForSuccess) {
     EXPECT_EQ(run_corda({"render", "--help"}).exit_code, 0);
 }
 
+TEST_F(ExitCodes, ZeroForAnOptionTwiceOfWhichTheLastCounts) {
+    const auto result = run_corda({"render", scene_, "-o", video_, "--size", "64by64", "--frames", "0:9",
+                                   "--size", "32x16", "--frames", "0:1"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("; 1 frame of 32x16 at"));
+}
+
 TEST_F(ExitCodes, HelpPrintsThemAll) {
     const auto result = run_corda({"--help"});
     for (const char* row : {"0  success", "2  usage", "3  invalid scene", "4  no usable OpenGL", "5  codec",
