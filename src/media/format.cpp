@@ -283,9 +283,17 @@ const Ending& find_ending(std::string_view path) {
         check_picture_names(path);
         return row_of(FileKind::kPictures);
     }
-    const auto row = std::find_if(endings().begin(), endings().end(),
-                                  [&ending](const Ending& candidate) { return ending == candidate.text; });
-    if (row != endings().end() && !ending.empty()) return *row;
+    const auto find = [](std::string_view text) {
+        return text.empty() ? endings().end()
+                            : std::find_if(endings().begin(), endings().end(),
+                                           [text](const Ending& row) { return text == row.text; });
+    };
+    if (const auto row = find(ending); row != endings().end()) return *row;
+    std::string lower = ending;
+    for (char& c : lower)
+        if ('A' <= c && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    if (lower == ".png" || find(lower) != endings().end())
+        fail_usage("'{}': the ending of the name tells the format; write it in lower case: {}", path, lower);
     std::vector<std::string_view> known;
     for (const Ending& candidate : endings()) known.emplace_back(candidate.text);
     fail_usage("'{}': the ending of the name tells the format, and this one is not known; use {}", path,
@@ -332,13 +340,15 @@ void check_video_def(const VideoDef& def) {
 std::string endings_with_alpha() {
     std::vector<std::string_view> names;
     for (const Ending& ending : endings()) {
-        const auto& formats = find_codec(ending.codecs.front())->pixel_formats;
-        const bool keeps_it = std::any_of(formats.begin(), formats.end(), [](const char* name) {
-            return name != nullptr && has_alpha_plane(name);
-        });
-        if (keeps_it && ending.kind != FileKind::kStream) names.emplace_back(ending.text);
+        if (can_be_transparent(ending) && ending.kind != FileKind::kStream) names.emplace_back(ending.text);
     }
     return fmt::format("{}", fmt::join(names, ", "));
+}
+
+bool can_be_transparent(const Ending& ending) {
+    const auto& formats = find_codec(ending.codecs.front())->pixel_formats;
+    return std::any_of(formats.begin(), formats.end(),
+                       [](const char* name) { return name != nullptr && has_alpha_plane(name); });
 }
 
 }  // namespace corda::media

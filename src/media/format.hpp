@@ -111,5 +111,7 @@ void check_video_def(const VideoDef& def);
 
 /// A ground that has transparency needs a format that keeps it: the endings that do, as ".webm, .mov".
 [[nodiscard]] std::string endings_with_alpha();
+/// Whether the first codec of an ending keeps alpha.
+[[nodiscard]] bool can_be_transparent(const Ending& ending);
 
 }  // namespace corda::media

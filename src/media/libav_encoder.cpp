@@ -31,7 +31,9 @@ void configure(AVCodecContext& context, const Format& format, const VideoDef& de
 }
 
 void open(AVCodecContext& context, const VideoDef& def, const EncoderSettings& settings) {
-    const std::string encoder = context.codec->name;  // unknown once it has failed to open
+    // Unknown once it has failed to open.
+    const std::string encoder = context.codec->name;
+    const bool is_hardware = (context.codec->capabilities & AV_CODEC_CAP_HARDWARE) != 0;
     Options options;
     std::string text;
     for (const auto& [name, value] : settings.options) {
@@ -41,7 +43,8 @@ void open(AVCodecContext& context, const VideoDef& def, const EncoderSettings& s
     check_libav(avcodec_open2(&context, nullptr, options.get()), ExitCode::kEncoder,
                 fmt::format("{} does not open for {}x{} at {} fps{}", encoder, def.width_px, def.height_px,
                             def.fps.rational().text(), text),
-                "try another preset, size or codec; see `corda doctor`");
+                is_hardware ? "try another codec: this one takes hardware and its driver"
+                            : "try another preset, size or codec");
     if (const std::string name = options.left_over(); !name.empty()) {
         throw Error(ExitCode::kEncoder, fmt::format("{} does not know the option '{}'", encoder, name));
     }

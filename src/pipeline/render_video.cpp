@@ -156,11 +156,14 @@ void check_ground(const Scene& scene, const media::Format& format) {
     const Ground ground = view::look_of(scene.style).ground;
     if (ground.is_opaque() || format.has_alpha) return;
     const Color clear = ground.top.a < 255 ? ground.top : ground.bottom;
+    const bool has_other = media::can_be_transparent(*format.ending);
     throw Error(
         ExitCode::kUsage,
         fmt::format("style.background: \"{}\" is transparent, and {} cannot be; give an opaque colour "
-                    "(--set style.background=#ffffff), draw stills as .png, or a video as {}",
-                    clear.text(), format.words(), media::endings_with_alpha()));
+                    "(--set style.background=#ffffff), {}",
+                    clear.text(), format.words(),
+                    has_other ? "or leave out video.codec and video.pix, as another encoder can"
+                              : "draw stills as .png, or a video as " + media::endings_with_alpha()));
 }
 
 }  // namespace
