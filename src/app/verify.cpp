@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "corda/core/text.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -39,10 +40,10 @@ nlohmann::json to_json(const std::string& path, const media::VerifyReport& repor
 ExitCode verify(const Console& console, const std::string& path) {
     const media::VerifyReport report = media::verify_in_child(path, stopping_if_asked());
     if (!report.codec.empty()) {
-        console.result(fmt::format("{}: {} {} {} {}x{}, {} frames at {} per second, {} s", path,
-                                   report.container, report.codec, report.profile, report.width_px,
-                                   report.height_px, report.frames, report.fps.text(),
-                                   report.duration_s.value()));
+        console.result(fmt::format(
+            "{}: {}{} {}x{}, {} at {} per second, {} s", path,
+            report.container == report.codec ? "" : report.container + " ", report.coding(), report.width_px,
+            report.height_px, counted(report.frames, "frame"), report.fps.text(), report.duration_s.value()));
     }
     for (const std::string& note : report.notes) console.result("note: " + note);
     for (const std::string& problem : report.problems) console.result("problem: " + problem);

@@ -28,7 +28,7 @@ struct FrameColors {
 struct VerifyReport {
     std::string container;
     std::string codec;
-    std::string profile;
+    std::string profile;  ///< empty if the codec has none
     std::string pixel_format;
     int width_px = 0;
     int height_px = 0;
@@ -42,6 +42,8 @@ struct VerifyReport {
     std::vector<std::string> notes;     ///< in words, such as what a browser will do with it
 
     [[nodiscard]] bool ok() const { return problems.empty(); }
+    /// Codec and profile, e.g. "h264 High", "gif".
+    [[nodiscard]] std::string coding() const { return profile.empty() ? codec : codec + " " + profile; }
 
     friend bool operator==(const VerifyReport&, const VerifyReport&) = default;
 };

@@ -283,7 +283,8 @@ class Decoding {
 
     void describe() {
         video_.codec = avcodec_get_name(file_.context->codec_id);
-        video_.profile = named(avcodec_profile_name(file_.context->codec_id, file_.context->profile));
+        const char* const profile = avcodec_profile_name(file_.context->codec_id, file_.context->profile);
+        video_.profile = profile == nullptr ? "" : profile;
     }
 
     static constexpr std::int64_t kNever = 1'000'000'000;

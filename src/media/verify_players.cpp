@@ -111,7 +111,7 @@ void check_picture_format(const DecodedVideo& video, VerifyReport& report) {
     if (report.codec == "h264" && is_odd_profile && !is_444) {
         problem(report,
                 "the H.264 profile is {}, which browsers and QuickTime refuse; encode High with yuv420p",
-                report.profile);
+                report.profile.empty() ? "unknown" : report.profile);
     }
     if (known == kPlayers.end() || players_of(report) == nullptr) {
         problem(report,
@@ -155,7 +155,7 @@ void add_notes(const DecodedVideo& video, bool saw_colors, VerifyDepth depth, Ve
                     saw_colors ? "colours at a few places of the first frame alone" : "no colours"));
     if (const Players* const players = players_of(report))
         report.notes.push_back(
-            fmt::format("{} {}, {}: {}", report.codec, report.profile, report.pixel_format, players->words));
+            fmt::format("{}, {}: {}", report.coding(), report.pixel_format, players->words));
     if (report.alpha)
         report.notes.emplace_back("the first frame is transparent in places; alpha is straight");
     if (video.is_rounded) {

@@ -75,7 +75,6 @@ DecodedVideo decode_webp(const std::string& path, const OnProgress& on_progress)
         return video;
     }
     video.codec = "webp";
-    video.profile = "animation";
     video.pixel_format = "rgba";
     video.width_px = static_cast<int>(info.canvas_width);
     video.height_px = static_cast<int>(info.canvas_height);

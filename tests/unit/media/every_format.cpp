@@ -180,6 +180,20 @@ TEST_P(EveryFormat, IsRecoveredFromItsPart) {
     EXPECT_EQ(test::read_file(file("a")), test::read_file(file("b")));
 }
 
+TEST_F(Video, VerifyTellsCodecsAndTheProfilesOfThoseThatHaveAny) {
+    for (const auto& [ending, words] : {std::pair{".mp4", "h264 High"},
+                                        {".mov", "prores 4444"},
+                                        {".mkv", "ffv1"},
+                                        {".webm", "vp9 Profile 0"},
+                                        {".gif", "gif"},
+                                        {".apng", "apng"},
+                                        {".webp", "webp"}}) {
+        const std::string path = file(std::string("a") + ending);
+        make_video(path, small_video({50, 1}), 3);
+        EXPECT_EQ(verify(path).coding(), words);
+    }
+}
+
 TEST_F(Video, EveryContainerKeepsRatesThatAreNoWholeNumbers) {
     for (const Rational fps :
          {Rational{30000, 1001}, Rational{24000, 1001}, Rational{30, 1}, Rational{60, 1}}) {
