@@ -1,5 +1,7 @@
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -32,13 +34,16 @@ std::string name_of(const std::string& part) {
 
 ExitCode recover(const Console& console, const RecoverOptions& options) {
     const std::string name = name_of(options.part);
+    if (std::error_code ignored; !std::filesystem::exists(options.part, ignored))
+        throw Error(ExitCode::kIo,
+                    fmt::format("there is no '{}', so there is nothing to recover", options.part));
     const std::string output = options.output.empty() ? name : options.output;
     check_output(output, options.part, options.force);
     const media::RemuxResult result = media::recover_part(
         options.part, output, {.force = options.force, .on_progress = stopping_if_asked()});
     if (result.truncated)
         console.warning(fmt::format("{} breaks off in the middle: what is whole was taken", options.part));
-    console.info(fmt::format("{} frames; verified", result.frames));
+    console.info(counted(result.frames, "frame") + "; verified");
     console.result(output);
     console.report(
         {{"schema", 1}, {"output", output}, {"frames", result.frames}, {"truncated", result.truncated}});

@@ -144,6 +144,9 @@ TEST_F(Video, IsRecoveredFromWhatAKilledRenderLeaves) {
                         "kill -9 $pid; wait $pid");
     EXPECT_EQ(killed.exit_code, 137) << killed.err;
     EXPECT_EQ(run_corda({"recover", scene_}).exit_code, 2);
+    const auto none = run_corda({"recover", scene_ + ".part"});  // the scene is there, and not in the way
+    EXPECT_EQ(none.exit_code, 6);
+    EXPECT_THAT(none.err, HasSubstr("there is no '" + scene_ + ".part'"));
     const auto recovered = run_corda({"recover", part, "--json"});
     ASSERT_EQ(recovered.exit_code, 0) << recovered.err;
     const json report = json::parse(recovered.out);
