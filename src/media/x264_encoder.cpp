@@ -10,8 +10,10 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 extern "C" {
 #include <x264.h>
@@ -114,7 +116,7 @@ class X264Encoder : public Encoder {
         : columns_(macroblocks(def.width_px)),
           rows_(macroblocks(def.height_px)),
           frame_(make_frame(format, def)),
-          previous_(make_frame(format, def)),
+          kept_(kMacroblockBytes * static_cast<std::size_t>(columns_)),
           parameters_(check_allocated(CodecParameters(avcodec_parameters_alloc()), "codec parameters")),
           packet_(check_allocated(Packet(av_packet_alloc()), "a packet")) {
         const LogCapture log;
@@ -147,11 +149,8 @@ class X264Encoder : public Encoder {
         }
         if (frames_ == 0) {
             convert_pixels(frame, frame.rect(), *frame_);
-            check_libav(av_frame_copy(previous_.get(), frame_.get()), ExitCode::kInternal,
-                        "cannot copy a picture");
         } else {
-            for (const PixelRect& part : damage) convert_pixels(frame, part, *frame_);
-            picture.prop.mb_info = find_constant(damage);
+            picture.prop.mb_info = convert(frame, damage);
             picture.prop.mb_info_free = &std::free;
         }
         encode(&picture, sink);
@@ -169,6 +168,7 @@ class X264Encoder : public Encoder {
 
   private:
     static constexpr int kPlanes = 3;
+    static constexpr std::size_t kMacroblockBytes = std::size_t{kPlanes} * kMacroblockPx * kMacroblockPx;
 
     /// Fills `parameters_`: all from the definition but the stream's headers. x264's own words (SEI) go
     /// before the first packet, as libavcodec puts them.
@@ -207,44 +207,77 @@ class X264Encoder : public Encoder {
         std::copy(headers.begin(), headers.end(), out.extradata);
     }
 
-    /// A flag for each macroblock, from malloc(): whether its samples are as in the previous frame. By
-    /// samples, not by damage, so that the bytes of a video do not depend on how its frames are drawn.
-    std::uint8_t* find_constant(const Damage& damage) {
+    /// Brings `frame_` up to date. Returns a flag for each macroblock, from malloc(): whether its samples
+    /// stay as they were. By samples, not by damage, so that the bytes of a video do not depend on how its
+    /// frames are drawn.
+    std::uint8_t* convert(const Image& frame, const Damage& damage) {
         const std::size_t count = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-        auto* const flags = static_cast<std::uint8_t*>(std::malloc(count));
-        if (flags == nullptr) throw Error(ExitCode::kTemporary, "out of memory for an encoder's flags");
-        std::memset(flags, X264_MBINFO_CONSTANT, count);
+        std::unique_ptr<std::uint8_t, void (*)(void*)> flags(static_cast<std::uint8_t*>(std::malloc(count)),
+                                                             &std::free);
+        if (!flags) throw Error(ExitCode::kTemporary, "out of memory for an encoder's flags");
+        std::memset(flags.get(), X264_MBINFO_CONSTANT, count);
         for (const PixelRect& part : damage) {
             // A chroma sample takes from the column before it, too.
-            const int x1 = std::min(macroblocks(part.x1 + 1), columns_);
-            const int y1 = std::min(macroblocks(part.y1), rows_);
-            for (int y = std::max(0, part.y0 / kMacroblockPx); y < y1; ++y)
-                for (int x = std::max(0, part.x0 / kMacroblockPx); x < x1; ++x)
-                    if (take_macroblock(x, y)) flags[std::ptrdiff_t{y} * columns_ + x] = 0;
+            const int first = std::max(0, part.x0 / kMacroblockPx);
+            const int last = std::min(macroblocks(part.x1 + 1), columns_);
+            for (int y = std::max(0, part.y0 / kMacroblockPx); y < std::min(macroblocks(part.y1), rows_);
+                 ++y) {
+                const PixelRect row{0, y * kMacroblockPx, frame_->width, (y + 1) * kMacroblockPx};
+                keep(first, last, y);
+                convert_pixels(frame, part.intersected(row), *frame_);
+                for (int x = first; x < last; ++x)
+                    if (!is_kept(first, x, y)) flags.get()[std::ptrdiff_t{y} * columns_ + x] = 0;
+            }
         }
-        return flags;
+        return flags.release();
     }
 
-    /// Brings a macroblock of `previous_` up to date; returns whether it was not.
-    bool take_macroblock(int column, int row) {
-        bool has_changed = false;
+    /// A row of a plane of a macroblock.
+    struct Line {
+        std::uint8_t* samples;
+        std::size_t bytes;
+    };
+
+    /// Calls `visit` with the lines of a macroblock until one gives false; returns whether none did.
+    template <class Visit>
+    bool for_each_line(int column, int row, const Visit& visit) const {
         for (int plane = 0; plane < kPlanes; ++plane) {
             const int shift = plane > 0 && csp_ == X264_CSP_I420 ? 1 : 0;
             const int side = kMacroblockPx >> shift;
             const int x = column * side;
-            const int y1 = std::min((row + 1) * side, frame_->height >> shift);
             const auto bytes = static_cast<std::size_t>(std::min(side, (frame_->width >> shift) - x));
+            const int y1 = std::min((row + 1) * side, frame_->height >> shift);
             for (int y = row * side; y < y1; ++y) {
-                const std::uint8_t* const from =
-                    frame_->data[plane] + std::ptrdiff_t{y} * frame_->linesize[plane] + x;
-                std::uint8_t* const to =
-                    previous_->data[plane] + std::ptrdiff_t{y} * previous_->linesize[plane] + x;
-                if (std::memcmp(from, to, bytes) == 0) continue;
-                std::memcpy(to, from, bytes);
-                has_changed = true;
+                const Line line{frame_->data[plane] + std::ptrdiff_t{y} * frame_->linesize[plane] + x, bytes};
+                if (!visit(line)) return false;
             }
         }
-        return has_changed;
+        return true;
+    }
+
+    /// Copies some macroblocks of a row to kept_.
+    void keep(int first, int last, int row) {
+        for (int column = first; column < last; ++column) {
+            std::uint8_t* to = kept_of(first, column);
+            for_each_line(column, row, [&to](const Line& line) {
+                to = std::copy_n(line.samples, line.bytes, to);
+                return true;
+            });
+        }
+    }
+
+    /// Whether a macroblock is as it was when those from `first` on were kept.
+    bool is_kept(int first, int column, int row) {
+        const std::uint8_t* from = kept_of(first, column);
+        return for_each_line(column, row, [&from](const Line& line) {
+            const bool is_equal = std::memcmp(line.samples, from, line.bytes) == 0;
+            from += line.bytes;
+            return is_equal;
+        });
+    }
+
+    std::uint8_t* kept_of(int first, int column) {
+        return &kept_[kMacroblockBytes * static_cast<std::size_t>(column - first)];
     }
 
     /// Encodes a picture, or what was kept back if it is null.
@@ -306,8 +339,8 @@ class X264Encoder : public Encoder {
     QuietLog quiet_;
     int columns_;  ///< of macroblocks
     int rows_;
-    Frame frame_;     ///< the current picture
-    Frame previous_;  ///< the one before it
+    Frame frame_;
+    std::vector<std::uint8_t> kept_;  ///< macroblocks of a row, before they are converted
     CodecParameters parameters_;
     Packet packet_;
     X264 x264_;

@@ -104,7 +104,6 @@ FrameRenderer::Tints::Tints()
 FrameRenderer::FrameRenderer(const gl::Context& context, int width, int height)
     : context_(&context),
       image_((check_size(width, height), Image(width, height))),
-      bare_(width, height),
       exposure_(width, height),
       capsule_program_("capsule", shaders::kCapsuleVert, shaders::kCapsuleFrag),
       clear_program_("clear", shaders::kClearVert, shaders::kClearFrag),
@@ -165,22 +164,18 @@ void FrameRenderer::set_capsule_uniforms(const gl::Program& program) const {
     glUniform1f(program.uniform("edge_margin"), view::kEdgeMargin);
 }
 
-Damage FrameRenderer::stale_parts() const {
-    return everything_is_stale_ ? Damage{image_.rect()}
-                                : rects_of(last_touched_, image_.width(), image_.height());
-}
-
-void FrameRenderer::add_changed_stamps(const view::DrawList& list, Damage& damage) const {
-    if (everything_is_stale_) return;
+Damage FrameRenderer::stale_parts(const view::DrawList& list) const {
+    if (everything_is_stale_) return {image_.rect()};
+    std::vector<std::uint8_t> tiles = last_touched_;
     for (std::size_t i = 0; i < std::max(list.stamps.size(), last_stamps_.size()); ++i) {
         const bool is_old = i < last_stamps_.size();
         const bool is_new = i < list.stamps.size();
         if (is_old && is_new && same_look(last_stamps_[i], last_coverage_, list.stamps[i], list.coverage))
             continue;
-        if (is_old) damage.push_back(last_stamps_[i].box);
-        if (is_new && !(is_old && last_stamps_[i].box == list.stamps[i].box))
-            damage.push_back(list.stamps[i].box);
+        if (is_old) mark_tiles(last_stamps_[i].box, image_.width(), tiles);
+        if (is_new) mark_tiles(list.stamps[i].box, image_.width(), tiles);
     }
+    return rects_of(tiles, image_.width(), image_.height());
 }
 
 Damage FrameRenderer::render(const view::DrawList& list, const OnProgress& on_progress) {
@@ -188,9 +183,10 @@ Damage FrameRenderer::render(const view::DrawList& list, const OnProgress& on_pr
     begin(list);
     tiles_.plan(list);
     touch(tiles_.touched());
-    Damage damage = stale_parts();
+    Damage damage = stale_parts(list);
     draw(list, damage, on_progress);
-    return finish(list, tiles_.touched(), std::move(damage));
+    finish(list, tiles_.touched(), damage);
+    return damage;
 }
 
 void FrameRenderer::expose(const view::DrawList& list, const OnProgress& on_progress) {
@@ -203,22 +199,20 @@ void FrameRenderer::expose(const view::DrawList& list, const OnProgress& on_prog
         exposure_.clear();
         throw;
     }
-    exposure_.add(bare_, tiles_.touched(), list.ground);
+    exposure_.add(image_, tiles_.touched(), list.ground);
 }
 
 Damage FrameRenderer::develop(const view::DrawList& list) {
-    Damage damage = stale_parts();
-    for (const PixelRect& part : damage) ground_->write(part, bare_);
-    exposure_.develop(list.ground, bare_);
-    return finish(list, exposure_.touched(), std::move(damage));
+    Damage damage = stale_parts(list);
+    for (const PixelRect& part : damage) ground_->write(part, image_);
+    exposure_.develop(list.ground, image_);
+    finish(list, exposure_.touched(), damage);
+    return damage;
 }
 
-Damage FrameRenderer::finish(const view::DrawList& list, const std::vector<std::uint8_t>& touched,
-                             Damage damage) {
-    add_changed_stamps(list, damage);
+void FrameRenderer::finish(const view::DrawList& list, const std::vector<std::uint8_t>& touched,
+                           const Damage& damage) {
     for (const PixelRect& part : damage) {
-        for (int y = part.y0; y < part.y1; ++y)
-            std::copy_n(bare_.pixel(part.x0, y), 4 * part.width(), image_.pixel(part.x0, y));
         paint_stamps(list, part, image_);
         if (!list.ground.is_opaque()) straighten(part, image_);
     }
@@ -226,7 +220,6 @@ Damage FrameRenderer::finish(const view::DrawList& list, const std::vector<std::
     last_stamps_ = list.stamps;
     last_coverage_ = list.coverage;
     everything_is_stale_ = false;
-    return damage;
 }
 
 void FrameRenderer::touch(const std::vector<std::uint8_t>& tiles) {
@@ -269,7 +262,7 @@ void FrameRenderer::draw(const view::DrawList& list, const Damage& parts, const 
 }
 
 void FrameRenderer::draw_band(const PixelRect& band, const Damage& parts) {
-    for (const PixelRect& part : parts) ground_->write(part.intersected(band), bare_);
+    for (const PixelRect& part : parts) ground_->write(part.intersected(band), image_);
     for (const Batch& batch : tiles_.batches()) {
         const std::size_t end = batch.first_run + batch.run_count;
         for (std::size_t run = batch.first_run; run < end;) {
@@ -347,7 +340,7 @@ void FrameRenderer::paint(std::size_t run, std::size_t end, const PixelRect& ban
     for (; run < end; ++run) {
         const TileRun& tiles = tiles_.runs()[run];
         const PixelRect rect = tiles.rect.intersected(band);
-        if (!rect.empty()) pixels = paint_run(rect, tiles.color, read_, pixels, *ground_, bare_);
+        if (!rect.empty()) pixels = paint_run(rect, tiles.color, read_, pixels, *ground_, image_);
     }
 }
 

@@ -40,8 +40,8 @@ class FrameRenderer {
 
     /// Forgets what was exposed and not developed.
     void begin_exposure() { exposure_.clear(); }
-    /// Adds the layers of a list to the frame that develop() will finish; all have the same ground. Asks and
-    /// throws as render(); the exposure is lost then, as it is by render().
+    /// Adds the layers of a list to the frame that develop() will finish; all have the same ground. image()
+    /// is no frame until then. Asks and throws as render(); the exposure is lost then, as it is by render().
     void expose(const view::DrawList& list, const OnProgress& on_progress = {});
     /// The next frame is the mean of what was exposed since the last one, at least one list, under the stamps
     /// of `list`, whose own layers are left out. Returns what may differ from the last frame.
@@ -68,17 +68,14 @@ class FrameRenderer {
     void set_state(const PixelRect& band) const;
     /// Prepares for drawing on a ground.
     void begin(const view::DrawList& list);
-    /// Draws the layers in some rectangles, a multiple of tiles, to bare_.
+    /// Draws the layers on the ground of some rectangles, which hold all tiles that the layers touch.
     void draw(const view::DrawList& list, const Damage& parts, const OnProgress& on_progress);
     /// Adds tiles to last_touched_.
     void touch(const std::vector<std::uint8_t>& tiles);
-    /// Where bare_ may differ from what the last frame was made of.
-    [[nodiscard]] Damage stale_parts() const;
-    /// Adds the boxes of stamps that differ from the last frame's.
-    void add_changed_stamps(const view::DrawList& list, Damage& damage) const;
-    /// Makes the frame of bare_, whose tiles `touched` are not the ground alone, and the stamps. `damage` is
-    /// that of bare_; returns it with that of the stamps.
-    Damage finish(const view::DrawList& list, const std::vector<std::uint8_t>& touched, Damage damage);
+    /// What is to be drawn anew under the stamps of `list`, in rectangles that do not overlap.
+    [[nodiscard]] Damage stale_parts(const view::DrawList& list) const;
+    /// Adds the stamps to what was drawn anew; of that, the tiles `touched` are not the ground alone.
+    void finish(const view::DrawList& list, const std::vector<std::uint8_t>& touched, const Damage& damage);
     void upload(const view::DrawList& list);
     /// Draws some rows.
     void draw_band(const PixelRect& band, const Damage& parts);
@@ -89,8 +86,7 @@ class FrameRenderer {
     void paint(std::size_t run, std::size_t end, const PixelRect& band);
 
     const gl::Context* context_;
-    Image image_;
-    Image bare_;  ///< without stamps, colours times alpha
+    Image image_;  ///< while a frame is drawn, colours times alpha
     Tiles tiles_;
     Exposure exposure_;
     gl::Program capsule_program_;
@@ -102,7 +98,7 @@ class FrameRenderer {
     gl::Texture masks_;
     gl::Framebuffer mask_target_;
     std::unique_ptr<Tints> tints_;
-    std::vector<std::uint8_t> last_touched_;  ///< per tile: 1 if it has not been the ground alone
+    std::vector<std::uint8_t> last_touched_;  ///< per tile: 1 if it is not the ground and stamps alone
     std::vector<view::Stamp> last_stamps_;
     std::vector<std::uint8_t> last_coverage_;
     std::optional<GroundRows> ground_;

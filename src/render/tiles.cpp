@@ -94,6 +94,14 @@ PixelRect tile_rect(std::size_t index, int width, int height) {
     return {x0, y0, std::min(x0 + kSidePx, width), std::min(y0 + kSidePx, height)};
 }
 
+void mark_tiles(const PixelRect& box, int frame_width, std::vector<std::uint8_t>& tiles) {
+    constexpr int kSidePx = Tiles::kSidePx;
+    const int columns = (frame_width + kSidePx - 1) / kSidePx;
+    for (int row = box.y0 / kSidePx; row * kSidePx < box.y1; ++row)
+        for (int column = box.x0 / kSidePx; column * kSidePx < box.x1; ++column)
+            tiles[static_cast<std::size_t>(row) * columns + column] = 1;
+}
+
 std::vector<PixelRect> rects_of(const std::vector<std::uint8_t>& tiles, int width, int height) {
     constexpr int kSidePx = Tiles::kSidePx;
     const int columns = (width + kSidePx - 1) / kSidePx;

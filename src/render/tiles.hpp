@@ -65,6 +65,9 @@ class Tiles {
 /// A tile of a frame by its index, row by row.
 [[nodiscard]] PixelRect tile_rect(std::size_t index, int width, int height);
 
+/// Marks the tiles of a frame that `box`, a part of it, touches by 1.
+void mark_tiles(const PixelRect& box, int frame_width, std::vector<std::uint8_t>& tiles);
+
 /// Some tiles of a frame, marked by 1, as rectangles that do not overlap.
 [[nodiscard]] std::vector<PixelRect> rects_of(const std::vector<std::uint8_t>& tiles, int width, int height);
 
