@@ -193,9 +193,13 @@ struct Film::Impl {
                                                   time_s, scene.world.duration_s));
     }
 
+    /// Painters in other threads may read the motion meanwhile.
     const State& at(double time_s) {
         require_time(time_s);
-        return motion.at(time_s, def.on_progress);
+        const std::lock_guard lock(run->reading);
+        asked = motion.at(time_s, def.on_progress);
+        figures = motion.figures();
+        return asked;
     }
 
     /// Reads the state at a time, and what the trails to it need, for a brush. Brushes may be used by several
@@ -329,6 +333,8 @@ struct Film::Impl {
     Plan& plan;
     std::optional<view::PlotData> plot;
     std::optional<CameraDef> camera;
+    State asked;      ///< what was asked for last
+    Figures figures;  ///< of that
 };
 
 Film::Film(const Scene& scene, FilmDef def) {
@@ -393,7 +399,7 @@ const State& Film::state_at(double time_s) const {
 }
 
 const Figures& Film::figures() const {
-    return impl_->motion.figures();
+    return impl_->figures;
 }
 
 const Diagnostics& Film::diagnostics() const {

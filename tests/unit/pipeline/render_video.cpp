@@ -244,5 +244,21 @@ TEST_F(RenderVideo, HasTheSameBytesWhateverItsCallbackDraws) {
     }
 }
 
+TEST_F(RenderVideo, HasTheSameBytesIfItsCallbackAsksForStates) {
+    Film film = rope_film(
+        "schema = 1\n[world]\nduration = 4.0\n[[rope]]\nhang = { links = 100, length = 1.0, angle_deg = 60 "
+        "}\n"
+        "[video]\nsize = [64, 48]\n");
+    RenderDef def;
+    const std::string alone = render(film, def);
+    const double first_m = film.state(7).x_m.back();
+    def.on_progress = [&](std::int64_t, std::int64_t) {
+        for (std::int64_t k = 0; k < 240; ++k) static_cast<void>(film.state(k));
+        EXPECT_EQ(film.state(7).x_m.back(), first_m);
+        return true;
+    };
+    EXPECT_EQ(render(film, def), alone);
+}
+
 }  // namespace
 }  // namespace corda
