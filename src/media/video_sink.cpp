@@ -210,12 +210,16 @@ class StreamSink : public VideoSink {
                         is_420 ? "C420mpeg2 XYSCSS=420MPEG2" : "C444 XYSCSS=444"));
     }
     void write(AVPacket& packet) override {
+        is_cut_ = true;
         if (has_headers_) put("FRAME\n");
         put(bytes_of(packet));
+        is_cut_ = false;
         av_packet_unref(&packet);
     }
     void end_chunk() override {}
-    std::string abandon() override { return "standard output"; }
+    std::string abandon() override {
+        return is_cut_ ? "standard output, perhaps with a part of the next one" : "standard output";
+    }
 
   private:
     void put(std::string_view bytes) const {
@@ -227,6 +231,7 @@ class StreamSink : public VideoSink {
     Format format_;
     OutputOptions options_;
     bool has_headers_ = true;
+    bool is_cut_ = false;  ///< the last frame, or that may be
 };
 
 }  // namespace

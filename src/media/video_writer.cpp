@@ -129,28 +129,40 @@ struct VideoWriter::Impl {
             begin(chunk);
         else if (!are_of_one_video(*parameters, *chunk.parameters))
             throw Error(ExitCode::kInternal, "two chunks of a video have different parameters");
+        is_broken = true;  // until all of the chunk is written
+        const bool has_whole_packets =
+            format.ending->kind == FileKind::kPictures || format.ending->kind == FileKind::kStream;
+        const std::int64_t first = written;
         // The n-th packet is decoded at frame n, earlier by as many as it takes to put frames in order.
-        std::int64_t decoded = written - parameters->video_delay;
+        std::int64_t decoded = first - parameters->video_delay;
         for (const Packet& packet : chunk.packets) {
-            packet->pts += written;
+            packet->pts += first;
             packet->dts = decoded++;
             packet->duration = 1;
-            if (packet->pts < packet->dts || packet->pts >= written + chunk.frames)
+            if (packet->pts < packet->dts || packet->pts >= first + chunk.frames)
                 throw Error(ExitCode::kInternal, "a chunk has a packet at a time that cannot be");
             sink->write(*packet);
+            if (has_whole_packets) ++written;
         }
         sink->end_chunk();
         for (FrameColors& frame : chunk.colors) {
-            frame.frame += written;
+            frame.frame += first;
             colors.push_back(std::move(frame));
         }
-        written += chunk.frames;
+        written = first + chunk.frames;
+        is_broken = false;
+    }
+
+    void check_goes_on() const {
+        if (drained) throw Error(ExitCode::kInternal, "this video has already ended");
+        if (is_broken)
+            throw Error(ExitCode::kInternal, "writing this video has failed: it can only be abandoned");
     }
 
     /// Ends the chunk that write() has begun.
     void end_chunk() {
-        if (encoder && encoder->frames() > 0) append(encoder->finish());
-        encoder.reset();
+        const auto ended = std::exchange(encoder, nullptr);
+        if (ended && ended->frames() > 0) append(ended->finish());
     }
 
     [[nodiscard]] std::int64_t frames() const { return written + (encoder ? encoder->frames() : 0); }
@@ -158,9 +170,14 @@ struct VideoWriter::Impl {
     /// The number in the film of the next frame that write() is given.
     [[nodiscard]] std::int64_t next_frame() const { return first_frame + frames(); }
 
+    /// Ends the stream; behind a chunk that could not be written nothing goes.
     void drain() {
-        end_chunk();
-        sink->drain();
+        if (is_broken) {
+            encoder.reset();
+        } else {
+            end_chunk();
+            sink->drain();
+        }
         drained = true;
     }
 
@@ -173,9 +190,10 @@ struct VideoWriter::Impl {
     std::unique_ptr<ChunkEncoder> encoder;  ///< of the chunk that write() adds to; null between chunks
     CodecParameters parameters;
     std::unique_ptr<VideoSink> sink;
-    std::int64_t written = 0;         ///< frames of whole chunks
+    std::int64_t written = 0;         ///< frames of whole chunks, or whole ones if each stands alone
     std::vector<FrameColors> colors;  ///< of frames in them
     bool drained = false;
+    bool is_broken = false;  ///< a chunk could not be written, or not all of it
 };
 
 VideoWriter::VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata,
@@ -194,8 +212,7 @@ VideoWriter VideoWriter::resume(std::string path, const VideoDef& def, VideoMeta
 
 void VideoWriter::write(const Image& frame, const Damage& damage) {
     Impl& impl = *impl_;
-    if (impl.drained)
-        throw Error(ExitCode::kInternal, "a frame was written to a video that has already ended");
+    impl.check_goes_on();
     if (frame.width() != impl.def.width_px || frame.height() != impl.def.height_px) {
         throw Error(ExitCode::kInternal,
                     fmt::format("a frame of {}x{} was written to a video of {}x{}", frame.width(),
@@ -209,7 +226,7 @@ void VideoWriter::write(const Image& frame, const Damage& damage) {
 
 void VideoWriter::append(Chunk chunk) {
     Impl& impl = *impl_;
-    if (impl.drained) throw Error(ExitCode::kInternal, "a chunk was added to a video that has already ended");
+    impl.check_goes_on();
     impl.end_chunk();
     impl.append(std::move(chunk));
 }
@@ -232,7 +249,7 @@ std::int64_t VideoWriter::frames() const {
 
 void VideoWriter::finish(VerifyDepth depth) {
     Impl& impl = *impl_;
-    if (impl.drained) throw Error(ExitCode::kInternal, "a video was finished twice");
+    impl.check_goes_on();
     if (frames() == 0) {
         throw Error(
             ExitCode::kUsage,

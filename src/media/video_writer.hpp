@@ -61,7 +61,7 @@ class VideoWriter {
 
     /// Adds the next frame, of the size of `def`. `damage` is what may differ from the previous frame (the
     /// first is taken whole). Throws kEncoder or kIo; ReaderLeft (see video_sink.hpp) if whoever reads
-    /// standard output closed it.
+    /// standard output closed it. After a failure only abandon() is of use.
     void write(const Image& frame, const Damage& damage);
 
     /// Adds a chunk that was encoded elsewhere, and forces it onto the disk. All of the frames so far are in

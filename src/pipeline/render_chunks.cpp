@@ -89,15 +89,20 @@ void render_chunks(const Film& film, std::int64_t from, std::int64_t end, int jo
     const std::int64_t had = writer.frames();
     ChunkMaker maker(film, writer, from + had, end);
     InOrder<Made> chunks(maker.first_chunk(), maker.end_chunk(), jobs, [&maker] { return maker.maker(); });
+    bool is_adding = false;
     try {
         while (writer.frames() < end - from) {
-            if (auto made = chunks.wait()) add(std::move(*made), writer, result);
+            if (auto made = chunks.wait()) {
+                is_adding = true;
+                add(std::move(*made), writer, result);
+                is_adding = false;
+            }
             report_progress(on_progress, had + maker.drawn(), end - from);
         }
     } catch (const Error& error) {
         if (!is_interruption(error.code())) throw;
         chunks.stop();
-        bool is_whole = true;
+        bool is_whole = !is_adding;  // nothing goes behind a chunk that broke off
         while (is_whole) {
             auto made = chunks.rest();
             is_whole = made && made->is_whole;

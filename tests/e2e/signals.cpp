@@ -119,6 +119,33 @@ TEST_F(Signals, EndTheWaitForTheReaderOfAPipe) {
     EXPECT_EQ(alone.result.exit_code, 130) << alone.result.err;
 }
 
+TEST_F(Signals, OfAStreamThatWaitsForItsReaderNothingGoesBehindAFrameThatBreaksOff) {
+    const std::string pipe = folder_.file("pipe");
+    ASSERT_EQ(run_shell("mkfifo " + pipe).exit_code, 0);
+    std::string scene = kSceneOfSignals;
+    scene.erase(scene.find("preset"));  // which raw frames do not have
+    scene = folder_.write("raw.toml", scene);
+    for (const char* const jobs : {"1", "2"}) {
+        // Four frames of 345606 bytes and a part of the next one; the signal comes when no more fits.
+        const std::string out = folder_.file("out");
+        const auto end =
+            run_shell("{ head -c 1500000; sleep 2; kill -INT $(cat " + pipe + ".pid); sleep 0.2; cat; } < " +
+                      pipe + " > " + out + " & reader=$!; " + test::quoted(CORDA_PROGRAM) + " render " +
+                      scene + " -o - --jobs " + jobs + " > " + pipe + " & pid=$!; echo $pid > " + pipe +
+                      ".pid; wait $pid; code=$?; wait $reader; exit $code");
+        EXPECT_EQ(end.exit_code, 130) << end.err;
+        EXPECT_THAT(end.err, HasSubstr("are in standard output"));
+        const std::string bytes = test::read_file(out);
+        constexpr std::size_t kFrame = 6 + 640 * 360 * 3 / 2;
+        std::size_t frames = 0;
+        for (std::size_t at = bytes.find('\n') + 1; at < bytes.size(); at += kFrame, ++frames)
+            EXPECT_EQ(bytes.substr(at, 6), std::string("FRAME\n").substr(0, bytes.size() - at))
+                << jobs << " " << frames;
+        EXPECT_GE(frames, 4U);
+        EXPECT_LT(frames, 60U);  // nothing of the chunks behind it
+    }
+}
+
 TEST_F(Signals, EndTheReadingOfAMotionForAReport) {
     const std::string out = folder_.file("report");
     const Interrupted end = interrupt("report " + scene_ + " -o " + out + " --duration 2000", "TERM",

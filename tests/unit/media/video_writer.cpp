@@ -371,5 +371,30 @@ TEST_F(Video, AFullDiskIsAnIoErrorAndKeepsThePart) {
     EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.part"));
 }
 
+TEST_F(Video, AWriterThatFailedCanOnlyBeAbandoned) {
+    const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+    rlimit old_limit{};
+    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &old_limit), 0);
+    const rlimit small{8192, old_limit.rlim_max};
+    auto writer = std::make_unique<VideoWriter>(file("a.mp4"), small_video(), VideoMetadata{});
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+    EXPECT_EQ(failure_of([&] { write_frames(*writer, 240); }).code, ExitCode::kIo);
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &old_limit), 0);
+    std::signal(SIGXFSZ, old_handler);
+    const std::int64_t whole = writer->frames();
+    EXPECT_EQ(whole % writer->frames_per_chunk(), 0);
+    EXPECT_GT(whole, 0);
+    for (const auto& failure :
+         {failure_of([&] { writer->write(frame_image(0), {}); }), failure_of([&] { writer->finish(); })}) {
+        EXPECT_EQ(failure.code, ExitCode::kInternal);
+        EXPECT_THAT(failure.message, HasSubstr("can only be abandoned"));
+    }
+    EXPECT_EQ(writer->frames(), whole);
+    // The space is there again.
+    EXPECT_EQ(writer->abandon(), file("a.mp4.part"));
+    writer.reset();
+    EXPECT_EQ(recover_part(file("a.mp4.part"), file("a.mp4")).frames, whole);
+}
+
 }  // namespace
 }  // namespace corda::media
