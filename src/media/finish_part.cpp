@@ -114,7 +114,7 @@ RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOpt
         remux(index, part.path(), ending, still_done, output);
     }
     done = total;
-    VerifyReport report = verify(output.temporary_path(), still_done, def.depth, def.rendered);
+    VerifyReport report = verify(output.temporary_path(), still_done, def.depth, def.rendered, index.fps);
     check_animation(index, ending, report);
     if (!report.ok()) {
         throw Error(ExitCode::kMismatch,

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "corda/core/image.hpp"
 #include "corda/media/checked.hpp"
 #include "corda/media/file_kind.hpp"
 #include "corda/media/mp4_boxes.hpp"
@@ -29,6 +30,10 @@ PartInput open_part(const std::string& path, std::uint64_t bytes) {
     const int index = av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
     check_libav(index, ExitCode::kMismatch, fmt::format("no video in '{}'", path));
     input.stream = format->streams[index];
+    const AVCodecParameters& parameters = *input.stream->codecpar;
+    if (!is_picture_size(parameters.width, parameters.height))
+        throw Error(ExitCode::kMismatch, fmt::format("'{}' is damaged: its frames would be {}x{} pixels",
+                                                     path, parameters.width, parameters.height));
     return input;
 }
 
@@ -152,7 +157,8 @@ PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
     index.fps = rate_of(path, input, packet_duration, stamps, step);
     if (index.fps.den > std::numeric_limits<int>::max()) fail_rate(path);  // more than libav can count
     number_frames(stamps, step, index);
-    index.truncated = index.bytes < boxes.file_bytes || is_damaged || index.frame_of.size() < stamps.size();
+    index.truncated =
+        index.bytes < boxes.file_bytes || is_broken || is_damaged || index.frame_of.size() < stamps.size();
     return index;
 }
 

@@ -159,7 +159,7 @@ void refuse(const std::string& path, VerifyReport& report) {
 }  // namespace
 
 VerifyReport verify(const std::string& path, const OnProgress& on_progress, VerifyDepth depth,
-                    const std::vector<FrameColors>& rendered) {
+                    const std::vector<FrameColors>& rendered, std::optional<Rational> fps) {
     const LogCapture log;
     VerifyReport report;
     const std::string kind = file_kind(path);
@@ -169,16 +169,25 @@ VerifyReport verify(const std::string& path, const OnProgress& on_progress, Veri
     if (kind == "mov") check_boxes(boxes, report);
     if (kind.empty() || (kind == "mov" && !boxes.has_index)) return report;
     const DecodedVideo video =
-        kind == "webp" ? decode_webp(path, on_progress) : decode(path, depth, rendered, on_progress);
+        kind == "webp" ? decode_webp(path, fps, on_progress) : decode(path, depth, rendered, on_progress);
     if (!video.opened) {
         problem(report, "{}; the file is damaged: copy or render it again", video.open_reason);
         return report;
     }
     fill_report(video, report);
-    if (kind == "mov") check_index(boxes, report);
     check_decoding(video, report);
     check_stamps(video, report);
-    if (kind == "mov") check_clocks(video, boxes, report);
+    if (!told_origin(video.comment).empty()) {
+        problem(
+            report,
+            "this is the part of an interrupted render: corda render --resume goes on with it, corda recover "
+            "makes it a video of these frames");
+        return report;
+    }
+    if (kind == "mov") {
+        check_index(boxes, report);
+        check_clocks(video, boxes, report);
+    }
     check_picture_format(video, report);
     check_tags(video, report);
     add_notes(video, check_comment(video, report), depth, report);

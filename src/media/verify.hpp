@@ -57,15 +57,17 @@ enum class VerifyDepth { kKeyFrames, kAllFrames };
 /// ones) and its clocks an exact duration, profile, pixel format and colour tags, and that every frame
 /// decodes that is to be decoded. If the file's comment says that corda made it, also frame count, rate and
 /// some colours of the first frame against what was rendered; whoever rendered it can tell more of them in
-/// `rendered`, in the order of the frames. What the other frames show is not compared with anything: a change
-/// that still decodes is not found.
+/// `rendered`, in the order of the frames, and in `fps` the rate, which a WebP of a few frames does not show.
+/// The part of an interrupted render is a problem by itself. What the other frames show is not compared with
+/// anything: a change that still decodes is not found.
 ///
 /// Throws corda::Error: kIo if the file cannot be opened for reading (one that is not a video gives a report
 /// with a problem), kInterrupted if `on_progress`, called with the frames, asks to stop. libav ends the
 /// process at some damaged files: one of unknown origin is for verify_in_child.
 [[nodiscard]] VerifyReport verify(const std::string& path, const OnProgress& on_progress = {},
                                   VerifyDepth depth = VerifyDepth::kAllFrames,
-                                  const std::vector<FrameColors>& rendered = {});
+                                  const std::vector<FrameColors>& rendered = {},
+                                  std::optional<Rational> fps = {});
 
 /// As `verify`, in a child process with limits on memory and time. If that crashes or exceeds a limit, the
 /// file is damaged: a report with a problem. If the system starts no further process, it verifies in this

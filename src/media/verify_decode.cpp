@@ -200,6 +200,8 @@ class Decoding {
                 if (packet != nullptr || video_.bad_frames > kMostBadFrames) return;
                 continue;
             }
+            // A wrong checksum of FFV1 is only logged, and the slice concealed.
+            if (file_.context->codec_id == AV_CODEC_ID_FFV1 && !log_.text().empty()) note_bad(log_.text());
             take_frame();
             av_frame_unref(frame_.get());
         }

@@ -50,11 +50,13 @@ struct DecodedVideo {
 [[nodiscard]] DecodedVideo decode(const std::string& path, VerifyDepth depth,
                                   const std::vector<FrameColors>& rendered, const OnProgress& on_progress);
 
-/// The same of an animated WebP, by libwebp.
-[[nodiscard]] DecodedVideo decode_webp(const std::string& path, const OnProgress& on_progress);
+/// The same of an animated WebP, by libwebp. `told`: see rate_of_ms().
+[[nodiscard]] DecodedVideo decode_webp(const std::string& path, std::optional<Rational> told,
+                                       const OnProgress& on_progress);
 
-/// The rate whose frames, rounded to milliseconds, end at these times: of several the usual one. The times
-/// are those of frames 1, 2, ... and of the end; std::nullopt if no rate fits.
-[[nodiscard]] std::optional<Rational> rate_of_ms(const std::vector<std::int64_t>& ends_ms);
+/// The rate whose frames, rounded to milliseconds, end at these times: of several `told`, a usual one, or the
+/// simplest. The times are those of frames 1, 2, ... and of the end; std::nullopt if no rate fits.
+[[nodiscard]] std::optional<Rational> rate_of_ms(const std::vector<std::int64_t>& ends_ms,
+                                                 std::optional<Rational> told = {});
 
 }  // namespace corda::media

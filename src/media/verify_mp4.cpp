@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <string>
 
 #include "corda/media/checked.hpp"
 #include "corda/media/verify_checks.hpp"
@@ -24,14 +25,15 @@ bool check_boxes(const Mp4Boxes& boxes, VerifyReport& report) {
 
 void check_index(const Mp4Boxes& boxes, VerifyReport& report) {
     if (report.faststart) return;
+    const std::string clocks =
+        report.fps.num > 0 ? fmt::format("-video_track_timescale {0} -movie_timescale {0} ", report.fps.num)
+                           : "";
     problem(
-        report,
-        "{}; remedy: ffmpeg -i FILE -c copy -video_track_timescale {} -movie_timescale {} "
-        "-movflags +faststart NEW.mp4",
+        report, "{}; remedy: ffmpeg -i FILE -c copy {}-movflags +faststart NEW.{}",
         boxes.fragmented
             ? "the file is still in fragments, as a .part file is: it plays, but a browser cannot seek in it"
             : "the index stands behind the pictures, so a browser must load the whole file before it starts",
-        report.fps.num, report.fps.num);
+        clocks, boxes.is_quicktime ? "mov" : "mp4");
 }
 
 void check_clocks(const DecodedVideo& video, const Mp4Boxes& boxes, VerifyReport& report) {

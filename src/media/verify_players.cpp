@@ -123,9 +123,9 @@ void check_picture_format(const DecodedVideo& video, VerifyReport& report) {
 void check_tags(const DecodedVideo& video, VerifyReport& report) {
     if (report.frames == 0 || !has_tags(report)) return;
     // The colr box of QuickTime has no range.
-    const std::string_view wanted = report.container == "mov" ? "unknown bt709 bt709 iec61966-2-1"
-                                    : video.is_yuv            ? "tv bt709 bt709 iec61966-2-1"
-                                                              : "pc gbr bt709 iec61966-2-1";
+    const std::string_view wanted = plain(report.container) == "mov" ? "unknown bt709 bt709 iec61966-2-1"
+                                    : video.is_yuv                   ? "tv bt709 bt709 iec61966-2-1"
+                                                                     : "pc gbr bt709 iec61966-2-1";
     if (video.container_tags != wanted) {
         problem(report,
                 "the container's colour tags ({}{}) are not '{}', and "

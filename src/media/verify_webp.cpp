@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "corda/core/file.hpp"
 #include "corda/core/image.hpp"
@@ -43,23 +45,40 @@ bool fits(Rational fps, const std::vector<std::int64_t>& ends_ms) {
     });
 }
 
+/// The fraction of smallest denominator that fits.
+std::optional<Rational> simplest_rate(const std::vector<std::int64_t>& ends_ms) {
+    constexpr std::int64_t kLargestDenominator = 10'000;
+    double low = 0.0;  // that fitting rates are above, and those up to which they are
+    double high = 2000.0;
+    for (std::size_t i = 0; i < ends_ms.size(); ++i) {
+        const double frames = 2000.0 * static_cast<double>(i + 1);
+        const double twice_end = 2.0 * static_cast<double>(ends_ms[i]);
+        low = std::max(low, frames / (twice_end + 1.0));
+        if (twice_end > 0.0) high = std::min(high, frames / (twice_end - 1.0));
+    }
+    for (std::int64_t den = 1; den <= kLargestDenominator; ++den) {
+        const auto num = static_cast<std::int64_t>(std::floor(high * static_cast<double>(den)));
+        if (num > 0 && static_cast<double>(num) > low * static_cast<double>(den) && fits({num, den}, ends_ms))
+            return Rational{num, den};
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
-std::optional<Rational> rate_of_ms(const std::vector<std::int64_t>& ends_ms) {
+std::optional<Rational> rate_of_ms(const std::vector<std::int64_t>& ends_ms, std::optional<Rational> told) {
+    if (ends_ms.empty() || ends_ms.back() <= 0) return std::nullopt;
+    if (told && fits(*told, ends_ms)) return told;
     for (const Rational usual :
          {Rational{60, 1}, Rational{30, 1}, Rational{25, 1}, Rational{24, 1}, Rational{50, 1},
           Rational{30000, 1001}, Rational{24000, 1001}, Rational{60000, 1001}})
         if (fits(usual, ends_ms)) return usual;
-    for (std::int64_t whole = 1; whole <= 1000; ++whole)
-        if (fits({whole, 1}, ends_ms)) return Rational{whole, 1};
-    // So many frames in so many milliseconds: right to the last one if nothing was rounded.
-    const auto frames = std::ssize(ends_ms);
-    if (ends_ms.empty() || ends_ms.back() <= 0) return std::nullopt;
-    const Rational mean = Rational::reduced(1000 * frames, ends_ms.back());
-    return fits(mean, ends_ms) ? std::optional(mean) : std::nullopt;
+    const Rational mean = Rational::reduced(1000 * std::ssize(ends_ms), ends_ms.back());
+    return mean.den == 1 && fits(mean, ends_ms) ? mean : simplest_rate(ends_ms);
 }
 
-DecodedVideo decode_webp(const std::string& path, const OnProgress& on_progress) {
+DecodedVideo decode_webp(const std::string& path, std::optional<Rational> told,
+                         const OnProgress& on_progress) {
     DecodedVideo video;
     const std::string bytes = all_of(path);
     const WebPData data{reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
@@ -95,7 +114,7 @@ DecodedVideo decode_webp(const std::string& path, const OnProgress& on_progress)
     }
     video.step = 1;
     video.end = video.frames;
-    const auto fps = rate_of_ms(ends_ms);
+    const auto fps = rate_of_ms(ends_ms, told);
     if (fps) {
         video.tick = {fps->den, fps->num};
     } else {

@@ -180,6 +180,62 @@ TEST_P(EveryFormat, IsRecoveredFromItsPart) {
     EXPECT_EQ(test::read_file(file("a")), test::read_file(file("b")));
 }
 
+TEST_P(EveryFormat, ItsPartIsToBeRecoveredSaysVerify) {
+    VideoDef def = def_of(GetParam());
+    VideoWriter writer(
+        file("a"), def,
+        {.comment_json = R"({"made_from":{"scene":"0"}})", .is_transparent = GetParam().is_transparent});
+    write_variant(writer, GetParam());
+    const std::string part = writer.abandon();
+    const VerifyReport report = verify(part);
+    EXPECT_EQ(report.frames, kVideoFrames);
+    ASSERT_EQ(report.problems.size(), 1U) << all_problems(report);
+    EXPECT_THAT(report.problems[0], HasSubstr("corda recover makes it a video"));
+}
+
+TEST_P(EveryFormat, APartWhosePictureHasNoSizeIsRefused) {
+    VideoWriter writer(file("a"), def_of(GetParam()), {.is_transparent = GetParam().is_transparent});
+    write_variant(writer, GetParam());
+    std::string part = test::read_file(writer.abandon());
+    const std::string coded = {kWidth >> 8, static_cast<char>(kWidth & 255), kHeight >> 8,
+                               static_cast<char>(kHeight & 255)};  // of MP4
+    const std::size_t at = part.find(coded, part.find("stsd"));
+    if (part.find("stsd") == std::string::npos) return;  // Matroska has another place for it
+    ASSERT_NE(at, std::string::npos);
+    part.replace(at, 4, std::string(4, '\0'));
+    test::write_file(file("b") + ".part", part);
+    const test::Failure failure = test::failure_of([&] { recover_part(file("b") + ".part", file("b")); });
+    EXPECT_EQ(failure.code, ExitCode::kMismatch) << failure.message;
+}
+
+TEST_F(Video, VerifyFindsWrongChecksumsOfFfv1) {
+    make_video(file("a.mkv"), small_video(), 10);
+    std::string bytes = test::read_file(file("a.mkv"));
+    for (std::size_t i = 0; i < 16; ++i) bytes[bytes.size() / 2 + i] ^= 0x55;
+    test::write_file(file("b.mkv"), bytes);
+    EXPECT_THAT(all_problems(verify(file("b.mkv"))), HasSubstr("slice CRC mismatch"));
+}
+
+TEST_F(Video, AWebpOfAnyRateAndCountIsSound) {
+    for (const Rational fps : {Rational{60000, 1001},
+                               {30000, 1001},
+                               {24000, 1001},
+                               {120000, 1001},
+                               {100, 1},
+                               {1000, 1},
+                               {2997, 100},
+                               {1197, 50},
+                               {7, 3},
+                               {1, 7}}) {
+        for (const std::int64_t frames : {2, 3, 10, 30}) {
+            make_video(file("a.webp"), small_video(fps), frames);
+            const VerifyReport report = verify(file("a.webp"));  // which is not told the rate
+            EXPECT_TRUE(report.ok()) << fps.text() << " " << frames << all_problems(report);
+            EXPECT_NEAR(report.fps.value() / fps.value(), 1.0, 0.6 / static_cast<double>(frames));
+        }
+    }
+}
+
 TEST_F(Video, VerifyTellsCodecsAndTheProfilesOfThoseThatHaveAny) {
     for (const auto& [ending, words] : {std::pair{".mp4", "h264 High"},
                                         {".mov", "prores 4444"},
