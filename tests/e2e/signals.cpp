@@ -195,7 +195,7 @@ TEST_F(Signals, EndTheDrawingOfALargeStill) {
     // This much memory is taken when the masks are there; drawing then takes two seconds or more.
     const Interrupted end =
         interrupt("still " + scene_ + " --at 0 --size 8192x8192 -o " + folder_.file("a.png"), "TERM",
-                  "awk '/^VmRSS/ { exit $2 < 860000 }' /proc/$pid/status");
+                  "awk '/^VmRSS/ { exit $2 < 598000 }' /proc/$pid/status");
     EXPECT_EQ(end.result.exit_code, 143) << end.result.err;
     EXPECT_THAT(end.result.err, HasSubstr("interrupted; nothing was written"));
     EXPECT_LT(end.ms, kMostMs);  // measured 340 .. 470 on a busy machine; 7500 in one piece
