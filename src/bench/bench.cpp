@@ -14,6 +14,7 @@
 #include "corda/bench/child.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
+#include "corda/core/temporary_folder.hpp"
 #include "corda/media/chunk.hpp"
 #include "corda/media/encoder_alone.hpp"
 #include "corda/media/format.hpp"
@@ -172,7 +173,7 @@ json measure_stages(const BenchDef& def, const std::string& path) {
 }  // namespace
 
 Measured measure(const BenchDef& def) {
-    const ScratchFolder folder;
+    const TemporaryFolder folder;
     const std::string path = folder.file("video.mp4");
     Measured measured;
     measured.frames = frames_of(def);

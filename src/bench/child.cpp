@@ -1,28 +1,13 @@
 #include "corda/bench/child.hpp"
 
-#include <cerrno>
 #include <cstdint>
-#include <cstdlib>
-#include <filesystem>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/file.hpp"
 #include "corda/media/child_process.hpp"
 
 namespace corda::bench {
 
 using nlohmann::json;
-
-ScratchFolder::ScratchFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "corda-bench-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) fail_file("make", name, errno);
-    path_ = name;
-}
-
-ScratchFolder::~ScratchFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-}
 
 json in_child(const std::function<void()>& on_wait, const std::function<json()>& work) {
     const auto told = [&work] {

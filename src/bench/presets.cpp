@@ -1,7 +1,6 @@
 #include "corda/bench/presets.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -9,6 +8,8 @@
 #include "corda/bench/child.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
+#include "corda/core/file.hpp"
+#include "corda/core/temporary_folder.hpp"
 #include "corda/media/format.hpp"
 #include "corda/media/picture_quality.hpp"
 #include "corda/media/video_reader.hpp"
@@ -38,14 +39,15 @@ json quality_of(const Film& film, std::int64_t frames, const std::string& path) 
 }
 
 json render_and_compare(const EncodingDef& def, std::int64_t frames) {
-    const ScratchFolder folder;
+    const TemporaryFolder folder;
     const std::string path = folder.file("video" + def.ending);
     const double start_s = now_s();
     Film film(def.scene, def.film);
     RenderDef render;
     render.end = frames;
     static_cast<void>(render_video(film, path, render));
-    json result{{"wall_s", now_s() - start_s}, {"bytes", std::filesystem::file_size(path)}};
+    const double wall_s = now_s() - start_s;
+    json result{{"wall_s", wall_s}, {"bytes", file_size(path)}};
     result.update(quality_of(film, frames, path));
     return result;
 }

@@ -22,6 +22,13 @@ FileHandle open_for_reading(const std::string& path) {
     return file;
 }
 
+std::uintmax_t file_size(const std::string& path) {
+    std::error_code failure;
+    const std::uintmax_t bytes = std::filesystem::file_size(path, failure);
+    if (failure) fail_file("read", path, failure.value());
+    return bytes;
+}
+
 int Descriptor::close() noexcept {
     if (number_ < 0) return 0;
     const int status = ::close(std::exchange(number_, -1));

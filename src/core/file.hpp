@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -19,6 +20,9 @@ using FileHandle = std::unique_ptr<std::FILE, FileCloser>;
 /// Opens a file for reading. Throws corda::Error: kIo, also for a folder; kInterrupted if a signal comes
 /// while it waits for the writer of a pipe.
 [[nodiscard]] FileHandle open_for_reading(const std::string& path);
+
+/// The bytes of an ordinary file. Throws corda::Error (kIo).
+[[nodiscard]] std::uintmax_t file_size(const std::string& path);
 
 /// Owns an open file descriptor.
 class Descriptor {

@@ -4,12 +4,15 @@
 #include <array>
 #include <filesystem>
 #include <memory>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
+#include "corda/core/file.hpp"
+#include "corda/core/temporary_folder.hpp"
 #include "corda/media/format.hpp"
 #include "corda/media/picture_quality.hpp"
 #include "corda/media/video_reader.hpp"
@@ -23,8 +26,6 @@
 namespace corda::study {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr const char* kSwing = R"(schema = 1
 [[rope]]
 line = { particles = 40, step = [0.1, -1.0] }
@@ -32,28 +33,6 @@ line = { particles = 40, step = [0.1, -1.0] }
 method = "exact"
 )";
 constexpr std::array<const char*, 6> kPresets{"ultrafast", "superfast", "veryfast", "fast", "medium", "slow"};
-
-/// A folder for trial videos, removed with everything in it.
-class TrialFolder {
-  public:
-    TrialFolder() : path_((fs::temp_directory_path() / "corda-study-XXXXXX").string()) {
-        if (mkdtemp(path_.data()) != nullptr) return;
-        throw Error(ExitCode::kIo, fmt::format("{}: cannot make this folder for trial videos; set TMPDIR to "
-                                               "a folder that can be written to",
-                                               path_));
-    }
-    TrialFolder(const TrialFolder&) = delete;
-    TrialFolder& operator=(const TrialFolder&) = delete;
-    ~TrialFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-
-    [[nodiscard]] std::string video() const { return path_ + "/trial.mp4"; }
-
-  private:
-    std::string path_;
-};
 
 /// A way to solve the scene.
 struct SolverSetting {
@@ -125,7 +104,7 @@ struct Pictures {
     Scene scene;
     Subject subject;
     std::string gl_renderer;
-    TrialFolder folder;
+    TemporaryFolder folder;  ///< of trial videos
     report::Table solvers;
     report::Table presets;
     report::Plot plot;
@@ -136,7 +115,8 @@ struct Pictures {
 void time_film(Film& film, const VideoDef& video, double simulate_s, const std::string& path,
                RenderTime& time) {
     FilmPainter painter(film);
-    fs::remove(path);
+    std::error_code ignored;  // the write below reports what is in the way
+    std::filesystem::remove(path, ignored);
     double draw_s = 0.0;
     double encode_s = 0.0;
     double last_s = now_s();
@@ -181,7 +161,7 @@ void add_solver(const SolverSetting& setting, Pictures& pictures) {
             Film film(scene, pictures.film_def);
             static_cast<void>(film.camera());
             static_cast<void>(film.state(film.frame_count() - 1));
-            time_film(film, scene.video, now_s() - start_s, pictures.folder.video(), time);
+            time_film(film, scene.video, now_s() - start_s, pictures.folder.file("trial.mp4"), time);
             if (repeat > 0) continue;
             if (words.empty()) words = describe(film.system(), film.plan());
             error = error_px(pictures, film, setting.reach);
@@ -229,12 +209,12 @@ void add_preset(const char* preset, Pictures& pictures) {
     Film film(pictures.scene_with(AutoDef{}, 1), pictures.film_def);
     VideoDef video = film.scene().video;
     video.encoder.preset = preset;
-    const std::string path = pictures.folder.video();
+    const std::string path = pictures.folder.file("trial.mp4");
     RenderTime time;
     for (int repeat = 0; repeat < pictures.repeats; ++repeat) time_film(film, video, 0.0, path, time);
     std::vector<report::Cell> row{preset};
     add_quality(film, path, row);
-    row.insert(row.end(), {static_cast<double>(fs::file_size(path)),
+    row.insert(row.end(), {static_cast<double>(file_size(path)),
                            1e3 * static_cast<double>(film.frame_count()) / time.encode_ms.median(),
                            time.encode_ms.median(), time.encode_ms.least(), time.encode_ms.largest()});
     pictures.presets.add(std::move(row));

@@ -38,6 +38,14 @@ TEST(Files, ThatCannotBeReadAreErrors) {
     }
 }
 
+TEST(Files, TellTheirSizes) {
+    const test::ScratchFolder folder;
+    EXPECT_EQ(file_size(folder.write("a", "text")), 4U);
+    const test::Failure failure = failure_of([&] { static_cast<void>(file_size(folder.file("missing"))); });
+    EXPECT_EQ(failure.code, ExitCode::kIo);
+    EXPECT_THAT(failure.message, HasSubstr("cannot read '" + folder.file("missing") + "'"));
+}
+
 TEST(NewFiles, AreMadeOnlyWhereNothingStands) {
     const test::ScratchFolder folder;
     const mode_t old_mask = ::umask(022);
