@@ -7,14 +7,14 @@
 #include <string>
 
 #include "corda/core/css_colors.hpp"
+#include "corda/core/text.hpp"
 
 namespace corda {
 
 namespace {
 
 std::optional<Color> css_color(std::string_view text) {
-    std::string name(text);
-    for (char& c : name) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    const std::string name = lower(text);
     if (name == "transparent") return Color{0, 0, 0, 0};
     const auto* const found =
         std::lower_bound(kCssColors.begin(), kCssColors.end(), name,

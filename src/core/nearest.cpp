@@ -4,15 +4,13 @@
 #include <limits>
 #include <vector>
 
+#include "corda/core/text.hpp"
+
 namespace corda {
 namespace {
 
 constexpr std::size_t kLongestWord = 64;  // longer than any candidate; bounds the work on hostile input
 constexpr std::size_t kShortestPrefix = 3;
-
-char lower(char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
 
 /// Whether a word is the beginning of a candidate, or a candidate of which it has half and more.
 bool is_prefix(std::string_view word, std::string_view candidate) {

@@ -70,6 +70,12 @@ std::string printable(std::string_view bytes) {
     return escaped(bytes, true);
 }
 
+std::string lower(std::string_view text) {
+    std::string result(text);
+    for (char& c : result) c = lower(c);
+    return result;
+}
+
 std::string counted(std::int64_t count, const std::string& what) {
     return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }

@@ -15,6 +15,13 @@ namespace corda {
 /// Printable text stays as it is.
 [[nodiscard]] std::string printable(std::string_view bytes);
 
+/// A letter of ASCII in lower case; any other byte as it is.
+[[nodiscard]] constexpr char lower(char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+/// All letters of ASCII in lower case.
+[[nodiscard]] std::string lower(std::string_view text);
+
 /// "1 bar", "2 bars".
 [[nodiscard]] std::string counted(std::int64_t count, const std::string& what);
 

@@ -9,6 +9,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
 #include "corda/core/output_file.hpp"
+#include "corda/core/text.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/picture_names.hpp"
 #include "corda/media/x264_encoder.hpp"
@@ -289,11 +290,9 @@ const Ending& find_ending(std::string_view path) {
                                            [text](const Ending& row) { return text == row.text; });
     };
     if (const auto row = find(ending); row != endings().end()) return *row;
-    std::string lower = ending;
-    for (char& c : lower)
-        if ('A' <= c && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    if (lower == ".png" || find(lower) != endings().end())
-        fail_usage("'{}': the ending of the name tells the format; write it in lower case: {}", path, lower);
+    const std::string usual = lower(ending);
+    if (usual == ".png" || find(usual) != endings().end())
+        fail_usage("'{}': the ending of the name tells the format; write it in lower case: {}", path, usual);
     std::vector<std::string_view> known;
     for (const Ending& candidate : endings()) known.emplace_back(candidate.text);
     fail_usage("'{}': the ending of the name tells the format, and this one is not known; use {}", path,
