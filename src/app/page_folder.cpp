@@ -1,10 +1,7 @@
 #include "page_folder.hpp"
 
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,20 +18,19 @@ void add_force(CLI::App& command, bool& force) {
 }
 
 void prepare_page_folder(const std::string& path, bool force, bool dry_run) {
-    std::error_code ignored;
-    if (fs::exists(path, ignored) && !fs::is_directory(path, ignored)) {
+    std::error_code failure;
+    const bool is_there = fs::exists(path, failure);
+    if (is_there && !fs::is_directory(path, failure)) {
         throw Error(ExitCode::kIo, fmt::format("{}: exists and is not a folder; choose another name", path));
     }
-    if (dry_run && !fs::exists(path, ignored)) return;
+    check_folder(path);
+    if (dry_run && !is_there) return;
     make_folder(path);
-    const bool is_empty = fs::is_empty(path, ignored) && !ignored;
+    const bool is_empty = fs::is_empty(path, failure);
+    if (failure) fail_file("read", path, failure.value());
     if (!is_empty && !force) {
         throw Error(ExitCode::kIo,
                     fmt::format("{}: is not empty; give --force to replace files of the same names", path));
-    }
-    if (::access(path.c_str(), W_OK | X_OK) != 0) {
-        throw Error(ExitCode::kIo, fmt::format("{}: cannot be written to: {}; choose another folder", path,
-                                               std::strerror(errno)));
     }
 }
 

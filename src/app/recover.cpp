@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
+#include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
 #include "corda/media/finish_part.hpp"
@@ -34,9 +35,12 @@ std::string name_of(const std::string& part) {
 
 ExitCode recover(const Console& console, const RecoverOptions& options) {
     const std::string name = name_of(options.part);
-    if (std::error_code ignored; !std::filesystem::exists(options.part, ignored))
+    std::error_code failure;
+    if (!std::filesystem::exists(options.part, failure)) {
+        if (failure) fail_file("read", options.part, failure.value());
         throw Error(ExitCode::kIo,
                     fmt::format("there is no '{}', so there is nothing to recover", options.part));
+    }
     const std::string output = options.output.empty() ? name : options.output;
     check_output(output, options.part, options.force);
     const media::RemuxResult result = media::recover_part(

@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
+#include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "figure_options.hpp"
 #include "interrupt.hpp"
@@ -18,11 +20,17 @@ struct Still : Shot {
     std::string path;
 };
 
+/// False as well if the path cannot be examined: the write that follows says why.
+bool is_directory(const std::string& path) {
+    std::error_code none;
+    return std::filesystem::is_directory(path, none);
+}
+
 /// Whether the output is one picture. A name with an ending is meant as a file; folders have none, or exist,
 /// or end with a slash.
 bool is_picture(const std::string& output) {
     const std::filesystem::path path(output);
-    const bool is_folder = std::filesystem::is_directory(path);
+    const bool is_folder = is_directory(output);
     if (is_figure_path(output) && !is_folder) return true;
     if (output != "-" && (!path.has_extension() || is_folder)) return false;
     throw Error(ExitCode::kUsage,
@@ -64,9 +72,10 @@ void set_paths(const FigureOptions& options, std::vector<Still>& stills) {
     } else {
         for (Still& still : stills)
             still.path = (std::filesystem::path(options.output) / still.path).string();
+        check_folder(options.output);
         if (!options.dry_run) make_folder(options.output);
+        if (!is_directory(options.output)) return;
     }
-    if (options.dry_run && !std::filesystem::is_directory(options.output)) return;
     for (const Still& still : stills) check_output(still.path, options.scene.input(), options.force);
 }
 

@@ -49,17 +49,19 @@ int write_all(int descriptor, std::string_view bytes, const OnProgress& on_wait)
     return 0;
 }
 
-std::string_view hint_for_errno(int error_number) {
+std::string_view hint_for_errno(int error_number, FileUse use) {
+    const bool is_read = use == FileUse::kRead;
     switch (error_number) {
         case ENOSPC:
         case EDQUOT:
             return "free some space on that disk, or write to another one";
         case ENOENT:
-            return "check the path; the folder must exist";
+            return is_read ? "check the path" : "check the path; the folder must exist";
         case EACCES:
         case EPERM:
         case EROFS:
-            return "choose a place you may write to, or change the permissions";
+            return is_read ? "change its permissions, or run corda as a user who may read it"
+                           : "choose a place you may write to, or change the permissions";
         case EISDIR:
             return "give the name of a file, not of a folder";
         case EFBIG:
@@ -74,7 +76,8 @@ void fail_file(std::string_view action, const std::string& path, int error_numbe
     if (error_number == EINTR)
         throw Error(ExitCode::kInterrupted,
                     "interrupted while waiting to " + std::string(action) + " '" + path + "'");
-    const std::string_view hint = hint_for_errno(error_number);
+    const std::string_view hint =
+        hint_for_errno(error_number, action == "read" ? FileUse::kRead : FileUse::kWrite);
     std::string message =
         "cannot " + std::string(action) + " '" + path + "': " + std::generic_category().message(error_number);
     if (!hint.empty()) message += "; " + std::string(hint);
@@ -85,6 +88,21 @@ void make_folder(const std::string& path) {
     std::error_code reason;
     std::filesystem::create_directories(path, reason);
     if (reason) fail_file("make the folder", path, reason.value());
+}
+
+void check_folder(const std::string& path) {
+    namespace fs = std::filesystem;
+    for (fs::path at = path;; at = at.parent_path()) {
+        if (at.empty()) at = ".";
+        std::error_code failure;
+        const fs::file_type type = fs::status(at, failure).type();
+        if (type == fs::file_type::not_found && at != ".") continue;
+        if (type != fs::file_type::directory)
+            fail_file("make the folder", path, failure ? failure.value() : ENOTDIR);
+        const bool may_write = ::faccessat(AT_FDCWD, at.c_str(), W_OK | X_OK, AT_EACCESS) == 0;
+        if (!may_write) fail_file(at == path ? "write to the folder" : "make the folder", path, errno);
+        return;
+    }
 }
 
 void sync_file(const Descriptor& file, const std::string& path) {

@@ -56,14 +56,21 @@ class Descriptor {
 [[nodiscard]] int write_all(int descriptor, std::string_view bytes, const OnProgress& on_wait = {});
 
 /// Throws corda::Error (kIo; kInterrupted for EINTR): "cannot ACTION 'PATH': REASON; HINT", with the reason
-/// and the hint for `error_number`.
+/// and the hint for `error_number`. The hint assumes that the file was to be written, unless ACTION is
+/// "read".
 [[noreturn]] void fail_file(std::string_view action, const std::string& path, int error_number);
 
+/// What was to be done with a file.
+enum class FileUse { kRead, kWrite };
+
 /// What a user can do about an errno value; empty if its text says it all.
-[[nodiscard]] std::string_view hint_for_errno(int error_number);
+[[nodiscard]] std::string_view hint_for_errno(int error_number, FileUse use = FileUse::kWrite);
 
 /// Makes a folder and its missing parents. Throws corda::Error (kIo).
 void make_folder(const std::string& path);
+
+/// Checks that a folder can be made or, if it exists, written to. Throws corda::Error (kIo).
+void check_folder(const std::string& path);
 
 /// Forces what was written to an open file onto the disk. Throws corda::Error (kIo).
 void sync_file(const Descriptor& file, const std::string& path);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
 #include "corda/media/animation.hpp"
@@ -38,6 +39,7 @@ void check_pictures(const std::string& pattern, const std::string& input, bool f
                     std::int64_t end) {
     const std::filesystem::path folder = std::filesystem::path(pattern).parent_path();
     std::error_code ignored;
+    check_folder(folder.string());
     if (!folder.empty() && !std::filesystem::exists(folder, ignored)) return;
     for (std::int64_t k = first; k < end; ++k) check_output(picture_name(pattern, k), input, force);
 }

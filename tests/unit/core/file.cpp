@@ -103,6 +103,16 @@ TEST(FileErrors, HaveAReasonAndARemedy) {
               "cannot write 'a.mp4': Broken pipe");
 }
 
+TEST(FileErrors, AdviseWhatFitsTheAction) {
+    EXPECT_EQ(failure_of([] { fail_file("write", "a.mp4", EACCES); }).message,
+              "cannot write 'a.mp4': Permission denied; choose a place you may write to, or change the "
+              "permissions");
+    EXPECT_EQ(
+        failure_of([] { fail_file("read", "a.mp4", EACCES); }).message,
+        "cannot read 'a.mp4': Permission denied; change its permissions, or run corda as a user who may "
+        "read it");
+}
+
 TEST(Folders, AreMadeWithTheirParents) {
     const test::ScratchFolder folder;
     make_folder(folder.file("a/b/c"));
@@ -110,6 +120,10 @@ TEST(Folders, AreMadeWithTheirParents) {
     make_folder(folder.file("a/b/c"));
     static_cast<void>(folder.write("file", ""));
     EXPECT_EQ(failure_of([&] { make_folder(folder.file("file/d")); }).code, ExitCode::kIo);
+    EXPECT_EQ(failure_of([&] { check_folder(folder.file("file/d")); }).code, ExitCode::kIo);
+    for (const std::string& name :
+         {folder.file("a"), folder.file("a/new/one/"), std::string("new"), std::string()})
+        EXPECT_EQ(failure_of([&] { check_folder(name); }).code, ExitCode::kOk) << name;
     sync_folder_of(folder.file("a/b"));
     sync_folder_of("a name in this folder");
     EXPECT_EQ(failure_of([&] { sync_folder_of(folder.file("no/a")); }).code, ExitCode::kIo);
