@@ -198,8 +198,10 @@ void OutputFile::open_temporary() {
         descriptor_ = create_new(temporary_, mode);
         if (!descriptor_ && errno == EEXIST) continue;
         if (!descriptor_) break;
-        // Where files cannot be locked nobody removes it either. Before it was locked somebody may have.
-        static_cast<void>(::flock(descriptor_.get(), LOCK_EX | LOCK_NB));
+        // Whoever has locked it before us is about to remove it, so wait for that, and then take another.
+        // Where files cannot be locked nobody removes it either.
+        while (::flock(descriptor_.get(), LOCK_EX) != 0 && errno == EINTR) {
+        }
         struct stat status {};
         if (::fstat(descriptor_.get(), &status) == 0 && status.st_nlink > 0) return;
     }

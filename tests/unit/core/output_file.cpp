@@ -14,16 +14,23 @@
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <thread>
+#include <utility>
 
 #include "support/command.hpp"
 #include "support/failure.hpp"
+#include "support/file_size_limit.hpp"
 
 namespace {
 
 // What the two calls below answer in place of doing their work; 0: they work.
 int renameat2_errno = 0;
 int link_errno = 0;
+
+// The next lock is that of a file which another process has locked to remove it; it does once it is waited
+// for, or else later.
+bool is_locked_to_be_removed = false;
 
 }  // namespace
 
@@ -39,6 +46,15 @@ extern "C" int link(const char* from, const char* to) noexcept {
     errno = link_errno;
     if (link_errno != 0) return -1;
     return static_cast<int>(::syscall(SYS_linkat, AT_FDCWD, from, AT_FDCWD, to, 0));
+}
+
+extern "C" int flock(int file, int operation) noexcept {
+    if (!std::exchange(is_locked_to_be_removed, false))
+        return static_cast<int>(::syscall(SYS_flock, file, operation));
+    errno = EWOULDBLOCK;
+    if ((operation & LOCK_NB) != 0) return -1;
+    std::filesystem::remove(std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(file)));
+    return 0;
 }
 
 namespace corda {
@@ -146,6 +162,19 @@ TEST_F(OutputFiles, LeftoversOfKilledProcessesAreRemovedAndNoOthers) {
     kept.push_back(fs::path(living.temporary_path()).filename().string());
     EXPECT_THAT(folder_.files(), testing::UnorderedElementsAreArray(kept));
     remove_leftovers(file("no/such/folder/a"));
+}
+
+TEST_F(OutputFiles, OutliveARemovalThatBeganBeforeTheyWereLocked) {
+    is_locked_to_be_removed = true;
+    OutputFile output(file("a"));
+    EXPECT_FALSE(is_locked_to_be_removed);
+    EXPECT_THAT(folder_.files(), testing::SizeIs(1));
+    EXPECT_NE(::flock(Descriptor(::open(output.temporary_path().c_str(), O_RDWR | O_CLOEXEC)).get(),
+                      LOCK_EX | LOCK_NB),
+              0);  // held, so it is not removed now
+    output.write("text");
+    output.commit();
+    EXPECT_EQ(test::read_file(file("a")), "text");
 }
 
 TEST_F(OutputFiles, TemporaryNamesAreUnique) {
