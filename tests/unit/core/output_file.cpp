@@ -3,7 +3,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -368,14 +368,10 @@ TEST_F(OutputFiles, AFullDiskIsReported) {
     expect_io_error([&] { save("/dev/full", "text"); }, "free some space");
     expect_io_error([&] { save("/dev/full", std::string(1'000'000, 'x')); }, "No space left");
     // A limit on the size of files stops a write to an ordinary one.
-    const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-    rlimit old_limit{};
-    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &old_limit), 0);
-    const rlimit small{4096, old_limit.rlim_max};
-    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-    const Failure failure = failure_of([&] { save(file("a"), std::string(5000, 'x')); });
-    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &old_limit), 0);
-    std::signal(SIGXFSZ, old_handler);
+    const Failure failure = failure_of([&] {
+        const test::FileSizeLimit limit(4096);
+        save(file("a"), std::string(5000, 'x'));
+    });
     EXPECT_EQ(failure.code, ExitCode::kIo);
     EXPECT_THAT(failure.message, HasSubstr("ulimit"));
     EXPECT_THAT(folder_.files(), IsEmpty());

@@ -2,9 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <filesystem>
 
 #include "corda/media/finish_part.hpp"
@@ -12,6 +10,7 @@
 #include "corda/media/yuv420.hpp"
 #include "support/decode_video.hpp"
 #include "support/failure.hpp"
+#include "support/file_size_limit.hpp"
 #include "video_support.hpp"
 
 namespace corda::media {
@@ -357,14 +356,10 @@ TEST_F(Video, ALinkAtThePlaceOfThePartIsNotFollowed) {
 
 TEST_F(Video, AFullDiskIsAnIoErrorAndKeepsThePart) {
     // A limit on the size of files stops the video as a full disk does.
-    const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-    rlimit old_limit{};
-    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &old_limit), 0);
-    const rlimit small{8192, old_limit.rlim_max};
-    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-    const test::Failure failure = failure_of([&] { make_video(file("a.mp4"), small_video(), 240); });
-    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &old_limit), 0);
-    std::signal(SIGXFSZ, old_handler);
+    const test::Failure failure = failure_of([&] {
+        const test::FileSizeLimit limit(8192);
+        make_video(file("a.mp4"), small_video(), 240);
+    });
     EXPECT_EQ(failure.code, ExitCode::kIo);
     EXPECT_THAT(failure.message, HasSubstr("File too large"));
     EXPECT_THAT(failure.message, HasSubstr("ulimit"));
@@ -372,15 +367,12 @@ TEST_F(Video, AFullDiskIsAnIoErrorAndKeepsThePart) {
 }
 
 TEST_F(Video, AWriterThatFailedCanOnlyBeAbandoned) {
-    const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-    rlimit old_limit{};
-    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &old_limit), 0);
-    const rlimit small{8192, old_limit.rlim_max};
     auto writer = std::make_unique<VideoWriter>(file("a.mp4"), small_video(), VideoMetadata{});
-    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-    EXPECT_EQ(failure_of([&] { write_frames(*writer, 240); }).code, ExitCode::kIo);
-    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &old_limit), 0);
-    std::signal(SIGXFSZ, old_handler);
+    const test::Failure full = failure_of([&] {
+        const test::FileSizeLimit limit(8192);
+        write_frames(*writer, 240);
+    });
+    EXPECT_EQ(full.code, ExitCode::kIo);
     const std::int64_t whole = writer->frames();
     EXPECT_EQ(whole % writer->frames_per_chunk(), 0);
     EXPECT_GT(whole, 0);
