@@ -18,7 +18,7 @@ template <class Section>
 using MakeSection = std::function<Section(std::int64_t first, std::int64_t end, const InOrder<Section>& all)>;
 
 /// Makes something of sections of the frames on the threads of `def`, and takes it in order on this one.
-/// `new_maker` is called on each thread. Throws what they throw, and corda::Error (kInterrupted).
+/// `new_maker` is called as InOrder does. Throws what they throw, and corda::Error (kInterrupted).
 template <class Section>
 void for_each_section(const AnimationDef& def, const OnProgress& on_progress,
                       const std::function<MakeSection<Section>()>& new_maker,
@@ -47,7 +47,7 @@ void for_each_frame(const AnimationDef& def, const OnProgress& on_progress,
                     const std::function<void(const Frame&)>& take) {
     using Section = std::vector<Frame>;
     const auto new_maker = [&] {
-        const auto pictures = std::make_shared<ExactPictures>(def.part_path);
+        const auto pictures = std::make_shared<ExactPictures>(def.part_path, def.bytes);
         return [pictures, &make](std::int64_t first, std::int64_t end, const InOrder<Section>& all) {
             Section section;
             for (std::int64_t k = first; k < end && !all.is_stopped(); ++k) {

@@ -25,7 +25,8 @@ PixelRect difference(const Image& a, const Image& b) {
 
 }  // namespace
 
-ExactPictures::ExactPictures(std::string part_path) : part_path_(std::move(part_path)), reader_(part_path_) {}
+ExactPictures::ExactPictures(std::string part_path, std::uint64_t bytes)
+    : part_path_(std::move(part_path)), reader_(part_path_, bytes) {}
 
 void ExactPictures::read(Image& picture) {
     if (!reader_.read(picture))

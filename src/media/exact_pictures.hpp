@@ -21,8 +21,8 @@ struct PictureChange {
 /// The exact pictures of a part, one after the other, and what each of them changes.
 class ExactPictures {
   public:
-    /// Throws corda::Error (kIo), like all below.
-    explicit ExactPictures(std::string part_path);
+    /// Reads the first `bytes` of a part. Throws corda::Error (kIo), like all below.
+    ExactPictures(std::string part_path, std::uint64_t bytes);
 
     /// Goes on to picture `k`, which must come after the current one.
     void go_to(std::int64_t k);

@@ -32,8 +32,8 @@ std::string listed(const std::vector<std::string>& lines) {
 void remux(const PartIndex& index, const std::string& part_path, const Ending& ending,
            const OnProgress& on_progress, OutputFile& output) {
     const PartInput input = open_part(part_path, index.bytes);
-    TrackOutput track(output.descriptor(), output.temporary_path());
-    track.begin(ending.muxer, TrackLayout::kFinal, *input.stream->codecpar,
+    TrackOutput track(output.descriptor(), output.temporary_path(), TrackLayout::kFinal);
+    track.begin(ending.muxer, *input.stream->codecpar,
                 {.fps = index.fps,
                  .title = metadata_entry(*input.format, "title"),
                  .comment = finished_comment(metadata_entry(*input.format, "comment"), index.frame_of.size()),
@@ -109,7 +109,8 @@ RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOpt
             return still_done(0, 0);
         };
         const int threads = animation_threads(def.jobs, open_part(part.path(), index.bytes));
-        write_animation(ending, {part.path(), result.frames, index.fps, threads}, encoded, output);
+        write_animation(ending, {part.path(), index.bytes, result.frames, index.fps, threads}, encoded,
+                        output);
     } else {
         remux(index, part.path(), ending, still_done, output);
     }

@@ -14,17 +14,16 @@ namespace corda::media {
 /// What became of a part file.
 struct RemuxResult {
     std::int64_t frames = 0;  ///< frames in the finished video
-    bool truncated =
-        false;  ///< the part ended in the middle of a fragment, or is damaged: the rest was left out
+    bool truncated = false;   ///< the part breaks off in a chunk, or is damaged: what follows was left out
 };
 
-/// Makes the part file of an ended run (see VideoWriter) the finished video `path`: copies its whole
-/// fragments, without encoding them again, into a file with its index in front, or makes an animation of its
-/// pictures, verifies that, gives it its name, and removes the part. Throws corda::Error: kIo if a file
-/// cannot be read or written, or if `path` exists and is not to be replaced; kUsage if the ending of `path`
-/// is not that of what the part holds; kMismatch if the part holds no whole fragment, has no constant frame
-/// rate, or gives a video that fails its check; kInterrupted if `options.on_progress` asks to stop. Then the
-/// part stays.
+/// Makes the part file of an ended run (see VideoWriter) the finished video `path`: copies its chunks up to
+/// the first one that is not whole or whose checksum is wrong, without encoding them again, into a file with
+/// its index in front, or makes an animation of its pictures, verifies that, gives it its name, and removes
+/// the part. Throws corda::Error: kIo if a file cannot be read or written, or if `path` exists and is not to
+/// be replaced; kUsage if the ending of `path` is not that of what the part holds; kMismatch if the part
+/// holds no whole chunk, has no constant frame rate, or gives a video that fails its check; kInterrupted if
+/// `options.on_progress` asks to stop. Then the part stays.
 RemuxResult recover_part(const std::string& part_path, const std::string& path,
                          const OutputOptions& options = {});
 

@@ -7,6 +7,7 @@ extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
 #include <libavutil/buffer.h>
+#include <libavutil/crc.h>
 #include <libavutil/dict.h>
 #include <libavutil/error.h>
 #include <libavutil/frame.h>
@@ -85,10 +86,10 @@ class Options {
 /// Throws like fail_libav if `status` is negative; returns it otherwise.
 int check_libav(int status, ExitCode code, const std::string& what, std::string_view hint = {});
 
-/// Returns `handle` or throws corda::Error (kInternal) if libav had no memory for `what`.
+/// Returns `handle` or throws corda::Error (kTemporary) if libav had no memory for `what`.
 template <typename Handle>
 Handle check_allocated(Handle handle, const char* what) {
-    if (!handle) fail_libav(ExitCode::kInternal, std::string("cannot make ") + what, AVERROR(ENOMEM));
+    if (!handle) fail_libav(ExitCode::kTemporary, std::string("cannot make ") + what, AVERROR(ENOMEM));
     return handle;
 }
 
@@ -131,6 +132,10 @@ class LogCapture {
 /// The path as a URL of libav's file protocol, so that "a:b.mp4" or "-" are files too.
 [[nodiscard]] inline std::string file_url(const std::string& path) {
     return "file:" + path;
+}
+/// The same of its first bytes: libav gives up on a file that ends in the middle of a fragment's header.
+[[nodiscard]] inline std::string file_url(const std::string& path, std::uint64_t bytes) {
+    return "subfile,,start,0,end," + std::to_string(bytes) + ",,:" + file_url(path);
 }
 
 [[nodiscard]] inline AVRational to_libav(Rational value) {

@@ -162,7 +162,6 @@ Mp4Boxes read_mp4_boxes(const std::string& path) {
                 boxes);
         }
         offset += header->size;
-        if (header->type != "moof") boxes.whole_bytes = offset;
     }
     boxes.whole = boxes.is_mp4 && offset == file_size;
     return boxes;

@@ -18,8 +18,6 @@ struct Mp4Boxes {
     bool is_quicktime = false;  ///< its brand is QuickTime's: a .mov
     bool whole = false;         ///< every top-level box ends within the file
     std::uint64_t file_bytes = 0;
-    /// End of the last whole box that is of use without the next one, which a moof is not.
-    std::uint64_t whole_bytes = 0;
     bool has_index = false;    ///< a moov box was found and could be read
     bool fragmented = false;   ///< moof boxes, or a moov that announces them
     bool index_first = false;  ///< moov comes before mdat

@@ -51,7 +51,7 @@ bool is_marked_as_alpha(const AVStream& stream) {
     return entry != nullptr && std::string_view(entry->value) == "1";
 }
 
-OpenVideo open_video(const std::string& path) {
+OpenVideo open_video(const std::string& path, std::optional<std::uint64_t> bytes) {
     const LogCapture log;
     OpenVideo file;
     AVFormatContext* format = nullptr;
@@ -59,18 +59,20 @@ OpenVideo open_video(const std::string& path) {
     const AVInputFormat* demuxer = kind.empty() ? nullptr : av_find_input_format(kind.c_str());
     if (demuxer == nullptr)
         throw Error(ExitCode::kIo, fmt::format("'{}' is no video of a kind that is known", path));
-    check_libav(avformat_open_input(&format, file_url(path).c_str(), demuxer, nullptr), ExitCode::kIo,
-                "the file does not open");
+    const std::string url = bytes ? file_url(path, *bytes) : file_url(path);
+    check_libav(avformat_open_input(&format, url.c_str(), demuxer, nullptr), ExitCode::kIo,
+                fmt::format("'{}' does not open", path));
     file.format.reset(format);
     const AVCodec* codec = nullptr;
-    const int index = check_libav(av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, &codec, 0),
-                                  ExitCode::kIo, "there is no video track that can be decoded");
+    const int index =
+        check_libav(av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, &codec, 0), ExitCode::kIo,
+                    fmt::format("'{}' has no video track that can be decoded", path));
     file.stream = format->streams[index];
     codec = with_alpha(*file.stream, codec);
     int status = open_decoder(file, codec, kDecoderThreads);
     // The system starts no further thread; one is enough.
     if (status == AVERROR(EAGAIN)) status = open_decoder(file, codec, 1);
-    check_libav(status, ExitCode::kIo, "the decoder does not open");
+    check_libav(status, ExitCode::kIo, fmt::format("the decoder of '{}' does not open", path));
     return file;
 }
 

@@ -1,6 +1,7 @@
 #include "corda/media/part_reader.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -10,21 +11,19 @@
 #include "corda/core/image.hpp"
 #include "corda/media/checked.hpp"
 #include "corda/media/file_kind.hpp"
-#include "corda/media/mp4_boxes.hpp"
+#include "corda/media/part_checksum.hpp"
 #include "corda/media/video_comment.hpp"
 
 namespace corda::media {
 
-// Only the first bytes: libav gives up on a file that ends in the middle of a fragment's header.
 PartInput open_part(const std::string& path, std::uint64_t bytes) {
     PartInput input;
     AVFormatContext* format = nullptr;
     const std::string kind = file_kind(path);
     input.is_matroska = kind == "matroska";
     const AVInputFormat* demuxer = av_find_input_format(input.is_matroska ? "matroska" : "mov");
-    const std::string url = fmt::format("subfile,,start,0,end,{},,:{}", bytes, file_url(path));
-    check_libav(avformat_open_input(&format, url.c_str(), demuxer, nullptr), ExitCode::kMismatch,
-                fmt::format("cannot read '{}' as a video", path),
+    check_libav(avformat_open_input(&format, file_url(path, bytes).c_str(), demuxer, nullptr),
+                ExitCode::kMismatch, fmt::format("cannot read '{}' as a video", path),
                 "it holds no picture that can be recovered");
     input.format.reset(format);
     const int index = av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
@@ -128,12 +127,21 @@ Rational rate_of(const std::string& path, const PartInput& input, std::int64_t p
     return Rational::reduced(input.stream->time_base.den, *duration);
 }
 
+/// The length of the beginning of a part that is whole and unchanged.
+std::uint64_t sound_bytes(const std::string& path, const OnProgress& on_progress) {
+    const std::uint64_t bytes = sound_part_bytes(path, on_progress);
+    if (bytes > 0) return bytes;
+    throw EmptyPart(ExitCode::kMismatch,
+                    fmt::format("'{}' holds no whole chunk of a video that corda wrote, so no frame can be "
+                                "recovered; render it again (--force)",
+                                path));
+}
+
 }  // namespace
 
 PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
-    const Mp4Boxes boxes = read_mp4_boxes(path);
     PartIndex index;
-    index.bytes = boxes.is_mp4 ? boxes.whole_bytes : boxes.file_bytes;
+    index.bytes = sound_bytes(path, on_progress);
     const PartInput input = open_part(path, index.bytes);
     const Packet packet = check_allocated(Packet(av_packet_alloc()), "a packet");
     std::vector<std::int64_t> stamps;
@@ -150,23 +158,26 @@ PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
         av_packet_unref(packet.get());
     }
     if (stamps.empty()) {
-        throw EmptyPart(ExitCode::kMismatch,
-                        fmt::format("'{}' holds no whole fragment, so no frame can be recovered", path));
+        throw Error(ExitCode::kMismatch, fmt::format("'{}' holds no picture that can be recovered", path));
     }
     std::int64_t step = 0;
     index.fps = rate_of(path, input, packet_duration, stamps, step);
     if (index.fps.den > std::numeric_limits<int>::max()) fail_rate(path);  // more than libav can count
     number_frames(stamps, step, index);
-    index.truncated =
-        index.bytes < boxes.file_bytes || is_broken || is_damaged || index.frame_of.size() < stamps.size();
+    std::error_code ignored;
+    index.truncated = index.bytes < std::filesystem::file_size(path, ignored) || is_broken || is_damaged ||
+                      index.frame_of.size() < stamps.size();
     return index;
 }
 
-std::string part_comment(const std::string& path) {
+std::optional<std::string> part_comment(const std::string& path) {
     const LogCapture log;
-    const Mp4Boxes boxes = read_mp4_boxes(path);
-    return metadata_entry(*open_part(path, boxes.is_mp4 ? boxes.whole_bytes : boxes.file_bytes).format,
-                          "comment");
+    if (const std::uint64_t bytes = sound_part_bytes(path); bytes > 0)
+        return metadata_entry(*open_part(path, bytes).format, "comment");
+    if (const std::string kind = file_kind(path); kind == "mov" || kind == "matroska") return std::nullopt;
+    throw Error(ExitCode::kUsage, fmt::format("'{}' is no part of a video, so --resume cannot go on with it; "
+                                              "render to another name, or start anew (--force)",
+                                              path));
 }
 
 void PacketCopy::copy_to(std::size_t end, TrackOutput& output, const OnProgress& on_progress) {

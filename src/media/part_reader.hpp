@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,18 +25,17 @@ struct PartIndex {
     std::vector<std::int64_t> frame_of;
     std::int64_t reorder_depth = 0;  ///< how many frames decoding must run ahead of showing
     AVCodecID codec = AV_CODEC_ID_NONE;
-    std::uint64_t bytes = 0;  ///< length of the beginning that is whole
-    bool truncated = false;
+    std::uint64_t bytes = 0;  ///< length of the beginning whose checksums are right
+    bool truncated = false;   ///< there is more in the file
 };
 
-/// A part without a whole fragment: nothing of it can be used.
+/// A part without a whole chunk: nothing of it can be used.
 class EmptyPart : public Error {
   public:
     using Error::Error;
 };
 
-/// Opens the first `bytes` of a part, which are whole. Throws corda::Error (kMismatch) if there is no video
-/// in them.
+/// Opens the first `bytes` of a part. Throws corda::Error (kMismatch) if there is no video in them.
 [[nodiscard]] PartInput open_part(const std::string& path, std::uint64_t bytes);
 
 /// Reads all packets of a part. Throws EmptyPart (kMismatch), or corda::Error: kMismatch if it has no
@@ -45,8 +45,9 @@ class EmptyPart : public Error {
 /// What the part says of itself: "title" or "comment"; empty if it does not.
 [[nodiscard]] std::string metadata_entry(const AVFormatContext& format, const char* key);
 
-/// The comment of a part. Throws as open_part.
-[[nodiscard]] std::string part_comment(const std::string& path);
+/// The comment of a part; none if no chunk of it is whole. Throws as open_part, and corda::Error (kUsage) if
+/// the file is none.
+[[nodiscard]] std::optional<std::string> part_comment(const std::string& path);
 
 /// Copies packets of a part, from the first one, into a track, with time stamps made anew from frame numbers.
 class PacketCopy {

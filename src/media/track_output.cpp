@@ -17,22 +17,10 @@ constexpr ExitCode kIo = ExitCode::kIo;
 // delay_moov writes the header together with the first fragment, when it is known how far decoding runs
 // ahead; without it the part file would start two frames late. Before the first fragment there is no picture
 // to play anyway.
-constexpr const char* kFragmentFlags = "frag_keyframe+empty_moov+default_base_moof+delay_moov";
+constexpr const char* kFragmentFlags = "frag_keyframe+empty_moov+default_base_moof+delay_moov+skip_trailer";
 constexpr const char* kFaststartFlags = "faststart";
 
 constexpr int kBufferBytes = 1 << 16;
-
-int write_bytes(void* descriptor, std::uint8_t* bytes, int count) {
-    const std::string_view data(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(count));
-    const int status = write_all(*static_cast<const int*>(descriptor), data);
-    return status == 0 ? count : AVERROR(status);
-}
-
-std::int64_t seek(void* descriptor, std::int64_t offset, int whence) {
-    if (whence == AVSEEK_SIZE) return AVERROR(ENOSYS);
-    const off_t position = ::lseek(*static_cast<const int*>(descriptor), offset, whence & ~AVSEEK_FORCE);
-    return position < 0 ? AVERROR(errno) : position;
-}
 
 void set(AVDictionary*& dictionary, const char* key, const std::string& value) {
     check_libav(av_dict_set(&dictionary, key, value.c_str(), 0), kIo, key);
@@ -61,16 +49,33 @@ void set_options(std::string_view container, TrackLayout layout, Rational fps, O
 
 }  // namespace
 
-TrackOutput::TrackOutput(int descriptor, std::string path) : descriptor_(descriptor), path_(std::move(path)) {
+int TrackOutput::write_bytes(void* output, std::uint8_t* bytes, int count) {
+    TrackOutput& track = *static_cast<TrackOutput*>(output);
+    const std::string_view data(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(count));
+    const int status = write_all(track.descriptor_, data);
+    if (status != 0) return AVERROR(status);
+    if (track.layout_ == TrackLayout::kPart) track.checksum_.add(data);
+    return count;
+}
+
+std::int64_t TrackOutput::seek(void* output, std::int64_t offset, int whence) {
+    if (whence == AVSEEK_SIZE) return AVERROR(ENOSYS);
+    const int descriptor = static_cast<const TrackOutput*>(output)->descriptor_;
+    const off_t position = ::lseek(descriptor, offset, whence & ~AVSEEK_FORCE);
+    return position < 0 ? AVERROR(errno) : position;
+}
+
+TrackOutput::TrackOutput(int descriptor, std::string path, TrackLayout layout)
+    : descriptor_(descriptor), path_(std::move(path)), layout_(layout) {
     auto* buffer = static_cast<unsigned char*>(av_malloc(kBufferBytes));
-    if (buffer != nullptr) {
-        io_.reset(avio_alloc_context(buffer, kBufferBytes, 1, &descriptor_, nullptr, &write_bytes, &seek));
-    }
+    // What a part has stays as it is: a muxer that can seek would change its header at the end.
+    auto* const can_seek = layout == TrackLayout::kPart ? nullptr : &seek;
+    if (buffer != nullptr)
+        io_.reset(avio_alloc_context(buffer, kBufferBytes, 1, this, nullptr, &write_bytes, can_seek));
     io_ = check_allocated(std::move(io_), "an output buffer");
 }
 
-void TrackOutput::begin(const char* container, TrackLayout layout, const AVCodecParameters& parameters,
-                        const TrackInfo& info) {
+void TrackOutput::begin(const char* container, const AVCodecParameters& parameters, const TrackInfo& info) {
     assert(!begun_);
     const LogCapture log;
     AVFormatContext* format = nullptr;
@@ -94,7 +99,7 @@ void TrackOutput::begin(const char* container, TrackLayout layout, const AVCodec
     stream->avg_frame_rate = to_libav(info.fps);
 
     Options options;
-    set_options(container, layout, info.fps, options);
+    set_options(container, layout_, info.fps, options);
     check_libav(avformat_write_header(format_.get(), options.get()), kIo,
                 fmt::format("cannot write the header of '{}'", path_));
     if (const std::string name = options.left_over(); !name.empty()) {
@@ -124,8 +129,7 @@ void TrackOutput::flush() {
     // The first flush of an MP4 with delay_moov writes the moov box alone, the second one the frames.
     for (int i = 0; i < 2; ++i)
         check_libav(av_write_frame(format_.get(), nullptr), kIo, fmt::format("cannot write to '{}'", path_));
-    avio_flush(io_.get());
-    check_libav(io_->error, kIo, fmt::format("cannot write to '{}'", path_));
+    end_bytes(fmt::format("cannot write to '{}'", path_));
 }
 
 void TrackOutput::finish() {
@@ -133,7 +137,18 @@ void TrackOutput::finish() {
     const LogCapture log;
     const std::string what = fmt::format("cannot finish '{}'", path_);
     check_libav(av_write_trailer(format_.get()), kIo, what);
+    end_bytes(what);
+}
+
+void TrackOutput::end_bytes(const std::string& what) {
     avio_flush(io_.get());
+    check_libav(io_->error, kIo, what);
+    if (layout_ == TrackLayout::kFinal || !checksum_.is_due()) return;
+    const std::string element = checksum_.element(format_->oformat->name);
+    avio_write(io_.get(), reinterpret_cast<const unsigned char*>(element.data()),
+               static_cast<int>(element.size()));
+    avio_flush(io_.get());
+    checksum_ = {};
     check_libav(io_->error, kIo, what);
 }
 

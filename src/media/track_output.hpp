@@ -4,12 +4,13 @@
 
 #include "corda/core/rational.hpp"
 #include "corda/media/libav_handles.hpp"
+#include "corda/media/part_checksum.hpp"
 
 namespace corda::media {
 
 /// How a file is laid out.
 enum class TrackLayout {
-    kPart,   ///< every chunk is complete in itself: the file plays while it grows
+    kPart,   ///< every chunk is complete in itself, and has a checksum: the file plays while it grows
     kFinal,  ///< one index, ahead of the pictures
 };
 
@@ -26,16 +27,14 @@ struct TrackInfo {
 class TrackOutput {
   public:
     /// `descriptor` is open for writing and stays open; `path` is where kFinal reads the file again.
-    TrackOutput(int descriptor, std::string path);
+    TrackOutput(int descriptor, std::string path, TrackLayout layout);
     TrackOutput(const TrackOutput&) = delete;
     TrackOutput& operator=(const TrackOutput&) = delete;
+    ~TrackOutput() = default;
 
     /// Writes the header; call it once, before any packet. `container` is libav's name of the muxer. Throws
     /// corda::Error (kIo), like all below.
-    void begin(const char* container, TrackLayout layout, const AVCodecParameters& parameters,
-               const TrackInfo& info);
-
-    [[nodiscard]] bool begun() const { return begun_; }
+    void begin(const char* container, const AVCodecParameters& parameters, const TrackInfo& info);
 
     /// Writes a packet (pts and dts in frames, duration 1), which is empty afterwards.
     void write(AVPacket& packet);
@@ -47,9 +46,16 @@ class TrackOutput {
     void finish();
 
   private:
+    static int write_bytes(void* output, std::uint8_t* bytes, int count);
+    static std::int64_t seek(void* output, std::int64_t offset, int whence);
+    /// Writes what is buffered, and in a part a checksum of what there is behind the last one.
+    void end_bytes(const std::string& what);
+
     QuietLog quiet_;
     int descriptor_;
     std::string path_;
+    TrackLayout layout_;
+    PartChecksum checksum_;
     IoContext io_;         // writes to descriptor_
     OutputFormat format_;  // refers to io_
     AVRational frame_base_{};

@@ -93,9 +93,10 @@ struct VideoReader::Impl {
     }
 };
 
-VideoReader::VideoReader(const std::string& path) : impl_(std::make_unique<Impl>()) {
+VideoReader::VideoReader(const std::string& path, std::optional<std::uint64_t> bytes)
+    : impl_(std::make_unique<Impl>()) {
     impl_->path = path;
-    impl_->file = open_video(path);
+    impl_->file = open_video(path, bytes);
     impl_->packet = check_allocated(Packet(av_packet_alloc()), "a packet");
     impl_->frame = check_allocated(Frame(av_frame_alloc()), "a frame");
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,9 @@ struct StoredPicture {
 /// Reads the pictures of a video in the order in which a player shows them.
 class VideoReader {
   public:
-    /// Throws corda::Error (kIo) if the file is not a video that can be decoded.
-    explicit VideoReader(const std::string& path);
+    /// Reads a file, or its first `bytes`. Throws corda::Error (kIo) if it is not a video that can be
+    /// decoded.
+    explicit VideoReader(const std::string& path, std::optional<std::uint64_t> bytes = {});
     VideoReader(const VideoReader&) = delete;
     VideoReader& operator=(const VideoReader&) = delete;
     ~VideoReader();

@@ -76,7 +76,7 @@ class PartSink : public VideoSink {
 
     [[nodiscard]] std::int64_t resumed_frames() const override { return resumed_; }
     void begin(const AVCodecParameters& parameters, const TrackInfo& info) override {
-        track_.begin(format_.ending->part_muxer, TrackLayout::kPart, parameters, info);
+        track_.begin(format_.ending->part_muxer, parameters, info);
     }
     void write(AVPacket& packet) override {
         telling_what_is_kept("the frames before are", [&] {
@@ -109,7 +109,7 @@ class PartSink : public VideoSink {
           path_(path),
           options_(options),
           part_(std::move(part)),
-          track_(part_.descriptor(), part_.path()) {}
+          track_(part_.descriptor(), part_path(path), TrackLayout::kPart) {}
 
     /// Adds to a failure to write where the frames are that were written before it.
     template <class Work>

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <thread>
 
 #include <fmt/format.h>
@@ -54,7 +55,9 @@ void check_part(const std::string& path, const std::map<std::string, std::string
                 "recover), or start anew (--force)",
                 part, problem));
     };
-    const std::map<std::string, std::string> its = media::told_origin(media::part_comment(part));
+    const std::optional<std::string> comment = media::part_comment(part);
+    if (!comment) return;  // nothing to go on with, and nothing to lose
+    const std::map<std::string, std::string> its = media::told_origin(*comment);
     if (its.empty()) fail("does not tell what it was rendered from");
     if (const std::string difference = first_difference(origin, its); !difference.empty())
         fail("is of another render: " + difference);

@@ -203,7 +203,7 @@ TEST_P(EveryFormat, APartWhosePictureHasNoSizeIsRefused) {
     if (part.find("stsd") == std::string::npos) return;  // Matroska has another place for it
     ASSERT_NE(at, std::string::npos);
     part.replace(at, 4, std::string(4, '\0'));
-    test::write_file(file("b") + ".part", part);
+    test::write_file(file("b") + ".part", with_checksums(part));
     const test::Failure failure = test::failure_of([&] { recover_part(file("b") + ".part", file("b")); });
     EXPECT_EQ(failure.code, ExitCode::kMismatch) << failure.message;
 }
@@ -333,23 +333,6 @@ TEST_F(Video, APartOfAnotherKindIsRefusedNamingWhatItHolds) {
         test::failure_of([&] { static_cast<void>(recover_part(part_path(file("a.mp4")), file("a.webm"))); });
     EXPECT_EQ(failure.code, ExitCode::kUsage);
     EXPECT_THAT(failure.message, testing::HasSubstr("holds h264"));
-}
-
-TEST_F(Video, EveryPartPlaysUpToItsLastWholeChunk) {
-    for (const char* const ending : {".webm", ".mkv", ".mov", ".gif"}) {
-        const std::string path = file(std::string("a") + ending);
-        {
-            VideoWriter writer(path, small_video({50, 1}), {});
-            write_frames(writer, 65);  // more than one chunk
-            writer.abandon();
-        }
-        const std::string whole = test::read_file(part_path(path));
-        test::write_file(part_path(path), whole.substr(0, whole.size() * 97 / 100));
-        const RemuxResult result = recover_part(part_path(path), path);
-        EXPECT_GE(result.frames, 50) << path;
-        EXPECT_LT(result.frames, 65) << path;
-        EXPECT_TRUE(verify(path).ok()) << path;
-    }
 }
 
 }  // namespace

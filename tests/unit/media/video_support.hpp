@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
+#include "corda/media/part_checksum.hpp"
 #include "corda/media/verify.hpp"
 #include "corda/media/video_writer.hpp"
 #include "support/command.hpp"
@@ -96,6 +98,22 @@ inline void abandon_video(const std::string& path, const VideoDef& def, std::int
 inline constexpr std::array<std::uint64_t, 3> kDamagedStamps{0x7000'0000'0000'0000, 0x4000'0000'0000'0000,
                                                              0x1000'0000'0000'0100};
 
+/// The part file with checksums that are right again.
+inline std::string with_checksums(std::string part) {
+    constexpr std::string_view kMark =
+        "\xc3"
+        "corda checksum\n";
+    std::size_t from = 0;
+    for (std::size_t at = part.find(kMark); at != std::string::npos; at = part.find(kMark, from)) {
+        PartChecksum checksum;
+        checksum.add(std::string_view(part).substr(from, at - from));
+        const std::string record = checksum.record();
+        part.replace(at, record.size(), record);
+        from = at + record.size();
+    }
+    return part;
+}
+
 /// How many fragments say when their decoding starts.
 inline int decode_times_in(const std::string& part) {
     int count = 0;
@@ -109,7 +127,7 @@ inline std::string with_decode_time(std::string part, int fragment, std::uint64_
     for (int i = 0; i < fragment; ++i) at = part.find("tfdt", at + 4);
     EXPECT_EQ(part[at + 4], 1) << "the decode time is not 64 bits wide";
     for (std::size_t i = 0; i < 8; ++i) part[at + 8 + i] = static_cast<char>(ticks >> (56 - 8 * i));
-    return part;
+    return with_checksums(part);
 }
 
 inline std::string all_problems(const VerifyReport& report) {

@@ -1,0 +1,85 @@
+#include "corda/media/part_checksum.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "corda/core/file.hpp"
+#include "corda/media/libav_handles.hpp"
+
+namespace corda::media {
+namespace {
+
+constexpr std::string_view kMark =
+    "\xc3"
+    "corda checksum\n";  // of 16 bytes that occur nowhere else
+constexpr std::size_t kLengthBytes = 8;
+constexpr std::size_t kSumBytes = 4;
+constexpr std::size_t kRecordBytes = kMark.size() + kLengthBytes + kSumBytes;
+
+/// A number, its largest byte first.
+std::string big_endian(std::uint64_t value, std::size_t bytes) {
+    std::string text(bytes, '\0');
+    for (std::size_t i = 0; i < bytes; ++i)
+        text[i] = static_cast<char>(value >> (8 * (bytes - 1 - i)) & 0xff);
+    return text;
+}
+
+/// What stands before a record: the head of a free box (ISO/IEC 14496-12, 8.1.2), or of a Void element (RFC
+/// 8794, 11.3.2).
+std::string head_of(std::string_view container) {
+    if (container == "mp4" || container == "mov") return big_endian(kRecordBytes + 8, 4) + "free";
+    return {static_cast<char>(0xec), static_cast<char>(0x80U | kRecordBytes)};
+}
+
+}  // namespace
+
+void PartChecksum::add(std::string_view bytes) {
+    crc_ = av_crc(av_crc_get_table(AV_CRC_32_IEEE_LE), crc_,
+                  reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+    bytes_ += bytes.size();
+}
+
+std::string PartChecksum::record() const {
+    return std::string(kMark) + big_endian(bytes_, kLengthBytes) + big_endian(crc_, kSumBytes);
+}
+
+std::string PartChecksum::element(std::string_view container) {
+    const std::string head = head_of(container);
+    add(head);
+    std::string bytes = head + record();
+    *this = {};
+    return bytes;
+}
+
+std::uint64_t sound_part_bytes(const std::string& path, const OnProgress& on_progress) {
+    const FileHandle file = open_for_reading(path);
+    std::array<char, 1 << 16> block{};
+    std::string ahead;  // what was read and not counted
+    std::uint64_t counted = 0;
+    std::uint64_t sound = 0;
+    PartChecksum checksum;
+    const auto count = [&](std::size_t bytes) {
+        checksum.add(std::string_view(ahead).substr(0, bytes));
+        ahead.erase(0, bytes);
+        counted += bytes;
+    };
+    for (;;) {
+        const std::size_t at = ahead.find(kMark);
+        if (at != std::string::npos && at + kRecordBytes <= ahead.size()) {
+            count(at);
+            if (checksum.record() != ahead.substr(0, kRecordBytes)) return sound;
+            ahead.erase(0, kRecordBytes);
+            counted += kRecordBytes;
+            sound = counted;
+            checksum = {};
+            continue;
+        }
+        count(ahead.size() - std::min(ahead.size(), kRecordBytes - 1));  // the rest may begin a record
+        report_progress(on_progress, 0, 0);
+        const std::size_t read = std::fread(block.data(), 1, block.size(), file.get());
+        if (read == 0) return sound;
+        ahead.append(block.data(), read);
+    }
+}
+
+}  // namespace corda::media
