@@ -26,8 +26,9 @@ class InOrder {
     /// Makes the thing of a number, on the thread that made the maker; `all` tells whether to stop.
     using Make = std::function<Thing(std::int64_t number, const InOrder& all)>;
 
-    /// Begins to make things first <= i < end. Every thread calls `new_maker` once. Throws corda::Error
-    /// (kTemporary) if the system starts no thread.
+    /// Begins to make things first <= i < end. A thread calls `new_maker` before the first thing that it
+    /// makes, and again before the next one if it threw. Throws corda::Error (kTemporary) if the system
+    /// starts no thread.
     InOrder(std::int64_t first, std::int64_t end, int threads, std::function<Make()> new_maker)
         : new_maker_(std::move(new_maker)), end_(end), ahead_(2 * threads), next_(first), taken_(first) {
         try {

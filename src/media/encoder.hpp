@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -30,9 +29,6 @@ class Encoder {
 
     /// Ends the stream; the remaining packets go to `sink`. Throws corda::Error (kEncoder).
     virtual void drain(const PacketSink& sink) = 0;
-
-    /// Frames encoded so far.
-    [[nodiscard]] virtual std::int64_t frames() const = 0;
 
     /// What a muxer needs to know about the stream.
     [[nodiscard]] virtual const AVCodecParameters& parameters() const = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 
 #include "corda/media/encoder.hpp"
@@ -23,7 +24,6 @@ class LibavEncoder : public Encoder {
 
     void encode(const Image& frame, const Damage& damage, const PacketSink& sink) override;
     void drain(const PacketSink& sink) override;
-    [[nodiscard]] std::int64_t frames() const override { return frames_; }
     [[nodiscard]] const AVCodecParameters& parameters() const override { return *parameters_; }
 
   private:
@@ -32,7 +32,7 @@ class LibavEncoder : public Encoder {
     QuietLog quiet_;
     Convert convert_;
     // The current picture. libav shares it by reference count. It is written only while nobody else holds it,
-    // so it is copied only if the encoder keeps its frames (x264 does not).
+    // so it is copied only if the encoder keeps its frames.
     Frame frame_;
     CodecContext context_;
     CodecParameters parameters_;

@@ -34,7 +34,6 @@ class PictureEncoder : public Encoder {
     }
 
     void drain(const PacketSink& /*sink*/) override {}
-    [[nodiscard]] std::int64_t frames() const override { return frames_; }
     [[nodiscard]] const AVCodecParameters& parameters() const override { return *parameters_; }
 
   private:

@@ -163,7 +163,6 @@ class X264Encoder : public Encoder {
         while (x264_encoder_delayed_frames(x264_.get()) > 0) encode(nullptr, sink);
     }
 
-    [[nodiscard]] std::int64_t frames() const override { return frames_; }
     [[nodiscard]] const AVCodecParameters& parameters() const override { return *parameters_; }
 
   private:

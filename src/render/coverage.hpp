@@ -44,12 +44,6 @@ namespace corda::render {
     return static_cast<std::uint32_t>(coverage * 255.0F + 0.5F);
 }
 
-/// Coverage by a capsule without its halo of the pixel with centre (center_x, center_y).
-[[nodiscard]] inline std::uint32_t capsule_coverage(const view::Capsule& capsule, float center_x,
-                                                    float center_y) {
-    return coverage_within(capsule.radius, segment_distance_px(capsule, center_x, center_y));
-}
-
 /// v / 255, rounded to the nearest integer, for 0 <= v <= 255 * 255.
 [[nodiscard]] inline std::uint32_t over_255(std::uint32_t v) {
     const std::uint32_t t = v + 128;

@@ -17,9 +17,7 @@ class Exposure {
   public:
     Exposure(int width, int height);
 
-    /// How many pictures were added since the last mean.
-    [[nodiscard]] std::uint32_t pictures() const { return pictures_; }
-    /// Forgets them.
+    /// Forgets the pictures that were added since the last mean.
     void clear();
     /// Adds a picture, colours times alpha, that is the ground but in some tiles: Tiles::touched().
     void add(const Image& picture, const std::vector<std::uint8_t>& touched, const Ground& ground);
@@ -31,7 +29,7 @@ class Exposure {
   private:
     int width_;
     int height_;
-    std::uint32_t pictures_ = 0;
+    std::uint32_t pictures_ = 0;         ///< added since the last mean
     std::vector<std::uint8_t> touched_;  ///< per tile
     /// Of each tile that has been touched: where its sums are, and of how many pictures.
     struct Sum {

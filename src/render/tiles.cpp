@@ -6,6 +6,14 @@
 #include "corda/view/capsule.hpp"
 
 namespace corda::render {
+namespace {
+
+/// How many tiles are side by side, or one above the other.
+int tiles_along(int side_px) {
+    return (side_px + Tiles::kSidePx - 1) / Tiles::kSidePx;
+}
+
+}  // namespace
 
 template <class Visit>
 void Tiles::for_each_tile(const view::Capsule& capsule, const view::DrawList& list,
@@ -32,7 +40,7 @@ void Tiles::for_each_tile(const view::Capsule& capsule, const view::DrawList& li
 }
 
 void Tiles::plan(const view::DrawList& list) {
-    columns_ = (list.width + kSidePx - 1) / kSidePx;
+    columns_ = tiles_along(list.width);
     last_layer_.assign(tile_count(list.width, list.height), 0);
     tiles_ = 0;
     runs_.clear();
@@ -82,13 +90,12 @@ void Tiles::add_runs(const view::DrawList& list, Color color) {
 }
 
 std::size_t tile_count(int width, int height) {
-    constexpr int kSidePx = Tiles::kSidePx;
-    return static_cast<std::size_t>((width + kSidePx - 1) / kSidePx) * ((height + kSidePx - 1) / kSidePx);
+    return static_cast<std::size_t>(tiles_along(width)) * tiles_along(height);
 }
 
 PixelRect tile_rect(std::size_t index, int width, int height) {
     constexpr int kSidePx = Tiles::kSidePx;
-    const int columns = (width + kSidePx - 1) / kSidePx;
+    const int columns = tiles_along(width);
     const int x0 = static_cast<int>(index) % columns * kSidePx;
     const int y0 = static_cast<int>(index) / columns * kSidePx;
     return {x0, y0, std::min(x0 + kSidePx, width), std::min(y0 + kSidePx, height)};
@@ -96,7 +103,7 @@ PixelRect tile_rect(std::size_t index, int width, int height) {
 
 void mark_tiles(const PixelRect& box, int frame_width, std::vector<std::uint8_t>& tiles) {
     constexpr int kSidePx = Tiles::kSidePx;
-    const int columns = (frame_width + kSidePx - 1) / kSidePx;
+    const int columns = tiles_along(frame_width);
     for (int row = box.y0 / kSidePx; row * kSidePx < box.y1; ++row)
         for (int column = box.x0 / kSidePx; column * kSidePx < box.x1; ++column)
             tiles[static_cast<std::size_t>(row) * columns + column] = 1;
@@ -104,7 +111,7 @@ void mark_tiles(const PixelRect& box, int frame_width, std::vector<std::uint8_t>
 
 std::vector<PixelRect> rects_of(const std::vector<std::uint8_t>& tiles, int width, int height) {
     constexpr int kSidePx = Tiles::kSidePx;
-    const int columns = (width + kSidePx - 1) / kSidePx;
+    const int columns = tiles_along(width);
     std::vector<PixelRect> rects;
     for (int y = 0; y < height; y += kSidePx) {
         const std::uint8_t* row = &tiles[static_cast<std::size_t>(y / kSidePx) * columns];

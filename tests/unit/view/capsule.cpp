@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "corda/render/coverage.hpp"
@@ -11,7 +12,10 @@
 namespace corda::view {
 namespace {
 
-using render::capsule_coverage;
+/// Coverage by a capsule without its halo of the pixel with centre (center_x, center_y).
+std::uint32_t capsule_coverage(const Capsule& capsule, float center_x, float center_y) {
+    return render::coverage_within(capsule.radius, render::segment_distance_px(capsule, center_x, center_y));
+}
 
 TEST(Capsule, EndsAreSnappedToA1024thOfAPixel) {
     const auto capsule = make_capsule({10.3, 20.7}, {10.3, 40.7}, 2.0, 100, 100);
