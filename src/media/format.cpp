@@ -159,6 +159,7 @@ std::string even_sides(int side) {
 
 void check_size_for(const Format& format, const VideoDef& def) {
     const Codec& codec = *format.codec;
+    const Ending& ending = *format.ending;
     const bool is_odd = def.width_px % 2 != 0 || def.height_px % 2 != 0;
     if (is_odd && descriptor_of(format.pixel_format).log2_chroma_w == 1) {
         fail_usage(
@@ -166,8 +167,17 @@ void check_size_for(const Format& format, const VideoDef& def) {
             def.width_px, def.height_px, codec.standard, even_sides(def.width_px), even_sides(def.height_px));
     }
     if (std::min(def.width_px, def.height_px) < codec.least_side_px) {
-        fail_usage("video size {}x{} is too small for {}; use sides of {} or more, or another codec",
-                   def.width_px, def.height_px, codec.name, codec.least_side_px);
+        fail_usage("video size {}x{} is too small for {}; use sides of {} or more, or another {}",
+                   def.width_px, def.height_px, codec.name, codec.least_side_px,
+                   names_of(ending).size() > 1 ? "codec" : "format");
+    }
+    if (def.height_px > codec.most_height_px) {
+        fail_usage("video size {}x{} is too tall for {}; use a height of {} or less, or another codec",
+                   def.width_px, def.height_px, codec.name, codec.most_height_px);
+    }
+    if (std::max(def.width_px, def.height_px) > ending.most_side_px) {
+        fail_usage("video size {}x{} is too large for {}; use sides of {} or less, or another format",
+                   def.width_px, def.height_px, ending.words, ending.most_side_px);
     }
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "corda/core/image.hpp"
 #include "corda/media/defs.hpp"
 
 namespace corda::media {
@@ -43,6 +44,7 @@ struct Codec {
     bool is_hardware = false;  ///< it may be listed and not work
     EncoderOrigin origin = EncoderOrigin::kLibav;
     EncoderSettings (*settings)(const Format& format, const VideoDef& def) = nullptr;  ///< of libav's
+    int most_height_px = kLargestSidePx;
 };
 
 /// How the packets of a video become files.
@@ -63,6 +65,7 @@ struct Ending {
     /// libav's names of the codecs that it takes, the default first; of an animation, what its part holds.
     std::array<const char*, 5> codecs;
     const char* players;  ///< who shows it
+    int most_side_px = kLargestSidePx;
 };
 
 /// How many times all frames are gone through: those of an animation are drawn, and encoded afterwards.

@@ -17,6 +17,12 @@ constexpr std::span<const char* const> kSpeedsTo8{kSpeeds.data(), 9};
 constexpr int kFewFrames = 12;
 /// Of FFV1, whose encoder clears 148 bytes per pixel when it opens.
 constexpr int kFfv1Frames = 36;
+/// It cuts a picture into two by two slices.
+constexpr int kLeastFfv1SidePx = 2;
+/// What SVT-AV1 itself allows; AV1 allows more.
+constexpr int kLargestSvtAv1HeightPx = 8704;
+/// A side has 14 bits.
+constexpr int kLargestWebpSidePx = (1 << 14) - 1;
 
 constexpr std::array kCodecs{
     Codec{"libx264",
@@ -56,7 +62,8 @@ constexpr std::array kCodecs{
           0,
           false,
           EncoderOrigin::kLibav,
-          &svt_av1_settings},
+          &svt_av1_settings,
+          kLargestSvtAv1HeightPx},
     Codec{"libaom-av1",
           "av1",
           "AV1",
@@ -117,7 +124,7 @@ constexpr std::array kCodecs{
           "",
           {},
           0,
-          1,
+          kLeastFfv1SidePx,
           kFfv1Frames,
           false,
           EncoderOrigin::kLibav,
@@ -176,7 +183,7 @@ constexpr std::array kEndings{
     Ending{".mkv", "Matroska", FileKind::kVideo, "matroska", "matroska", {"ffv1"}, "VLC, mpv, ffmpeg"},
     Ending{".gif", "GIF", FileKind::kAnimation, "gif", "mov", {"qtrle"}, "everything; PowerPoint"},
     Ending{".apng", "APNG", FileKind::kAnimation, "apng", "mov", {"qtrle"}, "browsers"},
-    Ending{".webp", "WebP", FileKind::kAnimation, "webp", "mov", {"qtrle"}, "browsers"},
+    Ending{".webp", "WebP", FileKind::kAnimation, "webp", "mov", {"qtrle"}, "browsers", kLargestWebpSidePx},
     Ending{"%04d.png", "PNG pictures", FileKind::kPictures, "", "", {"png"}, "everything, as pictures"},
     Ending{"-", "YUV4MPEG2", FileKind::kStream, "", "", {"rawvideo"}, "ffmpeg and other encoders"},
 };

@@ -185,5 +185,29 @@ TEST(VideoDefs, OddSizesAreRefusedNamingTheEvenOnes) {
     EXPECT_EQ(failure_of([&] { static_cast<void>(find_format("a.mov", def)); }).code, ExitCode::kOk);
 }
 
+TEST(VideoDefs, SizesThatAFormatCannotHaveAreRefusedNamingItsLimit) {
+    const auto refusal = [](const char* path, int width_px, int height_px, const char* codec = "") {
+        VideoDef def;
+        def.width_px = width_px;
+        def.height_px = height_px;
+        def.fps = FrameRate({25, 1});
+        def.encoder.codec = codec;
+        return failure_of([&] { static_cast<void>(find_format(path, def)); }).message;
+    };
+    for (const auto& [width_px, height_px] : {std::pair{1, 1}, {1, 2}, {2, 1}, {16, 1}}) {
+        EXPECT_THAT(refusal("a.mkv", width_px, height_px), HasSubstr("use sides of 2 or more, or another"));
+        for (const char* const path : {"a.mov", "a.gif", "a.apng", "a.webp", "%04d.png"})
+            EXPECT_EQ(refusal(path, width_px, height_px), "") << path;
+    }
+    EXPECT_EQ(refusal("a.mkv", 2, 2), "");
+    EXPECT_THAT(refusal("a.webp", 16384, 2), HasSubstr("too large for WebP; use sides of 16383 or less"));
+    EXPECT_THAT(refusal("a.webp", 2, 16384), HasSubstr("too large for WebP; use sides of 16383 or less"));
+    EXPECT_EQ(refusal("a.webp", 16383, 2), "");
+    EXPECT_EQ(refusal("a.gif", 16384, 2), "");
+    EXPECT_THAT(refusal("a.mp4", 64, 8706, "libsvtav1"), HasSubstr("use a height of 8704 or less"));
+    EXPECT_EQ(refusal("a.mp4", 16384, 64, "libsvtav1"), "");
+    EXPECT_EQ(refusal("a.mp4", 64, 16384, "libaom-av1"), "");
+}
+
 }  // namespace
 }  // namespace corda::media
