@@ -119,16 +119,25 @@ int jobs_that_fit(int wanted, std::uint64_t bytes) {
 void check_memory(const media::Format& format, const VideoDef& video) {
     const std::uint64_t bytes = media::bytes_per_job(format, video);
     if (jobs_that_fit(1, bytes) == 1) return;
+    const bool can_be_faster =
+        format.codec->origin == media::EncoderOrigin::kX264 && format.preset_of(video.encoder) != "ultrafast";
+    const char* const faster = can_be_faster ? "a faster preset (--preset ultrafast), " : "";
     throw Error(
         ExitCode::kTemporary,
         fmt::format(
             "{} of {}x{} pixels takes some {:.1f} GiB of memory, and {:.1f} are free; choose a smaller "
-            "size, a faster preset (--preset ultrafast), or a machine with more",
+            "size, {}or a machine with more",
             format.words(), video.width_px, video.height_px, static_cast<double>(bytes) / kGib,
-            static_cast<double>(available_memory_bytes().value_or(0)) / kGib));
+            static_cast<double>(available_memory_bytes().value_or(0)) / kGib, faster));
 }
 
-/// Draws and encodes frames first <= k < end; counts the empty ones.
+/// Counts an empty frame.
+void note_empty(double time_s, Rendered& result) {
+    if (result.empty_frames++ == 0) result.first_empty_s = time_s;
+}
+
+/// Draws and encodes frames first <= k < end, but for those that the writer has; counts the empty ones of
+/// all.
 void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProgress& on_progress,
                   media::VideoWriter& writer, Rendered& result) {
     const VideoDef& video = film.scene().video;
