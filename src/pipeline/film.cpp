@@ -9,6 +9,7 @@
 #include "corda/core/clock.hpp"
 #include "corda/pipeline/curves.hpp"
 #include "corda/pipeline/describe.hpp"
+#include "corda/pipeline/methods.hpp"
 #include "corda/pipeline/motion.hpp"
 #include "corda/pipeline/painter.hpp"
 #include "corda/pipeline/stage.hpp"
@@ -20,31 +21,6 @@
 
 namespace corda {
 namespace {
-
-sim::NamedMethods named_methods(const Scene& scene) {
-    sim::NamedMethods named;
-    for (const SolverDef& solver : solvers_of(scene)) {
-        named.push_back(std::visit(
-            [](const auto& def) -> std::optional<MethodDef> {
-                if constexpr (std::is_same_v<std::decay_t<decltype(def)>, AutoDef>)
-                    return std::nullopt;
-                else
-                    return def;
-            },
-            solver));
-    }
-    return named;
-}
-
-/// The methods, if all of them are named; none otherwise.
-std::vector<MethodDef> if_all_named(const sim::NamedMethods& named) {
-    std::vector<MethodDef> methods;
-    for (const auto& method : named) {
-        if (!method) return {};
-        methods.push_back(*method);
-    }
-    return methods;
-}
 
 /// More capsules of several poses are refused: they would take hundreds of megabytes, and nobody could tell
 /// them apart.
@@ -75,7 +51,7 @@ struct pipeline::Brush {
 
 /// What films of one motion share.
 struct Film::Run {
-    explicit Run(const Scene& scene) : system(system_of(scene)), named(named_methods(scene)) {}
+    explicit Run(const Scene& scene) : system(system_of(scene)), named(pipeline::named_methods(scene)) {}
 
     System system;
     sim::NamedMethods named;
@@ -95,7 +71,7 @@ struct Film::Impl {
           brush(scene, system, def),
           curves(scene, system),
           motion(run->motion.emplace(
-              system, scene.world, if_all_named(run->named), timeline(), def.motion_budget_bytes,
+              system, scene.world, pipeline::if_all_named(run->named), timeline(), def.motion_budget_bytes,
               def.on_progress, quantity_of(scene.style.color_by), def.readings.with(curves.readings()))),
           plan(run->plan) {
         if (motion.methods().empty()) {
