@@ -31,7 +31,8 @@ struct FilmDef {
     bool require_gpu = false;  ///< refuse an OpenGL that runs on the CPU
     Readings readings;         ///< what its states have besides positions
     /// Called with the frames done so far, in every pass of the simulation, and again during frames that take
-    /// long; returning false ends what is being asked for by kInterrupted. It can be asked for again.
+    /// long; returning false ends what is being asked for by kInterrupted. It can be asked for again. It may
+    /// ask the film for what is simulated already; for more it gets kUsage.
     OnProgress on_progress;
 };
 

@@ -235,6 +235,27 @@ TEST(FilmProgress, CanStopTheSimulation) {
     EXPECT_EQ(code_of([&] { static_cast<void>(film_of(kRope, def)); }), ExitCode::kInterrupted);
 }
 
+TEST(FilmProgress, CanAskForWhatIsSimulated) {
+    const std::string scene = kRope + "[solver]\nmethod = \"relaxation\"\n";
+    const Film whole = film_of(scene);
+    const Film* asked = nullptr;
+    std::int64_t frame = 0;
+    FilmDef def;
+    def.on_progress = [&](std::int64_t, std::int64_t) {
+        if (asked != nullptr) static_cast<void>(asked->state(frame));
+        return true;
+    };
+    const Film film = film_of(scene, def);
+    static_cast<void>(film.state(3));
+    asked = &film;
+    frame = 29;
+    EXPECT_EQ(code_of([&] { static_cast<void>(film.camera()); }), ExitCode::kUsage);
+    frame = 2;
+    static_cast<void>(film.camera());
+    asked = nullptr;
+    expect_same_bits(film.state(29), whole.state(29));
+}
+
 TEST(FilmRefusal, NamesTheFileTheProblemAndWhatToChange) {
     try {
         static_cast<void>(
@@ -426,61 +447,6 @@ TEST(Renderer, DrawsAFilmsPositionsAsTheFilmDoes) {
     EXPECT_TRUE(equal_images(renderer.draw(positions_m), film.frame(20)));
     positions_m.pop_back();
     EXPECT_EQ(code_of([&] { static_cast<void>(renderer.draw(positions_m)); }), ExitCode::kUsage);
-}
-
-Scene coloured(ColorBy by, const std::string& solver = {}) {
-    Scene scene = parse_scene(
-        "schema = 1\n[world]\nduration = 1.0\n[[rope]]\nhang = { links = 6, length = 1.0, angle_deg = 70.0 "
-        "}\n"
-        "payload = 3.0\n[video]\nsize = [160, 120]\nfps = 30\n" +
-            solver,
-        "coloured.toml");
-    scene.style.color_by = by;
-    return scene;
-}
-
-TEST(Colours, AreTheSameBeyondTheMemoryBudget) {
-    for (const ColorBy by : {ColorBy::kTension, ColorBy::kSpeed, ColorBy::kStrain}) {
-        const Film film(coloured(by));
-        FilmDef small;
-        small.motion_budget_bytes = 2000;  // some states
-        const Film again(coloured(by), small);
-        for (const double time_s : {0.9, 0.31, 0.0})
-            EXPECT_TRUE(test::equal_images(film.still(time_s), again.still(time_s))) << time_s;
-    }
-}
-
-TEST(Colours, AskForNoMoreThanTheyNeed) {
-    EXPECT_TRUE(Film(coloured(ColorBy::kBody)).state(3).vx_m_s.empty());
-    EXPECT_TRUE(Film(coloured(ColorBy::kStrain)).state(3).tension_n.empty());
-    const Film film(coloured(ColorBy::kTension));
-    EXPECT_EQ(film.state(3).tension_n.size(), 6U);
-    EXPECT_TRUE(film.state(3).vx_m_s.empty());
-    EXPECT_EQ(Film(coloured(ColorBy::kSpeed)).state(3).vx_m_s.size(), 7U);
-}
-
-TEST(Colours, DoNotChangeTheMotion) {
-    const Film plain(coloured(ColorBy::kBody));
-    const Film film(coloured(ColorBy::kTension));
-    EXPECT_EQ(film.state(20).x_m, plain.state(20).x_m);
-    static_cast<void>(film.still(0.5));
-    EXPECT_EQ(film.simulation_passes(), plain.simulation_passes());
-}
-
-TEST(Colours, OfTensionsThatNoMethodKnowsAreRefused) {
-    // Imaginary bars that share the load in any way.
-    const Scene scene = parse_scene(
-        "schema = 1\n[[net]]\ngrid = { columns = 4, rows = 3, spacing = 0.2 }\n[style]\ncolor_by = "
-        "\"tension\"\n",
-        "stiff.toml");
-    const auto failure = test::failure_of([&] { static_cast<void>(Film(scene)); });
-    EXPECT_EQ(failure.code, ExitCode::kInvalidScene);
-    EXPECT_NE(failure.message.find("stiff.toml: "), std::string::npos) << failure.message;
-    EXPECT_NE(failure.message.find("set style.color_by"), std::string::npos) << failure.message;
-}
-
-TEST(Colours, OfAQuantityAreNotForPositionsAlone) {
-    EXPECT_EQ(test::code_of([] { Renderer{coloured(ColorBy::kSpeed)}; }), ExitCode::kInvalidScene);
 }
 
 }  // namespace
