@@ -212,7 +212,7 @@ VideoWriter VideoWriter::resume(std::string path, const VideoDef& def, VideoMeta
         std::make_unique<Impl>(std::move(path), def, std::move(metadata), options, first, end, true));
 }
 
-void VideoWriter::write(const Image& frame, const Damage& damage) {
+void VideoWriter::write(const Image& frame, const Damage& damage, bool is_last) {
     Impl& impl = *impl_;
     impl.check_goes_on();
     if (frame.width() != impl.def.width_px || frame.height() != impl.def.height_px) {
@@ -221,9 +221,9 @@ void VideoWriter::write(const Image& frame, const Damage& damage) {
                                 frame.height(), impl.def.width_px, impl.def.height_px));
     }
     if (!impl.encoder) impl.encoder = std::make_unique<ChunkEncoder>(impl.chunk_encoder(impl.next_frame()));
-    const bool is_last = (impl.next_frame() + 1) % frames_per_chunk() == 0;
-    impl.encoder->encode(frame, damage, is_last);
-    if (is_last) impl.end_chunk();
+    const bool ends_chunk = is_last || (impl.next_frame() + 1) % frames_per_chunk() == 0;
+    impl.encoder->encode(frame, damage, ends_chunk);
+    if (ends_chunk) impl.end_chunk();
 }
 
 void VideoWriter::append(Chunk chunk) {

@@ -25,8 +25,7 @@ Format check_video_output(const std::string& path, const VideoDef& def, const st
 struct VideoMetadata {
     std::string title{};
     /// Compact JSON that `verify` reads back; VideoWriter adds "frames", "fps", "crf" and "patches" to it
-    /// (see verify.hpp). What it tells under
-    /// kOriginKey (see video_comment.hpp) stays in the part.
+    /// (see verify.hpp). What it tells under kOriginKey (see video_comment.hpp) stays in the part.
     std::string comment_json = "{}";
     bool is_transparent = false;  ///< whether pictures may be; a format that has alpha keeps it then
     PictureInfo picture_info{};   ///< of formats of a file for each frame
@@ -60,9 +59,10 @@ class VideoWriter {
     ~VideoWriter();
 
     /// Adds the next frame, of the size of `def`. `damage` is what may differ from the previous frame (the
-    /// first is taken whole). Throws kEncoder or kIo; ReaderLeft (see video_sink.hpp) if whoever reads
-    /// standard output closed it. After a failure only abandon() is of use.
-    void write(const Image& frame, const Damage& damage);
+    /// first is taken whole); of one that is the last, the colours are checked as those of the first. Throws
+    /// kEncoder or kIo; ReaderLeft (see video_sink.hpp) if whoever reads standard output closed it. After a
+    /// failure only abandon() is of use.
+    void write(const Image& frame, const Damage& damage, bool is_last = false);
 
     /// Adds a chunk that was encoded elsewhere, and forces it onto the disk. All of the frames so far are in
     /// chunks then, each of which ends where frames_per_chunk() says. Throws kIo, and kInternal if it is no

@@ -254,8 +254,11 @@ struct Film::Impl {
                              on_progress);
     }
 
-    /// The end of the motion: that of the scene, or of the last recorded state if it diverges.
-    double last_s() const {
+    /// The end of the motion: that of the scene, or of the last recorded state if it diverges, which is only
+    /// known once it has been simulated.
+    double last_s() {
+        const std::lock_guard lock(run->reading);
+        motion.run_to_end(def.on_progress);
         const std::size_t states = motion.recording().size();
         return motion.diverges() && states > 0 ? motion.timeline().time_s(states - 1)
                                                : scene.world.duration_s;

@@ -77,6 +77,7 @@ class ChunkMaker {
 };
 
 void add(Made made, media::VideoWriter& writer, Rendered& result) {
+    if (made.chunk.frames == 0) return;  // it was not drawn to its end, and is not the next one
     if (made.empty_frames > 0 && result.empty_frames == 0) result.first_empty_s = made.first_empty_s;
     result.empty_frames += made.empty_frames;
     writer.append(std::move(made.chunk));

@@ -279,6 +279,17 @@ TEST_F(Video, HasEveryChunkOnTheDiskOnceItIsWhole) {
     }
 }
 
+TEST_F(Video, EndsAChunkWithItsLastFrame) {
+    VideoWriter writer(file("a.mp4"), small_video(), {});
+    write_frames(writer, 7);
+    EXPECT_EQ(test::read_file(file("a.mp4.part")), "");
+    writer.write(frame_image(7), {bob(6), bob(7)}, true);
+    std::filesystem::copy_file(file("a.mp4.part"), file("copy.part"));
+    EXPECT_EQ(recover_part(file("copy.part"), file("copy.mp4")).frames, 8);
+    writer.finish();
+    EXPECT_TRUE(test::read_file(file("a.mp4")) == test::read_file(file("copy.mp4")));
+}
+
 TEST_F(Video, AnExistingFileIsReplacedOnlyWithForce) {
     test::write_file(file("a.mp4"), "precious");
     const test::Failure failure = failure_of([&] { VideoWriter(file("a.mp4"), small_video(), {}); });

@@ -13,6 +13,7 @@
 namespace corda {
 namespace {
 
+using test::code_of;
 using test::failure_of;
 using testing::AllOf;
 using testing::ElementsAre;
@@ -214,6 +215,28 @@ TEST_F(RenderVideo, KeepsTheFramesBeforeADivergence) {
     EXPECT_EQ(failure.code, ExitCode::kDiverged);
     EXPECT_THAT(failure.message, HasSubstr(file("a.mp4.part")));
     EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.part"));
+}
+
+TEST_F(RenderVideo, KeepsTheSameFramesBeforeADivergenceWithAnyJobs) {
+    std::vector<std::string> parts;
+    for (const int jobs : {1, 2}) {
+        for (const double shutter : {0.0, 0.5}) {
+            Scene scene = parse_scene(kVideoRope, "film.toml");
+            scene.world.duration_s = 4.0;  // two chunks
+            scene.video.encoder.jobs = jobs;
+            scene.video.shutter = shutter;
+            scene.camera = {Vec2{0.0, 0.0}, 3.0};
+            scene.style.supports = false;  // so that the camera needs no motion
+            scene.solver = RelaxationDef{.force_n = Vec2{1e300, 0.0}};
+            Film diverging(scene);
+            RenderDef def;
+            def.force = true;
+            EXPECT_EQ(code_of([&] { render_video(diverging, file("a.mp4"), def); }), ExitCode::kDiverged);
+            parts.push_back(test::read_file(file("a.mp4.part")));
+        }
+    }
+    EXPECT_TRUE(parts[0] == parts[2]);
+    EXPECT_TRUE(parts[1] == parts[3]);
 }
 
 TEST_F(RenderVideo, HasTheSameBytesWhateverItsCallbackDraws) {
