@@ -284,6 +284,21 @@ struct Film::Impl {
         return by.stage.develop(picture, *caption, map);
     }
 
+    /// Whether the frame at a time would show nothing.
+    bool is_empty(double time_s) {
+        const view::Camera map = brush.stage.map_of(find_camera());
+        const auto shows_nothing_at = [&](double at_s) {
+            const State& state = read(at_s, brush);
+            return brush.stage.would_show_nothing(state, map, {brush.tracks.to(state), time_s});
+        };
+        const VideoDef& video = scene.video;
+        if (video.shutter == 0.0) return shows_nothing_at(time_s);
+        const double end_s = last_s();
+        for (int i = 0; i < video.subframes; ++i)
+            if (!shows_nothing_at(subframe_s(time_s, video.shutter, end_s, i))) return false;
+        return true;
+    }
+
     /// Whether frames before `end` can be drawn in any order without being simulated again.
     bool holds(std::int64_t end) {
         const VideoDef& video = scene.video;
@@ -462,6 +477,10 @@ void FilmPainter::keep(const Film& film, std::span<const double> times_s) {
     for (const double time_s : times_s) film.impl_->require_time(time_s);
     const std::lock_guard lock(film.impl_->run->reading);
     film.impl_->motion.keep(times_s, film.impl_->def.on_progress);
+}
+
+bool FilmPainter::is_empty(const Film& film, double time_s) {
+    return film.impl_->is_empty(time_s);
 }
 
 const Image& FilmPainter::image() const {

@@ -141,24 +141,28 @@ void note_empty(double time_s, Rendered& result) {
 void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProgress& on_progress,
                   media::VideoWriter& writer, Rendered& result) {
     const VideoDef& video = film.scene().video;
-    const int wanted = jobs_of(video, writer.frames_per_chunk(), end - first);
-    const int jobs = jobs_that_fit(wanted, media::bytes_per_job(writer.format(), video));
-    result.is_short_of_memory = jobs < wanted;
-    if (jobs > 1 && FilmPainter::can_draw_apart(film, end)) {
-        result.jobs = jobs;
-        pipeline::render_chunks(film, first, end, jobs, on_progress, writer, result);
-        return;
+    std::int64_t k = first;
+    for (; k < first + writer.frames(); ++k) {
+        report_progress(on_progress, writer.frames(), end - first);
+        if (FilmPainter::is_empty(film, film.time_s(k))) note_empty(film.time_s(k), result);
     }
+    const int wanted = jobs_of(video, writer.frames_per_chunk(), end - k);
+    if (wanted > 1 && FilmPainter::can_draw_apart(film, end)) {
+        const int jobs = jobs_that_fit(wanted, media::bytes_per_job(writer.format(), video));
+        result.is_short_of_memory = jobs < wanted;
+        result.jobs = std::max(1, jobs);
+    }
+    if (result.jobs > 1)
+        return pipeline::render_chunks(film, first, end, result.jobs, on_progress, writer, result);
     FilmPainter painter(film);
-    std::int64_t k = first + writer.frames();
     const OnProgress ask = [&](std::int64_t, std::int64_t) {
         return !on_progress || on_progress(k - first, end - first);
     };
     for (; k < end; ++k) {
         report_progress(on_progress, k - first, end - first);
         const Damage damage = painter.draw(film.time_s(k), ask);
-        if (film.shows_nothing() && result.empty_frames++ == 0) result.first_empty_s = film.time_s(k);
-        writer.write(painter.image(), damage);
+        if (film.shows_nothing()) note_empty(film.time_s(k), result);
+        writer.write(painter.image(), damage, k + 1 == end);
     }
     report_progress(on_progress, end - first, end - first);
 }

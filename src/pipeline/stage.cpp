@@ -98,10 +98,19 @@ void Stage::open(Needs needs) {
 
 Damage Stage::draw(const State& state, const view::Camera& map, const view::Caption& caption,
                    const Traces& traces, const OnProgress& on_progress) {
-    view_.draw(state, map, list_, traces.trails);
-    draw_curves(traces.plotted_s, list_);
+    list(state, map, traces);
     annotate(caption, map, list_);
     return paint(on_progress);
+}
+
+void Stage::list(const State& state, const view::Camera& map, const Traces& traces) {
+    view_.draw(state, map, list_, traces.trails);
+    draw_curves(traces.plotted_s, list_);
+}
+
+bool Stage::would_show_nothing(const State& state, const view::Camera& map, const Traces& traces) {
+    list(state, map, traces);
+    return list_.shows_nothing();
 }
 
 Damage Stage::draw(view::DrawList list, const OnProgress& on_progress) {
@@ -119,8 +128,7 @@ void Stage::expose(std::int64_t picture, const State& state, const view::Camera&
                    const OnProgress& on_progress) {
     canvas_->context.make_current();
     if (picture != pictures_) throw Overdrawn();
-    view_.draw(state, map, list_, traces.trails);
-    draw_curves(traces.plotted_s, list_);
+    list(state, map, traces);
     shows_nothing_ = list_.shows_nothing() && shows_nothing_;
     const OnProgress ask = asking(on_progress);
     report_progress(ask, 0, 1);

@@ -66,6 +66,8 @@ class Stage {
     /// Overdrawn, and corda::Error: kNoGl, kInterrupted. Requires a Use.
     Damage draw(const State& state, const view::Camera& map, const view::Caption& caption = {},
                 const Traces& traces = {}, const OnProgress& on_progress = {});
+    /// Whether a picture of a state would show nothing but the ground. Draws nothing.
+    [[nodiscard]] bool would_show_nothing(const State& state, const view::Camera& map, const Traces& traces);
     /// Begins the exposure of a picture, whatever became of the last one, and returns its number. Requires a
     /// Use.
     [[nodiscard]] std::int64_t begin_exposure();
@@ -101,6 +103,8 @@ class Stage {
     };
 
     void open(Needs needs);
+    /// Makes the list what a state shows, but for the overlay's words.
+    void list(const State& state, const view::Camera& map, const Traces& traces);
     /// Asks `on_progress` whether to go on with the picture that was begun last.
     [[nodiscard]] OnProgress asking(const OnProgress& on_progress);
     Damage paint(const OnProgress& on_progress);

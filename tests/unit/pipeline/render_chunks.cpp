@@ -110,6 +110,25 @@ TEST_F(RenderChunks, TellProgressInOrderAndEmptyFrames) {
     EXPECT_EQ(heard.back(), 130);
 }
 
+TEST_F(RenderChunks, TellTheEmptyFramesOfAPartToo) {
+    for (const char* const shutter : {"video.shutter=0", "video.shutter=0.5"}) {
+        Scene scene = chunked_scene(2, {"camera.center=[100,100]", "camera.height=1", shutter});
+        Film film(scene);
+        RenderDef def;
+        def.on_progress = [](std::int64_t done, std::int64_t) { return done < 70; };
+        const Rendered stopped = render_video(film, file("a.mp4"), def);
+        EXPECT_FALSE(stopped.complete);
+        EXPECT_EQ(stopped.empty_frames, stopped.frames);
+        def.on_progress = {};
+        def.resume = true;
+        const Rendered rendered = render_video(film, file("a.mp4"), def);
+        EXPECT_GE(rendered.resumed_frames, 30);
+        EXPECT_EQ(rendered.empty_frames, 130);
+        EXPECT_EQ(rendered.first_empty_s, 0.0);
+        std::filesystem::remove(file("a.mp4"));
+    }
+}
+
 TEST_F(RenderChunks, KeepTheFramesBeforeAStop) {
     Film film(chunked_scene(3));
     RenderDef def;
