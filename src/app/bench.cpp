@@ -83,6 +83,8 @@ void report_in_words(const Console& console, const VideoDef& video, const bench:
                     measured.peak_rss_mib, counted(measured.jobs, "chunk"), measured.encoder_rss_mib);
     if (measured.rss_per_job_mib)
         memory += fmt::format("; a further chunk adds {:.0f} MiB to it", *measured.rss_per_job_mib);
+    else if (measured.jobs > 1)
+        memory += "; a further chunk adds too little to it to tell";
     console.result(memory);
     std::string text = "  one thread, ms per frame (CPU):";
     for (const bench::Stage& stage : measured.stages)

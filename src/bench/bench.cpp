@@ -71,8 +71,8 @@ json render(const BenchDef& def, int jobs, const std::string& path) {
     RenderDef render;
     render.force = true;
     render.end = frames_of(def);
-    static_cast<void>(render_video(film, path, render));
-    return {{"wall_s", now_s() - start_s}, {"peak_rss_mib", memory_mib("VmHWM")}};
+    const Rendered rendered = render_video(film, path, render);
+    return {{"wall_s", now_s() - start_s}, {"peak_rss_mib", memory_mib("VmHWM")}, {"jobs", rendered.jobs}};
 }
 
 /// Draws the frames one after the other.
@@ -178,24 +178,27 @@ Measured measure(const BenchDef& def) {
     Measured measured;
     measured.frames = frames_of(def);
     measured.pictures = std::min(measured.frames, most_pictures(def.scene.video));
-    const int jobs = def.scene.video.encoder.jobs;
-    measured.jobs = jobs == 0 ? cores() : jobs;
     for (int i = 0; i < def.repeats; ++i) {
-        const json rendered = in_child(def.on_wait, [&] { return render(def, measured.jobs, path); });
+        const json rendered =
+            in_child(def.on_wait, [&] { return render(def, def.scene.video.encoder.jobs, path); });
         const json encoded = in_child(def.on_wait, [&] { return encode_alone(def); });
         const auto render_s = rendered["wall_s"].get<double>();
         const auto encoder_s = encoded["wall_s"].get<double>();
         measured.render_s.add(render_s);
         measured.encoder_s.add(encoder_s);
         measured.ratio.add(render_s / encoder_s);
-        measured.peak_rss_mib = std::max(measured.peak_rss_mib, rendered["peak_rss_mib"].get<double>());
+        if (const auto peak_mib = rendered["peak_rss_mib"].get<double>(); peak_mib > measured.peak_rss_mib) {
+            measured.peak_rss_mib = peak_mib;
+            measured.jobs = rendered["jobs"].get<int>();
+        }
         measured.encoder_rss_mib =
             std::max(measured.encoder_rss_mib, encoded["encoder_rss_mib"].get<double>());
     }
     if (measured.jobs > 1) {
         const json one = in_child(def.on_wait, [&] { return render(def, 1, path); });
         const double added_mib = measured.peak_rss_mib - one["peak_rss_mib"].get<double>();
-        measured.rss_per_job_mib = added_mib / (measured.jobs - 1) - measured.encoder_rss_mib;
+        const double per_job_mib = added_mib / (measured.jobs - 1) - measured.encoder_rss_mib;
+        if (per_job_mib > 0.0) measured.rss_per_job_mib = per_job_mib;
     }
     for (const json& stage : in_child(def.on_wait, [&] { return measure_stages(def, path); }))
         measured.stages.push_back(

@@ -33,14 +33,15 @@ struct Stage {
 /// What was measured of videos of one size and preset.
 struct Measured {
     std::int64_t frames = 0;
-    int jobs = 0;                  ///< chunks at a time
+    int jobs = 0;                  ///< chunks that were made at a time in the render of the peak
     report::Times render_s;        ///< from the scene to the verified file
     report::Times encoder_s;       ///< x264 alone, from memory, with a thread per core
     report::Times ratio;           ///< of each render to the encoder that ran after it
     std::int64_t pictures = 0;     ///< different ones that x264 alone encodes, there and back
     double peak_rss_mib = 0.0;     ///< of a render
     double encoder_rss_mib = 0.0;  ///< that one encoder of one thread takes
-    /// What each job beyond the first adds to the peak, less the encoder; empty for one job.
+    /// What each job beyond the first adds to the peak, less the encoder; empty for one job, and if it is
+    /// smaller than the noise of both.
     std::optional<double> rss_per_job_mib;
     std::vector<Stage> stages;
 };
