@@ -13,6 +13,12 @@
 namespace corda::scene {
 namespace {
 
+/// A whole number in words that can be read: in scientific notation from a million on.
+std::string about(double value) {
+    constexpr double kMostInFull = 1e6;
+    return value < kMostInFull ? fmt::format("{:.0f}", value) : fmt::format("{:.1e}", value);
+}
+
 struct Place {
     const TableReader* table;
     std::string_view key;
@@ -118,7 +124,10 @@ double trail_bytes(const Scene& scene) {
     constexpr double kMostPoints = 400.0;
     const double in_trail = scene.style.trail_s * scene.video.fps.per_second();
     const double stride = std::max(1.0, in_trail / kMostPoints);
-    const double points = scene.world.duration_s * scene.video.fps.per_second() / stride;
+    // A film of more frames is refused for its duration.
+    const double frames =
+        std::min(scene.world.duration_s * scene.video.fps.per_second(), static_cast<double>(Limits::kFrames));
+    const double points = frames / stride;
     return kPerPoint * points + kPerPointInPicture * std::min({in_trail, points, kMostPoints});
 }
 
@@ -168,10 +177,10 @@ std::string too_much_work(const Scene& scene, const Body& body, double frequency
     const double updates = steps * static_cast<double>(body.particle_count);
     if (updates <= Limits::kParticleUpdates) return {};
     return fmt::format(
-        "{} so fast that {:g} s take some {:g} steps, {:g} particle updates or {:.0f} hours, over the limit "
+        "{} so fast that {:g} s take some {:g} steps, {:g} particle updates or {} hours, over the limit "
         "of {:g}; give {} or a shorter duration",
-        what, scene.world.duration_s, steps, updates, updates / kUpdatesPerHour, Limits::kParticleUpdates,
-        remedy);
+        what, scene.world.duration_s, steps, updates, about(updates / kUpdatesPerHour),
+        Limits::kParticleUpdates, remedy);
 }
 
 void check_stiffness(const Sections& sections, const Scene& scene, const System& system) {
