@@ -32,12 +32,7 @@ struct BenchOptions {
     }
 
     [[nodiscard]] Scene scene_of(const std::vector<Setting>& own) const {
-        std::vector<Setting> settings;
-        if (scene.path.empty()) settings.emplace_back("world.duration=10");
-        settings.insert(settings.end(), scene.settings.begin(), scene.settings.end());
-        settings.insert(settings.end(), own.begin(), own.end());
-        return scene.path.empty() ? parse_scene(example_text("first"), "first.toml", settings)
-                                  : load_scene(scene.path, settings);
+        return scene.parse(own, example_text("first"), "first.toml");
     }
 };
 
@@ -200,6 +195,8 @@ void add_bench(CLI::App& app, Action& action) {
                       "compare presets, crf and codecs instead, at the first size: time, bytes and quality");
     options->gl.add_to(*command);
     command->callback([options, &action] {
+        std::vector<Setting>& settings = options->scene.settings;
+        if (options->scene.path.empty()) settings.insert(settings.begin(), "world.duration=10");
         action = [options](const Console& console) {
             return options->encodings ? measure_encodings(console, *options) : measure_all(console, *options);
         };

@@ -60,7 +60,7 @@ void add_help(CLI::App& app, Action& action);
 /// A scene file and what the command line puts in the place of its values.
 struct SceneOptions {
     std::string path;
-    std::vector<std::string> settings;
+    std::vector<Setting> settings;
 
     /// Whether a command can do without a scene.
     enum class Need { kRequired, kOptional };
@@ -78,12 +78,19 @@ struct SceneOptions {
     [[nodiscard]] bool is_from() const { return !from_.empty(); }
     /// What the file of `--from` carries, read once; warns if another version made it.
     [[nodiscard]] const Provenance& provenance(const Console& console) const;
+    /// Throws corda::Error as load_scene does, but with kUsage if the scene is valid without the options
+    /// other than --set: then the command line is wrong, not the scene.
     [[nodiscard]] Scene load(const Console& console) const;
+    /// Parses with `more` settings that options give; `text` and `name` stand for a scene if none is named.
+    [[nodiscard]] Scene parse(const std::vector<Setting>& more, std::string_view text,
+                              const std::string& name) const;
     /// The file that no output may replace.
     [[nodiscard]] const std::string& input() const { return is_from() ? from_ : path; }
 
   private:
     std::string from_;
+    std::vector<Setting> of_options_;          ///< those of `settings` that did not come from --set
+    mutable std::optional<std::string> text_;  ///< of the scene file, which may be a pipe
     mutable std::optional<Provenance> provenance_;
 };
 

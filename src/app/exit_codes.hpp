@@ -17,7 +17,7 @@ inline constexpr std::array<ExitCodeText, 13> kExitCodes{{
     {ExitCode::kOk, "success"},
     {ExitCode::kInternal, "internal error: a bug in corda"},
     {ExitCode::kUsage, "usage: unknown command, flag or value"},
-    {ExitCode::kInvalidScene, "invalid scene file, or option that sets one of its keys"},
+    {ExitCode::kInvalidScene, "invalid scene: its file, or what --set makes of it"},
     {ExitCode::kNoGl, "no usable OpenGL"},
     {ExitCode::kEncoder, "codec missing or encoder failed"},
     {ExitCode::kIo, "input/output error, disk full, or output exists (see --force)"},

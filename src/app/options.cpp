@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -9,9 +10,36 @@
 #include "corda/core/nearest.hpp"
 #include "corda/core/version.hpp"
 #include "corda/scene/keys.hpp"
+#include "corda/scene/read_file.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
+namespace {
+
+/// Loads a scene with settings. Those in `of_options` came from options such as --crf: if the scene is valid
+/// without them, the command line is wrong (kUsage), not the scene.
+Scene load_with(const std::vector<Setting>& settings, const std::vector<Setting>& of_options,
+                const std::function<Scene(const std::vector<Setting>&)>& load) {
+    try {
+        return load(settings);
+    } catch (const Error& error) {
+        if (error.code() != ExitCode::kInvalidScene || of_options.empty()) throw;
+        std::vector<Setting> others = settings;
+        std::erase_if(others, [&of_options](const Setting& setting) {
+            return std::find(of_options.begin(), of_options.end(), setting) != of_options.end();
+        });
+        const std::string problem = error.what();
+        try {
+            static_cast<void>(load(others));
+        } catch (const Error&) {
+            throw Error(ExitCode::kInvalidScene, problem);
+        }
+        throw Error(ExitCode::kUsage, problem);
+    }
+}
+
+}  // namespace
+
 std::string size_setting(const std::string& text) {
     const auto cross = text.find('x');
     const auto is_number = [](const std::string& part) {
@@ -57,7 +85,8 @@ CLI::Validator within(double low, double high) {
 }
 
 void SceneOptions::add_to(CLI::App& command, Need need) {
-    command.add_option("SCENE", path, "scene file (TOML)")->required(need == Need::kRequired);
+    command.add_option("SCENE", path, "scene file (TOML), or - for standard input")
+        ->required(need == Need::kRequired);
     // One value per flag: a value may have commas and brackets of its own.
     command.add_option("--set", settings, "override a key of the scene, e.g. rope[0].mass=2")
         ->type_name("KEY=VALUE")
@@ -90,7 +119,23 @@ const Provenance& SceneOptions::provenance(const Console& console) const {
 }
 
 Scene SceneOptions::load(const Console& console) const {
-    return is_from() ? scene_of(provenance(console), from_, settings) : load_scene(path, settings);
+    if (!is_from()) return parse({}, {}, {});
+    const Provenance& origin = provenance(console);
+    return load_with(settings, of_options_,
+                     [&](const std::vector<Setting>& some) { return scene_of(origin, from_, some); });
+}
+
+Scene SceneOptions::parse(const std::vector<Setting>& more, std::string_view text,
+                          const std::string& name) const {
+    if (!path.empty() && !text_) text_ = scene::read_file(path);
+    std::vector<Setting> all = settings;
+    all.insert(all.end(), more.begin(), more.end());
+    std::vector<Setting> of_options = of_options_;
+    of_options.insert(of_options.end(), more.begin(), more.end());
+    return load_with(all, of_options, [&](const std::vector<Setting>& some) {
+        return path.empty() ? parse_scene(text, name, some)
+                            : parse_scene(*text_, scene::source_name(path), some);
+    });
 }
 
 void SceneOptions::add_shortcut(CLI::App& command, const std::string& name, const std::string& key,
@@ -110,6 +155,7 @@ void SceneOptions::add_shortcut(CLI::App& command, const std::string& name, cons
                 // A word may look like a number.
                 const bool is_digits = value.find_first_not_of("0123456789") == std::string::npos;
                 settings.push_back(key + "=" + (is_word && is_digits ? "'" + value + "'" : value));
+                of_options_.push_back(settings.back());
             },
             help + " (--set " + key + ")")
         ->check(check);
@@ -118,7 +164,11 @@ void SceneOptions::add_shortcut(CLI::App& command, const std::string& name, cons
 void SceneOptions::add_size(CLI::App& command) {
     command
         .add_option_function<std::string>(
-            "--size", [this](const std::string& value) { settings.push_back(size_setting(value)); },
+            "--size",
+            [this](const std::string& value) {
+                settings.push_back(size_setting(value));
+                of_options_.push_back(settings.back());
+            },
             "picture size in pixels (--set video.size)")
         ->type_name("WxH");
 }

@@ -3,37 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <cstdio>
-#include <memory>
-#include <system_error>
 
 #include "corda/core/basics.hpp"
-#include "corda/scene/limits.hpp"
+#include "corda/scene/read_file.hpp"
 
 namespace corda::scene {
 namespace {
-
-struct CloseFile {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
-[[noreturn]] void fail_io(const std::string& path, int reason) {
-    if (reason == EINTR) {
-        throw Error(ExitCode::kInterrupted, fmt::format("{}: interrupted while waiting for the scene", path));
-    }
-    throw Error(ExitCode::kIo, fmt::format("{}: cannot read the scene file: {}; give the path of a TOML file",
-                                           path, std::generic_category().message(reason)));
-}
-
-void check_size(const std::string& source_name, std::size_t bytes) {
-    if (bytes <= static_cast<std::size_t>(Limits::kFileBytes)) return;
-    throw Error(
-        ExitCode::kInvalidScene,
-        fmt::format("{}: {} bytes or more are over the limit of {} bytes; a scene has fewer particles",
-                    source_name, bytes, Limits::kFileBytes));
-}
 
 /// The end of the string that opens at `begin`, past its closing quote or at the end of its line.
 std::size_t skip_string(std::string_view text, std::size_t begin) {
@@ -56,21 +31,6 @@ std::size_t skip_string(std::string_view text, std::size_t begin) {
 }
 
 }  // namespace
-
-std::string read_file(const std::string& path) {
-    const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
-    if (!file) fail_io(path, errno);
-    std::string text;
-    std::array<char, 65536> block{};
-    while (true) {
-        errno = 0;
-        const std::size_t count = std::fread(block.data(), 1, block.size(), file.get());
-        if (count == 0 && std::ferror(file.get()) != 0) fail_io(path, errno);
-        if (count == 0) return text;
-        text.append(block.data(), count);
-        check_size(path, text.size());
-    }
-}
 
 std::size_t find_deep_key(std::string_view text) {
     int dots = 0;
@@ -105,7 +65,7 @@ std::size_t find_deep_key(std::string_view text) {
 }
 
 toml::table parse_document(std::string_view text, const std::string& source_name) {
-    check_size(source_name, text.size());
+    check_file_bytes(source_name, text.size());
     const std::size_t deep = find_deep_key(text);
     if (deep != std::string_view::npos) {
         const auto line =

@@ -11,10 +11,6 @@ namespace corda::scene {
 /// part.
 inline constexpr int kKeyParts = 32;
 
-/// The bytes of a file or a pipe. Throws kIo with the system's reason, kInvalidScene if they are over
-/// Limits::kFileBytes.
-[[nodiscard]] std::string read_file(const std::string& path);
-
 /// Parses TOML text. Throws kInvalidScene with `source_name`:line:column and the parser's description.
 [[nodiscard]] toml::table parse_document(std::string_view text, const std::string& source_name);
 

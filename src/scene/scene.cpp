@@ -8,6 +8,7 @@
 #include "corda/scene/check_limits.hpp"
 #include "corda/scene/checker.hpp"
 #include "corda/scene/document.hpp"
+#include "corda/scene/read_file.hpp"
 #include "corda/scene/readers.hpp"
 #include "corda/scene/settings.hpp"
 
@@ -43,7 +44,7 @@ void read_bodies(const Sections& sections, const SceneSize& size, const SolverSe
 }  // namespace
 
 Scene load_scene(const std::string& path, const std::vector<Setting>& settings) {
-    return parse_scene(read_file(path), path, settings);
+    return parse_scene(read_file(path), source_name(path), settings);
 }
 
 Scene parse_scene(std::string_view toml, const std::string& source_name,

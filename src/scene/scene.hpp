@@ -66,9 +66,9 @@ struct Scene {
 /// TOML; one that is not TOML is taken as a string.
 using Setting = std::string;
 
-/// Reads a scene file, with `settings` in place of what it says. Throws corda::Error: kIo if the file cannot
-/// be read, kInvalidScene with all that is wrong in it, one problem per line, kUsage for a setting that is
-/// not key=value.
+/// Reads a scene file, or standard input for "-", with `settings` in place of what it says. Throws
+/// corda::Error: kIo if the file cannot be read, kInvalidScene with all that is wrong in it, one problem per
+/// line, kUsage for a setting that is not key=value.
 [[nodiscard]] Scene load_scene(const std::string& path, const std::vector<Setting>& settings = {});
 
 /// The same for TOML text; `source_name` stands in the messages in place of the path.

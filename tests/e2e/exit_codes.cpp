@@ -130,6 +130,28 @@ TEST_F(ExitCodes, TwoForANumberThatIsNone) {
     EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});
 }
 
+TEST_F(ExitCodes, TwoForAWrongValueOfAnyOptionAndThreeForOneOfTheScene) {
+    const std::vector<std::pair<const char*, const char*>> options{
+        {"--duration", "abc"}, {"--duration", "nan"}, {"--duration", "0"},    {"--duration", "1e99"},
+        {"--crf", "0"},        {"--crf", "52"},       {"--crf", "x"},         {"--size", "0x10"},
+        {"--size", "axb"},     {"--size", "65x64"},   {"--size", "64x99999"}, {"--preset", "fastest"},
+        {"--preset", "5"},     {"--fps", "0"},        {"--fps", "x"},         {"--threads", "99"},
+        {"--jobs", "-1"},      {"--codec", "x"},      {"--codec", "ffv1"},    {"--pix", "5"}};
+    for (const auto& [name, value] : options) {
+        const auto result = run_corda({"render", scene_, "-o", video_, "--dry-run", name, value});
+        EXPECT_EQ(result.exit_code, 2) << name << ' ' << value << result.err;
+    }
+    for (const char* const setting :
+         {"video.crf=0", "world.duration=abc", "video.preset=fastest", "video.no=1"})
+        EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--dry-run", "--set", setting}).exit_code, 3);
+    // A scene that is wrong without the option, too, is an invalid scene; one may come from a pipe.
+    EXPECT_EQ(run_corda({"simulate", scene_, "--duration", "0", "--set", "world.drag=-1"}).exit_code, 3);
+    const std::string from_pipe = "cat " + scene_ + " | " + test::quoted(CORDA_PROGRAM) + " simulate - ";
+    EXPECT_EQ(run_shell(from_pipe + "--duration abc").exit_code, 2);
+    EXPECT_EQ(run_shell(from_pipe + "--set world.duration=abc").exit_code, 3);
+    EXPECT_EQ(run_shell(from_pipe).exit_code, 0);
+}
+
 TEST_F(ExitCodes, TwoForAnEmptyValue) {
     const std::vector<std::vector<std::string>> commands{
         {"render", "", "-o", video_},

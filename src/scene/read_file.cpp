@@ -1,0 +1,64 @@
+#include "corda/scene/read_file.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/file.hpp"
+#include "corda/scene/limits.hpp"
+
+namespace corda::scene {
+namespace {
+
+[[noreturn]] void fail_io(const std::string& path, int reason) {
+    if (reason == EINTR) {
+        throw Error(ExitCode::kInterrupted, fmt::format("{}: interrupted while waiting for the scene", path));
+    }
+    const bool is_denied = reason == EACCES || reason == EPERM;
+    throw Error(
+        ExitCode::kIo,
+        fmt::format("{}: cannot read the scene file: {}; {}", path, std::generic_category().message(reason),
+                    is_denied ? hint_for_errno(reason, FileUse::kRead) : "give the path of a TOML file"));
+}
+
+/// Standard input stays open: closing it would give its number to the next file.
+FileHandle open(const std::string& path) {
+    return FileHandle(path == "-" ? ::fdopen(::dup(STDIN_FILENO), "rb") : std::fopen(path.c_str(), "rb"));
+}
+
+}  // namespace
+
+std::string read_file(const std::string& path) {
+    const std::string name = source_name(path);
+    const FileHandle file = open(path);
+    if (!file) fail_io(name, errno);
+    std::string text;
+    std::array<char, 65536> block{};
+    while (true) {
+        errno = 0;
+        const std::size_t count = std::fread(block.data(), 1, block.size(), file.get());
+        if (count == 0 && std::ferror(file.get()) != 0) fail_io(name, errno);
+        if (count == 0) return text;
+        text.append(block.data(), count);
+        check_file_bytes(name, text.size());
+    }
+}
+
+std::string source_name(const std::string& path) {
+    return path == "-" ? "stdin" : path;
+}
+
+void check_file_bytes(const std::string& source_name, std::size_t bytes) {
+    if (bytes <= static_cast<std::size_t>(Limits::kFileBytes)) return;
+    throw Error(
+        ExitCode::kInvalidScene,
+        fmt::format("{}: {} bytes or more are over the limit of {} bytes; a scene has fewer particles",
+                    source_name, bytes, Limits::kFileBytes));
+}
+
+}  // namespace corda::scene
