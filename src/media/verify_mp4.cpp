@@ -23,17 +23,24 @@ bool check_boxes(const Mp4Boxes& boxes, VerifyReport& report) {
     return true;
 }
 
+std::string copy_command(const VerifyReport& report, std::string_view ending) {
+    std::string options;
+    if (ending == "mp4" || ending == "mov") {
+        if (report.fps.num > 0)
+            options = fmt::format("-video_track_timescale {0} -movie_timescale {0} ", report.fps.num);
+        options += "-movflags +faststart ";
+    }
+    return fmt::format("ffmpeg -i FILE -c copy {}NEW.{}", options, ending);
+}
+
 void check_index(const Mp4Boxes& boxes, VerifyReport& report) {
     if (report.faststart) return;
-    const std::string clocks =
-        report.fps.num > 0 ? fmt::format("-video_track_timescale {0} -movie_timescale {0} ", report.fps.num)
-                           : "";
     problem(
-        report, "{}; remedy: ffmpeg -i FILE -c copy {}-movflags +faststart NEW.{}",
+        report, "{}; remedy: {}",
         boxes.fragmented
             ? "the file is still in fragments, as a .part file is: it plays, but a browser cannot seek in it"
             : "the index stands behind the pictures, so a browser must load the whole file before it starts",
-        clocks, boxes.is_quicktime ? "mov" : "mp4");
+        copy_command(report, boxes.is_quicktime ? "mov" : "mp4"));
 }
 
 void check_clocks(const DecodedVideo& video, const Mp4Boxes& boxes, VerifyReport& report) {

@@ -20,6 +20,9 @@ struct Players {
 constexpr std::array kPlayers{
     Players{"mp4", "h264", "yuv420p",
             "Chrome, Edge, Firefox, Safari, QuickTime and PowerPoint play it, YouTube takes it"},
+    Players{
+        "mov", "h264", "yuv420p",
+        "QuickTime, Keynote, PowerPoint and Safari play it, YouTube takes it; some browsers do not play it"},
     Players{"mp4", "h264", "yuv444p",
             "4:4:4, High 4:4:4 Predictive: VLC, mpv and ffmpeg play it; browsers, QuickTime and PowerPoint "
             "refuse it"},
@@ -96,12 +99,21 @@ bool has_tags(const VerifyReport& report) {
 
 void check_picture_format(const DecodedVideo& video, VerifyReport& report) {
     if (video.frames == 0) return;
-    const auto* const known = std::find_if(kPlayers.begin(), kPlayers.end(), [&report](const Players& row) {
-        return row.codec == report.codec && holds_word(row.containers, plain(report.container));
+    const auto plays = [&report](const Players& row) { return row.codec == report.codec; };
+    const auto* const usual = std::find_if(kPlayers.begin(), kPlayers.end(), plays);
+    const bool is_in_usual_container = std::any_of(usual, kPlayers.end(), [&](const Players& row) {
+        return plays(row) && holds_word(row.containers, plain(report.container));
     });
-    if (known == kPlayers.end()) {
+    if (usual == kPlayers.end()) {
         problem(report, "the codec is {}; browsers and QuickTime play H.264 everywhere: render with libx264",
                 report.codec);
+    } else if (!is_in_usual_container) {
+        const std::string_view container = usual->containers.substr(0, usual->containers.find(' '));
+        // A copy keeps milliseconds, which such clocks cannot count.
+        const bool is_uneven = video.is_rounded && report.fps.den != 1 && container != "webm";
+        problem(report, "few programs play {} in {}; remedy: {}", report.codec, plain(report.container),
+                is_uneven ? fmt::format("encode it again, as .{}", container)
+                          : copy_command(report, container == "matroska" ? "mkv" : container));
     }
     static constexpr std::array<std::string_view, 4> kPlayable{"Constrained Baseline", "Baseline", "Main",
                                                                "High"};
@@ -113,7 +125,10 @@ void check_picture_format(const DecodedVideo& video, VerifyReport& report) {
                 "the H.264 profile is {}, which browsers and QuickTime refuse; encode High with yuv420p",
                 report.profile.empty() ? "unknown" : report.profile);
     }
-    if (known == kPlayers.end() || players_of(report) == nullptr) {
+    const bool is_playable = std::any_of(usual, kPlayers.end(), [&](const Players& row) {
+        return plays(row) && (row.pixel_format.empty() || row.pixel_format == report.pixel_format);
+    });
+    if (usual == kPlayers.end() ? report.pixel_format != "yuv420p" : !is_playable) {
         problem(report,
                 "the pixel format is {}; only 8-bit yuv420p plays everywhere: encode with -pix_fmt yuv420p",
                 report.pixel_format);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -114,24 +115,31 @@ INSTANTIATE_TEST_SUITE_P(Rates, VideoTimes,
                              return fmt::format("{}_{}", std::get<2>(rate.param), std::get<3>(rate.param));
                          });
 
-TEST_F(Video, InFragmentsIsMendedByTheRemedyThatVerifyGives) {
-    ASSERT_EQ(run_corda({"render", scene_, "-o", video_, "--fps", "30000/1001"}).exit_code, 0);
-    const std::string fragments = folder_.file("fragments.mp4");
-    const std::string mended = folder_.file("mended.mp4");
-    const std::string cut = "ffmpeg -v error -i " + video_ + " -c copy -movflags frag_keyframe+empty_moov ";
-    ASSERT_EQ(test::run_shell(cut + fragments).exit_code, 0);
-    const auto report = run_corda({"verify", fragments});
-    EXPECT_EQ(report.exit_code, 7);
-    const std::string text = report.out + report.err;
-    const std::string mark = "remedy: ffmpeg ";
-    ASSERT_THAT(text, HasSubstr(mark));
-    std::string arguments = text.substr(text.find(mark) + mark.size());
-    arguments.resize(arguments.find('\n'));
-    arguments.replace(arguments.find("FILE"), 4, fragments);
-    arguments.replace(arguments.find("NEW.mp4"), 7, mended);
-    ASSERT_EQ(test::run_shell("ffmpeg -v error " + arguments).exit_code, 0);
-    const auto after = run_corda({"verify", mended});
-    EXPECT_EQ(after.exit_code, 0) << after.out << after.err;
+TEST_F(Video, IsMendedByTheRemedyThatVerifyGives) {
+    const std::vector<std::array<const char*, 3>> copies{
+        {"30000/1001", "-movflags frag_keyframe+empty_moov ", "fragments.mp4"},
+        {"60", "", "other.mkv"},
+        {"50", "", "other.mov"}};
+    for (const auto& [fps, options, name] : copies) {
+        ASSERT_EQ(run_corda({"render", scene_, "-o", video_, "--fps", fps, "--force"}).exit_code, 0);
+        const std::string copy = folder_.file(name);
+        ASSERT_EQ(test::run_shell("ffmpeg -v error -i " + video_ + " -c copy " + options + copy).exit_code,
+                  0);
+        const auto report = run_corda({"verify", copy});
+        EXPECT_EQ(report.exit_code, 7);
+        const std::string text = report.out + report.err;
+        const std::string mark = "remedy: ffmpeg ";
+        ASSERT_THAT(text, HasSubstr(mark));
+        std::string arguments = text.substr(text.find(mark) + mark.size());
+        arguments.resize(arguments.find('\n'));
+        arguments.replace(arguments.find("FILE"), 4, copy);
+        const std::size_t at = arguments.find("NEW.");
+        const std::string mended = folder_.file(arguments.substr(at));
+        arguments.replace(at, 7, mended);
+        ASSERT_EQ(test::run_shell("ffmpeg -v error -y " + arguments).exit_code, 0);
+        const auto after = run_corda({"verify", mended});
+        EXPECT_EQ(after.exit_code, 0) << name << after.out << after.err;
+    }
 }
 
 TEST_F(Video, IsRecoveredFromWhatAKilledRenderLeaves) {
