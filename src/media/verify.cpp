@@ -10,6 +10,7 @@
 #include "corda/core/file.hpp"
 #include "corda/media/checked.hpp"
 #include "corda/media/color_patch.hpp"
+#include "corda/media/file_end.hpp"
 #include "corda/media/file_kind.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/mp4_boxes.hpp"
@@ -57,6 +58,9 @@ void fill_report(const DecodedVideo& video, VerifyReport& report) {
     if (duration) report.duration_s = Rational::reduced(*duration, video.tick.den);
 }
 
+/// The 255 colours of a GIF are shared by all of its frames: a ground from red to blue is up to 11 off.
+constexpr double kGifTolerance = 32.0;
+
 void check_decoding(const DecodedVideo& video, VerifyReport& report) {
     if (video.bad_frames > 0) {
         problem(report,
@@ -89,6 +93,7 @@ void check_stamps(const DecodedVideo& video, VerifyReport& report) {
 
 /// The largest error that a patch of a correct video may have. The rate factors of VP9 and AV1 go up to 63.
 double tolerance_of(const DecodedVideo& video) {
+    if (video.codec == "gif") return kGifTolerance;
     const auto told = std::clamp<std::int64_t>(told_number(video.comment, "crf").value_or(0), 0, 63);
     const bool is_x26x = video.codec == "h264" || video.codec == "hevc";
     const auto crf = static_cast<int>(is_x26x ? std::min<std::int64_t>(told, 51) : told * 51 / 63);
@@ -117,14 +122,14 @@ void check_patches(const DecodedVideo& video, VerifyReport& report) {
     }
 }
 
-/// Compares what the file says about itself with what was found; whether that was colours too.
-bool check_comment(const DecodedVideo& video, VerifyReport& report) {
+/// Compares what the file says about itself with what was found.
+void check_comment(const DecodedVideo& video, VerifyReport& report) {
     const auto fps = told_rate(video.comment);
     const auto frames = told_number(video.comment, "frames");
     if (!fps && !frames) {
         report.notes.emplace_back(
             "the file does not say what corda rendered: frame count and colours cannot be compared with it");
-        return false;
+        return;
     }
     if (frames && *frames != report.frames) {
         problem(report, "{} frames were rendered but {} decode; render it again", *frames, report.frames);
@@ -133,8 +138,6 @@ bool check_comment(const DecodedVideo& video, VerifyReport& report) {
         problem(report, "it was rendered for {} fps but plays at {} fps; render it again", fps->text(),
                 report.fps.text());
     }
-    check_patches(video, report);
-    return !video.patches.empty();
 }
 
 /// The container of a kind of file, in words.
@@ -167,9 +170,11 @@ VerifyReport verify(const std::string& path, const OnProgress& on_progress, Veri
     report.container = container_of(kind, path);
     if (kind.empty()) refuse(path, report);
     if (kind == "mov") check_boxes(boxes, report);
+    if (breaks_off(path, kind))
+        problem(report, "the file breaks off before its end; copy or render it again");
     if (kind.empty() || (kind == "mov" && !boxes.has_index)) return report;
-    const DecodedVideo video =
-        kind == "webp" ? decode_webp(path, fps, on_progress) : decode(path, depth, rendered, on_progress);
+    const DecodedVideo video = kind == "webp" ? decode_webp(path, fps, rendered, on_progress)
+                                              : decode(path, depth, rendered, on_progress);
     if (!video.opened) {
         problem(report, "{}; the file is damaged: copy or render it again", video.open_reason);
         return report;
@@ -190,7 +195,9 @@ VerifyReport verify(const std::string& path, const OnProgress& on_progress, Veri
     }
     check_picture_format(video, report);
     check_tags(video, report);
-    add_notes(video, check_comment(video, report), depth, report);
+    check_comment(video, report);
+    check_patches(video, report);
+    add_notes(video, depth, report);
     return report;
 }
 

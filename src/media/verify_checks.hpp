@@ -31,6 +31,6 @@ void check_clocks(const DecodedVideo& video, const Mp4Boxes& boxes, VerifyReport
 void check_picture_format(const DecodedVideo& video, VerifyReport& report);
 void check_tags(const DecodedVideo& video, VerifyReport& report);
 /// Says of a sound video what was checked and who plays it.
-void add_notes(const DecodedVideo& video, bool saw_colors, VerifyDepth depth, VerifyReport& report);
+void add_notes(const DecodedVideo& video, VerifyDepth depth, VerifyReport& report);
 
 }  // namespace corda::media

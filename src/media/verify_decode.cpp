@@ -169,8 +169,8 @@ class Decoding {
     /// Decodes a packet of a key frame, apart from all others, and notes the stamp of any packet. If it is
     /// known what was rendered, other key frames of that are left out.
     void read_alone(const AVPacket& packet) {
-        const bool is_wanted =
-            rendered_.empty() || packets_ < rendered_.front().frame || find_rendered(packets_) != nullptr;
+        const bool is_wanted = rendered_.empty() || packets_ < rendered_.front().frame ||
+                               find_rendered(rendered_, packets_) != nullptr;
         if (is_wanted && (packet.flags & AV_PKT_FLAG_KEY) != 0) {
             receive(&packet);
             receive(nullptr);
@@ -238,25 +238,19 @@ class Decoding {
     }
 
     void measure_patches(std::int64_t number) {
+        const bool is_gif = file_.context->codec_id == AV_CODEC_ID_GIF;
         for (const ColorPatch& patch : patches_of(number)) {
+            const PixelRect square{patch.x, patch.y, patch.x + kPatchSide, patch.y + kPatchSide};
+            const bool is_inside = is_within(patch, frame_->width, frame_->height);
+            // A GIF has no colour where it is transparent.
+            if (is_gif && is_inside && samples_of(*frame_, 3, square).mean == 0.0) continue;
             ShownPatch& shown = video_.patches.emplace_back(ShownPatch{number, patch, std::nullopt});
-            const bool is_inside = patch.x >= 0 && patch.y >= 0 && patch.x <= frame_->width - kPatchSide &&
-                                   patch.y <= frame_->height - kPatchSide;
-            if (!is_inside) continue;
-            shown.rgb = mean_rgb_of(*frame_, {patch.x, patch.y, patch.x + kPatchSide, patch.y + kPatchSide});
+            if (is_inside) shown.rgb = mean_rgb_of(*frame_, square);
         }
     }
 
-    /// What a frame was rendered as; null if that is not known.
-    [[nodiscard]] const FrameColors* find_rendered(std::int64_t number) const {
-        const auto known = std::lower_bound(
-            rendered_.begin(), rendered_.end(), number,
-            [](const FrameColors& colors, std::int64_t frame) { return colors.frame < frame; });
-        return known != rendered_.end() && known->frame == number ? &*known : nullptr;
-    }
-
     [[nodiscard]] std::vector<ColorPatch> patches_of(std::int64_t number) const {
-        if (const FrameColors* const known = find_rendered(number)) return known->patches;
+        if (const FrameColors* const known = find_rendered(rendered_, number)) return known->patches;
         return number == 0 ? told_patches(video_.comment) : std::vector<ColorPatch>();
     }
 
@@ -312,6 +306,13 @@ class Decoding {
 };
 
 }  // namespace
+
+const FrameColors* find_rendered(const std::vector<FrameColors>& rendered, std::int64_t frame) {
+    const auto known = std::lower_bound(
+        rendered.begin(), rendered.end(), frame,
+        [](const FrameColors& colors, std::int64_t number) { return colors.frame < number; });
+    return known != rendered.end() && known->frame == frame ? &*known : nullptr;
+}
 
 DecodedVideo decode(const std::string& path, VerifyDepth depth, const std::vector<FrameColors>& rendered,
                     const OnProgress& on_progress) {

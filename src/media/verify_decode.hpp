@@ -50,9 +50,13 @@ struct DecodedVideo {
 [[nodiscard]] DecodedVideo decode(const std::string& path, VerifyDepth depth,
                                   const std::vector<FrameColors>& rendered, const OnProgress& on_progress);
 
-/// The same of an animated WebP, by libwebp. `told`: see rate_of_ms().
+/// The same for an animated WebP, by libwebp. `told`: see rate_of_ms().
 [[nodiscard]] DecodedVideo decode_webp(const std::string& path, std::optional<Rational> told,
+                                       const std::vector<FrameColors>& rendered,
                                        const OnProgress& on_progress);
+
+/// What a frame was rendered as; null if `rendered`, in the order of the frames, does not tell.
+[[nodiscard]] const FrameColors* find_rendered(const std::vector<FrameColors>& rendered, std::int64_t frame);
 
 /// The rate whose frames, rounded to milliseconds, end at these times: of several `told`, a usual one, or the
 /// simplest. The times are those of frames 1, 2, ... and of the end; std::nullopt if no rate fits.

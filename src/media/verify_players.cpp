@@ -161,13 +161,13 @@ void check_tags(const DecodedVideo& video, VerifyReport& report) {
     }
 }
 
-void add_notes(const DecodedVideo& video, bool saw_colors, VerifyDepth depth, VerifyReport& report) {
+void add_notes(const DecodedVideo& video, VerifyDepth depth, VerifyReport& report) {
     if (!report.ok()) return;
-    report.notes.push_back(
-        fmt::format("checked: structure, time stamps, tags, that {} decodes, and {}; a picture that was "
-                    "changed and still decodes is not found",
-                    depth == VerifyDepth::kAllFrames ? "every frame" : "every key frame",
-                    saw_colors ? "colours at a few places of the first frame alone" : "no colours"));
+    report.notes.push_back(fmt::format(
+        "checked: structure, time stamps, tags, that {} decodes, and {}; a picture that was "
+        "changed and still decodes is not found",
+        depth == VerifyDepth::kAllFrames ? "every frame" : "every key frame",
+        !video.patches.empty() ? "colours at a few places of the first frame alone" : "no colours"));
     if (const Players* const players = players_of(report))
         report.notes.push_back(
             fmt::format("{}, {}: {}", report.coding(), report.pixel_format, players->words));

@@ -11,6 +11,7 @@
 
 #include "corda/core/file.hpp"
 #include "corda/core/image.hpp"
+#include "corda/media/color_patch.hpp"
 #include "corda/media/verify_decode.hpp"
 
 namespace corda::media {
@@ -35,6 +36,19 @@ bool is_see_through(const std::uint8_t* rgba, std::size_t pixels) {
     for (std::size_t i = 0; i < pixels; ++i)
         if (rgba[4 * i + 3] < 255) return true;
     return false;
+}
+
+/// Mean R'G'B' of a patch that lies within a picture of RGBA.
+std::array<double, 3> mean_rgb(const std::uint8_t* rgba, int width_px, const ColorPatch& patch) {
+    std::array<double, 3> mean{};
+    for (int i = 0; i < kPatchSide * kPatchSide; ++i) {
+        const int x = patch.x + i % kPatchSide;
+        const int y = patch.y + i / kPatchSide;
+        const std::uint8_t* const pixel = rgba + 4 * (std::ptrdiff_t{y} * width_px + x);
+        for (std::size_t c = 0; c < mean.size(); ++c) mean[c] += pixel[c];
+    }
+    for (double& channel : mean) channel /= kPatchSide * kPatchSide;
+    return mean;
 }
 
 bool fits(Rational fps, const std::vector<std::int64_t>& ends_ms) {
@@ -78,7 +92,7 @@ std::optional<Rational> rate_of_ms(const std::vector<std::int64_t>& ends_ms, std
 }
 
 DecodedVideo decode_webp(const std::string& path, std::optional<Rational> told,
-                         const OnProgress& on_progress) {
+                         const std::vector<FrameColors>& rendered, const OnProgress& on_progress) {
     DecodedVideo video;
     const std::string bytes = all_of(path);
     const WebPData data{reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
@@ -109,6 +123,10 @@ DecodedVideo decode_webp(const std::string& path, std::optional<Rational> told,
             ++video.bad_frames;
             break;
         }
+        if (const FrameColors* const colors = find_rendered(rendered, video.frames))
+            for (const ColorPatch& patch : colors->patches)
+                if (is_within(patch, video.width_px, video.height_px))
+                    video.patches.push_back({video.frames, patch, mean_rgb(rgba, video.width_px, patch)});
         if (video.frames++ == 0) video.has_alpha = is_see_through(rgba, pixels);
         ends_ms.push_back(end_ms);
     }

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "corda/core/part_file.hpp"
+#include "corda/media/color_patch.hpp"
 #include "corda/media/finish_part.hpp"
 #include "corda/media/format.hpp"
 #include "corda/media/verify.hpp"
@@ -149,6 +150,21 @@ TEST_P(EveryFormat, IsFoundSoundWithItsFiguresByVerify) {
     EXPECT_EQ(report.duration_s, Rational::reduced(kVideoFrames, 50));
     EXPECT_EQ(report.alpha, GetParam().is_transparent);
     EXPECT_EQ(report.width_px, kWidth);
+}
+
+TEST_P(EveryFormat, IsComparedWithWhatWasDrawn) {
+    make(file("a"));
+    for (const std::int64_t frame : {0, kVideoFrames - 1}) {
+        const Image drawn = picture_of(frame, GetParam().is_transparent);
+        std::vector<ColorPatch> patches = choose_patches(drawn);
+        ASSERT_FALSE(patches.empty());
+        const auto problems = [&] {
+            return all_problems(verify(file("a"), {}, VerifyDepth::kAllFrames, {{frame, patches}}));
+        };
+        EXPECT_THAT(problems(), testing::IsEmpty());
+        patches[0].rgb[1] ^= 0x40;
+        EXPECT_THAT(problems(), testing::HasSubstr("frame " + std::to_string(frame) + " shows R'G'B'"));
+    }
 }
 
 TEST_P(EveryFormat, HasTheSameBytesAgainAndFromChunksMadeApart) {
@@ -333,6 +349,17 @@ TEST_F(Video, APartOfAnotherKindIsRefusedNamingWhatItHolds) {
         test::failure_of([&] { static_cast<void>(recover_part(part_path(file("a.mp4")), file("a.webm"))); });
     EXPECT_EQ(failure.code, ExitCode::kUsage);
     EXPECT_THAT(failure.message, testing::HasSubstr("holds h264"));
+}
+
+TEST_F(Video, AGifHasNoColourToCompareWhereItIsTransparent) {
+    Image image = frame_image(0);
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x) image.pixel(x, y)[3] = y < 100 ? 0 : 255;
+    VideoWriter writer(file("a.gif"), small_video({50, 1}), {.is_transparent = true});
+    for (int k = 0; k < 2; ++k) writer.write(image, {image.rect()});
+    EXPECT_NO_THROW(writer.finish());
+    const std::vector<FrameColors> rendered{{0, choose_patches(image)}};
+    EXPECT_TRUE(verify(file("a.gif"), {}, VerifyDepth::kAllFrames, rendered).ok());
 }
 
 }  // namespace

@@ -1,0 +1,56 @@
+#include "corda/media/file_end.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "corda/media/file_kind.hpp"
+#include "video_support.hpp"
+
+namespace corda::media {
+namespace {
+
+TEST_F(Video, BreaksOffIfAnyOfItsLastBytesIsMissing) {
+    for (const char* const ending : {".gif", ".apng", ".webm", ".mkv"}) {
+        const std::string path = file(std::string("a") + ending);
+        make_video(path, small_video({50, 1}), 3);
+        EXPECT_FALSE(breaks_off(path, file_kind(path))) << ending;
+        const std::string whole = test::read_file(path);
+        for (const std::size_t missing : std::vector<std::size_t>{1, 2, 11, 12, 13, 100, whole.size() / 2}) {
+            const std::string cut = file("cut");
+            test::write_file(cut, whole.substr(0, whole.size() - missing));
+            EXPECT_TRUE(breaks_off(cut, file_kind(cut))) << ending << ' ' << missing;
+            EXPECT_FALSE(verify(cut).ok()) << ending << ' ' << missing;
+        }
+        for (std::size_t length = 32; length < 200; ++length) {
+            test::write_file(file("cut"), whole.substr(0, length));
+            EXPECT_TRUE(breaks_off(file("cut"), file_kind(path))) << ending << ' ' << length;
+        }
+        test::write_file(file("more"), whole + "more");
+        EXPECT_FALSE(breaks_off(file("more"), file_kind(path))) << ending;
+    }
+}
+
+TEST_F(Video, DoesNotBreakOffIfItTellsNoLength) {
+    // What a muxer writes to a pipe: the segment's length is unknown.
+    const std::string head(
+        "\x1a\x45\xdf\xa3\x84"
+        "data"
+        "\x18\x53\x80\x67",
+        13);
+    test::write_file(file("a"), head +
+                                    "\x01\xff\xff\xff\xff\xff\xff\xff"
+                                    "data");
+    EXPECT_FALSE(breaks_off(file("a"), "matroska"));
+    test::write_file(file("a"), head +
+                                    "\x84"
+                                    "data");
+    EXPECT_FALSE(breaks_off(file("a"), "matroska"));
+    test::write_file(file("a"), head +
+                                    "\x85"
+                                    "data");
+    EXPECT_TRUE(breaks_off(file("a"), "matroska"));
+    EXPECT_FALSE(breaks_off(file("a"), "mov"));
+}
+
+}  // namespace
+}  // namespace corda::media
