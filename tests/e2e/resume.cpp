@@ -77,7 +77,7 @@ TEST_F(Resume, MakesTheSameVideoOfWhatWasKilledAtAnyMoment) {
             EXPECT_TRUE(read_file(file("a.mp4")) == whole) << after_s;
         }
         const std::string part = read_file(file("a.mp4.part"));
-        if (!part.empty()) {
+        if (part.find("corda checksum") != std::string::npos) {  // a whole chunk
             ++parts;
             test::write_file(file("copy.mp4.part"), part);
             EXPECT_EQ(run_corda({"recover", file("copy.mp4.part"), "-o", file("copy.mp4")}).exit_code, 0)
