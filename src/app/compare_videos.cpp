@@ -14,7 +14,7 @@
 #include "corda/golden/variant.hpp"
 #include "corda/media/child_process.hpp"
 #include "corda/media/defs.hpp"
-#include "corda/media/video_reader.hpp"
+#include "corda/media/stored_video.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -76,8 +76,8 @@ void take_frames(const CompareOptions& options, const std::array<media::StoredPi
 
 VideoDifference compare_all_frames(const CompareOptions& options, const std::string& path_b,
                                    const std::optional<Image>& mask) {
-    media::VideoReader a(options.a);
-    media::VideoReader b(path_b);
+    media::StoredVideo a(options.a);
+    media::StoredVideo b(path_b);
     VideoDifference result;
     result.rates = {a.rate(), b.rate()};
     std::array<media::StoredPicture, 2> pictures;

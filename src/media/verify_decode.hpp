@@ -58,9 +58,4 @@ struct DecodedVideo {
 /// What a frame was rendered as; null if `rendered`, in the order of the frames, does not tell.
 [[nodiscard]] const FrameColors* find_rendered(const std::vector<FrameColors>& rendered, std::int64_t frame);
 
-/// The rate whose frames, rounded to milliseconds, end at these times: of several `told`, a usual one, or the
-/// simplest. The times are those of frames 1, 2, ... and of the end; std::nullopt if no rate fits.
-[[nodiscard]] std::optional<Rational> rate_of_ms(const std::vector<std::int64_t>& ends_ms,
-                                                 std::optional<Rational> told = {});
-
 }  // namespace corda::media

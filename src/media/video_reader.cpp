@@ -1,7 +1,5 @@
 #include "corda/media/video_reader.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -33,10 +31,6 @@ void copy_component(const AVFrame& frame, const AVPixFmtDescriptor& descriptor, 
     for (int y = 0; y < height; ++y)
         av_read_image_line2(samples + std::ptrdiff_t{y} * width, data, frame.linesize, &descriptor, 0, y,
                             component, width, 0, sizeof(std::uint16_t));
-}
-
-int ceiling_shift(int value, int shift) {
-    return (value + (1 << shift) - 1) >> shift;
 }
 
 }  // namespace
@@ -147,45 +141,6 @@ bool VideoReader::read(StoredPicture& picture) {
     }
     av_frame_unref(impl_->frame.get());
     return true;
-}
-
-Image StoredPicture::rgba() const {
-    Image image(width_px, height_px);
-    const auto pixels = static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
-    const double largest = static_cast<double>((1 << bits) - 1);
-    const double step = static_cast<double>(1 << (bits - 8));  // of 8-bit levels
-    const auto byte = [](double value) {
-        return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255.0));
-    };
-    for (int y = 0; y < height_px; ++y) {
-        for (int x = 0; x < width_px; ++x) {
-            const auto sample = [&](int c, int shift_x, int shift_y) -> double {
-                const std::size_t width = static_cast<std::size_t>(ceiling_shift(width_px, shift_x));
-                return samples[static_cast<std::size_t>(c) * pixels +
-                               static_cast<std::size_t>(y >> shift_y) * width +
-                               static_cast<std::size_t>(x >> shift_x)];
-            };
-            std::uint8_t* const rgba = image.pixel(x, y);
-            rgba[3] = components == 4 ? byte(sample(3, 0, 0) / largest) : 255;
-            if (is_rgb) {
-                for (int c = 0; c < 3; ++c) rgba[c] = byte(sample(c, 0, 0) / largest);
-                continue;
-            }
-            const double luma =
-                is_full_range ? sample(0, 0, 0) / largest : (sample(0, 0, 0) / step - 16.0) / 219.0;
-            const auto chroma = [&](int c) {
-                if (components < 3) return 0.0;
-                const double level = sample(c, chroma_shift_x, chroma_shift_y) / step - 128.0;
-                return level / (is_full_range ? 255.0 : 224.0);
-            };
-            const double blue = chroma(1);
-            const double red = chroma(2);
-            rgba[0] = byte(luma + 1.5748 * red);
-            rgba[1] = byte(luma - 0.1873243 * blue - 0.4681243 * red);
-            rgba[2] = byte(luma + 1.8556 * blue);
-        }
-    }
-    return image;
 }
 
 bool VideoReader::read(Yuv420Image& picture) {

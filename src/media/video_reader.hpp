@@ -4,32 +4,13 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "corda/core/image.hpp"
 #include "corda/core/rational.hpp"
+#include "corda/media/stored_video.hpp"
 #include "corda/media/yuv420.hpp"
 
 namespace corda::media {
-
-/// A picture of a video as it is stored: of any kind that libav decodes, but for palettes.
-struct StoredPicture {
-    int width_px = 0;
-    int height_px = 0;
-    std::string format;                  ///< libav's name of the pixel format
-    double time_s = 0.0;                 ///< when a player shows it
-    std::vector<std::uint16_t> samples;  ///< component after component, each in rows
-    // What the samples mean.
-    int components = 0;  ///< 1: grey; 3; 4: with alpha
-    bool is_rgb = false;
-    bool is_full_range = false;
-    int bits = 8;
-    int chroma_shift_x = 0;  ///< of Cb and Cr
-    int chroma_shift_y = 0;
-
-    /// In 8-bit R'G'B', for Y'CbCr by the matrix of BT.709.
-    [[nodiscard]] Image rgba() const;
-};
 
 /// Reads the pictures of a video in the order in which a player shows them.
 class VideoReader {

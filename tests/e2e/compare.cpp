@@ -239,6 +239,26 @@ TEST_F(CompareFiles, VideosOfOtherCountsSizesRatesAndFormats) {
     EXPECT_EQ(code({a, exact, "--mean", "10"}), 0);
 }
 
+TEST_F(CompareFiles, AnimationsOfThreeKindsAreEqualToTheExactVideo) {
+    const auto render = [&](const std::string& name, const std::string& angle) {
+        const auto made =
+            run_corda({"render", CORDA_EXAMPLES "/first.toml", "-o", file(name), "--size", "160x96", "--fps",
+                       "30000/1001", "--frames", "0:9", "--set", "rope[0].hang.angle_deg=" + angle});
+        EXPECT_EQ(made.exit_code, 0) << made.err;
+        return file(name);
+    };
+    const std::string exact = render("a.mkv", "30");
+    for (const char* const ending : {"apng", "webp"}) {
+        const std::string same = render(std::string("a.") + ending, "30");
+        const auto result = run_corda({"compare", same, exact});
+        EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+        EXPECT_THAT(result.out, HasSubstr("equal: 9 frames"));
+        EXPECT_EQ(code({same, render(std::string("b.") + ending, "31")}), 7);
+    }
+    test::write_file(file("cut.webp"), test::read_file(file("a.webp")).substr(0, 500));
+    EXPECT_EQ(code({file("cut.webp"), exact}), 6);
+}
+
 TEST_F(CompareFiles, SizesThatChangeAmidAVideo) {
     const auto made =
         run_shell("cd " + test::quoted(file("")) +
