@@ -1,5 +1,7 @@
 #include "corda/core/memory.hpp"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <fstream>
 #include <sstream>
@@ -47,6 +49,19 @@ std::string group_of(const std::filesystem::path& root) {
 
 }  // namespace
 
+namespace {
+
+/// What the limit on the address space of this process leaves (ulimit -v); empty without one.
+std::optional<std::uint64_t> left_of_address_space(const std::filesystem::path& root) {
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
+    const auto used_kib = number_after(root / "proc/self/status", "VmSize:");
+    if (!used_kib) return std::nullopt;
+    return limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, *used_kib * 1024);
+}
+
+}  // namespace
+
 std::optional<std::uint64_t> available_memory_bytes(const std::filesystem::path& root) {
     std::optional<std::uint64_t> least = number_after(root / "proc/meminfo", "MemAvailable:");
     if (least) *least *= 1024;
@@ -54,6 +69,7 @@ std::optional<std::uint64_t> available_memory_bytes(const std::filesystem::path&
     const auto heed = [&least](const std::filesystem::path& group) {
         if (const auto left = left_in(group)) least = least ? std::min(*least, *left) : *left;
     };
+    if (const auto left = left_of_address_space(root)) least = least ? std::min(*least, *left) : *left;
     heed(mount);
     std::filesystem::path group = mount;
     for (const std::filesystem::path& name : std::filesystem::path(group_of(root))) heed(group /= name);

@@ -286,9 +286,10 @@ class X264Encoder : public Encoder {
         int count = 0;
         x264_picture_t shown;
         const int bytes = x264_encoder_encode(x264_.get(), &nals, &count, picture, &shown);
-        if (bytes < 0)
-            throw Error(ExitCode::kEncoder,
-                        fmt::format("libx264 failed near frame {} ({})", frames_, log.text()));
+        if (bytes < 0) {
+            const std::string reason = log.text().empty() ? "" : " (" + log.text() + ")";
+            throw Error(ExitCode::kEncoder, fmt::format("libx264 failed near frame {}{}", frames_, reason));
+        }
         if (bytes == 0) return;
         if (shown.i_pts == expected_.frame) compare(shown.img);
         check_libav(av_new_packet(packet_.get(), static_cast<int>(sei_.size()) + bytes), ExitCode::kTemporary,

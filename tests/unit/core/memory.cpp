@@ -1,6 +1,7 @@
 #include "corda/core/memory.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <filesystem>
 #include <string>
@@ -43,6 +44,19 @@ TEST_F(Memory, IsWhatTheGroupsLeave) {
     write("sys/fs/cgroup/memory.max", "300000\n");  // a container sees its own group as the root
     write("sys/fs/cgroup/memory.current", "400000\n");
     EXPECT_EQ(available(), 0U);
+}
+
+TEST_F(Memory, IsWhatTheLimitOfTheAddressSpaceLeaves) {
+    write("proc/self/status", "VmPeak:  5000 kB\nVmSize:  1000000 kB\n");
+    rlimit old{};
+    ASSERT_EQ(::getrlimit(RLIMIT_AS, &old), 0);
+    rlimit limit = old;
+    limit.rlim_cur = std::uint64_t{1} << 46U;  // more than this process has, also under a sanitizer
+    if (old.rlim_max < limit.rlim_cur) GTEST_SKIP() << "there is a limit already";
+    ASSERT_EQ(::setrlimit(RLIMIT_AS, &limit), 0);
+    EXPECT_EQ(available(), limit.rlim_cur - 1'024'000'000U);
+    ASSERT_EQ(::setrlimit(RLIMIT_AS, &old), 0);
+    EXPECT_EQ(available(), std::nullopt);
 }
 
 TEST_F(Memory, IsToldByThisMachine) {
