@@ -51,6 +51,26 @@ bool are_of_one_video(const AVCodecParameters& a, const AVCodecParameters& b) {
                       b.extradata + b.extradata_size);
 }
 
+/// The parameters of a chunk for a muxer: libaom tells its header with the first packet, not before.
+CodecParameters with_header(const Chunk& chunk) {
+    CodecParameters parameters =
+        check_allocated(CodecParameters(avcodec_parameters_alloc()), "codec parameters");
+    check_libav(avcodec_parameters_copy(parameters.get(), chunk.parameters.get()), ExitCode::kEncoder,
+                "cannot copy codec parameters");
+    std::size_t bytes = 0;
+    const std::uint8_t* const header =
+        chunk.packets.empty()
+            ? nullptr
+            : av_packet_get_side_data(chunk.packets.front().get(), AV_PKT_DATA_NEW_EXTRADATA, &bytes);
+    if (header == nullptr || parameters->extradata_size > 0) return parameters;
+    parameters->extradata = static_cast<std::uint8_t*>(av_mallocz(bytes + AV_INPUT_BUFFER_PADDING_SIZE));
+    if (parameters->extradata == nullptr)
+        fail_libav(ExitCode::kTemporary, "cannot copy codec parameters", AVERROR(ENOMEM));
+    std::copy_n(header, bytes, parameters->extradata);
+    parameters->extradata_size = static_cast<int>(bytes);
+    return parameters;
+}
+
 /// Whether decoding a video takes a small part of the time that encoding takes: AV1, VP9 and H.265.
 bool is_decoded_at_no_cost(const Format& format) {
     const Codec& codec = *format.codec;
@@ -118,11 +138,12 @@ struct VideoWriter::Impl {
         comment["fps"] = def.fps.rational().text();
         if (format.codec->crf) comment["crf"] = format.crf_of(def.encoder);
         comment["patches"] = patches_json(chunk.colors.front().patches);
+        const CodecParameters stored = with_header(chunk);
         parameters = std::move(chunk.parameters);
-        sink->begin(*parameters, {.fps = def.fps.rational(),
-                                  .title = metadata.title,
-                                  .comment = comment.dump(),
-                                  .has_alpha = format.has_alpha && parameters->codec_id == AV_CODEC_ID_VP9});
+        sink->begin(*stored, {.fps = def.fps.rational(),
+                              .title = metadata.title,
+                              .comment = comment.dump(),
+                              .has_alpha = format.has_alpha && parameters->codec_id == AV_CODEC_ID_VP9});
     }
 
     void append(Chunk chunk) {

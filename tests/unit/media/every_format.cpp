@@ -39,18 +39,19 @@ constexpr PixelChoice kAny = PixelChoice::kAuto;
 constexpr PixelChoice k444 = PixelChoice::k444;
 
 constexpr std::array kVariants{
-    Variant{"h264", ".mp4", "h264", kAny, false, 33.0},           // measured 33.4
-    Variant{"h264_444", ".mp4", "h264", k444, false, 48.0},       // measured 49.4
-    Variant{"h265", ".mp4", "h265", kAny, false, 33.0},           // measured 33.3
-    Variant{"h265_444", ".mp4", "h265", k444, false, 47.0},       // measured 48.1
-    Variant{"av1", ".mp4", "libsvtav1", kAny, false, 33.0},       // measured 33.4
-    Variant{"aom_444", ".mp4", "libaom-av1", k444, false, 49.0},  // measured 50.3
-    Variant{"vp9", ".webm", "vp9", kAny, false, 33.0},            // measured 33.4
-    Variant{"vp9_alpha", ".webm", "", kAny, true, 35.0},          // measured 35.9
-    Variant{"vp9_444", ".webm", "", k444, false, 49.0},           // measured 50.4
-    Variant{"av1_webm", ".webm", "av1", kAny, false, 33.0},       // measured 33.4
-    Variant{"prores", ".mov", "", kAny, false, 80.0},             // measured 80.9
-    Variant{"prores_alpha", ".mov", "", kAny, true, 55.0},        // measured 55.5
+    Variant{"h264", ".mp4", "h264", kAny, false, 33.0},             // measured 33.4
+    Variant{"h264_444", ".mp4", "h264", k444, false, 48.0},         // measured 49.4
+    Variant{"h265", ".mp4", "h265", kAny, false, 33.0},             // measured 33.3
+    Variant{"h265_444", ".mp4", "h265", k444, false, 47.0},         // measured 48.1
+    Variant{"av1", ".mp4", "libsvtav1", kAny, false, 33.0},         // measured 33.4
+    Variant{"aom_444", ".mp4", "libaom-av1", k444, false, 49.0},    // measured 50.3
+    Variant{"vp9", ".webm", "vp9", kAny, false, 33.0},              // measured 33.4
+    Variant{"vp9_alpha", ".webm", "", kAny, true, 35.0},            // measured 35.9
+    Variant{"vp9_444", ".webm", "", k444, false, 49.0},             // measured 50.4
+    Variant{"av1_webm", ".webm", "av1", kAny, false, 33.0},         // measured 33.4
+    Variant{"aom_webm", ".webm", "libaom-av1", kAny, false, 33.0},  // measured
+    Variant{"prores", ".mov", "", kAny, false, 80.0},               // measured 80.9
+    Variant{"prores_alpha", ".mov", "", kAny, true, 55.0},          // measured 55.5
     Variant{"ffv1", ".mkv", "", kAny, false, 0.0},
     Variant{"ffv1_alpha", ".mkv", "", kAny, true, 0.0},
     Variant{"gif", ".gif", "", kAny, false, 0.0},
