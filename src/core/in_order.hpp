@@ -27,11 +27,12 @@ class InOrder {
     using Make = std::function<Thing(std::int64_t number, const InOrder& all)>;
 
     /// Begins to make things first <= i < end. A thread calls `new_maker` before the first thing that it
-    /// makes, and again before the next one if it threw. Throws corda::Error (kTemporary) if the system
-    /// starts no thread.
+    /// makes, and again before the next one if `new_maker` threw. Throws corda::Error (kTemporary) if the
+    /// system starts no thread.
     InOrder(std::int64_t first, std::int64_t end, int threads, std::function<Make()> new_maker)
         : new_maker_(std::move(new_maker)), end_(end), ahead_(2 * threads), next_(first), taken_(first) {
         try {
+            threads_.reserve(static_cast<std::size_t>(threads));
             for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
         } catch (const std::system_error&) {  // fewer will do
             if (threads_.empty())
