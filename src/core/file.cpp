@@ -22,11 +22,25 @@ FileHandle open_for_reading(const std::string& path) {
     return file;
 }
 
+std::size_t read_bytes(const FileHandle& file, const std::string& path, char* bytes, std::size_t count) {
+    errno = 0;
+    const std::size_t read = std::fread(bytes, 1, count, file.get());
+    if (read < count && std::ferror(file.get()) != 0) fail_file("read", path, errno);
+    return read;
+}
+
 std::uintmax_t file_size(const std::string& path) {
     std::error_code failure;
     const std::uintmax_t bytes = std::filesystem::file_size(path, failure);
     if (failure) fail_file("read", path, failure.value());
     return bytes;
+}
+
+bool leads_to(const std::string& path, const Descriptor& file) {
+    struct stat open {};
+    struct stat named {};
+    return ::fstat(file.get(), &open) == 0 && ::lstat(path.c_str(), &named) == 0 &&
+           open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
 
 int Descriptor::close() noexcept {

@@ -21,6 +21,10 @@ using FileHandle = std::unique_ptr<std::FILE, FileCloser>;
 /// while it waits for the writer of a pipe.
 [[nodiscard]] FileHandle open_for_reading(const std::string& path);
 
+/// Reads up to so many bytes into `bytes`; fewer only at the end of the file. Throws corda::Error (kIo).
+[[nodiscard]] std::size_t read_bytes(const FileHandle& file, const std::string& path, char* bytes,
+                                     std::size_t count);
+
 /// The bytes of an ordinary file. Throws corda::Error (kIo).
 [[nodiscard]] std::uintmax_t file_size(const std::string& path);
 
@@ -46,6 +50,9 @@ class Descriptor {
   private:
     int number_ = -1;
 };
+
+/// Whether a name leads to this open file, not through a symbolic link.
+[[nodiscard]] bool leads_to(const std::string& path, const Descriptor& file);
 
 /// Creates and opens a file for reading and writing; nothing may stand under its name, not even a link that
 /// leads nowhere. Sets errno if it fails.

@@ -193,17 +193,18 @@ void OutputFile::open_temporary() {
     // Nobody may read a new version of a private file before it has the old one's permissions.
     const mode_t mode = replaced_ ? 0600 : 0666;
     const std::string stem = temporary_stem(target_);
-    for (;;) {
+    constexpr int kMostAttempts = 100;
+    for (int i = 0; i < kMostAttempts; ++i) {
         temporary_ = stem + random_text() + std::string(kTemporaryEnding);
         descriptor_ = create_new(temporary_, mode);
         if (!descriptor_ && errno == EEXIST) continue;
         if (!descriptor_) break;
-        // Whoever has locked it before us is about to remove it, so wait for that, and then take another.
-        // Where files cannot be locked nobody removes it either.
+        // A process that locked the file first is about to remove it: wait, then create another. On a file
+        // system without locks nobody removes it.
         while (::flock(descriptor_.get(), LOCK_EX) != 0 && errno == EINTR) {
         }
-        struct stat status {};
-        if (::fstat(descriptor_.get(), &status) == 0 && status.st_nlink > 0) return;
+        if (leads_to(temporary_, descriptor_)) return;
+        errno = ENOENT;
     }
     temporary_.clear();
     fail_file("write", path_, errno);
@@ -251,6 +252,8 @@ int OutputFile::rename_to(const std::string& name) const {
 }
 
 void OutputFile::commit() {
+    // A second descriptor holds the lock until the file has its name: without it, it would be a leftover.
+    const Descriptor lock(temporary_.empty() ? -1 : ::fcntl(descriptor_.get(), F_DUPFD_CLOEXEC, 0));
     bool is_blocked = false;
     if (options_.force && !temporary_.empty()) {
         // It may have changed since the constructor looked.

@@ -19,13 +19,6 @@ namespace {
                 "another render is writing '" + path + "'; wait for its end, or choose another name");
 }
 
-bool leads_to(const std::string& path, const Descriptor& file) {
-    struct stat open {};
-    struct stat named {};
-    return ::fstat(file.get(), &open) == 0 && ::lstat(path.c_str(), &named) == 0 &&
-           open.st_dev == named.st_dev && open.st_ino == named.st_ino;
-}
-
 /// Locks an open file by flock(2). False if another process holds the lock and `operation` does not wait for
 /// it, or if the name leads to another file by now.
 bool lock(const Descriptor& file, const std::string& path, int operation) {
@@ -81,6 +74,11 @@ PartFile PartFile::create(std::string path, const OutputOptions& options) {
     return {std::move(path), std::move(file)};
 }
 
+void PartFile::remove_unheld(const std::string& path) noexcept {
+    const Descriptor old = open_existing(path);
+    if (old && lock(old, path, LOCK_EX | LOCK_NB)) ::unlink(path.c_str());
+}
+
 PartFile PartFile::open(std::string path) {
     Descriptor file = open_existing(path);
     if (!file) fail_file("read", path, errno);
@@ -104,12 +102,13 @@ bool PartFile::is_named() const {
     return leads_to(path_, descriptor_);
 }
 
-void PartFile::sync() const {
+void PartFile::sync() {
     sync_file(descriptor_, path_);
+    if (!std::exchange(has_durable_name_, true)) sync_folder_of(path_);
 }
 
 void PartFile::remove() noexcept {
-    ::unlink(path_.c_str());
+    if (leads_to(path_, descriptor_)) ::unlink(path_.c_str());
     static_cast<void>(descriptor_.close());
 }
 

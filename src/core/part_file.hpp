@@ -12,6 +12,11 @@ namespace corda {
     return path + ".part";
 }
 
+/// The name of the copy of a part that a resumed render makes, and which then takes its place.
+[[nodiscard]] inline std::string part_copy_path(const std::string& part) {
+    return part + ".new";
+}
+
 /// The file that holds an unfinished video under a name that can be guessed, so that it is found again after
 /// a crash. It is locked while the object lives: two renders never write to one part.
 ///
@@ -26,6 +31,9 @@ class PartFile {
     /// Creates the part file, with `force` in place of an old one. Throws as `check`, and if it cannot be
     /// made.
     [[nodiscard]] static PartFile create(std::string path, const OutputOptions& options);
+
+    /// Removes a file unless another process holds it.
+    static void remove_unheld(const std::string& path) noexcept;
 
     /// Locks the part file that an earlier run left. Throws corda::Error (kIo).
     [[nodiscard]] static PartFile open(std::string path);
@@ -42,8 +50,8 @@ class PartFile {
     /// Whether its name still leads to this file: it or its folder may have been removed.
     [[nodiscard]] bool is_named() const;
 
-    /// Forces what was written onto the disk. Throws corda::Error (kIo).
-    void sync() const;
+    /// Forces what was written, and the name, onto the disk. Throws corda::Error (kIo).
+    void sync();
 
     /// Removes the file and releases the lock; never throws, because an old part does no harm.
     void remove() noexcept;
@@ -53,6 +61,7 @@ class PartFile {
 
     std::string path_;
     Descriptor descriptor_;
+    bool has_durable_name_ = false;
 };
 
 }  // namespace corda

@@ -32,11 +32,16 @@ int link_errno = 0;
 // for, or else later.
 bool is_locked_to_be_removed = false;
 
+// Whether what was renamed last was locked then.
+bool was_held_at_rename = false;
+
 }  // namespace
 
 // These stand before the C library's, so that a test can play a file system that knows neither call.
 extern "C" int renameat2(int from_folder, const char* from, int to_folder, const char* to,
                          unsigned flags) noexcept {
+    const corda::Descriptor file(::open(from, O_RDWR | O_CLOEXEC));
+    was_held_at_rename = file && ::syscall(SYS_flock, file.get(), LOCK_EX | LOCK_NB) != 0;
     errno = renameat2_errno;
     if (renameat2_errno != 0) return -1;
     return static_cast<int>(::syscall(SYS_renameat2, from_folder, from, to_folder, to, flags));
@@ -169,12 +174,20 @@ TEST_F(OutputFiles, OutliveARemovalThatBeganBeforeTheyWereLocked) {
     OutputFile output(file("a"));
     EXPECT_FALSE(is_locked_to_be_removed);
     EXPECT_THAT(folder_.files(), testing::SizeIs(1));
-    EXPECT_NE(::flock(Descriptor(::open(output.temporary_path().c_str(), O_RDWR | O_CLOEXEC)).get(),
-                      LOCK_EX | LOCK_NB),
-              0);  // held, so it is not removed now
+    const Descriptor other(::open(output.temporary_path().c_str(), O_RDWR | O_CLOEXEC));
+    ASSERT_TRUE(other);
+    EXPECT_NE(::flock(other.get(), LOCK_EX | LOCK_NB), 0);  // held, so it is not removed now
     output.write("text");
     output.commit();
     EXPECT_EQ(test::read_file(file("a")), "text");
+}
+
+TEST_F(OutputFiles, AreHeldUntilTheyHaveTheirNames) {
+    OutputFile output(file("a"));
+    output.write("text");
+    was_held_at_rename = false;
+    output.commit();
+    EXPECT_TRUE(was_held_at_rename);
 }
 
 TEST_F(OutputFiles, TemporaryNamesAreUnique) {

@@ -31,7 +31,7 @@ class PartFiles : public testing::Test {
 
 TEST_F(PartFiles, StayUntilTheyAreRemoved) {
     {
-        const PartFile part = PartFile::create(path_, {});
+        PartFile part = PartFile::create(path_, {});
         ASSERT_EQ(write_all(part.descriptor(), "text"), 0);
         part.sync();
     }
