@@ -44,13 +44,24 @@ ExitCode recover(const Console& console, const RecoverOptions& options) {
     const std::string output = options.output.empty() ? name : options.output;
     check_output(output, options.part, options.force);
     const media::RemuxResult result = media::recover_part(
-        options.part, output, {.force = options.force, .on_progress = stopping_if_asked()});
-    if (result.truncated)
-        console.warning(fmt::format("{} breaks off in the middle: what is whole was taken", options.part));
-    console.info(counted(result.frames, "frame") + "; verified");
+        options.part, output, {.force = options.force, .on_progress = stopping_if_asked()},
+        !options.output.empty());
+    const std::string frames = counted(result.frames, "frame");
+    if (result.damaged) {
+        console.warning(fmt::format("{} is damaged after {}; these were recovered", options.part, frames));
+    } else if (result.truncated) {
+        console.warning(
+            fmt::format("{} breaks off in a chunk; the {} before it were recovered", options.part, frames));
+    }
+    console.info(fmt::format("{}; verified; {} {}", frames, options.part,
+                             result.removed ? "was removed" : "stays as it is"));
     console.result(output);
-    console.report(
-        {{"schema", 1}, {"output", output}, {"frames", result.frames}, {"truncated", result.truncated}});
+    console.report({{"schema", 1},
+                    {"output", output},
+                    {"frames", result.frames},
+                    {"truncated", result.truncated},
+                    {"damaged", result.damaged},
+                    {"removed", result.removed}});
     return ExitCode::kOk;
 }
 
@@ -61,7 +72,9 @@ void add_recover(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand(
         "recover", "make the part file of an interrupted render a video, without encoding it again");
     command->add_option("PART", options->part, "part file, such as out.mp4.part")->required();
-    command->add_option("-o,--output", options->output, "video file; default: the name without .part");
+    command->add_option(
+        "-o,--output", options->output,
+        "video file, and the part stays; default: the name without .part, and the part is removed");
     command->add_flag("--force", options->force, "replace an existing output");
     command->callback([options, &action] {
         action = [options](const Console& console) { return recover(console, *options); };

@@ -14,13 +14,14 @@ namespace {
 /// Reads a file from its beginning. What is asked for behind its end is missing.
 class ByteReader {
   public:
-    explicit ByteReader(const std::string& path) : file_(open_for_reading(path)), left_(file_size(path)) {}
+    explicit ByteReader(const std::string& path)
+        : path_(path), file_(open_for_reading(path)), left_(file_size(path)) {}
 
     [[nodiscard]] std::optional<unsigned> next() {
-        const int byte = std::getc(file_.get());
-        if (byte == EOF) return std::nullopt;
+        char byte = 0;
+        if (read_bytes(file_, path_, &byte, 1) == 0) return std::nullopt;
         left_ -= left_ > 0 ? 1 : 0;
-        return static_cast<unsigned>(byte);
+        return static_cast<unsigned char>(byte);
     }
 
     /// A number of some bytes, the largest first.
@@ -39,13 +40,14 @@ class ByteReader {
         if (count > left_) return false;
         left_ -= count;
         std::array<char, 256> block{};  // of a GIF there are many, so that seeking would take long
-        if (count <= block.size()) return std::fread(block.data(), 1, count, file_.get()) == count;
+        if (count <= block.size()) return read_bytes(file_, path_, block.data(), count) == count;
         return ::fseeko(file_.get(), static_cast<off_t>(count), SEEK_CUR) == 0;
     }
 
   private:
+    std::string path_;
     FileHandle file_;
-    std::uintmax_t left_;
+    std::uintmax_t left_;  ///< bytes to the end
 };
 
 /// The bytes of a GIF's colour table (GIF89a, 18 and 20), of whose flags the last three bits are its size.

@@ -9,7 +9,7 @@ namespace corda::media {
 std::string file_kind(const std::string& path) {
     const FileHandle file = open_for_reading(path);
     std::string head(4096, '\0');
-    head.resize(std::fread(head.data(), 1, head.size(), file.get()));
+    head.resize(read_bytes(file, path, head.data(), head.size()));
     const auto at = [&head](std::size_t offset, std::string_view bytes) {
         return head.size() >= offset + bytes.size() && head.compare(offset, bytes.size(), bytes) == 0;
     };

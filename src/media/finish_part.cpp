@@ -95,7 +95,8 @@ RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOpt
         return !options.on_progress || options.on_progress(done, total);
     };
     const PartIndex index = index_part(part.path(), still_done);
-    const RemuxResult result{static_cast<std::int64_t>(index.frame_of.size()), index.truncated};
+    RemuxResult result{static_cast<std::int64_t>(index.frame_of.size()), index.is_cut || index.is_damaged,
+                       index.is_damaged};
     if (def.frames && *def.frames != result.frames) {
         throw Error(ExitCode::kMismatch, fmt::format("'{}' holds {} frames instead of {}; it stays as it is",
                                                      part.path(), result.frames, *def.frames));
@@ -123,14 +124,18 @@ RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOpt
                                 listed(report.problems)));
     }
     output.commit();
-    part.remove();
+    result.removed = !result.damaged && !def.keep_part;
+    if (result.removed) part.remove();
+    PartFile::remove_unheld(part_copy_path(part.path()));
     return result;
 }
 
-RemuxResult recover_part(const std::string& part_path, const std::string& path,
-                         const OutputOptions& options) {
+RemuxResult recover_part(const std::string& part_path, const std::string& path, const OutputOptions& options,
+                         bool keep_part) {
     PartFile part = PartFile::open(part_path);
-    return finish_part(part, path, options, {});
+    FinishDef def;
+    def.keep_part = keep_part;
+    return finish_part(part, path, options, def);
 }
 
 }  // namespace corda::media

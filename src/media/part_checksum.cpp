@@ -43,43 +43,44 @@ std::string PartChecksum::record() const {
     return std::string(kMark) + big_endian(bytes_, kLengthBytes) + big_endian(crc_, kSumBytes);
 }
 
-std::string PartChecksum::element(std::string_view container) {
+std::string PartChecksum::element(std::string_view container) const {
+    PartChecksum with_head = *this;
     const std::string head = head_of(container);
-    add(head);
-    std::string bytes = head + record();
-    *this = {};
-    return bytes;
+    with_head.add(head);
+    return head + with_head.record();
 }
 
-std::uint64_t sound_part_bytes(const std::string& path, const OnProgress& on_progress) {
+SoundBytes sound_bytes_of(const std::string& path, PartExtent extent, const OnProgress& on_progress) {
     const FileHandle file = open_for_reading(path);
     std::array<char, 1 << 16> block{};
     std::string ahead;  // what was read and not counted
     std::uint64_t counted = 0;
-    std::uint64_t sound = 0;
+    SoundBytes sound;
     PartChecksum checksum;
     const auto count = [&](std::size_t bytes) {
         checksum.add(std::string_view(ahead).substr(0, bytes));
         ahead.erase(0, bytes);
         counted += bytes;
     };
-    for (;;) {
+    while (extent == PartExtent::kAll || sound.count == 0) {
         const std::size_t at = ahead.find(kMark);
         if (at != std::string::npos && at + kRecordBytes <= ahead.size()) {
             count(at);
-            if (checksum.record() != ahead.substr(0, kRecordBytes)) return sound;
+            sound.is_damaged = checksum.record() != ahead.substr(0, kRecordBytes);
+            if (sound.is_damaged) break;
             ahead.erase(0, kRecordBytes);
             counted += kRecordBytes;
-            sound = counted;
+            sound.count = counted;
             checksum = {};
             continue;
         }
         count(ahead.size() - std::min(ahead.size(), kRecordBytes - 1));  // the rest may begin a record
         report_progress(on_progress, 0, 0);
-        const std::size_t read = std::fread(block.data(), 1, block.size(), file.get());
-        if (read == 0) return sound;
+        const std::size_t read = read_bytes(file, path, block.data(), block.size());
+        if (read == 0) break;
         ahead.append(block.data(), read);
     }
+    return sound;
 }
 
 }  // namespace corda::media

@@ -17,8 +17,8 @@ class PartChecksum {
     void add(std::string_view bytes);
     /// Whether bytes were counted since the last checksum.
     [[nodiscard]] bool is_due() const { return bytes_ > 0; }
-    /// The element to write next, which is not counted. `container` is libav's name of the muxer.
-    [[nodiscard]] std::string element(std::string_view container);
+    /// The element to write next; counting begins anew after it. `container` is libav's name of the muxer.
+    [[nodiscard]] std::string element(std::string_view container) const;
     /// The element without its head: a mark, the number of bytes counted and their checksum. The bytes of the
     /// head are counted before it.
     [[nodiscard]] std::string record() const;
@@ -28,8 +28,20 @@ class PartChecksum {
     std::uint32_t crc_ = 0;
 };
 
-/// The length of the longest beginning of a part that ends with a checksum and in which all are right; 0
-/// without any. Throws corda::Error: kIo if the file cannot be read, kInterrupted.
-[[nodiscard]] std::uint64_t sound_part_bytes(const std::string& path, const OnProgress& on_progress = {});
+/// What the checksums of a part tell.
+struct SoundBytes {
+    /// Length of the longest prefix that ends with a checksum and whose checksums all match; 0 if there is
+    /// none.
+    std::uint64_t count = 0;
+    bool is_damaged = false;  ///< the checksum after that prefix does not match; otherwise it is missing
+};
+
+/// How much of a part is read.
+enum class PartExtent { kAll, kFirstChunk };
+
+/// Compares the checksums of a part with its bytes. Throws corda::Error: kIo if the file cannot be read,
+/// kInterrupted.
+[[nodiscard]] SoundBytes sound_bytes_of(const std::string& path, PartExtent extent,
+                                        const OnProgress& on_progress = {});
 
 }  // namespace corda::media

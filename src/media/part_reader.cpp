@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "corda/core/file.hpp"
 #include "corda/core/image.hpp"
 #include "corda/media/checked.hpp"
 #include "corda/media/file_kind.hpp"
@@ -127,21 +128,17 @@ Rational rate_of(const std::string& path, const PartInput& input, std::int64_t p
     return Rational::reduced(input.stream->time_base.den, *duration);
 }
 
-/// The length of the beginning of a part that is whole and unchanged.
-std::uint64_t sound_bytes(const std::string& path, const OnProgress& on_progress) {
-    const std::uint64_t bytes = sound_part_bytes(path, on_progress);
-    if (bytes > 0) return bytes;
-    throw EmptyPart(ExitCode::kMismatch,
-                    fmt::format("'{}' holds no whole chunk of a video that corda wrote, so no frame can be "
-                                "recovered; render it again (--force)",
-                                path));
-}
-
 }  // namespace
 
 PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
     PartIndex index;
-    index.bytes = sound_bytes(path, on_progress);
+    const SoundBytes sound = sound_bytes_of(path, PartExtent::kAll, on_progress);
+    if (sound.count == 0)
+        throw EmptyPart(ExitCode::kMismatch,
+                        fmt::format("'{}' holds no whole chunk with a right checksum; render it again "
+                                    "(--force), or try to save what plays: ffmpeg -i '{}' -c copy NEW.mkv",
+                                    path, path));
+    index.bytes = sound.count;
     const PartInput input = open_part(path, index.bytes);
     const Packet packet = check_allocated(Packet(av_packet_alloc()), "a packet");
     std::vector<std::int64_t> stamps;
@@ -165,19 +162,23 @@ PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
     if (index.fps.den > std::numeric_limits<int>::max()) fail_rate(path);  // more than libav can count
     number_frames(stamps, step, index);
     std::error_code ignored;
-    index.truncated = index.bytes < std::filesystem::file_size(path, ignored) || is_broken || is_damaged ||
-                      index.frame_of.size() < stamps.size();
+    index.is_damaged = sound.is_damaged || is_broken || is_damaged || index.frame_of.size() < stamps.size();
+    index.is_cut = index.bytes < std::filesystem::file_size(path, ignored);
     return index;
 }
 
-std::optional<std::string> part_comment(const std::string& path) {
+std::optional<std::string> part_comment(const std::string& path, const OnProgress& on_progress) {
     const LogCapture log;
-    if (const std::uint64_t bytes = sound_part_bytes(path); bytes > 0)
-        return metadata_entry(*open_part(path, bytes).format, "comment");
-    if (const std::string kind = file_kind(path); kind == "mov" || kind == "matroska") return std::nullopt;
-    throw Error(ExitCode::kUsage, fmt::format("'{}' is no part of a video, so --resume cannot go on with it; "
-                                              "render to another name, or start anew (--force)",
-                                              path));
+    const std::uint64_t bytes = sound_bytes_of(path, PartExtent::kFirstChunk, on_progress).count;
+    if (bytes == 0) return std::nullopt;
+    return metadata_entry(*open_part(path, bytes).format, "comment");
+}
+
+bool holds_in_front(const std::string& path, std::string_view text) {
+    const FileHandle file = open_for_reading(path);
+    std::string front(std::size_t{1} << 18, '\0');
+    front.resize(read_bytes(file, path, front.data(), front.size()));
+    return front.find(text) != std::string::npos;
 }
 
 void PacketCopy::copy_to(std::size_t end, TrackOutput& output, const OnProgress& on_progress) {

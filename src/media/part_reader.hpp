@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "corda/core/basics.hpp"
@@ -25,8 +26,9 @@ struct PartIndex {
     std::vector<std::int64_t> frame_of;
     std::int64_t reorder_depth = 0;  ///< how many frames decoding must run ahead of showing
     AVCodecID codec = AV_CODEC_ID_NONE;
-    std::uint64_t bytes = 0;  ///< length of the beginning whose checksums are right
-    bool truncated = false;   ///< there is more in the file
+    std::uint64_t bytes = 0;  ///< length of the prefix whose checksums match
+    bool is_cut = false;      ///< there is more in the file
+    bool is_damaged = false;  ///< what follows is not a chunk that broke off, but has changed
 };
 
 /// A part without a whole chunk: nothing of it can be used.
@@ -45,9 +47,14 @@ class EmptyPart : public Error {
 /// What the part says of itself: "title" or "comment"; empty if it does not.
 [[nodiscard]] std::string metadata_entry(const AVFormatContext& format, const char* key);
 
-/// The comment of a part; none if no chunk of it is whole. Throws as open_part, and corda::Error (kUsage) if
-/// the file is none.
-[[nodiscard]] std::optional<std::string> part_comment(const std::string& path);
+/// The comment of a part; std::nullopt if its first chunk is not whole. Throws as open_part, and
+/// corda::Error: kIo, kInterrupted.
+[[nodiscard]] std::optional<std::string> part_comment(const std::string& path,
+                                                      const OnProgress& on_progress = {});
+
+/// Whether a text is among the first bytes of a file, where a part has its comment: also one that breaks off
+/// in its first chunk. Throws corda::Error (kIo).
+[[nodiscard]] bool holds_in_front(const std::string& path, std::string_view text);
 
 /// Copies packets of a part, from the first one, into a track, with time stamps made anew from frame numbers.
 class PacketCopy {

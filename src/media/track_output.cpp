@@ -148,7 +148,7 @@ void TrackOutput::end_bytes(const std::string& what) {
     avio_write(io_.get(), reinterpret_cast<const unsigned char*>(element.data()),
                static_cast<int>(element.size()));
     avio_flush(io_.get());
-    checksum_ = {};
+    checksum_ = {};  // the element was counted as it was written
     check_libav(io_->error, kIo, what);
 }
 

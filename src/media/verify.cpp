@@ -26,7 +26,8 @@ namespace {
 std::string probed_container(const std::string& path) {
     const FileHandle file = open_for_reading(path);
     std::vector<unsigned char> head(4096 + AVPROBE_PADDING_SIZE);
-    const std::size_t count = std::fread(head.data(), 1, head.size() - AVPROBE_PADDING_SIZE, file.get());
+    const std::size_t count =
+        read_bytes(file, path, reinterpret_cast<char*>(head.data()), head.size() - AVPROBE_PADDING_SIZE);
     if (count == 0) return {};
     std::fill(head.begin() + static_cast<std::ptrdiff_t>(count), head.end(), static_cast<unsigned char>(0));
     AVProbeData data{};
@@ -145,7 +146,7 @@ std::string container_of(const std::string& kind, const std::string& path) {
     if (kind != "matroska") return kind;
     const FileHandle file = open_for_reading(path);
     std::string head(64, '\0');
-    head.resize(std::fread(head.data(), 1, head.size(), file.get()));
+    head.resize(read_bytes(file, path, head.data(), head.size()));
     return head.find("webm") != std::string::npos ? "webm" : "matroska";
 }
 

@@ -57,14 +57,22 @@ class PartSink : public VideoSink {
     /// place.
     PartSink(const Format& format, const std::string& path, const OutputOptions& options, PartFile old,
              const FrameRange& frames)
-        : PartSink(format, path, options, PartFile::create(part_path(path) + ".new", {.force = true})) {
+        : PartSink(format, path, options,
+                   PartFile::create(part_copy_path(part_path(path)), {.force = true})) {
         // Copying is no progress of the frames that are still to be drawn.
         const OnProgress nothing_done = [&](std::int64_t, std::int64_t) {
             return !options.on_progress || options.on_progress(0, frames.end - frames.first);
         };
-        resumed_ = copy_chunks(old.path(), frames, nothing_done);
+        try {
+            resumed_ = copy_chunks(old.path(), frames, nothing_done);
+            if (resumed_ > 0) part_.sync();
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::kIo) throw;
+            throw Error(error.code(), fmt::format("{}; '{}' stays as it is: to resume it, it is first copied "
+                                                  "to '{}', which needs as much space again",
+                                                  error.what(), old.path(), part_.path()));
+        }
         has_chunk_ = resumed_ > 0;
-        if (has_chunk_) part_.sync();
         part_.take_place_of(old);
     }
     PartSink(const PartSink&) = delete;
@@ -248,6 +256,7 @@ std::unique_ptr<VideoSink> make_sink(const Format& format, const std::string& pa
             break;
     }
     std::error_code ignored;
+    PartFile::remove_unheld(part_copy_path(part_path(path)));
     if (!resume || !std::filesystem::exists(part_path(path), ignored))
         return std::make_unique<PartSink>(format, path, options);
     PartFile old = PartFile::open(part_path(path));

@@ -21,7 +21,7 @@ std::string all_of(const std::string& path) {
     std::string all;
     std::array<char, 1 << 16> piece{};
     for (std::size_t count = 1; count > 0 && all.size() < kMostBytes;) {
-        count = std::fread(piece.data(), 1, piece.size(), file.get());
+        count = read_bytes(file, path, piece.data(), piece.size());
         all.append(piece.data(), count);
     }
     return all;

@@ -41,8 +41,9 @@ std::map<std::string, std::string> origin_of(const Scene& scene, const media::Fo
     return origin;
 }
 
-/// A part of another render cannot be gone on with.
-void check_part(const std::string& path, const std::map<std::string, std::string>& origin) {
+/// A part of another render cannot be resumed, and what is no part is not replaced.
+void check_part(const std::string& path, const std::map<std::string, std::string>& origin,
+                const OnProgress& on_progress) {
     const std::string part = part_path(path);
     std::error_code ignored;
     const auto bytes = std::filesystem::file_size(part, ignored);
@@ -51,12 +52,21 @@ void check_part(const std::string& path, const std::map<std::string, std::string
         throw Error(
             ExitCode::kUsage,
             fmt::format(
-                "'{}' {}, so --resume cannot go on with it; render to another name, make it a video (corda "
+                "'{}' {}, so --resume cannot continue it; render to another name, make it a video (corda "
                 "recover), or start anew (--force)",
                 part, problem));
     };
-    const std::optional<std::string> comment = media::part_comment(part);
-    if (!comment) return;  // nothing to go on with, and nothing to lose
+    const std::optional<std::string> comment = media::part_comment(part, on_progress);
+    if (!comment) {
+        // A part of this render that broke off in its first chunk holds nothing that would be lost.
+        const std::string told = fmt::format("\"{}\":{}", media::kOriginKey, nlohmann::json(origin).dump());
+        if (media::holds_in_front(part, told)) return;
+        throw Error(
+            ExitCode::kUsage,
+            fmt::format("'{}' holds no whole chunk of this render, so --resume cannot continue it; move "
+                        "it away, render to another name, or replace it (--force)",
+                        part));
+    }
     const std::map<std::string, std::string> its = media::told_origin(*comment);
     if (its.empty()) fail("does not tell what it was rendered from");
     if (const std::string difference = first_difference(origin, its); !difference.empty())
@@ -203,7 +213,10 @@ media::Format checked_format(const Scene& scene, const std::string& path, const 
                                   !view::look_of(scene.style).ground.is_opaque(), def.first, end, def.resume);
     check_ground(scene, format);
     check_memory(format, scene.video);
-    if (def.resume) check_part(path, origin_of(scene, format, def.first, end));
+    if (def.resume)
+        check_part(path, origin_of(scene, format, def.first, end), [&](std::int64_t, std::int64_t) {
+            return !def.on_progress || def.on_progress(0, end - def.first);
+        });
     return format;
 }
 

@@ -43,7 +43,7 @@ class Resume : public testing::Test {
         const std::string part = quoted(file(name + ".part"));
         command += " & p=$!; ";
         if (from == From::kFirstChunk)
-            command += "until [ -s " + part + " ] || ! kill -0 $p; do sleep 0.01; done; ";
+            command += "until grep -qas 'corda checksum' " + part + " || ! kill -0 $p; do sleep 0.01; done; ";
         command += "sleep " + std::to_string(after_s) + "; kill -s " + signal + " $p; wait $p; ";
         // Until whoever held the part is gone.
         command += "[ ! -e " + part + " ] || flock -w 60 " + part + " true";
@@ -156,9 +156,34 @@ TEST_F(Resume, BeginsAnewIfThereIsNothingToGoOnWith) {
     const auto broken = run_corda(render("c.mp4", more));
     EXPECT_NE(broken.exit_code, 0);
     EXPECT_EQ(read_file(file("c.mp4.part")), "this is no video");
+    test::write_file(file("d.mp4.part"), read_file(file("a.mp4")));  // a video that is no part
+    const auto foreign = run_corda(render("d.mp4", more));
+    EXPECT_EQ(foreign.exit_code, 2);
+    EXPECT_THAT(foreign.err, HasSubstr("holds no whole chunk of this render"));
+    EXPECT_TRUE(read_file(file("d.mp4.part")) == read_file(file("a.mp4")));
     const auto pictures = run_corda(render("frames/%04d.png", more));
     EXPECT_EQ(pictures.exit_code, 2);
     EXPECT_THAT(pictures.err, HasSubstr("--frames FIRST:END"));
+}
+
+TEST_F(Resume, ReplacesADamagedPartOnlyIfItIsItsOwn) {
+    const std::vector<std::string> more{"--duration", "20", "--set", "solver.method=exact"};
+    const std::string whole = bytes_of_a_whole("whole.mp4", more);
+    interrupt("a.mp4", "INT", 0.0, From::kFirstChunk, more);
+    std::string part = read_file(file("a.mp4.part"));
+    ASSERT_NE(part.find("mdat"), std::string::npos);
+    part[part.find("mdat") + 100] ^= 1;  // in the first chunk
+    test::write_file(file("a.mp4.part"), part);
+    test::write_file(file("a.mp4.part.new"), "what a kill left while a part was copied");
+    std::vector<std::string> again = more;
+    again.emplace_back("--resume");
+    std::vector<std::string> other = again;
+    other.insert(other.end(), {"--crf", "30"});
+    EXPECT_EQ(run_corda(render("a.mp4", other)).exit_code, 2);
+    EXPECT_TRUE(read_file(file("a.mp4.part")) == part);
+    EXPECT_EQ(run_corda(render("a.mp4", again)).exit_code, 0);
+    EXPECT_TRUE(read_file(file("a.mp4")) == whole);
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"a.mp4", "whole.mp4"}));
 }
 
 }  // namespace

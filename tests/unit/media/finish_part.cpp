@@ -54,6 +54,23 @@ TEST_F(Video, APartWithAnotherNumberOfFramesStays) {
     EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.part"));
 }
 
+TEST_F(Video, APartStaysIfItIsDamagedOrToBeKept) {
+    abandon_video(file("a.mp4"), small_video({10, 1}), 60);  // three chunks
+    const std::string whole = test::read_file(file("a.mp4.part"));
+    const RemuxResult kept = recover_part(file("a.mp4.part"), file("b.mp4"), {}, true);
+    EXPECT_FALSE(kept.removed || kept.damaged || kept.truncated);
+    EXPECT_TRUE(test::read_file(file("a.mp4.part")) == whole);
+    // A changed byte in the second chunk, with a third one behind it.
+    std::string changed = whole;
+    changed[whole.rfind("mdat", whole.rfind("mdat") - 1) + 40] ^= 1;
+    test::write_file(file("a.mp4.part"), changed);
+    const RemuxResult damaged = recover_part(file("a.mp4.part"), file("a.mp4"));
+    EXPECT_EQ(damaged.frames, 20);
+    EXPECT_TRUE(damaged.damaged && damaged.truncated && !damaged.removed);
+    EXPECT_TRUE(test::read_file(file("a.mp4.part")) == changed);
+    EXPECT_TRUE(verify(file("a.mp4")).ok());
+}
+
 TEST_F(Video, ATornPartLosesOnlyItsLastFragment) {
     constexpr int kFrames = 100;
     abandon_video(file("a.mp4"), small_video({10, 1}), kFrames);  // a key frame every 20 frames
