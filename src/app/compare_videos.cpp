@@ -34,7 +34,9 @@ struct VideoDifference {
     double time_s = 0.0;  ///< largest difference of the times of two frames
     std::int64_t differing = 0;
     std::int64_t failed = 0;  ///< frames beyond the limits
-    Difference worst;         ///< of the worst frame; of equal videos that of the first
+    Difference largest;       ///< its max, mean and share are the largest of any frame
+    Difference worst;         ///< of the worst frame, one beyond the limits if there is any
+    bool is_worst_failed = false;
     std::int64_t worst_frame = 0;
     double worst_time_s = 0.0;
     std::array<Image, 2> worst_pictures;
@@ -63,12 +65,18 @@ void take_frames(const CompareOptions& options, const std::array<media::StoredPi
     // Of one format, other samples can have the same bytes of colour; a mask tells no samples apart.
     if (is_stored_alike && !mask) difference.equal = false;
     if (difference.equal) return;
-    result.failed += difference.within(options.limits) ? 0 : 1;
-    const bool is_worse =
-        !difference.same_size || difference.mean > result.worst.mean || result.differing == 0;
+    const bool has_failed = !difference.within(options.limits);
+    result.failed += has_failed ? 1 : 0;
+    result.largest.max = std::max(result.largest.max, difference.max);
+    result.largest.mean = std::max(result.largest.mean, difference.mean);
+    result.largest.share = std::max(result.largest.share, difference.share);
+    const bool is_worse = !difference.same_size || result.differing == 0 ||
+                          (has_failed && !result.is_worst_failed) ||
+                          (has_failed == result.is_worst_failed && difference.mean > result.worst.mean);
     ++result.differing;
     if (!is_worse || !result.worst.same_size) return;
     result.worst = difference;
+    result.is_worst_failed = has_failed;
     result.worst_frame = frame;
     result.worst_time_s = pictures[0].time_s;
     result.worst_pictures = std::move(images);
@@ -108,6 +116,11 @@ Json json_of(const VideoDifference& found) {
     const bool same_frames = found.frames[0] == found.frames[1];
     const bool same_times = are_same_rate(found.rates) && found.time_s <= kSameTimeS;
     Json json = figures_json(found.worst);
+    if (found.worst.same_size) {
+        json["max"] = found.largest.max;
+        json["mean"] = found.largest.mean;
+        json["share"] = found.largest.share;
+    }
     json["equal"] = found.differing == 0 && same_size && same_frames && same_times;
     json["same_size"] = same_size;
     json["passed"] = found.failed == 0 && same_size && same_frames && same_times;
@@ -136,6 +149,7 @@ Json json_of(const VideoDifference& found) {
                                     found.differing, std::min(found.frames[0], found.frames[1]),
                                     found.failed == 0 ? " within the limits" : "", found.worst_frame,
                                     found.worst_time_s, figures_text(found.worst)));
+        if (found.differing > 1) words.push_back("the largest of any frame: " + figures_text(found.largest));
     }
     if (words.empty()) words.push_back(fmt::format("equal: {} frames", found.frames[0]));
     json["words"] = words;

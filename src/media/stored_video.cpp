@@ -8,7 +8,9 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/media/apng_times.hpp"
+#include "corda/media/file_end.hpp"
 #include "corda/media/file_kind.hpp"
+#include "corda/media/mp4_boxes.hpp"
 #include "corda/media/video_reader.hpp"
 #include "corda/media/webp_reader.hpp"
 
@@ -25,6 +27,9 @@ struct StoredVideo::Impl {
 StoredVideo::StoredVideo(const std::string& path) : impl_(std::make_unique<Impl>()) {
     impl_->path = path;
     const std::string kind = file_kind(path);
+    if (breaks_off(path, kind) || (kind == "mov" && !read_mp4_boxes(path).whole))
+        throw Error(ExitCode::kIo,
+                    fmt::format("'{}' breaks off before its end; copy or render it again", path));
     if (kind == "webp") {
         impl_->webp.emplace(path);
         if (!impl_->webp->is_open())

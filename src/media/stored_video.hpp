@@ -38,7 +38,8 @@ struct StoredPicture {
 /// player shows them.
 class StoredVideo {
   public:
-    /// Throws corda::Error (kIo) if the file is not a video that can be decoded.
+    /// Throws corda::Error (kIo) if the file is not a video that can be decoded, or breaks off before its
+    /// end.
     explicit StoredVideo(const std::string& path);
     StoredVideo(const StoredVideo&) = delete;
     StoredVideo& operator=(const StoredVideo&) = delete;

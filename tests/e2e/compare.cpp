@@ -221,6 +221,28 @@ TEST_F(CompareFiles, VideosFrameByFrame) {
     EXPECT_EQ(report({a, b, "--variant", video("ref.other.mkv", source + lossless)})["variant"], "other");
 }
 
+TEST_F(CompareFiles, TheWorstFrameOfAVideoIsBeyondTheLimitsIfAnyIs) {
+    const std::string black = "color=c=black:size=64x48:rate=25:duration=0.4,format=rgb24";
+    const std::string lossless = " -c:v ffv1 -pix_fmt bgr0";
+    const std::string a = video("a.mkv", black + lossless);
+    // A few bright pixels in frame 3, many dark ones in frame 7.
+    const std::string b = video("b.mkv", "\"" + black +
+                                             ",drawbox=w=2:h=2:c=white:t=fill:enable='eq(n,3)'"
+                                             ",drawbox=w=40:h=40:c=0x202020:t=fill:enable='eq(n,7)'\"" +
+                                             lossless);
+    EXPECT_EQ(report({a, b})["worst_frame"], 7);
+    const auto limited = report({a, b, "--max", "100"});
+    EXPECT_EQ(limited["worst_frame"], 3);
+    EXPECT_EQ(limited["failed_frames"], 1);
+    EXPECT_EQ(limited["max"], 255);
+    EXPECT_NEAR(limited["share"].get<double>(), 1600.0 / (64.0 * 48.0), 1e-12);
+    for (const char* const limit : {"max", "mean", "share"}) {  // as told, they are enough
+        const auto told = report({a, b})[limit].get<double>();
+        EXPECT_EQ(code({a, b, std::string("--") + limit, std::to_string(std::min(told + 1e-6, 255.0))}), 0)
+            << limit;
+    }
+}
+
 TEST_F(CompareFiles, VideosOfOtherCountsSizesRatesAndFormats) {
     const std::string a = video("a.mp4", "testsrc=size=64x48:rate=25:duration=0.4 -pix_fmt yuv420p");
     const auto words = [&](const std::string& name, const std::string& options) {
@@ -255,8 +277,11 @@ TEST_F(CompareFiles, AnimationsOfThreeKindsAreEqualToTheExactVideo) {
         EXPECT_THAT(result.out, HasSubstr("equal: 9 frames"));
         EXPECT_EQ(code({same, render(std::string("b.") + ending, "31")}), 7);
     }
-    test::write_file(file("cut.webp"), test::read_file(file("a.webp")).substr(0, 500));
-    EXPECT_EQ(code({file("cut.webp"), exact}), 6);
+    for (const std::string name : {"a.webp", "a.apng", "a.mkv"}) {
+        const std::string whole = test::read_file(file(name));
+        test::write_file(file("cut-" + name), whole.substr(0, whole.size() - 2));
+        EXPECT_EQ(code({file("cut-" + name), exact}), 6) << name;
+    }
 }
 
 TEST_F(CompareFiles, SizesThatChangeAmidAVideo) {
