@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <string>
 
 #include "corda/media/encoders.hpp"
@@ -17,9 +20,21 @@ EncoderSettings prores_settings(const Format& format, const VideoDef& /*def*/) {
             0};
 }
 
-EncoderSettings ffv1_settings(const Format& /*format*/, const VideoDef& /*def*/) {
+EncoderSettings ffv1_settings(const Format& /*format*/, const VideoDef& def) {
+    // libavcodec limits the pixels of a slice: of R'G'B' with alpha to 3.7 million.
+    constexpr std::int64_t kSlicePixels = 3'500'000;
+    constexpr std::array<int, 5> kSlices{4, 9, 16, 24, 30};
+    const std::int64_t pixels = std::int64_t{def.width_px} * def.height_px;
+    const auto* const slices = std::find_if(kSlices.begin(), kSlices.end() - 1,
+                                            [&](int count) { return pixels <= count * kSlicePixels; });
     // Version 3, each frame on its own, checksums of every slice.
-    return {-99, {{"level", "3"}, {"g", "1"}, {"slices", "4"}, {"slicecrc", "1"}, {"context", "0"}}, 0};
+    return {-99,
+            {{"level", "3"},
+             {"g", "1"},
+             {"slices", std::to_string(*slices)},
+             {"slicecrc", "1"},
+             {"context", "0"}},
+            0};
 }
 
 EncoderSettings exact_settings(const Format& /*format*/, const VideoDef& /*def*/) {

@@ -49,7 +49,7 @@ constexpr std::array kVariants{
     Variant{"vp9_alpha", ".webm", "", kAny, true, 35.0},            // measured 35.9
     Variant{"vp9_444", ".webm", "", k444, false, 49.0},             // measured 50.4
     Variant{"av1_webm", ".webm", "av1", kAny, false, 33.0},         // measured 33.4
-    Variant{"aom_webm", ".webm", "libaom-av1", kAny, false, 33.0},  // measured
+    Variant{"aom_webm", ".webm", "libaom-av1", kAny, false, 33.0},  // measured 33.4
     Variant{"prores", ".mov", "", kAny, false, 80.0},               // measured 80.9
     Variant{"prores_alpha", ".mov", "", kAny, true, 55.0},          // measured 55.5
     Variant{"ffv1", ".mkv", "", kAny, false, 0.0},
