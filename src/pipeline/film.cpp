@@ -7,13 +7,12 @@
 #include <fmt/format.h>
 
 #include "corda/core/clock.hpp"
+#include "corda/pipeline/brush.hpp"
 #include "corda/pipeline/curves.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/methods.hpp"
 #include "corda/pipeline/motion.hpp"
 #include "corda/pipeline/painter.hpp"
-#include "corda/pipeline/stage.hpp"
-#include "corda/pipeline/tracks.hpp"
 #include "corda/pipeline/validate.hpp"
 #include "corda/sim/auto/planner.hpp"
 #include "corda/sim/bounds.hpp"
@@ -36,18 +35,6 @@ double pose_opacity(std::size_t k, std::size_t count) {
 }
 
 }  // namespace
-
-/// What one thread draws a film with.
-struct pipeline::Brush {
-    Brush(const Scene& scene, const System& system, const FilmDef& def)
-        : stage(scene, system, def.backend, def.require_gpu),
-          tracks(stage.traced(), scene.style.trail_s, scene.video.fps) {}
-
-    Stage stage;
-    Tracks tracks;
-    State state;
-    Figures figures;  ///< of the state
-};
 
 /// What films of one motion share.
 struct Film::Run {
@@ -137,7 +124,7 @@ struct Film::Impl {
         if (brush.stage.needs_motion()) motion.run_to_end(def.on_progress);
         if (scene.overlay.plot != LivePlot::kNone) {
             const std::vector<MethodDef> methods = motion.methods();  // reading may begin the motion anew
-            plot = curves.read(methods, last_s(), [this](double time_s) -> const State& {
+            plot = curves.read(methods, last_s(brush), [this](double time_s) -> const State& {
                 return motion.at(time_s, def.on_progress);
             });
         }
@@ -178,13 +165,18 @@ struct Film::Impl {
         return asked;
     }
 
+    /// Whom to ask while the motion is simulated for a brush.
+    [[nodiscard]] OnProgress asking(const Brush& by) const {
+        return by.is_silent ? OnProgress() : def.on_progress;
+    }
+
     /// Reads the state at a time, and what the trails to it need, for a brush. Brushes may be used by several
     /// threads.
     const State& read(double time_s, Brush& by) {
         require_time(time_s);
         const std::lock_guard lock(run->reading);
-        by.tracks.read(motion, time_s, def.on_progress);
-        by.state = motion.at(time_s, def.on_progress);
+        by.tracks.read(motion, time_s, asking(by));
+        by.state = motion.at(time_s, asking(by));
         by.figures = motion.figures();
         return by.state;
     }
@@ -244,7 +236,9 @@ struct Film::Impl {
         try {
             return draw_asking(on_progress);
         } catch (const pipeline::Stage::Overdrawn&) {
-            return draw_asking({});  // without asking: it would not end
+            // Without asking anybody, who would draw again.
+            const pipeline::Silence silence(by);
+            return draw_asking({});
         }
     }
 
@@ -256,9 +250,9 @@ struct Film::Impl {
 
     /// The end of the motion: that of the scene, or of the last recorded state if it diverges, which is only
     /// known once it has been simulated.
-    double last_s() {
+    double last_s(const Brush& by) {
         const std::lock_guard lock(run->reading);
-        motion.run_to_end(def.on_progress);
+        motion.run_to_end(asking(by));
         const std::size_t states = motion.recording().size();
         return motion.diverges() && states > 0 ? motion.timeline().time_s(states - 1)
                                                : scene.world.duration_s;
@@ -267,7 +261,7 @@ struct Film::Impl {
     /// The states are read in the order of time: what is not recorded is simulated on the way.
     Damage expose(double time_s, double shutter, const view::Camera& map, const OnProgress& on_progress,
                   Brush& by) {
-        const double end_s = last_s();
+        const double end_s = last_s(by);
         const std::int64_t picture = by.stage.begin_exposure();
         std::optional<view::Caption> caption;
         const auto note = [&] {
@@ -293,7 +287,7 @@ struct Film::Impl {
         };
         const VideoDef& video = scene.video;
         if (video.shutter == 0.0) return shows_nothing_at(time_s);
-        const double end_s = last_s();
+        const double end_s = last_s(brush);
         for (int i = 0; i < video.subframes; ++i)
             if (!shows_nothing_at(subframe_s(time_s, video.shutter, end_s, i))) return false;
         return true;
@@ -304,8 +298,8 @@ struct Film::Impl {
         const VideoDef& video = scene.video;
         const double last_frame_s = video.fps.time_s(end - 1);
         const double needed_s = video.shutter > 0.0
-                                    ? std::max(last_frame_s, subframe_s(last_frame_s, video.shutter, last_s(),
-                                                                        video.subframes - 1))
+                                    ? std::max(last_frame_s, subframe_s(last_frame_s, video.shutter,
+                                                                        last_s(brush), video.subframes - 1))
                                     : last_frame_s;
         const auto last = motion.timeline().find(needed_s);
         if (!last) return false;

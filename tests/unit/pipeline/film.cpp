@@ -256,6 +256,25 @@ TEST(FilmProgress, CanAskForWhatIsSimulated) {
     expect_same_bits(film.state(29), whole.state(29));
 }
 
+TEST(FilmProgress, CanDrawWhatIsSimulatedWhileABlurredFrameIsMade) {
+    const std::string scene =
+        kRope + "shutter = 1\nsubframes = 2\n[solver]\nmethod = \"relaxation\"\nstep = 2e-6\n";
+    const Image alone = film_of(scene).frame(20);
+    const Film* asked = nullptr;
+    FilmDef def;
+    def.motion_budget_bytes = 2000;  // some states: those within exposures are simulated in passing
+    int drawn = 0;
+    def.on_progress = [&](std::int64_t, std::int64_t) {
+        if (asked != nullptr && ++drawn > 0) static_cast<void>(asked->still(0.0));
+        return true;
+    };
+    const Film film = film_of(scene, def);
+    static_cast<void>(film.frame(0));
+    asked = &film;
+    EXPECT_TRUE(test::equal_images(film.frame(20), alone));
+    EXPECT_GT(drawn, 0);
+}
+
 TEST(FilmRefusal, NamesTheFileTheProblemAndWhatToChange) {
     try {
         static_cast<void>(
