@@ -38,7 +38,7 @@ void FigureOptions::add_to(CLI::App& command, const std::string& output_help) {
     gl.add_to(command);
     empty.add_to(command);
     command.add_flag("--force", force, "replace existing files");
-    command.add_flag("--dry-run", dry_run, "check everything and write nothing");
+    command.add_flag("--dry-run", dry_run, "check everything but OpenGL, and write nothing");
 }
 
 void FigureOptions::require() const {

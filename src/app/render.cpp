@@ -66,21 +66,22 @@ bool is_one_file(const std::string& output) {
     return kind == media::FileKind::kVideo || kind == media::FileKind::kAnimation;
 }
 
-ExitCode report_interrupted(const Console& console, const RenderOptions& options, std::int64_t first,
-                            std::int64_t count, const Rendered& rendered) {
-    const std::string done = fmt::format("frames {}..{} of {}", first, first + rendered.frames - 1, count);
-    if (rendered.frames == 0) {
-        console.warning(
-            fmt::format("interrupted before the first frame; {} was not written", options.output));
-    } else if (is_one_file(options.output)) {
-        console.warning(
-            fmt::format("interrupted: {} are in {}, which plays; {} was not written (--resume goes on, "
-                        "corda recover makes it a video of these frames)",
-                        done, rendered.kept_part, options.output));
-    } else {
-        console.warning(fmt::format("interrupted: {} are in {}", done, rendered.kept_part));
-    }
-    return interruption();
+/// What an interrupted render has done, and how to go on.
+std::string words_of_interruption(const RenderOptions& options, std::int64_t first, std::int64_t count,
+                                  const Rendered& rendered) {
+    if (rendered.frames == 0)
+        return fmt::format("interrupted before the first frame; {} was not written", options.output);
+    const std::int64_t next = first + rendered.frames;
+    const std::string done =
+        fmt::format("interrupted: frames {}..{} of {} are in {}", first, next - 1, count, rendered.kept_part);
+    if (is_one_file(options.output))
+        return fmt::format(
+            "{}, which plays; {} was not written (--resume goes on, corda recover makes it a video "
+            "of these frames)",
+            done, options.output);
+    const bool is_resumable = !is_standard_output(options.output) && rendered.frames < count;
+    return is_resumable ? fmt::format("{} (--frames {}:{} draws the others)", done, next, first + count)
+                        : done;
 }
 
 nlohmann::json report(const Film& film, const RenderOptions& options, const Rendered& rendered, double wall_s,
@@ -194,7 +195,8 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     };
     const Rendered rendered = render_video(film, options.output, def);
     if (rendered.reader_left) return ExitCode::kOk;
-    if (!rendered.complete) return report_interrupted(console, options, def.first, count, rendered);
+    if (!rendered.complete)
+        throw Error(interruption(), words_of_interruption(options, def.first, count, rendered));
     const double wall_s = now_s() - start_s;
     report_rendered(console, options.output, rendered, wall_s);
     warn_of_branch(console, film);
@@ -239,7 +241,7 @@ void add_render(CLI::App& app, Action& action) {
     command->add_flag("--force", options->force, "replace an existing output");
     command->add_flag("--resume", options->resume,
                       "go on with what an interrupted render of the same scene has left");
-    command->add_flag("--dry-run", options->dry_run, "check everything and write nothing");
+    command->add_flag("--dry-run", options->dry_run, "check everything but OpenGL, and write nothing");
     command->callback([options, &action] {
         options->scene.require();
         action = [options](const Console& console) { return render(console, *options); };
