@@ -1,6 +1,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <set>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/media/format.hpp"
+#include "corda/media/picture_names.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/view/look.hpp"
@@ -154,6 +156,18 @@ void report_rendered(const Console& console, const std::string& output, const Re
                              is_one_file(output) ? "; verified" : ""));
 }
 
+/// A longer film may have been there before.
+void warn_of_other_pictures(const Console& console, const std::string& output, std::int64_t end) {
+    if (media::find_ending(output).kind != media::FileKind::kPictures) return;
+    const std::string next = media::picture_name(output, end);
+    std::error_code ignored;
+    if (std::filesystem::exists(next, ignored))
+        console.warning(
+            fmt::format("{} is there and not of this render, which has {}; remove it and those after "
+                        "it before the pictures are used as a video",
+                        next, counted(end, "frame")));
+}
+
 ExitCode render(const Console& console, const RenderOptions& options) {
     const double start_s = now_s();
     Scene scene = options.scene.load(console);
@@ -200,6 +214,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     const double wall_s = now_s() - start_s;
     report_rendered(console, options.output, rendered, wall_s);
     warn_of_branch(console, film);
+    if (!def.end) warn_of_other_pictures(console, options.output, count);
     if (!is_standard_output(options.output)) console.result(options.output);
     console.report(report(film, options, rendered, wall_s, gl.renderer));
     const EmptyPictures empty{options.empty.are_failures, rendered.empty_frames, rendered.first_empty_s};

@@ -37,13 +37,14 @@ std::string temporary_stem(const std::string& path) {
     return (whole.parent_path() / whole.filename().string().substr(0, kLongestStem)).string() + ".";
 }
 
-/// Whether a name is a stem, hexadecimal digits and the ending of temporary files.
-bool is_temporary(std::string_view name, std::string_view stem) {
-    if (!name.starts_with(stem) || !name.ends_with(kTemporaryEnding)) return false;
-    if (name.size() <= stem.size() + kTemporaryEnding.size()) return false;
-    name.remove_prefix(stem.size());
+/// The name of the output that a file is a temporary one of, cut to the longest stem; none for other files.
+std::optional<std::string> output_of(std::string_view name) {
+    if (!name.ends_with(kTemporaryEnding)) return std::nullopt;
     name.remove_suffix(kTemporaryEnding.size());
-    return name.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+    const std::size_t dot = name.rfind('.');
+    if (dot == std::string_view::npos || dot + 1 == name.size()) return std::nullopt;
+    const bool is_hexadecimal = name.find_first_not_of("0123456789abcdef", dot + 1) == std::string_view::npos;
+    return is_hexadecimal ? std::optional<std::string>(name.substr(0, dot)) : std::nullopt;
 }
 
 /// Removes a temporary file unless somebody holds it.
@@ -144,11 +145,23 @@ void check_output(const std::string& path, const std::string& input, bool force,
     }
 }
 
+void remove_leftovers(const std::string& folder,
+                      const std::function<bool(const std::string& name)>& is_output) noexcept {
+    try {
+        for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+            const auto output = output_of(entry.path().filename().string());
+            if (output && is_output(*output)) remove_unheld(entry.path().string());
+        }
+    } catch (const std::exception&) {
+        return;
+    }
+}
+
 void remove_leftovers(const std::string& path) noexcept {
     try {
-        const std::string stem = fs::path(temporary_stem(follow_links(path))).filename().string();
-        for (const fs::directory_entry& entry : fs::directory_iterator(folder_of(follow_links(path))))
-            if (is_temporary(entry.path().filename().string(), stem)) remove_unheld(entry.path().string());
+        const std::string target = follow_links(path);
+        const std::string stem = fs::path(target).filename().string().substr(0, kLongestStem);
+        remove_leftovers(folder_of(target).string(), [&](const std::string& name) { return name == stem; });
     } catch (const std::exception&) {
         return;
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,6 +28,10 @@ void check_output(const std::string& path, const std::string& input, bool force,
 /// Removes the temporary files that killed processes have left of outputs of this name. Those of living ones
 /// are locked, and stay. Never throws: they do no harm.
 void remove_leftovers(const std::string& path) noexcept;
+
+/// The same for all outputs in a folder whose names satisfy `is_output`.
+void remove_leftovers(const std::string& folder,
+                      const std::function<bool(const std::string& name)>& is_output) noexcept;
 
 /// A file that gets its name only when it is complete.
 ///

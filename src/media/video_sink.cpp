@@ -126,9 +126,11 @@ class PartSink : public VideoSink {
             work();
         } catch (const Error& error) {
             if (error.code() != ExitCode::kIo || !has_chunk_) throw;
+            const bool is_taken = !options_.force && std::filesystem::exists(path_);
             const std::string kept =
                 part_.is_named()
-                    ? fmt::format("{} in '{}', which plays; --resume goes on with it", which, part_.path())
+                    ? fmt::format("{} in '{}', which plays; --resume{} goes on with it", which, part_.path(),
+                                  is_taken ? " --force" : "")
                     : fmt::format("'{}' was removed meanwhile, and its frames with it", part_.path());
             throw Error(error.code(), fmt::format("{}; {}", error.what(), kept));
         }
@@ -186,6 +188,8 @@ class PictureSink : public VideoSink {
         : pattern_(std::move(pattern)), options_(std::move(options)), first_frame_(first_frame) {
         const std::string folder = std::filesystem::path(pattern_).parent_path().string();
         if (!folder.empty()) make_folder(folder);
+        remove_leftovers(folder.empty() ? "." : folder,
+                         [this](const std::string& name) { return is_picture_name(pattern_, name); });
     }
 
     void begin(const AVCodecParameters& /*parameters*/, const TrackInfo& /*info*/) override {}

@@ -49,6 +49,7 @@ TEST_F(FormatsOfRender, HaveTheSameBytesForAnyNumberOfJobs) {
                                                           {"mp4", "libx265"},
                                                           {"mp4", "libsvtav1"},
                                                           {"webm", "libvpx-vp9"},
+                                                          {"webm", "libaom-av1"},
                                                           {"mov", "prores_ks"},
                                                           {"mkv", "ffv1"},
                                                           {"gif", ""},
@@ -89,6 +90,16 @@ TEST_F(FormatsOfRender, PicturesEqualStillsByteForByte) {
     EXPECT_FALSE(std::filesystem::exists(folder_.file("frames/f014.png")));
     EXPECT_EQ(render(folder_.file("frames/f%03d.png"), {"--frames", "13:15", "--force"}).exit_code, 0);
     EXPECT_TRUE(std::filesystem::exists(folder_.file("frames/f014.png")));
+}
+
+TEST_F(FormatsOfRender, PicturesOfALongerFilmAreWarnedOf) {
+    const std::string pictures = folder_.file("f/%02d.png");
+    EXPECT_EQ(render(pictures, {"--duration", "0.4"}).exit_code, 0);
+    const auto shorter = render(pictures, {"--duration", "0.2", "--force"});
+    EXPECT_EQ(shorter.exit_code, 0);
+    EXPECT_THAT(shorter.err, testing::HasSubstr("f/05.png is there and not of this render"));
+    EXPECT_THAT(render(pictures, {"--frames", "0:5", "--force"}).err,
+                testing::Not(testing::HasSubstr("not of this render")));
 }
 
 TEST_F(FormatsOfRender, StandardOutputTakesThePicturesAndNothingElse) {

@@ -169,6 +169,15 @@ TEST_F(OutputFiles, LeftoversOfKilledProcessesAreRemovedAndNoOthers) {
     remove_leftovers(file("no/such/folder/a"));
 }
 
+TEST_F(OutputFiles, LeftoversOfManyOutputsAreRemovedAtOnce) {
+    for (const char* const name : {"0001.png.12ab.tmp", "0002.png.ff.tmp", "0003.jpg.ff.tmp", "0004.png",
+                                   "0005.png.xyz.tmp", "0006.png..tmp", "7.tmp"})
+        test::write_file(file(name), "text");
+    remove_leftovers(folder_.path(), [](const std::string& name) { return name.ends_with(".png"); });
+    EXPECT_THAT(folder_.files(),
+                ElementsAre("0003.jpg.ff.tmp", "0004.png", "0005.png.xyz.tmp", "0006.png..tmp", "7.tmp"));
+}
+
 TEST_F(OutputFiles, OutliveARemovalThatBeganBeforeTheyWereLocked) {
     is_locked_to_be_removed = true;
     OutputFile output(file("a"));
