@@ -28,7 +28,7 @@ struct BenchOptions {
 
     /// The scene of one case: ten seconds of the example `first` if none is named.
     [[nodiscard]] Scene scene_of(const std::string& size, const std::string& preset) const {
-        return scene_of({size_setting(size), "video.preset=" + preset});
+        return scene_of({size_setting(size), "video.preset='" + preset + "'"});
     }
 
     [[nodiscard]] Scene scene_of(const std::vector<Setting>& own) const {

@@ -41,7 +41,7 @@ ExitCode verify(const Console& console, const std::string& path) {
     const media::VerifyReport report = media::verify_in_child(path, stopping_if_asked());
     if (!report.codec.empty()) {
         console.result(fmt::format(
-            "{}: {}{} {}x{}, {} at {} per second, {} s", path,
+            "{}: {}{} {}x{}, {} at {} per second, {:.6g} s", path,
             report.container == report.codec ? "" : report.container + " ", report.coding(), report.width_px,
             report.height_px, counted(report.frames, "frame"), report.fps.text(), report.duration_s.value()));
     }

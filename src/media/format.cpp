@@ -203,6 +203,9 @@ void check_crf(const Format& format, const EncoderDef& def) {
                    : "");
 }
 
+/// Of what counts milliseconds.
+constexpr double kMostMsRate = 1000.0;
+
 /// The pauses of a GIF are whole hundredths of a second, and what is shorter than two plays slowly.
 void check_gif_rate(Rational fps) {
     const Rational hundredths = Rational::reduced(100 * fps.den, fps.num);
@@ -215,8 +218,9 @@ void check_gif_rate(Rational fps) {
     const std::string faster = rate(longer - 1);
     fail_usage(
         "a GIF cannot have {} frames per second: its pauses are hundredths of a second, two at least; use {} "
-        "(--fps {}), or .apng or .webp",
-        fps.text(), slower == faster ? slower : slower + " or " + faster, slower);
+        "(--fps {}){}",
+        fps.text(), slower == faster ? slower : slower + " or " + faster, slower,
+        fps.value() <= kMostMsRate ? ", or .apng or .webp" : "");
 }
 
 void check_rate_for(const Format& format, const VideoDef& def) {
@@ -227,11 +231,10 @@ void check_rate_for(const Format& format, const VideoDef& def) {
         fail_usage(
             "an APNG cannot have {} frames per second: it counts up to 65535; use a rate such as 30000/1001",
             fps.text());
-    constexpr double kMostPerSecond = 1000.0;
     const bool counts_ms = muxer == "matroska" || muxer == "webm" || muxer == "webp";
-    if (counts_ms && fps.value() > kMostPerSecond)
+    if (counts_ms && fps.value() > kMostMsRate)
         fail_usage("{} cannot have {} frames per second: it counts milliseconds; use {} or less, or .mp4",
-                   format.ending->words, fps.text(), kMostPerSecond);
+                   format.ending->words, fps.text(), kMostMsRate);
 }
 
 }  // namespace

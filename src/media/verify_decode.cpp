@@ -279,6 +279,8 @@ class Decoding {
 
     void describe() {
         video_.codec = avcodec_get_name(file_.context->codec_id);
+        std::array<char, AV_FOURCC_MAX_STRING_SIZE> tag{};
+        video_.codec_tag = av_fourcc_make_string(tag.data(), file_.stream->codecpar->codec_tag);
         const char* const profile = avcodec_profile_name(file_.context->codec_id, file_.context->profile);
         video_.profile = profile == nullptr ? "" : profile;
     }

@@ -125,6 +125,10 @@ void check_picture_format(const DecodedVideo& video, VerifyReport& report) {
                 "the H.264 profile is {}, which browsers and QuickTime refuse; encode High with yuv420p",
                 report.profile.empty() ? "unknown" : report.profile);
     }
+    if (video.codec_tag == "hev1") {
+        problem(report, "H.265 is tagged hev1, which Safari and QuickTime refuse; remedy: {}",
+                copy_command(report, plain(report.container), "-tag:v hvc1 "));
+    }
     const bool is_playable = std::any_of(usual, kPlayers.end(), [&](const Players& row) {
         return plays(row) && (row.pixel_format.empty() || row.pixel_format == report.pixel_format);
     });
@@ -162,15 +166,15 @@ void check_tags(const DecodedVideo& video, VerifyReport& report) {
 }
 
 void add_notes(const DecodedVideo& video, VerifyDepth depth, VerifyReport& report) {
+    if (const Players* const players = players_of(report))
+        report.notes.push_back(
+            fmt::format("{}, {}: {}", report.coding(), report.pixel_format, players->words));
     if (!report.ok()) return;
     report.notes.push_back(fmt::format(
         "checked: structure, time stamps, tags, that {} decodes, and {}; a picture that was "
         "changed and still decodes is not found",
         depth == VerifyDepth::kAllFrames ? "every frame" : "every key frame",
         !video.patches.empty() ? "colours at a few places of the first frame alone" : "no colours"));
-    if (const Players* const players = players_of(report))
-        report.notes.push_back(
-            fmt::format("{}, {}: {}", report.coding(), report.pixel_format, players->words));
     if (report.alpha)
         report.notes.emplace_back("the first frame is transparent in places; alpha is straight");
     if (video.is_rounded) {

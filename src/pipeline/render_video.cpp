@@ -53,7 +53,7 @@ void check_part(const std::string& path, const std::map<std::string, std::string
             ExitCode::kUsage,
             fmt::format(
                 "'{}' {}, so --resume cannot continue it; render to another name, make it a video (corda "
-                "recover), or start anew (--force)",
+                "recover), or start anew (--force without --resume)",
                 part, problem));
     };
     const std::optional<std::string> comment = media::part_comment(part, on_progress);
