@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <thread>
 #include <vector>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/memory.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/media/animation.hpp"
 #include "corda/media/format.hpp"
+#include "corda/media/job_memory.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/open_video.hpp"
 #include "corda/media/part_reader.hpp"
@@ -44,13 +43,11 @@ void remux(const PartIndex& index, const std::string& part_path, const Ending& e
 
 /// How many threads make an animation: those that are asked for, and whose pictures fit into memory.
 int animation_threads(int jobs, const PartInput& part) {
-    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    const auto wanted = static_cast<std::uint64_t>(jobs > 0 ? jobs : cores);
-    constexpr std::uint64_t kBytesPerPixel = 50;  // the first thread of a WebP; a further one adds 26
-    const std::uint64_t bytes = kBytesPerPixel * static_cast<std::uint64_t>(part.stream->codecpar->width) *
-                                static_cast<std::uint64_t>(part.stream->codecpar->height);
-    const std::uint64_t fitting = available_memory_bytes().value_or(bytes * wanted) / bytes;
-    return static_cast<int>(std::clamp<std::uint64_t>(fitting, 1, wanted));
+    const AVCodecParameters& parameters = *part.stream->codecpar;
+    const std::uint64_t bytes = std::uint64_t{kAnimationBytesPerPixel} *
+                                static_cast<std::uint64_t>(parameters.width) *
+                                static_cast<std::uint64_t>(parameters.height);
+    return std::max(1, jobs_that_fit(jobs_of(jobs), bytes));
 }
 
 AVCodecID codec_id_of(const Codec& codec) {

@@ -2,7 +2,6 @@
 #include <filesystem>
 #include <map>
 #include <optional>
-#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -112,23 +111,15 @@ media::VideoMetadata metadata(const Film& film, std::int64_t first, std::int64_t
 }
 
 /// How many chunks of so many frames to make at a time.
-int jobs_of(const VideoDef& video, std::int64_t length, std::int64_t frames) {
-    const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    const auto wanted = static_cast<std::int64_t>(video.encoder.jobs == 0 ? cores : video.encoder.jobs);
-    return static_cast<int>(std::min(wanted, (frames + length - 1) / length));
-}
-
-/// How many jobs of so many bytes fit into the memory that is there, up to `wanted`.
-int jobs_that_fit(int wanted, std::uint64_t bytes) {
-    const auto available = available_memory_bytes();
-    if (!available) return wanted;
-    return static_cast<int>(std::min(static_cast<std::uint64_t>(wanted), *available / bytes));
+int jobs_for(const VideoDef& video, std::int64_t length, std::int64_t frames) {
+    return static_cast<int>(
+        std::min<std::int64_t>(media::jobs_of(video.encoder.jobs), (frames + length - 1) / length));
 }
 
 /// The machine would run out of memory, and kill this process or another.
 void check_memory(const media::Format& format, const VideoDef& video) {
     const std::uint64_t bytes = media::bytes_per_job(format, video);
-    if (jobs_that_fit(1, bytes) == 1) return;
+    if (media::jobs_that_fit(1, bytes) == 1) return;
     const bool can_be_faster =
         format.codec->origin == media::EncoderOrigin::kX264 && format.preset_of(video.encoder) != "ultrafast";
     const char* const faster = can_be_faster ? "a faster preset (--preset ultrafast), " : "";
@@ -156,9 +147,9 @@ void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProg
         report_progress(on_progress, writer.frames(), end - first);
         if (FilmPainter::is_empty(film, film.time_s(k))) note_empty(film.time_s(k), result);
     }
-    const int wanted = jobs_of(video, writer.frames_per_chunk(), end - k);
+    const int wanted = jobs_for(video, writer.frames_per_chunk(), end - k);
     if (wanted > 1 && FilmPainter::can_draw_apart(film, end)) {
-        const int jobs = jobs_that_fit(wanted, media::bytes_per_job(writer.format(), video));
+        const int jobs = media::jobs_that_fit(wanted, media::bytes_per_job(writer.format(), video));
         result.is_short_of_memory = jobs < wanted;
         result.jobs = std::max(1, jobs);
     }
