@@ -248,6 +248,16 @@ std::string Format::encoder_name() const {
     return ending->kind == FileKind::kAnimation ? ending->muxer : codec->name;
 }
 
+std::string Format::library_versions() const {
+    const auto text = [](const char* name, unsigned version) {
+        return fmt::format("{} {}.{}.{}", name, AV_VERSION_MAJOR(version), AV_VERSION_MINOR(version),
+                           AV_VERSION_MICRO(version));
+    };
+    const std::string encoder =
+        codec->origin == EncoderOrigin::kX264 ? x264_version() : text("libavcodec", avcodec_version());
+    return encoder + ", " + text("libavformat", avformat_version());
+}
+
 std::int64_t passes(const Ending& ending) {
     return ending.kind == FileKind::kAnimation ? 2 : 1;
 }

@@ -85,6 +85,9 @@ struct Format {
     [[nodiscard]] std::string words() const;
     /// Who makes what is in the file: "libx264", "gif".
     [[nodiscard]] std::string encoder_name() const;
+    /// The versions of the libraries that a part's bytes follow from: "libavcodec 59.37.100, libavformat
+    /// ...".
+    [[nodiscard]] std::string library_versions() const;
 };
 
 /// The tables.

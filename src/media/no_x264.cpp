@@ -9,6 +9,10 @@ bool has_x264() {
     return false;
 }
 
+std::string x264_version() {
+    return {};
+}
+
 std::unique_ptr<Encoder> make_x264_encoder(const Format& /*format*/, const VideoDef& /*def*/) {
     throw Error(ExitCode::kEncoder, "this Corda was built without libx264");
 }

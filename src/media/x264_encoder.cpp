@@ -353,6 +353,10 @@ class X264Encoder : public Encoder {
 
 }  // namespace
 
+std::string x264_version() {
+    return fmt::format("libx264 {}", X264_BUILD);
+}
+
 bool has_x264() {
     return true;
 }

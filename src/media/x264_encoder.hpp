@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "corda/media/encoder.hpp"
 #include "corda/media/format.hpp"
@@ -9,6 +10,9 @@ namespace corda::media {
 
 /// Whether Corda was built with libx264 (CORDA_X264).
 [[nodiscard]] bool has_x264();
+
+/// "libx264 164"; empty without it.
+[[nodiscard]] std::string x264_version();
 
 /// An encoder of libx264, which is told what libavcodec cannot tell it: which macroblocks are as they were in
 /// the previous frame. It does not look at them again. Throws corda::Error (kEncoder).

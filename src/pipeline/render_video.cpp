@@ -36,6 +36,7 @@ std::map<std::string, std::string> origin_of(const Scene& scene, const media::Fo
     std::map<std::string, std::string> origin = digest(scene);
     origin["corda"] = version();
     origin["encoder"] = format.encoder_name();
+    origin["libraries"] = format.library_versions();
     origin["frames"] = fmt::format("{}:{}", first, end);
     return origin;
 }
