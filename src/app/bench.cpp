@@ -79,7 +79,7 @@ void report_in_words(const Console& console, const VideoDef& video, const bench:
     if (measured.rss_per_job_mib)
         memory += fmt::format("; a further chunk adds {:.0f} MiB to it", *measured.rss_per_job_mib);
     else if (measured.jobs > 1)
-        memory += "; a further chunk adds too little to it to tell";
+        memory += "; the memory of a further chunk is too small to measure";
     console.result(memory);
     std::string text = "  one thread, ms per frame (CPU):";
     for (const bench::Stage& stage : measured.stages)

@@ -81,7 +81,8 @@ struct SceneOptions {
     /// Throws corda::Error as load_scene does, but with kUsage if the scene is valid without the options
     /// other than --set: then the command line is wrong, not the scene.
     [[nodiscard]] Scene load(const Console& console) const;
-    /// Parses with `more` settings that options give; `text` and `name` stand for a scene if none is named.
+    /// Parses the scene with the additional settings `more`; `text` and `name` are used if no scene file was
+    /// given.
     [[nodiscard]] Scene parse(const std::vector<Setting>& more, std::string_view text,
                               const std::string& name) const;
     /// The file that no output may replace.

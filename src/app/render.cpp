@@ -78,7 +78,7 @@ std::string words_of_interruption(const RenderOptions& options, std::int64_t fir
         fmt::format("interrupted: frames {}..{} of {} are in {}", first, next - 1, count, rendered.kept_part);
     if (is_one_file(options.output))
         return fmt::format(
-            "{}, which plays; {} was not written (--resume goes on, corda recover makes it a video "
+            "{}, which plays; {} was not written (--resume continues it, corda recover makes it a video "
             "of these frames)",
             done, options.output);
     const bool is_resumable = !is_standard_output(options.output) && rendered.frames < count;
@@ -255,7 +255,7 @@ void add_render(CLI::App& app, Action& action) {
     options->empty.add_to(*command);
     command->add_flag("--force", options->force, "replace an existing output");
     command->add_flag("--resume", options->resume,
-                      "go on with what an interrupted render of the same scene has left");
+                      "resume what an interrupted render of the same scene has left");
     command->add_flag("--dry-run", options->dry_run, "check everything but OpenGL, and write nothing");
     command->callback([options, &action] {
         options->scene.require();

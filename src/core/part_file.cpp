@@ -54,11 +54,10 @@ void PartFile::check(const std::string& path, const OutputOptions& options) {
     if (!old && errno == ENOENT) return;
     if (old && !lock(old, path, LOCK_SH | LOCK_NB)) fail_busy(path);
     if (options.force) return;
-    throw Error(
-        ExitCode::kIo,
-        "'" + path +
-            "' holds an interrupted render; go on with it (--resume), make it a video (corda recover), "
-            "move it away, or start anew with force (--force)");
+    throw Error(ExitCode::kIo,
+                "'" + path +
+                    "' holds an interrupted render; resume it (--resume), make it a video (corda recover), "
+                    "move it away, or start anew with force (--force)");
 }
 
 PartFile PartFile::create(std::string path, const OutputOptions& options) {

@@ -23,7 +23,7 @@ struct Chunk {
     std::vector<FrameColors> colors;  ///< of the first frame and of the one that was said to be the last
 };
 
-/// How many frames a chunk has, the last one of a video but for: 60, but at least as many as a second has and
+/// Frames per chunk, except in the last chunk of a video: 60, but at least as many as a second has and
 /// at most as two have; fewer of codecs whose frames stand alone. Frame k is in chunk k / frames_per_chunk()
 /// of the whole film, whatever part of it is rendered and by how many encoders, so that the bytes depend on
 /// neither.

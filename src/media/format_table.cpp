@@ -17,11 +17,11 @@ constexpr std::span<const char* const> kSpeedsTo8{kSpeeds.data(), 9};
 constexpr int kFewFrames = 12;
 /// Of FFV1, whose encoder clears 148 bytes per pixel when it opens.
 constexpr int kFfv1Frames = 36;
-/// It cuts a picture into two by two slices.
+/// FFV1 splits a picture into 2x2 slices.
 constexpr int kLeastFfv1SidePx = 2;
 /// What SVT-AV1 itself allows; AV1 allows more.
 constexpr int kLargestSvtAv1HeightPx = 8704;
-/// A side has 14 bits.
+/// WebP stores each side in 14 bits.
 constexpr int kLargestWebpSidePx = (1 << 14) - 1;
 
 constexpr std::array kCodecs{

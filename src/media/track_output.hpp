@@ -48,7 +48,7 @@ class TrackOutput {
   private:
     static int write_bytes(void* output, std::uint8_t* bytes, int count);
     static std::int64_t seek(void* output, std::int64_t offset, int whence);
-    /// Writes what is buffered, and in a part a checksum of what there is behind the last one.
+    /// Writes what is buffered; in a part, also a checksum of all bytes since the previous one.
     void end_bytes(const std::string& what);
 
     QuietLog quiet_;

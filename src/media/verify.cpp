@@ -186,7 +186,7 @@ VerifyReport verify(const std::string& path, const OnProgress& on_progress, Veri
     if (!told_origin(video.comment).empty()) {
         problem(
             report,
-            "this is the part of an interrupted render: corda render --resume goes on with it, corda recover "
+            "this is the part of an interrupted render: corda render --resume continues it, corda recover "
             "makes it a video of these frames");
         return report;
     }

@@ -129,7 +129,7 @@ class PartSink : public VideoSink {
             const bool is_taken = !options_.force && std::filesystem::exists(path_);
             const std::string kept =
                 part_.is_named()
-                    ? fmt::format("{} in '{}', which plays; --resume{} goes on with it", which, part_.path(),
+                    ? fmt::format("{} in '{}', which plays; --resume{} continues it", which, part_.path(),
                                   is_taken ? " --force" : "")
                     : fmt::format("'{}' was removed meanwhile, and its frames with it", part_.path());
             throw Error(error.code(), fmt::format("{}; {}", error.what(), kept));

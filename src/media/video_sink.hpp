@@ -27,8 +27,8 @@ class VideoSink {
     VideoSink& operator=(const VideoSink&) = delete;
     virtual ~VideoSink() = default;
 
-    /// How many frames there are from an interrupted render that is gone on with: whole chunks. If there are
-    /// any, begin() is not called.
+    /// Number of frames taken over from an interrupted render, always whole chunks. If there are any, begin()
+    /// is not called.
     [[nodiscard]] virtual std::int64_t resumed_frames() const { return 0; }
     /// Called once, before the first packet.
     virtual void begin(const AVCodecParameters& parameters, const TrackInfo& info) = 0;
@@ -53,7 +53,7 @@ struct FrameRange {
 };
 
 /// What a format's packets go to, under this name. With `resume`, a part of an interrupted render of the same
-/// frames is gone on with, if there is one. Throws corda::Error: kIo, and kMismatch for a part that cannot be
+/// frames is resumed, if there is one. Throws corda::Error: kIo, and kMismatch for a part that cannot be
 /// read.
 [[nodiscard]] std::unique_ptr<VideoSink> make_sink(const Format& format, const std::string& path,
                                                    const OutputOptions& options, const FrameRange& frames,

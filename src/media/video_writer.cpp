@@ -91,10 +91,9 @@ Format check_video_output(const std::string& path, const VideoDef& def, const st
     if (resume && !has_part) {
         throw Error(
             ExitCode::kUsage,
-            fmt::format(
-                "{} cannot be gone on with (--resume): it has no part file; render the frames that are "
-                "missing (--frames FIRST:END)",
-                path));
+            fmt::format("{} cannot be resumed (--resume): it has no part file; render the frames that are "
+                        "missing (--frames FIRST:END)",
+                        path));
     }
     switch (format.ending->kind) {
         case FileKind::kStream:

@@ -32,7 +32,7 @@ struct FilmDef {
     Readings readings;         ///< what its states have besides positions
     /// Called with the frames done so far, in every pass of the simulation, and again during frames that take
     /// long; returning false ends what is being asked for by kInterrupted. It can be asked for again. It may
-    /// ask the film for what is simulated already; for more it gets kUsage.
+    /// query states that have already been simulated, and draw them; any other query throws kUsage.
     OnProgress on_progress;
 };
 
@@ -95,9 +95,9 @@ class Film {
     /// picture at a time in 0 .. world.duration_s, sharp unless `shutter` is more than 0 (0 .. 1, see
     /// VideoDef). RGBA8, row 0 on top. States within an exposure are recorded if they fit into half of the
     /// budget; otherwise they are simulated in passing: frames in order of time take one more simulation in
-    /// all, in any other order up to one each. A blurred picture takes the whole motion, because an exposure
-    /// ends where that does. Asks `on_progress` again and again if the picture is large or blurred. Throws as
-    /// state(), and kNoGl, kInterrupted.
+    /// all, in any other order up to one each. A blurred picture first simulates the whole motion, because
+    /// exposures are clipped to its end. Asks `on_progress` again and again if the picture is large or
+    /// blurred. Throws as state(), and kNoGl, kInterrupted.
     [[nodiscard]] Image frame(std::int64_t k, const OnProgress& on_progress = {}) const;
     [[nodiscard]] Image still(double time_s, const OnProgress& on_progress = {}, double shutter = 0.0) const;
     /// Whether nothing is in view in the last picture that was drawn.

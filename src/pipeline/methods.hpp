@@ -7,7 +7,7 @@
 
 namespace corda::pipeline {
 
-/// The method of each body; none if the planner chooses it.
+/// The method of each body; std::nullopt if the planner chooses it.
 [[nodiscard]] sim::NamedMethods named_methods(const Scene& scene);
 
 /// The methods if each body has one; empty otherwise.

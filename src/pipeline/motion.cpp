@@ -11,7 +11,7 @@
 
 namespace corda::pipeline {
 
-/// Exists while a motion is being simulated: on_progress, which is called meanwhile, must not start it again.
+/// Guards against re-entry: on_progress is called while the motion is stepped and must not step it again.
 class Motion::Stepping {
   public:
     explicit Stepping(Motion& motion) : motion_(&motion) {

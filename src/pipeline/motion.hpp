@@ -33,7 +33,7 @@ class Motion {
     Plan record(const std::function<Plan(const Timeline&, sim::Recording&)>& plan);
 
     /// Simulates what has not been yet. A run that diverges ends the motion early and is no error. Throws as
-    /// at(), but for kDiverged.
+    /// at() does, except kDiverged.
     void run_to_end(const OnProgress& on_progress);
 
     /// The state at a time of the timeline, or at any other time between 0 and its end. The reference holds

@@ -47,8 +47,8 @@ class FilmPainter {
     /// Reads the states at these times, in order and at most one pass over the motion, and keeps them: what
     /// is beyond the film's memory budget is not simulated for each picture. Throws as Film::state_at().
     static void keep(const Film& film, std::span<const double> times_s);
-    /// Whether the frame at a time would show nothing. Draws nothing and needs no OpenGL. Not to be used
-    /// while the film is by another thread. Throws as Film::state_at().
+    /// Whether the frame at a time would show nothing. Draws nothing and needs no OpenGL. Must not be called
+    /// while another thread uses the film. Throws as Film::state_at().
     [[nodiscard]] static bool is_empty(const Film& film, double time_s);
     /// The last picture.
     [[nodiscard]] const Image& image() const;

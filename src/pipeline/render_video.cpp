@@ -138,8 +138,8 @@ void note_empty(double time_s, Rendered& result) {
     if (result.empty_frames++ == 0) result.first_empty_s = time_s;
 }
 
-/// Draws and encodes frames first <= k < end, but for those that the writer has; counts the empty ones of
-/// all.
+/// Draws and encodes frames first <= k < end, skipping those the writer already holds; counts the empty
+/// frames among all of them.
 void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProgress& on_progress,
                   media::VideoWriter& writer, Rendered& result) {
     const VideoDef& video = film.scene().video;

@@ -141,7 +141,7 @@ TEST_F(Resume, RefusesAPartOfAnotherRenderNamingTheDifference) {
                 HasSubstr("rope[0].mass has other values"));
     EXPECT_THAT(refused({"--duration", "600", "--frames", "0:300"}),
                 HasSubstr("frames is 0:300 and was 0:36000"));
-    EXPECT_THAT(run_corda(render("a.mp4")).err, HasSubstr("go on with it (--resume)"));
+    EXPECT_THAT(run_corda(render("a.mp4")).err, HasSubstr("resume it (--resume)"));
 }
 
 TEST_F(Resume, BeginsAnewIfThereIsNothingToGoOnWith) {

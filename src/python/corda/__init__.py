@@ -114,7 +114,7 @@ class Film:
     def save(self, path, *, force=False, resume=False, on_progress=None):
         """Renders the video; the ending of `path` chooses the format. Returns the number of frames.
 
-        force: replace an existing file. resume: go on with what an interrupted render of the same film has left beside
+        force: replace an existing file. resume: resume what an interrupted render of the same film has left beside
         `path`, to the bytes of a whole one; without such a part it begins anew. on_progress: called with the frames done and all; returning False stops, which
         raises Error (code 130) and keeps what is done beside `path`.
         """
