@@ -266,6 +266,11 @@ std::string Format::preset_of(const EncoderDef& def) const {
     return def.preset.empty() ? codec->default_preset : def.preset;
 }
 
+int Format::crf_of(const EncoderDef& def) const {
+    const bool is_other = has_alpha && codec->default_crf_of_alpha > 0;
+    return def.crf.value_or(is_other ? codec->default_crf_of_alpha : codec->default_crf);
+}
+
 std::vector<std::string_view> codec_names() {
     std::vector<std::string_view> names;
     const auto can_be_asked_for = [](const Codec& codec) {

@@ -45,6 +45,7 @@ struct Codec {
     EncoderOrigin origin = EncoderOrigin::kLibav;
     EncoderSettings (*settings)(const Format& format, const VideoDef& def) = nullptr;  ///< of libav's
     int most_height_px = kLargestSidePx;
+    int default_crf_of_alpha = 0;  ///< in place of default_crf for transparent videos; 0: the same
 };
 
 /// How the packets of a video become files.
@@ -80,7 +81,7 @@ struct Format {
     bool is_fallback = false;  ///< the ending's own codec is missing
 
     [[nodiscard]] std::string preset_of(const EncoderDef& def) const;
-    [[nodiscard]] int crf_of(const EncoderDef& def) const { return def.crf.value_or(codec->default_crf); }
+    [[nodiscard]] int crf_of(const EncoderDef& def) const;
     /// "H.264 in MP4", "GIF".
     [[nodiscard]] std::string words() const;
     /// Who makes what is in the file: "libx264", "gif".

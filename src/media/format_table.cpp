@@ -21,6 +21,8 @@ constexpr int kFfv1Frames = 36;
 constexpr int kLeastFfv1SidePx = 2;
 /// What SVT-AV1 itself allows; AV1 allows more.
 constexpr int kLargestSvtAv1HeightPx = 8704;
+/// At 32 one in 5000 clear pixels has an alpha over 8, specks on white; at 20, one in 50 000.
+constexpr int kVp9AlphaCrf = 20;
 /// WebP stores each side in 14 bits.
 constexpr int kLargestWebpSidePx = (1 << 14) - 1;
 
@@ -89,7 +91,9 @@ constexpr std::array kCodecs{
           0,
           false,
           EncoderOrigin::kLibav,
-          &vp9_settings},
+          &vp9_settings,
+          kLargestSidePx,
+          kVp9AlphaCrf},
     Codec{"h264_nvenc",
           "nvenc",
           "H.264",

@@ -1,7 +1,11 @@
 #include <cstring>
+#include <memory>
+#include <string_view>
 
+#include "corda/media/edge_fill.hpp"
 #include "corda/media/encoders.hpp"
 #include "corda/media/libav_encoder.hpp"
+#include "corda/media/pixels.hpp"
 #include "corda/media/png_bytes.hpp"
 #include "corda/media/x264_encoder.hpp"
 
@@ -56,7 +60,14 @@ std::unique_ptr<Encoder> make_encoder(const Format& format, const VideoDef& def,
         case EncoderOrigin::kLibav:
             break;
     }
-    return std::make_unique<LibavEncoder>(format, def);
+    if (std::string_view(format.pixel_format) != "yuva420p")
+        return std::make_unique<LibavEncoder>(format, def);
+    return std::make_unique<LibavEncoder>(
+        format, def,
+        [fill = std::make_shared<EdgeFill>()](const Image& image, const PixelRect& part, AVFrame& frame) {
+            const PixelRect changed = fill->update(image, part);
+            convert_pixels(fill->picture(), changed, frame);
+        });
 }
 
 }  // namespace corda::media

@@ -46,7 +46,7 @@ constexpr std::array kVariants{
     Variant{"av1", ".mp4", "libsvtav1", kAny, false, 33.0},         // measured 33.4
     Variant{"aom_444", ".mp4", "libaom-av1", k444, false, 49.0},    // measured 50.3
     Variant{"vp9", ".webm", "vp9", kAny, false, 33.0},              // measured 33.4
-    Variant{"vp9_alpha", ".webm", "", kAny, true, 35.0},            // measured 35.9
+    Variant{"vp9_alpha", ".webm", "", kAny, true, 58.0},            // measured 58.9
     Variant{"vp9_444", ".webm", "", k444, false, 49.0},             // measured 50.4
     Variant{"av1_webm", ".webm", "av1", kAny, false, 33.0},         // measured 33.4
     Variant{"aom_webm", ".webm", "libaom-av1", kAny, false, 33.0},  // measured 33.4

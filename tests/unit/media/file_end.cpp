@@ -32,23 +32,13 @@ TEST_F(Video, BreaksOffIfAnyOfItsLastBytesIsMissing) {
 
 TEST_F(Video, DoesNotBreakOffIfItTellsNoLength) {
     // What a muxer writes to a pipe: the segment's length is unknown.
-    const std::string head(
-        "\x1a\x45\xdf\xa3\x84"
-        "data"
-        "\x18\x53\x80\x67",
-        13);
-    test::write_file(file("a"), head +
-                                    "\x01\xff\xff\xff\xff\xff\xff\xff"
-                                    "data");
-    EXPECT_FALSE(breaks_off(file("a"), "matroska"));
-    test::write_file(file("a"), head +
-                                    "\x84"
-                                    "data");
-    EXPECT_FALSE(breaks_off(file("a"), "matroska"));
-    test::write_file(file("a"), head +
-                                    "\x85"
-                                    "data");
-    EXPECT_TRUE(breaks_off(file("a"), "matroska"));
+    const std::string head = std::string("\x1a\x45\xdf\xa3\x84") + "data" + "\x18\x53\x80\x67";
+    const std::string unknown = "\x01\xff\xff\xff\xff\xff\xff\xff";
+    for (const auto& [length, breaks] : {std::pair(unknown, false), std::pair(std::string("\x84"), false),
+                                         std::pair(std::string("\x85"), true)}) {
+        test::write_file(file("a"), head + length + "data");
+        EXPECT_EQ(breaks_off(file("a"), "matroska"), breaks);
+    }
     EXPECT_FALSE(breaks_off(file("a"), "mov"));
 }
 
