@@ -14,8 +14,8 @@ TemporaryFolder::TemporaryFolder() {
     path_ = (std::filesystem::temp_directory_path(failure) / "corda-XXXXXX").string();
     if (!failure && mkdtemp(path_.data()) == nullptr) failure.assign(errno, std::generic_category());
     if (failure)
-        throw Error(ExitCode::kIo, "cannot make a folder for temporary files: " + failure.message() +
-                                       "; set TMPDIR to a folder that can be written to");
+        throw Error(ExitCode::kIo, "cannot make a folder for temporary files, '" + path_ + "': " +
+                                       failure.message() + "; set TMPDIR to a folder that can be written to");
 }
 
 TemporaryFolder::~TemporaryFolder() {

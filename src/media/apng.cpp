@@ -5,13 +5,10 @@
 
 #include "corda/media/animation.hpp"
 #include "corda/media/animation_frames.hpp"
+#include "corda/media/big_endian.hpp"
 #include "corda/media/exact_pictures.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/png_bytes.hpp"
-
-extern "C" {
-#include <libavutil/crc.h>
-}
 
 // Portable Network Graphics (PNG) Specification, third edition: 5.3 and 11.3.6, the chunks of animations.
 
@@ -22,24 +19,14 @@ constexpr std::string_view kPngSignature("\x89PNG\r\n\x1a\n");
 constexpr std::size_t kChunkHeadBytes = 8;  // of a chunk: length and type
 constexpr std::size_t kChecksumBytes = 4;
 
-void put_number(std::uint32_t value, int bytes, std::string& out) {
-    for (int i = bytes - 1; i >= 0; --i) out += static_cast<char>(value >> (8 * i) & 0xffU);
-}
-
-std::uint32_t number_at(std::string_view bytes) {
-    std::uint32_t value = 0;
-    for (const char byte : bytes.substr(0, 4)) value = value << 8 | static_cast<unsigned char>(byte);
-    return value;
-}
-
 std::string chunk(std::string_view type, std::string_view data) {
     std::string bytes;
-    put_number(static_cast<std::uint32_t>(data.size()), 4, bytes);
+    bytes += big_endian(data.size(), 4);
     bytes.append(type).append(data);
     const std::uint32_t crc =
         ~av_crc(av_crc_get_table(AV_CRC_32_IEEE_LE), ~0U,
                 reinterpret_cast<const std::uint8_t*>(bytes.data()) + 4, bytes.size() - 4);
-    put_number(crc, 4, bytes);
+    bytes += big_endian(crc, 4);
     return bytes;
 }
 
@@ -56,7 +43,7 @@ ApngFrame encode_apng(const PictureChange& change) {
     const std::string png = png_bytes(change.picture, {}, {}, true);
     for (std::size_t at = kPngSignature.size(); at < png.size();) {
         const std::string_view rest = std::string_view(png).substr(at);
-        const std::size_t length = number_at(rest);
+        const auto length = static_cast<std::size_t>(from_big_endian(rest.substr(0, 4)));
         if (rest.substr(4, 4) == "IDAT") {
             if (frame.head.empty()) frame.head = png.substr(0, at);
             frame.data += rest.substr(kChunkHeadBytes, length);
@@ -77,7 +64,7 @@ class ApngFile {
         } else {
             const std::string head = control(frame);
             std::string data;
-            put_number(sequence_++, 4, data);
+            data += big_endian(sequence_++, 4);
             output_.write(head + chunk("fdAT", data + frame.data));
         }
     }
@@ -90,20 +77,20 @@ class ApngFile {
     /// For ever.
     [[nodiscard]] std::string plays() const {
         std::string data;
-        put_number(static_cast<std::uint32_t>(frames_), 4, data);
-        put_number(0, 4, data);
+        data += big_endian(static_cast<std::uint64_t>(frames_), 4);
+        data += big_endian(0, 4);
         return data;
     }
     /// Where and how long a frame is shown; it stays, under the next one.
     std::string control(const ApngFrame& frame) {
         std::string data;
-        put_number(sequence_++, 4, data);
+        data += big_endian(sequence_++, 4);
         for (const int side : {frame.part.width(), frame.part.height(), frame.part.x0, frame.part.y0})
-            put_number(static_cast<std::uint32_t>(side), 4, data);
-        put_number(static_cast<std::uint32_t>(fps_.den), 2, data);
-        put_number(static_cast<std::uint32_t>(fps_.num), 2, data);
-        put_number(0, 1, data);
-        put_number(frame.is_blended ? 1 : 0, 1, data);
+            data += big_endian(static_cast<std::uint64_t>(side), 4);
+        data += big_endian(static_cast<std::uint64_t>(fps_.den), 2);
+        data += big_endian(static_cast<std::uint64_t>(fps_.num), 2);
+        data += big_endian(0, 1);
+        data += big_endian(frame.is_blended ? 1 : 0, 1);
         return chunk("fcTL", data);
     }
 

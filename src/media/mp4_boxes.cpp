@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "corda/core/file.hpp"
+#include "corda/media/big_endian.hpp"
 
 namespace corda::media {
 namespace {
@@ -21,10 +22,7 @@ class Bytes {
 
     [[nodiscard]] std::uint64_t number(std::size_t offset, std::size_t width) const {
         if (offset > data_.size() || data_.size() - offset < width) return 0;
-        std::uint64_t value = 0;
-        for (std::size_t i = 0; i < width; ++i)
-            value = value << 8 | static_cast<unsigned char>(data_[offset + i]);
-        return value;
+        return from_big_endian(data_.substr(offset, width));
     }
     [[nodiscard]] std::uint32_t u32(std::size_t offset) const {
         return static_cast<std::uint32_t>(number(offset, 4));

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "corda/core/file.hpp"
+#include "corda/media/big_endian.hpp"
 #include "corda/media/libav_handles.hpp"
 
 namespace corda::media {
@@ -15,14 +16,6 @@ constexpr std::string_view kMark =
 constexpr std::size_t kLengthBytes = 8;
 constexpr std::size_t kSumBytes = 4;
 constexpr std::size_t kRecordBytes = kMark.size() + kLengthBytes + kSumBytes;
-
-/// A number, its largest byte first.
-std::string big_endian(std::uint64_t value, std::size_t bytes) {
-    std::string text(bytes, '\0');
-    for (std::size_t i = 0; i < bytes; ++i)
-        text[i] = static_cast<char>(value >> (8 * (bytes - 1 - i)) & 0xff);
-    return text;
-}
 
 /// What stands before a record: the head of a free box (ISO/IEC 14496-12, 8.1.2), or of a Void element (RFC
 /// 8794, 11.3.2).

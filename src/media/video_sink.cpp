@@ -11,6 +11,7 @@
 #include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
+#include "corda/media/big_endian.hpp"
 #include "corda/media/finish_part.hpp"
 #include "corda/media/open_video.hpp"
 #include "corda/media/part_reader.hpp"
@@ -36,8 +37,7 @@ void put_lengths(AVPacket& packet) {
         std::string_view unit = bytes.substr(begin, at == std::string_view::npos ? at : at - begin);
         if (at != std::string_view::npos && unit.ends_with('\0'))
             unit.remove_suffix(1);  // of a code of four bytes
-        for (unsigned shift = 32; shift > 0; shift -= 8)
-            units += static_cast<char>((unit.size() >> (shift - 8)) & 0xffU);
+        units += big_endian(unit.size(), 4);
         units += unit;
     }
     Packet changed = check_allocated(Packet(av_packet_alloc()), "a packet");
