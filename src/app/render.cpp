@@ -15,6 +15,7 @@
 #include "corda/core/clock.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
+#include "corda/media/disk_space.hpp"
 #include "corda/media/format.hpp"
 #include "corda/media/picture_names.hpp"
 #include "corda/pipeline/describe.hpp"
@@ -120,7 +121,8 @@ std::string endings_text() {
 }
 
 /// Says what is not as the ending's default would be.
-void report_format(const Console& console, const Scene& scene, const std::string& output) {
+void report_format(const Console& console, const Scene& scene, const std::string& output,
+                   const RenderDef& def) {
     const bool is_opaque = view::look_of(scene.style).ground.is_opaque();
     const media::Format format = media::find_format(output, scene.video, !is_opaque);
     if (format.is_fallback) {
@@ -131,6 +133,9 @@ void report_format(const Console& console, const Scene& scene, const std::string
     if (!is_opaque && std::string_view(format.ending->muxer) == "gif")
         console.warning(
             "a GIF has no half transparent pixels: edges will be hard; .webp and .apng keep them");
+    const std::int64_t end = def.end.value_or(scene.video.fps.frame_count(scene.world.duration_s));
+    const std::string warning = media::disk_warning(format, output, scene.video, end - def.first);
+    if (!warning.empty()) console.warning(warning);
 }
 
 void check_standard_output(const Console& console, const std::string& output) {
@@ -178,7 +183,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     parse_range(range_of(console, options), def);
     check_standard_output(console, options.output);
     check_render(scene, options.output, def, options.scene.input());
-    report_format(console, scene, options.output);
+    report_format(console, scene, options.output, def);
     OnProgress on_progress = show_progress(console, "simulate");
     leave_cores_to_chunks(scene.video);
     FilmDef film_def;

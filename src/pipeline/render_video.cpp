@@ -10,6 +10,7 @@
 #include "corda/core/part_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
+#include "corda/media/disk_space.hpp"
 #include "corda/media/format.hpp"
 #include "corda/media/job_memory.hpp"
 #include "corda/media/part_reader.hpp"
@@ -205,6 +206,9 @@ media::Format checked_format(const Scene& scene, const std::string& path, const 
                                   !view::look_of(scene.style).ground.is_opaque(), def.first, end, def.resume);
     check_ground(scene, format);
     check_memory(format, scene.video);
+    std::error_code none;
+    const auto part_bytes = def.resume ? std::filesystem::file_size(part_path(path), none) : 0;
+    media::check_disk_space(format, path, scene.video, end - def.first, none ? 0 : part_bytes);
     if (def.resume)
         check_part(path, origin_of(scene, format, def.first, end), [&](std::int64_t, std::int64_t) {
             return !def.on_progress || def.on_progress(0, end - def.first);
