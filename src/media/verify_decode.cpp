@@ -243,7 +243,7 @@ class Decoding {
             const PixelRect square{patch.x, patch.y, patch.x + kPatchSide, patch.y + kPatchSide};
             const bool is_inside = is_within(patch, frame_->width, frame_->height);
             // A GIF has no colour where it is transparent.
-            if (is_gif && is_inside && samples_of(*frame_, 3, square).mean == 0.0) continue;
+            if (is_gif && is_inside && samples_of(*frame_, 3, square).least < 255) continue;
             ShownPatch& shown = video_.patches.emplace_back(ShownPatch{number, patch, std::nullopt});
             if (is_inside) shown.rgb = mean_rgb_of(*frame_, square);
         }
