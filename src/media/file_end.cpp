@@ -70,7 +70,8 @@ bool gif_has_trailer(ByteReader& bytes) {
     for (;;) {
         const auto block = bytes.next();
         if (block == 0x3bU) return true;
-        if (block == 0x21U) {  // an extension; its label comes first
+        if (block == 0U) continue;  // some writers leave one between blocks
+        if (block == 0x21U) {       // an extension; its label comes first
             if (!bytes.skip(1) || !skip_sub_blocks(bytes)) return false;
         } else if (block == 0x2cU) {  // an image: place and size, colours, least code size
             if (!bytes.skip(8)) return false;

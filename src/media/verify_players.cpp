@@ -23,12 +23,18 @@ constexpr std::array kPlayers{
     Players{
         "mov", "h264", "yuv420p",
         "QuickTime, Keynote, PowerPoint and Safari play it, YouTube takes it; some browsers do not play it"},
+    Players{"mov", "h264", "yuv444p",
+            "4:4:4, High 4:4:4 Predictive: VLC, mpv and ffmpeg play it; QuickTime, browsers and PowerPoint "
+            "refuse "
+            "it"},
     Players{"mp4", "h264", "yuv444p",
             "4:4:4, High 4:4:4 Predictive: VLC, mpv and ffmpeg play it; browsers, QuickTime and PowerPoint "
             "refuse it"},
     Players{"mp4", "hevc", "yuv420p",
             "Safari, QuickTime and new PowerPoint play it, YouTube takes it; Firefox and many Chromes do not "
             "play it"},
+    Players{"mov", "hevc", "yuv420p",
+            "QuickTime, Keynote and Safari play it, YouTube takes it; browsers mostly do not"},
     Players{"mp4", "hevc", "yuv444p",
             "4:4:4: VLC, mpv and ffmpeg play it; browsers, QuickTime and PowerPoint mostly refuse it"},
     Players{"mp4 webm", "av1", "yuv420p",
@@ -101,9 +107,11 @@ void check_picture_format(const DecodedVideo& video, VerifyReport& report) {
     if (video.frames == 0) return;
     const auto plays = [&report](const Players& row) { return row.codec == report.codec; };
     const auto* const usual = std::find_if(kPlayers.begin(), kPlayers.end(), plays);
-    const bool is_in_usual_container = std::any_of(usual, kPlayers.end(), [&](const Players& row) {
-        return plays(row) && holds_word(row.containers, plain(report.container));
-    });
+    const auto is_in = [&report](const Players& row) {
+        return holds_word(row.containers, plain(report.container));
+    };
+    const bool is_in_usual_container =
+        std::any_of(usual, kPlayers.end(), [&](const Players& row) { return plays(row) && is_in(row); });
     if (usual == kPlayers.end()) {
         problem(report, "the codec is {}; browsers and QuickTime play H.264 everywhere: render with libx264",
                 report.codec);
@@ -127,10 +135,11 @@ void check_picture_format(const DecodedVideo& video, VerifyReport& report) {
     }
     if (video.codec_tag == "hev1") {
         problem(report, "H.265 is tagged hev1, which Safari and QuickTime refuse; remedy: {}",
-                copy_command(report, plain(report.container), "-tag:v hvc1 "));
+                copy_command(report, plain(report.container)));
     }
     const bool is_playable = std::any_of(usual, kPlayers.end(), [&](const Players& row) {
-        return plays(row) && (row.pixel_format.empty() || row.pixel_format == report.pixel_format);
+        return plays(row) && (is_in(row) || !is_in_usual_container) &&
+               (row.pixel_format.empty() || row.pixel_format == report.pixel_format);
     });
     if (usual == kPlayers.end() ? report.pixel_format != "yuv420p" : !is_playable) {
         problem(report,
@@ -180,7 +189,7 @@ void add_notes(const DecodedVideo& video, VerifyDepth depth, VerifyReport& repor
     if (video.is_rounded) {
         report.notes.emplace_back(
             "the container counts milliseconds: each frame's time is the nearest one to k/fps, the rate is "
-            "the one that the file tells");
+            "the one stated in the file");
     }
     if (report.faststart)
         report.notes.emplace_back(

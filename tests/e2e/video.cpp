@@ -116,12 +116,16 @@ INSTANTIATE_TEST_SUITE_P(Rates, VideoTimes,
                          });
 
 TEST_F(Video, IsMendedByTheRemedyThatVerifyGives) {
-    const std::vector<std::array<const char*, 3>> copies{
-        {"30000/1001", "-movflags frag_keyframe+empty_moov ", "fragments.mp4"},
-        {"60", "", "other.mkv"},
-        {"50", "", "other.mov"}};
-    for (const auto& [fps, options, name] : copies) {
-        ASSERT_EQ(run_corda({"render", scene_, "-o", video_, "--fps", fps, "--force"}).exit_code, 0);
+    const std::vector<std::array<const char*, 4>> copies{
+        {"libx264", "30000/1001", "-movflags frag_keyframe+empty_moov ", "fragments.mp4"},
+        {"libx264", "60", "", "other.mkv"},
+        {"libx265", "60", "", "hevc.mkv"},
+        {"libx265", "60", "-tag:v hev1 -movflags +faststart ", "hev1.mp4"},
+        {"libx264", "50", "", "other.mov"}};
+    for (const auto& [codec, fps, options, name] : copies) {
+        ASSERT_EQ(
+            run_corda({"render", scene_, "-o", video_, "--codec", codec, "--fps", fps, "--force"}).exit_code,
+            0);
         const std::string copy = folder_.file(name);
         ASSERT_EQ(test::run_shell("ffmpeg -v error -i " + video_ + " -c copy " + options + copy).exit_code,
                   0);
