@@ -42,8 +42,9 @@ struct VideoDifference {
     std::array<Image, 2> worst_pictures;
 };
 
+/// Also if a file does not tell its rate, as a GIF: the times of its frames are compared.
 bool are_same_rate(const std::array<Rational, 2>& rates) {
-    return rates[0] == rates[1] ||
+    return rates[0] == rates[1] || rates[0].num == 0 || rates[1].num == 0 ||
            std::abs(rates[0].value() - rates[1].value()) <= kSameRate * rates[0].value();
 }
 
@@ -126,7 +127,7 @@ Json json_of(const VideoDifference& found) {
     json["passed"] = found.failed == 0 && same_size && same_frames && same_times;
     json["frames"] = found.frames;
     json["sizes"] = found.sizes;
-    json["fps"] = {found.rates[0].text(), found.rates[1].text()};
+    for (const Rational& rate : found.rates) json["fps"].push_back(rate.num > 0 ? Json(rate.text()) : Json());
     json["time_difference_s"] = found.time_s;
     json["differing_frames"] = found.differing;
     json["failed_frames"] = found.failed;

@@ -33,7 +33,7 @@ StoredVideo::StoredVideo(const std::string& path) : impl_(std::make_unique<Impl>
     if (kind == "webp") {
         impl_->webp.emplace(path);
         if (!impl_->webp->is_open())
-            throw Error(ExitCode::kIo, fmt::format("'{}' is no animated WebP that libwebp opens", path));
+            throw Error(ExitCode::kIo, fmt::format("libwebp cannot open '{}' as an animated WebP", path));
         if (const auto rate = rate_of_ms(impl_->webp->told_ends_ms())) impl_->rate = *rate;
         return;
     }

@@ -19,7 +19,7 @@ class WebpReader {
     WebpReader& operator=(const WebpReader&) = delete;
     ~WebpReader();
 
-    /// Whether libwebp takes the file for one. Else there is nothing to read.
+    /// Whether libwebp accepts the file; if not, there is nothing to read.
     [[nodiscard]] bool is_open() const;
     [[nodiscard]] int width_px() const;
     [[nodiscard]] int height_px() const;

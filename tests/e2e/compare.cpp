@@ -277,6 +277,14 @@ TEST_F(CompareFiles, AnimationsOfThreeKindsAreEqualToTheExactVideo) {
         EXPECT_THAT(result.out, HasSubstr("equal: 9 frames"));
         EXPECT_EQ(code({same, render(std::string("b.") + ending, "31")}), 7);
     }
+    // Its colours are not exact; its rate is told by its times alone.
+    const auto gif = run_corda({"render", CORDA_EXAMPLES "/first.toml", "-o", file("a.gif"), "--size",
+                                "160x96", "--fps", "50", "--frames", "0:9"});
+    EXPECT_EQ(gif.exit_code, 0) << gif.err;
+    const auto mkv = run_corda({"render", CORDA_EXAMPLES "/first.toml", "-o", file("50.mkv"), "--size",
+                                "160x96", "--fps", "50", "--frames", "0:9"});
+    EXPECT_EQ(mkv.exit_code, 0) << mkv.err;
+    EXPECT_EQ(code({file("a.gif"), file("50.mkv"), "--max", "64"}), 0);
     for (const std::string name : {"a.webp", "a.apng", "a.mkv"}) {
         const std::string whole = test::read_file(file(name));
         test::write_file(file("cut-" + name), whole.substr(0, whole.size() - 2));
