@@ -47,10 +47,6 @@ std::string group_of(const std::filesystem::path& root) {
     return {};
 }
 
-}  // namespace
-
-namespace {
-
 /// What the limit on the address space of this process leaves (ulimit -v); empty without one.
 std::optional<std::uint64_t> left_of_address_space(const std::filesystem::path& root) {
     rlimit limit{};

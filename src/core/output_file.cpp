@@ -259,14 +259,18 @@ void OutputFile::close() {
     if (const int status = descriptor_.close(); status != 0) fail_file("close", path_, status);
 }
 
+Descriptor OutputFile::second_lock() const {
+    return Descriptor(temporary_.empty() || !descriptor_ ? -1
+                                                         : ::fcntl(descriptor_.get(), F_DUPFD_CLOEXEC, 0));
+}
+
 int OutputFile::rename_to(const std::string& name) const {
     if (!options_.force) return rename_if_free(temporary_, name);
     return std::rename(temporary_.c_str(), name.c_str()) == 0 ? 0 : errno;
 }
 
 void OutputFile::commit() {
-    // A second descriptor holds the lock until the file has its name: without it, it would be a leftover.
-    const Descriptor lock(temporary_.empty() ? -1 : ::fcntl(descriptor_.get(), F_DUPFD_CLOEXEC, 0));
+    const Descriptor lock = second_lock();
     bool is_blocked = false;
     if (options_.force && !temporary_.empty()) {
         // It may have changed since the constructor looked.
@@ -289,6 +293,7 @@ void OutputFile::commit() {
 }
 
 std::string OutputFile::keep() {
+    const Descriptor lock = second_lock();
     if (descriptor_) close();
     if (temporary_.empty()) return path_;
     const std::string part = part_path(target_);

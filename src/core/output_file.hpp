@@ -82,6 +82,9 @@ class OutputFile {
     void open_temporary();
     void restore_permissions();
     void close();
+    /// A second descriptor, which holds the lock beyond the close: without it, the file would be a leftover
+    /// until it has its name.
+    [[nodiscard]] Descriptor second_lock() const;
     [[nodiscard]] int rename_to(const std::string& name) const;
 
     std::string path_;    // as given

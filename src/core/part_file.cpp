@@ -75,7 +75,7 @@ PartFile PartFile::create(std::string path, const OutputOptions& options) {
 
 void PartFile::remove_unheld(const std::string& path) noexcept {
     const Descriptor old = open_existing(path);
-    if (old && lock(old, path, LOCK_EX | LOCK_NB)) ::unlink(path.c_str());
+    if (old && ::flock(old.get(), LOCK_EX | LOCK_NB) == 0 && leads_to(path, old)) ::unlink(path.c_str());
 }
 
 PartFile PartFile::open(std::string path) {

@@ -32,7 +32,7 @@ class PartFile {
     /// made.
     [[nodiscard]] static PartFile create(std::string path, const OutputOptions& options);
 
-    /// Removes a file unless another process holds it.
+    /// Removes a file unless another process holds it, or might: on a file system without locks.
     static void remove_unheld(const std::string& path) noexcept;
 
     /// Locks the part file that an earlier run left. Throws corda::Error (kIo).
