@@ -48,10 +48,10 @@ ExitCode recover(const Console& console, const RecoverOptions& options) {
         !options.output.empty());
     const std::string frames = counted(result.frames, "frame");
     if (result.damaged) {
-        console.warning(fmt::format("{} is damaged after {}; these were recovered", options.part, frames));
+        console.warning(fmt::format("{} is damaged after {}, which were recovered", options.part, frames));
     } else if (result.truncated) {
-        console.warning(
-            fmt::format("{} breaks off in a chunk; the {} before it were recovered", options.part, frames));
+        console.warning(fmt::format("{} ends in the middle of a chunk; the {} before it were recovered",
+                                    options.part, frames));
     }
     console.info(fmt::format("{}; verified; {} {}", frames, options.part,
                              result.removed ? "was removed" : "stays as it is"));

@@ -75,8 +75,8 @@ std::string words_of_interruption(const RenderOptions& options, std::int64_t fir
     if (rendered.frames == 0)
         return fmt::format("interrupted before the first frame; {} was not written", options.output);
     const std::int64_t next = first + rendered.frames;
-    const std::string done =
-        fmt::format("interrupted: frames {}..{} of {} are in {}", first, next - 1, count, rendered.kept_part);
+    const std::string done = fmt::format("interrupted: {} of {} frames ({}..{}) are in {}", rendered.frames,
+                                         count, first, next - 1, rendered.kept_part);
     if (is_one_file(options.output))
         return fmt::format(
             "{}, which plays; {} was not written (--resume continues it, corda recover makes it a video "
@@ -151,8 +151,9 @@ void check_standard_output(const Console& console, const std::string& output) {
 void report_rendered(const Console& console, const std::string& output, const Rendered& rendered,
                      double wall_s) {
     if (rendered.resumed_frames > 0)
-        console.info(fmt::format("{} were there from the interrupted render",
-                                 counted(rendered.resumed_frames, "frame")));
+        console.info(fmt::format("{} were there from the interrupted render{}",
+                                 counted(rendered.resumed_frames, "frame"),
+                                 rendered.was_part_damaged ? ", whose part was damaged after them" : ""));
     if (rendered.is_short_of_memory)
         console.info(fmt::format("only {} at a time: more would not fit into the memory that is free",
                                  counted(rendered.jobs, "chunk")));
@@ -167,10 +168,10 @@ void warn_of_other_pictures(const Console& console, const std::string& output, s
     const std::string next = media::picture_name(output, end);
     std::error_code ignored;
     if (std::filesystem::exists(next, ignored))
-        console.warning(
-            fmt::format("{} is there and not of this render, which has {}; remove it and those after "
-                        "it before the pictures are used as a video",
-                        next, counted(end, "frame")));
+        console.warning(fmt::format(
+            "{} exists but is not part of this render, which ends before it; remove it and those after "
+            "it before the pictures are used as a video",
+            next));
 }
 
 ExitCode render(const Console& console, const RenderOptions& options) {
@@ -182,6 +183,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     def.verify_all = options.verify == "full";
     parse_range(range_of(console, options), def);
     check_standard_output(console, options.output);
+    def.on_progress = stopping_if_asked();  // what stands under the name of a part may be large
     check_render(scene, options.output, def, options.scene.input());
     report_format(console, scene, options.output, def);
     OnProgress on_progress = show_progress(console, "simulate");
@@ -219,7 +221,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     const double wall_s = now_s() - start_s;
     report_rendered(console, options.output, rendered, wall_s);
     warn_of_branch(console, film);
-    if (!def.end) warn_of_other_pictures(console, options.output, count);
+    if (!def.end) warn_of_other_pictures(console, options.output, def.first + count);
     if (!is_standard_output(options.output)) console.result(options.output);
     console.report(report(film, options, rendered, wall_s, gl.renderer));
     const EmptyPictures empty{options.empty.are_failures, rendered.empty_frames, rendered.first_empty_s};

@@ -14,7 +14,7 @@ class EdgeFill {
   public:
     /// How far colours are spread.
     static constexpr int kReachPx = 4;
-    /// Pixels of less alpha get another colour; theirs, divided by so little, is coarse.
+    /// Pixels of less alpha get another colour: their own, divided by so small an alpha, is imprecise.
     static constexpr int kLeastAlpha = 32;
 
     /// Takes the part of a picture that differs from the last one, or all of another size; returns what of

@@ -123,7 +123,7 @@ RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOpt
     output.commit();
     result.removed = !result.damaged && !def.keep_part;
     if (result.removed) part.remove();
-    PartFile::remove_unheld(part_copy_path(part.path()));
+    remove_part_copy(part.path());
     return result;
 }
 

@@ -86,8 +86,8 @@ struct Format {
     [[nodiscard]] std::string words() const;
     /// Who makes what is in the file: "libx264", "gif".
     [[nodiscard]] std::string encoder_name() const;
-    /// The versions of the libraries that a part's bytes follow from: "libavcodec 59.37.100, libavformat
-    /// ...".
+    /// The versions of libavformat and of libx264 or libavcodec: "libx264 164, libavformat 59.27.100".
+    /// libavcodec does not tell those of the encoders behind it.
     [[nodiscard]] std::string library_versions() const;
 };
 

@@ -10,6 +10,7 @@
 
 #include "corda/core/file.hpp"
 #include "corda/core/image.hpp"
+#include "corda/core/part_file.hpp"
 #include "corda/media/checked.hpp"
 #include "corda/media/file_kind.hpp"
 #include "corda/media/part_checksum.hpp"
@@ -135,7 +136,7 @@ PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
     const SoundBytes sound = sound_bytes_of(path, PartExtent::kAll, on_progress);
     if (sound.count == 0)
         throw EmptyPart(ExitCode::kMismatch,
-                        fmt::format("'{}' holds no whole chunk with a right checksum; render it again "
+                        fmt::format("'{}' holds no whole chunk with a valid checksum; render it again "
                                     "(--force), or try to save what plays: ffmpeg -i '{}' -c copy NEW.mkv",
                                     path, path));
     index.bytes = sound.count;
@@ -144,12 +145,12 @@ PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
     std::vector<std::int64_t> stamps;
     std::int64_t packet_duration = 0;
     index.codec = input.stream->codecpar->codec_id;
-    bool is_damaged = false;
+    bool has_bad_stamp = false;
     bool is_broken = false;
     while (read_packet(input, *packet, &is_broken)) {
         report_progress(on_progress, std::ssize(stamps), 0);
-        is_damaged = !is_sane_stamp(packet->pts);
-        if (is_damaged) break;
+        has_bad_stamp = !is_sane_stamp(packet->pts);
+        if (has_bad_stamp) break;
         packet_duration = packet->duration;
         stamps.push_back(packet->pts);
         av_packet_unref(packet.get());
@@ -162,16 +163,17 @@ PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
     if (index.fps.den > std::numeric_limits<int>::max()) fail_rate(path);  // more than libav can count
     number_frames(stamps, step, index);
     std::error_code ignored;
-    index.is_damaged = sound.is_damaged || is_broken || is_damaged || index.frame_of.size() < stamps.size();
+    index.is_damaged =
+        sound.is_damaged || is_broken || has_bad_stamp || index.frame_of.size() < stamps.size();
     index.is_cut = index.bytes < std::filesystem::file_size(path, ignored);
     return index;
 }
 
-std::optional<std::string> part_comment(const std::string& path, const OnProgress& on_progress) {
+PartComment part_comment(const std::string& path, const OnProgress& on_progress) {
     const LogCapture log;
-    const std::uint64_t bytes = sound_bytes_of(path, PartExtent::kFirstChunk, on_progress).count;
-    if (bytes == 0) return std::nullopt;
-    return metadata_entry(*open_part(path, bytes).format, "comment");
+    const SoundBytes sound = sound_bytes_of(path, PartExtent::kFirstChunk, on_progress);
+    if (sound.count == 0) return {std::nullopt, sound.is_damaged};
+    return {metadata_entry(*open_part(path, sound.count).format, "comment"), false};
 }
 
 bool holds_in_front(const std::string& path, std::string_view text) {
@@ -179,6 +181,19 @@ bool holds_in_front(const std::string& path, std::string_view text) {
     std::string front(std::size_t{1} << 18, '\0');
     front.resize(read_bytes(file, path, front.data(), front.size()));
     return front.find(text) != std::string::npos;
+}
+
+void remove_part_copy(const std::string& part) noexcept {
+    try {
+        const std::string copy = part_copy_path(part);
+        std::error_code none;
+        const bool is_empty = std::filesystem::file_size(copy, none) == 0;
+        if (none) return;
+        if (is_empty || holds_in_front(copy, fmt::format("\"{}\":", kOriginKey)))
+            PartFile::remove_unheld(copy);
+    } catch (const std::exception&) {
+        return;
+    }
 }
 
 void PacketCopy::copy_to(std::size_t end, TrackOutput& output, const OnProgress& on_progress) {

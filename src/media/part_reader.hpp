@@ -47,14 +47,22 @@ class EmptyPart : public Error {
 /// What the part says of itself: "title" or "comment"; empty if it does not.
 [[nodiscard]] std::string metadata_entry(const AVFormatContext& format, const char* key);
 
-/// The comment of a part; std::nullopt if its first chunk is not whole. Throws as open_part, and
-/// corda::Error: kIo, kInterrupted.
-[[nodiscard]] std::optional<std::string> part_comment(const std::string& path,
-                                                      const OnProgress& on_progress = {});
+/// What a part tells with its first chunk.
+struct PartComment {
+    std::optional<std::string> text;  ///< std::nullopt if that chunk is not whole
+    bool is_damaged = false;          ///< it does not break off: it has changed
+};
+
+/// The comment of a part. Throws as open_part, and corda::Error: kIo, kInterrupted.
+[[nodiscard]] PartComment part_comment(const std::string& path, const OnProgress& on_progress = {});
 
 /// Whether a text is among the first bytes of a file, where a part has its comment: also one that breaks off
 /// in its first chunk. Throws corda::Error (kIo).
 [[nodiscard]] bool holds_in_front(const std::string& path, std::string_view text);
+
+/// Removes the copy of a part that a killed process has left (see part_copy_path), and no other file of that
+/// name. Never throws: it does no harm.
+void remove_part_copy(const std::string& part) noexcept;
 
 /// Copies packets of a part, from the first one, into a track, with time stamps made anew from frame numbers.
 class PacketCopy {

@@ -57,8 +57,7 @@ class PartSink : public VideoSink {
     /// place.
     PartSink(const Format& format, const std::string& path, const OutputOptions& options, PartFile old,
              const FrameRange& frames)
-        : PartSink(format, path, options,
-                   PartFile::create(part_copy_path(part_path(path)), {.force = true})) {
+        : PartSink(format, path, options, create_copy(part_path(path))) {
         // Copying is no progress of the frames that are still to be drawn.
         const OnProgress nothing_done = [&](std::int64_t, std::int64_t) {
             return !options.on_progress || options.on_progress(0, frames.end - frames.first);
@@ -83,6 +82,7 @@ class PartSink : public VideoSink {
     }
 
     [[nodiscard]] std::int64_t resumed_frames() const override { return resumed_; }
+    [[nodiscard]] bool was_part_damaged() const override { return was_damaged_; }
     void begin(const AVCodecParameters& parameters, const TrackInfo& info) override {
         track_.begin(format_.ending->part_muxer, parameters, info);
     }
@@ -119,6 +119,18 @@ class PartSink : public VideoSink {
           part_(std::move(part)),
           track_(part_.descriptor(), part_path(path), TrackLayout::kPart) {}
 
+    /// Makes the file that a part is copied to.
+    static PartFile create_copy(const std::string& part) {
+        const std::string copy = part_copy_path(part);
+        std::error_code ignored;
+        if (std::filesystem::exists(copy, ignored))
+            throw Error(
+                ExitCode::kIo,
+                fmt::format("'{}' is in the way: to resume '{}', it is first copied there; move it away",
+                            copy, part));
+        return PartFile::create(copy, {});
+    }
+
     /// Adds to a failure to write where the frames are that were written before it.
     template <class Work>
     void telling_what_is_kept(const char* which, const Work& work) {
@@ -146,6 +158,7 @@ class PartSink : public VideoSink {
         } catch (const EmptyPart&) {
             return 0;
         }
+        was_damaged_ = index.is_damaged;
         const std::int64_t there = std::min(std::ssize(index.frame_of), frames.end - frames.first);
         const auto is_whole = [&](std::int64_t count) {
             return (frames.first + count) % frames.per_chunk == 0 || count == frames.end - frames.first;
@@ -177,6 +190,7 @@ class PartSink : public VideoSink {
     PartFile part_;
     TrackOutput track_;
     std::int64_t resumed_ = 0;
+    bool was_damaged_ = false;
     bool has_chunk_ = false;    ///< a whole one, on the disk
     bool has_lengths_ = false;  ///< whether the track's packets have lengths in place of start codes
 };
@@ -260,7 +274,7 @@ std::unique_ptr<VideoSink> make_sink(const Format& format, const std::string& pa
             break;
     }
     std::error_code ignored;
-    PartFile::remove_unheld(part_copy_path(part_path(path)));
+    remove_part_copy(part_path(path));
     if (!resume || !std::filesystem::exists(part_path(path), ignored))
         return std::make_unique<PartSink>(format, path, options);
     PartFile old = PartFile::open(part_path(path));

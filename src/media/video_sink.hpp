@@ -30,6 +30,8 @@ class VideoSink {
     /// Number of frames taken over from an interrupted render, always whole chunks. If there are any, begin()
     /// is not called.
     [[nodiscard]] virtual std::int64_t resumed_frames() const { return 0; }
+    /// Whether the interrupted render's part was damaged after these frames.
+    [[nodiscard]] virtual bool was_part_damaged() const { return false; }
     /// Called once, before the first packet.
     virtual void begin(const AVCodecParameters& parameters, const TrackInfo& info) = 0;
     virtual void write(AVPacket& packet) = 0;

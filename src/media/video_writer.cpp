@@ -91,9 +91,10 @@ Format check_video_output(const std::string& path, const VideoDef& def, const st
     if (resume && !has_part) {
         throw Error(
             ExitCode::kUsage,
-            fmt::format("{} cannot be resumed (--resume): it has no part file; render the frames that are "
-                        "missing (--frames FIRST:END)",
-                        path));
+            fmt::format(
+                "{} has no part file, so --resume has nothing to continue; render the frames that are "
+                "missing (--frames FIRST:END)",
+                path));
     }
     switch (format.ending->kind) {
         case FileKind::kStream:
@@ -263,6 +264,10 @@ std::int64_t VideoWriter::frames_per_chunk() const {
 
 ChunkEncoder VideoWriter::chunk_encoder(std::int64_t frame) const {
     return impl_->chunk_encoder(frame);
+}
+
+bool VideoWriter::was_part_damaged() const {
+    return impl_->sink->was_part_damaged();
 }
 
 std::int64_t VideoWriter::frames() const {

@@ -78,6 +78,9 @@ class VideoWriter {
     /// What encodes a chunk for append(), from frame `frame` of the film on. May be called by any thread.
     [[nodiscard]] ChunkEncoder chunk_encoder(std::int64_t frame) const;
 
+    /// Whether the part that was resumed was damaged after its whole chunks.
+    [[nodiscard]] bool was_part_damaged() const;
+
     /// Frames written so far.
     [[nodiscard]] std::int64_t frames() const;
 

@@ -236,7 +236,7 @@ struct Film::Impl {
         try {
             return draw_asking(on_progress);
         } catch (const pipeline::Stage::Overdrawn&) {
-            // Without asking anybody, who would draw again.
+            // Ask nobody: a callback would draw again.
             const pipeline::Silence silence(by);
             return draw_asking({});
         }

@@ -163,6 +163,7 @@ struct RenderDef {
 struct Rendered {
     std::int64_t frames = 0;
     std::int64_t resumed_frames = 0;  ///< of these, how many an interrupted render had made
+    bool was_part_damaged = false;    ///< its part had changed after these
     bool complete = true;             ///< false if on_progress asked to stop
     std::string kept_part;     ///< where the frames so far are if it is not complete; empty if there are none
     bool reader_left = false;  ///< standard output was closed by whoever read it: no more was wanted

@@ -57,18 +57,19 @@ void check_part(const std::string& path, const std::map<std::string, std::string
                 "recover), or start anew (--force without --resume)",
                 part, problem));
     };
-    const std::optional<std::string> comment = media::part_comment(part, on_progress);
-    if (!comment) {
-        // A part of this render that broke off in its first chunk holds nothing that would be lost.
+    const media::PartComment comment = media::part_comment(part, on_progress);
+    if (comment.is_damaged) fail("is damaged in its first chunk");
+    if (!comment.text) {
+        // A part of this render that breaks off in its first chunk holds nothing that would be lost.
         const std::string told = fmt::format("\"{}\":{}", media::kOriginKey, nlohmann::json(origin).dump());
         if (media::holds_in_front(part, told)) return;
         throw Error(
             ExitCode::kUsage,
             fmt::format("'{}' holds no whole chunk of this render, so --resume cannot continue it; move "
-                        "it away, render to another name, or replace it (--force)",
+                        "it away, render to another name, or replace it (--force without --resume)",
                         part));
     }
-    const std::map<std::string, std::string> its = media::told_origin(*comment);
+    const std::map<std::string, std::string> its = media::told_origin(*comment.text);
     if (its.empty()) fail("does not tell what it was rendered from");
     if (const std::string difference = first_difference(origin, its); !difference.empty())
         fail("is of another render: " + difference);
@@ -245,6 +246,7 @@ Rendered render_video(Film& film, const std::string& path, const RenderDef& def)
     };
     Rendered result;
     result.resumed_frames = writer.frames();
+    result.was_part_damaged = writer.was_part_damaged();
     result.encoder = writer.format().encoder_name();
     try {
         write_frames(film, def.first, end, drawn, writer, result);

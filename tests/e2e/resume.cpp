@@ -33,7 +33,7 @@ class Resume : public testing::Test {
     }
 
     /// From when the time to a signal counts.
-    enum class From { kStart, kFirstChunk };
+    enum class From { kStart, kFirstChunk, kSecondChunk };
 
     /// Begins a render, and sends it a signal after a while.
     void interrupt(const std::string& name, const std::string& signal, double after_s, From from,
@@ -42,8 +42,9 @@ class Resume : public testing::Test {
         for (const std::string& word : render(name, more)) command += " " + quoted(word);
         const std::string part = quoted(file(name + ".part"));
         command += " & p=$!; ";
-        if (from == From::kFirstChunk)
-            command += "until grep -qas 'corda checksum' " + part + " || ! kill -0 $p; do sleep 0.01; done; ";
+        if (from != From::kStart)
+            command += "until [ $(grep -aos 'corda checksum' " + part + " | wc -l) -ge " +
+                       (from == From::kFirstChunk ? "1" : "2") + " ] || ! kill -0 $p; do sleep 0.01; done; ";
         command += "sleep " + std::to_string(after_s) + "; kill -s " + signal + " $p; wait $p; ";
         // Until whoever held the part is gone.
         command += "[ ! -e " + part + " ] || flock -w 60 " + part + " true";
@@ -166,24 +167,55 @@ TEST_F(Resume, BeginsAnewIfThereIsNothingToGoOnWith) {
     EXPECT_THAT(pictures.err, HasSubstr("--frames FIRST:END"));
 }
 
-TEST_F(Resume, ReplacesADamagedPartOnlyIfItIsItsOwn) {
+TEST_F(Resume, RefusesAPartThatIsDamagedInItsFirstChunk) {
     const std::vector<std::string> more{"--duration", "20", "--set", "solver.method=exact"};
-    const std::string whole = bytes_of_a_whole("whole.mp4", more);
     interrupt("a.mp4", "INT", 0.0, From::kFirstChunk, more);
     std::string part = read_file(file("a.mp4.part"));
     ASSERT_NE(part.find("mdat"), std::string::npos);
-    part[part.find("mdat") + 100] ^= 1;  // in the first chunk
+    part[part.find("mdat") + 100] ^= 1;
     test::write_file(file("a.mp4.part"), part);
-    test::write_file(file("a.mp4.part.new"), "what a kill left while a part was copied");
     std::vector<std::string> again = more;
     again.emplace_back("--resume");
-    std::vector<std::string> other = again;
-    other.insert(other.end(), {"--crf", "30"});
-    EXPECT_EQ(run_corda(render("a.mp4", other)).exit_code, 2);
+    const auto refused = run_corda(render("a.mp4", again));
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("is damaged in its first chunk"));
+    EXPECT_THAT(refused.err, HasSubstr("start anew (--force without --resume)"));
     EXPECT_TRUE(read_file(file("a.mp4.part")) == part);
-    EXPECT_EQ(run_corda(render("a.mp4", again)).exit_code, 0);
+}
+
+TEST_F(Resume, SaysThatAPartIsDamagedAndRendersTheRestAgain) {
+    const std::vector<std::string> more{"--duration", "20", "--set", "solver.method=exact"};
+    const std::string whole = bytes_of_a_whole("whole.mp4", more);
+    interrupt("a.mp4", "INT", 0.0, From::kSecondChunk, more);
+    std::string part = read_file(file("a.mp4.part"));
+    const std::size_t first = part.find("mdat");
+    ASSERT_NE(part.find("mdat", first + 1), std::string::npos) << "one chunk alone";
+    part[part.find("mdat", first + 1) + 100] ^= 1;
+    test::write_file(file("a.mp4.part"), part);
+    std::vector<std::string> again = more;
+    again.emplace_back("--resume");
+    const auto resumed = run_corda(render("a.mp4", again));
+    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    EXPECT_THAT(resumed.err,
+                HasSubstr("60 frames were there from the interrupted render, whose part was damaged"));
     EXPECT_TRUE(read_file(file("a.mp4")) == whole);
-    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"a.mp4", "whole.mp4"}));
+}
+
+TEST_F(Resume, RemovesTheCopyThatAKillLeftAndNoOtherFile) {
+    const std::vector<std::string> more{"--duration", "20", "--set", "solver.method=exact"};
+    interrupt("a.mp4", "INT", 0.0, From::kFirstChunk, more);
+    const std::string part = read_file(file("a.mp4.part"));
+    std::vector<std::string> again = more;
+    again.emplace_back("--resume");
+    test::write_file(file("a.mp4.part.new"), "precious");
+    const auto refused = run_corda(render("a.mp4", again));
+    EXPECT_EQ(refused.exit_code, 6);
+    EXPECT_THAT(refused.err, HasSubstr("a.mp4.part.new' is in the way"));
+    EXPECT_EQ(read_file(file("a.mp4.part.new")), "precious");
+    EXPECT_TRUE(read_file(file("a.mp4.part")) == part);
+    test::write_file(file("a.mp4.part.new"), part.substr(0, part.size() / 2));
+    EXPECT_EQ(run_corda(render("a.mp4", again)).exit_code, 0);
+    EXPECT_EQ(folder_.files(), std::vector<std::string>{"a.mp4"});
 }
 
 }  // namespace

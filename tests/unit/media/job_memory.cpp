@@ -23,7 +23,7 @@ TEST(JobMemory, FollowsFromTheEncoderAndItsPreset) {
               bytes_per_pixel("a.mp4", "libx264", "medium"));
     EXPECT_LT(bytes_per_pixel("a.mp4", "libx264", "medium"), bytes_per_pixel("a.mp4", "libx264", "placebo"));
     EXPECT_LT(bytes_per_pixel("%04d.png", ""), bytes_per_pixel("a.mov", ""));
-    EXPECT_EQ(bytes_per_pixel("a.apng", ""), std::uint64_t{kAnimationBytesPerPixel});
+    EXPECT_LT(bytes_per_pixel("a.mov", ""), bytes_per_pixel("a.apng", ""));
     // An encoder that was not measured is taken for the largest.
     EXPECT_EQ(bytes_per_pixel("a.mp4", "h264_nvenc"), bytes_per_pixel("a.mp4", "libaom-av1"));
 }

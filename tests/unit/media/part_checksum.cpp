@@ -53,7 +53,7 @@ class PartOf : public Video, public testing::WithParamInterface<const char*> {
             const test::Failure failure =
                 test::failure_of([&] { recover_part(part, video, {.force = true}); });
             EXPECT_EQ(failure.code, ExitCode::kMismatch);
-            EXPECT_THAT(failure.message, testing::HasSubstr("no whole chunk with a right checksum"));
+            EXPECT_THAT(failure.message, testing::HasSubstr("no whole chunk with a valid checksum"));
             return;
         }
         const RemuxResult result = recover_part(part, video, {.force = true});
