@@ -25,8 +25,7 @@ constexpr std::array kPlayers{
         "QuickTime, Keynote, PowerPoint and Safari play it, YouTube takes it; some browsers do not play it"},
     Players{"mov", "h264", "yuv444p",
             "4:4:4, High 4:4:4 Predictive: VLC, mpv and ffmpeg play it; QuickTime, browsers and PowerPoint "
-            "refuse "
-            "it"},
+            "do not"},
     Players{"mp4", "h264", "yuv444p",
             "4:4:4, High 4:4:4 Predictive: VLC, mpv and ffmpeg play it; browsers, QuickTime and PowerPoint "
             "refuse it"},
