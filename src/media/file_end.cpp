@@ -3,7 +3,10 @@
 #include <array>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <string_view>
 
 #include "corda/core/file.hpp"
@@ -120,6 +123,47 @@ bool matroska_is_whole(ByteReader& bytes) {
     return segment && (*segment == kUnknownLength || bytes.skip(*segment));
 }
 
+/// A line up to its end, which may be missing; empty after the last one.
+std::string next_line(ByteReader& bytes) {
+    constexpr std::size_t kLongest = 1024;
+    std::string line;
+    for (auto byte = bytes.next(); byte && line.size() < kLongest; byte = bytes.next()) {
+        line += static_cast<char>(*byte);
+        if (*byte == '\n') break;
+    }
+    return line;
+}
+
+/// The bytes of a frame by a header such as "YUV4MPEG2 W640 H360 F60:1 C420mpeg2"; none if it has another
+/// form.
+std::optional<std::uint64_t> yuv_frame_bytes(const std::string& header) {
+    std::uint64_t width = 0;
+    std::uint64_t height = 0;
+    std::string colors = "420";
+    std::istringstream words(header);
+    for (std::string word; words >> word;) {
+        if (word[0] == 'W') width = std::strtoull(word.c_str() + 1, nullptr, 10);
+        if (word[0] == 'H') height = std::strtoull(word.c_str() + 1, nullptr, 10);
+        if (word[0] == 'C') colors = word.substr(1);
+    }
+    constexpr std::uint64_t kLargest = 1 << 20;
+    if (width == 0 || height == 0 || width > kLargest || height > kLargest) return std::nullopt;
+    if (colors == "444") return 3 * width * height;
+    if (colors == "420" || colors == "420jpeg" || colors == "420mpeg2" || colors == "420paldv")
+        return width * height + 2 * ((width + 1) / 2) * ((height + 1) / 2);
+    return std::nullopt;
+}
+
+bool yuv_is_whole(ByteReader& bytes) {
+    const auto frame = yuv_frame_bytes(next_line(bytes));
+    if (!frame) return true;  // of other forms, nothing is known
+    for (;;) {
+        const std::string head = next_line(bytes);
+        if (head.empty()) return true;
+        if (!head.ends_with('\n') || !bytes.skip(*frame)) return false;
+    }
+}
+
 }  // namespace
 
 bool breaks_off(const std::string& path, const std::string& kind) {
@@ -127,6 +171,7 @@ bool breaks_off(const std::string& path, const std::string& kind) {
     if (kind == "gif") return !gif_has_trailer(bytes);
     if (kind == "apng") return !png_has_last_chunk(bytes);
     if (kind == "matroska") return !matroska_is_whole(bytes);
+    if (kind == "yuv4mpegpipe") return !yuv_is_whole(bytes);
     return false;
 }
 

@@ -30,6 +30,23 @@ TEST_F(Video, BreaksOffIfAnyOfItsLastBytesIsMissing) {
     }
 }
 
+TEST_F(Video, OfPlainFramesBreaksOffInOne) {
+    for (const auto& [colors, bytes] :
+         {std::pair("C420mpeg2 XYSCSS=420MPEG2", 6 * 4 * 3 / 2), std::pair("C444", 72)}) {
+        const std::string frame = "FRAME\n" + std::string(static_cast<std::size_t>(bytes), 'x');
+        const std::string whole = std::string("YUV4MPEG2 W6 H4 F25:1 Ip ") + colors + "\n" + frame + frame;
+        test::write_file(file("a.y4m"), whole);
+        EXPECT_FALSE(breaks_off(file("a.y4m"), file_kind(file("a.y4m"))));
+        for (const std::size_t missing :
+             {std::size_t{1}, std::size_t{20}, frame.size() - 1, frame.size() + 1}) {
+            test::write_file(file("a.y4m"), whole.substr(0, whole.size() - missing));
+            EXPECT_TRUE(breaks_off(file("a.y4m"), file_kind(file("a.y4m")))) << missing;
+        }
+    }
+    test::write_file(file("a.y4m"), "YUV4MPEG2 W6 H4 F25:1 C444p16\nFRAME\nx");  // another form
+    EXPECT_FALSE(breaks_off(file("a.y4m"), file_kind(file("a.y4m"))));
+}
+
 TEST_F(Video, DoesNotBreakOffIfItTellsNoLength) {
     // What a muxer writes to a pipe: the segment's length is unknown.
     const std::string head = std::string("\x1a\x45\xdf\xa3\x84") + "data" + "\x18\x53\x80\x67";
