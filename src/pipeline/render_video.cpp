@@ -49,25 +49,20 @@ void check_part(const std::string& path, const std::map<std::string, std::string
     std::error_code ignored;
     const auto bytes = std::filesystem::file_size(part, ignored);
     if (ignored || bytes == 0) return;
-    const auto fail = [&](const std::string& problem) {
+    const auto fail = [&](const std::string& problem, const char* other = "make it a video (corda recover)") {
         throw Error(
             ExitCode::kUsage,
-            fmt::format(
-                "'{}' {}, so --resume cannot continue it; render to another name, make it a video (corda "
-                "recover), or start anew (--force without --resume)",
-                part, problem));
+            fmt::format("'{}' {}, so --resume cannot continue it; {}, render to another name, or start "
+                        "anew (--force without --resume)",
+                        part, problem, other));
     };
     const media::PartComment comment = media::part_comment(part, on_progress);
-    if (comment.is_damaged) fail("is damaged in its first chunk");
+    if (comment.is_damaged) fail("is damaged in its first chunk", "move it away");
     if (!comment.text) {
         // A part of this render that breaks off in its first chunk holds nothing that would be lost.
         const std::string told = fmt::format("\"{}\":{}", media::kOriginKey, nlohmann::json(origin).dump());
         if (media::holds_in_front(part, told)) return;
-        throw Error(
-            ExitCode::kUsage,
-            fmt::format("'{}' holds no whole chunk of this render, so --resume cannot continue it; move "
-                        "it away, render to another name, or replace it (--force without --resume)",
-                        part));
+        fail("holds no whole chunk of this render", "move it away");
     }
     const std::map<std::string, std::string> its = media::told_origin(*comment.text);
     if (its.empty()) fail("does not tell what it was rendered from");
