@@ -55,7 +55,9 @@ std::optional<std::uint64_t> free_disk_bytes(const std::string& path) {
     // One that is still to be made is on the disk of the folder above it.
     while (!folder.empty() && !std::filesystem::exists(folder, failure)) folder = folder.parent_path();
     const std::filesystem::space_info space = std::filesystem::space(folder.empty() ? "." : folder, failure);
-    return failure ? std::nullopt : std::optional<std::uint64_t>(space.available);
+    // Some file systems that are no disks tell 0 of all.
+    if (failure || space.capacity == 0) return std::nullopt;
+    return space.available;
 }
 
 void check_disk_space(const Format& format, const std::string& path, const VideoDef& def, std::int64_t frames,
