@@ -174,7 +174,7 @@ TEST_F(Signals, EndTheLastCopyOfAVideoKeepingItsFrames) {
     const Interrupted end = interrupt("render --verify full " + scene_ + " -o " + video, "TERM",
                                       "ls " + video + ".*.tmp >/dev/null 2>&1");
     EXPECT_EQ(end.result.exit_code, 143) << end.result.err;
-    EXPECT_THAT(end.result.err, HasSubstr("interrupted: frames 0..1199 of 1200 are in " + video +
+    EXPECT_THAT(end.result.err, HasSubstr("interrupted: 1200 of 1200 frames (0..1199) are in " + video +
                                           ".part, which plays; " + video + " was not written"));
     EXPECT_LT(end.ms, kMostMs);  // measured 21
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"a.mp4.part", "scene.toml"}));
