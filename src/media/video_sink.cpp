@@ -137,8 +137,9 @@ class PartSink : public VideoSink {
         try {
             work();
         } catch (const Error& error) {
-            if (error.code() != ExitCode::kIo || !has_chunk_) throw;
-            const bool is_taken = !options_.force && std::filesystem::exists(path_);
+            if (error.code() != ExitCode::kIo || (part_.is_named() && !has_chunk_)) throw;
+            std::error_code ignored;
+            const bool is_taken = !options_.force && std::filesystem::exists(path_, ignored);
             const std::string kept =
                 part_.is_named()
                     ? fmt::format("{} in '{}', which plays; --resume{} continues it", which, part_.path(),
