@@ -75,6 +75,12 @@ TrackOutput::TrackOutput(int descriptor, std::string path, TrackLayout layout)
     io_ = check_allocated(std::move(io_), "an output buffer");
 }
 
+TrackOutput::~TrackOutput() {
+    // The muxer of GIF keeps a packet until its trailer, and loses it without.
+    const bool holds_packet = begun_ && !ended_ && std::string_view(format_->oformat->name) == "gif";
+    if (holds_packet) static_cast<void>(av_write_trailer(format_.get()));
+}
+
 void TrackOutput::begin(const char* container, const AVCodecParameters& parameters, const TrackInfo& info) {
     assert(!begun_);
     const LogCapture log;
@@ -136,6 +142,7 @@ void TrackOutput::finish() {
     assert(begun_);
     const LogCapture log;
     const std::string what = fmt::format("cannot finish '{}'", path_);
+    ended_ = true;
     check_libav(av_write_trailer(format_.get()), kIo, what);
     end_bytes(what);
 }

@@ -30,7 +30,7 @@ class TrackOutput {
     TrackOutput(int descriptor, std::string path, TrackLayout layout);
     TrackOutput(const TrackOutput&) = delete;
     TrackOutput& operator=(const TrackOutput&) = delete;
-    ~TrackOutput() = default;
+    ~TrackOutput();
 
     /// Writes the header; call it once, before any packet. `container` is libav's name of the muxer. Throws
     /// corda::Error (kIo), like all below.
@@ -60,6 +60,7 @@ class TrackOutput {
     OutputFormat format_;  // refers to io_
     AVRational frame_base_{};
     bool begun_ = false;
+    bool ended_ = false;
 };
 
 }  // namespace corda::media
