@@ -26,7 +26,7 @@ ApngTimes read_apng_times(const std::string& path) {
     };
     std::int64_t offset = kSignatureBytes;
     while (::fseeko(file.get(), static_cast<off_t>(offset), SEEK_SET) == 0 &&
-           std::fread(head.data(), 1, head.size(), file.get()) == head.size()) {
+           read_bytes(file, path, head.data(), head.size()) == head.size()) {
         if (bytes.substr(4, 4) == "fcTL") {
             const std::int64_t den = number(30, 2);
             const Rational delay = Rational::reduced(number(28, 2), den == 0 ? 100 : den);

@@ -14,7 +14,7 @@ struct ApngTimes {
 };
 
 /// Reads the chunks of an APNG file, up to one that is not whole. Throws corda::Error (kIo) if it cannot be
-/// opened for reading.
+/// read.
 [[nodiscard]] ApngTimes read_apng_times(const std::string& path);
 
 }  // namespace corda::media

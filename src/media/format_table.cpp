@@ -21,7 +21,7 @@ constexpr int kFfv1Frames = 36;
 constexpr int kLeastFfv1SidePx = 2;
 /// What SVT-AV1 itself allows; AV1 allows more.
 constexpr int kLargestSvtAv1HeightPx = 8704;
-/// At 32 one in 5000 clear pixels has an alpha over 8, specks on white; at 20, one in 50 000.
+/// At 32 one clear pixel in 5000 has an alpha over 8, which shows as specks on white; at 20, one in 50 000.
 constexpr int kVp9AlphaCrf = 20;
 /// WebP stores each side in 14 bits.
 constexpr int kLargestWebpSidePx = (1 << 14) - 1;

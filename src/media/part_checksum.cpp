@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kMark =
     "\xc3"
-    "corda checksum\n";  // of 16 bytes that occur nowhere else
+    "corda checksum\n";  // 16 bytes that no text holds: \xc3 and a letter are no UTF-8
 constexpr std::size_t kLengthBytes = 8;
 constexpr std::size_t kSumBytes = 4;
 constexpr std::size_t kRecordBytes = kMark.size() + kLengthBytes + kSumBytes;
