@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cstdint>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/gl/check.hpp"
 #include "corda/render/ground.hpp"
+#include "corda/render/paint.hpp"
 #include "corda/render/stamps.hpp"
 #include "embedded_shaders.hpp"
 
@@ -262,22 +264,14 @@ void FrameRenderer::draw(const view::DrawList& list, const Damage& parts, const 
 }
 
 void FrameRenderer::draw_band(const PixelRect& band, const Damage& parts) {
+    const std::vector<Read> reads = plan_reads(tiles_, band);
+    const std::vector<std::span<const Read>> slices = slices_of(reads);
+    if (!slices.empty()) read_masks(slices.front(), band, ring_.front());
     for (const PixelRect& part : parts) ground_->write(part.intersected(band), image_);
-    for (const Batch& batch : tiles_.batches()) {
-        const std::size_t end = batch.first_run + batch.run_count;
-        for (std::size_t run = batch.first_run; run < end;) {
-            const std::size_t first = run;
-            {
-                const auto lock = context_->exclusive();
-                if (run == batch.first_run) {
-                    set_state(band);
-                    draw_masks(batch);
-                }
-                run = read_masks(batch, run, band);
-                gl::check_errors("drawing a frame");
-            }
-            paint(first, run, band);
-        }
+    for (std::size_t i = 0; i < slices.size(); ++i) {
+        // OpenGL works on the next one meanwhile.
+        if (i + 1 < slices.size()) read_masks(slices[i + 1], band, ring_[(i + 1) % ring_.size()]);
+        paint(slices[i], band, ring_[i % ring_.size()]);
     }
 }
 
@@ -294,7 +288,6 @@ void FrameRenderer::set_state(const PixelRect& band) const {
 }
 
 void FrameRenderer::draw_masks(const Batch& batch) const {
-    glBindFramebuffer(GL_FRAMEBUFFER, batch.is_tinted ? tints_->target.id() : mask_target_.id());
     glDisable(GL_BLEND);
     clear_program_.use();
     glBindVertexArray(run_array_.id());
@@ -312,35 +305,59 @@ void FrameRenderer::draw_masks(const Batch& batch) const {
     if (batch.is_tinted) glBlendEquation(GL_MAX);
 }
 
-std::size_t FrameRenderer::read_masks(const Batch& batch, std::size_t run, const PixelRect& band) {
-    static_assert(std::is_standard_layout_v<TintSums> && sizeof(TintSums) == 4 * sizeof(float));
-    constexpr std::size_t kEnoughPixels = 1 << 20;
-    if (!batch.is_tinted) read_.sums.clear();
-    const std::size_t end = batch.first_run + batch.run_count;
-    for (std::size_t pixels = 0; run < end && pixels < kEnoughPixels; ++run) {
-        const PixelRect rect = tiles_.runs()[run].rect.intersected(band);
-        if (rect.empty()) continue;
-        // The first of a batch waits until it is drawn.
-        const auto read = [&rect](GLenum from, GLenum format, GLenum type, auto* values) {
-            glReadBuffer(from);
-            glReadPixels(rect.x0, rect.y0, rect.width(), rect.height(), format, type, values);
+void FrameRenderer::read_masks(std::span<const Read> reads, const PixelRect& band, gl::PixelBuffer& buffer) {
+    const auto lock = context_->exclusive();
+    buffer.begin(sums_bytes(reads) + 2 * pixels_of(reads));
+    set_state(band);
+    std::size_t pixels = 0;
+    for (const Read& read : reads) {
+        const Batch& batch = *read.batch;
+        const PixelRect& rect = read.rect;
+        const auto read_from = [&rect](GLenum source, GLenum format, GLenum type, std::size_t offset) {
+            glReadBuffer(source);
+            glReadPixels(rect.x0, rect.y0, rect.width(), rect.height(), format, type,
+                         gl::buffer_offset(offset));
         };
-        const std::size_t first = pixels;
-        pixels += static_cast<std::size_t>(rect.width()) * rect.height();
-        read_.coverage.resize(std::max(read_.coverage.size(), 2 * pixels));
-        if (batch.is_tinted) read_.sums.resize(std::max(read_.sums.size(), pixels));
-        if (batch.is_tinted) read(GL_COLOR_ATTACHMENT1, GL_RGBA, GL_FLOAT, &read_.sums[first]);
-        read(GL_COLOR_ATTACHMENT0, GL_RG, GL_UNSIGNED_BYTE, &read_.coverage[2 * first]);
+        glBindFramebuffer(GL_FRAMEBUFFER, batch.is_tinted ? tints_->target.id() : mask_target_.id());
+        if (read.is_first_of_batch) draw_masks(batch);
+        if (batch.is_tinted) read_from(GL_COLOR_ATTACHMENT1, GL_RGBA, GL_FLOAT, pixels * sizeof(TintSums));
+        read_from(GL_COLOR_ATTACHMENT0, GL_RG, GL_UNSIGNED_BYTE, sums_bytes(reads) + 2 * pixels);
+        pixels += pixels_of(rect);
     }
-    return run;
+    buffer.end();
+    gl::check_errors("drawing a frame");
 }
 
-void FrameRenderer::paint(std::size_t run, std::size_t end, const PixelRect& band) {
+std::size_t FrameRenderer::sums_bytes(std::span<const Read> reads) const {
+    static_assert(std::is_standard_layout_v<TintSums> && sizeof(TintSums) == 4 * sizeof(float));
+    return tints_ ? pixels_of(reads) * sizeof(TintSums) : 0;
+}
+
+const std::byte* FrameRenderer::wait(gl::PixelBuffer& buffer) const {
+    const auto lock = context_->exclusive();
+    return buffer.wait();
+}
+
+void FrameRenderer::paint(std::span<const Read> reads, const PixelRect& band, gl::PixelBuffer& buffer) {
+    const std::byte* const masks = wait(buffer);
+    const void* const coverage = masks + sums_bytes(reads);
+    const void* const sums = masks;
     std::size_t pixels = 0;
-    for (; run < end; ++run) {
-        const TileRun& tiles = tiles_.runs()[run];
-        const PixelRect rect = tiles.rect.intersected(band);
-        if (!rect.empty()) pixels = paint_run(rect, tiles.color, read_, pixels, *ground_, image_);
+    for (const Read& read : reads) {
+        const int row_px = read.rect.width();
+        for (std::size_t run = read.first_run; run < read.end_run; ++run) {
+            const TileRun& tiles = tiles_.runs()[run];
+            const PixelRect rect = tiles.rect.intersected(band);
+            if (rect.empty()) continue;
+            const std::size_t first =
+                pixels + static_cast<std::size_t>(rect.y0 - read.rect.y0) * row_px + rect.x0 - read.rect.x0;
+            paint_run(rect, tiles.color,
+                      {.coverage = static_cast<const std::uint8_t*>(coverage) + 2 * first,
+                       .sums = read.batch->is_tinted ? static_cast<const TintSums*>(sums) + first : nullptr,
+                       .row_px = row_px},
+                      *ground_, image_);
+        }
+        pixels += pixels_of(read.rect);
     }
 }
 

@@ -1,19 +1,23 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
 #include "corda/gl/context.hpp"
 #include "corda/gl/object.hpp"
+#include "corda/gl/pixel_buffer.hpp"
 #include "corda/gl/program.hpp"
 #include "corda/render/exposure.hpp"
 #include "corda/render/ground.hpp"
 #include "corda/render/paint.hpp"
+#include "corda/render/reads.hpp"
 #include "corda/render/tiles.hpp"
 #include "corda/view/draw_list.hpp"
 
@@ -80,10 +84,13 @@ class FrameRenderer {
     /// Draws some rows.
     void draw_band(const PixelRect& band, const Damage& parts);
     void draw_masks(const Batch& batch) const;
-    /// Reads masks of a batch in some rows, from a run on. Returns the run to go on with.
-    [[nodiscard]] std::size_t read_masks(const Batch& batch, std::size_t run, const PixelRect& band);
-    /// Paints the layers of some runs, whose masks were read.
-    void paint(std::size_t run, std::size_t end, const PixelRect& band);
+    /// Lets OpenGL draw masks and read them into a buffer: first the sums of tinted layers, then the
+    /// coverage, one read after the other. Of the first one's batch the masks may have been drawn before.
+    void read_masks(std::span<const Read> reads, const PixelRect& band, gl::PixelBuffer& buffer);
+    [[nodiscard]] std::size_t sums_bytes(std::span<const Read> reads) const;
+    [[nodiscard]] const std::byte* wait(gl::PixelBuffer& buffer) const;
+    /// Paints the layers of some reads when they are in the buffer.
+    void paint(std::span<const Read> reads, const PixelRect& band, gl::PixelBuffer& buffer);
 
     const gl::Context* context_;
     Image image_;  ///< while a frame is drawn, colours times alpha
@@ -97,12 +104,12 @@ class FrameRenderer {
     gl::Buffer run_buffer_;
     gl::Texture masks_;
     gl::Framebuffer mask_target_;
+    std::array<gl::PixelBuffer, 2> ring_;  ///< one is painted from while OpenGL reads into the other
     std::unique_ptr<Tints> tints_;
     std::vector<std::uint8_t> last_touched_;  ///< per tile: 1 if it is not the ground and stamps alone
     std::vector<view::Stamp> last_stamps_;
     std::vector<std::uint8_t> last_coverage_;
     std::optional<GroundRows> ground_;
-    Masks read_;  ///< what is being painted
     bool everything_is_stale_ = true;
 };
 

@@ -79,27 +79,25 @@ void paint_pixels(const std::uint8_t* coverage, std::uint8_t layer_alpha, const 
 
 }  // namespace
 
-std::size_t paint_run(const PixelRect& rect, Color color, const Masks& masks, std::size_t first,
-                      const GroundRows& ground, Image& image) {
+void paint_run(const PixelRect& rect, Color color, const Masks& masks, const GroundRows& ground,
+               Image& image) {
     Levels own = filled(color);
-    std::size_t done = first;  // pixels of the masks
     for (int y = rect.y0; y < rect.y1; ++y) {
         const std::uint8_t* const bare = ground.row(y).data();
         for (int x = rect.x0; x < rect.x1; x += GroundRows::kPeriodPx) {
+            const std::size_t at = static_cast<std::size_t>(y - rect.y0) * masks.row_px + x - rect.x0;
             const auto count = static_cast<std::size_t>(std::min(GroundRows::kPeriodPx, rect.x1 - x));
             std::array<std::uint8_t, 2 * kPixels> coverage{};
-            std::copy_n(&masks.coverage[2 * done], 2 * count, coverage.begin());
+            std::copy_n(masks.coverage + 2 * at, 2 * count, coverage.begin());
             if (!is_zero(coverage.data(), kCapsules | kHalo)) {
-                if (!masks.sums.empty()) write_means(coverage.data(), &masks.sums[done], count, own);
+                if (masks.sums != nullptr) write_means(coverage.data(), masks.sums + at, count, own);
                 Levels rgba{};
                 std::copy_n(image.pixel(x, y), 4 * count, rgba.begin());
                 paint_pixels(coverage.data(), color.a, own, bare, rgba.data());
                 std::copy_n(rgba.begin(), 4 * count, image.pixel(x, y));
             }
-            done += count;
         }
     }
-    return done;
 }
 
 }  // namespace corda::render

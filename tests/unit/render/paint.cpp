@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <random>
+#include <vector>
 
 namespace corda::render {
 namespace {
@@ -25,8 +26,13 @@ Color color(Random& random) {
     return {byte(random), byte(random), byte(random), byte(random)};
 }
 
-Masks masks_of(Random& random, std::size_t pixels, bool is_tinted) {
-    Masks masks;
+struct OwnMasks {
+    std::vector<std::uint8_t> coverage;
+    std::vector<TintSums> sums;
+};
+
+OwnMasks masks_of(Random& random, std::size_t pixels, bool is_tinted) {
+    OwnMasks masks;
     for (std::size_t i = 0; i < 2 * pixels; ++i)
         masks.coverage.push_back(i % 2 == 1 && pixels % 3 == 0 ? std::uint8_t{0} : coverage(random));
     if (!is_tinted) return masks;
@@ -52,14 +58,15 @@ void expect_painted(Random& random, const PixelRect& rect, const Ground& ground,
     constexpr int kHeight = 16;
     const GroundRows rows(ground, kHeight);
     const Color own = color(random);
-    const Masks masks = masks_of(random, static_cast<std::size_t>(rect.width()) * rect.height(), is_tinted);
+    const int row_px = rect.width() + 5;  // the masks are those of a larger rectangle
+    const OwnMasks masks = masks_of(random, static_cast<std::size_t>(row_px) * rect.height(), is_tinted);
     Image image(kWidth, kHeight);
     for (int y = 0; y < kHeight; ++y)
         for (int i = 0; i < 4 * kWidth; ++i) image.pixel(0, y)[i] = byte(random);
     Image expected = image;
-    std::size_t i = 0;
     for (int y = rect.y0; y < rect.y1; ++y) {
-        for (int x = rect.x0; x < rect.x1; ++x, ++i) {
+        for (int x = rect.x0; x < rect.x1; ++x) {
+            const std::size_t i = static_cast<std::size_t>(y - rect.y0) * row_px + x - rect.x0;
             Color its = own;
             if (is_tinted) {
                 const TintSums& sums = masks.sums[i];
@@ -71,12 +78,11 @@ void expect_painted(Random& random, const PixelRect& rect, const Ground& ground,
                         expected.pixel(x, y));
         }
     }
-    // The masks of another rectangle come before.
-    constexpr std::size_t kBefore = 5;
-    Masks both = masks;
-    both.coverage.insert(both.coverage.begin(), 2 * kBefore, 255);
-    if (is_tinted) both.sums.insert(both.sums.begin(), kBefore, TintSums{});
-    EXPECT_EQ(paint_run(rect, own, both, kBefore, rows, image), kBefore + i);
+    paint_run(rect, own,
+              {.coverage = masks.coverage.data(),
+               .sums = is_tinted ? masks.sums.data() : nullptr,
+               .row_px = row_px},
+              rows, image);
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x)
             for (int c = 0; c < 4; ++c)
@@ -101,8 +107,9 @@ TEST(Paint, LeavesWhatIsNotCovered) {
     for (int y = 0; y < 16; ++y)
         for (int i = 0; i < 64; ++i) image.pixel(0, y)[i] = byte(random);
     const Image before = image;
-    const Masks none{std::vector<std::uint8_t>(std::size_t{2} * 16 * 16), {}};
-    EXPECT_EQ(paint_run(image.rect(), {255, 0, 0, 255}, none, 0, GroundRows({}, 16), image), 16U * 16U);
+    const std::vector<std::uint8_t> none(std::size_t{2} * 16 * 16);
+    paint_run(image.rect(), {255, 0, 0, 255}, {.coverage = none.data(), .row_px = 16}, GroundRows({}, 16),
+              image);
     EXPECT_EQ(image, before);
 }
 
