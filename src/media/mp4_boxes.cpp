@@ -109,28 +109,26 @@ struct BoxHeader {
     std::uint64_t header_size = 8;
 };
 
-std::optional<BoxHeader> read_header(std::FILE* file, std::uint64_t offset, std::uint64_t file_size) {
-    char raw[16] = {};
-    if (file_size - offset < 8 || ::fseeko(file, static_cast<off_t>(offset), SEEK_SET) != 0)
-        return std::nullopt;
-    const std::size_t count = std::fread(raw, 1, sizeof raw, file);
-    const Bytes bytes(std::string_view(raw, count));
-    if (count < 8) return std::nullopt;
+/// Up to so many bytes of a file; fewer at its end.
+std::string read_range(const FileHandle& file, const std::string& path, std::uint64_t offset,
+                       std::uint64_t size) {
+    if (::fseeko(file.get(), static_cast<off_t>(offset), SEEK_SET) != 0) fail_file("read", path, errno);
+    std::string data(static_cast<std::size_t>(size), '\0');
+    data.resize(read_bytes(file, path, data.data(), data.size()));
+    return data;
+}
+
+std::optional<BoxHeader> header_in(const std::string& raw, std::uint64_t left_in_file) {
+    const Bytes bytes(raw);
+    if (raw.size() < 8) return std::nullopt;
     BoxHeader header{std::string(bytes.sub(4, 4)), bytes.u32(0), 8};
     if (header.size == 1) {
         header.size = bytes.number(8, 8);
         header.header_size = 16;
     }
-    if (header.size == 0) header.size = file_size - offset;
+    if (header.size == 0) header.size = left_in_file;
     if (header.size < header.header_size) return std::nullopt;
     return header;
-}
-
-std::string read_range(std::FILE* file, std::uint64_t offset, std::uint64_t size) {
-    std::string data(static_cast<std::size_t>(size), '\0');
-    if (::fseeko(file, static_cast<off_t>(offset), SEEK_SET) != 0) return {};
-    data.resize(std::fread(data.data(), 1, data.size(), file));
-    return data;
 }
 
 }  // namespace
@@ -145,18 +143,18 @@ Mp4Boxes read_mp4_boxes(const std::string& path) {
     bool saw_data = false;
     std::uint64_t offset = 0;
     for (int i = 0; i < kMostBoxes && offset < file_size; ++i) {
-        const auto header = read_header(file.get(), offset, file_size);
+        const auto header = header_in(read_range(file, path, offset, 16), file_size - offset);
         if (!header) break;
         if (i == 0) boxes.is_mp4 = header->type == "ftyp";
         if (!boxes.is_mp4) break;
-        if (i == 0) boxes.is_quicktime = read_range(file.get(), offset + header->header_size, 4) == "qt  ";
+        if (i == 0) boxes.is_quicktime = read_range(file, path, offset + header->header_size, 4) == "qt  ";
         if (header->type == "mdat") saw_data = true;
         if (header->type == "moof") boxes.fragmented = true;
         if (header->size > file_size - offset) break;
         if (header->type == "moov" && header->size <= kLargestIndex && !boxes.has_index) {
             boxes.index_first = !saw_data;
             read_index(
-                read_range(file.get(), offset + header->header_size, header->size - header->header_size),
+                read_range(file, path, offset + header->header_size, header->size - header->header_size),
                 boxes);
         }
         offset += header->size;

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <span>
+#include <string>
 #include <string_view>
 #include <system_error>
 
@@ -30,23 +32,39 @@ struct ChunkHead {
     [[nodiscard]] bool is_of_pixels() const { return (bytes[4] & 0x20U) == 0 || is("tRNS"); }
 };
 
-/// Goes to the next chunk that counts; false if there is none.
-bool find_chunk(std::FILE* file, ChunkHead& head) {
-    while (std::fread(head.bytes.data(), 1, head.bytes.size(), file) == head.bytes.size()) {
-        if (head.is_of_pixels()) return true;
-        if (std::fseek(file, static_cast<long>(head.length() + kCrcBytes), SEEK_CUR) != 0) return false;
+/// A file that is being read from its beginning on.
+class ChunkFile {
+  public:
+    explicit ChunkFile(const std::string& path) : path_(path), file_(open_for_reading(path)) {}
+
+    /// Fills `bytes` with the next ones; false if they are not there.
+    [[nodiscard]] bool read(std::span<unsigned char> bytes) const {
+        void* const to = bytes.data();
+        return read_bytes(file_, path_, static_cast<char*>(to), bytes.size()) == bytes.size();
     }
-    return false;
-}
+
+    /// Goes to the next chunk that counts; false if there is none.
+    [[nodiscard]] bool find_chunk(ChunkHead& head) const {
+        while (read(head.bytes)) {
+            if (head.is_of_pixels()) return true;
+            if (std::fseek(file_.get(), static_cast<long>(head.length() + kCrcBytes), SEEK_CUR) != 0)
+                return false;
+        }
+        return false;
+    }
+
+  private:
+    std::string path_;
+    FileHandle file_;
+};
 
 /// Whether the next bytes of both files are there and equal.
-bool are_equal(std::FILE* a, std::FILE* b, std::size_t count) {
-    std::array<char, kBlockBytes> block_a{};
-    std::array<char, kBlockBytes> block_b{};
+bool are_equal(const ChunkFile& a, const ChunkFile& b, std::size_t count) {
+    std::array<unsigned char, kBlockBytes> block_a{};
+    std::array<unsigned char, kBlockBytes> block_b{};
     while (count > 0) {
         const std::size_t step = std::min(count, kBlockBytes);
-        if (std::fread(block_a.data(), 1, step, a) != step ||
-            std::fread(block_b.data(), 1, step, b) != step ||
+        if (!a.read(std::span(block_a).first(step)) || !b.read(std::span(block_b).first(step)) ||
             std::memcmp(block_a.data(), block_b.data(), step) != 0)
             return false;
         count -= step;
@@ -61,14 +79,14 @@ bool have_same_picture_chunks(const std::string& a, const std::string& b) {
     std::error_code none;
     if (!std::filesystem::is_regular_file(a, none) || !std::filesystem::is_regular_file(b, none))
         return false;
-    const FileHandle of_a = open_for_reading(a);
-    const FileHandle of_b = open_for_reading(b);
-    if (!are_equal(of_a.get(), of_b.get(), kBytesOfSignature)) return false;
+    const ChunkFile of_a(a);
+    const ChunkFile of_b(b);
+    if (!are_equal(of_a, of_b, kBytesOfSignature)) return false;
     ChunkHead head_a;
     ChunkHead head_b;
-    while (find_chunk(of_a.get(), head_a) && find_chunk(of_b.get(), head_b)) {
+    while (of_a.find_chunk(head_a) && of_b.find_chunk(head_b)) {
         if (head_a.bytes != head_b.bytes) return false;
-        if (!are_equal(of_a.get(), of_b.get(), head_a.length() + kCrcBytes)) return false;
+        if (!are_equal(of_a, of_b, head_a.length() + kCrcBytes)) return false;
         if (head_a.is("IEND")) return true;
     }
     return false;

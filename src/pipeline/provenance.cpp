@@ -121,7 +121,7 @@ bool is_png(const std::string& path) {
     constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n", 8);
     const FileHandle file = open_for_reading(path);
     std::array<char, 8> begin{};
-    const std::size_t count = std::fread(begin.data(), 1, begin.size(), file.get());
+    const std::size_t count = read_bytes(file, path, begin.data(), begin.size());
     return std::string_view(begin.data(), count) == kSignature;
 }
 

@@ -16,7 +16,7 @@ std::string contents_of(const std::string& path) {
     const FileHandle file = open_for_reading(path);
     std::string bytes;
     std::array<char, 65536> block{};
-    while (const std::size_t count = std::fread(block.data(), 1, block.size(), file.get()))
+    while (const std::size_t count = read_bytes(file, path, block.data(), block.size()))
         bytes.append(block.data(), count);
     return bytes;
 }
