@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <filesystem>
 #include <memory>
-#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/golden/perceived.hpp"
@@ -60,9 +60,8 @@ ExitCode compare_pictures(const Console& console, const CompareOptions& options,
                           const std::optional<Image>& mask) {
     std::vector<std::string> references{options.b};
     references.insert(references.end(), options.variants.begin(), options.variants.end());
-    const int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     const ComparedPicture compared =
-        compare_picture(options, options.a, references, mask, options.diff, threads);
+        compare_picture(options, options.a, references, mask, options.diff, usable_cores());
     console.result(compared.words);
     if (!options.diff.empty()) console.info(fmt::format("difference picture: {}", options.diff));
     nlohmann::json json = figures_json(compared.difference);

@@ -11,6 +11,7 @@
 #include "compare.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/golden/variant.hpp"
@@ -85,7 +86,7 @@ void compare_pair(const CompareOptions& options, const std::optional<Image>& mas
 }
 
 /// Two pictures may take 512 MiB.
-constexpr unsigned kMostThreads = 4;
+constexpr int kMostThreads = 4;
 
 /// Compares several pairs at a time.
 void compare_all(const CompareOptions& options, const std::optional<Image>& mask, std::vector<Pair>& pairs) {
@@ -104,8 +105,8 @@ void compare_all(const CompareOptions& options, const std::optional<Image>& mask
     };
     {
         std::vector<std::jthread> helpers;
-        const std::size_t threads = std::min<std::size_t>(
-            std::clamp(std::thread::hardware_concurrency(), 1U, kMostThreads), pairs.size());
+        const std::size_t threads =
+            std::min<std::size_t>(std::min(usable_cores(), kMostThreads), pairs.size());
         for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back(work);
         work();
     }

@@ -7,13 +7,13 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
-#include <thread>
 
 #include <nlohmann/json.hpp>
 
 #include "corda/bench/child.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/core/temporary_folder.hpp"
 #include "corda/media/chunk.hpp"
 #include "corda/media/encoder_alone.hpp"
@@ -92,11 +92,6 @@ std::int64_t most_pictures(const VideoDef& video) {
     return std::max<std::int64_t>(2, static_cast<std::int64_t>(kMostPictureBytes / bytes));
 }
 
-/// How many threads the machine runs at a time.
-int cores() {
-    return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-}
-
 json encode_alone(const BenchDef& def) {
     const VideoDef& video = def.scene.video;
     media::EncoderAlone encoder(video);
@@ -113,7 +108,7 @@ json encode_alone(const BenchDef& def) {
     static_cast<void>(encoder.encode(chunk, 1));
     const double encoder_mib = memory_mib("VmHWM") - before_mib;
     const double start_s = now_s();
-    static_cast<void>(encoder.encode(frames_of(def), cores()));
+    static_cast<void>(encoder.encode(frames_of(def), usable_cores()));
     return {{"wall_s", now_s() - start_s}, {"encoder_rss_mib", encoder_mib}};
 }
 

@@ -1,14 +1,18 @@
-#include "corda/core/memory.hpp"
+#include "corda/core/machine.hpp"
 
+#include <sched.h>
 #include <sys/resource.h>
 
 #include <algorithm>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <thread>
 
 namespace corda {
 namespace {
+
+constexpr int kMostCores = 1 << 16;
 
 /// The number after `key` in a file of lines "key number ..."; empty if there is none.
 std::optional<std::uint64_t> number_after(const std::filesystem::path& file, const std::string& key) {
@@ -47,6 +51,32 @@ std::string group_of(const std::filesystem::path& root) {
     return {};
 }
 
+/// Calls `visit` with the folder of every group that holds this process. In a container its own is the root.
+template <class Visit>
+void for_each_group(const std::filesystem::path& root, const Visit& visit) {
+    std::filesystem::path group = root / "sys/fs/cgroup";
+    visit(group);
+    for (const std::filesystem::path& name : std::filesystem::path(group_of(root))) visit(group /= name);
+}
+
+/// How many cores the processor time of one group is, rounded up: "quota period" or "max period".
+std::optional<int> cores_of(const std::filesystem::path& group) {
+    std::ifstream text(group / "cpu.max");
+    std::int64_t quota = 0;
+    std::int64_t period = 0;
+    if (!(text >> quota >> period) || quota <= 0 || period <= 0) return std::nullopt;
+    return static_cast<int>(std::min<std::int64_t>((quota - 1) / period + 1, kMostCores));
+}
+
+/// How many cores this process may run on.
+int allowed_cores() {
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    // It fails on machines of more cores than the set can hold.
+    if (::sched_getaffinity(0, sizeof set, &set) == 0) return CPU_COUNT(&set);
+    return static_cast<int>(std::thread::hardware_concurrency());
+}
+
 /// What the limit on the address space of this process leaves (ulimit -v); empty without one.
 std::optional<std::uint64_t> left_of_address_space(const std::filesystem::path& root) {
     rlimit limit{};
@@ -61,14 +91,19 @@ std::optional<std::uint64_t> left_of_address_space(const std::filesystem::path& 
 std::optional<std::uint64_t> available_memory_bytes(const std::filesystem::path& root) {
     std::optional<std::uint64_t> least = number_after(root / "proc/meminfo", "MemAvailable:");
     if (least) *least *= 1024;
-    const std::filesystem::path mount = root / "sys/fs/cgroup";
-    const auto heed = [&least](const std::filesystem::path& group) {
-        if (const auto left = left_in(group)) least = least ? std::min(*least, *left) : *left;
+    const auto heed = [&least](std::optional<std::uint64_t> left) {
+        if (left) least = least ? std::min(*least, *left) : *left;
     };
-    if (const auto left = left_of_address_space(root)) least = least ? std::min(*least, *left) : *left;
-    heed(mount);
-    std::filesystem::path group = mount;
-    for (const std::filesystem::path& name : std::filesystem::path(group_of(root))) heed(group /= name);
+    heed(left_of_address_space(root));
+    for_each_group(root, [&heed](const std::filesystem::path& group) { heed(left_in(group)); });
+    return least;
+}
+
+int usable_cores(const std::filesystem::path& root) {
+    int least = std::clamp(allowed_cores(), 1, kMostCores);
+    for_each_group(root, [&least](const std::filesystem::path& group) {
+        least = std::min(least, cores_of(group).value_or(least));
+    });
     return least;
 }
 

@@ -4,10 +4,9 @@
 #include <array>
 #include <span>
 #include <string_view>
-#include <thread>
 #include <utility>
 
-#include "corda/core/memory.hpp"
+#include "corda/core/machine.hpp"
 
 namespace corda::media {
 namespace {
@@ -58,7 +57,7 @@ int jobs_that_fit(int wanted, std::uint64_t bytes) {
 }
 
 int jobs_of(int asked) {
-    return asked > 0 ? asked : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    return asked > 0 ? asked : usable_cores();
 }
 
 }  // namespace corda::media

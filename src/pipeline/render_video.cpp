@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "corda/core/memory.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/core/part_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"

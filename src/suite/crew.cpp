@@ -18,10 +18,10 @@ void Crew::next(Work work) {
     changed_.notify_one();
 }
 
-void Crew::run(unsigned threads) {
+void Crew::run(int threads) {
     {
         std::vector<std::jthread> helpers;
-        for (unsigned i = 0; i < threads; ++i) helpers.emplace_back([this] { help(); });
+        for (int i = 0; i < threads; ++i) helpers.emplace_back([this] { help(); });
     }
     if (error_) std::rethrow_exception(error_);
 }

@@ -19,7 +19,7 @@ class Crew {
     void next(Work work);
     /// Does all of it on so many threads. Throws what the first piece that failed threw; what was not begun
     /// by then is dropped.
-    void run(unsigned threads);
+    void run(int threads);
 
   private:
     void help();

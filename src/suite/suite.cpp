@@ -1,4 +1,5 @@
 #include "corda/suite/suite.hpp"
+#include "corda/core/machine.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +8,6 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
-#include <thread>
 
 #include "corda/pipeline/painter.hpp"
 #include "corda/suite/cases.hpp"
@@ -112,7 +112,8 @@ class Runner {
         const std::size_t count = one.pictures.size();
         const bool may_split = job->film->scene().video.shutter == 0.0;
         const std::size_t pieces =
-            may_split ? std::clamp<std::size_t>(count / kFewestApart, 1, threads_) : std::size_t{1};
+            may_split ? std::clamp<std::size_t>(count / kFewestApart, 1, static_cast<std::size_t>(threads_))
+                      : std::size_t{1};
         for (std::size_t i = 0; i < pieces; ++i)
             crew_.next([this, job, first = count * i / pieces, end = count * (i + 1) / pieces, pieces] {
                 draw(*job, first, end, pieces > 1);
@@ -277,7 +278,7 @@ class Runner {
     const std::vector<std::string>& references_;
     Staging staging_;
     std::int64_t all_;
-    unsigned threads_ = std::max(1U, std::thread::hardware_concurrency());
+    int threads_ = usable_cores();
     std::mutex mutex_;
     std::int64_t done_ = 0;
     int drawn_ = 0;

@@ -1,8 +1,10 @@
-#include "corda/core/memory.hpp"
+#include "corda/core/machine.hpp"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 
@@ -12,7 +14,7 @@ namespace corda {
 namespace {
 
 /// A system whose files are written by hand.
-class Memory : public testing::Test {
+class Machine : public testing::Test {
   protected:
     void write(const std::string& name, const std::string& text) const {
         const std::filesystem::path file = root() / name;
@@ -26,13 +28,13 @@ class Memory : public testing::Test {
     test::ScratchFolder folder_;
 };
 
-TEST_F(Memory, IsWhatLinuxTells) {
+TEST_F(Machine, HasTheMemoryThatLinuxTells) {
     EXPECT_EQ(available(), std::nullopt);
     write("proc/meminfo", "MemTotal:  9000 kB\nMemFree: 100 kB\nMemAvailable:    2000 kB\nBuffers: 5 kB\n");
     EXPECT_EQ(available(), 2000U * 1024U);
 }
 
-TEST_F(Memory, IsWhatTheGroupsLeave) {
+TEST_F(Machine, HasTheMemoryThatTheGroupsLeave) {
     write("proc/meminfo", "MemAvailable:    2000 kB\n");
     write("proc/self/cgroup", "9:name=systemd:/x\n0::/user.slice/inner\n");
     write("sys/fs/cgroup/user.slice/memory.max", "1000000\n");
@@ -46,7 +48,7 @@ TEST_F(Memory, IsWhatTheGroupsLeave) {
     EXPECT_EQ(available(), 0U);
 }
 
-TEST_F(Memory, IsWhatTheLimitOfTheAddressSpaceLeaves) {
+TEST_F(Machine, HasTheMemoryThatTheLimitOfTheAddressSpaceLeaves) {
     write("proc/self/status", "VmPeak:  5000 kB\nVmSize:  1000000 kB\n");
     rlimit old{};
     ASSERT_EQ(::getrlimit(RLIMIT_AS, &old), 0);
@@ -59,7 +61,36 @@ TEST_F(Memory, IsWhatTheLimitOfTheAddressSpaceLeaves) {
     EXPECT_EQ(available(), std::nullopt);
 }
 
-TEST_F(Memory, IsToldByThisMachine) {
+TEST_F(Machine, HasTheCoresThatThisProcessMayRunOn) {
+    cpu_set_t old;
+    ASSERT_EQ(::sched_getaffinity(0, sizeof old, &old), 0);
+    EXPECT_EQ(usable_cores(root()), CPU_COUNT(&old));
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    for (int core = 0; CPU_COUNT(&one) == 0; ++core)
+        if (CPU_ISSET(core, &old)) CPU_SET(core, &one);
+    ASSERT_EQ(::sched_setaffinity(0, sizeof one, &one), 0);
+    EXPECT_EQ(usable_cores(root()), 1);
+    ASSERT_EQ(::sched_setaffinity(0, sizeof old, &old), 0);
+}
+
+TEST_F(Machine, HasTheCoresThatTheGroupsLeave) {
+    const int all = usable_cores(root());
+    write("proc/self/cgroup", "0::/user.slice/inner\n");
+    write("sys/fs/cgroup/user.slice/cpu.max", "max 100000\n");
+    EXPECT_EQ(usable_cores(root()), all);
+    write("sys/fs/cgroup/user.slice/inner/cpu.max", "100001 100000\n");  // a little more than one core
+    EXPECT_EQ(usable_cores(root()), std::min(all, 2));
+    write("sys/fs/cgroup/user.slice/cpu.max", "50000 100000\n");
+    EXPECT_EQ(usable_cores(root()), 1);
+    write("sys/fs/cgroup/user.slice/cpu.max", "-5 0\n");
+    write("sys/fs/cgroup/user.slice/inner/cpu.max", "9000000000000000000 1\n");
+    EXPECT_EQ(usable_cores(root()), all);
+    write("sys/fs/cgroup/cpu.max", "1000 1000\n");  // a container sees its own group as the root
+    EXPECT_EQ(usable_cores(root()), 1);
+}
+
+TEST_F(Machine, TellsItsMemory) {
     const auto here = available_memory_bytes();
     ASSERT_TRUE(here);
     EXPECT_GT(*here, std::uint64_t{1} << 20U);
