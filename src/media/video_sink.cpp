@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
+#include "corda/core/range_lock.hpp"
 #include "corda/media/big_endian.hpp"
 #include "corda/media/finish_part.hpp"
 #include "corda/media/open_video.hpp"
@@ -199,10 +201,14 @@ class PartSink : public VideoSink {
 /// A file for each frame, complete as soon as it has its name.
 class PictureSink : public VideoSink {
   public:
-    PictureSink(std::string pattern, OutputOptions options, std::int64_t first_frame)
-        : pattern_(std::move(pattern)), options_(std::move(options)), first_frame_(first_frame) {
-        const std::string folder = std::filesystem::path(pattern_).parent_path().string();
+    PictureSink(std::string pattern, OutputOptions options, const FrameRange& frames)
+        : pattern_(std::move(pattern)), options_(std::move(options)), first_frame_(frames.first) {
+        const std::filesystem::path path(pattern_);
+        const std::string folder = path.parent_path().string();
         if (!folder.empty()) make_folder(folder);
+        const std::filesystem::path lock_file =
+            path.parent_path() / ("." + path.filename().string() + ".lock");
+        lock_.emplace(lock_file.string(), frames.first, frames.end, fmt::format("frames of '{}'", pattern_));
         remove_leftovers(folder.empty() ? "." : folder,
                          [this](const std::string& name) { return is_picture_name(pattern_, name); });
     }
@@ -221,6 +227,7 @@ class PictureSink : public VideoSink {
     std::string pattern_;
     OutputOptions options_;
     std::int64_t first_frame_;
+    std::optional<RangeLock> lock_;
 };
 
 /// Standard output: YUV4MPEG2, or pixels without a header.
@@ -267,7 +274,7 @@ std::unique_ptr<VideoSink> make_sink(const Format& format, const std::string& pa
                                      const OutputOptions& options, const FrameRange& frames, bool resume) {
     switch (format.ending->kind) {
         case FileKind::kPictures:
-            return std::make_unique<PictureSink>(path, options, frames.first);
+            return std::make_unique<PictureSink>(path, options, frames);
         case FileKind::kStream:
             return std::make_unique<StreamSink>(format, options);
         case FileKind::kVideo:

@@ -112,12 +112,12 @@ Format check_video_output(const std::string& path, const VideoDef& def, const st
 
 struct VideoWriter::Impl {
     Impl(std::string final_path, const VideoDef& video, VideoMetadata meta,
-         const OutputOptions& output_options, std::int64_t first, std::int64_t end = 0, bool resume = false)
+         const OutputOptions& output_options, std::int64_t first, std::int64_t end, bool resume = false)
         : path(std::move(final_path)),
           def(video),
           metadata(std::move(meta)),
-          format(check_video_output(path, def, "", output_options.force, metadata.is_transparent, first, end,
-                                    resume)),
+          format(check_video_output(path, def, "", output_options.force, metadata.is_transparent, first,
+                                    end == kNoEnd ? first : end, resume)),
           comment(parsed_comment(metadata.comment_json)),
           first_frame(first),
           sink(make_sink(format, path, output_options, {first, end, media::frames_per_chunk(format, def.fps)},
@@ -220,8 +220,8 @@ struct VideoWriter::Impl {
 };
 
 VideoWriter::VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata,
-                         const OutputOptions& options, std::int64_t first_frame)
-    : impl_(std::make_unique<Impl>(std::move(path), def, std::move(metadata), options, first_frame)) {}
+                         const OutputOptions& options, std::int64_t first, std::int64_t end)
+    : impl_(std::make_unique<Impl>(std::move(path), def, std::move(metadata), options, first, end)) {}
 
 VideoWriter::VideoWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 VideoWriter::VideoWriter(VideoWriter&&) noexcept = default;

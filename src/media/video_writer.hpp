@@ -39,16 +39,18 @@ struct VideoMetadata {
 /// and verified. Pictures and standard output have no part: each frame is complete as it is.
 class VideoWriter {
   public:
-    /// Opens the part file, for a video whose first frame is number `first_frame` of its film. With `force`,
-    /// an existing video is replaced at the end, and the part of an interrupted render now. Throws
-    /// corda::Error: kUsage for an unknown ending or a bad def, kEncoder if the encoder is missing (one that
-    /// does not open shows with the first frame), kIo if the file cannot be made, exists, or is being written
-    /// by another render.
+    /// The end of frames whose number is not known before.
+    static constexpr std::int64_t kNoEnd = std::int64_t{1} << 62U;
+
+    /// Opens the part file, for frames first <= k < end of a film, or for fewer. With `force`, an existing
+    /// video is replaced at the end, and the part of an interrupted render now. Throws corda::Error: kUsage
+    /// for an unknown ending or a bad def, kEncoder if the encoder is missing (one that does not open shows
+    /// with the first frame), kIo if the file cannot be made, exists, or is being written by another render.
     VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata,
-                const OutputOptions& options = {}, std::int64_t first_frame = 0);
-    /// As above, for frames first <= k < end; goes on with the part of an interrupted render of the same
-    /// video, if there is one: frames() tells how many it has. Its bytes will be those of a render without
-    /// interruption. Also throws kMismatch for a part that cannot be read.
+                const OutputOptions& options = {}, std::int64_t first = 0, std::int64_t end = kNoEnd);
+    /// As above; goes on with the part of an interrupted render of the same video, if there is one: frames()
+    /// tells how many it has. Its bytes will be those of a render without interruption. Also throws kMismatch
+    /// for a part that cannot be read.
     [[nodiscard]] static VideoWriter resume(std::string path, const VideoDef& def, VideoMetadata metadata,
                                             const OutputOptions& options, std::int64_t first,
                                             std::int64_t end);

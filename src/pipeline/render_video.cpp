@@ -219,7 +219,7 @@ media::VideoWriter make_writer(const Film& film, const std::string& path, const 
     media::VideoMetadata data =
         metadata(film, def.first, end, origin_of(film.scene(), format, def.first, end));
     if (def.resume) return media::VideoWriter::resume(path, video, std::move(data), options, def.first, end);
-    return {path, video, std::move(data), options, def.first};
+    return {path, video, std::move(data), options, def.first, end};
 }
 
 }  // namespace

@@ -382,6 +382,20 @@ TEST_F(ExitCodes, SixForTheSecondOfTwoRendersToOneName) {
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.mp4", "scene.toml"}));
 }
 
+TEST_F(ExitCodes, SixForTheSecondOfTwoRendersOfTheSamePictures) {
+    const std::string frames = folder_.file("frames");
+    const std::string render = test::quoted(CORDA_PROGRAM) + " render --force " + scene_ +
+                               " --size 640x360 -o " + frames + "/%04d.png";
+    const auto all = run_shell(render + " --duration 200 & pid=$!; for i in $(seq 200); do [ -e " + frames +
+                               "/0000.png ] && break; sleep 0.05; done; " + render +
+                               " --duration 1 --frames 0:1; echo second $?; " + render +
+                               " --duration 300 --frames 8000:8001; echo others $?; kill -INT $pid; "
+                               "wait $pid; echo first $?");
+    EXPECT_EQ(all.out, "second 6\n" + frames + "/%04d.png\nothers 0\nfirst 130\n") << all.err;
+    EXPECT_THAT(all.err, HasSubstr("another render is writing frames of '"));
+    EXPECT_FALSE(std::filesystem::exists(frames + "/.%04d.png.lock"));
+}
+
 TEST_F(ExitCodes, SevenForADifferenceOrAProblem) {
     ASSERT_EQ(run_corda({"still", scene_, "--at", "0,0.2", "-o", folder_.file("stills")}).exit_code, 0);
     const std::string a = folder_.file("stills/scene_t0000_000000.png");
