@@ -2,7 +2,9 @@
 #include <png.h>
 #include <sys/stat.h>
 
+#include <cerrno>
 #include <csetjmp>
+#include <cstdio>
 #include <cstring>
 
 #include "corda/core/basics.hpp"
@@ -24,6 +26,7 @@ struct ReadJob {
     png_structp png = nullptr;
     png_infop info = nullptr;
     std::FILE* file = nullptr;
+    int read_errno = 0;  ///< of the file; 0: it is not to blame
     char message[160] = "out of memory";
 
     ReadJob() = default;
@@ -34,6 +37,7 @@ struct ReadJob {
 
 void on_read_error(png_structp png, png_const_charp message) {
     auto* job = static_cast<ReadJob*>(png_get_error_ptr(png));
+    if (std::ferror(job->file) != 0) job->read_errno = errno;
     std::strncpy(job->message, message, sizeof job->message - 1);
     png_longjmp(png, 1);
 }
@@ -82,18 +86,26 @@ bool read_rows(ReadJob& job, Image& image, const OnProgress& on_progress) {
         fmt::format("cannot read PNG '{}': {}; write the file again, or give another one", path, reason));
 }
 
+/// Of what libpng has ended.
+[[noreturn]] void fail_png(const std::string& path, const ReadJob& job) {
+    if (job.read_errno != 0) fail_file("read", path, job.read_errno);
+    fail_png(path, std::string_view(job.message));
+}
+
 void open_job(ReadJob& job, const std::string& path) {
     png_byte signature[8] = {};
+    errno = 0;
     const std::size_t count = std::fread(signature, 1, sizeof signature, job.file);
+    if (std::ferror(job.file) != 0) fail_file("read", path, errno);
     if (count == 0) fail_png(path, "the file is empty");
     if (count < sizeof signature || png_sig_cmp(signature, 0, sizeof signature) != 0) {
         fail_png(path, "it does not begin like a PNG");
     }
     job.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, on_read_error, on_read_warning);
     if (job.png != nullptr) job.info = png_create_info_struct(job.png);
-    if (job.info == nullptr) fail_png(path, job.message);
+    if (job.info == nullptr) fail_png(path, job);
     png_set_sig_bytes(job.png, sizeof signature);
-    if (!read_header(job)) fail_png(path, job.message);
+    if (!read_header(job)) fail_png(path, job);
 }
 
 /// Refuses a picture that takes too much memory, and one that its file cannot hold.
@@ -117,11 +129,11 @@ void check_png_size(const ReadJob& job, const std::string& path) {
 
 Image read_pixels(ReadJob& job, const std::string& path, const OnProgress& on_progress) {
     check_png_size(job, path);
-    if (!request_rgba8(job)) fail_png(path, job.message);
+    if (!request_rgba8(job)) fail_png(path, job);
     Image image(static_cast<int>(png_get_image_width(job.png, job.info)),
                 static_cast<int>(png_get_image_height(job.png, job.info)));
     if (png_get_rowbytes(job.png, job.info) != image.row_bytes()) fail_png(path, "libpng gave no 8-bit RGBA");
-    if (!read_rows(job, image, on_progress)) fail_png(path, job.message);
+    if (!read_rows(job, image, on_progress)) fail_png(path, job);
     return image;
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <random>
 
 #include "corda/core/basics.hpp"
@@ -228,6 +229,20 @@ TEST_F(Png, StopsIfItIsAsked) {
                   ExitCode::kInterrupted);
     }
     EXPECT_EQ(folder_.files(), std::vector<std::string>{"a.png"});
+}
+
+TEST_F(Png, AFailedReadIsNoEndOfTheFile) {
+    const char* const kFails = "/proc/self/mem";  // an ordinary file whose first bytes nobody can read
+    write_png(file("a.png"), random_image(4, 4, true));
+    const std::vector<std::function<void()>> reads{
+        [&] { static_cast<void>(read_png(kFails)); },
+        [&] { static_cast<void>(have_same_picture_chunks(kFails, kFails)); },
+        [&] { static_cast<void>(have_same_picture_chunks(file("a.png"), kFails)); }};
+    for (const auto& read : reads) {
+        const test::Failure failure = test::failure_of(read);
+        EXPECT_EQ(failure.code, ExitCode::kIo);
+        EXPECT_THAT(failure.message, HasSubstr("Input/output error"));
+    }
 }
 
 TEST_F(Png, SamePictureChunksAreThoseOfTheSamePixels) {
