@@ -72,8 +72,8 @@ std::optional<int> cores_of(const std::filesystem::path& group) {
 int allowed_cores() {
     cpu_set_t set;
     CPU_ZERO(&set);
-    // It fails on machines of more cores than the set can hold.
     if (::sched_getaffinity(0, sizeof set, &set) == 0) return CPU_COUNT(&set);
+    // On a machine of more cores than the set holds it is not known on which ones.
     return static_cast<int>(std::thread::hardware_concurrency());
 }
 

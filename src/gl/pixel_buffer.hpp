@@ -7,7 +7,8 @@
 
 namespace corda::gl {
 
-/// Memory that OpenGL reads pixels into while the CPU goes on.
+/// Memory that OpenGL reads pixels into while the CPU goes on. Its context must be current whenever it is
+/// used, and when it is destroyed.
 class PixelBuffer {
   public:
     PixelBuffer() = default;

@@ -84,8 +84,9 @@ class FrameRenderer {
     /// Draws some rows.
     void draw_band(const PixelRect& band, const Damage& parts);
     void draw_masks(const Batch& batch) const;
-    /// Lets OpenGL draw masks and read them into a buffer: first the sums of tinted layers, then the
-    /// coverage, one read after the other. Of the first one's batch the masks may have been drawn before.
+    /// Lets OpenGL draw masks and read them into a buffer: first the sums of all reads, if there are tinted
+    /// layers, then the coverage of all. The masks of the first read's batch may already have been drawn, by
+    /// the call before.
     void read_masks(std::span<const Read> reads, const PixelRect& band, gl::PixelBuffer& buffer);
     [[nodiscard]] std::size_t sums_bytes(std::span<const Read> reads) const;
     [[nodiscard]] const std::byte* wait(gl::PixelBuffer& buffer) const;

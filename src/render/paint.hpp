@@ -9,7 +9,7 @@
 
 namespace corda::render {
 
-/// What OpenGL has drawn of a layer in a rectangle, from its first pixel on.
+/// What OpenGL has drawn of a layer in a rectangle, whose first pixel the pointers are to.
 struct Masks {
     /// Per pixel two bytes: coverage by the capsules and by their halos, 0 .. 255.
     const std::uint8_t* coverage = nullptr;

@@ -7,8 +7,9 @@
 namespace corda::render {
 namespace {
 
-/// What a read costs besides its pixels, in pixels of two bytes. On the CPU nothing up to here could be
-/// measured; to a GPU's driver a call is some microseconds, in which its bus carries about as much.
+/// What a read costs besides its pixels, in pixels of two bytes. On the CPU no value up to this one made a
+/// measurable difference; a GPU's driver takes some microseconds for a call, in which the bus carries about
+/// as many pixels.
 constexpr std::size_t kReadPx = 1 << 14;
 /// Of tinted layers: a pixel has its sums beside the two bytes.
 constexpr std::size_t kTintedReadPx = kReadPx * 2 / (2 + sizeof(TintSums));

@@ -18,7 +18,7 @@ struct Read {
     bool is_first_of_batch = false;
 };
 
-/// Most pixels that are read before they are painted: a row of tiles of the widest frame.
+/// The most pixels that are read before they are painted: a row of tiles of the widest frame.
 inline constexpr std::size_t kMostReadPx = std::size_t{kLargestSidePx} * Tiles::kSidePx;
 
 /// The reads of all runs in some rows, in the order of the runs. Runs of a batch that follow one another are

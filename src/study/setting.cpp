@@ -33,7 +33,7 @@ std::string processor_name(std::istream& cpuinfo) {
 std::vector<std::pair<std::string, std::string>> setting(const Timing& timing) {
     std::ifstream cpuinfo("/proc/cpuinfo");
     return {{"Processor", processor_name(cpuinfo)},
-            {"Logical cores", fmt::format("{}", usable_cores())},
+            {"Usable cores", fmt::format("{}", usable_cores())},
             {"Compiler", compiler()},
             {"Build", CORDA_BUILD_TYPE ": " CORDA_BUILD_FLAGS},
             {"Corda", std::string(version())},

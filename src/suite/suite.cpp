@@ -1,5 +1,4 @@
 #include "corda/suite/suite.hpp"
-#include "corda/core/machine.hpp"
 
 #include <fmt/format.h>
 
@@ -9,6 +8,7 @@
 #include <memory>
 #include <mutex>
 
+#include "corda/core/machine.hpp"
 #include "corda/pipeline/painter.hpp"
 #include "corda/suite/cases.hpp"
 #include "corda/suite/crew.hpp"

@@ -76,6 +76,7 @@ TEST_F(Machine, HasTheCoresThatThisProcessMayRunOn) {
 
 TEST_F(Machine, HasTheCoresThatTheGroupsLeave) {
     const int all = usable_cores(root());
+    if (all < 2) GTEST_SKIP() << "one core has no part that could be told";
     write("proc/self/cgroup", "0::/user.slice/inner\n");
     write("sys/fs/cgroup/user.slice/cpu.max", "max 100000\n");
     EXPECT_EQ(usable_cores(root()), all);

@@ -24,6 +24,7 @@ TEST(Reads, HoldEveryRunOnceAndInOrder) {
             EXPECT_LE(read.end_run, read.batch->first_run + read.batch->run_count);
             EXPECT_LE(pixels_of(read.rect), kMostReadPx);
             EXPECT_EQ(read.rect, read.rect.intersected(band));
+            EXPECT_GE(read.first_run, next);
             for (; next < read.first_run; ++next)  // those beside the band
                 EXPECT_TRUE(tiles.runs()[next].rect.intersected(band).empty());
             for (; next < read.end_run; ++next) {
