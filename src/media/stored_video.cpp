@@ -22,6 +22,8 @@ struct StoredVideo::Impl {
     Rational rate{0, 1};
     std::optional<VideoReader> video;
     std::optional<WebpReader> webp;
+    std::optional<Rational> delay_s;  ///< of every frame of an APNG that has one delay
+    std::int64_t frames = 0;          ///< that were read of it
 };
 
 StoredVideo::StoredVideo(const std::string& path) : impl_(std::make_unique<Impl>()) {
@@ -40,8 +42,10 @@ StoredVideo::StoredVideo(const std::string& path) : impl_(std::make_unique<Impl>
     impl_->video.emplace(path);
     impl_->rate = impl_->video->rate();
     if (kind != "apng") return;  // whose delays libav rounds
-    const Rational delay_s = read_apng_times(path).delay_s;
-    if (delay_s.num > 0) impl_->rate = {delay_s.den, delay_s.num};
+    const ApngTimes times = read_apng_times(path);
+    if (times.delay_s.num <= 0) return;
+    impl_->rate = {times.delay_s.den, times.delay_s.num};
+    if (times.uneven_at < 0) impl_->delay_s = times.delay_s;
 }
 
 StoredVideo::~StoredVideo() = default;
@@ -51,7 +55,13 @@ Rational StoredVideo::rate() const {
 }
 
 bool StoredVideo::read(StoredPicture& picture) {
-    if (impl_->video) return impl_->video->read(picture);
+    if (impl_->video) {
+        if (!impl_->video->read(picture)) return false;
+        if (const auto& delay = impl_->delay_s)  // libav's stamps, of rounded delays, drift
+            picture.time_s =
+                static_cast<double>(impl_->frames++ * delay->num) / static_cast<double>(delay->den);
+        return true;
+    }
     WebpReader& webp = *impl_->webp;
     if (!webp.has_next()) return false;
     const std::int64_t start_ms = webp.read_ends_ms().empty() ? 0 : webp.read_ends_ms().back();
