@@ -78,6 +78,8 @@ std::string_view hint_for_errno(int error_number, FileUse use) {
                            : "choose a place you may write to, or change the permissions";
         case EISDIR:
             return "give the name of a file, not of a folder";
+        case ENAMETOOLONG:
+            return is_read ? "check the path" : "choose a shorter name";
         case EFBIG:
             return "this file system or a ulimit forbids files of that size";
         default:

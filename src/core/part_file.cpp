@@ -52,6 +52,7 @@ PartFile::PartFile(std::string path, Descriptor descriptor)
 void PartFile::check(const std::string& path, const OutputOptions& options) {
     const Descriptor old = open_existing(path);
     if (!old && errno == ENOENT) return;
+    if (!old && errno == ENAMETOOLONG) fail_file("write", path, errno);
     if (old && !lock(old, path, LOCK_SH | LOCK_NB)) fail_busy(path);
     if (options.force) return;
     throw Error(ExitCode::kIo,

@@ -69,6 +69,15 @@ TEST_F(PartFiles, AreHeldByOneAtATime) {
     EXPECT_EQ(failure_of([&] { static_cast<void>(PartFile::open(path_)); }).code, ExitCode::kOk);
 }
 
+TEST_F(PartFiles, WhoseNameIsTooLongAreNotThere) {
+    const std::string path = part_path(path_ + std::string(250, 'a'));
+    for (const bool force : {false, true}) {
+        const test::Failure failure = failure_of([&] { PartFile::check(path, {.force = force}); });
+        EXPECT_EQ(failure.code, ExitCode::kIo);
+        EXPECT_THAT(failure.message, HasSubstr("File name too long; choose a shorter name"));
+    }
+}
+
 TEST_F(PartFiles, AreHeldByOneOfManyThatStartAtOnce) {
     std::atomic<int> holders{0};
     std::atomic<int> most{0};
