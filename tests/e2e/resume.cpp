@@ -167,6 +167,18 @@ TEST_F(Resume, BeginsAnewIfThereIsNothingToGoOnWith) {
     EXPECT_THAT(pictures.err, HasSubstr("--frames FIRST:END"));
 }
 
+TEST_F(Resume, WhatWasRecoveredTellsTheFramesThatItHas) {
+    const std::vector<std::string> more{"--duration", "20", "--set", "solver.method=exact"};
+    interrupt("a.mp4", "INT", 0.0, From::kFirstChunk, more);
+    const auto recovered = run_corda({"recover", file("a.mp4.part"), "--json"});
+    ASSERT_EQ(recovered.exit_code, 0) << recovered.err;
+    const auto again = run_corda({"render", "--from", file("a.mp4"), "-o", file("b.mp4"), "--json"});
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_EQ(nlohmann::json::parse(again.out).at("frames"),
+              nlohmann::json::parse(recovered.out).at("frames"));
+    EXPECT_EQ(run_corda({"compare", file("a.mp4"), file("b.mp4")}).exit_code, 0);
+}
+
 TEST_F(Resume, RefusesAPartThatIsDamagedInItsFirstChunk) {
     const std::vector<std::string> more{"--duration", "20", "--set", "solver.method=exact"};
     interrupt("a.mp4", "INT", 0.0, From::kFirstChunk, more);
