@@ -14,6 +14,7 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
+#include "corda/core/output_file.hpp"
 #include "exit_codes.hpp"
 #include "interrupt.hpp"
 
@@ -95,6 +96,26 @@ int fail(const Console& console, ExitCode code, const std::string& text) {
     return static_cast<int>(code);
 }
 
+/// Does what the options say.
+int act(const Console& console, const Action& action) {
+    try {
+        install_signal_handlers();
+        return static_cast<int>(action(console));
+    } catch (const ReaderLeft&) {
+        return static_cast<int>(ExitCode::kOk);
+    } catch (const Error& error) {
+        // A read or a write that the signal broke off fails like any other.
+        const bool is_broken_off = error.code() == ExitCode::kInterrupted || error.code() == ExitCode::kIo;
+        const bool is_asked = interruption() != ExitCode::kOk;
+        return fail(console, is_asked && is_broken_off ? interruption() : error.code(), error.what());
+    } catch (const std::bad_alloc&) {
+        return fail(console, ExitCode::kTemporary, "out of memory; a smaller scene or picture may help");
+    } catch (const std::exception& error) {
+        return fail(console, ExitCode::kInternal,
+                    fmt::format("internal error, please report it: {}", error.what()));
+    }
+}
+
 int run(int argc, char** argv) {
     CLI::App app{
         "Corda turns a rope scene into a video, a still or a comparable picture on a machine without a "
@@ -139,21 +160,7 @@ int run(int argc, char** argv) {
     } catch (const Error& error) {
         return fail(early, error.code(), error.what());
     }
-    const Console console(console_def);
-    try {
-        install_signal_handlers();
-        return static_cast<int>(action(console));
-    } catch (const Error& error) {
-        // A read or a write that the signal broke off fails like any other.
-        const bool is_broken_off = error.code() == ExitCode::kInterrupted || error.code() == ExitCode::kIo;
-        const bool is_asked = interruption() != ExitCode::kOk;
-        return fail(console, is_asked && is_broken_off ? interruption() : error.code(), error.what());
-    } catch (const std::bad_alloc&) {
-        return fail(console, ExitCode::kTemporary, "out of memory; a smaller scene or picture may help");
-    } catch (const std::exception& error) {
-        return fail(console, ExitCode::kInternal,
-                    fmt::format("internal error, please report it: {}", error.what()));
-    }
+    return act(Console(console_def), action);
 }
 
 /// Lets the memory of one chunk's encoder serve the next one: zeroing fresh pages took 14 % of a render.

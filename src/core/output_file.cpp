@@ -228,14 +228,19 @@ void OutputFile::write(std::string_view bytes) {
     if (bytes.size() < kBufferBytes) {
         buffer_ += bytes;
     } else if (const int status = write_all(descriptor_.get(), bytes, options_.on_progress); status != 0) {
-        fail_file("write", path_, status);
+        fail_write(status);
     }
 }
 
 void OutputFile::flush() {
     const int status = write_all(descriptor_.get(), buffer_, options_.on_progress);
     buffer_.clear();
-    if (status != 0) fail_file("write", path_, status);
+    if (status != 0) fail_write(status);
+}
+
+void OutputFile::fail_write(int error_number) const {
+    if (error_number == EPIPE && is_standard_output(path_)) throw ReaderLeft();
+    fail_file("write", path_, error_number);
 }
 
 void OutputFile::restore_permissions() {

@@ -16,6 +16,12 @@ enum class OutputKind {
     kStream,  ///< also a device, a pipe or standard output
 };
 
+/// Whoever reads standard output reads no more: the end of the work, and no fault.
+class ReaderLeft : public Error {
+  public:
+    ReaderLeft() : Error(ExitCode::kIo, "standard output was closed by its reader") {}
+};
+
 /// Whether `path` names standard output: "-" or "/dev/stdout".
 [[nodiscard]] bool is_standard_output(const std::string& path);
 
@@ -48,6 +54,7 @@ class OutputFile {
     /// Removes the temporary file unless `commit` or `keep` was called.
     ~OutputFile();
 
+    /// Throws ReaderLeft, like all below, if whoever reads standard output closed it.
     void write(std::string_view bytes);
 
     /// Writes out what `write` has buffered, for whoever reads the file before it has its name.
@@ -81,6 +88,7 @@ class OutputFile {
     void open_directly();
     void open_temporary();
     void restore_permissions();
+    [[noreturn]] void fail_write(int error_number) const;
     void close();
     /// A second descriptor, which holds the lock beyond the close: without it, the file would be a leftover
     /// until it has its name.

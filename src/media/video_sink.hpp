@@ -12,12 +12,6 @@
 
 namespace corda::media {
 
-/// Whoever reads standard output reads no more: the end of the work, and no fault.
-class ReaderLeft : public Error {
-  public:
-    ReaderLeft() : Error(ExitCode::kIo, "standard output was closed by its reader") {}
-};
-
 /// Where the packets of a video go, whose time stamps count frames from the first one. All throw corda::Error
 /// (kIo), and what is said.
 class VideoSink {

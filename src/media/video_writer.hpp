@@ -62,7 +62,7 @@ class VideoWriter {
 
     /// Adds the next frame, of the size of `def`. `damage` is what may differ from the previous frame (the
     /// first is taken whole). With `is_last`, the frame's colours are verified too, as the first frame's are.
-    /// Throws kEncoder or kIo; ReaderLeft (see video_sink.hpp) if whoever reads standard output closed it.
+    /// Throws kEncoder or kIo; ReaderLeft (see output_file.hpp) if whoever reads standard output closed it.
     /// After a failure only abandon() is of use.
     void write(const Image& frame, const Damage& damage, bool is_last = false);
 

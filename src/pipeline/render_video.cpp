@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "corda/core/machine.hpp"
+#include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
@@ -246,7 +247,7 @@ Rendered render_video(Film& film, const std::string& path, const RenderDef& def)
     try {
         write_frames(film, def.first, end, drawn, writer, result);
         writer.finish(def.verify_all ? media::VerifyDepth::kAllFrames : media::VerifyDepth::kKeyFrames);
-    } catch (const media::ReaderLeft&) {
+    } catch (const ReaderLeft&) {
         result.reader_left = true;
     } catch (const Error& error) {
         if (error.code() == ExitCode::kDiverged) keep_diverged(error, path, def.first, writer);
