@@ -34,6 +34,7 @@ struct RenderOptions {
     std::string output;
     std::string frames;
     std::string verify = "keys";
+    bool pad = false;
     bool force = false;
     bool resume = false;
     bool dry_run = false;
@@ -177,6 +178,10 @@ void warn_of_other_pictures(const Console& console, const std::string& output, s
 ExitCode render(const Console& console, const RenderOptions& options) {
     const double start_s = now_s();
     Scene scene = options.scene.load(console);
+    if (options.pad) {
+        scene.video.width_px += scene.video.width_px % 2;
+        scene.video.height_px += scene.video.height_px % 2;
+    }
     RenderDef def;
     def.force = options.force;
     def.resume = options.resume;
@@ -238,6 +243,8 @@ void add_render(CLI::App& app, Action& action) {
     command->add_option("-o,--output", options->output, "the ending chooses the format: " + endings_text())
         ->required();
     options->scene.add_size(*command);
+    command->add_flag("--pad", options->pad,
+                      "make odd sides even, by a column or a row more, as 4:2:0 needs");
     options->scene.add_shortcut(*command, "--fps", "video.fps", "frames per second, e.g. 60 or 30000/1001");
     options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
     options->scene.add_shortcut(*command, "--crf", "video.crf",

@@ -163,7 +163,8 @@ void check_size_for(const Format& format, const VideoDef& def) {
     const bool is_odd = def.width_px % 2 != 0 || def.height_px % 2 != 0;
     if (is_odd && descriptor_of(format.pixel_format).log2_chroma_w == 1) {
         fail_usage(
-            "video size {}x{} is odd, and {} 4:2:0 needs even sides; use a width of {} and a height of {}",
+            "video size {}x{} is odd, and {} 4:2:0 needs even sides; use a width of {} and a height of {} "
+            "(render --pad takes the larger ones)",
             def.width_px, def.height_px, codec.standard, even_sides(def.width_px), even_sides(def.height_px));
     }
     if (std::min(def.width_px, def.height_px) < codec.least_side_px) {

@@ -137,6 +137,25 @@ TEST_F(FormatsOfRender, AReaderThatHasEnoughEndsTheRunQuietly) {
     }
 }
 
+TEST_F(FormatsOfRender, AReaderOfStatesThatHasEnoughDoesSoToo) {
+    const auto result = run_shell("set -o pipefail; " + corda::test::quoted(CORDA_PROGRAM) + " simulate " +
+                                  scene_ + " -o - -q --duration 600 | head -c 1000 | wc -c");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.out, "1000\n");
+    EXPECT_EQ(result.err, "");
+}
+
+TEST_F(FormatsOfRender, OddSidesAreMadeEvenIfThatIsAsked) {
+    const auto refused = render(folder_.file("odd.mp4"), {"--size", "97x63"});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("use a width of 96 or 98 and a height of 62 or 64 (render --pad"));
+    const auto padded = render(folder_.file("even.mp4"), {"--size", "97x63", "--pad", "--json"});
+    EXPECT_EQ(padded.exit_code, 0) << padded.err;
+    const auto figures = nlohmann::json::parse(padded.out);
+    EXPECT_EQ(figures.at("width"), 98);
+    EXPECT_EQ(figures.at("height"), 64);
+}
+
 TEST_F(FormatsOfRender, JsonAndAVideoCannotShareStandardOutput) {
     const auto result = render("-", {"--json"});
     EXPECT_EQ(result.exit_code, 2);
