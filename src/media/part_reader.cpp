@@ -134,6 +134,10 @@ Rational rate_of(const std::string& path, const PartInput& input, std::int64_t p
 PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
     PartIndex index;
     const SoundBytes sound = sound_bytes_of(path, PartExtent::kAll, on_progress);
+    if (sound.count == 0 && file_size(path) == 0)
+        throw EmptyPart(
+            ExitCode::kMismatch,
+            fmt::format("'{}' is empty: no chunk of it was finished; render it again (--force)", path));
     if (sound.count == 0)
         throw EmptyPart(ExitCode::kMismatch,
                         fmt::format("'{}' holds no whole chunk with a valid checksum; render it again "

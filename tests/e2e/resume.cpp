@@ -179,6 +179,14 @@ TEST_F(Resume, WhatWasRecoveredTellsTheFramesThatItHas) {
     EXPECT_EQ(run_corda({"compare", file("a.mp4"), file("b.mp4")}).exit_code, 0);
 }
 
+TEST_F(Resume, APartWithoutAChunkCannotBeRecovered) {
+    test::write_file(file("a.mp4.part"), "");
+    const auto refused = run_corda({"recover", file("a.mp4.part")});
+    EXPECT_EQ(refused.exit_code, 7);
+    EXPECT_THAT(refused.err, HasSubstr("is empty: no chunk of it was finished; render it again (--force)"));
+    EXPECT_EQ(run_corda(render("a.mp4", {"--force", "--duration", "1"})).exit_code, 0);
+}
+
 TEST_F(Resume, RefusesAPartThatIsDamagedInItsFirstChunk) {
     const std::vector<std::string> more{"--duration", "20", "--set", "solver.method=exact"};
     interrupt("a.mp4", "INT", 0.0, From::kFirstChunk, more);
