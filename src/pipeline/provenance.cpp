@@ -14,6 +14,7 @@
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
 #include "corda/media/defs.hpp"
+#include "corda/media/file_kind.hpp"
 #include "corda/media/video_comment.hpp"
 #include "corda/scene/write_scene.hpp"
 
@@ -28,9 +29,10 @@ constexpr std::size_t kMostTimes = 1000;
 constexpr std::size_t kLongestName = 200;
 
 [[noreturn]] void fail_at(const std::string& path, const std::string& problem) {
-    throw Error(
-        ExitCode::kUsage,
-        fmt::format("'{}' {}; give a PNG or a video that a command of corda has written", path, problem));
+    throw Error(ExitCode::kUsage,
+                fmt::format("'{}' {}; give a PNG, or a video that is no animation, which a command of corda "
+                            "has written",
+                            path, problem));
 }
 
 Json json_of(const PictureOrigin& picture) {
@@ -182,6 +184,9 @@ std::string provenance_text(Provenance provenance) {
 Provenance read_provenance(const std::string& path, const OnProgress& on_progress) {
     if (path.ends_with(".toml"))
         throw Error(ExitCode::kUsage, fmt::format("'{}' is a scene file; give it without --from", path));
+    const std::string kind = media::file_kind(path);
+    if (kind == "gif" || kind == "apng" || kind == "webp")
+        fail_at(path, "is a GIF, an APNG or a WebP, none of which tells what it was made from");
     PngTexts png;
     if (is_png(path))
         png = texts_in_png(path);

@@ -126,6 +126,16 @@ TEST_F(ProvenanceOfFiles, WhatCarriesNothingIsRefused) {
         2);
 }
 
+TEST_F(ProvenanceOfFiles, AnimationsHaveNone) {
+    for (const char* const name : {"a.gif", "a.apng", "a.webp"}) {
+        run({"render", scene_, "--duration", "0.1", "--fps", "25", "-o", folder().file(name)});
+        const auto result =
+            run_corda({"render", "--from", folder().file(name), "-o", folder().file("x.mp4")});
+        EXPECT_EQ(result.exit_code, 2);
+        EXPECT_THAT(result.err, HasSubstr("is a GIF, an APNG or a WebP"));
+    }
+}
+
 TEST_F(ProvenanceOfFiles, DamagedOnesAreRefused) {
     const std::string sound =
         R"({"corda":"0.1.0","name":"a","scene":"schema = 1\n[[rope]]\nline = { particles = 3, step = [0, -1] }\n","picture":{"command":"still","times":[0]}})";
