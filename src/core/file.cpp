@@ -100,6 +100,11 @@ void fail_file(std::string_view action, const std::string& path, int error_numbe
     throw Error(ExitCode::kIo, message);
 }
 
+void fail_busy(const std::string& what) {
+    throw Error(ExitCode::kIo,
+                "another render is writing " + what + "; wait for its end, or choose another name");
+}
+
 void make_folder(const std::string& path) {
     std::error_code reason;
     std::filesystem::create_directories(path, reason);

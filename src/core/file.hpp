@@ -67,6 +67,9 @@ class Descriptor {
 /// "read".
 [[noreturn]] void fail_file(std::string_view action, const std::string& path, int error_number);
 
+/// Throws corda::Error (kIo): another render is writing `what`.
+[[noreturn]] void fail_busy(const std::string& what);
+
 /// What was to be done with a file.
 enum class FileUse { kRead, kWrite };
 

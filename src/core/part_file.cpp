@@ -14,11 +14,6 @@
 namespace corda {
 namespace {
 
-[[noreturn]] void fail_busy(const std::string& path) {
-    throw Error(ExitCode::kIo,
-                "another render is writing '" + path + "'; wait for its end, or choose another name");
-}
-
 /// Locks an open file by flock(2). False if another process holds the lock and `operation` does not wait for
 /// it, or if the name leads to another file by now.
 bool lock(const Descriptor& file, const std::string& path, int operation) {
@@ -40,7 +35,7 @@ void remove_old(const std::string& path) {
     if (!old && errno == ENOENT) return;
     // ELOOP: a symbolic link, through which no render writes.
     if (!old && errno != ELOOP) fail_file("replace", path, errno);
-    if (old && !lock(old, path, LOCK_EX | LOCK_NB)) fail_busy(path);
+    if (old && !lock(old, path, LOCK_EX | LOCK_NB)) fail_busy("'" + path + "'");
     if (::unlink(path.c_str()) != 0) fail_file("remove", path, errno);
 }
 
@@ -53,7 +48,7 @@ void PartFile::check(const std::string& path, const OutputOptions& options) {
     const Descriptor old = open_existing(path);
     if (!old && errno == ENOENT) return;
     if (!old && errno == ENAMETOOLONG) fail_file("write", path, errno);
-    if (old && !lock(old, path, LOCK_SH | LOCK_NB)) fail_busy(path);
+    if (old && !lock(old, path, LOCK_SH | LOCK_NB)) fail_busy("'" + path + "'");
     if (options.force) return;
     throw Error(ExitCode::kIo,
                 "'" + path +
@@ -70,7 +65,7 @@ PartFile PartFile::create(std::string path, const OutputOptions& options) {
         fail_file("write", path, open_errno);
     }
     // Another process can hold a file this new only for the moment it takes to look at it, or to remove it.
-    if (!lock(file, path, LOCK_EX)) fail_busy(path);
+    if (!lock(file, path, LOCK_EX)) fail_busy("'" + path + "'");
     return {std::move(path), std::move(file)};
 }
 
@@ -82,7 +77,7 @@ void PartFile::remove_unheld(const std::string& path) noexcept {
 PartFile PartFile::open(std::string path) {
     Descriptor file = open_existing(path);
     if (!file) fail_file("read", path, errno);
-    if (!lock(file, path, LOCK_EX | LOCK_NB)) fail_busy(path);
+    if (!lock(file, path, LOCK_EX | LOCK_NB)) fail_busy("'" + path + "'");
     return {std::move(path), std::move(file)};
 }
 

@@ -8,8 +8,6 @@
 #include <thread>
 #include <utility>
 
-#include "corda/core/basics.hpp"
-
 namespace corda {
 namespace {
 
@@ -47,10 +45,8 @@ RangeLock::RangeLock(std::string path, std::int64_t first, std::int64_t end, con
         if (!file_) fail_file("write", path_, errno);
         const Locked locked = lock_range(file_, first, end - first);
         if (locked == Locked::kCannot || (locked == Locked::kYes && leads_to(path_, file_))) return;
-        if (tries == kMostTries || (locked == Locked::kNo && is_held(file_, first, end - first))) {
-            throw Error(ExitCode::kIo,
-                        "another render is writing " + what + "; wait for its end, or choose another name");
-        }
+        if (tries == kMostTries || (locked == Locked::kNo && is_held(file_, first, end - first)))
+            fail_busy(what);
         std::this_thread::sleep_for(std::chrono::microseconds(100));  // while the file is removed
     }
 }
