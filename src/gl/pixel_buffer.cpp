@@ -9,7 +9,6 @@
 #include "corda/core/basics.hpp"
 
 namespace corda::gl {
-
 namespace {
 
 /// So that the next check finds errors of its own. A lost context tells them without end.

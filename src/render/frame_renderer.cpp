@@ -29,7 +29,7 @@ bool same_look(const view::Stamp& a, const std::vector<std::uint8_t>& a_coverage
     const bool a_is_solid = a.first_coverage == view::Stamp::kSolid;
     const bool b_is_solid = b.first_coverage == view::Stamp::kSolid;
     if (a.box != b.box || a.color != b.color || a_is_solid != b_is_solid) return false;
-    const std::size_t count = static_cast<std::size_t>(a.box.width()) * a.box.height();
+    const std::size_t count = pixels_of(a.box);
     return a_is_solid || std::equal(&a_coverage[a.first_coverage], &a_coverage[a.first_coverage] + count,
                                     &b_coverage[b.first_coverage]);
 }
@@ -307,7 +307,8 @@ void FrameRenderer::draw_masks(const Batch& batch) const {
 
 void FrameRenderer::read_masks(std::span<const Read> reads, const PixelRect& band, gl::PixelBuffer& buffer) {
     const auto lock = context_->exclusive();
-    buffer.begin(sums_bytes(reads) + 2 * pixels_of(reads));
+    const std::size_t coverage_at = sums_bytes(reads);
+    buffer.begin(coverage_at + 2 * pixels_of(reads));
     set_state(band);
     std::size_t pixels = 0;
     for (const Read& read : reads) {
@@ -321,7 +322,7 @@ void FrameRenderer::read_masks(std::span<const Read> reads, const PixelRect& ban
         glBindFramebuffer(GL_FRAMEBUFFER, batch.is_tinted ? tints_->target.id() : mask_target_.id());
         if (read.is_first_of_batch) draw_masks(batch);
         if (batch.is_tinted) read_from(GL_COLOR_ATTACHMENT1, GL_RGBA, GL_FLOAT, pixels * sizeof(TintSums));
-        read_from(GL_COLOR_ATTACHMENT0, GL_RG, GL_UNSIGNED_BYTE, sums_bytes(reads) + 2 * pixels);
+        read_from(GL_COLOR_ATTACHMENT0, GL_RG, GL_UNSIGNED_BYTE, coverage_at + 2 * pixels);
         pixels += pixels_of(rect);
     }
     buffer.end();
