@@ -56,7 +56,7 @@ Frame frame_for(const AVCodecContext& context) {
     frame->width = context.width;
     frame->height = context.height;
     frame->sample_aspect_ratio = context.sample_aspect_ratio;
-    frame->pkt_duration = 1;
+    set_duration(*frame, 1);
     set_colors(context.pix_fmt, *frame);
     frame->chroma_location = context.chroma_sample_location;
     check_libav(av_frame_get_buffer(frame.get(), 0), ExitCode::kTemporary, "cannot make a picture");

@@ -17,6 +17,7 @@ extern "C" {
 #include <libswscale/swscale.h>
 }
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -58,6 +59,16 @@ using CodecParameters = std::unique_ptr<AVCodecParameters, PointerPointerDeleter
 using ScaleContext = std::unique_ptr<SwsContext, PointerDeleter<&sws_freeContext>>;
 using IoContext = std::unique_ptr<AVIOContext, PointerPointerDeleter<&free_io>>;
 using OutputFormat = std::unique_ptr<AVFormatContext, PointerDeleter<&avformat_free_context>>;
+
+/// Sets how long a frame lasts, in its time base. FFmpeg 6.0 renames the field, a template names either.
+template <typename F>
+void set_duration(F& frame, std::int64_t duration) {
+    if constexpr (requires { frame.duration; }) {
+        frame.duration = duration;
+    } else {
+        frame.pkt_duration = duration;
+    }
+}
 
 /// Options for an open call, given by name.
 class Options {

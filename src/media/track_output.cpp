@@ -49,7 +49,7 @@ void set_options(std::string_view container, TrackLayout layout, Rational fps, O
 
 }  // namespace
 
-int TrackOutput::write_bytes(void* output, std::uint8_t* bytes, int count) {
+int TrackOutput::write_bytes(void* output, const std::uint8_t* bytes, int count) {
     TrackOutput& track = *static_cast<TrackOutput*>(output);
     const std::string_view data(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(count));
     const int status = write_all(track.descriptor_, data);
@@ -70,8 +70,10 @@ TrackOutput::TrackOutput(int descriptor, std::string path, TrackLayout layout)
     auto* buffer = static_cast<unsigned char*>(av_malloc(kBufferBytes));
     // What a part has stays as it is: a muxer that can seek would change its header at the end.
     auto* const can_seek = layout == TrackLayout::kPart ? nullptr : &seek;
+    // FFmpeg 7.0 makes the bytes const: `auto` becomes either type.
+    const auto write = [](void* output, auto* bytes, int count) { return write_bytes(output, bytes, count); };
     if (buffer != nullptr)
-        io_.reset(avio_alloc_context(buffer, kBufferBytes, 1, this, nullptr, &write_bytes, can_seek));
+        io_.reset(avio_alloc_context(buffer, kBufferBytes, 1, this, nullptr, write, can_seek));
     io_ = check_allocated(std::move(io_), "an output buffer");
 }
 

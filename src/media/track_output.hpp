@@ -46,7 +46,7 @@ class TrackOutput {
     void finish();
 
   private:
-    static int write_bytes(void* output, std::uint8_t* bytes, int count);
+    static int write_bytes(void* output, const std::uint8_t* bytes, int count);
     static std::int64_t seek(void* output, std::int64_t offset, int whence);
     /// Writes what is buffered; in a part, also a checksum of all bytes since the previous one.
     void end_bytes(const std::string& what);
