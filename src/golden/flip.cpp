@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "corda/core/cpu.hpp"
 #include "corda/golden/perceived.hpp"
 
 namespace corda {
@@ -218,8 +219,7 @@ struct Constants {
 constexpr std::size_t kParts = 7;
 
 /// The sums of kernel[k] * rows[k][x].
-[[gnu::target_clones("avx2", "default")]] void add_rows(const Kernel& kernel, const float* const* rows,
-                                                        int count, float* out) {
+CORDA_AVX2_CLONES void add_rows(const Kernel& kernel, const float* const* rows, int count, float* out) {
     for (int x = 0; x < count; ++x) out[x] = 0.0F;
     for (std::size_t k = 0; k < kernel.size(); ++k) {
         const float weight = kernel[k];
@@ -349,8 +349,8 @@ float combined(float distance, float feature, float largest) {
     return power(std::min(color, 1.0F), 1.0F - std::sqrt(std::min(feature, 1.0F)));
 }
 
-[[gnu::target_clones("avx2", "default")]] void row_errors(const Constants& constants, const Filtered& a,
-                                                          const Filtered& b, int count, float* errors) {
+CORDA_AVX2_CLONES void row_errors(const Constants& constants, const Filtered& a, const Filtered& b, int count,
+                                  float* errors) {
     const auto length = [](float u, float v) { return std::sqrt(u * u + v * v); };
     for (int x = 0; x < count; ++x) {
         const auto lab = [&](const Filtered& of) {

@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cpu.hpp"
 #include "corda/sim/body_solvers.hpp"
 #include "corda/sim/distance.hpp"
 #include "corda/sim/exact/exact.hpp"
 #include "corda/sim/figures.hpp"
-#include "corda/sim/flush_denormals.hpp"
 #include "corda/sim/rattle/rattle.hpp"
 #include "corda/sim/refusal.hpp"
 #include "corda/sim/relaxation/relaxation.hpp"
@@ -186,7 +186,7 @@ void Simulation::read() {
 }
 
 void Simulation::observe() {
-    const sim::FlushDenormals flush;
+    const FlushDenormals flush;
     read();
     figures_.strain = max_strain(system_, state_);
     figures_.energy_change_j = solver_->energy_j() - initial_energy_j_;

@@ -7,19 +7,14 @@
 #include <cstdint>
 #include <limits>
 
+#include "corda/core/cpu.hpp"
 #include "corda/sim/exact/four.hpp"
 #include "corda/sim/exact/series_terms.hpp"
 
 namespace corda::sim {
 namespace {
 
-// Functions that work on all links are compiled twice: for every x86-64 CPU, and for registers of four
-// numbers.
-#if defined(__x86_64__)
-#define CORDA_WIDE [[gnu::target("avx2")]]
-#else
-#define CORDA_WIDE
-#endif
+// Functions that work on all links are compiled twice: for every CPU, and for registers of four numbers.
 
 using series::kLanes;
 
@@ -139,25 +134,25 @@ CORDA_INLINE void measure_last_terms(SeriesArrays& a, double inverse_timescale_1
     }
 }
 
-CORDA_WIDE void expand_wide(SeriesArrays& a, const double* c, const double* s, const double* omega) {
+CORDA_AVX2 void expand_wide(SeriesArrays& a, const double* c, const double* s, const double* omega) {
     series::expand(a, c, s, omega);
 }
 void expand_narrow(SeriesArrays& a, const double* c, const double* s, const double* omega) {
     series::expand(a, c, s, omega);
 }
-CORDA_WIDE void evaluate_directions_wide(SeriesArrays& a, double t, double* c, double* s) {
+CORDA_AVX2 void evaluate_directions_wide(SeriesArrays& a, double t, double* c, double* s) {
     evaluate_directions(a, t, c, s);
 }
 void evaluate_directions_narrow(SeriesArrays& a, double t, double* c, double* s) {
     evaluate_directions(a, t, c, s);
 }
-CORDA_WIDE void evaluate_omegas_wide(SeriesArrays& a, double t, double* omega) {
+CORDA_AVX2 void evaluate_omegas_wide(SeriesArrays& a, double t, double* omega) {
     evaluate_omegas(a, t, omega);
 }
 void evaluate_omegas_narrow(SeriesArrays& a, double t, double* omega) {
     evaluate_omegas(a, t, omega);
 }
-CORDA_WIDE void measure_last_terms_wide(SeriesArrays& a, double inverse_timescale_1_s, LastTerms& result) {
+CORDA_AVX2 void measure_last_terms_wide(SeriesArrays& a, double inverse_timescale_1_s, LastTerms& result) {
     measure_last_terms(a, inverse_timescale_1_s, result);
 }
 void measure_last_terms_narrow(SeriesArrays& a, double inverse_timescale_1_s, LastTerms& result) {

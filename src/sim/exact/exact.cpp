@@ -3,11 +3,11 @@
 #include <cassert>
 #include <string>
 
+#include "corda/core/cpu.hpp"
 #include "corda/sim/exact/chain_dynamics.hpp"
 #include "corda/sim/exact/chain_part.hpp"
 #include "corda/sim/exact/elastic_dynamics.hpp"
 #include "corda/sim/exact/string/part.hpp"
-#include "corda/sim/flush_denormals.hpp"
 #include "corda/sim/refusal.hpp"
 
 namespace corda::sim {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "corda/core/cpu.hpp"
 #include "corda/sim/distance.hpp"
-#include "corda/sim/flush_denormals.hpp"
 #include "corda/sim/refusal.hpp"
 #include "corda/sim/step_grid.hpp"
 

@@ -4,8 +4,8 @@
 #include <cassert>
 #include <cmath>
 
+#include "corda/core/cpu.hpp"
 #include "corda/sim/distance.hpp"
-#include "corda/sim/flush_denormals.hpp"
 #include "corda/sim/refusal.hpp"
 #include "corda/sim/step_grid.hpp"
 

@@ -1,0 +1,60 @@
+#pragma once
+
+// What differs between CPUs, apart from loops that are written in intrinsics: those stand beside the plain
+// loops that give the same bits.
+
+#include <cstdint>
+
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+/// Compiles a function for AVX2 only; the caller asks the CPU first.
+#define CORDA_AVX2 [[gnu::target("avx2")]]
+/// Compiles a function twice, for every x86-64 CPU and for AVX2, and chooses when the program starts.
+#define CORDA_AVX2_CLONES [[gnu::target_clones("avx2", "default")]]
+#else
+#define CORDA_AVX2
+#define CORDA_AVX2_CLONES
+#endif
+
+namespace corda {
+
+/// During its life, this thread takes numbers below 2.2e-308 (denormal ones) as 0. A damped rope halves its
+/// distance to equilibrium again and again, and x86 CPUs take a hundred times as long for an operation with
+/// denormal numbers. AArch64 does not slow down, but flushes them too, for the same bits.
+class FlushDenormals {
+  public:
+    FlushDenormals() { set_control(control_ | kFlush); }
+    ~FlushDenormals() { set_control(control_); }
+    FlushDenormals(const FlushDenormals&) = delete;
+    FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+  private:
+#if defined(__x86_64__)
+    using Control = unsigned;
+    static constexpr Control kFlush = 0x8040;  // MXCSR: results (bit 15) and operands (bit 6)
+    static Control control() {
+        return _mm_getcsr();
+    }
+    static void set_control(Control control) {
+        _mm_setcsr(control);
+    }
+#elif defined(__aarch64__)
+    using Control = std::uint64_t;
+    static constexpr Control kFlush = std::uint64_t{1} << 24;  // FPCR.FZ: results and operands
+    static Control control() {
+        Control control = 0;
+        asm volatile("mrs %0, fpcr" : "=r"(control));
+        return control;
+    }
+    static void set_control(Control control) {
+        asm volatile("msr fpcr, %0" : : "r"(control) : "memory");
+    }
+#else
+#error \
+    "Corda runs on x86-64 and AArch64: the same scene must give the same bytes, so denormal numbers are flushed"
+#endif
+
+    Control control_ = control();
+};
+
+}  // namespace corda
