@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that Corda needs; does nothing when all are there.
+# Installs the Debian packages that Corda needs; does nothing when all are there.
 # Usage: setup.sh [build|test]   (test adds what only the tests use)
 set -euo pipefail
 
@@ -39,7 +39,7 @@ if [[ "${1:-build}" == test ]]; then
         libbenchmark-dev    # measured speed
         clang-format        # the style check
         clang               # the tests under the sanitizers, by a second compiler
-        libclang-rt-14-dev  # its sanitizers
+        libclang-rt-dev     # its sanitizers
         clang-tidy          # the static checks
         ffmpeg              # a second opinion on the videos: ffprobe
         libxml2-utils       # whether pages and SVG are well formed: xmllint
