@@ -73,7 +73,7 @@ std::unique_ptr<Solver> make_one(const System& system, const Forces& forces, con
         double frame_interval_s;
         const GoesOn& goes_on;
         std::unique_ptr<Solver> operator()(const ExactDef& def) const {
-            return std::make_unique<Exact>(system, forces, def);
+            return std::make_unique<Exact>(system, forces, def, goes_on);
         }
         std::unique_ptr<Solver> operator()(const RattleDef& def) const {
             return std::make_unique<Rattle>(system, forces, def, frame_interval_s, goes_on);

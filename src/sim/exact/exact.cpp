@@ -35,17 +35,21 @@ void refuse_rigid_graph(const Body& body) {
 }
 
 /// The part that moves a string of rigid links.
-std::unique_ptr<ExactPart> string_part(const System& system, const Forces& forces, const ExactDef& def) {
+std::unique_ptr<ExactPart> string_part(const System& system, const Forces& forces, const ExactDef& def,
+                                       StopCheck& stop) {
     const Body& body = system.bodies.front();
     if (!body.is_chain) {
         throw Refusal(Refusal::Reason::kRigidStringGraph,
                       "method exact moves a string of rigid links only if it is an open chain");
     }
-    return std::make_unique<StringPart>(system, body, forces, def.tolerance);
+    return std::make_unique<StringPart>(system, body, forces, def.tolerance, stop);
 }
 
 /// The part that moves a body.
-std::unique_ptr<ExactPart> make_part(const System& system, const Forces& forces, const ExactDef& def) {
+std::unique_ptr<ExactPart> make_part(const System& system, const Forces& forces, const ExactDef& def,
+                                     const GoesOn& goes_on) {
+    StopCheck stop(goes_on);
+    stop.spend(1 + system.particle_count());
     const Body& body = system.bodies.front();
     if (body.material.compliance_1_n > 0.0) {
         return std::make_unique<OdePart>(std::make_unique<ElasticDynamics>(system, body, forces),
@@ -53,7 +57,7 @@ std::unique_ptr<ExactPart> make_part(const System& system, const Forces& forces,
     }
     if (!body.material.is_string) refuse_rigid_graph(body);
     refuse_imaginary_bars(system);
-    if (body.material.is_string) return string_part(system, forces, def);
+    if (body.material.is_string) return string_part(system, forces, def, stop);
     if (body.link_count <= kMostLinksOfSeries && system.bends.empty()) {
         return std::make_unique<ChainPart>(system, body, forces, def.tolerance);
     }
@@ -69,10 +73,10 @@ bool conserves_energy_in(const System& system, const Forces& forces) {
 
 }  // namespace
 
-Exact::Exact(const System& system, const Forces& forces, const ExactDef& def)
+Exact::Exact(const System& system, const Forces& forces, const ExactDef& def, const GoesOn& goes_on)
     : Solver(sim::energy_scale_j(system, forces.on_particles(system)), conserves_energy_in(system, forces)),
       def_(def),
-      part_(make_part(system, forces, def)) {
+      part_(make_part(system, forces, def, goes_on)) {
     assert(system.bodies.size() == 1);
 }
 

@@ -27,8 +27,9 @@ namespace corda::sim {
 class Exact final : public Solver {
   public:
     /// Requires one body. Throws corda::Refusal for rigid bars that are imaginary or do not form an open
-    /// chain, for a rigid rope that is taut between two pins, and for what StringPart refuses.
-    Exact(const System& system, const Forces& forces, const ExactDef& def);
+    /// chain, for a rigid rope that is taut between two pins, and for what StringPart refuses; and as a
+    /// StopCheck if `goes_on` ends it.
+    Exact(const System& system, const Forces& forces, const ExactDef& def, const GoesOn& goes_on = {});
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override { return part_->energy_j(); }

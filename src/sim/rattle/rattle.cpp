@@ -65,7 +65,7 @@ Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def,
     }
     history_.multipliers.assign(kHistory * composition_.stages.size() * impulse_.size(), 0.0);
     StopCheck stop(goes_on);
-    if (!complete(grid_, stop) || !find_tensions()) {
+    if (!complete(grid_, stop) || !find_tensions(stop)) {
         throw Refusal(Refusal::Reason::kDependentBars,
                       "the rigid bars do not determine their tensions at the start");
     }
@@ -177,7 +177,7 @@ bool Rattle::leap(double span_s, Trajectory& trajectory, StopCheck& stop) {
     }
     if (!constraints_->leap(span_s, output_, stop)) return false;
     const double elastic_square = is_elastic() ? find_forces(output_) : 0.0;
-    if (find_tensions()) trajectory.multiplier = tension_over_length_n_m_;
+    if (find_tensions(stop)) trajectory.multiplier = tension_over_length_n_m_;
     trajectory.motion = output_;
     trajectory.last_span_s = 0.0;
     trajectory.level = 0;
@@ -271,7 +271,7 @@ bool Rattle::complete(const Trajectory& trajectory, StopCheck& stop) {
     return true;
 }
 
-bool Rattle::find_tensions() const {
+bool Rattle::find_tensions(StopCheck& stop) const {
     // d . (acceleration of b - acceleration of a) + |velocity of b - velocity of a|^2 = 0. Drag does not
     // enter: it is along the velocities, whose differences are across the bars.
     const auto links = constraints_->links();
@@ -295,12 +295,18 @@ bool Rattle::find_tensions() const {
                 (output_.y_m[b] - output_.y_m[a]) * (wb * force_y_n_[b] - wa * force_y_n_[a]);
         }
     }
-    StopCheck nobody;  // complete() has factorised the matrix at output_
-    return constraints_->solve(output_, tension_over_length_n_m_, nobody) && constraints_->had_full_rank();
+    return constraints_->solve(output_, tension_over_length_n_m_, stop) && constraints_->had_full_rank();
+}
+
+bool Rattle::find_tensions_of_output() const {
+    // Without full rank the matrix would have to be factorised again, which takes long.
+    if (!constraints_->had_full_rank()) return false;
+    StopCheck nobody;
+    return find_tensions(nobody);
 }
 
 std::optional<Loads> Rattle::loads() const {
-    if (!constraints_->determines_tensions() || !find_tensions()) return std::nullopt;
+    if (!constraints_->determines_tensions() || !find_tensions_of_output()) return std::nullopt;
     Loads loads;
     const auto links = constraints_->links();
     std::fill(pin_force_n_.begin(), pin_force_n_.end(), Vec2{});
@@ -343,7 +349,7 @@ void Rattle::find_bars_of_links(const System& system) {
 
 bool Rattle::tensions(std::vector<double>& tension_n) {
     if (!constraints_->determines_tensions()) return Solver::tensions(tension_n);
-    const bool are_known = find_tensions();
+    const bool are_known = find_tensions_of_output();
     for (std::size_t k = 0; k < bar_of_link_.size(); ++k) {
         const auto [a, b, rest_m] = constraints_->links()[k];
         const double length_m = length(output_.x_m[b] - output_.x_m[a], output_.y_m[b] - output_.y_m[a]);

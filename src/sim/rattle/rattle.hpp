@@ -100,7 +100,9 @@ class Rattle final : public Solver {
     [[nodiscard]] bool complete(const Trajectory& trajectory, StopCheck& stop);
     void find_bars_of_links(const System& system);
     /// Of output_. False if bars depend on each other there.
-    [[nodiscard]] bool find_tensions() const;
+    [[nodiscard]] bool find_tensions(StopCheck& stop) const;
+    /// The same after complete(), whose factors serve again, so that it takes no longer than reading them.
+    [[nodiscard]] bool find_tensions_of_output() const;
 
     int order_;
     double guard_;

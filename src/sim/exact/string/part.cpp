@@ -13,8 +13,10 @@
 namespace corda::sim {
 namespace {
 
-/// A link that is shorter than its rest length by more than this share starts slack.
+/// A link that is shorter than its rest length by more than this share, and by more than this number of units
+/// in the last place of the farthest coordinate, starts slack.
 constexpr double kAtRest = 1e-12;
+constexpr double kUlpsAtRest = 8.0;
 
 /// A link that is longer than its rest length by more than this share is an error in the scene; less is
 /// rounding.
@@ -60,9 +62,15 @@ System system_of(const System& system, const Body& body) {
 /// One entry per link. These links count as taut if their tensions do not tell, as those of a rope that falls
 /// straight.
 std::vector<std::uint8_t> links_at_rest_length(const System& string) {
+    double farthest_m = 0.0;
+    for (std::size_t i = 0; i < string.particle_count(); ++i)
+        farthest_m = std::max({farthest_m, std::abs(string.x_m[i]), std::abs(string.y_m[i])});
+    const double rounding_m = kUlpsAtRest * std::numeric_limits<double>::epsilon() * farthest_m;
     std::vector<std::uint8_t> is_taut;
-    for (const Bar& link : string.bars)
-        is_taut.push_back(distance_m(string, link) >= (1.0 - kAtRest) * link.rest_m ? 1 : 0);
+    for (const Bar& link : string.bars) {
+        const double missing_m = std::max(kAtRest * link.rest_m, rounding_m);
+        is_taut.push_back(distance_m(string, link) >= link.rest_m - missing_m ? 1 : 0);
+    }
     return is_taut;
 }
 
@@ -104,7 +112,8 @@ void refuse_taut(const System& string) {
 
 }  // namespace
 
-StringPart::StringPart(const System& system, const Body& body, const Forces& forces, double tolerance)
+StringPart::StringPart(const System& system, const Body& body, const Forces& forces, double tolerance,
+                       StopCheck& stop)
     : forces_(forces),
       tolerance_(tolerance),
       offset_m_{system.x_m[body.first_particle], system.y_m[body.first_particle]},
@@ -114,11 +123,11 @@ StringPart::StringPart(const System& system, const Body& body, const Forces& for
       contacts_(string_, forces, tolerance),
       finder_(string_.particle_count()) {
     assert(body.is_chain && body.material.is_string && body.material.compliance_1_n == 0.0);
+    stop.spend(1 + string_.particle_count());
     refuse_bends(system, body);
     refuse_long_links(string_);
     refuse_taut(string_);
-    StopCheck nobody;
-    if (!start(0.0, nobody)) {
+    if (!start(0.0, stop)) {
         throw Refusal(Refusal::Reason::kUndecidedString,
                       "the start does not determine which links of a string are taut");
     }
@@ -147,12 +156,18 @@ Status StringPart::advance_to(double time_s, State& state, StopCheck& stop) {
 
 bool StringPart::start(double first_step_s, StopCheck& stop) {
     if (!contacts_.resolve(string_, is_taut_, stop)) return false;
+    // Making each of these takes about as long as some updates of each particle.
+    const std::size_t updates = 1 + string_.particle_count();
+    stop.spend(updates);
     dynamics_ = std::make_unique<StringDynamics>(string_, is_taut_, forces_);
+    stop.spend(updates);
     StepControl control = step_control(dynamics_->inverse_timescale_1_s(), tolerance_);
     control.first_s = std::max(control.first_s, first_step_s);
     integrator_ =
         std::make_unique<Dop853>(*dynamics_, dynamics_->initial_state(), dynamics_->error_scales(), control);
+    stop.spend(updates);
     finder_.start(string_, is_taut_, contacts_, *dynamics_);
+    stop.spend(updates);
     return true;
 }
 

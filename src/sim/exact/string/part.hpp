@@ -26,8 +26,9 @@ class StringPart final : public ExactPart {
   public:
     /// `body`: a chain of `system` with is_string and without compliance. Throws corda::Refusal if it resists
     /// bending, if a link is longer than its rest length, if it is taut between two pins, or if its start
-    /// does not determine which links are taut.
-    StringPart(const System& system, const Body& body, const Forces& forces, double tolerance);
+    /// does not determine which links are taut. `stop` hears of the work that finding them takes.
+    StringPart(const System& system, const Body& body, const Forces& forces, double tolerance,
+               StopCheck& stop);
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "corda/sim/chain_tensions.hpp"
+#include "corda/sim/exact/string/interior_point.hpp"
 
 namespace corda::sim {
 namespace {
@@ -13,6 +15,9 @@ namespace {
 /// Exchanges of whole blocks in a row that may fail to leave fewer wrong signs than ever before; Judice and
 /// Pires recommend 10 or fewer.
 constexpr int kPatience = 5;
+
+/// Rounds before an interior point makes a new guess, which costs as much as some 200.
+constexpr std::size_t kRoundsBeforeGuess = 50;
 
 }  // namespace
 
@@ -29,9 +34,16 @@ TensionLcp::TensionLcp(std::vector<double> inverse_mass_1_kg)
 }
 
 bool TensionLcp::solve(double w_error, StopCheck& stop) {
-    const std::size_t links = side.size();
+    guess_ = side;
+    if (pivot(kRoundsBeforeGuess, w_error, stop)) return true;
+    guess_by_interior_point(stop);
+    keep_guess_within_errors(w_error, stop);
     // Pivoting by single links terminates, but rounding could undo that.
-    const std::size_t most_rounds = 100 + 20 * links;
+    return pivot(100 + 20 * side.size(), w_error, stop);
+}
+
+bool TensionLcp::pivot(std::size_t most_rounds, double w_error, StopCheck& stop) {
+    const std::size_t links = side.size();
     std::size_t fewest = std::numeric_limits<std::size_t>::max();
     int patience = kPatience;
     for (std::size_t round = 0; round < most_rounds; ++round) {
@@ -53,6 +65,34 @@ bool TensionLcp::solve(double w_error, StopCheck& stop) {
         for (const std::size_t k : wrong_) side[k] = side[k] == Side::kPulls ? Side::kFree : Side::kPulls;
     }
     return false;
+}
+
+void TensionLcp::guess_by_interior_point(StopCheck& stop) {
+    TridiagonalLcp problem;
+    std::vector<std::size_t> present;
+    const std::vector<double>& mass = inverse_mass_1_kg_;
+    for (std::size_t k = 0; k < side.size(); ++k) {
+        if (side[k] == Side::kAbsent) continue;
+        const bool is_joined = k + 1 < side.size() && side[k + 1] != Side::kAbsent;
+        problem.diagonal.push_back(mass[k] + mass[k + 1]);
+        problem.beside.push_back(is_joined ? -mass[k + 1] * cosine[k] : 0.0);
+        problem.right.push_back(right[k]);
+        present.push_back(k);
+    }
+    const std::vector<std::uint8_t> is_positive = guess_positive(std::move(problem), stop);
+    for (std::size_t i = 0; i < present.size(); ++i)
+        side[present[i]] = is_positive[i] != 0 ? Side::kPulls : Side::kFree;
+}
+
+void TensionLcp::keep_guess_within_errors(double w_error, StopCheck& stop) {
+    stop.spend(1 + side.size());
+    solve_pulling();
+    for (std::size_t k = 0; k < side.size(); ++k) {
+        if (side[k] == Side::kAbsent) continue;
+        const bool is_either =
+            side[k] == Side::kPulls ? std::abs(z_[k]) <= z_error[k] : std::abs(w_[k]) <= w_error;
+        if (is_either) side[k] = guess_[k];
+    }
 }
 
 bool TensionLcp::has_wrong_sign(std::size_t link, double w_error) const {

@@ -20,9 +20,11 @@ namespace corda::sim {
 ///
 /// A is symmetric and positive definite unless links are straight between two pins, so there is one solution.
 /// It is found by block principal pivoting: all links of wrong sign change sides at once as long as this
-/// leaves fewer and fewer of them; otherwise the last one alone does (Murty), which terminates. Sources: J.
-/// Judice, F. Pires, Computers and Operations Research 21 (1994) 587; K. Murty, Linear Complementarity,
-/// Linear and Nonlinear Programming, Heldermann 1988, ch. 4.
+/// leaves fewer and fewer of them; otherwise the last one alone does (Murty), which terminates, but may take
+/// a round per link. After 50 rounds an interior-point method makes a new guess, so that the work grows with
+/// the number of links and not with its square. Sources: J. Judice, F. Pires, Computers and Operations
+/// Research 21 (1994) 587; K. Murty, Linear Complementarity, Linear and Nonlinear Programming, Heldermann
+/// 1988, ch. 4.
 class TensionLcp {
   public:
     enum class Side : std::uint8_t {
@@ -49,10 +51,16 @@ class TensionLcp {
     [[nodiscard]] const std::vector<double>& w() const { return w_; }
 
   private:
+    /// False if `most_rounds` do not find the solution.
+    [[nodiscard]] bool pivot(std::size_t most_rounds, double w_error, StopCheck& stop);
+    void guess_by_interior_point(StopCheck& stop);
+    /// Takes links that may be on either side within the errors back to the side of guess_.
+    void keep_guess_within_errors(double w_error, StopCheck& stop);
     void solve_pulling();
     [[nodiscard]] bool has_wrong_sign(std::size_t link, double w_error) const;
 
     std::vector<double> inverse_mass_1_kg_;
+    std::vector<Side> guess_;  ///< of the caller
     // Scratch of solve_pulling().
     std::vector<double> cosine_;  ///< W_{k+1} C_k
     std::vector<double> sine_;    ///< W_{k+1} S_k

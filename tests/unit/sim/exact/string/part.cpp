@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "corda/reference/ropes.hpp"
+#include "corda/sim/exact/exact.hpp"
 #include "support/refusal_of.hpp"
 #include "support/solver_run.hpp"
 #include "support/strings.hpp"
@@ -47,6 +48,36 @@ TEST(ExactRefusesAString, ThatIsClosed) {
     RopeDef rope = test::string_of({{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}}, {});
     rope.closed = true;
     EXPECT_EQ(refusal_of(rope), Reason::kRigidStringGraph);
+}
+
+TEST(LongString, AsksWhetherToGoOnWhileItsFirstContactsAreFound) {
+    RopeDef rope = reference::straight_rope(20'000, 3.0, 45.0);
+    rope.material.is_string = true;
+    const System system = build_system({&rope, 1});
+    try {
+        const Exact exact(system, WorldDef{}, ExactDef{1e-9}, [] { return false; });
+        FAIL() << "the string was made";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ExitCode::kInterrupted);
+    }
+}
+
+TEST(LongString, StartsTautAtOnceWhereItsLinksAreShortByTheRoundingOfTheirEnds) {
+    constexpr int kLinks = 30'000;
+    RopeDef rope = reference::straight_rope(kLinks, 3.0, 40.0);
+    rope.material.is_string = true;
+    rope.rest_m.assign(kLinks, 3.0 / kLinks);
+    for (Vec2& point : rope.points_m) point = {0.8 * point.x - 0.6 * point.y, 0.6 * point.x + 0.8 * point.y};
+    const System system = build_system({&rope, 1});
+    std::uint64_t asked = 0;
+    Exact exact(system, WorldDef{}, ExactDef{1e-9}, [&asked] {
+        ++asked;
+        return true;
+    });
+    EXPECT_LE(asked * StopCheck::kUpdates, 20U * kLinks);  // measured 8, of slack links 100
+    std::vector<double> tension_n(kLinks);
+    ASSERT_TRUE(exact.tensions(tension_n));
+    for (const double tension : tension_n) EXPECT_GT(tension, 0.0);
 }
 
 TEST(SlackString, CarriesNoTensionAndFallsFreely) {

@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <random>
 #include <vector>
 
@@ -75,6 +77,73 @@ TEST(TensionLcp, FindsTheOneSolution) {
     std::printf("%zu links pull, rows off by %.1e\n", pulling, worst);
     EXPECT_GT(pulling, 10000U);
     EXPECT_LT(worst, 1e-10);  // measured 1.5e-11
+}
+
+/// Long chains in which pivoting changes one link at a time: a pull that has to run along all of them.
+struct LongProblem {
+    enum class Kind { kStraight, kStraightOfUnequalMasses, kCurved, kFolded, kPushed };
+    TensionLcp lcp;
+
+    LongProblem(Kind kind, std::size_t links) : lcp(masses(kind, links)) {
+        std::mt19937 random(7);
+        for (std::size_t k = 0; k < links; ++k) {
+            double angle = 0.0;
+            if (kind == Kind::kCurved) angle = 1e-3 * std::sin(0.01 * static_cast<double>(k));
+            if (kind == Kind::kFolded && k % 500 == 499) angle = 3.0;
+            lcp.cosine[k] = std::cos(angle);
+            lcp.sine[k] = std::sin(angle);
+            lcp.right[k] = k == 0 ? 1.0 : kind == Kind::kPushed ? -1e-7 * uniform(random) : 0.0;
+            if (kind == Kind::kCurved || kind == Kind::kFolded)
+                lcp.right[k] = std::sin(0.003 * static_cast<double>(k)) + 0.3 * (uniform(random) - 0.5);
+            lcp.side[k] = random() % 20 == 0 ? Side::kFree : Side::kPulls;
+            lcp.z_error[k] = 1e-9;
+        }
+    }
+    static std::vector<double> masses(Kind kind, std::size_t links) {
+        std::mt19937 random(8);
+        std::vector<double> inverse_mass(links + 1, 1.0);
+        if (kind == Kind::kStraightOfUnequalMasses) {
+            for (double& mass : inverse_mass) mass = std::pow(10.0, 12.0 * uniform(random) - 6.0);
+        }
+        inverse_mass[0] = 0.0;
+        return inverse_mass;
+    }
+};
+
+/// How often the links of a problem are gone through until it is solved.
+double passes_to_solve(LongProblem::Kind kind, std::size_t links) {
+    LongProblem problem(kind, links);
+    std::uint64_t asked = 0;
+    const GoesOn count = [&asked] {
+        ++asked;
+        return true;
+    };
+    StopCheck stop(count);
+    EXPECT_TRUE(problem.lcp.solve(1e-12, stop)) << static_cast<int>(kind);
+    return static_cast<double>(asked * StopCheck::kUpdates) / static_cast<double>(links);
+}
+
+TEST(TensionLcp, TakesNoMorePassesForMoreLinks) {
+    using Kind = LongProblem::Kind;
+    for (const Kind kind :
+         {Kind::kStraight, Kind::kStraightOfUnequalMasses, Kind::kCurved, Kind::kFolded, Kind::kPushed}) {
+        double most = 0.0;
+        for (const std::size_t links : {10'000U, 40'000U})
+            most = std::max(most, passes_to_solve(kind, links));
+        std::printf("kind %d: %.0f passes\n", static_cast<int>(kind), most);
+        EXPECT_LT(most, 300.0);  // measured 99 to 152; pivoting alone some 5000
+    }
+}
+
+TEST(TensionLcp, KeepsTheGuessOfLinksWithoutAnyForceInALongChain) {
+    // Only the first half is pulled; the links of the other have z = w = 0 on either side.
+    LongProblem problem(LongProblem::Kind::kStraight, 4000);
+    TensionLcp& lcp = problem.lcp;
+    lcp.side[2000] = Side::kAbsent;
+    const std::vector<Side> guess = lcp.side;
+    ASSERT_TRUE(lcp.solve(1e-12, test::unstopped));
+    for (std::size_t k = 0; k < 2000; ++k) EXPECT_EQ(lcp.side[k], Side::kPulls) << k;
+    EXPECT_TRUE(std::equal(guess.begin() + 2000, guess.end(), lcp.side.begin() + 2000));
 }
 
 TEST(TensionLcp, KeepsTheGuessWithinRounding) {
