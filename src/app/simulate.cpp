@@ -32,36 +32,46 @@ struct SimulateOptions {
     bool dry_run = false;
 };
 
-/// Says what the columns are, if there is more than positions: those alone are told by their names.
-std::string csv_comment(const System& system, const Columns& columns) {
-    std::string line = "# t in s; x, y in m";
-    if (columns.velocities) line += "; vx, vy in m/s";
-    if (columns.tensions) line += "; tension of link k in N, positive if it pulls";
-    if (columns.energy) line += "; energy_change in J since t = 0, kinetic and potential";
-    std::size_t link = 0;
-    for (std::size_t i = 0; i < system.bodies.size(); ++i) {
-        const Body& body = system.bodies[i];
-        line += fmt::format("; {}: particles {} .. {}", body_name(system, i), body.first_particle,
-                            body.first_particle + body.particle_count - 1);
-        if (columns.tensions && body.link_count > 0)
-            line += fmt::format(", links {} .. {}", link, link + body.link_count - 1);
-        link += body.link_count;
-    }
+/// The names of the columns, with units as the files of `report` have them. The time and the positions, in s
+/// and m, have the names that scripts know.
+std::string csv_header(const System& system, const Columns& columns) {
+    std::string line = "t";
+    for (std::size_t i = 0; i < system.particle_count(); ++i) line += fmt::format(",x{},y{}", i, i);
+    for (std::size_t i = 0; columns.velocities && i < system.particle_count(); ++i)
+        line += fmt::format(",vx{}_m_s,vy{}_m_s", i, i);
+    for (std::size_t k = 0; columns.tensions && k < system.link_count(); ++k)
+        line += fmt::format(",tension{}_n", k);
+    if (columns.energy) line += ",energy_change_j";
+    if (columns.diagnostics) line += ",energy_error,strain,pin_force_n,largest_tension_n";
     return line + "\n";
 }
 
-std::string csv_header(const System& system, const Columns& columns) {
-    std::string line;
-    if (columns.velocities || columns.tensions || columns.energy) line = csv_comment(system, columns);
-    line += "t";
-    for (std::size_t i = 0; i < system.particle_count(); ++i) line += fmt::format(",x{},y{}", i, i);
-    for (std::size_t i = 0; columns.velocities && i < system.particle_count(); ++i)
-        line += fmt::format(",vx{},vy{}", i, i);
-    for (std::size_t k = 0; columns.tensions && k < system.link_count(); ++k)
-        line += fmt::format(",tension{}", k);
-    if (columns.energy) line += ",energy_change";
-    if (columns.diagnostics) line += ",energy_error,strain,pin_force_n,largest_tension_n";
-    return line + "\n";
+/// The particles and links of each body, by which the columns are numbered.
+nlohmann::json bodies_json(const System& system) {
+    nlohmann::json bodies = nlohmann::json::array();
+    std::size_t link = 0;
+    for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+        const Body& body = system.bodies[i];
+        bodies.push_back({{"body", body_name(system, i)},
+                          {"first_particle", body.first_particle},
+                          {"particles", body.particle_count},
+                          {"first_link", link},
+                          {"links", body.link_count}});
+        link += body.link_count;
+    }
+    return bodies;
+}
+
+/// The same in words, if there are several bodies.
+std::string columns_text(const System& system) {
+    std::string text;
+    for (const nlohmann::json& body : bodies_json(system)) {
+        const auto first = body["first_particle"].get<std::size_t>();
+        text += fmt::format("{}{}: x{} .. y{}", text.empty() ? "columns of " : "; ",
+                            body["body"].get<std::string>(), first,
+                            first + body["particles"].get<std::size_t>() - 1);
+    }
+    return text;
 }
 
 /// A figure that the method does not have is an empty cell.
@@ -104,6 +114,7 @@ nlohmann::json report(const Film& film) {
     const Figures& largest = film.diagnostics().largest;
     nlohmann::json json = film_json(film);
     json["steps"] = film.diagnostics().steps;
+    json["bodies"] = bodies_json(film.system());
     json["wall_s"] = film.stepping_s();
     json["energy_error"] = nullptr;
     json["max_strain"] = largest.strain;
@@ -190,6 +201,9 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
         csv = std::make_unique<OutputFile>(options.output,
                                            OutputOptions{.force = options.force, .on_progress = on_progress});
         csv->write(csv_header(film.system(), options.columns));
+        constexpr std::size_t kMaxToldBodies = 20;
+        const std::size_t bodies = film.system().bodies.size();
+        if (bodies > 1 && bodies <= kMaxToldBodies) console.info(columns_text(film.system()));
     }
     try {
         write_states(console, film, options.columns, csv.get());
@@ -217,12 +231,17 @@ void add_simulate(CLI::App& app, Action& action) {
         app.add_subcommand("simulate", "run the simulation alone; positions as CSV, figures as JSON");
     options->scene.add_to(*command);
     command->add_option("-o,--output", options->output,
-                        "CSV file, or - for standard output; none: figures only");
+                        "CSV file, or - for standard output; none: figures only. Its first line names the "
+                        "columns: t in s, x0, "
+                        "y0, ... in m");
     options->scene.add_shortcut(*command, "--fps", "video.fps", "rows per second");
     options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
-    command->add_flag("--velocity", options->columns.velocities, "add the velocity of every particle");
-    command->add_flag("--tension", options->columns.tensions, "add the tension of every link");
-    command->add_flag("--energy", options->columns.energy, "add the change of energy since the start");
+    command->add_flag("--velocity", options->columns.velocities,
+                      "add the velocity of every particle: vx0_m_s, vy0_m_s, ...");
+    command->add_flag("--tension", options->columns.tensions,
+                      "add the tension of every link, positive if it pulls: tension0_n, ...");
+    command->add_flag("--energy", options->columns.energy,
+                      "add the change of kinetic and potential energy since the start: energy_change_j");
     command->add_flag("--diagnostics", options->columns.diagnostics,
                       "add energy error, strain, pin force and tension to every row");
     command->add_flag("--force", options->force, "replace an existing output");
