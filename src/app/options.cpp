@@ -9,6 +9,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/nearest.hpp"
 #include "corda/core/version.hpp"
+#include "corda/scene/check_limits.hpp"
 #include "corda/scene/keys.hpp"
 #include "corda/scene/read_file.hpp"
 #include "interrupt.hpp"
@@ -119,10 +120,15 @@ const Provenance& SceneOptions::provenance(const Console& console) const {
 }
 
 Scene SceneOptions::load(const Console& console) const {
-    if (!is_from()) return parse({}, {}, {});
-    const Provenance& origin = provenance(console);
-    return load_with(settings, of_options_,
-                     [&](const std::vector<Setting>& some) { return scene_of(origin, from_, some); });
+    const auto read = [&] {
+        if (!is_from()) return parse({}, {}, {});
+        const Provenance& origin = provenance(console);
+        return load_with(settings, of_options_,
+                         [&](const std::vector<Setting>& some) { return scene_of(origin, from_, some); });
+    };
+    Scene scene = read();
+    if (const std::string notice = scene::cost_notice(scene); !notice.empty()) console.info(notice);
+    return scene;
 }
 
 Scene SceneOptions::parse(const std::vector<Setting>& more, std::string_view text,

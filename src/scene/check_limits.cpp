@@ -158,7 +158,7 @@ bool add_size(const TableReader& body, const BodySize& size, double bytes, bool 
 }
 
 /// Adds a problem at the first of the keys that body `i` of the scene has, otherwise at the body.
-void fail_in_body(const Sections& sections, std::size_t i, std::initializer_list<const char*> keys,
+void fail_in_body(const Sections& sections, std::size_t i, const std::vector<const char*>& keys,
                   std::string_view problem) {
     const bool is_rope = i < sections.ropes.size();
     const TableReader& body = is_rope ? sections.ropes[i] : sections.nets[i - sections.ropes.size()];
@@ -168,52 +168,85 @@ void fail_in_body(const Sections& sections, std::size_t i, std::initializer_list
     body.add_problem(problem);
 }
 
-/// What following a motion of this angular frequency costs a body, if that is over the limit: the problem
-/// that `what` begins and `remedy` ends. Empty if it is not.
-std::string too_much_work(const Scene& scene, const Body& body, double frequency_1_s, std::string_view what,
-                          std::string_view remedy) {
-    constexpr double kUpdatesPerHour = 2.5e10;
-    const double steps = sim::expected_steps(frequency_1_s, scene.world.duration_s);
-    const double updates = steps * static_cast<double>(body.particle_count);
-    if (updates <= Limits::kParticleUpdates) return {};
-    return fmt::format(
-        "{} so fast that {:g} s take some {:g} steps, {:g} particle updates or {} hours, over the limit "
-        "of {:g}; give {} or a shorter duration",
-        what, scene.world.duration_s, steps, updates, about(updates / kUpdatesPerHour),
-        Limits::kParticleUpdates, remedy);
+/// A reason for which a body's motion takes short steps.
+struct Pace {
+    double frequency_1_s = 0.0;  ///< angular, of the motion to be followed
+    std::string_view what;       ///< of the body, before "so fast that"
+    std::string_view remedy;
+    std::vector<const char*> keys_of_body;
+    const char* key_of_world = nullptr;
+};
+
+/// Of a body that no definition of steps moves, in the order in which they are told.
+std::vector<Pace> paces_of(const Scene& scene, const System& system, const Body& body,
+                           const SolverDef& solver, bool is_moved_by_rounding = false) {
+    std::vector<Pace> paces{{sim::vibration_frequency_1_s(system, body),
+                             "vibrates",
+                             "more compliance, less bending, heavier particles",
+                             {"compliance", "bending"}}};
+    if (std::holds_alternative<RelaxationDef>(solver)) return paces;
+    paces.push_back({scene.world.drag_1_s, "slows down", "less drag", {}, "drag"});
+    paces.push_back(
+        {sim::angular_velocity_1_s(system, body), "turns", "less speed, longer links", {"velocity"}});
+    paces.push_back({sim::pendulum_frequency_1_s(system, body, scene.world),
+                     "swings",
+                     "less gravity, longer links",
+                     {},
+                     "gravity"});
+    paces.push_back({sim::tension_frequency_1_s(system, body, scene.world, is_moved_by_rounding),
+                     "is pulled so hard that its lightest particles vibrate",
+                     "less unequal masses, less speed or gravity, fewer or longer links",
+                     {"payload", "mass", "velocity"}});
+    return paces;
 }
 
-void check_stiffness(const Sections& sections, const Scene& scene, const System& system) {
-    for (std::size_t i = 0; i < system.bodies.size(); ++i) {
-        const Body& body = system.bodies[i];
-        const std::string problem =
-            too_much_work(scene, body, sim::vibration_frequency_1_s(system, body), "vibrates",
-                          "more compliance, less bending, heavier particles");
-        if (!problem.empty()) fail_in_body(sections, i, {"compliance", "bending"}, problem);
+/// What following a body at this pace costs.
+struct Work {
+    double steps = 0.0;
+    double updates = 0.0;  ///< of particles
+};
+
+Work work_of(const Scene& scene, const Body& body, double frequency_1_s) {
+    // A rigid string is searched for events in every step.
+    constexpr double kOfAString = 2.5;
+    const bool is_searched = body.material.is_string && body.material.compliance_1_n == 0.0;
+    Work work;
+    work.steps = sim::expected_steps(frequency_1_s, scene.world.duration_s);
+    work.updates = work.steps * static_cast<double>(body.particle_count) * (is_searched ? kOfAString : 1.0);
+    return work;
+}
+
+constexpr double kUpdatesPerHour = 2.5e10;
+
+/// Adds at most one problem of a body for its vibrations and one for the rest: each of them is about the same
+/// keys.
+void check_pace(const Sections& sections, const Scene& scene, const System& system, const SolverDef& solver,
+                std::size_t i) {
+    const Body& body = system.bodies[i];
+    bool has_problem = false;
+    const std::vector<Pace> paces = paces_of(scene, system, body, solver);
+    for (std::size_t k = 0; k < paces.size() && !has_problem; ++k) {
+        const Pace& pace = paces[k];
+        const Work work = work_of(scene, body, pace.frequency_1_s);
+        if (work.updates <= Limits::kParticleUpdates) continue;
+        const std::string problem = fmt::format(
+            "{} so fast that {:g} s take some {:g} steps, {:g} particle updates or {} hours, over the limit "
+            "of {:g}; give {} or a shorter duration",
+            pace.what, scene.world.duration_s, work.steps, work.updates,
+            about(work.updates / kUpdatesPerHour), Limits::kParticleUpdates, pace.remedy);
+        if (pace.key_of_world != nullptr)
+            fail_at(sections, {{&sections.world, pace.key_of_world}}, problem);
+        else
+            fail_in_body(sections, i, pace.keys_of_body, problem);
+        has_problem = k > 0;
     }
 }
 
-/// Adds at most one problem of a body: each of them is about the same keys.
-void check_pace(const Sections& sections, const Scene& scene, const System& system, std::size_t i) {
-    const Body& body = system.bodies[i];
-    const double drag_1_s = scene.world.drag_1_s;
-    if (const std::string problem = too_much_work(scene, body, drag_1_s, "slows down", "less drag");
-        !problem.empty())
-        return fail_at(sections, {{&sections.world, "drag"}}, problem);
-    const double turn_1_s = sim::angular_velocity_1_s(system, body);
-    if (const std::string problem = too_much_work(scene, body, turn_1_s, "turns", "less speed, longer links");
-        !problem.empty())
-        return fail_in_body(sections, i, {"velocity"}, problem);
-    const double swing_1_s = sim::pendulum_frequency_1_s(system, body, scene.world);
-    if (const std::string problem =
-            too_much_work(scene, body, swing_1_s, "swings", "less gravity, longer links");
-        !problem.empty())
-        return fail_at(sections, {{&sections.world, "gravity"}}, problem);
-    const std::string problem =
-        too_much_work(scene, body, sim::tension_frequency_1_s(system, body, scene.world),
-                      "is pulled so hard that its lightest particles vibrate",
-                      "less unequal masses, less speed or gravity, fewer or longer links");
-    if (!problem.empty()) fail_in_body(sections, i, {"payload", "mass", "velocity"}, problem);
+/// "40 s", "5 min" or "2.5 h".
+std::string duration_text(double seconds) {
+    if (seconds < 100.0) return fmt::format("{:.0f} s", seconds);
+    if (seconds < 6000.0) return fmt::format("{:.0f} min", seconds / 60.0);
+    return fmt::format("{:.2g} h", seconds / 3600.0);
 }
 
 }  // namespace
@@ -260,11 +293,50 @@ void check_work(const Sections& sections, const SolverSection& solver, const Sce
 
 void check_motion(const Sections& sections, const Scene& scene) {
     const System system = system_of(scene);
-    check_stiffness(sections, scene, system);
     const std::vector<SolverDef> solvers = solvers_of(scene);
+    for (std::size_t i = 0; i < system.bodies.size(); ++i) check_pace(sections, scene, system, solvers[i], i);
+}
+
+std::string cost_notice(const Scene& scene) {
+    constexpr double kMinToldSeconds = 5.0;
+    constexpr double kBarUpdatesPerSecond = 1.2e8;
+    const System system = system_of(scene);
+    const std::vector<SolverDef> solvers = solvers_of(scene);
+    double all_s = 0.0;
+    double slowest_s = 0.0;
+    std::string reason;
     for (std::size_t i = 0; i < system.bodies.size(); ++i) {
-        if (!std::holds_alternative<RelaxationDef>(solvers[i])) check_pace(sections, scene, system, i);
+        const Body& body = system.bodies[i];
+        const double steps = step_count(solvers[i], scene);
+        double body_s = 0.0;
+        std::string why = fmt::format("takes {:g} steps", steps);
+        std::string_view remedy = "a longer step";
+        if (std::holds_alternative<RelaxationDef>(solvers[i])) {
+            body_s =
+                steps * sweep_count(solvers[i]) * static_cast<double>(body.bar_count) / kBarUpdatesPerSecond;
+        } else if (std::holds_alternative<RattleDef>(solvers[i])) {
+            body_s = steps * static_cast<double>(body.particle_count) / (kUpdatesPerHour / 3600.0);
+        }
+        // The checks of `auto` see the rounding of long ropes at rest.
+        constexpr std::size_t kLongRope = 3000;
+        const bool is_moved_by_rounding =
+            std::holds_alternative<AutoDef>(solvers[i]) && body.particle_count > kLongRope;
+        for (const Pace& pace : paces_of(scene, system, body, solvers[i], is_moved_by_rounding)) {
+            const Work work = work_of(scene, body, pace.frequency_1_s);
+            const double pace_s = work.updates / (kUpdatesPerHour / 3600.0);
+            if (pace_s <= body_s) continue;
+            body_s = pace_s;
+            why = fmt::format("{} so fast that it takes up to {:.2g} steps", pace.what, work.steps);
+            remedy = pace.remedy;
+        }
+        all_s += body_s;
+        if (body_s <= slowest_s) continue;
+        slowest_s = body_s;
+        reason = fmt::format("{} {}; give {} or a shorter duration", body_name(system, i), why, remedy);
     }
+    if (all_s < kMinToldSeconds) return {};
+    return fmt::format("computing {:g} s of motion may take {}: {}", scene.world.duration_s,
+                       duration_text(all_s), reason);
 }
 
 }  // namespace corda::scene

@@ -54,7 +54,8 @@ double pendulum_frequency_1_s(const System& system, const Body& body, const Forc
     return forces.inverse_timescale_1_s(shortest_m, 0.0);
 }
 
-double tension_frequency_1_s(const System& system, const Body& body, const Forces& forces) {
+double tension_frequency_1_s(const System& system, const Body& body, const Forces& forces,
+                             bool is_moved_by_rounding) {
     if (body.material.compliance_1_n > 0.0) return 0.0;
     const std::span<const Bar> bars = bars_of(system, body);
     const Vec2 pull_m_s2 = forces.uniform_m_s2();
@@ -68,7 +69,7 @@ double tension_frequency_1_s(const System& system, const Body& body, const Force
                               (system.y_m[bar.b] - system.y_m[bar.a]) * pull_m_s2.x;
         stays = stays && speed_m_s == 0.0 && across == 0.0;
     }
-    if (stays) return 0.0;
+    if (stays && !is_moved_by_rounding) return 0.0;
     const std::vector<double> carried = carried_kg(system, body);
     std::vector<double> load_n_m(body.particle_count, 0.0);
     for (std::size_t k = 0; k < bars.size(); ++k) {

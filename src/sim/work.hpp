@@ -21,8 +21,10 @@ namespace corda::sim {
 /// Bound on the angular frequency in 1/s at which the tensions at t = 0 make particles of a body without
 /// compliance swing across the links: Gershgorin's, the largest over all particles of 2 w sum of T / l. T
 /// pulls what hangs on the link, of all free mass unless a rope is pinned at its first particle alone, as
-/// fast as gravity and the link that turns fastest together. 0 if no bar turns or leans: then none ever will.
-[[nodiscard]] double tension_frequency_1_s(const System& system, const Body& body, const Forces& forces);
+/// fast as gravity and the link that turns fastest together. 0 if no bar turns or leans, because then none
+/// ever will, unless `is_moved_by_rounding`.
+[[nodiscard]] double tension_frequency_1_s(const System& system, const Body& body, const Forces& forces,
+                                           bool is_moved_by_rounding = false);
 
 /// Steps that an explicit method of high order takes in `time_s` for a motion of this angular frequency.
 [[nodiscard]] double expected_steps(double frequency_1_s, double time_s);

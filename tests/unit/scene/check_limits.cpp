@@ -1,12 +1,14 @@
 // What asks for too much is refused before any memory is taken: these tests return at once.
 #include <gmock/gmock.h>
 
+#include "corda/scene/check_limits.hpp"
 #include "corda/scene/limits.hpp"
 #include "unit/scene/support.hpp"
 
 namespace corda::scene {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -236,6 +238,30 @@ TEST(Limits, OfHowFastABodyMayVibrate) {
             EXPECT_THAT(error.what(), testing::HasSubstr("vibrates so fast"));
         }
     }
+}
+
+std::string notice_of(const std::string& toml) {
+    return cost_notice(parse_scene("schema = 1\n" + toml, "swing.toml"));
+}
+
+TEST(CostNotice, IsGivenOfAMotionThatTakesLongWithItsReason) {
+    const std::string rope = "[[rope]]\nhang = { links = 20, length = 1.0, angle_deg = 90 }\n";
+    EXPECT_THAT(notice_of(rope + "mass = 1e-6\npayload = 1e6\n"),
+                AllOf(StartsWith("computing 10 s of motion may take 3 min: rope 0 is pulled so hard"),
+                      HasSubstr("less unequal masses")));
+    EXPECT_THAT(notice_of("world.drag = 1e9\n[[rope]]\nhang = { links = 1, length = 1.0 }\n"),
+                AllOf(HasSubstr("may take 10 min: rope 0 slows down"), HasSubstr("give less drag")));
+    EXPECT_THAT(notice_of("world.duration = 0.05\n[[rope]]\nstring = true\n"
+                          "hang = { links = 30000, length = 3.0 }\n"),
+                HasSubstr("may take 12 s"));  // measured 20 s
+    EXPECT_THAT(
+        notice_of("[solver]\nmethod = \"relaxation\"\nreach = 1\nsweeps = 100\nstep = 0.00001\n" + rope),
+        HasSubstr("takes 1e+06 steps; give a longer step"));
+}
+
+TEST(CostNotice, IsNotGivenOfAMotionThatTakesASecond) {
+    EXPECT_EQ(notice_of("[[rope]]\nhang = { links = 40, length = 1.0, angle_deg = 90 }\n"), "");
+    EXPECT_EQ(notice_of("[[rope]]\nhang = { links = 1000, length = 1.0, angle_deg = 0 }\n"), "");
 }
 
 }  // namespace
