@@ -7,14 +7,19 @@
 #include <corda/corda.hpp>
 #include <corda/suite/check_golden.hpp>
 
+#include <unistd.h>
+
 #include <array>
+#include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstring>
 #include <exception>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -60,6 +65,80 @@ corda::Image to_image(const py::object& picture) {
     return image;
 }
 
+/// Calls in progress, and the end of the interpreter. A thread that asks for the interpreter's lock after
+/// Py_Finalize has begun is ended by pthread_exit (before Python 3.14), whose unwinding C++ cannot survive,
+/// and a driver that still draws does not survive the handlers of exit(). So an atexit function calls
+/// begin_end(): it stops the calls of all other threads and waits for them, and these threads never return to
+/// Python.
+class Calls {
+  public:
+    /// Counts one call, made without the interpreter's lock.
+    class Scope {
+      public:
+        Scope() {
+            block_if_ended();
+            const std::lock_guard lock(mutex());
+            ++count();
+        }
+        Scope(const Scope&) = delete;
+        Scope& operator=(const Scope&) = delete;
+        ~Scope() {
+            {
+                const std::lock_guard lock(mutex());
+                --count();
+            }
+            ended().notify_all();
+            block_if_ended();
+        }
+    };
+
+    /// True if another thread is ending the interpreter.
+    static bool has_ended() { return is_ending().load() && std::this_thread::get_id() != ending_thread(); }
+
+    static void begin_end() {
+        constexpr std::chrono::seconds kPatience{5};  // an encoder that hangs must not keep the process alive
+        ending_thread() = std::this_thread::get_id();
+        is_ending() = true;
+        const py::gil_scoped_release release;
+        std::unique_lock lock(mutex());
+        ended().wait_for(lock, kPatience, [] { return count() == 0; });
+    }
+
+    /// To be called in a forked child, where the calls of the parent's other threads do not exist.
+    static void forget() {
+        new (&mutex()) std::mutex;
+        new (&ended()) std::condition_variable;
+        count() = 0;
+    }
+
+  private:
+    static void block_if_ended() {
+        while (has_ended()) std::this_thread::sleep_for(std::chrono::hours(1));
+    }
+
+    // Never destroyed: blocked threads outlive the static objects.
+    static std::mutex& mutex() {
+        static auto& mutex = *new std::mutex;
+        return mutex;
+    }
+    static std::condition_variable& ended() {
+        static auto& ended = *new std::condition_variable;
+        return ended;
+    }
+    static int& count() {
+        static int count = 0;
+        return count;
+    }
+    static std::atomic<bool>& is_ending() {
+        static std::atomic<bool> is_ending{false};
+        return is_ending;
+    }
+    static std::thread::id& ending_thread() {
+        static std::thread::id thread;
+        return thread;
+    }
+};
+
 /// Runs work without the interpreter's lock, and asks Python now and then: for Ctrl-C, and for the answer of
 /// `on_progress`. What those raise ends the work and is raised.
 class Asking {
@@ -69,7 +148,8 @@ class Asking {
     bool operator()(std::int64_t done, std::int64_t total) {
         constexpr std::chrono::milliseconds kPause{50};
         const auto now = std::chrono::steady_clock::now();
-        const bool is_last = done == total;
+        const bool is_last = done == total && !std::exchange(has_told_last_, done == total);
+        if (Calls::has_ended()) return false;
         if (raised_ || (now - last_ < kPause && !is_last)) return !raised_;
         last_ = now;
         const py::gil_scoped_acquire hold;
@@ -93,6 +173,7 @@ class Asking {
     auto run(const Work& work) {
         try {
             const py::gil_scoped_release release;
+            const Calls::Scope call;
             return work([this](std::int64_t done, std::int64_t total) { return (*this)(done, total); });
         } catch (const corda::Error&) {
             raise();
@@ -102,6 +183,7 @@ class Asking {
 
   private:
     py::object on_progress_;
+    bool has_told_last_ = false;
     std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
     std::exception_ptr raised_;
 };
@@ -127,8 +209,13 @@ class PyFilm {
     PyFilm& operator=(const PyFilm&) = delete;
     ~PyFilm() {
         const py::gil_scoped_release release;
-        const std::lock_guard lock(mutex_);
-        film_.reset();
+        const std::unique_lock lock(mutex_, std::try_to_lock);
+        // Only a thread that never returns holds the lock: this one has the last reference.
+        if (lock.owns_lock()) {
+            film_.reset();
+        } else {
+            static_cast<void>(film_.release());
+        }
     }
 
     /// Calls `work` with the film and what asks Python whether to go on.
@@ -136,6 +223,7 @@ class PyFilm {
     auto with_film(const Work& work, py::object on_progress = py::none()) {
         Asking asking(std::move(on_progress));
         auto result = asking.run([&](const corda::OnProgress& ask) {
+            renew_after_fork();
             const std::lock_guard lock(mutex_);
             const Use use(*this, ask);
             return work(*film_, ask);
@@ -159,7 +247,22 @@ class PyFilm {
         corda::OnProgress before_;
     };
 
+    /// A forked child inherits the lock as it was: free, or held for ever by a thread that is not there.
+    void renew_after_fork() {
+        if (process_.exchange(getpid()) == getpid()) return;
+        if (mutex_.try_lock()) {
+            mutex_.unlock();
+            return;
+        }
+        process_ = 0;  // the next call finds the same
+        throw corda::Error(
+            corda::ExitCode::kTemporary,
+            "this process was forked while another thread used the film; make a new Film in the "
+            "forked process, or start it by multiprocessing's method \"spawn\"");
+    }
+
     std::recursive_mutex mutex_;  ///< on_progress may draw
+    std::atomic<pid_t> process_ = getpid();
     corda::OnProgress ask_;
     std::unique_ptr<corda::Film> film_;
 };
@@ -244,6 +347,27 @@ std::int64_t save(PyFilm& film, const std::string& path, bool force, bool resume
     return rendered.frames;
 }
 
+/// The ending of a video that browsers play, and the film that it is to be made of if `film` does not fit it:
+/// with even sides, as render --pad makes them, and the default encoder.
+std::pair<std::string, std::unique_ptr<PyFilm>> for_browser(PyFilm& film, const std::string& backend,
+                                                            bool require_gpu) {
+    corda::Scene scene =
+        film.with_film([](const corda::Film& its, const corda::OnProgress&) { return its.scene(); });
+    const bool is_opaque = !scene.style.background || scene.style.background->is_opaque();
+    const corda::EncoderDef encoder = scene.video.encoder;
+    const bool is_default =
+        encoder.codec.empty() && encoder.preset.empty() && encoder.pix == corda::PixelChoice::kAuto;
+    const bool is_even = scene.video.width_px % 2 == 0 && scene.video.height_px % 2 == 0;
+    const char* const ending = is_opaque ? ".mp4" : ".webm";
+    if (is_default && is_even) return {ending, nullptr};
+    scene.video.width_px += scene.video.width_px % 2;
+    scene.video.height_px += scene.video.height_px % 2;
+    scene.video.encoder = {};
+    scene.video.encoder.threads = encoder.threads;
+    scene.video.encoder.jobs = encoder.jobs;
+    return {ending, std::make_unique<PyFilm>(scene, backend, require_gpu)};
+}
+
 void add_errors(py::module_& module) {
     static py::exception<corda::Error> error(module, "Error");
     py::register_exception_translator(
@@ -251,7 +375,9 @@ void add_errors(py::module_& module) {
             try {
                 if (thrown) std::rethrow_exception(thrown);
             } catch (const corda::Error& raised) {
-                const py::object instance = py::reinterpret_borrow<py::object>(error.ptr())(raised.what());
+                // A message holds names of files as they are, in any encoding.
+                const auto what = py::reinterpret_steal<py::str>(PyUnicode_DecodeFSDefault(raised.what()));
+                const py::object instance = py::reinterpret_borrow<py::object>(error.ptr())(what);
                 instance.attr("code") = static_cast<int>(raised.code());
                 PyErr_SetObject(error.ptr(), instance.ptr());
             }
@@ -265,8 +391,12 @@ void add_film(py::module_& module) {
         .def(py::init([](const std::string& text, const std::string& source, bool is_path,
                          const std::vector<std::string>& settings, const std::string& backend,
                          bool require_gpu) {
-            const corda::Scene scene =
-                is_path ? corda::load_scene(source, settings) : corda::parse_scene(text, source, settings);
+            const corda::Scene scene = Asking().run([&](const corda::OnProgress& ask) {
+                corda::Scene read = is_path ? corda::load_scene(source, settings)
+                                            : corda::parse_scene(text, source, settings);
+                corda::report_progress(ask, 1, 1);
+                return read;
+            });
             return std::make_unique<PyFilm>(scene, backend, require_gpu);
         }))
         .def("frame_count",
@@ -297,6 +427,7 @@ void add_film(py::module_& module) {
                      return its.still(time_s, ask, shutter);
                  }));
              })
+        .def("for_browser", &for_browser)
         .def("positions", &positions)
         .def("times", &times)
         .def("plan", &plan)
@@ -310,6 +441,8 @@ PYBIND11_MODULE(_corda, module) {
     module.attr("__version__") = CORDA_VERSION;
     add_errors(module);
     add_film(module);
+    module.def("begin_end", &Calls::begin_end);
+    module.def("forget_calls", &Calls::forget);
     module.def("compare", [](const py::object& a, const py::object& b) {
         const corda::Image first = to_image(a);
         const corda::Image second = to_image(b);
@@ -325,16 +458,16 @@ PYBIND11_MODULE(_corda, module) {
             return true;
         });
     });
-    module.def("check_golden",
-               [](const py::object& picture, const std::string& name, const std::string& folder,
-                  const std::array<std::optional<double>, 5>& limits) {
-                   const corda::Image image = to_image(picture);
-                   const corda::testing::GoldenOptions options{
-                       .folder = folder, .limits = {limits[0], limits[1], limits[2], limits[3], limits[4]}};
-                   const py::gil_scoped_release release;
-                   const auto outcome = corda::testing::check_golden(image, name, options);
-                   return std::tuple(outcome.matches, outcome.written, outcome.message);
-               });
+    module.def(
+        "check_golden", [](const py::object& picture, const std::string& name, const std::string& folder,
+                           const std::array<std::optional<double>, 5>& limits) {
+            const corda::Image image = to_image(picture);
+            const corda::testing::GoldenOptions options{
+                .folder = folder, .limits = {limits[0], limits[1], limits[2], limits[3], limits[4]}};
+            const auto outcome = Asking().run(
+                [&](const corda::OnProgress&) { return corda::testing::check_golden(image, name, options); });
+            return std::tuple(outcome.matches, outcome.written, outcome.message);
+        });
     module.def("read_png", [](const std::string& path) {
         return to_array(
             Asking().run([&](const corda::OnProgress& ask) { return corda::read_png(path, ask); }));

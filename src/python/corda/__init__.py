@@ -10,11 +10,19 @@ Coordinates are in metres, y up; times in seconds. What fails raises corda.Error
 the program (`corda --help` lists them). Pictures are arrays of RGBA bytes, sRGB, with straight alpha.
 """
 
+import atexit as _atexit
 import base64 as _base64
+import collections.abc as _abc
+import decimal as _decimal
+import fractions as _fractions
 import json as _json
+import numbers as _numbers
+import operator as _operator
 import os as _os
 import tempfile as _tempfile
 from typing import NamedTuple as _NamedTuple
+
+import numpy as _np
 
 from ._corda import Error, __version__
 from . import _corda
@@ -23,18 +31,113 @@ __all__ = ["Difference", "Error", "Film", "__version__", "compare", "read_png", 
 
 Error.__doc__ = "What Corda refuses or cannot do, in words. `code`: the exit code of the program (int)."
 
+# Daemon threads may be drawing when the interpreter ends.
+_atexit.register(_corda.begin_end)
+_os.register_at_fork(after_in_child=_corda.forget_calls)
+
 _SHORT = {"size": "video.size", "fps": "video.fps", "duration": "world.duration", "crf": "video.crf",
           "preset": "video.preset", "codec": "video.codec", "jobs": "video.jobs"}
 
 
-def _toml(value):
+
+def _error(message, code=2):
+    error = Error(message)
+    error.code = code
+    return error
+
+
+def _path(path, name="path"):
+    """The bytes of a file's name; os.fsencode takes what os.listdir gives, in any encoding."""
+    name_bytes = _os.fsencode(path)
+    if b"\0" in name_bytes:
+        raise _error(f"{name}: {path!r} holds a NUL character, which no file name can; leave it out")
+    return name_bytes
+
+
+def _text(text, name):
+    """A str that UTF-8 can hold."""
+    if not isinstance(text, str):
+        raise TypeError(f"{name}: takes a str, not {type(text).__name__}")
+    try:
+        text.encode()
+    except UnicodeEncodeError as error:
+        raise _error(f"{name}: character {error.start} is the lone surrogate {text[error.start]!a}, which UTF-8 cannot "
+                     "hold; decode the text by the encoding of its file") from None
+    return text
+
+
+def _toml(value, name):
+    """A value of Python or numpy as a value of TOML. `name` is the keyword that it was given by."""
+    if isinstance(value, _np.generic) or (isinstance(value, _np.ndarray) and value.ndim == 0):
+        value = value.item()
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(_toml(one) for one in value) + "]"
     if isinstance(value, str):
-        return _json.dumps(value, ensure_ascii=False)
-    return repr(value.item() if hasattr(value, "item") else value)
+        return _json.dumps(_text(value, name), ensure_ascii=False)
+    if isinstance(value, _numbers.Integral):
+        return str(int(value))
+    if isinstance(value, _fractions.Fraction) and value.denominator != 1 and name in ("fps", "video.fps", "video__fps"):
+        return f'"{value.numerator}/{value.denominator}"'
+    if isinstance(value, (_numbers.Real, _decimal.Decimal)):
+        number = float(value)
+        # A rate is whole, or exact in a few decimals.
+        return str(int(number)) if number.is_integer() and abs(number) < 2**53 else repr(number)
+    if isinstance(value, _np.ndarray):
+        value = value.tolist()
+    if isinstance(value, _abc.Mapping):
+        return "{" + ", ".join(f"{_json.dumps(str(key))} = {_toml(one, name)}" for key, one in value.items()) + "}"
+    if isinstance(value, _abc.Iterable) and not isinstance(value, (bytes, bytearray)):
+        return "[" + ", ".join(_toml(one, name) for one in value) + "]"
+    raise TypeError(f"{name}: takes numbers, text, lists, tuples, arrays and dictionaries of these, not "
+                    f"{type(value).__name__}")
+
+
+def _settings(settings, keys):
+    """Lines key=value as --set takes them, with the name that the caller used for each. None leaves a key as it is."""
+    named = {key: (key, value) for key, value in dict(settings or {}).items()}
+    for name, value in keys.items():
+        parts = name.split("__")
+        if any(part.isdigit() for part in parts):
+            key = "".join(f"[{part}]" if part.isdigit() else f".{part}" for part in parts).lstrip(".")
+            raise _error(f"{name}: a keyword cannot hold an index; use settings={{{key!r}: {value!r}}}")
+        named[_SHORT.get(name, ".".join(parts))] = (name, value)
+    return {f"{key}={_toml(value, name)}": (key, name) for key, (name, value) in named.items() if value is not None}
+
+
+def _in_words_of_the_caller(error, settings):
+    """The error of a setting, with the keyword in place of the option of the command line."""
+    message = str(error)
+    for key, name in settings.values():
+        message = message.replace(f"--set {key}=", f"{name}=")
+    return _error(message, error.code)
+
+
+def _index(value, name):
+    try:
+        return _operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name}: takes an integer, not {value!r}") from None
+
+
+def _number(value, name):
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: takes a number, not {value!r}") from None
+
+
+def _answering(on_progress):
+    """Wraps a callback: only False, Python's or numpy's, stops the work. None and every other answer continues it."""
+    if on_progress is None:
+        return None
+    if not callable(on_progress):
+        raise TypeError(f"on_progress: takes a function of (done, total), not {on_progress!r}")
+
+    def answer(done, total):
+        given = on_progress(done, total)
+        return bool(given) if isinstance(given, (bool, _np.bool_)) else True
+
+    return answer
 
 
 class Film:
@@ -42,8 +145,9 @@ class Film:
 
     path: a scene file; or `text`, the scene itself as TOML. Other keywords set keys of the scene as --set of the program does:
     size=(width, height), fps, duration, crf, preset, codec and jobs by these names, any other by its own name with two
-    underscores for the dot (world__drag=0.1), or in `settings`, a dictionary ({"rope[0].mass": 2}). `backend` and
-    `require_gpu`: how to reach OpenGL, as --backend and --require-gpu.
+    underscores for the dot (world__drag=0.1), or in `settings`, a dictionary ({"rope[0].mass": 2}). Values are numbers of any
+    kind, text, and lists, arrays and dictionaries of these; None leaves a key as it is. `backend` and `require_gpu`: how to
+    reach OpenGL, as --backend and --require-gpu.
 
     Raises Error for a scene that cannot be read or simulated. Ctrl-C ends every call. Threads may share a film; it serves
     one at a time, without holding the interpreter's lock.
@@ -55,13 +159,13 @@ class Film:
     def __init__(self, path=None, *, text=None, settings=None, backend=None, require_gpu=False, **keys):
         if (path is None) == (text is None):
             raise TypeError("Film takes a path or text=..., and not both")
-        all_settings = dict(settings or {})
-        for name, value in keys.items():
-            all_settings[_SHORT.get(name, name.replace("__", "."))] = value
-        lines = [f"{key}={_toml(value)}" for key, value in all_settings.items()]
-        source = _os.fspath(path) if path is not None else "text"
-        self._film = _corda.Film(text or "", source, path is not None, lines,
-                                 backend or _os.environ.get("CORDA_BACKEND") or "auto", require_gpu)
+        lines = _settings(settings, keys)
+        source = _path(path) if path is not None else b"text"
+        self._gl = (backend or _os.environ.get("CORDA_BACKEND") or "auto", bool(require_gpu))
+        try:
+            self._film = _corda.Film(_text(text or "", "text"), source, path is not None, list(lines), *self._gl)
+        except Error as error:
+            raise _in_words_of_the_caller(error, lines) from None
 
     def __len__(self):
         """Number of frames of the scene's video."""
@@ -84,11 +188,14 @@ class Film:
 
     def frame(self, k):
         """Frame `k`, 0 <= k < len(film) or the one at the end, as numpy uint8 of shape (height, width, 4)."""
+        k = _index(k, "k")
+        if not -2**63 <= k < 2**63:
+            raise _error(f"frame {k} is not within 0 .. {len(self)}")
         return self._film.frame(k)
 
     def still(self, time, shutter=0.0):
         """The picture at a time in seconds, 0 .. duration, as frame(); `shutter`, 0 .. 1, blurs it as video.shutter does."""
-        return self._film.still(time, shutter)
+        return self._film.still(_number(time, "time"), _number(shutter, "shutter"))
 
     @property
     def positions(self):
@@ -115,24 +222,27 @@ class Film:
         """Renders the video; the ending of `path` chooses the format. Returns the number of frames.
 
         force: replace an existing file. resume: resume what an interrupted render of the same film has left beside
-        `path`, to the bytes of a whole one; without such a part it begins anew. on_progress: called with the frames done and all; returning False stops, which
-        raises Error (code 130) and keeps what is done beside `path`.
+        `path`, to the bytes of a whole one; without such a part it begins anew. on_progress: called with the frames done and
+        all, at most every 50 ms and at the end; returning False stops, which raises Error (code 130) and keeps what is done
+        beside `path`.
         """
-        return self._film.save(_os.fspath(path), force, resume, on_progress)
+        return self._film.save(_path(path), bool(force), bool(resume), _answering(on_progress))
 
     def _repr_html_(self):
-        """The film as a video in a notebook."""
+        """The film as a video in a notebook: MP4, or WebM if its ground is transparent. Odd sides get a pixel more."""
+        ending, fitted = self._film.for_browser(*self._gl)
+        film = fitted or self._film
         with _tempfile.TemporaryDirectory() as folder:
-            path = _os.path.join(folder, "film.mp4")
-            self.save(path)
+            path = _os.path.join(folder, "film" + ending)
+            film.save(path, False, False, None)
             if _os.path.getsize(path) > self.largest_embedded:
                 return (f"<p>{_os.path.getsize(path)} bytes of video are more than a notebook should hold; use "
                         "film.save(...), or a smaller size, rate or duration</p>")
             with open(path, "rb") as file:
                 data = _base64.b64encode(file.read()).decode("ascii")
-        width, height = self.size
+        width, height = film.size()
         return (f'<video controls loop width="{width}" height="{height}" '
-                f'src="data:video/mp4;base64,{data}"></video>')
+                f'src="data:video/{ending[1:]};base64,{data}"></video>')
 
 
 class Difference(_NamedTuple):
@@ -146,7 +256,7 @@ class Difference(_NamedTuple):
 
 
 def _pixels(picture):
-    return read_png(picture) if isinstance(picture, (str, _os.PathLike)) else picture
+    return read_png(picture) if isinstance(picture, (str, bytes, _os.PathLike)) else picture
 
 
 def compare(a, b):
@@ -156,9 +266,9 @@ def compare(a, b):
 
 def read_png(path):
     """Reads any PNG as numpy uint8 of shape (height, width, 4)."""
-    return _corda.read_png(_os.fspath(path))
+    return _corda.read_png(_path(path))
 
 
 def write_png(path, picture, *, force=False):
     """Writes an array of shape (height, width, 4), or (height, width, 3), as PNG. force: replace an existing file."""
-    _corda.write_png(_os.fspath(path), picture, force)
+    _corda.write_png(_path(path), picture, bool(force))

@@ -25,7 +25,7 @@ class Film:
     largest_embedded: int
     def __init__(
         self,
-        path: str | PathLike[str] | None = None,
+        path: str | bytes | PathLike[str] | None = None,
         *,
         text: str | None = None,
         settings: Mapping[str, Any] | None = None,
@@ -50,7 +50,7 @@ class Film:
     def camera(self) -> Camera: ...
     def save(
         self,
-        path: str | PathLike[str],
+        path: str | bytes | PathLike[str],
         *,
         force: bool = False,
         resume: bool = False,
@@ -65,5 +65,5 @@ class Difference(NamedTuple):
     share: float
 
 def compare(a: NDArray[np.uint8] | str | PathLike[str], b: NDArray[np.uint8] | str | PathLike[str]) -> Difference: ...
-def read_png(path: str | PathLike[str]) -> NDArray[np.uint8]: ...
-def write_png(path: str | PathLike[str], picture: NDArray[np.uint8], *, force: bool = False) -> None: ...
+def read_png(path: str | bytes | PathLike[str]) -> NDArray[np.uint8]: ...
+def write_png(path: str | bytes | PathLike[str], picture: NDArray[np.uint8], *, force: bool = False) -> None: ...

@@ -8,10 +8,9 @@
         corda.testing.assert_matches_golden(film.frame(120), "swing_0120.png")
 """
 
-import os as _os
 import sys as _sys
 
-from . import _corda, _pixels
+from . import _corda, _path, _pixels
 
 __all__ = ["assert_matches_golden"]
 
@@ -27,7 +26,7 @@ def assert_matches_golden(picture, name, *, folder=None, max=None, mean=None, sh
     folder for NAME.new.png and NAME.difference.png. Raises corda.Error for a picture that cannot be read or written.
     """
     __tracebackhide__ = True  # pytest shows the line of the test
-    matches, written, message = _corda.check_golden(_pixels(picture), _os.fspath(name), _os.fspath(folder or ""),
+    matches, written, message = _corda.check_golden(_pixels(picture), _path(name, "name"), _path(folder or "", "folder"),
                                                     (max, mean, share, flip, ssim))
     if written:
         print(message, file=_sys.stderr)
