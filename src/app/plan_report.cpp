@@ -79,6 +79,7 @@ void warn_of_horizon(const Console& console, const Film& film) {
 }  // namespace
 
 void report_plan(const Console& console, const Film& film) {
+    for (const std::string& note : film.plan().notes) console.warning(note);
     if (!std::holds_alternative<AutoDef>(film.scene().solver)) return;
     if (const auto bound = bound_text(film)) {
         console.info(fmt::format("auto: {}; displayed error at most {}, shown by tighter runs",
@@ -138,6 +139,7 @@ nlohmann::json film_json(const Film& film) {
     if (plan.horizon_s) json["horizon_s"] = *plan.horizon_s;
     const CameraDef& camera = film.camera();
     json["camera"] = {{"center", {camera.center_m->x, camera.center_m->y}}, {"height", *camera.height_m}};
+    json["notes"] = plan.notes;
     json["simulation_passes"] = film.simulation_passes();
     return json;
 }

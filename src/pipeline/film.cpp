@@ -12,6 +12,7 @@
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/methods.hpp"
 #include "corda/pipeline/motion.hpp"
+#include "corda/pipeline/notes.hpp"
 #include "corda/pipeline/painter.hpp"
 #include "corda/pipeline/validate.hpp"
 #include "corda/sim/auto/planner.hpp"
@@ -68,6 +69,10 @@ struct Film::Impl {
         } else {
             for (const MethodDef& method : motion.methods()) plan.bodies.emplace_back().method = method;
         }
+        plan.notes = pipeline::input_notes(scene, system, plan, [this] {
+            report_progress(def.on_progress, 0, pipeline::last_frame_of(scene) + 1);
+            return true;
+        });
     }
 
     /// The times to be recorded: those within exposures too, if there is room.

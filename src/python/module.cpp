@@ -315,6 +315,7 @@ py::dict plan(PyFilm& film) {
         all["error_bound_m"] = chosen.error_bound_m;
         all["error_bound_px"] = bound_px;
         all["horizon_s"] = chosen.horizon_s;
+        all["notes"] = chosen.notes;
         return all;
     });
 }

@@ -144,6 +144,9 @@ struct Plan {
     /// How often the motion of the whole scene was integrated: that of each body counts by its particles, and
     /// the sum is rounded up.
     int simulation_passes = 0;
+    /// A sentence for everything that the scene gives and the motion does not use as it is given, such as
+    /// velocity along bars of fixed length. Filled in by Film.
+    std::vector<std::string> notes;
 };
 
 }  // namespace corda

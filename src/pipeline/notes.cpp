@@ -1,0 +1,137 @@
+#include "corda/pipeline/notes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "corda/sim/distance.hpp"
+#include "corda/sim/refusal.hpp"
+#include "corda/sim/solver.hpp"
+#include "corda/sim/split.hpp"
+
+namespace corda::pipeline {
+namespace {
+
+/// A smaller share of the kinetic energy, or of a velocity, is rounding of the digits of a scene.
+constexpr double kRounding = 1e-9;
+
+/// Of the free particles, in J.
+double kinetic_j(const System& system, std::span<const double> vx_m_s, std::span<const double> vy_m_s) {
+    double sum_j = 0.0;
+    for (std::size_t i = 0; i < system.particle_count(); ++i) {
+        if (!system.is_pinned(i))
+            sum_j += 0.5 * system.mass_kg[i] * (vx_m_s[i] * vx_m_s[i] + vy_m_s[i] * vy_m_s[i]);
+    }
+    return sum_j;
+}
+
+/// Whether the ends of a rigid bar approach each other or separate at the start. A string may do the first.
+bool has_velocity_along_bars(const System& body) {
+    const MaterialDef& material = body.bodies.front().material;
+    if (material.compliance_1_n > 0.0) return false;
+    return std::any_of(body.bars.begin(), body.bars.end(), [&](const Bar& bar) {
+        if (body.is_pinned(bar.a) && body.is_pinned(bar.b)) return false;
+        const Vec2 along{body.x_m[bar.b] - body.x_m[bar.a], body.y_m[bar.b] - body.y_m[bar.a]};
+        const Vec2 apart{body.vx_m_s[bar.b] - body.vx_m_s[bar.a], body.vy_m_s[bar.b] - body.vy_m_s[bar.a]};
+        const double rate = dot(along, apart);
+        const double small = kRounding * sim::length(along.x, along.y) * sim::length(apart.x, apart.y);
+        return material.is_string ? rate > small : std::abs(rate) > small;
+    });
+}
+
+/// The kinetic energy in J with which a body of these bars starts; std::nullopt if its method cannot run it.
+std::optional<double> kinetic_after_j(const System& body, const WorldDef& world, const MethodDef& method,
+                                      double frame_interval_s, const GoesOn& goes_on) {
+    // Relaxation takes the velocities as they are. Its first steps take them from a rope's links as `rattle`
+    // does, but let a net stretch.
+    const bool is_relaxed = std::holds_alternative<RelaxationDef>(method);
+    if (is_relaxed && body.bars.size() != body.bodies.front().link_count) return std::nullopt;
+    const MethodDef projecting = is_relaxed ? RattleDef{} : method;
+    try {
+        const auto solver = sim::make_solver(body, world, {&projecting, 1}, frame_interval_s, goes_on);
+        std::vector<double> vx_m_s(body.particle_count());
+        std::vector<double> vy_m_s(body.particle_count());
+        solver->velocities(vx_m_s, vy_m_s);
+        return kinetic_j(body, vx_m_s, vy_m_s);
+    } catch (const Refusal&) {
+        return std::nullopt;
+    }
+}
+
+void add_lost_velocity(const Scene& scene, const System& system, const Plan& plan, const GoesOn& goes_on,
+                       std::vector<std::string>& notes) {
+    const auto is_zero = [](double v) { return v == 0.0; };
+    if (std::all_of(system.vx_m_s.begin(), system.vx_m_s.end(), is_zero) &&
+        std::all_of(system.vy_m_s.begin(), system.vy_m_s.end(), is_zero))
+        return;
+    sim::for_each_body(system, [&](const System& body, std::size_t i) {
+        if (!has_velocity_along_bars(body)) return;
+        const double before_j = kinetic_j(body, body.vx_m_s, body.vy_m_s);
+        const auto after_j =
+            kinetic_after_j(body, scene.world, plan.bodies[i].method, scene.video.fps.interval_s(), goes_on);
+        if (!after_j || !(before_j - *after_j > kRounding * before_j)) return;
+        const bool is_string = body.bodies.front().material.is_string;
+        notes.push_back(
+            fmt::format("{}: {:.3g} % of the kinetic energy at the start, {:.3g} J of {:.3g} J, is left out: "
+                        "velocity along {} "
+                        "of fixed length, which {}; give velocities across them, or a compliance",
+                        body_name(system, i), 100.0 * (1.0 - *after_j / before_j), before_j - *after_j,
+                        before_j, is_string ? "taut links" : "bars",
+                        is_string ? "cannot lengthen" : "can neither lengthen nor shorten"));
+    });
+}
+
+/// Velocities in a list for each particle; one for all is meant for those that are free.
+void add_pinned_velocity(const std::string& name, const std::vector<Vec2>& velocity_m_s,
+                         const std::vector<std::uint32_t>& pinned, std::vector<std::string>& notes) {
+    const auto is_same = [&](Vec2 v) {
+        return v.x == velocity_m_s.front().x && v.y == velocity_m_s.front().y;
+    };
+    if (std::all_of(velocity_m_s.begin(), velocity_m_s.end(), is_same)) return;
+    for (const std::uint32_t i : pinned) {
+        const Vec2 v = velocity_m_s[i];
+        if (v.x == 0.0 && v.y == 0.0) continue;
+        notes.push_back(
+            fmt::format("{}: velocity [{}, {}] of particle {} is left out, because it is pinned; give [0, "
+                        "0], or remove it from pinned",
+                        name, v.x, v.y, i));
+        return;
+    }
+}
+
+void add_of_rope(const std::string& name, const RopeDef& rope, std::vector<std::string>& notes) {
+    add_pinned_velocity(name, rope.velocity_m_s, rope.pinned, notes);
+    const auto last = static_cast<std::uint32_t>(rope.points_m.size() - 1);
+    const bool is_last_pinned = std::find(rope.pinned.begin(), rope.pinned.end(), last) != rope.pinned.end();
+    if (rope.payload_kg > 0.0 && is_last_pinned) {
+        notes.push_back(fmt::format(
+            "{}: payload {} kg changes nothing, because the last particle is pinned; remove payload, or -1 "
+            "from pinned",
+            name, rope.payload_kg));
+    }
+    if (rope.bending_n_m2 > 0.0 && rope.points_m.size() == 2) {
+        notes.push_back(fmt::format(
+            "{}: bending changes nothing in a rope of one link; give more links, or remove bending", name));
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> input_notes(const Scene& scene, const System& system, const Plan& plan,
+                                     const GoesOn& goes_on) {
+    std::vector<std::string> notes;
+    add_lost_velocity(scene, system, plan, goes_on, notes);
+    for (std::size_t i = 0; i < scene.ropes.size(); ++i)
+        add_of_rope(body_name(system, i), scene.ropes[i], notes);
+    for (std::size_t i = 0; i < scene.nets.size(); ++i) {
+        const NetDef& net = scene.nets[i];
+        add_pinned_velocity(body_name(system, scene.ropes.size() + i), net.velocity_m_s, net.pinned, notes);
+    }
+    return notes;
+}
+
+}  // namespace corda::pipeline
