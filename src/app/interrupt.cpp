@@ -1,15 +1,30 @@
 #include "interrupt.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdint>
+#include <cstdio>
+#include <cstring>
 #include <ctime>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 
 namespace corda::app {
 namespace {
@@ -17,9 +32,38 @@ namespace {
 /// timeout(1) signals its child and then their whole process group, which is to count once.
 constexpr std::int64_t kSameWishNs = 100'000'000;
 
+/// Time from the first signal until the process ends, whatever its threads wait for. A sanitized program is
+/// ten times slower.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr std::int64_t kLongestNs = 20'000'000'000;
+#else
+constexpr std::int64_t kLongestNs = 800'000'000;
+#endif
+constexpr std::int64_t kTickNs = 100'000'000;
+
+constexpr std::array kRequests{SIGHUP, SIGINT, SIGTERM};
+constexpr int kSignalBase = 128;  // a shell's exit code of a process that a signal ended, without its number
+
+/// What a process says that does not end by itself.
+struct Words {
+    std::string text;  ///< on standard error
+    std::string json;  ///< on standard output; empty without --json
+};
+
+/// The words for each signal of kRequests, made before one comes: a handler can only write them.
+struct LastWords {
+    std::string part;  ///< where whole chunks are kept; may be empty
+    std::array<Words, kRequests.size()> without_part;
+    std::array<Words, kRequests.size()> with_part;
+};
+
 std::atomic<int> asked_to_stop_by{0};
 std::atomic<std::int64_t> asked_at_ns{0};
-static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
+std::atomic<int> exit_code_of_ended_work{-1};
+std::atomic<const LastWords*> last_words{nullptr};
+bool reports_json = false;
+static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
+                  std::atomic<const LastWords*>::is_always_lock_free,
               "a signal handler may use nothing else");
 
 std::int64_t now_ns() {
@@ -28,41 +72,106 @@ std::int64_t now_ns() {
     return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
+Words words_for(int signal, const std::string& kept) {
+    const std::string message = fmt::format(
+        "interrupted (SIG{}) inside a driver, an encoder or another library that did not return "
+        "within {} s{}",
+        sigabbrev_np(signal), static_cast<double>(kLongestNs) * 1e-9, kept);
+    Words words{fmt::format("{}corda: error: {}\n", isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "", message),
+                {}};
+    if (reports_json) {
+        const nlohmann::json error{{"code", kSignalBase + signal}, {"message", message}};
+        words.json = nlohmann::json{{"schema", 1}, {"error", error}}.dump(2) + "\n";
+    }
+    return words;
+}
+
+void make_last_words(const std::string& part) {
+    auto words = std::make_unique<LastWords>();
+    words->part = part;
+    const std::string kept = fmt::format("; whole chunks are in {} (--resume continues it)", printable(part));
+    for (std::size_t i = 0; i < kRequests.size(); ++i) {
+        words->without_part[i] = words_for(kRequests[i], "");
+        words->with_part[i] = words_for(kRequests[i], kept);
+    }
+    static std::vector<std::unique_ptr<const LastWords>> all;  // a handler may be reading the ones before
+    last_words = all.emplace_back(std::move(words)).get();
+}
+
+/// Writes as much as goes without waiting: a full pipe must not hold up the end.
+void write_at_once(int descriptor, std::string_view text) {
+    pollfd ready{descriptor, POLLOUT, 0};
+    if (poll(&ready, 1, 0) == 1) static_cast<void>(!write(descriptor, text.data(), text.size()));
+}
+
+/// Ends the process from a signal handler. Not by the signal's default action, which the first process of a
+/// container does not have.
+[[noreturn]] void end_process(int signal, bool with_words) {
+    const LastWords* const last = last_words;
+    const int ended = exit_code_of_ended_work;
+    if (with_words && last != nullptr && ended < 0) {
+        struct stat part {};
+        const bool has_part = stat(last->part.c_str(), &part) == 0 && part.st_size > 0;
+        const auto& words = has_part ? last->with_part : last->without_part;
+        for (std::size_t i = 0; i < kRequests.size(); ++i) {
+            if (kRequests[i] != signal) continue;
+            write_at_once(STDERR_FILENO, words[i].text);
+            write_at_once(STDOUT_FILENO, words[i].json);
+        }
+    }
+    _exit(ended < 0 ? kSignalBase + signal : ended);
+}
+
 /// A call that began to wait just after the signal does not know of it: from now on SIGALRM breaks off every
-/// one that takes long.
-void break_off_waiting() {
-    const itimerval often{{0, 100'000}, {0, 100'000}};
+/// one that takes long, and ends the process if none of that helps.
+void begin_to_tick() {
+    const itimerval often{{0, kTickNs / 1000}, {0, kTickNs / 1000}};
     setitimer(ITIMER_REAL, &often, nullptr);
 }
 
-void ask_to_stop(int signal) {
-    if (signal == SIGALRM) return;
+void on_signal(int signal) {
+    const int kept_errno = errno;
     const std::int64_t at_ns = now_ns();
     std::int64_t first_ns = 0;
-    if (asked_at_ns.compare_exchange_strong(first_ns, at_ns)) {
+    if (signal == SIGALRM) {
+        first_ns = asked_at_ns;
+        if (first_ns != 0 && at_ns - first_ns >= kLongestNs) end_process(asked_to_stop_by, true);
+    } else if (asked_at_ns.compare_exchange_strong(first_ns, at_ns)) {
         asked_to_stop_by = signal;
-        break_off_waiting();
+        begin_to_tick();
     } else if (at_ns - first_ns > kSameWishNs) {
-        std::signal(signal, SIG_DFL);
-        std::raise(signal);
+        end_process(signal, false);
     }
+    errno = kept_errno;
 }
 
 }  // namespace
 
-void install_signal_handlers() {
+void install_signal_handlers(bool json) {
+    reports_json = json;
+    make_last_words("");
     for (const int signal : {SIGHUP, SIGINT, SIGTERM, SIGALRM}) {
         struct sigaction before = {};
         // nohup(1) has it ignored, so that the work survives its terminal.
         if (signal == SIGHUP && sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_IGN)
             continue;
         struct sigaction action = {};  // without SA_RESTART: opening a pipe that nobody writes to must end
-        action.sa_handler = ask_to_stop;
+        action.sa_handler = on_signal;
         sigemptyset(&action.sa_mask);
         sigaction(signal, &action, nullptr);
     }
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
+}
+
+void keep_words_of_part(const std::string& part) {
+    make_last_words(part);
+}
+
+void note_end_of_work(int exit_code) {
+    std::fflush(stdout);
+    std::fflush(stderr);
+    exit_code_of_ended_work = exit_code;
 }
 
 void keep_standard_streams() {

@@ -1,13 +1,25 @@
 #pragma once
 
+#include <string>
+
 #include "corda/core/basics.hpp"
 
 namespace corda::app {
 
 /// From now on the first SIGINT, SIGTERM or, unless it is ignored, SIGHUP only asks the program to stop at a
-/// point that loses no work; one that comes more than a tenth of a second later ends it at once. SIGPIPE and
+/// point that loses no work. If it has not ended 0.8 s later, because a driver or an encoder does not return,
+/// the handler says so (with `json` on standard output too) and ends the process with the exit code of the
+/// interruption. A second signal, more than a tenth of a second after the first, ends it at once. SIGPIPE and
 /// SIGXFSZ become ordinary write errors.
-void install_signal_handlers();
+void install_signal_handlers(bool json);
+
+/// Sets the part file that the message of a process that was ended by its handler names, if it exists and is
+/// not empty.
+void keep_words_of_part(const std::string& part);
+
+/// All is written and said: if what is left, destructors and exit handlers of libraries, does not return
+/// after a signal, the process ends with this code and without a message.
+void note_end_of_work(int exit_code);
 
 /// Opens /dev/null for each closed standard stream: a file opened later would get its number, and with it
 /// what is meant for the stream.

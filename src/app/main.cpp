@@ -99,7 +99,7 @@ int fail(const Console& console, ExitCode code, const std::string& text) {
 /// Does what the options say.
 int act(const Console& console, const Action& action) {
     try {
-        install_signal_handlers();
+        install_signal_handlers(console.json());
         return static_cast<int>(action(console));
     } catch (const ReaderLeft&) {
         return static_cast<int>(ExitCode::kOk);
@@ -184,7 +184,9 @@ int main(int argc, char** argv) {
         corda::app::keep_memory();
         corda::app::keep_encoders_quiet();
         corda::app::keep_standard_streams();
-        return corda::app::run(argc, argv);
+        const int exit_code = corda::app::run(argc, argv);
+        corda::app::note_end_of_work(exit_code);
+        return exit_code;
     } catch (...) {
         return static_cast<int>(corda::ExitCode::kInternal);
     }

@@ -74,7 +74,7 @@ bool is_one_file(const std::string& output) {
 std::string words_of_interruption(const RenderOptions& options, std::int64_t first, std::int64_t count,
                                   const Rendered& rendered) {
     if (rendered.frames == 0)
-        return fmt::format("interrupted before the first frame; {} was not written", options.output);
+        return fmt::format("interrupted before any frame was finished; {} was not written", options.output);
     const std::int64_t next = first + rendered.frames;
     const std::string done = fmt::format("interrupted: {} of {} frames ({}..{}) are in {}", rendered.frames,
                                          count, first, next - 1, rendered.kept_part);
@@ -219,6 +219,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
         progress.update(total > 0 ? done * count / total : done);
         return interruption() == ExitCode::kOk;
     };
+    if (is_one_file(options.output)) keep_words_of_part(part_path(options.output));
     const Rendered rendered = render_video(film, options.output, def);
     if (rendered.reader_left) return ExitCode::kOk;
     if (!rendered.complete)

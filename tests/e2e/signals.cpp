@@ -47,13 +47,14 @@ struct Interrupted {
 
 /// Starts `corda ARGUMENTS`, sends it a signal when the shell command `until` succeeds, and waits for its
 /// end, for 20 s at most.
-Interrupted interrupt(const std::string& arguments, const std::string& signal, const std::string& until) {
+Interrupted interrupt(const std::string& arguments, const std::string& signal, const std::string& until,
+                      const std::string& environment = "") {
     Interrupted end;
-    end.result =
-        run_shell(test::quoted(CORDA_PROGRAM) + " " + arguments + " & pid=$!; for i in $(seq 1500); do " +
-                  until + " && break; sleep 0.01; done;" + " { sleep 20; kill -KILL $pid; } & dog=$!;" +
-                  " from=$(date +%s%N); kill -" + signal + " $pid; wait $pid; code=$?; kill $dog;" +
-                  " echo; echo ms $((($(date +%s%N) - from) / 1000000)); exit $code");
+    end.result = run_shell(environment + " " + test::quoted(CORDA_PROGRAM) + " " + arguments +
+                           " & pid=$!; for i in $(seq 1500); do " + until + " && break; sleep 0.01; done;" +
+                           " { sleep 20; kill -KILL $pid; } & dog=$!;" + " from=$(date +%s%N); kill -" +
+                           signal + " $pid; wait $pid; code=$?; kill $dog;" +
+                           " echo; echo ms $((($(date +%s%N) - from) / 1000000)); exit $code");
     const std::size_t at = end.result.out.rfind("\nms ");
     if (at != std::string::npos) end.ms = std::atoi(end.result.out.c_str() + at + 4);
     return end;
@@ -200,6 +201,36 @@ TEST_F(Signals, EndTheDrawingOfALargeStill) {
     EXPECT_THAT(end.result.err, HasSubstr("interrupted; nothing was written"));
     EXPECT_LT(end.ms, kMostMs);  // measured 340 .. 470 on a busy machine; 7500 in one piece
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"scene.toml"}));
+}
+#endif
+
+#ifndef CORDA_SANITIZE  // whose run time wants to be loaded first
+const std::string kHangs = "LD_PRELOAD=" FOREIGN_FAULTS " X264_HANGS_FROM_PX=640";
+
+TEST_F(Signals, EndAnEncoderThatDoesNotReturn) {
+    const std::string video = folder_.file("a.mp4");
+    for (const char* const jobs : {"1", "2"}) {
+        for (const auto& [signal, exit_code] : {std::pair{"INT", 130}, {"TERM", 143}, {"HUP", 129}}) {
+            const Interrupted end = interrupt("render " + scene_ + " --json -o " + video + " --jobs " + jobs,
+                                              signal, "test -e " + video + ".part && sleep 0.3", kHangs);
+            EXPECT_EQ(end.result.exit_code, exit_code) << end.result.err;
+            EXPECT_THAT(end.result.err, HasSubstr(std::string("interrupted (SIG") + signal + ")"));
+            EXPECT_THAT(end.result.out, HasSubstr("\"code\": " + std::to_string(exit_code)));
+            EXPECT_GE(end.ms, 800);
+            EXPECT_LT(end.ms, kMostMs);  // measured 840 .. 880
+        }
+    }
+    // What is left of it holds nothing, and is in nobody's way.
+    EXPECT_EQ(run_corda({"render", scene_, "-o", video, "-q", "--duration", "1"}).exit_code, 0);
+}
+
+TEST_F(Signals, TheSecondEndsAtOnceEvenInsideAnEncoder) {
+    const std::string video = folder_.file("a.mp4");
+    const Interrupted end =
+        interrupt("render " + scene_ + " --jobs 1 -o " + video, "TERM",
+                  "test -e " + video + ".part && sleep 0.3 && kill -INT $pid && sleep 0.2", kHangs);
+    EXPECT_EQ(end.result.exit_code, 143);
+    EXPECT_LT(end.ms, 600);  // measured 5 .. 20
 }
 #endif
 

@@ -54,6 +54,14 @@ TEST_F(PartFiles, AnOldOneIsReplacedOnlyWithForce) {
     EXPECT_EQ(test::read_file(path_), "");
 }
 
+TEST_F(PartFiles, AnEmptyOneThatNobodyHoldsIsReplaced) {
+    test::write_file(path_, "");
+    PartFile::check(path_, {});
+    const PartFile part = PartFile::create(path_, {});
+    EXPECT_EQ(failure_of([&] { static_cast<void>(PartFile::create(path_, {})); }).code, ExitCode::kIo);
+    EXPECT_TRUE(part.is_named());
+}
+
 TEST_F(PartFiles, AreHeldByOneAtATime) {
     std::optional<PartFile> part(PartFile::create(path_, {}));
     for (const auto& work : std::vector<std::function<void()>>{

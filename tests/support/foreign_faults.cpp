@@ -1,0 +1,61 @@
+// For LD_PRELOAD: what other libraries and a full host do to the program, chosen by variables of the
+// environment.
+//   THREADS_TO_START=N      the system starts N more threads, and then none
+//   PROCESSES_TO_START=N    the same of processes
+//   X264_HANGS_FROM_PX=N    x264 never returns from opening an encoder for pictures of N columns or more
+
+#include <dlfcn.h>
+#include <pthread.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
+
+#if __has_include(<x264.h>)
+extern "C" {
+#include <x264.h>
+}
+#endif
+
+#define CORDA_TEXT_OF(name) #name
+#define CORDA_NAME_OF(name) CORDA_TEXT_OF(name)
+
+namespace {
+
+int number_in(const char* variable, int otherwise) {
+    const char* const text = std::getenv(variable);
+    return text == nullptr ? otherwise : std::atoi(text);
+}
+
+template <class Function>
+Function* next(Function* /*this_one*/, const char* name) {
+    return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+}
+
+}  // namespace
+
+extern "C" {
+
+int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*work)(void*),
+                   void* argument) {
+    static std::atomic<int> left = number_in("THREADS_TO_START", 1 << 30);
+    if (left-- <= 0) return EAGAIN;
+    return next(&pthread_create, "pthread_create")(thread, attributes, work, argument);
+}
+
+pid_t fork() {
+    static std::atomic<int> left = number_in("PROCESSES_TO_START", 1 << 30);
+    if (left-- > 0) return next(&fork, "fork")();
+    errno = EAGAIN;
+    return -1;
+}
+
+#ifdef X264_BUILD
+x264_t* x264_encoder_open(x264_param_t* params) {
+    while (params->i_width >= number_in("X264_HANGS_FROM_PX", 1 << 30)) pause();
+    return next(&x264_encoder_open, CORDA_NAME_OF(x264_encoder_open))(params);
+}
+#endif
+}
