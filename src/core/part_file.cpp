@@ -30,6 +30,12 @@ Descriptor open_existing(const std::string& path) {
     return Descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC));
 }
 
+/// True for what a process leaves that is killed before its first chunk is whole: an empty file.
+bool is_leftover(const Descriptor& part) {
+    struct stat status {};
+    return part && ::fstat(part.get(), &status) == 0 && S_ISREG(status.st_mode) && status.st_size == 0;
+}
+
 void remove_old(const std::string& path) {
     const Descriptor old = open_existing(path);
     if (!old && errno == ENOENT) return;
@@ -49,7 +55,7 @@ void PartFile::check(const std::string& path, const OutputOptions& options) {
     if (!old && errno == ENOENT) return;
     if (!old && errno == ENAMETOOLONG) fail_file("write", path, errno);
     if (old && !lock(old, path, LOCK_SH | LOCK_NB)) fail_busy("'" + path + "'");
-    if (options.force) return;
+    if (options.force || is_leftover(old)) return;
     throw Error(ExitCode::kIo,
                 "'" + path +
                     "' holds an interrupted render; resume it (--resume), make it a video (corda recover), "
@@ -59,6 +65,10 @@ void PartFile::check(const std::string& path, const OutputOptions& options) {
 PartFile PartFile::create(std::string path, const OutputOptions& options) {
     if (options.force) remove_old(path);
     Descriptor file = create_new(path, 0666);
+    if (!file && errno == EEXIST && is_leftover(open_existing(path))) {
+        remove_unheld(path);
+        file = create_new(path, 0666);
+    }
     if (!file) {
         const int open_errno = errno;
         if (open_errno == EEXIST) check(path, {});

@@ -25,11 +25,11 @@ namespace corda {
 class PartFile {
   public:
     /// Throws corda::Error (kIo) if a part file is in the way: with `force`, only one that another process
-    /// holds.
+    /// holds. An empty one is not in the way: its process was killed before its first chunk was whole.
     static void check(const std::string& path, const OutputOptions& options);
 
-    /// Creates the part file, with `force` in place of an old one. Throws as `check`, and if it cannot be
-    /// made.
+    /// Creates the part file, in place of an empty one or, with `force`, of any. Throws as `check`, and if it
+    /// cannot be made.
     [[nodiscard]] static PartFile create(std::string path, const OutputOptions& options);
 
     /// Removes a file unless another process holds it, or might: on a file system without locks.
