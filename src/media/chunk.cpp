@@ -36,10 +36,13 @@ void ChunkEncoder::encode(const Image& frame, const Damage& damage, bool is_last
     ++chunk_.frames;
 }
 
-Chunk ChunkEncoder::finish() {
+Chunk ChunkEncoder::finish(const GoesOn& goes_on) {
     assert(encoder_);
     if (chunk_.frames > 0) {
-        encoder_->drain([this](AVPacket& packet) { keep(packet); });
+        encoder_->drain([&](AVPacket& packet) {
+            require_going_on(!goes_on || goes_on());
+            keep(packet);
+        });
         chunk_.parameters = check_allocated(CodecParameters(avcodec_parameters_alloc()), "codec parameters");
         check_libav(avcodec_parameters_copy(chunk_.parameters.get(), &encoder_->parameters()),
                     ExitCode::kEncoder, "cannot copy codec parameters");

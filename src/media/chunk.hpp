@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/media/encoder.hpp"
@@ -40,8 +41,9 @@ class ChunkEncoder {
     /// first is taken whole).
     void encode(const Image& frame, const Damage& damage, bool is_last = false);
     [[nodiscard]] std::int64_t frames() const { return chunk_.frames; }
-    /// Drains the encoder. Nothing can be added afterwards.
-    [[nodiscard]] Chunk finish();
+    /// Drains the encoder. Nothing can be added afterwards. `goes_on` is asked at each frame that the encoder
+    /// has held back; false drops the chunk: kInterrupted.
+    [[nodiscard]] Chunk finish(const GoesOn& goes_on = {});
 
   private:
     /// Moves a packet to the chunk.

@@ -183,9 +183,9 @@ struct VideoWriter::Impl {
     }
 
     /// Ends the chunk that write() has begun.
-    void end_chunk() {
+    void end_chunk(const GoesOn& goes_on = {}) {
         const auto ended = std::exchange(encoder, nullptr);
-        if (ended && ended->frames() > 0) append(ended->finish());
+        if (ended && ended->frames() > 0) append(ended->finish(goes_on));
     }
 
     [[nodiscard]] std::int64_t frames() const { return written + (encoder ? encoder->frames() : 0); }
@@ -194,12 +194,16 @@ struct VideoWriter::Impl {
     [[nodiscard]] std::int64_t next_frame() const { return first_frame + frames(); }
 
     /// Ends the stream; behind a chunk that could not be written nothing goes.
-    void drain() {
+    void drain(const GoesOn& goes_on = {}) {
         if (is_broken) {
             encoder.reset();
         } else {
-            end_chunk();
-            sink->drain();
+            try {
+                end_chunk(goes_on);
+            } catch (const Error& error) {
+                if (error.code() != ExitCode::kInterrupted) throw;
+            }
+            if (written > 0) sink->drain();
         }
         drained = true;
     }
@@ -288,12 +292,12 @@ void VideoWriter::finish(VerifyDepth depth) {
     impl.sink->finish({frames(), depth, impl.colors, impl.def.encoder.jobs});
 }
 
-std::string VideoWriter::abandon() {
+std::string VideoWriter::abandon(const GoesOn& goes_on) {
+    if (!impl_->drained) impl_->drain(goes_on);
     if (frames() == 0) {
         impl_->sink->remove();
         return {};
     }
-    if (!impl_->drained) impl_->drain();
     return impl_->sink->abandon();
 }
 

@@ -93,8 +93,9 @@ class VideoWriter {
     void finish(VerifyDepth depth = VerifyDepth::kKeyFrames);
 
     /// Drains and ends the part file unless `finish` has, so that it stays as a playable `PATH.part`, and
-    /// returns its path. Without any frame the part is removed, and the path is empty.
-    std::string abandon();
+    /// returns its path. Without any frame the part is removed, and the path is empty. `goes_on` is asked
+    /// while frames are encoded that the encoder has held back; false drops the chunk that they belong to.
+    std::string abandon(const GoesOn& goes_on = {});
 
   private:
     struct Impl;

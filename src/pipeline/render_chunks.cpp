@@ -4,8 +4,10 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 
+#include "corda/core/clock.hpp"
 #include "corda/core/in_order.hpp"
 #include "corda/media/chunk.hpp"
 #include "corda/pipeline/painter.hpp"
@@ -63,8 +65,22 @@ class ChunkMaker {
         }
         made.is_whole = encoder.frames() == end - first;
         // Of chunks that are not the next one nothing is kept.
-        if (made.is_whole || number == all.taken()) made.chunk = encoder.finish();
+        if (made.is_whole || number == all.taken()) finish(encoder, all, made);
         return made;
+    }
+
+    /// Encodes what the encoder has held back; once all are stopped only for a moment.
+    static void finish(media::ChunkEncoder& encoder, const InOrder<Made>& all, Made& made) {
+        std::optional<GoesOn> moment;
+        try {
+            made.chunk = encoder.finish([&] {
+                if (all.is_stopped() && !moment) moment = for_a_moment();
+                return !moment || (*moment)();
+            });
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::kInterrupted) throw;
+            made.is_whole = false;
+        }
     }
 
     const Film* film_;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "corda/core/clock.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
@@ -253,7 +254,7 @@ Rendered render_video(Film& film, const std::string& path, const RenderDef& def)
         if (error.code() == ExitCode::kDiverged) keep_diverged(error, path, def.first, writer);
         if (!is_interruption(error.code())) throw;
         result.complete = false;
-        result.kept_part = writer.abandon();
+        result.kept_part = writer.abandon(for_a_moment());
     }
     result.frames = writer.frames();
     return result;
