@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <map>
 #include <set>
-#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -14,6 +13,7 @@
 #include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
+#include "corda/core/threads.hpp"
 #include "corda/golden/variant.hpp"
 
 namespace corda::app {
@@ -104,10 +104,8 @@ void compare_all(const CompareOptions& options, const std::optional<Image>& mask
         }
     };
     {
-        std::vector<std::jthread> helpers;
-        const std::size_t threads =
-            std::min<std::size_t>(std::min(usable_cores(), kMostThreads), pairs.size());
-        for (std::size_t i = 1; i < threads; ++i) helpers.emplace_back(work);
+        const auto threads = std::min<std::size_t>(std::min(usable_cores(), kMostThreads), pairs.size());
+        const auto helpers = start_threads(static_cast<int>(threads) - 1, work);
         work();
     }
     for (const Pair& pair : pairs)

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -110,6 +111,15 @@ int act(const Console& console, const Action& action) {
         return fail(console, is_asked && is_broken_off ? interruption() : error.code(), error.what());
     } catch (const std::bad_alloc&) {
         return fail(console, ExitCode::kTemporary, "out of memory; a smaller scene or picture may help");
+    } catch (const std::system_error& error) {
+        if (error.code() != std::errc::resource_unavailable_try_again &&
+            error.code() != std::errc::not_enough_memory)
+            return fail(console, ExitCode::kInternal,
+                        fmt::format("internal error, please report it: {}", error.what()));
+        return fail(console, ExitCode::kTemporary,
+                    fmt::format("the system starts no further thread: {}; run fewer processes, or raise the "
+                                "limit (ulimit -u)",
+                                error.what()));
     } catch (const std::exception& error) {
         return fail(console, ExitCode::kInternal,
                     fmt::format("internal error, please report it: {}", error.what()));
@@ -187,6 +197,8 @@ int main(int argc, char** argv) {
         const int exit_code = corda::app::run(argc, argv);
         corda::app::note_end_of_work(exit_code);
         return exit_code;
+    } catch (const std::bad_alloc&) {
+        return static_cast<int>(corda::ExitCode::kTemporary);
     } catch (...) {
         return static_cast<int>(corda::ExitCode::kInternal);
     }

@@ -9,12 +9,11 @@
 #include <map>
 #include <mutex>
 #include <optional>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "corda/core/basics.hpp"
+#include "corda/core/threads.hpp"
 
 namespace corda {
 
@@ -27,25 +26,21 @@ class InOrder {
     using Make = std::function<Thing(std::int64_t number, const InOrder& all)>;
 
     /// Begins to make things first <= i < end. A thread calls `new_maker` before the first thing that it
-    /// makes, and again before the next one if `new_maker` threw. Throws corda::Error (kTemporary) if the
-    /// system starts no thread.
+    /// makes, and again before the next one if `new_maker` threw. If the system starts no thread, none is
+    /// made: see has_threads().
     InOrder(std::int64_t first, std::int64_t end, int threads, std::function<Make()> new_maker)
         : new_maker_(std::move(new_maker)), end_(end), ahead_(2 * threads), next_(first), taken_(first) {
-        try {
-            threads_.reserve(static_cast<std::size_t>(threads));
-            for (int i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
-        } catch (const std::system_error&) {  // fewer will do
-            if (threads_.empty())
-                throw Error(ExitCode::kTemporary,
-                            "the system starts no thread; make one chunk at a time (--jobs 1)");
-        }
+        threads_ = start_threads(threads, [this] { work(); });
     }
     InOrder(const InOrder&) = delete;
     InOrder& operator=(const InOrder&) = delete;
     ~InOrder() {
         stop();
-        for (std::thread& thread : threads_) thread.join();
+        threads_.clear();
     }
+
+    /// False if the system starts no thread: then nothing is made.
+    [[nodiscard]] bool has_threads() const { return !threads_.empty(); }
 
     /// The next thing in order; std::nullopt if it is not there after a moment. Throws what making it threw.
     std::optional<Thing> wait() {
@@ -72,8 +67,7 @@ class InOrder {
 
     /// After stop(): the next thing in order, as far as it got; std::nullopt if there is none.
     std::optional<Thing> rest() {
-        for (std::thread& thread : threads_) thread.join();
-        threads_.clear();
+        threads_.clear();  // joins them
         auto node = made_.extract(taken_++);
         return node.empty() ? std::nullopt : std::optional(std::move(node.mapped()));
     }
@@ -119,7 +113,7 @@ class InOrder {
     std::map<std::int64_t, Thing> made_;
     std::map<std::int64_t, std::exception_ptr> failures_;
     std::atomic<bool> is_stopped_ = false;
-    std::vector<std::thread> threads_;
+    std::vector<std::jthread> threads_;
 };
 
 }  // namespace corda

@@ -11,10 +11,10 @@
 #include <numbers>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "corda/core/cpu.hpp"
+#include "corda/core/threads.hpp"
 #include "corda/golden/perceived.hpp"
 
 namespace corda {
@@ -425,8 +425,7 @@ double opaque_flip(const Image& a, const Image& b, const OnProgress& on_progress
         }
     };
     {
-        std::vector<std::jthread> helpers;
-        for (int i = 1; i < std::min(threads, stripes); ++i) helpers.emplace_back([&] { work({}); });
+        const auto helpers = start_threads(std::min(threads, stripes) - 1, [&] { work({}); });
         try {
             work(on_progress);
         } catch (...) {

@@ -101,11 +101,12 @@ void add(Made made, media::VideoWriter& writer, Rendered& result) {
 
 }  // namespace
 
-void render_chunks(const Film& film, std::int64_t from, std::int64_t end, int jobs,
+bool render_chunks(const Film& film, std::int64_t from, std::int64_t end, int jobs,
                    const OnProgress& on_progress, media::VideoWriter& writer, Rendered& result) {
     const std::int64_t had = writer.frames();
     ChunkMaker maker(film, writer, from + had, end);
     InOrder<Made> chunks(maker.first_chunk(), maker.end_chunk(), jobs, [&maker] { return maker.maker(); });
+    if (!chunks.has_threads()) return false;
     bool is_adding = false;
     try {
         while (writer.frames() < end - from) {
@@ -116,6 +117,7 @@ void render_chunks(const Film& film, std::int64_t from, std::int64_t end, int jo
             }
             report_progress(on_progress, had + maker.drawn(), end - from);
         }
+        return true;
     } catch (const Error& error) {
         if (!is_interruption(error.code())) throw;
         chunks.stop();

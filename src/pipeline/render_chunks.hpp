@@ -13,8 +13,9 @@ namespace corda::pipeline {
 ///
 /// `on_progress` is called by this thread alone, with the number of frames drawn. Requires
 /// FilmPainter::can_draw_apart(film, end). Throws corda::Error: kEncoder, kNoGl, kIo, and kInterrupted if
-/// asked to stop; then the writer has the frames before the first that was not drawn.
-void render_chunks(const Film& film, std::int64_t from, std::int64_t end, int jobs,
-                   const OnProgress& on_progress, media::VideoWriter& writer, Rendered& result);
+/// asked to stop; then the writer has the frames before the first that was not drawn. Returns false, with
+/// nothing done, if the system starts no thread.
+[[nodiscard]] bool render_chunks(const Film& film, std::int64_t from, std::int64_t end, int jobs,
+                                 const OnProgress& on_progress, media::VideoWriter& writer, Rendered& result);
 
 }  // namespace corda::pipeline

@@ -1,8 +1,8 @@
 #include "corda/suite/crew.hpp"
 
-#include <thread>
 #include <utility>
-#include <vector>
+
+#include "corda/core/threads.hpp"
 
 namespace corda::suite {
 
@@ -20,8 +20,8 @@ void Crew::next(Work work) {
 
 void Crew::run(int threads) {
     {
-        std::vector<std::jthread> helpers;
-        for (int i = 0; i < threads; ++i) helpers.emplace_back([this] { help(); });
+        const auto helpers = start_threads(threads, [this] { help(); });
+        if (helpers.empty()) help();
     }
     if (error_) std::rethrow_exception(error_);
 }

@@ -17,8 +17,8 @@ class Crew {
     void later(Work work);
     /// Work that is done before all that waits.
     void next(Work work);
-    /// Does all of it on so many threads. Throws what the first piece that failed threw; what was not begun
-    /// by then is dropped.
+    /// Does all of it on so many threads, or on the calling one if the system starts none. Throws what the
+    /// first piece that failed threw; what was not begun by then is dropped.
     void run(int threads);
 
   private:
