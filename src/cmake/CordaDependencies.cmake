@@ -1,4 +1,4 @@
-# Every library Corda uses is a Debian 12 package; a missing one stops the configuration with its apt name.
+# Every library Corda uses is a package of Debian 12 and 13; a missing one stops the configuration with its apt name.
 # src/cmake/setup.sh installs them all and gives a line of reason for each.
 
 macro(corda_find_package name apt_package)

@@ -57,7 +57,6 @@ corda/corda.hpp: load or build a scene, simulate it, draw frames, write stills a
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-corda)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
-# A module is for one version of Python: Debian 12's.
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11~), python3 (<< 3.12), python3-numpy, ${opengl}")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${CORDA_PYTHON_DEPENDS}, python3-numpy, ${opengl}")
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "The Python module corda: films as numpy arrays, as video files, and in notebooks.")
 include(CPack)

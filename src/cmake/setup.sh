@@ -1,12 +1,16 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that Corda needs; does nothing when all are there.
-# Usage: setup.sh [build|test]   (test adds what only the tests use)
+# Installs the packages that Corda needs of Debian 12 or 13; does nothing when all are there.
+# Usage: setup.sh [build|test|platforms|list]
+#   test        adds what only the tests use
+#   platforms   adds what builds and runs AArch64 programs here
+#   list        prints the packages of build, one a line, and installs nothing
 set -euo pipefail
 
 packages=(
-    build-essential         # g++ 12 and make's companions: the compiler
+    build-essential         # g++ 12 or 14: the compiler
     cmake                   # the build
     ninja-build             # runs the build on all cores
+    file                    # what cpack looks into programs with
     pkg-config              # finds the libraries that ship no CMake package
     libepoxy-dev            # loads EGL and OpenGL functions on any driver
     libegl-dev              # the EGL headers that epoxy includes
@@ -32,7 +36,11 @@ packages=(
     python3-numpy           # its arrays, at run time
     gnuplot-nox             # the plots of corda study, at run time
 )
-if [[ "${1:-build}" == test ]]; then
+if [[ "${1:-build}" == list ]]; then
+    printf '%s\n' "${packages[@]}"
+    exit 0
+fi
+if [[ "${1:-build}" != build ]]; then
     packages+=(
         libgtest-dev        # the tests
         libgmock-dev        # its matchers
@@ -53,7 +61,13 @@ if [[ "${1:-build}" == test ]]; then
         mandoc              # whether the manual page is one
         zsh                 # whether its completion parses
         fish                # the same
-        debootstrap         # a new system to install the packages in, with --long
+        mmdebstrap          # new Debian systems to build and install in
+    )
+fi
+if [[ "${1:-build}" == platforms ]]; then
+    packages+=(
+        crossbuild-essential-arm64  # the compiler for AArch64
+        qemu-user-static    # runs what it makes
     )
 fi
 
