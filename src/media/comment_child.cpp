@@ -12,16 +12,17 @@ namespace corda::media {
 namespace {
 
 constexpr ChildLimits kCommentLimits{std::uint64_t{4} << 30, 20, 60.0};
-constexpr std::size_t kLongestComment = std::size_t{1} << 20;
 constexpr char kTold = '+';
 constexpr char kFailed = '-';
+constexpr char kRefused = '!';
 
 /// What the child tells: a sign, and the comment or what went wrong.
 std::string comment_told(const std::string& path) {
     try {
         const OpenVideo file = open_video(path);
         const std::string comment = metadata_entry(*file.format, "comment");
-        if (comment.size() > kLongestComment) return kFailed + std::string("its comment is too long");
+        if (const std::string problem = comment_problem(comment); !problem.empty())
+            return fmt::format("{}its comment {}", kRefused, problem);
         return kTold + comment;
     } catch (const Error& error) {
         return kFailed + std::string(error.what());
@@ -38,7 +39,7 @@ std::string comment_in_child(const std::string& path, const OnProgress& on_progr
                                   [&] { report_progress(on_progress, 0, 0); });
     const std::string told = !end ? comment_told(path) : end->finished ? end->text : kFailed + end->text;
     if (told.front() == kTold) return told.substr(1);
-    throw Error(ExitCode::kIo,
+    throw Error(told.front() == kRefused ? ExitCode::kUsage : ExitCode::kIo,
                 fmt::format("cannot read '{}': {}; give a PNG or a video that corda has written", path,
                             told.substr(1)));
 }

@@ -35,6 +35,9 @@ PartInput open_part(const std::string& path, std::uint64_t bytes) {
     if (!is_picture_size(parameters.width, parameters.height))
         throw Error(ExitCode::kMismatch, fmt::format("'{}' is damaged: its frames would be {}x{} pixels",
                                                      path, parameters.width, parameters.height));
+    if (const std::string problem = comment_problem(metadata_entry(*format, "comment")); !problem.empty())
+        throw Error(ExitCode::kMismatch,
+                    fmt::format("'{}' is damaged: its comment {}; render it again (--force)", path, problem));
     return input;
 }
 

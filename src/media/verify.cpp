@@ -125,6 +125,12 @@ void check_patches(const DecodedVideo& video, VerifyReport& report) {
 
 /// Compares what the file says about itself with what was found.
 void check_comment(const DecodedVideo& video, VerifyReport& report) {
+    if (const std::string found = comment_problem(video.comment); !found.empty()) {
+        problem(report, "the comment {}; corda writes none like it: remove it by {}", found,
+                copy_command(report, report.container == "matroska" ? "mkv" : report.container,
+                             "-metadata comment= "));
+        return;
+    }
     const auto fps = told_rate(video.comment);
     const auto frames = told_number(video.comment, "frames");
     if (!fps && !frames) {

@@ -20,8 +20,10 @@ void problem(VerifyReport& report, fmt::format_string<Args...> text, Args&&... a
 
 /// Checks the boxes of an MP4 or QuickTime file; false if it holds no stream to decode.
 bool check_boxes(const Mp4Boxes& boxes, VerifyReport& report);
-/// How to copy the pictures of a video into another file, with clocks that count its frames exactly.
-[[nodiscard]] std::string copy_command(const VerifyReport& report, std::string_view ending);
+/// How to copy the pictures of a video into another file, with clocks that count its frames exactly. `before`
+/// are further options, each with a space behind it.
+[[nodiscard]] std::string copy_command(const VerifyReport& report, std::string_view ending,
+                                       std::string_view before = {});
 /// Checks that a browser can seek at once. `report` has the rate.
 void check_index(const Mp4Boxes& boxes, VerifyReport& report);
 /// Checks the stored clocks and durations, which are whole numbers and must agree exactly.

@@ -23,10 +23,10 @@ bool check_boxes(const Mp4Boxes& boxes, VerifyReport& report) {
     return true;
 }
 
-std::string copy_command(const VerifyReport& report, std::string_view ending) {
-    std::string options;
+std::string copy_command(const VerifyReport& report, std::string_view ending, std::string_view before) {
+    std::string options(before);
     if (ending == "mp4" || ending == "mov") {
-        if (report.codec == "hevc") options = "-tag:v hvc1 ";
+        if (report.codec == "hevc") options += "-tag:v hvc1 ";
         if (report.fps.num > 0)
             options += fmt::format("-video_track_timescale {0} -movie_timescale {0} ", report.fps.num);
         options += "-movflags +faststart ";

@@ -1,5 +1,7 @@
 #include "corda/media/video_comment.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -9,14 +11,33 @@ namespace {
 
 using Json = nlohmann::json;
 
+/// Parses text of any size and depth without recursion; what lies too deep is left out, and noted.
+Json parse_to_level(std::string_view text, bool& is_too_deep) {
+    const auto keep = [&is_too_deep](int depth, Json::parse_event_t event, const Json&) {
+        const bool begins =
+            event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start;
+        if (begins && depth >= kDeepestJsonLevel) is_too_deep = true;
+        return !is_too_deep;
+    };
+    return Json::parse(text, keep, false);
+}
+
 /// The comment as a JSON object; an empty one for any other text.
 Json parse_comment(const std::string& comment) {
-    Json json = Json::parse(comment, nullptr, false);
-    return json.is_object() ? json : Json::object();
+    try {
+        Json json = parse_untrusted_json(comment);
+        if (json.is_object()) return json;
+    } catch (const Error&) {
+        return Json::object();
+    }
+    return Json::object();
 }
 
 std::optional<std::int64_t> whole_number(const Json& json) {
     if (!json.is_number_integer()) return std::nullopt;
+    if (json.is_number_unsigned() &&
+        json.get<std::uint64_t>() > std::uint64_t{std::numeric_limits<std::int64_t>::max()})
+        return std::nullopt;
     return json.get<std::int64_t>();
 }
 
@@ -35,6 +56,22 @@ std::optional<ColorPatch> parse_patch(const Json& json) {
 }
 
 }  // namespace
+
+std::string comment_problem(std::string_view comment) {
+    if (comment.size() > kLargestJsonBytes)
+        return fmt::format("has {} bytes, more than {}", comment.size(), kLargestJsonBytes);
+    bool is_too_deep = false;
+    static_cast<void>(parse_to_level(comment, is_too_deep));
+    return is_too_deep ? fmt::format("is JSON nested more than {} levels deep", kDeepestJsonLevel) : "";
+}
+
+Json parse_untrusted_json(std::string_view text) {
+    if (const std::string problem = comment_problem(text); !problem.empty())
+        throw Error(ExitCode::kMismatch, problem);
+    Json json = Json::parse(text, nullptr, false);
+    if (json.is_discarded()) throw Error(ExitCode::kMismatch, "is no JSON");
+    return json;
+}
 
 std::optional<Rational> told_rate(const std::string& comment) {
     const Json json = parse_comment(comment);
@@ -69,8 +106,8 @@ std::map<std::string, std::string> told_origin(const std::string& comment) {
 }
 
 std::string finished_comment(const std::string& comment, std::size_t frames) {
-    auto json = Json::parse(comment, nullptr, false);
-    if (!json.is_object()) return comment;
+    Json json = parse_comment(comment);
+    if (json.empty()) return comment;
     json.erase(kOriginKey);
     json["frames"] = frames;
     return json.dump();

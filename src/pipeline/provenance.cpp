@@ -115,7 +115,7 @@ std::optional<PictureOrigin> frame_of_sequence(const std::string& number) {
 
 std::string text_in_video(const std::string& path, const OnProgress& on_progress) {
     const std::string text = media::comment_in_child(path, on_progress);
-    Json comment = Json::parse(text, nullptr, false);
+    Json comment = Json::parse(text, nullptr, false);  // its size and depth were checked
     if (!comment.is_object() || !comment.contains(kProvenanceKey)) return {};
     Json& provenance = comment[kProvenanceKey];
     // Of a recovered video those that it has, not those that it was to have.
@@ -198,7 +198,7 @@ Provenance read_provenance(const std::string& path, const OnProgress& on_progres
     if (text.size() > 2 * Provenance::kMostBytes) fail_at(path, "tells more than corda writes");
     Provenance provenance;
     try {
-        provenance = parsed(Json::parse(text));
+        provenance = parsed(media::parse_untrusted_json(text));
     } catch (const std::exception& error) {
         fail_at(path, fmt::format("tells what it was made from in a way that is damaged ({})",
                                   printable(error.what())));
