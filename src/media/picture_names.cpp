@@ -2,63 +2,80 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "corda/core/basics.hpp"
 
 namespace corda::media {
 namespace {
 
-/// A number's place in a name.
-struct Place {
-    std::size_t begin = 0;
-    std::size_t size = 0;
+/// A name of pictures: what stands before and after the number.
+struct Names {
+    std::string before;
+    std::string after;
     int digits = 0;
 };
 
-/// The only one of a name; std::nullopt if there is none, or anything else with a percent sign.
-std::optional<Place> place_in(std::string_view name) {
-    const std::size_t begin = name.find('%');
-    if (begin == std::string_view::npos || name.find('%', begin + 1) != std::string_view::npos)
-        return std::nullopt;
-    const std::string_view rest = name.substr(begin + 1);
-    if (rest.starts_with('d')) return Place{begin, 2, 1};
+/// Returns the size of the number that `text` begins with, "%d" or "%0Nd", and its digits; 0 for other text.
+std::pair<std::size_t, int> number_at(std::string_view text) {
+    if (text.starts_with("%d")) return {2, 1};
     const bool has_digits =
-        rest.size() >= 3 && rest[0] == '0' && rest[1] >= '1' && rest[1] <= '9' && rest[2] == 'd';
-    return has_digits ? std::optional(Place{begin, 4, rest[1] - '0'}) : std::nullopt;
+        text.size() >= 4 && text[1] == '0' && text[2] >= '1' && text[2] <= '9' && text[3] == 'd';
+    return has_digits ? std::pair<std::size_t, int>{4, text[2] - '0'} : std::pair<std::size_t, int>{0, 0};
+}
+
+/// Reads the last part of a path, in which "%%" is a per cent sign; std::nullopt if it does not have exactly
+/// one number, or has another per cent sign.
+std::optional<Names> names_of(std::string_view form) {
+    Names names;
+    for (std::size_t i = 0; i < form.size();) {
+        std::string& text = names.digits == 0 ? names.before : names.after;
+        if (form[i] != '%') {
+            text.push_back(form[i++]);
+        } else if (form.substr(i).starts_with("%%")) {
+            text.push_back('%');
+            i += 2;
+        } else {
+            const auto [size, digits] = number_at(form.substr(i));
+            if (size == 0 || names.digits != 0) return std::nullopt;
+            names.digits = digits;
+            i += size;
+        }
+    }
+    return names.digits == 0 ? std::nullopt : std::optional(std::move(names));
+}
+
+/// The folder of a path, with its slash, in which a per cent sign is one; and the name.
+std::pair<std::string_view, std::string_view> split(std::string_view pattern) {
+    const std::size_t slash = pattern.rfind('/');
+    const std::size_t begin = slash == std::string_view::npos ? 0 : slash + 1;
+    return {pattern.substr(0, begin), pattern.substr(begin)};
 }
 
 }  // namespace
 
 void check_picture_names(std::string_view pattern) {
-    const std::filesystem::path path(pattern);
-    const bool is_in_name = path.parent_path().string().find('%') == std::string::npos;
-    if (is_in_name && place_in(path.filename().string())) return;
-    throw Error(
-        ExitCode::kUsage,
-        fmt::format(
-            "'{}': a video as pictures needs the number of each in its name, once, as %d or %04d; use e.g. "
-            "frames/%04d.png (`corda still` draws one picture)",
-            pattern));
+    if (names_of(split(pattern).second)) return;
+    throw Error(ExitCode::kUsage,
+                fmt::format("'{}': a video as pictures needs the number of each in its name, once, as %d or "
+                            "%04d, and %% for a per cent sign; use e.g. frames/%04d.png (`corda still` draws "
+                            "one picture)",
+                            pattern));
 }
 
 std::string picture_name(std::string_view pattern, std::int64_t frame) {
-    const Place place = place_in(pattern).value();
-    return fmt::format("{}{:0{}}{}", pattern.substr(0, place.begin), frame, place.digits,
-                       pattern.substr(place.begin + place.size));
+    const auto [folder, form] = split(pattern);
+    const Names names = names_of(form).value();
+    return fmt::format("{}{}{:0{}}{}", folder, names.before, frame, names.digits, names.after);
 }
 
 bool is_picture_name(std::string_view pattern, std::string_view name) {
-    const std::string form = std::filesystem::path(pattern).filename().string();
-    const Place place = *place_in(form);
-    const std::string_view before = std::string_view(form).substr(0, place.begin);
-    const std::string_view after = std::string_view(form).substr(place.begin + place.size);
-    if (name.size() < before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after))
-        return false;
-    const std::string_view digits = name.substr(before.size(), name.size() - before.size() - after.size());
-    return digits.size() >= static_cast<std::size_t>(place.digits) &&
+    const Names names = names_of(split(pattern).second).value();
+    const std::size_t around = names.before.size() + names.after.size();
+    if (name.size() < around || !name.starts_with(names.before) || !name.ends_with(names.after)) return false;
+    const std::string_view digits = name.substr(names.before.size(), name.size() - around);
+    return digits.size() >= static_cast<std::size_t>(names.digits) &&
            digits.find_first_not_of("0123456789") == std::string_view::npos;
 }
 

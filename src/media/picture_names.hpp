@@ -6,8 +6,8 @@
 
 namespace corda::media {
 
-/// Checks a name of pictures: exactly one %d or %0Nd, N 1 .. 9, in the last part of the path. Throws
-/// corda::Error (kUsage).
+/// Checks a name of pictures: exactly one %d or %0Nd, N 1 .. 9, in the last part of the path, where %% is a
+/// per cent sign. In folders each per cent sign is one. Throws corda::Error (kUsage).
 void check_picture_names(std::string_view pattern);
 
 /// The name of a frame: "frames/0007.png" for "frames/%04d.png". Requires a name that was checked.
