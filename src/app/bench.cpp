@@ -102,7 +102,6 @@ void check_comparable(const media::Format& format) {
 ExitCode measure_all(const Console& console, BenchOptions options) {
     options.def.on_wait = [] { stop_if_asked("interrupted; nothing was kept"); };
     options.gl.apply_to(options.def.film);
-    leave_cores_to_chunks(options.scene_of(options.sizes.front(), options.presets.front()).video);
     nlohmann::json cases = nlohmann::json::array();
     std::vector<Scene> scenes;  // all are checked before the first is measured
     for (const std::string& size : options.sizes)
@@ -152,7 +151,6 @@ ExitCode measure_encodings(const Console& console, const BenchOptions& options) 
         settings.push_back(size_setting(options.sizes.front()));
         def.scene = options.scene_of(settings);
         def.ending = encodings[i].ending;
-        leave_cores_to_chunks(def.scene.video);
         try {
             const bench::MeasuredEncoding measured = bench::measure_encoding(def);
             const double duration_s = def.scene.video.fps.time_s(measured.frames);

@@ -132,11 +132,6 @@ struct EmptyPictures {
     [[nodiscard]] ExitCode report(const Console& console, std::int64_t all) const;
 };
 
-/// If several chunks of a video are made at a time, they keep all cores busy: llvmpipe's own threads would
-/// wait for each other, a quarter of the time of a blurred render. To be called before OpenGL is opened; a
-/// number of threads that the user sets is kept.
-void leave_cores_to_chunks(const VideoDef& video);
-
 /// Says with -v what draws, and how it was reached.
 void report_gl(const Console& console, const GlInfo& gl);
 

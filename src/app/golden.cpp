@@ -132,7 +132,6 @@ ExitCode run_suite(const Console& console, GoldenOptions options) {
         if (!path.empty()) check_output(path, "", true);
     if (!options.html.empty()) options.def.most_drawn = kMostOnPage;
     options.gl.apply_to(options.def.film);
-    leave_cores_to_chunks({});
     options.def.film.on_progress = stopping_if_asked(kSomethingWritten);
     options.def.on_progress = stopping_if_asked(kSomethingWritten);
     const suite::SuiteResult result = suite::run(options.def);

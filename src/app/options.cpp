@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -190,10 +189,6 @@ void GlOptions::add_to(CLI::App& command) {
 void GlOptions::apply_to(FilmDef& film) const {
     if (!backend.empty()) film.backend = backend;
     film.require_gpu = require_gpu;
-}
-
-void leave_cores_to_chunks(const VideoDef& video) {
-    if (video.encoder.jobs != 1) setenv("LP_NUM_THREADS", "0", 0);
 }
 
 void report_gl(const Console& console, const GlInfo& gl) {

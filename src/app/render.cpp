@@ -192,7 +192,6 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     check_render(scene, options.output, def, options.scene.input());
     report_format(console, scene, options.output, def);
     OnProgress on_progress = show_progress(console, "simulate");
-    leave_cores_to_chunks(scene.video);
     FilmDef film_def;
     film_def.on_progress = [&on_progress](std::int64_t done, std::int64_t all) {
         return on_progress(done, all);

@@ -9,6 +9,8 @@
 #include <string>
 #include <thread>
 
+#include "corda/core/basics.hpp"
+
 namespace corda {
 namespace {
 
@@ -97,6 +99,14 @@ std::optional<std::uint64_t> available_memory_bytes(const std::filesystem::path&
     heed(left_of_address_space(root));
     for_each_group(root, [&heed](const std::filesystem::path& group) { heed(left_in(group)); });
     return least;
+}
+
+void require_address_space(std::uint64_t bytes, const std::string& what) {
+    const auto left = left_of_address_space("/");
+    if (!left || *left >= bytes) return;
+    throw Error(ExitCode::kTemporary, what + " needs " + std::to_string((bytes + (1U << 20U) - 1) >> 20U) +
+                                          " MiB of address space, and the limit of this process leaves " +
+                                          std::to_string(*left >> 20U) + " MiB; raise the limit (ulimit -v)");
 }
 
 int usable_cores(const std::filesystem::path& root) {

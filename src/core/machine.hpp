@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace corda {
 
@@ -10,6 +11,11 @@ namespace corda {
 /// available, and what the limits of its control groups (version 2) and of its address space leave. Empty if
 /// none of these is told. `root` is the folder with proc/ and sys/.
 [[nodiscard]] std::optional<std::uint64_t> available_memory_bytes(const std::filesystem::path& root = "/");
+
+/// Throws corda::Error (kTemporary) if the limit on this process's address space (ulimit -v) leaves less than
+/// `bytes`, which `what` needs. Libraries that cannot allocate memory may crash or hang, so call this before
+/// they try.
+void require_address_space(std::uint64_t bytes, const std::string& what);
 
 /// How many cores this process may keep busy, at least 1: those that the calling thread may run on (taskset,
 /// a container's set of cores), or fewer if the processor time of its control groups (version 2) is that of

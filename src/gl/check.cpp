@@ -47,6 +47,10 @@ std::string framebuffer_text(GLenum status) {
 void check_errors(const std::string& what) {
     const GLenum error = glGetError();
     if (error == GL_NO_ERROR) return;
+    if (error == GL_OUT_OF_MEMORY) {
+        throw Error(ExitCode::kTemporary,
+                    what + ": OpenGL is out of memory; take a smaller size, or try again with more memory");
+    }
     throw Error(ExitCode::kNoGl,
                 fmt::format("{}: OpenGL reports {}; see: corda doctor", what, error_text(error)));
 }

@@ -4,8 +4,8 @@
 
 namespace corda::gl {
 
-/// Throws corda::Error (kNoGl) if glGetError() reports an error. The message names the error and `what` was
-/// being done.
+/// Throws corda::Error if glGetError() reports an error: kTemporary for GL_OUT_OF_MEMORY, kNoGl for others.
+/// The message names the error and `what` was being done.
 void check_errors(const std::string& what);
 
 /// Throws corda::Error (kNoGl) with GL's reason if the bound draw framebuffer is not complete.

@@ -1,24 +1,17 @@
 #include "corda/gl/context.hpp"
 
+#include <unistd.h>
+
 #include <charconv>
 
 #include <epoxy/egl.h>
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/gl/driver.hpp"
 #include "corda/gl/egl_display.hpp"
 
 namespace corda::gl {
-
-namespace {
-
-/// Of everything that OpenGL on the CPU does in this process.
-std::recursive_mutex& software_mutex() {
-    static std::recursive_mutex mutex;
-    return mutex;
-}
-
-}  // namespace
 
 struct Context::Impl {
     std::string platform;
@@ -55,7 +48,9 @@ ContextDef ContextDef::parse(std::string_view text) {
 }
 
 Context::Context(const ContextDef& def) : impl_(std::make_unique<Impl>()) {
-    const std::lock_guard lock(software_mutex());
+    const auto lock = lock_driver();
+    require_driver_after_fork();
+    prepare_driver();
     std::string reasons;
     bool found_software = false;
     for (const Platform& platform : list_platforms(def)) {
@@ -75,22 +70,31 @@ Context::Context(const ContextDef& def) : impl_(std::make_unique<Impl>()) {
         impl_->session.reset();
     }
     if (reasons.empty()) reasons = "\n  no such EGL device";
-    const char* const remedy =
+    const std::string remedy =
         found_software
             ? "Install the GPU's driver, or draw on the CPU, which gives the same bytes: do not require a GPU"
         : def.backend != ContextDef::Backend::kAuto
             ? "Take backend auto, or one that `corda doctor` shows as usable"
-            : "On Debian: apt-get install libegl-mesa0 libgl1-mesa-dri";
+            : driver_remedy();
     throw Error(ExitCode::kNoGl, fmt::format("no usable OpenGL. Tried:{}\n{}", reasons, remedy));
 }
 
+Context::Context(const Platform& platform) : impl_(std::make_unique<Impl>()) {
+    impl_->session = std::make_unique<EglSession>(platform);
+    impl_->platform = platform.name;
+}
+
 Context::~Context() {
-    const std::lock_guard lock(software_mutex());
+    const auto lock = lock_driver();
     impl_.reset();
 }
 
 std::unique_lock<std::recursive_mutex> Context::exclusive() const {
-    return info().software ? std::unique_lock(software_mutex()) : std::unique_lock<std::recursive_mutex>();
+    return info().software ? lock_driver() : std::unique_lock<std::recursive_mutex>();
+}
+
+bool Context::is_inherited() const {
+    return impl_->session->is_inherited();
 }
 
 void Context::make_current() const {
@@ -106,15 +110,19 @@ const std::string& Context::platform() const {
     return impl_->platform;
 }
 
-SavedContext::SavedContext()
-    : display_(eglGetCurrentDisplay()),
-      context_(eglGetCurrentContext()),
-      draw_surface_(eglGetCurrentSurface(EGL_DRAW)),
-      read_surface_(eglGetCurrentSurface(EGL_READ)),
-      api_(eglQueryAPI()) {}
+SavedContext::SavedContext() : process_(getpid()) {
+    const auto lock = lock_driver();
+    if (!has_libraries()) return;
+    display_ = eglGetCurrentDisplay();
+    context_ = eglGetCurrentContext();
+    draw_surface_ = eglGetCurrentSurface(EGL_DRAW);
+    read_surface_ = eglGetCurrentSurface(EGL_READ);
+    api_ = eglQueryAPI();
+}
 
 SavedContext::~SavedContext() {
-    const std::lock_guard lock(software_mutex());
+    const auto lock = lock_driver();
+    if (api_ == EGL_NONE || process_ != getpid()) return;
     // A context that has been lost meanwhile cannot come back, and a destructor has nobody to tell.
     if (eglGetCurrentContext() != context_) {
         EGLDisplay display = context_ == EGL_NO_CONTEXT ? eglGetCurrentDisplay() : display_;
@@ -123,16 +131,27 @@ SavedContext::~SavedContext() {
     eglBindAPI(api_);
 }
 
-std::vector<Attempt> probe_contexts() {
-    const std::lock_guard lock(software_mutex());
+std::vector<Attempt> probe_contexts(const std::function<void(const Context&)>& check) {
+    const auto lock = lock_driver();
     const SavedContext saved;
     std::vector<Attempt> attempts;
-    for (const Platform& platform : list_platforms({})) {
-        Attempt& attempt = attempts.emplace_back(Attempt{platform.name, std::nullopt, ""});
+    std::vector<Platform> platforms;
+    try {
+        require_driver_after_fork();
+        prepare_driver();
+        platforms = list_platforms({});
+    } catch (const Error& error) {
+        return {{kEveryPlatform, std::nullopt, error.what(), error.code()}};
+    }
+    for (const Platform& platform : platforms) {
+        Attempt& attempt = attempts.emplace_back(Attempt{platform.name, std::nullopt, "", ExitCode::kOk});
         try {
-            attempt.info = EglSession(platform).info();
+            const Context context(platform);
+            attempt.info = context.info();
+            if (check) check(context);
         } catch (const Error& error) {
             attempt.failure = error.what();
+            attempt.code = error.code();
         }
     }
     return attempts;

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <map>
-#include <mutex>
+#include <cstdlib>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/gl/driver.hpp"
 #include "corda/gl/object.hpp"
 
 namespace corda::gl {
@@ -50,8 +51,25 @@ std::string egl_error_text() {
     throw Error(ExitCode::kNoGl, fmt::format("{} failed: {}", step, egl_error_text()));
 }
 
-bool has_client_extension(const char* name) {
-    return epoxy_has_egl_extension(EGL_NO_DISPLAY, name);
+/// True if a display, or for EGL_NO_DISPLAY the client library, has an extension. epoxy_has_egl_extension()
+/// takes no null for an answer.
+bool has_extension(EGLDisplay display, std::string_view name) {
+    const char* const given = eglQueryString(display, EGL_EXTENSIONS);
+    const std::string_view all(given != nullptr ? given : "");
+    for (std::size_t at = all.find(name); at != std::string_view::npos; at = all.find(name, at + 1)) {
+        const std::size_t end = at + name.size();
+        if ((at == 0 || all[at - 1] == ' ') && (end == all.size() || all[end] == ' ')) return true;
+    }
+    return false;
+}
+
+bool has_client_extension(std::string_view name) {
+    return has_extension(EGL_NO_DISPLAY, name);
+}
+
+/// True if EGL gives the address of a function of an extension; libepoxy would call null.
+bool has_function(const char* name) {
+    return eglGetProcAddress(name) != nullptr;
 }
 
 bool is_software_device(EGLDeviceEXT device) {
@@ -71,12 +89,14 @@ std::string device_name(EGLDeviceEXT device, int index) {
 }
 
 std::vector<Platform> list_devices() {
-    // epoxy aborts the program if it is asked for a function that no library has. Ask for the extensions
-    // first.
+    // epoxy aborts the program if it is asked for a function that no library has.
     const bool can_list =
         has_client_extension("EGL_EXT_device_base") ||
         (has_client_extension("EGL_EXT_device_enumeration") && has_client_extension("EGL_EXT_device_query"));
-    if (!can_list || !has_client_extension("EGL_EXT_platform_device")) return {};
+    if (!can_list || !has_client_extension("EGL_EXT_platform_device") ||
+        !has_function("eglQueryDevicesEXT") || !has_function("eglQueryDeviceStringEXT") ||
+        !has_function("eglGetPlatformDisplayEXT"))
+        return {};
     std::array<EGLDeviceEXT, 64> devices{};
     EGLint count = 0;
     if (eglQueryDevicesEXT(static_cast<EGLint>(devices.size()), devices.data(), &count) != EGL_TRUE)
@@ -111,37 +131,24 @@ bool is_software_renderer(std::string renderer) {
 }
 
 /// EGL returns the same display to every caller that asks for the same platform, and terminating it ends all
-/// their contexts. So only the last session of a display terminates it, and none does if the host application
-/// had initialised it before.
-struct OpenDisplays {
-    std::mutex mutex;
-    std::map<EGLDisplay, int> sessions;
-};
-
-OpenDisplays& open_displays() {
-    static OpenDisplays displays;
+/// their contexts, those of the host application too. So displays stay initialised until the process ends:
+/// there are few, and each initialisation after a termination leaks 8 kB in Mesa.
+std::vector<EGLDisplay>& own_displays() {
+    static std::vector<EGLDisplay> displays;
     return displays;
 }
 
-bool initialize_display(EGLDisplay display) {
-    OpenDisplays& displays = open_displays();
-    const std::lock_guard lock(displays.mutex);
-    // Only a display that is initialised tells its version. The host's use counts as a session without end.
-    const bool is_of_host =
-        displays.sessions.count(display) == 0 && eglQueryString(display, EGL_VERSION) != nullptr;
-    EGLint major = 0;
-    EGLint minor = 0;
-    if (eglInitialize(display, &major, &minor) != EGL_TRUE) return false;
-    displays.sessions[display] += is_of_host ? 2 : 1;
-    return true;
+/// True if the host application has initialised a display: only then it reports its version.
+bool is_of_host(EGLDisplay display) {
+    const std::vector<EGLDisplay>& own = own_displays();
+    return std::find(own.begin(), own.end(), display) == own.end() &&
+           eglQueryString(display, EGL_VERSION) != nullptr;
 }
 
-void close_display(EGLDisplay display) {
-    OpenDisplays& displays = open_displays();
-    const std::lock_guard lock(displays.mutex);
-    if (--displays.sessions[display] > 0) return;
-    displays.sessions.erase(display);
-    eglTerminate(display);
+/// True if llvmpipe draws without threads of its own, which fork() would lose.
+bool has_no_driver_threads() {
+    const char* const threads = std::getenv("LP_NUM_THREADS");
+    return threads != nullptr && std::string_view(threads) == "0";
 }
 
 }  // namespace
@@ -169,6 +176,7 @@ EglSession::EglSession(const Platform& platform) {
         open_display(platform);
         create_context();
         read_info();
+        note_driver_use(info_.software && has_no_driver_threads() && !is_shared_);
     } catch (...) {
         close();
         throw;
@@ -186,7 +194,8 @@ void EglSession::open_display(const Platform& platform) {
             break;
         case Platform::Kind::kSurfaceless:
             if (!has_client_extension("EGL_EXT_platform_base") ||
-                !has_client_extension("EGL_MESA_platform_surfaceless")) {
+                !has_client_extension("EGL_MESA_platform_surfaceless") ||
+                !has_function("eglGetPlatformDisplayEXT")) {
                 throw Error(ExitCode::kNoGl, "this EGL library has no EGL_MESA_platform_surfaceless");
             }
             display_ = eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
@@ -196,15 +205,13 @@ void EglSession::open_display(const Platform& platform) {
             break;
     }
     if (display_ == EGL_NO_DISPLAY) fail("getting the display");
-    if (!initialize_display(display_)) {
-        const std::string reason = egl_error_text();
-        display_ = EGL_NO_DISPLAY;  // it was not initialised, so close() must not terminate it
-        throw Error(ExitCode::kNoGl, "eglInitialize failed: " + reason);
-    }
+    is_shared_ = is_of_host(display_);
+    if (eglInitialize(display_, nullptr, nullptr) != EGL_TRUE) fail("eglInitialize");
+    if (!is_shared_) own_displays().push_back(display_);
 }
 
 void EglSession::create_context() {
-    if (!epoxy_has_egl_extension(display_, "EGL_KHR_surfaceless_context")) {
+    if (!has_extension(display_, "EGL_KHR_surfaceless_context")) {
         throw Error(ExitCode::kNoGl, "the display has no EGL_KHR_surfaceless_context");
     }
     if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) fail("binding desktop OpenGL");
@@ -212,7 +219,7 @@ void EglSession::create_context() {
                                                   EGL_NONE};
     EGLConfig config = nullptr;
     EGLint config_count = 0;
-    if (!epoxy_has_egl_extension(display_, "EGL_KHR_no_config_context")) {
+    if (!has_extension(display_, "EGL_KHR_no_config_context")) {
         if (eglChooseConfig(display_, config_attributes.data(), &config, 1, &config_count) != EGL_TRUE ||
             config_count == 0) {
             fail("choosing a configuration");
@@ -232,6 +239,12 @@ void EglSession::create_context() {
 }
 
 void EglSession::make_current() const {
+    if (is_inherited()) {
+        throw Error(
+            ExitCode::kNoGl,
+            "a picture that the parent process had begun cannot be finished in a forked process; draw "
+            "it anew there, or start processes by spawn");
+    }
     // Which API a thread means is a state of that thread.
     if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) fail("binding desktop OpenGL");
     if (eglGetCurrentContext() == context_) return;
@@ -252,15 +265,11 @@ void EglSession::read_info() {
 }
 
 void EglSession::close() {
-    if (display_ == EGL_NO_DISPLAY) return;
-    if (context_ != EGL_NO_CONTEXT) {
-        if (eglGetCurrentContext() == context_)
-            eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-        eglDestroyContext(display_, context_);
-    }
-    close_display(display_);
+    if (is_inherited() || context_ == EGL_NO_CONTEXT) return;
+    if (eglGetCurrentContext() == context_)
+        eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    eglDestroyContext(display_, context_);
     context_ = EGL_NO_CONTEXT;
-    display_ = EGL_NO_DISPLAY;
 }
 
 }  // namespace corda::gl

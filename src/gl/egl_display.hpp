@@ -1,6 +1,7 @@
 #pragma once
 
 #include <epoxy/egl.h>
+#include <unistd.h>
 
 #include <optional>
 #include <string>
@@ -23,7 +24,8 @@ struct Platform {
 /// work.
 [[nodiscard]] std::vector<Platform> list_platforms(const ContextDef& def);
 
-/// An initialised EGL display and a surfaceless context that is current on this thread.
+/// An initialised EGL display and a surfaceless context that is current on this thread. All uses require
+/// lock_driver().
 class EglSession {
   public:
     /// Throws corda::Error (kNoGl) with the step that failed and EGL's reason.
@@ -32,7 +34,11 @@ class EglSession {
     EglSession& operator=(const EglSession&) = delete;
     ~EglSession();
 
+    /// Throws corda::Error (kNoGl), in a forked child of the process that made it too.
     void make_current() const;
+    /// True in a forked child of the process that made it. There its objects must not be touched, not even to
+    /// destroy them.
+    [[nodiscard]] bool is_inherited() const { return process_ != getpid(); }
 
     [[nodiscard]] const ContextInfo& info() const { return info_; }
 
@@ -45,6 +51,8 @@ class EglSession {
     EGLDisplay display_ = EGL_NO_DISPLAY;
     EGLContext context_ = EGL_NO_CONTEXT;
     ContextInfo info_;
+    bool is_shared_ = false;  ///< the host application uses the display too
+    pid_t process_ = getpid();
 };
 
 }  // namespace corda::gl

@@ -41,8 +41,11 @@ void PixelBuffer::begin(std::size_t bytes) {
         glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
         buffer_.reset();
         forget_errors();
-        throw Error(ExitCode::kNoGl,
-                    fmt::format("OpenGL has no {} bytes to read pixels into; see: corda doctor", bytes));
+        throw Error(
+            ExitCode::kTemporary,
+            fmt::format("OpenGL has no {} bytes to read pixels into; take a smaller size, or try again with "
+                        "more memory",
+                        bytes));
     }
     bytes_ = bytes;
 }

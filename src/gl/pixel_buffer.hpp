@@ -17,7 +17,7 @@ class PixelBuffer {
     ~PixelBuffer();
 
     /// Makes room for `bytes`; what was read before is lost. Until end(), glReadPixels() takes an offset in
-    /// this buffer, by buffer_offset(), for an address. Throws corda::Error (kNoGl) if there is no room.
+    /// this buffer, by buffer_offset(), for an address. Throws corda::Error (kTemporary) if there is no room.
     void begin(std::size_t bytes);
     void end();
 

@@ -210,20 +210,21 @@ class PyFilm {
     ~PyFilm() {
         const py::gil_scoped_release release;
         const std::unique_lock lock(mutex_, std::try_to_lock);
-        // Only a thread that never returns holds the lock: this one has the last reference.
-        if (lock.owns_lock()) {
-            film_.reset();
-        } else {
-            static_cast<void>(film_.release());
-        }
+        // What a thread that never returns was using is left as it is.
+        if (!lock.owns_lock() || is_cut_off()) static_cast<void>(film_.release());
+        film_.reset();
     }
 
     /// Calls `work` with the film and what asks Python whether to go on.
     template <class Work>
     auto with_film(const Work& work, py::object on_progress = py::none()) {
+        if (is_cut_off()) {
+            throw corda::Error(corda::ExitCode::kUsage,
+                               "the parent process was using this film when it forked, so its state is "
+                               "unfinished here; make another Film, or start processes by spawn");
+        }
         Asking asking(std::move(on_progress));
         auto result = asking.run([&](const corda::OnProgress& ask) {
-            renew_after_fork();
             const std::lock_guard lock(mutex_);
             const Use use(*this, ask);
             return work(*film_, ask);
@@ -237,32 +238,29 @@ class PyFilm {
     class Use {
       public:
         Use(PyFilm& film, const corda::OnProgress& ask)
-            : film_(&film), before_(std::exchange(film.ask_, ask)) {}
+            : film_(&film), before_(std::exchange(film.ask_, ask)), user_(film.user_.exchange(getpid())) {}
         Use(const Use&) = delete;
         Use& operator=(const Use&) = delete;
-        ~Use() { film_->ask_ = before_; }
+        ~Use() {
+            film_->ask_ = before_;
+            film_->user_ = user_;
+        }
 
       private:
         PyFilm* film_;
         corda::OnProgress before_;
+        pid_t user_;
     };
 
-    /// A forked child inherits the lock as it was: free, or held for ever by a thread that is not there.
-    void renew_after_fork() {
-        if (process_.exchange(getpid()) == getpid()) return;
-        if (mutex_.try_lock()) {
-            mutex_.unlock();
-            return;
-        }
-        process_ = 0;  // the next call finds the same
-        throw corda::Error(
-            corda::ExitCode::kTemporary,
-            "this process was forked while another thread used the film; make a new Film in the "
-            "forked process, or start it by multiprocessing's method \"spawn\"");
+    /// True in a process that was forked while a thread of its parent used the film: the thread is not here,
+    /// and its work and its lock will never end.
+    [[nodiscard]] bool is_cut_off() const {
+        const pid_t user = user_;
+        return user != 0 && user != getpid();
     }
 
-    std::recursive_mutex mutex_;  ///< on_progress may draw
-    std::atomic<pid_t> process_ = getpid();
+    std::recursive_mutex mutex_;   ///< on_progress may draw
+    std::atomic<pid_t> user_ = 0;  ///< the process that is using the film; 0: none
     corda::OnProgress ask_;
     std::unique_ptr<corda::Film> film_;
 };

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/gl/check.hpp"
 #include "corda/render/ground.hpp"
 #include "corda/render/paint.hpp"
@@ -66,10 +67,26 @@ void check_size(int width, int height) {
                             width, height, widest, highest));
 }
 
+/// Per pixel: the picture, and the masks in a format that the driver chooses.
+constexpr std::uint64_t kFrameBytes = 4 + 4;
+/// Per pixel besides, for tinted layers.
+constexpr std::uint64_t kTintBytes = 16;
+
+/// Drivers may crash when they have no memory.
+void require_memory(int width, int height, std::uint64_t bytes_per_pixel) {
+    constexpr std::uint64_t kReadBytes = 32U << 20U;  // the buffers that are read into
+    require_address_space(bytes_per_pixel * static_cast<std::uint64_t>(width) * height + kReadBytes,
+                          fmt::format("a frame of {}x{} pixels", width, height));
+}
+
 /// The same shader for tinted layers.
 std::string tinted(std::string source) {
     const std::size_t second_line = source.find('\n') + 1;  // #version stays the first
     return source.insert(second_line, "#define TINTED\n");
+}
+
+std::string making_frame(const Image& image) {
+    return fmt::format("making a frame of {}x{} pixels", image.width(), image.height());
 }
 
 void make_texture(const gl::Texture& texture, GLenum format, const Image& image) {
@@ -78,6 +95,7 @@ void make_texture(const gl::Texture& texture, GLenum format, const Image& image)
     glTexStorage2D(GL_TEXTURE_2D, 1, format, image.width(), image.height());
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    gl::check_errors(making_frame(image));  // or a framebuffer without memory would be called incomplete
 }
 
 /// A framebuffer of these textures, in the order of the shader's outputs.
@@ -93,10 +111,6 @@ void make_target(const gl::Framebuffer& target, std::initializer_list<const gl::
     gl::check_framebuffer(what);
 }
 
-std::string making_frame(const Image& image) {
-    return fmt::format("making a frame of {}x{} pixels", image.width(), image.height());
-}
-
 }  // namespace
 
 FrameRenderer::Tints::Tints()
@@ -105,7 +119,7 @@ FrameRenderer::Tints::Tints()
 
 FrameRenderer::FrameRenderer(const gl::Context& context, int width, int height)
     : context_(&context),
-      image_((check_size(width, height), Image(width, height))),
+      image_((check_size(width, height), require_memory(width, height, kFrameBytes), Image(width, height))),
       exposure_(width, height),
       capsule_program_("capsule", shaders::kCapsuleVert, shaders::kCapsuleFrag),
       clear_program_("clear", shaders::kClearVert, shaders::kClearFrag),
@@ -120,6 +134,7 @@ FrameRenderer::FrameRenderer(const gl::Context& context, int width, int height)
 }
 
 void FrameRenderer::make_tints() {
+    require_memory(image_.width(), image_.height(), kTintBytes);
     const auto lock = context_->exclusive();
     auto tints = std::make_unique<Tints>();
     make_texture(tints->sums, GL_RGBA32F, image_);

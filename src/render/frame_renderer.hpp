@@ -34,7 +34,8 @@ class FrameRenderer {
   public:
     /// The context must be current whenever this draws, and outlive it. Of one that draws on the CPU, only
     /// whoever holds exclusive() makes or destroys a renderer; one that draws takes it for as long as OpenGL
-    /// works. Throws corda::Error (kNoGl) if the driver cannot draw a frame of that size.
+    /// works. Throws corda::Error: kNoGl if the driver cannot draw a frame of that size, kTemporary if memory
+    /// is too little.
     FrameRenderer(const gl::Context& context, int width, int height);
 
     /// Draws the next frame; `list` has this renderer's size. Returns what may differ from the last frame. A

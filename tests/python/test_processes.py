@@ -76,7 +76,7 @@ def test_a_film_that_was_drawing_during_a_fork_is_refused_in_the_child(tmp_path)
         assert film.size == (160, 90)
     """, cwd=tmp_path)
     assert ended.returncode == 0, ended.stderr
-    assert "make a new Film in the forked process" in ended.stdout
+    assert "make another Film" in ended.stdout
 
 
 DAEMONS = {

@@ -1,0 +1,207 @@
+#include "corda/gl/driver.hpp"
+
+#include <dlfcn.h>
+#include <link.h>
+#include <pthread.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/machine.hpp"
+
+namespace corda::gl {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::recursive_mutex& driver_mutex() {
+    static std::recursive_mutex mutex;
+    return mutex;
+}
+
+/// Makes fork() wait for the mutex. A child's thread has another id than the one that locked it, so there
+/// the mutex is made anew.
+void guard_fork() {
+    static const int registered =
+        pthread_atfork([] { driver_mutex().lock(); }, [] { driver_mutex().unlock(); },
+                       [] { std::construct_at(&driver_mutex()); });
+    static_cast<void>(registered);
+}
+
+/// Address space that the first context takes: measured 200 MB on Mesa 22.3 with LLVM 15, of which most is
+/// the driver's code. Later LLVM is larger.
+constexpr std::uint64_t kFirstContextBytes = 320U << 20U;
+/// A further context, its programs and their compilation: measured below 10 MB.
+constexpr std::uint64_t kContextBytes = 48U << 20U;
+
+/// The first process that used a driver, and whether its children may. Kept over fork().
+struct DriverUse {
+    pid_t process = 0;
+    bool is_safe_after_fork = true;
+};
+
+DriverUse& driver_use() {
+    static DriverUse use;
+    return use;
+}
+
+/// Opens a library as libepoxy does, for as long as the process lives; null if it cannot be loaded.
+void* library(const char* name) {
+    return dlopen(name, RTLD_LAZY | RTLD_LOCAL);
+}
+
+constexpr std::array kEglFunctions{"eglBindAPI",           "eglChooseConfig",      "eglCreateContext",
+                                   "eglDestroyContext",    "eglGetCurrentContext", "eglGetCurrentDisplay",
+                                   "eglGetCurrentSurface", "eglGetDisplay",        "eglGetError",
+                                   "eglGetProcAddress",    "eglInitialize",        "eglMakeCurrent",
+                                   "eglQueryAPI",          "eglQueryString"};
+
+/// Folder of a loaded or loadable library; empty if it cannot be loaded.
+fs::path folder_of(const char* name) {
+    link_map* map = nullptr;
+    void* const handle = library(name);
+    if (handle == nullptr || dlinfo(handle, RTLD_DI_LINKMAP, &map) != 0 || map == nullptr) return {};
+    return fs::path(map->l_name).parent_path();
+}
+
+/// True if a folder holds a file whose name begins with one of these.
+bool holds_any(const fs::path& folder, std::initializer_list<std::string_view> beginnings) {
+    std::error_code failed;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
+        const std::string name = entry.path().filename();
+        for (const std::string_view beginning : beginnings)
+            if (name.starts_with(beginning)) return true;
+    }
+    return false;
+}
+
+/// True if a variable that lists folders or files replaces libraries that a driver consists of.
+bool replaces_driver(std::string_view value) {
+    for (std::size_t at = 0; at <= value.size();) {
+        const std::size_t end = std::min(value.find_first_of(": ", at), value.size());
+        const fs::path path = value.substr(at, end - at);
+        at = end + 1;
+        if (!path.empty() && holds_any(path, {"libEGL", "libGL", "libOpenGL", "libgallium", "libglapi",
+                                              "libLLVM", "libstdc++", "libdrm", "libexpat", "libz."}))
+            return true;
+    }
+    return false;
+}
+
+/// Debian's packages whose files no driver can do without and that are missing.
+std::vector<std::string> missing_packages() {
+    const fs::path mesa = folder_of("libEGL_mesa.so.0");
+    std::vector<std::string> packages;
+    if (mesa.empty()) packages.emplace_back("libegl-mesa0");
+    const bool has_swrast =
+        !mesa.empty() && (fs::exists(mesa / "dri/swrast_dri.so") || holds_any(mesa, {"libgallium"}));
+    if (!has_swrast) packages.emplace_back("libgl1-mesa-dri");
+    return packages;
+}
+
+/// Why a library cannot be loaded, from dlerror(), and what helps.
+std::string load_failure(const char* name, const char* packages) {
+    const char* const given = dlerror();
+    const std::string reason = given != nullptr ? given : "no reason given";
+    std::string remedy = "remove that file, or install the package that it belongs to anew";
+    if (const std::string variables = driver_variables();
+        variables.find("LD_LIBRARY_PATH=") != variables.npos)
+        remedy = "unset " + variables;
+    else if (reason.find("No such file") != reason.npos)
+        remedy = fmt::format("on Debian: apt-get install {}", packages);
+    return fmt::format("{} cannot be loaded ({}); {}", name, reason, remedy);
+}
+
+/// Why EGL or OpenGL cannot be called, with a remedy; empty if they can.
+std::string missing_library() {
+    void* const egl = library("libEGL.so.1");
+    if (egl == nullptr) return load_failure("libEGL.so.1", "libegl1 libegl-mesa0");
+    for (const char* const name : kEglFunctions) {
+        if (dlsym(egl, name) != nullptr) continue;
+        link_map* map = nullptr;
+        const bool has_path = dlinfo(egl, RTLD_DI_LINKMAP, &map) == 0 && map != nullptr;
+        return fmt::format(
+            "{} has no function {}; remove this file, or have another libEGL.so.1 found before it",
+            has_path ? map->l_name : "libEGL.so.1", name);
+    }
+    if (library("libOpenGL.so.0") != nullptr || library("libGL.so.1") != nullptr) return {};
+    return load_failure("libGL.so.1", "libopengl0");
+}
+
+}  // namespace
+
+std::unique_lock<std::recursive_mutex> lock_driver() {
+    guard_fork();
+    return std::unique_lock(driver_mutex());
+}
+
+bool has_libraries() {
+    static const bool has = missing_library().empty();
+    return has;
+}
+
+void prepare_driver() {
+    const bool is_first = driver_use().process == 0;
+    require_address_space(is_first ? kFirstContextBytes : kContextBytes, "OpenGL");
+    static const int set = setenv("LP_NUM_THREADS", "0", 0);  // once: other threads may read the environment
+    static_cast<void>(set);
+    if (!has_libraries()) throw Error(ExitCode::kNoGl, "no usable OpenGL: " + missing_library());
+}
+
+void note_driver_use(bool is_safe_after_fork) {
+    DriverUse& use = driver_use();
+    if (use.process == 0 || !is_safe_after_fork) use.process = getpid();
+    use.is_safe_after_fork = use.is_safe_after_fork && is_safe_after_fork;
+}
+
+void require_driver_after_fork() {
+    const DriverUse& use = driver_use();
+    if (use.process == 0 || use.process == getpid() || use.is_safe_after_fork) return;
+    throw Error(
+        ExitCode::kNoGl,
+        "the parent process has drawn with threads or hardware that a forked process does not have; start "
+        "processes by spawn (Python: multiprocessing.get_context(\"spawn\")), or fork before the first "
+        "picture");
+}
+
+std::string driver_variables() {
+    std::vector<std::string> set;
+    for (const char* const name :
+         {"LIBGL_DRIVERS_PATH", "__EGL_VENDOR_LIBRARY_DIRS", "__EGL_VENDOR_LIBRARY_FILENAMES",
+          "__EGL_EXTERNAL_PLATFORM_CONFIG_DIRS", "GALLIUM_DRIVER", "GALLIUM_NOOP",
+          "MESA_LOADER_DRIVER_OVERRIDE", "MESA_GL_VERSION_OVERRIDE", "MESA_GLSL_VERSION_OVERRIDE",
+          "MESA_EXTENSION_OVERRIDE", "MESA_EXTENSION_MAX_YEAR", "EGL_PLATFORM", "EGL_DRIVER",
+          "LIBGL_ALWAYS_SOFTWARE", "LD_LIBRARY_PATH"}) {
+        const char* const value = std::getenv(name);
+        if (value == nullptr || *value == '\0') continue;
+        const std::string_view text(name);
+        if (text == "LD_LIBRARY_PATH" && !replaces_driver(value)) continue;
+        set.push_back(fmt::format("{}={}", name, value));
+    }
+    return fmt::format("{}", fmt::join(set, ", "));
+}
+
+std::string driver_remedy() {
+    const std::string variables = driver_variables();
+    const std::vector<std::string> packages = missing_packages();
+    if (!packages.empty() && variables.empty())
+        return fmt::format("On Debian: apt-get install {}", fmt::join(packages, " "));
+    if (!variables.empty()) {
+        return fmt::format("Unset what chooses or changes the driver: {}{}", variables,
+                           packages.empty() ? ""
+                                            : fmt::format("; if that does not help, apt-get install {}",
+                                                          fmt::join(packages, " ")));
+    }
+    return "The files of Mesa's driver are installed; EGL_LOG_LEVEL=debug shows what it reports";
+}
+
+}  // namespace corda::gl

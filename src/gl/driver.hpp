@@ -1,0 +1,37 @@
+#pragma once
+
+#include <mutex>
+#include <string>
+
+namespace corda::gl {
+
+/// Locks all use of EGL, and of OpenGL on the CPU, in this process. fork() waits for the lock, so that a
+/// child finds it free and the driver's data complete.
+[[nodiscard]] std::unique_lock<std::recursive_mutex> lock_driver();
+
+/// True if the libraries of EGL and OpenGL can be loaded and have the functions that Corda calls. libepoxy
+/// ends the process if they cannot, so no function of EGL or OpenGL may be called before this has been true.
+[[nodiscard]] bool has_libraries();
+
+/// Prepares the process for EGL; call it before any other use of EGL, under lock_driver(). Sets
+/// LP_NUM_THREADS to 0 unless it is set: llvmpipe waits for ever for threads that could not start or that
+/// fork() left in the parent, and the threads cost more than they save. Throws corda::Error: kNoGl with the
+/// Debian package if a library is missing, kTemporary if the limit on the address space leaves too little.
+void prepare_driver();
+
+/// Records how this process uses its driver. `is_safe` is true if a child of fork() may make a context, as
+/// no thread of the driver is lost in it.
+void note_driver_use(bool is_safe_after_fork);
+
+/// Throws corda::Error (kNoGl) in a process whose parent has used a driver that does not survive fork().
+void require_driver_after_fork();
+
+/// The environment variables that are set and choose, replace or change a driver, as "NAME=value", separated
+/// by commas; empty if none is set.
+[[nodiscard]] std::string driver_variables();
+
+/// What may help if no driver gives a context, as a sentence: variables to unset, packages that are missing,
+/// or how to learn more.
+[[nodiscard]] std::string driver_remedy();
+
+}  // namespace corda::gl
