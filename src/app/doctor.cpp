@@ -8,7 +8,9 @@
 
 #include "commands.hpp"
 #include "corda/gl/context.hpp"
+#include "corda/gl/driver.hpp"
 #include "corda/media/probe.hpp"
+#include "corda/render/driver_check.hpp"
 
 namespace corda::app {
 namespace {
@@ -16,7 +18,7 @@ namespace {
 void print_contexts(const Console& console, const std::vector<gl::Attempt>& attempts) {
     console.result("Ways to OpenGL, in the order in which they are tried:");
     for (const gl::Attempt& attempt : attempts) {
-        if (!attempt.info) {
+        if (!attempt.is_usable()) {
             console.result(fmt::format("  no   {}: {}", attempt.platform, attempt.failure));
             continue;
         }
@@ -26,15 +28,14 @@ void print_contexts(const Console& console, const std::vector<gl::Attempt>& atte
         console.result(fmt::format("       OpenGL {} by {}; EGL {} by {}; frames up to {} pixels per side",
                                    info.gl_version, info.gl_vendor, info.egl_version, info.egl_vendor,
                                    info.max_texture_px));
+        console.result("       its test picture equals the plain C++ reference in every byte");
     }
 }
 
 nlohmann::json to_json(const gl::Attempt& attempt) {
-    nlohmann::json json = {{"platform", attempt.platform}, {"usable", attempt.info.has_value()}};
-    if (!attempt.info) {
-        json["reason"] = attempt.failure;
-        return json;
-    }
+    nlohmann::json json = {{"platform", attempt.platform}, {"usable", attempt.is_usable()}};
+    if (!attempt.is_usable()) json["reason"] = attempt.failure;
+    if (!attempt.info) return json;
     const gl::ContextInfo& info = *attempt.info;
     json["gl_vendor"] = info.gl_vendor;
     json["gl_renderer"] = info.gl_renderer;
@@ -43,6 +44,7 @@ nlohmann::json to_json(const gl::Attempt& attempt) {
     json["egl_version"] = info.egl_version;
     json["max_texture_px"] = info.max_texture_px;
     json["software"] = info.software;
+    json["equals_reference"] = attempt.is_usable();
     return json;
 }
 
@@ -76,16 +78,28 @@ void print_formats(const Console& console, const std::vector<Writable>& formats)
     }
 }
 
+/// The last word on a machine without a usable platform.
+std::string cannot_draw(const std::vector<gl::Attempt>& attempts) {
+    const bool has_remedy_above =
+        std::any_of(attempts.begin(), attempts.end(), [](const gl::Attempt& attempt) {
+            return attempt.info.has_value() || attempt.platform == gl::kEveryPlatform;
+        });
+    return has_remedy_above ? "This machine cannot draw, for the reason above."
+                            : "This machine cannot draw. " + gl::driver_remedy();
+}
+
 ExitCode doctor(const Console& console) {
-    const std::vector<gl::Attempt> attempts = gl::probe_contexts();
+    const std::vector<gl::Attempt> attempts = gl::probe_contexts(render::check_driver);
     const std::vector<media::EncoderProbe> encoders = media::probe_encoders();
-    const bool has_gl = std::any_of(attempts.begin(), attempts.end(),
-                                    [](const gl::Attempt& a) { return a.info.has_value(); });
+    const bool has_gl =
+        std::any_of(attempts.begin(), attempts.end(), [](const gl::Attempt& a) { return a.is_usable(); });
+    const bool is_temporary = std::any_of(attempts.begin(), attempts.end(), [](const gl::Attempt& a) {
+        return a.code == ExitCode::kTemporary;
+    });
     print_contexts(console, attempts);
     const std::vector<Writable> formats = writable(encoders);
     print_formats(console, formats);
-    console.result(has_gl ? "This machine can draw."
-                          : "This machine cannot draw: apt-get install libegl-mesa0 libgl1-mesa-dri");
+    console.result(has_gl ? "This machine can draw." : cannot_draw(attempts));
     std::vector<std::string> written;
     std::vector<std::string> missing;
     for (const Writable& format : formats)
@@ -106,7 +120,7 @@ ExitCode doctor(const Console& console) {
                                     {"reason", encoder.reason}});
     }
     console.report(json);
-    if (!has_gl) return ExitCode::kNoGl;
+    if (!has_gl) return is_temporary ? ExitCode::kTemporary : ExitCode::kNoGl;
     return missing.empty() ? ExitCode::kOk : ExitCode::kEncoder;
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/render/driver_check.hpp"
 #include "corda/view/validate.hpp"
 
 namespace corda::pipeline {
@@ -49,7 +50,7 @@ Stage::~Stage() {
     const gl::SavedContext saved;
     const auto lock = canvas_->context.exclusive();
     try {
-        canvas_->context.make_current();
+        canvas_->context.make_current();  // throws in a forked child, which must not destroy its parent's
     } catch (const Error&) {
         // The renderer's objects can be given back only in their own context. It is lost, or another
         // thread's.
@@ -87,13 +88,16 @@ view::Camera Stage::map_of(const CameraDef& camera) const {
 }
 
 void Stage::open(Needs needs) {
+    // A forked child draws in a context of its own, and leaves its parent's alone.
+    if (canvas_ && canvas_->context.is_inherited()) static_cast<void>(canvas_.release());
     if (canvas_)
         canvas_->context.make_current();
     else
         canvas_ = std::make_unique<Canvas>(gl_);
+    if (needs == Needs::kContext || canvas_->renderer) return;
     const auto lock = canvas_->context.exclusive();
-    if (needs == Needs::kDrawing && !canvas_->renderer)
-        canvas_->renderer.emplace(canvas_->context, scene_->video.width_px, scene_->video.height_px);
+    render::check_driver(canvas_->context);
+    canvas_->renderer.emplace(canvas_->context, scene_->video.width_px, scene_->video.height_px);
 }
 
 Damage Stage::draw(const State& state, const view::Camera& map, const view::Caption& caption,
