@@ -162,7 +162,7 @@ class ValueChecker {
             case Kind::kNumber:
                 return "a number";
             case Kind::kFrameRate:
-                return "an integer or text in quotes";
+                return "a number or text in quotes";
             default:
                 return "text in quotes";
         }

@@ -32,7 +32,7 @@ std::string kind_text(Kind kind) {
         case Kind::kText:
             return "text";
         case Kind::kFrameRate:
-            return "integer or fraction as text";
+            return "number or fraction as text";
     }
     return "";
 }
@@ -158,8 +158,8 @@ std::string remedy(const Key& key) {
             return fmt::format("give {} as one line of text in quotes", key.meaning);
         case Kind::kFrameRate:
             return fmt::format(
-                R"(give {}, {}, as an integer or as a fraction in quotes such as "30000/1001")", key.meaning,
-                range_text(key));
+                R"(give {}, {}, as a number of up to three decimals or as a fraction in quotes such as "30000/1001")",
+                key.meaning, range_text(key));
         default:
             return number_remedy(key);
     }

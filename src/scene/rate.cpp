@@ -2,23 +2,36 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <optional>
+#include <string_view>
 
 #include "corda/scene/problems.hpp"
 
 namespace corda::scene {
 namespace {
 
-/// The fraction that someone who wrote a number such as 29.97 or 12.5 means.
-std::optional<Rational> nearest_fraction(double fps) {
+/// The fraction that someone who rounded a number such as 29.97 or 16.667 means.
+std::optional<Rational> rounded_fraction(double fps) {
     constexpr double kBroadcast = 2e-4;  // 23.98 for 24000/1001 is the coarsest habit
-    constexpr std::array<std::int64_t, 5> kBroadcastRates{24, 30, 48, 60, 120};
+    constexpr std::array<std::int64_t, 7> kBroadcastRates{12, 15, 24, 30, 48, 60, 120};
     for (const std::int64_t rate : kBroadcastRates) {
         const Rational fraction{rate * 1000, 1001};
         if (std::abs(fps / fraction.value() - 1.0) < kBroadcast) return fraction;
     }
+    constexpr double kThird = 1.5e-3;  // of 0.333 and 16.667
+    const double thirds = std::round(3.0 * fps);
+    const bool is_third = thirds >= 1.0 && std::fmod(thirds, 3.0) != 0.0;
+    if (is_third && std::abs(3.0 * fps - thirds) <= kThird * std::min(1.0, thirds))
+        return Rational{static_cast<std::int64_t>(thirds), 3};
+    return std::nullopt;
+}
+
+/// The fraction of few digits that a number with many is, such as 0.142857142857.
+std::optional<Rational> nearest_fraction(double fps) {
     constexpr std::int64_t kLargestDenominator = 1000;
     for (std::int64_t den = 2; den <= kLargestDenominator; ++den) {
         const double num = std::round(fps * static_cast<double>(den));
@@ -31,12 +44,26 @@ std::optional<Rational> nearest_fraction(double fps) {
 
 std::variant<Rational, std::string> rate_from_number(double fps) {
     if (!std::isfinite(fps)) return fmt::format("{} is not a finite number", fps);
-    if (std::abs(fps) > static_cast<double>(Rational::kLargestPart))
+    if (std::abs(fps) > static_cast<double>(Rational::kLargestPart) / 1000.0)
         return fmt::format("{} is out of range", fps);
     if (fps == std::floor(fps)) return Rational{static_cast<std::int64_t>(fps), 1};
+    if (const auto meant = rounded_fraction(fps))
+        return fmt::format("{} is not exact; write \"{}\"", fps, meant->text());
+    // A decimal of up to three digits is a number of thousandths.
+    const double thousandths = std::round(1000.0 * fps);
+    if (thousandths / 1000.0 == fps) return Rational::reduced(static_cast<std::int64_t>(thousandths), 1000);
     const auto fraction = nearest_fraction(fps);
     return fraction ? fmt::format("{} is not exact; write \"{}\"", fps, fraction->text())
                     : fmt::format("{} is not exact", fps);
+}
+
+/// A number in decimal digits; std::nullopt for any other text.
+std::optional<double> decimal(std::string_view text) {
+    double value = 0.0;
+    const char* const end = text.data() + text.size();
+    const auto [stop, status] = std::from_chars(text.data(), end, value, std::chars_format::fixed);
+    const bool is_number = status == std::errc{} && stop == end && std::isfinite(value);
+    return is_number ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace
@@ -45,6 +72,7 @@ std::variant<Rational, std::string> read_rate(const toml::node& node) {
     if (node.is_number()) return rate_from_number(number_of(node));
     const std::string& text = node.as_string()->get();
     if (const auto rate = Rational::parse(text)) return *rate;
+    if (const auto fps = decimal(text); fps && *fps > 0.0) return rate_from_number(*fps);
     return fmt::format("\"{}\" is not a fraction", excerpt(text));
 }
 

@@ -69,9 +69,9 @@ Json value_json(const Type& type) {
         case Kind::kColor:
             return {{"type", "string"}, {"pattern", "^(#[0-9A-Fa-f]{6}([0-9A-Fa-f]{2})?|[A-Za-z]+)$"}};
         case Kind::kFrameRate: {
-            Json whole{{"type", "integer"}};
-            add_range(type.range, whole);
-            return {{"anyOf", {whole, {{"type", "string"}, {"pattern", "^[0-9]+(/[0-9]+)?$"}}}}};
+            Json number{{"type", "number"}};
+            add_range(type.range, number);
+            return {{"anyOf", {number, {{"type", "string"}, {"pattern", "^[0-9]+([./][0-9]+)?$"}}}}};
         }
     }
     if (!type.choices.empty()) json["enum"] = words_json(type);

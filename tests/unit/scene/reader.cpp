@@ -266,5 +266,19 @@ TEST(SceneReader, PalettesOfAnyNumberOfColours) {
     EXPECT_EQ(parse_scene(with("[style]\npalette = [" + colors + "]"), "a").style.palette.size(), 1000U);
 }
 
+TEST(SceneReader, FrameRatesOfUpToThreeDecimalsAreExact) {
+    const auto rate_of = [](const std::string& fps) {
+        return parse_scene(with("[video]\nfps = " + fps), "a").video.fps.rational();
+    };
+    EXPECT_EQ(rate_of("12.5"), (Rational{25, 2}));
+    EXPECT_EQ(rate_of("\"12.5\""), (Rational{25, 2}));
+    EXPECT_EQ(rate_of("0.5"), (Rational{1, 2}));
+    EXPECT_EQ(rate_of("7.25"), (Rational{29, 4}));
+    EXPECT_EQ(rate_of("0.001"), (Rational{1, 1000}));
+    EXPECT_EQ(rate_of("99999.999"), (Rational{99'999'999, 1000}));
+    EXPECT_EQ(rate_of("60.0"), (Rational{60, 1}));
+    EXPECT_EQ(rate_of("\"60.000\""), (Rational{60, 1}));
+}
+
 }  // namespace
 }  // namespace corda::scene
