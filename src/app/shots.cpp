@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/timeline.hpp"
 
 namespace corda::app {
 namespace {
@@ -74,12 +74,13 @@ void ShotOptions::require() const {
 std::vector<Shot> ShotOptions::list(const Scene& scene) const {
     std::vector<Shot> shots;
     for (const double time_s : times_s) {
-        if (!std::isfinite(time_s) || time_s < 0.0 || time_s > scene.world.duration_s) {
+        const auto within_s = time_within(time_s, scene.world.duration_s);
+        if (!within_s) {
             throw Error(ExitCode::kUsage,
                         fmt::format("--at {}: is not within 0 .. {} s; world.duration sets the end", time_s,
                                     scene.world.duration_s));
         }
-        shots.push_back({time_s, std::nullopt});
+        shots.push_back({*within_s, std::nullopt});
     }
     for (const std::string& word : frames) {
         const FrameRange range = frames_of(word, scene);

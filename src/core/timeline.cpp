@@ -7,6 +7,13 @@
 
 namespace corda {
 
+std::optional<double> time_within(double time_s, double end_s) {
+    constexpr double kRounding = 1e-12;
+    const double rounding_s = kRounding * end_s;
+    if (!(time_s >= -rounding_s && time_s <= end_s + rounding_s)) return std::nullopt;
+    return std::clamp(time_s, 0.0, end_s);
+}
+
 Timeline::Timeline(FrameRate fps, std::int64_t last_frame, std::vector<double> still_times_s)
     : fps_(fps),
       frame_count_(static_cast<std::size_t>(last_frame) + 1),

@@ -9,6 +9,10 @@
 
 namespace corda {
 
+/// `time_s` if it is within 0 .. `end_s`; the nearer end if rounding alone, 1e-12 of `end_s`, takes it
+/// outside, as 3 * 0.1 is beyond 0.3; otherwise std::nullopt, also for NaN.
+[[nodiscard]] std::optional<double> time_within(double time_s, double end_s);
+
 /// The times at which a motion is recorded, in order: the frame times 0 .. last_frame of a rate, and others
 /// between or after them, such as those of stills.
 class Timeline {

@@ -155,15 +155,16 @@ struct Film::Impl {
         return made;
     }
 
-    void require_time(double time_s) const {
-        if (pipeline::has_time(scene, time_s)) return;
+    /// As time_within() takes it. Throws kUsage for a time at which there is no motion.
+    [[nodiscard]] double checked_s(double time_s) const {
+        if (const auto within_s = pipeline::motion_time_s(scene, time_s)) return *within_s;
         throw Error(ExitCode::kUsage, fmt::format("{} s is not within 0 .. {} s; world.duration sets the end",
                                                   time_s, scene.world.duration_s));
     }
 
     /// Painters in other threads may read the motion meanwhile.
     const State& at(double time_s) {
-        require_time(time_s);
+        time_s = checked_s(time_s);
         const std::lock_guard lock(run->reading);
         asked = motion.at(time_s, def.on_progress);
         figures = motion.figures();
@@ -178,7 +179,7 @@ struct Film::Impl {
     /// Reads the state at a time, and what the trails to it need, for a brush. Brushes may be used by several
     /// threads.
     const State& read(double time_s, Brush& by) {
-        require_time(time_s);
+        time_s = checked_s(time_s);
         const std::lock_guard lock(run->reading);
         by.tracks.read(motion, time_s, asking(by));
         by.state = motion.at(time_s, asking(by));
@@ -231,7 +232,7 @@ struct Film::Impl {
     /// Requires a Use of the brush's stage. `camera`: of find_camera().
     Damage draw(double time_s, double shutter, const CameraDef& camera_def, const OnProgress& on_progress,
                 Brush& by) {
-        require_time(time_s);
+        time_s = checked_s(time_s);
         if (!(shutter >= 0.0 && shutter <= 1.0))
             throw Error(ExitCode::kUsage, fmt::format("a shutter of {} is not within 0 .. 1", shutter));
         const view::Camera map = by.stage.map_of(camera_def);
@@ -333,6 +334,7 @@ struct Film::Impl {
 Film::Film(const Scene& scene, FilmDef def) {
     try {
         pipeline::validate(scene, def.stills_s);
+        for (double& time_s : def.stills_s) time_s = *pipeline::motion_time_s(scene, time_s);
         impl_ = std::make_unique<Impl>(scene, std::move(def));
     } catch (const Refusal& refusal) {
         throw pipeline::explained(refusal, scene.source);
@@ -473,9 +475,10 @@ Film FilmPainter::another_look(const Film& film, const Scene& look) {
 }
 
 void FilmPainter::keep(const Film& film, std::span<const double> times_s) {
-    for (const double time_s : times_s) film.impl_->require_time(time_s);
+    std::vector<double> checked_s;
+    for (const double time_s : times_s) checked_s.push_back(film.impl_->checked_s(time_s));
     const std::lock_guard lock(film.impl_->run->reading);
-    film.impl_->motion.keep(times_s, film.impl_->def.on_progress);
+    film.impl_->motion.keep(checked_s, film.impl_->def.on_progress);
 }
 
 bool FilmPainter::is_empty(const Film& film, double time_s) {

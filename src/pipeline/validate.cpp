@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/timeline.hpp"
 #include "corda/scene/limits.hpp"
 #include "corda/sim/validate.hpp"
 
@@ -35,9 +36,9 @@ std::int64_t last_frame_of(const Scene& scene) {
     return scene.video.fps.last_frame_within(scene.world.duration_s);
 }
 
-bool has_time(const Scene& scene, double time_s) {
+std::optional<double> motion_time_s(const Scene& scene, double time_s) {
     const double last_s = scene.video.fps.time_s(last_frame_of(scene));
-    return time_s >= 0.0 && time_s <= std::max(scene.world.duration_s, last_s);
+    return time_within(time_s, std::max(scene.world.duration_s, last_s));
 }
 
 void validate(const Scene& scene, std::span<const double> stills_s) {
@@ -49,7 +50,7 @@ void validate(const Scene& scene, std::span<const double> stills_s) {
     static_cast<void>(solvers_of(scene));
     for (const BodySolverDef& group : scene.body_solvers) sim::validate(group.method);
     for (const double time_s : stills_s) {
-        if (has_time(scene, time_s)) continue;
+        if (motion_time_s(scene, time_s)) continue;
         throw Error(ExitCode::kUsage,
                     fmt::format("stills_s: {} s is not within 0 .. {} s", time_s, scene.world.duration_s));
     }

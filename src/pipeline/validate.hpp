@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "corda/scene/scene.hpp"
@@ -9,8 +10,8 @@ namespace corda::pipeline {
 /// The number of the last frame of a scene; states exist up to it.
 [[nodiscard]] std::int64_t last_frame_of(const Scene& scene);
 
-/// Whether a scene's motion has a state at that time; false for NaN.
-[[nodiscard]] bool has_time(const Scene& scene, double time_s);
+/// A time of a scene's motion, as time_within() takes it; std::nullopt if the motion has no state then.
+[[nodiscard]] std::optional<double> motion_time_s(const Scene& scene, double time_s);
 
 /// Checks what a motion is planned by, before anything is computed from it: a scene that is filled in code
 /// has not been checked by the reader of scene files. Its bodies are checked by system_of, what is seen of

@@ -10,6 +10,7 @@
 
 #include "corda/core/file.hpp"
 #include "corda/core/text.hpp"
+#include "corda/core/timeline.hpp"
 #include "corda/golden/variant.hpp"
 #include "corda/suite/provenance.hpp"
 
@@ -45,13 +46,15 @@ Case make_case(const std::string& path, const SuiteDef& def, std::set<std::strin
     if (!made.scene.golden) return made;
     made.settings.push_back(
         fmt::format("video.size=[{},{}]", made.scene.golden->width_px, made.scene.golden->height_px));
-    for (const double time_s : made.scene.golden->at_s) {
-        if (time_s > made.scene.world.duration_s)
+    for (const double at_s : made.scene.golden->at_s) {
+        const auto within_s = time_within(at_s, made.scene.world.duration_s);
+        if (!within_s)
             throw Error(
                 ExitCode::kInvalidScene,
                 fmt::format("{}: golden.at: {} s is after the end of the motion, {} s; give an earlier time "
                             "or a longer world.duration",
-                            path, time_s, made.scene.world.duration_s));
+                            path, at_s, made.scene.world.duration_s));
+        const double time_s = *within_s;
         made.pictures.push_back(
             {.scene = made.scene.name, .name = name_of(made.scene.name, time_s) + kEnding, .time_s = time_s});
         if (!names.insert(made.pictures.back().name).second)

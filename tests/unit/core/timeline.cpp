@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <optional>
+
 namespace corda {
 namespace {
 
@@ -42,6 +45,15 @@ TEST(Timeline, IncreasesForEveryRate) {
         for (std::size_t i = 1; i < timeline.size(); ++i)
             EXPECT_LT(timeline.time_s(i - 1), timeline.time_s(i));
     }
+}
+
+TEST(TimeWithin, TakesATimeBeyondTheEndByRoundingForTheEnd) {
+    EXPECT_EQ(time_within(0.1 + 0.1 + 0.1, 0.3), 0.3);  // 0.30000000000000004
+    EXPECT_EQ(time_within(0.3 - 0.1 - 0.2, 0.3), 0.0);  // -2.8e-17
+    EXPECT_EQ(time_within(0.25, 0.3), 0.25);
+    EXPECT_EQ(time_within(0.3001, 0.3), std::nullopt);
+    EXPECT_EQ(time_within(-1e-6, 0.3), std::nullopt);
+    EXPECT_EQ(time_within(std::nan(""), 0.3), std::nullopt);
 }
 
 }  // namespace
