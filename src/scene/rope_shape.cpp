@@ -105,12 +105,13 @@ std::string short_bar_problem(std::size_t first, std::size_t last, std::size_t s
                               : ", and a link without length has no direction; move one");
 }
 
-/// Whether no bar has the length 0; otherwise the first of them is a problem.
-bool check_short_bars(const Value& points, const RopeDef& def) {
+/// Whether no bar has the length 0; otherwise the first of them is a problem. A link that hangs slack may
+/// have its ends at one place (`has_rest_lengths`).
+bool check_short_bars(const Value& points, const RopeDef& def, bool has_rest_lengths) {
     const std::size_t count = def.points_m.size();
     const std::size_t longest =
         std::min(static_cast<std::size_t>(def.reach), def.closed ? count / 2 : count - 1);
-    for (std::size_t k = 1; k <= longest; ++k) {
+    for (std::size_t k = has_rest_lengths && def.material.is_string ? 2 : 1; k <= longest; ++k) {
         for (std::size_t a = 0; a < (def.closed ? count : count - k); ++a) {
             const std::size_t b = (a + k) % count;
             if (distance_m(def.points_m[a], def.points_m[b]) >= kShortestBarMetres) continue;
@@ -175,7 +176,7 @@ bool read_rope_shape(const TableReader& rope, std::int64_t particles, RopeDef& d
     if (rope.has("line")) return read_line(rope.table("line"), particles, def);
     if (rope.has("hang")) return read_hang(rope.table("hang"), particles, def);
     read_points(rope, def.origin_m, def.points_m);
-    return check_short_bars(*rope.find("points"), def);
+    return check_short_bars(*rope.find("points"), def, rope.is_given("link_length"));
 }
 
 }  // namespace corda::scene

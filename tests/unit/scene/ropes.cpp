@@ -187,5 +187,14 @@ TEST(SceneRope, SeveralStayInTheirOrder) {
     EXPECT_EQ(scene.body_styles.size(), 2U);
 }
 
+TEST(SlackStrings, MayHaveLinksWhoseEndsAreAtOnePlace) {
+    const std::string points = "schema = 1\n[[rope]]\npoints = [[0, 0], [0, -1], [0, -1], [1, -1]]\n";
+    const Scene scene = parse_scene(points + "string = true\nlink_length = [1, 0.5, 1.5]\n", "a");
+    EXPECT_THAT(scene.ropes[0].rest_m, testing::ElementsAre(1.0, 0.5, 1.5));
+    // Without rest lengths, or rigid, such a link has no direction.
+    EXPECT_THAT(error_of(points + "string = true\n").message, testing::HasSubstr("points 1 and 2 coincide"));
+    EXPECT_THAT(error_of(points).message, testing::HasSubstr("points 1 and 2 coincide"));
+}
+
 }  // namespace
 }  // namespace corda::scene
