@@ -102,12 +102,17 @@ Font& Font::operator=(Font&&) noexcept = default;
 Font::~Font() = default;
 
 std::string Font::missing(std::string_view utf8) const {
+    std::vector<char32_t> missing;
     while (!utf8.empty()) {
         const char32_t character = take_character(utf8);
-        if (FT_Get_Char_Index(impl_->file.face(), character) == 0)
-            return fmt::format("U+{:04X}", static_cast<std::uint32_t>(character));
+        const bool is_known = std::find(missing.begin(), missing.end(), character) != missing.end();
+        if (!is_known && FT_Get_Char_Index(impl_->file.face(), character) == 0) missing.push_back(character);
     }
-    return {};
+    std::string text;
+    for (const char32_t character : missing) {
+        text += fmt::format("{}U+{:04X}", text.empty() ? "" : ", ", static_cast<std::uint32_t>(character));
+    }
+    return text;
 }
 
 int Font::width_px(std::string_view utf8, int size_px) {

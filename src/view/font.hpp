@@ -22,7 +22,8 @@ class Font {
     Font& operator=(Font&&) noexcept;
     ~Font();
 
-    /// The first character of a text that the font does not have, as "U+1F9F6"; empty if it has all.
+    /// The characters of a text that the font does not have, each once and in order, as "U+1F9F6, U+6F22";
+    /// empty if it has all.
     [[nodiscard]] std::string missing(std::string_view utf8) const;
     /// From the left end of a text to where the next one would begin, in pixels.
     [[nodiscard]] int width_px(std::string_view utf8, int size_px);

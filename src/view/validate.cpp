@@ -48,7 +48,10 @@ void validate(const OverlayDef& overlay) {
 
 std::string missing_glyph(const std::string& text) {
     const std::string missing = text.empty() ? "" : Font().missing(text);
-    return missing.empty() ? "" : "the font, DejaVu Sans, has no " + missing + "; leave that character out";
+    const bool is_one = missing.find(',') == std::string::npos;
+    return missing.empty() ? ""
+                           : "the font, DejaVu Sans, has no " + missing + "; leave " +
+                                 (is_one ? "that character" : "these characters") + " out";
 }
 
 void validate(const CameraDef& camera) {
