@@ -119,6 +119,18 @@ void add_of_rope(const std::string& name, const RopeDef& rope, std::vector<std::
     }
 }
 
+/// Colours of links beyond the last link.
+void add_spare_colors(const Scene& scene, const System& system, std::vector<std::string>& notes) {
+    for (std::size_t i = 0; i < std::min(scene.body_styles.size(), system.bodies.size()); ++i) {
+        const std::size_t colors = scene.body_styles[i].link_colors.size();
+        const std::size_t links = system.bodies[i].link_count;
+        if (colors <= links) continue;
+        notes.push_back(
+            fmt::format("{}: the last {} of {} colours are not used, because it has {} links; remove them",
+                        body_name(system, i), colors - links, colors, links));
+    }
+}
+
 }  // namespace
 
 std::vector<std::string> input_notes(const Scene& scene, const System& system, const Plan& plan,
@@ -131,6 +143,7 @@ std::vector<std::string> input_notes(const Scene& scene, const System& system, c
         const NetDef& net = scene.nets[i];
         add_pinned_velocity(body_name(system, scene.ropes.size() + i), net.velocity_m_s, net.pinned, notes);
     }
+    add_spare_colors(scene, system, notes);
     return notes;
 }
 

@@ -63,5 +63,11 @@ TEST(Notes, TellOfAPayloadOnAPinAndBendingWithoutAJoint) {
                 ElementsAre(HasSubstr("bending changes nothing")));
 }
 
+TEST(Notes, TellOfColoursBeyondTheLastLink) {
+    EXPECT_THAT(notes_of("style.color_by = \"link\"\n[[rope]]\nhang = { links = 2, length = 1 }\n"
+                         "color = [\"red\", \"blue\", \"red\"]\n"),
+                ElementsAre(HasSubstr("the last 1 of 3 colours are not used")));
+}
+
 }  // namespace
 }  // namespace corda
