@@ -6,6 +6,7 @@
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
@@ -17,19 +18,28 @@ namespace {
 // Deflate shrinks by at most 1032 to 1, so a file that promises more is not whole.
 constexpr double kLargestRatio = 1032.0;
 
-// What texts and profiles may take; libpng leaves out what is larger.
-constexpr png_uint_32 kMostTexts = 100;
-constexpr png_alloc_size_t kLargestChunkBytes = png_alloc_size_t{4} << 20;
+// What all texts together may take: libpng leaves out those that are larger, and those after so many.
+constexpr png_uint_32 kMostTexts = 32;
+constexpr png_alloc_size_t kLargestTextBytes = png_alloc_size_t{64} << 10;
+
+/// What a reader wants of a file.
+enum class Wanted { kPixels, kTexts };
 
 /// What libpng's callbacks work with. It lives outside the functions that longjmp returns to.
 struct ReadJob {
     png_structp png = nullptr;
     png_infop info = nullptr;
     std::FILE* file = nullptr;
-    int read_errno = 0;  ///< of the file; 0: it is not to blame
+    const OnProgress& on_progress;
+    Wanted wanted;
+    std::int64_t done = 0;  ///< rows
+    std::int64_t total = 0;
+    std::size_t unasked_bytes = 0;    ///< read since on_progress was asked
+    std::exception_ptr interruption;  ///< what asking on_progress threw
+    int read_errno = 0;               ///< of the file; 0: it is not to blame
     char message[160] = "out of memory";
 
-    ReadJob() = default;
+    ReadJob(const OnProgress& progress, Wanted what) : on_progress(progress), wanted(what) {}
     ReadJob(const ReadJob&) = delete;
     ReadJob& operator=(const ReadJob&) = delete;
     ~ReadJob() { png_destroy_read_struct(&png, &info, nullptr); }
@@ -37,21 +47,57 @@ struct ReadJob {
 
 void on_read_error(png_structp png, png_const_charp message) {
     auto* job = static_cast<ReadJob*>(png_get_error_ptr(png));
-    if (std::ferror(job->file) != 0) job->read_errno = errno;
     std::strncpy(job->message, message, sizeof job->message - 1);
     png_longjmp(png, 1);
 }
 
 void on_read_warning(png_structp, png_const_charp) {}
 
-// libpng may leave the next three functions by longjmp, so no object with a destructor lives in them.
+/// Asks on_progress; false if it wants to stop. Never throws: libpng's functions are in between.
+bool goes_on(ReadJob& job) noexcept {
+    try {
+        report_progress(job.on_progress, job.done, job.total);
+        return true;
+    } catch (...) {
+        job.interruption = std::current_exception();
+        return false;
+    }
+}
+
+/// Reads for libpng, and asks on_progress now and then: chunks that are skipped may be long, too.
+void on_read(png_structp png, png_bytep bytes, std::size_t count) {
+    constexpr std::size_t kAskEveryBytes = std::size_t{1} << 18;
+    auto* job = static_cast<ReadJob*>(png_get_io_ptr(png));
+    job->unasked_bytes += count;
+    if (job->unasked_bytes >= kAskEveryBytes) {
+        job->unasked_bytes = 0;
+        if (!goes_on(*job)) png_error(png, "interrupted");
+    }
+    errno = 0;
+    if (std::fread(bytes, 1, count, job->file) == count) return;
+    if (std::ferror(job->file) != 0) job->read_errno = errno;
+    png_error(png, "the file breaks off before its end");
+}
+
+// libpng may leave the next functions by longjmp, so no object with a destructor lives in them.
+
+/// Leaves out what is not wanted. Colours are not converted, so chunks that describe them are among it.
+void skip_chunks(ReadJob& job) {
+    static constexpr png_byte kOthers[] = "cHRM\0gAMA\0iCCP\0sBIT\0sPLT\0hIST\0bKGD\0eXIf\0tIME";
+    static constexpr png_byte kTexts[] = "tEXt\0zTXt\0iTXt";
+    png_set_keep_unknown_chunks(job.png, PNG_HANDLE_CHUNK_NEVER, kOthers, sizeof kOthers / 5);
+    if (job.wanted == Wanted::kPixels)
+        png_set_keep_unknown_chunks(job.png, PNG_HANDLE_CHUNK_NEVER, kTexts, sizeof kTexts / 5);
+}
 
 bool read_header(ReadJob& job) {
     if (setjmp(png_jmpbuf(job.png)) != 0) return false;
-    png_init_io(job.png, job.file);
+    png_set_read_fn(job.png, &job, on_read);
     png_set_user_limits(job.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // check_png_size has better words
     png_set_chunk_cache_max(job.png, kMostTexts);
-    png_set_chunk_malloc_max(job.png, kLargestChunkBytes);
+    png_set_chunk_malloc_max(job.png, kLargestTextBytes);
+    png_set_benign_errors(job.png, 1);  // a text that is too long is left out
+    skip_chunks(job);
     png_read_info(job.png, job.info);
     return true;
 }
@@ -69,12 +115,12 @@ bool request_rgba8(ReadJob& job) {
     return true;
 }
 
-bool read_rows(ReadJob& job, Image& image, const OnProgress& on_progress) {
+bool read_rows(ReadJob& job, Image& image) {
     if (setjmp(png_jmpbuf(job.png)) != 0) return false;
-    const std::int64_t total = std::int64_t{png_set_interlace_handling(job.png)} * image.height();
-    for (std::int64_t done = 0; done < total; ++done) {
-        report_progress(on_progress, done, total);
-        png_read_row(job.png, image.pixel(0, static_cast<int>(done % image.height())), nullptr);
+    job.total = std::int64_t{png_set_interlace_handling(job.png)} * image.height();
+    for (; job.done < job.total; ++job.done) {
+        if (!goes_on(job)) return false;
+        png_read_row(job.png, image.pixel(0, static_cast<int>(job.done % image.height())), nullptr);
     }
     png_read_end(job.png, job.info);
     return true;
@@ -88,6 +134,7 @@ bool read_rows(ReadJob& job, Image& image, const OnProgress& on_progress) {
 
 /// Of what libpng has ended.
 [[noreturn]] void fail_png(const std::string& path, const ReadJob& job) {
+    if (job.interruption) std::rethrow_exception(job.interruption);
     if (job.read_errno != 0) fail_file("read", path, job.read_errno);
     fail_png(path, std::string_view(job.message));
 }
@@ -97,9 +144,8 @@ void open_job(ReadJob& job, const std::string& path) {
     errno = 0;
     const std::size_t count = std::fread(signature, 1, sizeof signature, job.file);
     if (std::ferror(job.file) != 0) fail_file("read", path, errno);
-    if (count == 0) fail_png(path, "the file is empty");
     if (count < sizeof signature || png_sig_cmp(signature, 0, sizeof signature) != 0) {
-        fail_png(path, "it does not begin like a PNG");
+        fail_png(path, count == 0 ? "the file is empty" : "it does not begin like a PNG");
     }
     job.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, on_read_error, on_read_warning);
     if (job.png != nullptr) job.info = png_create_info_struct(job.png);
@@ -127,13 +173,13 @@ void check_png_size(const ReadJob& job, const std::string& path) {
     }
 }
 
-Image read_pixels(ReadJob& job, const std::string& path, const OnProgress& on_progress) {
+Image read_pixels(ReadJob& job, const std::string& path) {
     check_png_size(job, path);
     if (!request_rgba8(job)) fail_png(path, job);
     Image image(static_cast<int>(png_get_image_width(job.png, job.info)),
                 static_cast<int>(png_get_image_height(job.png, job.info)));
     if (png_get_rowbytes(job.png, job.info) != image.row_bytes()) fail_png(path, "libpng gave no 8-bit RGBA");
-    if (!read_rows(job, image, on_progress)) fail_png(path, job);
+    if (!read_rows(job, image)) fail_png(path, job);
     return image;
 }
 
@@ -171,19 +217,19 @@ PngInfo collect_info(const ReadJob& job) {
 
 Image read_png(const std::string& path, const OnProgress& on_progress) {
     const FileHandle file = open_for_reading(path);
-    ReadJob job;
+    ReadJob job(on_progress, Wanted::kPixels);
     job.file = file.get();
     open_job(job, path);
-    return read_pixels(job, path, on_progress);
+    return read_pixels(job, path);
 }
 
-PngInfo read_png_info(const std::string& path) {
+PngInfo read_png_info(const std::string& path, const OnProgress& on_progress) {
     const FileHandle file = open_for_reading(path);
-    ReadJob job;
+    ReadJob job(on_progress, Wanted::kTexts);
     job.file = file.get();
     open_job(job, path);
     // Text may stand after the pixels, so the whole file is read.
-    (void)read_pixels(job, path, {});
+    static_cast<void>(read_pixels(job, path));
     return collect_info(job);
 }
 

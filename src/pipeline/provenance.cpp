@@ -96,9 +96,9 @@ struct PngTexts {
     std::string frame;       ///< its number, in words
 };
 
-PngTexts texts_in_png(const std::string& path) {
+PngTexts texts_in_png(const std::string& path, const OnProgress& on_progress) {
     PngTexts texts;
-    for (const auto& [keyword, text] : read_png_info(path).text) {
+    for (const auto& [keyword, text] : read_png_info(path, on_progress).text) {
         if (keyword == kProvenanceKeyword) texts.provenance = text;
         if (keyword == "Frame") texts.frame = text;
     }
@@ -190,7 +190,7 @@ Provenance read_provenance(const std::string& path, const OnProgress& on_progres
         fail_at(path, "is a GIF, an APNG or a WebP, none of which tells what it was made from");
     PngTexts png;
     if (is_png(path))
-        png = texts_in_png(path);
+        png = texts_in_png(path, on_progress);
     else
         png.provenance = text_in_video(path, on_progress);
     const std::string& text = png.provenance;
