@@ -1,17 +1,86 @@
 #include "corda/media/file_kind.hpp"
 
+#include <algorithm>
+#include <array>
 #include <string_view>
 
 #include "corda/core/file.hpp"
 
 namespace corda::media {
+namespace {
+
+constexpr std::string_view kConvert = "convert it to PNG";
+
+/// A kind of file by the bytes at a place in it.
+struct Signature {
+    std::size_t offset;
+    std::string_view bytes;
+    ForeignKind kind;
+};
+
+constexpr std::array kSignatures{
+    Signature{0, "version https://git-lfs.github.com/", {"a Git LFS pointer", "run: git lfs pull"}},
+    Signature{0, "/annex/objects/", {"a git-annex pointer", "run: git annex get"}},
+    Signature{0, "../.git/annex/", {"a git-annex pointer", "run: git annex get"}},
+    Signature{0, "\x89PNG\n", {"a PNG whose line endings were changed", "copy it in binary mode"}},
+    Signature{0, "\x89PNG\r\r\n", {"a PNG whose line endings were changed", "copy it in binary mode"}},
+    Signature{0, "\xff\xd8\xff", {"a JPEG", kConvert}},
+    Signature{0, "GIF8", {"a GIF", kConvert}},
+    Signature{8, "WEBP", {"a WebP", kConvert}},
+    Signature{0, "BM", {"a BMP", kConvert}},
+    Signature{0, {"II*\0", 4}, {"a TIFF", kConvert}},
+    Signature{0, {"MM\0*", 4}, {"a TIFF", kConvert}},
+    Signature{4, "ftypavif", {"an AVIF", kConvert}},
+    Signature{4, "ftyphei", {"a HEIC", kConvert}},
+    Signature{0, "\xff\x0a", {"a JPEG XL", kConvert}},
+    Signature{4, "ftyp", {"an MP4 or QuickTime file", "give a picture of it"}},
+    Signature{0, "\x1a\x45\xdf\xa3", {"a Matroska or WebM video", "give a picture of it"}},
+    Signature{0, "%PDF-", {"a PDF", kConvert}},
+    Signature{0, "\x1f\x8b", {"compressed by gzip", "run gunzip on it"}},
+    Signature{0, "PK\x03\x04", {"a ZIP archive", "unpack it"}},
+};
+
+constexpr ForeignKind kEmpty{"empty", "write or copy it again"};
+constexpr ForeignKind kHtml{"an HTML page", "download the file itself: a server answered with a page"};
+constexpr ForeignKind kSvg{"an SVG", kConvert};
+
+bool has_at(std::string_view head, std::size_t offset, std::string_view bytes) {
+    return head.size() >= offset && head.substr(offset).starts_with(bytes);
+}
+
+std::string first_bytes(const std::string& path, std::size_t count) {
+    const FileHandle file = open_for_reading(path);
+    std::string head(count, '\0');
+    head.resize(read_bytes(file, path, head.data(), head.size()));
+    return head;
+}
+
+}  // namespace
+
+const ForeignKind* foreign_kind(std::string_view head) {
+    if (head.empty()) return &kEmpty;
+    for (const Signature& signature : kSignatures)
+        if (has_at(head, signature.offset, signature.bytes)) return &signature.kind;
+    std::string text(head);
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    const std::size_t begin = text.find_first_not_of("\xef\xbb\xbf \t\r\n");
+    if (begin == std::string::npos || text[begin] != '<') return nullptr;
+    if (text.find("<svg") != std::string::npos) return &kSvg;
+    return text.find("<html") != std::string::npos || text.find("<!doctype html") != std::string::npos
+               ? &kHtml
+               : nullptr;
+}
+
+const ForeignKind* foreign_kind_of(const std::string& path) {
+    constexpr std::size_t kHeadBytes = 512;
+    return foreign_kind(first_bytes(path, kHeadBytes));
+}
 
 std::string file_kind(const std::string& path) {
-    const FileHandle file = open_for_reading(path);
-    std::string head(4096, '\0');
-    head.resize(read_bytes(file, path, head.data(), head.size()));
+    const std::string head = first_bytes(path, 4096);
     const auto at = [&head](std::size_t offset, std::string_view bytes) {
-        return head.size() >= offset + bytes.size() && head.compare(offset, bytes.size(), bytes) == 0;
+        return has_at(head, offset, bytes);
     };
     if (at(4, "ftyp")) return "mov";
     if (at(0, "\x1a\x45\xdf\xa3")) return "matroska";

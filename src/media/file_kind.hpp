@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace corda::media {
 
@@ -10,5 +11,17 @@ namespace corda::media {
 ///
 /// libav is not asked, because it takes a text file for ANSI art, and follows a playlist.
 [[nodiscard]] std::string file_kind(const std::string& path);
+
+/// What a file is that is taken for a picture or a video.
+struct ForeignKind {
+    std::string_view words;  ///< "a Git LFS pointer"
+    std::string_view remedy;
+};
+
+/// Judges a file by its first bytes, some 500 of them: a pointer file, text, or a picture of another kind;
+/// nullptr for any other. The result lives for ever.
+[[nodiscard]] const ForeignKind* foreign_kind(std::string_view head);
+/// As above, of a file. Throws corda::Error (kIo) if the file cannot be read.
+[[nodiscard]] const ForeignKind* foreign_kind_of(const std::string& path);
 
 }  // namespace corda::media

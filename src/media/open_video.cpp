@@ -57,8 +57,13 @@ OpenVideo open_video(const std::string& path, std::optional<std::uint64_t> bytes
     AVFormatContext* format = nullptr;
     const std::string kind = file_kind(path);
     const AVInputFormat* demuxer = kind.empty() ? nullptr : av_find_input_format(kind.c_str());
-    if (demuxer == nullptr)
-        throw Error(ExitCode::kIo, fmt::format("'{}' is no video of a kind that is known", path));
+    if (demuxer == nullptr) {
+        const ForeignKind* const foreign = foreign_kind_of(path);
+        throw Error(ExitCode::kIo,
+                    foreign == nullptr
+                        ? fmt::format("'{}' is no video of a kind that is known", path)
+                        : fmt::format("'{}' is {}: {}", path, foreign->words, foreign->remedy));
+    }
     const std::string url = bytes ? file_url(path, *bytes) : file_url(path);
     check_libav(avformat_open_input(&format, url.c_str(), demuxer, nullptr), ExitCode::kIo,
                 fmt::format("'{}' does not open", path));

@@ -10,7 +10,7 @@
 namespace corda::media {
 namespace {
 
-/// A name of pictures: what stands before and after the number.
+/// A name of pictures, split at the number.
 struct Names {
     std::string before;
     std::string after;

@@ -11,6 +11,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
 #include "corda/media/defs.hpp"
+#include "corda/media/file_kind.hpp"
 
 namespace corda {
 namespace {
@@ -145,7 +146,10 @@ void open_job(ReadJob& job, const std::string& path) {
     const std::size_t count = std::fread(signature, 1, sizeof signature, job.file);
     if (std::ferror(job.file) != 0) fail_file("read", path, errno);
     if (count < sizeof signature || png_sig_cmp(signature, 0, sizeof signature) != 0) {
-        fail_png(path, count == 0 ? "the file is empty" : "it does not begin like a PNG");
+        const media::ForeignKind* const kind = media::foreign_kind_of(path);
+        if (kind == nullptr) fail_png(path, "it does not begin like a PNG");
+        throw Error(ExitCode::kIo,
+                    fmt::format("cannot read PNG '{}': it is {}; {}", path, kind->words, kind->remedy));
     }
     job.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job, on_read_error, on_read_warning);
     if (job.png != nullptr) job.info = png_create_info_struct(job.png);

@@ -294,6 +294,26 @@ TEST_F(Png, StopsInTheMidstOfItsTexts) {
     EXPECT_EQ(asked, 3);
 }
 
+TEST_F(Png, OtherFilesAreNamedForWhatTheyAre) {
+    const std::vector<std::array<std::string, 2>> others{
+        {"version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 5\n",
+         "a Git LFS pointer; run: git lfs pull"},
+        {"\n<!DOCTYPE HTML><title>404</title>", "an HTML page"},
+        {"<?xml version=\"1.0\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\"/>", "an SVG"},
+        {"\xff\xd8\xff\xe0..JFIF", "a JPEG"},
+        {"\x89PNG\n\x1a\n....", "line endings were changed"},
+        {"", "empty"},
+        {"plain words", "does not begin like a PNG"}};
+    for (const auto& [bytes, words] : others) {
+        test::write_file(file("a.png"), bytes);
+        const test::Failure failure = test::failure_of([&] { static_cast<void>(read_png(file("a.png"))); });
+        EXPECT_EQ(failure.code, ExitCode::kIo);
+        EXPECT_THAT(failure.message, HasSubstr(words));
+        EXPECT_THAT(test::failure_of([&] { static_cast<void>(read_png_info(file("a.png"))); }).message,
+                    HasSubstr(words));
+    }
+}
+
 TEST_F(Png, SamePictureChunksAreThoseOfTheSamePixels) {
     const Image image = random_image(300, 200, false);
     PngInfo info;
