@@ -2,6 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
 #include <optional>
 #include <thread>
 
@@ -12,6 +16,7 @@ namespace corda::gl {
 namespace {
 
 using Backend = ContextDef::Backend;
+using test::code_of;
 using test::failure_of;
 
 TEST(ContextDefs, AreReadFromText) {
@@ -82,6 +87,38 @@ TEST(SavedContexts, OfNoneLeaveNoneCurrent) {
         }
         EXPECT_EQ(eglGetCurrentContext(), EGL_NO_CONTEXT);
     }).join();
+}
+
+TEST(Contexts, OfAForkedChildAreItsOwn) {
+    const Context context;
+    const SavedContext saved;
+    const pid_t child = fork();
+    if (child == 0) {
+        // 1: the parent's context could be used; 2: none of its own is possible.
+        if (!context.is_inherited() || code_of([&] { context.make_current(); }) != ExitCode::kNoGl) _exit(1);
+        _exit(code_of([] { const Context own; }) == ExitCode::kOk ? 0 : 2);
+    }
+    int status = -1;
+    EXPECT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+    EXPECT_FALSE(context.is_inherited());
+    EXPECT_EQ(code_of([&] { context.make_current(); }), ExitCode::kOk);
+}
+
+TEST(Forks, WaitForTheDriver) {
+    std::atomic<bool> stop = false;
+    std::thread drawing([&] {
+        while (!stop) const Context context;
+    });
+    for (int i = 0; i < 10; ++i) {
+        const pid_t child = fork();
+        if (child == 0) _exit(code_of([] { const Context own; }) == ExitCode::kOk ? 0 : 1);
+        int status = -1;
+        EXPECT_EQ(waitpid(child, &status, 0), child);
+        EXPECT_EQ(status, 0);
+    }
+    stop = true;
+    drawing.join();
 }
 
 TEST(Probes, LeaveTheCurrentContextAlone) {

@@ -314,6 +314,42 @@ def test_pictures_are_of_bytes(film):
     assert corda.compare(frame[:, ::-1], frame[:, ::-1].copy()).equal  # strides of any kind
 
 
+def test_forked_workers_draw_after_their_parent_has_drawn(tmp_path):
+    if "LP_NUM_THREADS" in os.environ:
+        pytest.skip("llvmpipe draws with threads that the user asks for")
+    program = textwrap.dedent("""
+        import multiprocessing, os, sys
+        import corda
+        SMALL = {"size": (160, 90), "duration": 0.2}
+        film = corda.Film(sys.argv[1], **SMALL)
+        drawn = film.frame(3).tobytes()
+
+        def own(k):
+            return corda.Film(sys.argv[1], **SMALL).frame(k).tobytes() == drawn
+
+        def inherited(k):
+            return film.frame(k).tobytes() == drawn
+
+        def grandchild(k):
+            with multiprocessing.get_context("fork").Pool(1) as pool:
+                return pool.map_async(own, [k]).get(timeout=60)[0]
+
+        def save(k):
+            return corda.Film(sys.argv[1], **SMALL).save(f"{sys.argv[2]}/{os.getpid()}.mkv", force=True) > 0
+
+        for work in (own, inherited, save):
+            with multiprocessing.get_context("fork").Pool(2) as pool:
+                print(pool.map_async(work, [3, 3]).get(timeout=60))
+        child = os.fork()
+        if child == 0:
+            sys.exit(0 if grandchild(3) else 1)
+        print(os.waitpid(child, 0)[1])
+    """)
+    done = subprocess.run([sys.executable, "-c", program, SCENE, str(tmp_path)], capture_output=True,
+                          text=True, timeout=300)
+    assert done.stdout.split("\n")[:4] == 3 * ["[True, True]"] + ["0"], done.stderr
+
+
 def test_the_example_notebook_runs(tmp_path):
     notebook = tmp_path / "notebook.ipynb"  # what it writes goes beside it
     notebook.write_bytes((EXAMPLES / "notebook.ipynb").read_bytes())

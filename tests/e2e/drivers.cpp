@@ -1,0 +1,97 @@
+// Machines on which OpenGL is missing, broken, out of memory or without threads.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "support/command.hpp"
+
+namespace corda {
+namespace {
+
+using test::run_corda;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+const char* const kSceneOfDrivers =
+    "schema = 1\n[[rope]]\nhang = { links = 4, length = 1.0, angle_deg = 30.0 }\n"
+    "[world]\nduration = 0.1\n[video]\nsize = [64, 64]\nfps = 30\n";
+
+class Drivers : public testing::Test {
+  protected:
+    test::CommandResult still(const std::string& environment) {
+        return run_corda({"still", scene_, "--at", "0.1", "-o", folder_.file("a.png"), "--force"},
+                         environment);
+    }
+
+    test::ScratchFolder folder_;
+    std::string scene_ = folder_.write("scene.toml", kSceneOfDrivers);
+};
+
+TEST_F(Drivers, ThatDrawNothingAreFound) {
+    const auto result = still("GALLIUM_NOOP=1");
+    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_THAT(result.err, AllOf(HasSubstr("the driver draws wrongly: pixel ("), HasSubstr("Driver: NOOP"),
+                                  HasSubstr("GALLIUM_NOOP=1\n")));
+    EXPECT_FALSE(std::ifstream(folder_.file("a.png")).good());
+    const auto doctor = run_corda({"doctor"}, "GALLIUM_NOOP=1");
+    EXPECT_EQ(doctor.exit_code, 4);
+    EXPECT_THAT(doctor.out, AllOf(HasSubstr("no   EGL device 0"), HasSubstr("the driver draws wrongly"),
+                                  HasSubstr("This machine cannot draw, for the reason above.")));
+}
+
+TEST_F(Drivers, AreCertifiedByDoctor) {
+    EXPECT_THAT(run_corda({"doctor"}).out,
+                HasSubstr("its test picture equals the plain C++ reference in every byte"));
+    EXPECT_THAT(run_corda({"doctor", "--json"}).out, HasSubstr("\"equals_reference\":"));
+}
+
+TEST_F(Drivers, ThatVariablesBreakAreRepairedByUnsettingThose) {
+    for (const char* const variable :
+         {"__EGL_VENDOR_LIBRARY_DIRS=/nonexistent", "__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent",
+          "LIBGL_DRIVERS_PATH=/nonexistent", "GALLIUM_DRIVER=bogus", "GALLIUM_DRIVER=softpipe",
+          "MESA_GL_VERSION_OVERRIDE=3.3", "MESA_GLSL_VERSION_OVERRIDE=330"}) {
+        const auto result = still(variable);
+        EXPECT_EQ(result.exit_code, 4) << variable;
+        EXPECT_THAT(result.err,
+                    AllOf(HasSubstr("Unset what chooses or changes the driver: " + std::string(variable)),
+                          Not(HasSubstr("apt-get"))));
+    }
+    EXPECT_EQ(still("").exit_code, 0);
+}
+
+TEST_F(Drivers, WhoseLibrariesAreMissingAreNamedWithTheirPackage) {
+    const auto hiding = [](const std::string& libraries) {
+        return "LD_PRELOAD=" HIDDEN_LIBRARIES " CORDA_TEST_HIDES='" + libraries + "'";
+    };
+    const auto egl = still(hiding("libEGL.so.1"));
+    EXPECT_EQ(egl.exit_code, 4);
+    EXPECT_THAT(egl.err,
+                AllOf(HasSubstr("libEGL.so.1 cannot be loaded"), HasSubstr("apt-get install libegl1")));
+    const auto gl = still(hiding("libOpenGL.so.0 libGL.so.1"));
+    EXPECT_EQ(gl.exit_code, 4);
+    EXPECT_THAT(gl.err, HasSubstr("apt-get install libopengl0"));
+    EXPECT_EQ(still(hiding("libOpenGL.so.0")).exit_code, 0);
+    const auto doctor = run_corda({"doctor"}, hiding("libEGL.so.1"));
+    EXPECT_EQ(doctor.exit_code, 4);
+    EXPECT_THAT(doctor.out, AllOf(HasSubstr("apt-get install libegl1"), HasSubstr("yes  .mkv: ffv1")));
+}
+
+TEST_F(Drivers, ThatAreNoneAreNamedByTheirFile) {
+    const auto result = still("LD_LIBRARY_PATH=" EMPTY_EGL_FOLDER);
+    EXPECT_EQ(result.exit_code, 4);
+    EXPECT_THAT(result.err, HasSubstr(EMPTY_EGL_FOLDER "/libEGL.so.1 has no function eglBindAPI"));
+}
+
+TEST_F(Drivers, WithoutMemoryEndWithExitCode75) {
+    for (const int mib : {200, 300, 350, 400, 450}) {
+        const auto result = still("ulimit -v " + std::to_string(mib << 10) + ";");
+        EXPECT_EQ(result.exit_code, 75) << mib << result.err;
+        EXPECT_THAT(result.err, HasSubstr("address space"));
+    }
+}
+
+}  // namespace
+}  // namespace corda

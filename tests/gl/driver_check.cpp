@@ -1,0 +1,32 @@
+#include "corda/render/driver_check.hpp"
+
+#include <gmock/gmock.h>
+
+#include "corda/gl/context.hpp"
+#include "support/failure.hpp"
+
+namespace corda {
+namespace {
+
+TEST(DriverChecks, PassOnEveryUsablePlatform) {
+    int checked = 0;
+    const std::vector<gl::Attempt> attempts = gl::probe_contexts([&checked](const gl::Context& context) {
+        render::check_driver(context);
+        render::check_driver(context);  // does nothing: this driver has been checked
+        ++checked;
+    });
+    EXPECT_GT(checked, 0);
+    for (const gl::Attempt& attempt : attempts) EXPECT_EQ(attempt.is_usable(), attempt.info.has_value());
+}
+
+TEST(DriverChecks, ThatFailAreTheFailureOfThePlatform) {
+    const auto attempts = gl::probe_contexts(
+        [](const gl::Context&) { throw Error(ExitCode::kNoGl, "the driver draws wrongly"); });
+    for (const gl::Attempt& attempt : attempts) {
+        EXPECT_FALSE(attempt.is_usable());
+        if (attempt.info) EXPECT_EQ(attempt.failure, "the driver draws wrongly");
+    }
+}
+
+}  // namespace
+}  // namespace corda
