@@ -28,8 +28,8 @@ std::recursive_mutex& driver_mutex() {
     return mutex;
 }
 
-/// Makes fork() wait for the mutex. A child's thread has another id than the one that locked it, so there
-/// the mutex is made anew.
+/// Makes fork() wait for the mutex. The child replaces it: the id of its thread differs from that of the
+/// thread that locked it, so it cannot unlock it.
 void guard_fork() {
     static const int registered =
         pthread_atfork([] { driver_mutex().lock(); }, [] { driver_mutex().unlock(); },
@@ -112,7 +112,7 @@ std::vector<std::string> missing_packages() {
 std::string load_failure(const char* name, const char* packages) {
     const char* const given = dlerror();
     const std::string reason = given != nullptr ? given : "no reason given";
-    std::string remedy = "remove that file, or install the package that it belongs to anew";
+    std::string remedy = "remove that file, or reinstall the package that it belongs to";
     if (const std::string variables = driver_variables();
         variables.find("LD_LIBRARY_PATH=") != variables.npos)
         remedy = "unset " + variables;

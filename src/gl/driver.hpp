@@ -30,8 +30,8 @@ void require_driver_after_fork();
 /// by commas; empty if none is set.
 [[nodiscard]] std::string driver_variables();
 
-/// What may help if no driver gives a context, as a sentence: variables to unset, packages that are missing,
-/// or how to learn more.
+/// Remedy if no driver gives a context, as a sentence: variables to unset, packages that are missing, or how
+/// to learn more.
 [[nodiscard]] std::string driver_remedy();
 
 }  // namespace corda::gl

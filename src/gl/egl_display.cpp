@@ -242,8 +242,8 @@ void EglSession::make_current() const {
     if (is_inherited()) {
         throw Error(
             ExitCode::kNoGl,
-            "a picture that the parent process had begun cannot be finished in a forked process; draw "
-            "it anew there, or start processes by spawn");
+            "a picture that the parent process had begun cannot be finished in a forked process; begin "
+            "it there, or start processes by spawn");
     }
     // Which API a thread means is a state of that thread.
     if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) fail("binding desktop OpenGL");

@@ -252,8 +252,8 @@ class PyFilm {
         pid_t user_;
     };
 
-    /// True in a process that was forked while a thread of its parent used the film: the thread is not here,
-    /// and its work and its lock will never end.
+    /// True in a process that was forked while a thread of its parent used the film: the child lacks the
+    /// thread, so its work never ends and its lock stays taken.
     [[nodiscard]] bool is_cut_off() const {
         const pid_t user = user_;
         return user != 0 && user != getpid();

@@ -66,7 +66,7 @@ void check_driver(const gl::Context& context) {
     const gl::ContextInfo& info = context.info();
     const std::string driver = fmt::format("{} ({}), OpenGL {}, by {}", info.gl_renderer, info.gl_vendor,
                                            info.gl_version, context.platform());
-    // A forked child checks the driver anew: its state has survived in part.
+    // A forked child repeats the check: parts of the driver are lost in it.
     const std::string key = fmt::format("{} {}", getpid(), driver);
     if (checked.contains(key)) return;
     FrameRenderer renderer(context, kWidth, kHeight);

@@ -24,7 +24,9 @@ TEST(DriverChecks, ThatFailAreTheFailureOfThePlatform) {
         [](const gl::Context&) { throw Error(ExitCode::kNoGl, "the driver draws wrongly"); });
     for (const gl::Attempt& attempt : attempts) {
         EXPECT_FALSE(attempt.is_usable());
-        if (attempt.info) EXPECT_EQ(attempt.failure, "the driver draws wrongly");
+        if (attempt.info) {
+            EXPECT_EQ(attempt.failure, "the driver draws wrongly");
+        }
     }
 }
 
