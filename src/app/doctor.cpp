@@ -89,8 +89,9 @@ std::string cannot_draw(const std::vector<gl::Attempt>& attempts) {
 }
 
 ExitCode doctor(const Console& console) {
-    const std::vector<gl::Attempt> attempts = gl::probe_contexts(render::check_driver);
+    // First, while there are no threads of a driver: each is tried in a child process.
     const std::vector<media::EncoderProbe> encoders = media::probe_encoders();
+    const std::vector<gl::Attempt> attempts = gl::probe_contexts(render::check_driver);
     const bool has_gl =
         std::any_of(attempts.begin(), attempts.end(), [](const gl::Attempt& a) { return a.is_usable(); });
     const bool is_temporary = std::any_of(attempts.begin(), attempts.end(), [](const gl::Attempt& a) {
@@ -105,9 +106,13 @@ ExitCode doctor(const Console& console) {
     for (const Writable& format : formats)
         (format.usable.empty() ? missing : written).push_back(format.ending);
     if (!written.empty()) console.result(fmt::format("It can write {}.", fmt::join(written, ", ")));
+    const bool lacks_resources =
+        std::any_of(encoders.begin(), encoders.end(),
+                    [](const media::EncoderProbe& encoder) { return encoder.is_temporary; });
     if (!missing.empty()) {
-        console.result(
-            fmt::format("It cannot write {}: apt-get install libavcodec59", fmt::join(missing, ", ")));
+        console.result(fmt::format(
+            "It cannot write {}{}", fmt::join(missing, ", "),
+            lacks_resources ? " for now, for the reasons above" : ": apt-get install libavcodec59"));
     }
     nlohmann::json json = {{"schema", 1}, {"can_draw", has_gl}, {"can_write", written}};
     json["contexts"] = nlohmann::json::array();
@@ -121,6 +126,7 @@ ExitCode doctor(const Console& console) {
     }
     console.report(json);
     if (!has_gl) return is_temporary ? ExitCode::kTemporary : ExitCode::kNoGl;
+    if (lacks_resources) return ExitCode::kTemporary;
     return missing.empty() ? ExitCode::kOk : ExitCode::kEncoder;
 }
 

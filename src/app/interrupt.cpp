@@ -74,7 +74,7 @@ std::int64_t now_ns() {
 
 Words words_for(int signal, const std::string& kept) {
     const std::string message = fmt::format(
-        "interrupted (SIG{}) inside a driver, an encoder or another library that did not return "
+        "interrupted (SIG{}) while a driver, an encoder or another program did not return "
         "within {} s{}",
         sigabbrev_np(signal), static_cast<double>(kLongestNs) * 1e-9, kept);
     Words words{fmt::format("{}corda: error: {}\n", isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "", message),

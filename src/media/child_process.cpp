@@ -67,7 +67,10 @@ void lower_limit(decltype(RLIMIT_AS) resource, rlim_t value) {
 /// What the child does. It ends without the destructors and handlers of the process that it is a copy of.
 [[noreturn]] void be_child(const std::function<std::string()>& work, const ChildLimits& limits,
                            const Descriptor& out) {
-    for (const int signal : {SIGINT, SIGTERM, SIGXCPU}) std::signal(signal, SIG_DFL);
+    for (const int signal : {SIGINT, SIGTERM, SIGALRM, SIGXCPU}) std::signal(signal, SIG_DFL);
+    struct sigaction hangup = {};
+    if (sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler != SIG_IGN)
+        std::signal(SIGHUP, SIG_DFL);
     lower_limit(RLIMIT_AS, address_space_bytes() + limits.memory_bytes);
     lower_limit(RLIMIT_CPU, static_cast<rlim_t>(limits.cpu_s));
     lower_limit(RLIMIT_CORE, 0);
@@ -102,7 +105,7 @@ std::string fate(int status, const ChildLimits& limits) {
     for (const int foreign : {SIGKILL, SIGTERM, SIGINT, SIGHUP}) {
         if (signal == foreign)
             throw Error(ExitCode::kTemporary,
-                        fmt::format("the process that decodes was ended from outside ({}), as a system does "
+                        fmt::format("a child process was ended from outside ({}), as a system does "
                                     "that runs out of memory; try again",
                                     strsignal(signal)));
     }

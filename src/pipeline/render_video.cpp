@@ -16,6 +16,7 @@
 #include "corda/media/format.hpp"
 #include "corda/media/job_memory.hpp"
 #include "corda/media/part_reader.hpp"
+#include "corda/media/probe.hpp"
 #include "corda/media/video_comment.hpp"
 #include "corda/media/video_sink.hpp"
 #include "corda/media/video_writer.hpp"
@@ -153,8 +154,10 @@ void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProg
         result.is_short_of_memory = jobs < wanted;
         result.jobs = std::max(1, jobs);
     }
-    if (result.jobs > 1)
-        return pipeline::render_chunks(film, first, end, result.jobs, on_progress, writer, result);
+    if (result.jobs > 1 &&
+        pipeline::render_chunks(film, first, end, result.jobs, on_progress, writer, result))
+        return;
+    result.jobs = 1;
     FilmPainter painter(film);
     const OnProgress ask = [&](std::int64_t, std::int64_t) {
         return !on_progress || on_progress(k - first, end - first);
@@ -228,7 +231,10 @@ media::VideoWriter make_writer(const Film& film, const std::string& path, const 
 
 void check_render(const Scene& scene, const std::string& path, const RenderDef& def,
                   const std::string& input) {
-    static_cast<void>(checked_format(scene, path, def, input));
+    const media::Format format = checked_format(scene, path, def, input);
+    media::check_encoder_starts(format, scene.video, [&](std::int64_t, std::int64_t) {
+        return !def.on_progress || def.on_progress(0, scene.video.fps.frame_count(scene.world.duration_s));
+    });
 }
 
 Rendered render_video(Film& film, const std::string& path, const RenderDef& def) {
@@ -236,6 +242,7 @@ Rendered render_video(Film& film, const std::string& path, const RenderDef& def)
     const std::int64_t end = def.end.value_or(film.frame_count());
     static_cast<void>(film.camera());  // what can fail does so before a file is made
     static_cast<void>(film.gl());
+    media::check_encoder_starts(format, film.scene().video, def.on_progress);
     media::VideoWriter writer = make_writer(film, path, format, def, end);
     const OnProgress drawn = [&def, passes = media::passes(*format.ending)](std::int64_t k,
                                                                             std::int64_t all) {
