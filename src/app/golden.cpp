@@ -114,15 +114,17 @@ void tell(const Console& console, const GoldenOptions& options, const suite::Sui
         console.warning(fmt::format("there is no folder '{}'; --update makes it", options.def.folder));
     else if (missing > 0)
         console.info("--update draws what is missing, and keeps it");
-    console.report({{"schema", 1},
-                    {"passed", passed},
-                    {"failed", failed},
-                    {"missing", missing},
-                    {"stale", stale},
-                    {"invalid", invalid},
-                    {"changed", changed},
-                    {"frozen", result.frozen},
-                    {"pictures", pictures}});
+    nlohmann::json json = {{"schema", 1},        {"passed", passed},        {"failed", failed},
+                           {"missing", missing}, {"stale", stale},          {"invalid", invalid},
+                           {"changed", changed}, {"frozen", result.frozen}, {"pictures", pictures}};
+    if (invalid > 0) {
+        const auto first =
+            std::find_if(result.pictures.begin(), result.pictures.end(),
+                         [](const Checked& picture) { return picture.verdict == Verdict::kInvalid; });
+        json["error"] = {{"code", static_cast<int>(ExitCode::kInvalidScene)},
+                         {"message", printable_lines(first->cause)}};
+    }
+    console.report(std::move(json));
 }
 
 ExitCode run_suite(const Console& console, GoldenOptions options) {

@@ -1,6 +1,7 @@
 #include "corda/report/child.hpp"
 
-#include <spawn.h>
+#include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -8,6 +9,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -39,30 +41,59 @@ std::string contents(const FileHandle& file) {
     return text;
 }
 
-/// posix_spawn's file actions and attributes.
-struct SpawnSetup {
-    posix_spawn_file_actions_t actions{};
-    posix_spawnattr_t attributes{};
+/// Becomes the program. Between a fork of a process with threads and this, no lock may be taken.
+[[noreturn]] void become(char* const* arguments, const std::array<int, 3>& streams, pid_t parent,
+                         int report) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);  // no orphan, whatever ends corda
+    if (getppid() != parent) _exit(EXIT_FAILURE);
+    // In a process group of its own: Ctrl-C at a terminal asks corda alone, which still needs what is drawn.
+    setpgid(0, 0);
+    // What corda handles or ignores (SIGPIPE) a program is to find as any other does.
+    for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_DFL);
+    int failure = 0;
+    for (int stream = 0; stream < 3; ++stream)
+        if (dup2(streams[static_cast<std::size_t>(stream)], stream) < 0) failure = errno;
+    if (failure == 0) {
+        execvp(arguments[0], arguments);
+        failure = errno;
+    }
+    static_cast<void>(!write(report, &failure, sizeof failure));
+    _exit(EXIT_FAILURE);
+}
 
-    SpawnSetup() {
-        posix_spawn_file_actions_init(&actions);
-        posix_spawnattr_init(&attributes);
-        // corda ignores SIGPIPE, and an ignored signal stays ignored in a child.
-        sigset_t defaults;
-        sigemptyset(&defaults);
-        sigaddset(&defaults, SIGPIPE);
-        posix_spawnattr_setsigdefault(&attributes, &defaults);
-        // In a process group of its own (number 0): Ctrl-C at a terminal asks corda alone, which still needs
-        // what the child draws.
-        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+/// Starts the program; returns its process. Throws corda::Error: kTemporary for want of processes or memory,
+/// else kIo, which ends with `hint`.
+pid_t start(const std::vector<std::string>& command, const std::array<int, 3>& streams,
+            const std::string& hint) {
+    std::vector<std::string> words = command;
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) fail("cannot make a pipe for", command.front(), errno);
+    const Descriptor in(ends[0]);
+    Descriptor out(ends[1]);
+    const pid_t parent = getpid();
+    const pid_t child = fork();
+    if (child == 0) become(arguments.data(), streams, parent, out.get());
+    int failure = child < 0 ? errno : 0;
+    static_cast<void>(out.close());
+    if (child > 0) {
+        ssize_t bytes = 0;  // none: the program has begun, and its copy of the pipe is closed
+        while ((bytes = read(in.get(), &failure, sizeof failure)) < 0 && errno == EINTR) {
+        }
+        if (bytes > 0) waitpid(child, nullptr, 0);
     }
-    SpawnSetup(const SpawnSetup&) = delete;
-    SpawnSetup& operator=(const SpawnSetup&) = delete;
-    ~SpawnSetup() {
-        posix_spawn_file_actions_destroy(&actions);
-        posix_spawnattr_destroy(&attributes);
-    }
-};
+    if (failure == EAGAIN || failure == ENOMEM)
+        throw Error(ExitCode::kTemporary,
+                    fmt::format("{} does not start: {}; run fewer processes, or raise the limits (ulimit -u, "
+                                "ulimit -v)",
+                                command.front(), std::strerror(failure)));
+    if (failure != 0)
+        throw Error(ExitCode::kIo,
+                    fmt::format("{} does not start: {}; {}", command.front(), std::strerror(failure), hint));
+    return child;
+}
 
 int wait_for(pid_t child, const std::string& program) {
     int status = 0;
@@ -84,21 +115,7 @@ ChildResult run_child(const std::vector<std::string>& command, const std::string
         fail("cannot write the input of", program, errno);
     }
     std::rewind(in.get());
-    SpawnSetup setup;
-    posix_spawn_file_actions_adddup2(&setup.actions, ::fileno(in.get()), STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&setup.actions, ::fileno(out.get()), STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&setup.actions, ::fileno(err.get()), STDERR_FILENO);
-    std::vector<std::string> words = command;
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    pid_t child = 0;
-    const int status =
-        posix_spawnp(&child, program.c_str(), &setup.actions, &setup.attributes, arguments.data(), environ);
-    if (status != 0) {
-        throw Error(ExitCode::kIo,
-                    fmt::format("{} does not start: {}; {}", program, std::strerror(status), hint));
-    }
+    const pid_t child = start(command, {::fileno(in.get()), ::fileno(out.get()), ::fileno(err.get())}, hint);
     ChildResult result;
     result.exit_code = wait_for(child, program);
     result.out = contents(out);
