@@ -79,7 +79,8 @@ TEST_F(Scarcity, AnEncoderWithoutMemoryIsATemporaryFailure) {
                                           test::quoted(CORDA_PROGRAM) + " render " + scene_ + " --force -o " +
                                           video_ + " --jobs 1 --codec " + codec);
             EXPECT_TRUE(result.exit_code == 75 || result.exit_code == 0) << kib << codec << result.err;
-            if (result.exit_code == 75) EXPECT_THAT(result.err, HasSubstr("ulimit -v")) << kib << codec;
+            EXPECT_TRUE(result.exit_code == 0 || result.err.find("ulimit -v") != std::string::npos)
+                << kib << codec << result.err;
         }
     }
 }
