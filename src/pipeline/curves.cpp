@@ -10,6 +10,7 @@
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/followed.hpp"
 #include "corda/sim/bounds.hpp"
+#include "corda/sim/distance.hpp"
 #include "corda/view/trail.hpp"
 
 namespace corda::pipeline {
@@ -68,7 +69,7 @@ view::PlotData Curves::axes() const {
     for (std::size_t i = 0; i < system_->particle_count(); ++i)
         start.include(system_->x_m[i], system_->y_m[i]);
     const Vec2 extent_m = start.max_m() - start.min_m();
-    const double size_m = std::hypot(extent_m.x, extent_m.y);
+    const double size_m = sim::length(extent_m.x, extent_m.y);
     const double end_s = scene_->world.duration_s;
     const double speed_m_s = size_m / end_s;
     const double mass_kg = std::accumulate(system_->mass_kg.begin(), system_->mass_kg.end(), 0.0);

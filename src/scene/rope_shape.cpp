@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "corda/core/direction.hpp"
 #include "corda/scene/readers.hpp"
+#include "corda/sim/distance.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::scene {
@@ -15,30 +16,7 @@ namespace {
 constexpr std::array<std::string_view, 3> kShapes{"line", "hang", "points"};
 
 double distance_m(Vec2 a, Vec2 b) {
-    return std::hypot(b.x - a.x, b.y - a.y);
-}
-
-/// Sine and cosine of an angle in degrees; exactly 0 and 1 at multiples of 90.
-struct Direction {
-    double sine = 0.0;
-    double cosine = 1.0;
-};
-
-Direction direction_of(double angle_deg) {
-    int quarters = 0;
-    const double rest_deg = std::remquo(angle_deg, 90.0, &quarters);  // exact
-    const double rest_rad = rest_deg * (std::numbers::pi / 180.0);
-    const Direction rest{std::sin(rest_rad), std::cos(rest_rad)};
-    switch (static_cast<unsigned>(quarters) & 3U) {
-        case 1:
-            return {rest.cosine, -rest.sine};
-        case 2:
-            return {-rest.sine, -rest.cosine};
-        case 3:
-            return {-rest.cosine, rest.sine};
-        default:
-            return rest;
-    }
+    return sim::length(b.x - a.x, b.y - a.y);
 }
 
 /// A straight rope lies inside the limits if both of its ends do.
