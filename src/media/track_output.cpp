@@ -8,6 +8,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
+#include "corda/media/matroska_header.hpp"
 
 namespace corda::media {
 namespace {
@@ -106,6 +107,7 @@ void TrackOutput::begin(const char* container, const AVCodecParameters& paramete
     stream->time_base = frame_base_;
     stream->avg_frame_rate = to_libav(info.fps);
 
+    if (has_old_header()) format_->metadata_header_padding = kNewMatroskaBytes;
     Options options;
     set_options(container, layout_, info.fps, options);
     check_libav(avformat_write_header(format_.get(), options.get()), kIo,
@@ -147,6 +149,21 @@ void TrackOutput::finish() {
     ended_ = true;
     check_libav(av_write_trailer(format_.get()), kIo, what);
     end_bytes(what);
+    if (has_old_header()) renew_header(what);
+}
+
+bool TrackOutput::has_old_header() const {
+    return kHasOldMatroska && layout_ == TrackLayout::kFinal &&
+           std::string_view(format_->oformat->name) == "matroska";
+}
+
+void TrackOutput::renew_header(const std::string& what) {
+    std::string file(kLongestMatroskaHeader, '\0');
+    file.resize(read_bytes(open_for_reading(path_), path_, file.data(), file.size()));
+    const std::string renewed = with_new_matroska_header(std::move(file));
+    check_libav(::lseek(descriptor_, 0, SEEK_SET) < 0 ? AVERROR(errno) : 0, kIo, what);
+    check_libav(AVERROR(write_all(descriptor_, renewed)), kIo, what);
+    check_libav(::lseek(descriptor_, 0, SEEK_END) < 0 ? AVERROR(errno) : 0, kIo, what);
 }
 
 void TrackOutput::end_bytes(const std::string& what) {

@@ -50,6 +50,9 @@ class TrackOutput {
     static std::int64_t seek(void* output, std::int64_t offset, int whence);
     /// Writes what is buffered; in a part, also a checksum of all bytes since the previous one.
     void end_bytes(const std::string& what);
+    /// True if the header must be renewed at the end, to that of newer versions of FFmpeg.
+    [[nodiscard]] bool has_old_header() const;
+    void renew_header(const std::string& what);
 
     QuietLog quiet_;
     int descriptor_;
