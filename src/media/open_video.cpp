@@ -74,7 +74,10 @@ OpenVideo open_video(const std::string& path, std::optional<std::uint64_t> bytes
                     fmt::format("'{}' has no video track that can be decoded", path));
     file.stream = format->streams[index];
     codec = with_alpha(*file.stream, codec);
-    int status = open_decoder(file, codec, kDecoderThreads);
+    // That a slice of FFV1 is damaged stands in the log alone, of whichever thread decodes it, and a
+    // LogCapture has that of its own thread.
+    const bool tells_by_log = file.stream->codecpar->codec_id == AV_CODEC_ID_FFV1;
+    int status = open_decoder(file, codec, tells_by_log ? 1 : kDecoderThreads);
     // The system starts no further thread; one is enough.
     if (status == AVERROR(EAGAIN)) status = open_decoder(file, codec, 1);
     check_libav(status, ExitCode::kIo, fmt::format("the decoder of '{}' does not open", path));
