@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds Corda with warnings as errors and runs every test with ctest.
 # Usage: tests/run.sh [--preset ci|asan|debug] [--long] [-- CTEST ARGUMENTS]
-#   --long   the long form of the slow suites
+#   --long   the long form of the slow suites, and tests/platforms.sh
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 preset=ci
@@ -19,3 +19,4 @@ cd "$root"
 [[ -f "build/$preset/build.ninja" ]] || cmake --preset "$preset" >/dev/null
 cmake --build "build/$preset"
 ctest --preset "$preset" "$@"
+if [[ -n "${CORDA_TEST_LONG:-}" && "$preset" == ci && $# -eq 0 ]]; then tests/platforms.sh; fi

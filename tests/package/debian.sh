@@ -2,7 +2,7 @@
 # Builds the Debian packages and uses what is in them: the program draws an example, the manual and the completions are
 # there, and Python imports the module and draws the same frame.
 # Usage: debian.sh BUILD_FOLDER EXAMPLES_FOLDER
-# With CORDA_TEST_LONG=1 (as root, with debootstrap) they are installed, used and removed in a new Debian 12 system, where an
+# With CORDA_TEST_LONG=1 (as root) they are installed, used and removed in a new system of this machine's release, where an
 # outside project builds against the library, too.
 set -euo pipefail
 build=$1
@@ -47,15 +47,12 @@ assert corda.compare(film.frame(3), '$work/still.png').equal"
     exit 0
 fi
 
-mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/*.{list,sources} 2>/dev/null | grep -v '^#' |
-    grep -oE 'https?://[^ ]*/debian/?( |$)' | head -1 || true)
-[[ -n "$mirror" ]] || { echo "apt has no mirror of Debian to make a new system from"; exit 1; }
-debootstrap --variant=minbase bookworm "$work/system" "$mirror" >"$work/log" 2>&1 || { tail "$work/log"; exit 1; }
-cp /etc/apt/apt.conf.d/* "$work/system/etc/apt/apt.conf.d/" 2>/dev/null || true
+source "$here/../support/new_system.sh"
+new_system "$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)" "$work/system"
 mkdir "$work/system/packages"
 cp "$work/packages"/*.deb "$work/system/packages"
 cp -r "$here/consumer" "$work/system/consumer"
-in_system() { chroot "$work/system" env DEBIAN_FRONTEND=noninteractive PATH=/usr/sbin:/usr/bin:/sbin:/bin "$@"; }
+in_system() { enter "$work/system" "$@"; }
 in_system apt-get update -q >/dev/null
 in_system sh -c 'apt-get install -y -q --no-install-recommends /packages/corda_*.deb' >"$work/log" 2>&1 || { tail "$work/log"; exit 1; }
 use in_system
