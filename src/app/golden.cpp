@@ -97,6 +97,7 @@ void tell(const Console& console, const GoldenOptions& options, const suite::Sui
         changed += picture.changed ? 1 : 0;
         pictures.push_back(to_json(picture));
     }
+    for (const std::string& note : result.notes) console.warning(note);
     for (const std::string& frozen : result.frozen) console.detail(frozen);
     const std::int64_t passed = result.count(Verdict::kPassed);
     const std::int64_t failed = result.count(Verdict::kDifferent) + result.count(Verdict::kEmpty);
@@ -114,9 +115,10 @@ void tell(const Console& console, const GoldenOptions& options, const suite::Sui
         console.warning(fmt::format("there is no folder '{}'; --update makes it", options.def.folder));
     else if (missing > 0)
         console.info("--update draws what is missing, and keeps it");
-    nlohmann::json json = {{"schema", 1},        {"passed", passed},        {"failed", failed},
-                           {"missing", missing}, {"stale", stale},          {"invalid", invalid},
-                           {"changed", changed}, {"frozen", result.frozen}, {"pictures", pictures}};
+    nlohmann::json json = {{"schema", 1},         {"passed", passed},        {"failed", failed},
+                           {"missing", missing},  {"stale", stale},          {"invalid", invalid},
+                           {"changed", changed},  {"frozen", result.frozen}, {"notes", result.notes},
+                           {"pictures", pictures}};
     if (invalid > 0) {
         const auto first =
             std::find_if(result.pictures.begin(), result.pictures.end(),

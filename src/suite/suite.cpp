@@ -14,6 +14,7 @@
 #include "corda/suite/crew.hpp"
 #include "corda/suite/provenance.hpp"
 #include "corda/suite/staging.hpp"
+#include "corda/suite/update_folder.hpp"
 
 namespace corda::suite {
 namespace {
@@ -296,6 +297,9 @@ std::int64_t SuiteResult::count(Verdict verdict) const {
 SuiteResult run(const SuiteDef& def) {
     std::vector<Checked> invalid;
     std::vector<Case> cases = load_cases(def, invalid);
+    SuiteResult result;
+    std::string settled = settle_update(def.folder, def.dry_run);
+    if (!settled.empty()) result.notes.push_back(std::move(settled));
     const std::vector<std::string> references = references_in(def.folder);
     std::int64_t all = 0;
     for (const Case& one : cases) all += std::ssize(one.pictures);
@@ -303,7 +307,6 @@ SuiteResult run(const SuiteDef& def) {
     runner.check(cases);
     const std::vector<std::string> stale =
         invalid.empty() ? stale_ones(def, cases, references) : std::vector<std::string>{};
-    SuiteResult result;
     for (Case& one : cases) {
         std::move(one.pictures.begin(), one.pictures.end(), std::back_inserter(result.pictures));
         if (!one.frozen.empty()) result.frozen.push_back(one.frozen);

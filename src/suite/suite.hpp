@@ -44,6 +44,7 @@ struct Checked {
 struct SuiteResult {
     std::vector<Checked> pictures;    ///< scene by scene in order of time; stale ones, invalid scenes last
     std::vector<std::string> frozen;  ///< per scene whose solver or camera its references fix: in words
+    std::vector<std::string> notes;   ///< what the user must know besides: sentences
 
     /// The pictures of a verdict, without those that an update has put right.
     [[nodiscard]] std::int64_t count(Verdict verdict) const;

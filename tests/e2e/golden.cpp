@@ -226,16 +226,37 @@ TEST_F(GoldenSuite, ChangesNothingIfAnUpdateFails) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.file("ref")), {}), 3);
 }
 
-TEST_F(GoldenSuite, RemovesWhatAKilledUpdateHasLeft) {
+TEST_F(GoldenSuite, RemovesWhatAKilledUpdateHasStagedAndNoFolderOfTheUser) {
+    std::filesystem::create_directories(reference(".corda-golden-update/new"));
+    test::write_file(reference(".corda-golden-update/corda-golden-update"), "");
+    test::write_file(reference(".corda-golden-update/new/swing_t0009_000000.png"), "half a picture");
     std::filesystem::create_directory(reference(".update"));
-    test::write_file(reference(".update/swing_t0009_000000.png"), "half a picture");
+    test::write_file(reference(".update/mine"), "mine");
     EXPECT_EQ(run({"--update", "--set", "world.drag=0.3"}).exit_code, 0);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.file("ref")), {}), 4);
+    EXPECT_EQ(test::read_file(reference(".update/mine")), "mine");
+}
+
+TEST_F(GoldenSuite, TheNextCheckCompletesAnUpdateThatWasKilled) {
+    const std::string kept = test::read_file(reference(kMiddle));
+    std::filesystem::create_directories(reference(".corda-golden-update/new"));
+    std::filesystem::create_directories(reference(".corda-golden-update/old"));
+    test::write_file(reference(".corda-golden-update/corda-golden-update"), "");
+    test::write_file(reference(".corda-golden-update/journal"), std::string("w") + kMiddle + '\0');
+    std::filesystem::rename(reference(kMiddle),
+                            reference(std::string(".corda-golden-update/new/") + kMiddle));
+    const auto result = run();
+    EXPECT_EQ(result.exit_code, 0);
+    EXPECT_THAT(result.err, HasSubstr("completed an interrupted update"));
+    EXPECT_EQ(test::read_file(reference(kMiddle)), kept);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.file("ref")), {}), 3);
 }
 
 TEST_F(GoldenSuite, LetsOneUpdateWriteAtATime) {
     const std::string kept = test::read_file(reference(kMiddle));
-    const Descriptor other(open(folder_.file("ref").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    std::filesystem::create_directory(reference(".corda-golden-update"));
+    const Descriptor other(
+        open(reference(".corda-golden-update").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     ASSERT_EQ(flock(other.get(), LOCK_EX), 0);
     const auto result = run({"--update", "--set", "world.drag=0.3"});
     EXPECT_EQ(result.exit_code, 75);
