@@ -57,7 +57,8 @@ std::string line_of(const Checked& picture, const GoldenOptions& options) {
         line += ": " + figures_text(picture.difference);
     if (!picture.cause.empty()) line += (line.ends_with(' ') ? "" : "; ") + picture.cause;
     if (picture.failed() && picture.verdict == Verdict::kMissing) line += "; --update adds it";
-    if (picture.failed() && picture.verdict == Verdict::kStale) line += "; --update removes it";
+    if (picture.failed() && picture.verdict == Verdict::kStale && !picture.has_no_record)
+        line += "; --update removes it";
     return line;
 }
 
@@ -98,6 +99,7 @@ void tell(const Console& console, const GoldenOptions& options, const suite::Sui
         pictures.push_back(to_json(picture));
     }
     for (const std::string& note : result.notes) console.warning(note);
+    for (const std::string& detail : result.details) console.detail(detail);
     for (const std::string& frozen : result.frozen) console.detail(frozen);
     const std::int64_t passed = result.count(Verdict::kPassed);
     const std::int64_t failed = result.count(Verdict::kDifferent) + result.count(Verdict::kEmpty);
@@ -130,8 +132,8 @@ void tell(const Console& console, const GoldenOptions& options, const suite::Sui
 }
 
 ExitCode run_suite(const Console& console, GoldenOptions options) {
-    if ((options.def.dry_run || options.def.replan) && !options.def.update)
-        throw Error(ExitCode::kUsage, "--dry-run and --replan say how --update works; add --update");
+    if ((options.def.dry_run || options.def.replan || options.def.force) && !options.def.update)
+        throw Error(ExitCode::kUsage, "--dry-run, --replan and --force say how --update works; add --update");
     for (const std::string& path : {options.junit, options.html})
         if (!path.empty()) check_output(path, "", true);
     if (!options.html.empty()) options.def.most_drawn = kMostOnPage;
@@ -161,6 +163,9 @@ void add_golden(CLI::App& app, Action& action) {
     command->add_flag("--update", options->def.update,
                       "write pictures that are missing or differ, and remove stale ones");
     command->add_flag("--dry-run", options->def.dry_run, "with --update: only say what would change");
+    command->add_flag(
+        "--force", options->def.force,
+        "with --update: also replace files that are no PNG, and remove pictures without a record");
     command->add_flag("--replan", options->def.replan,
                       "with --update: choose all solvers and cameras anew, in place of the kept pictures'");
     command->add_option("--html", options->html,

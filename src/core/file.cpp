@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <filesystem>
 #include <system_error>
 
@@ -111,6 +112,18 @@ void make_folder(const std::string& path) {
     if (reason) fail_file("make the folder", path, reason.value());
 }
 
+int try_to_write_in(const std::string& folder) {
+    Descriptor file(::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0600));
+    if (file) return 0;
+    // The file system, or what filters system calls, does not know O_TMPFILE.
+    if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL && errno != ENOSYS) return errno;
+    std::string path = folder + "/.corda-XXXXXX";
+    file = Descriptor(::mkostemp(path.data(), O_CLOEXEC));
+    if (!file) return errno;
+    ::unlink(path.c_str());
+    return 0;
+}
+
 void check_folder(const std::string& path) {
     namespace fs = std::filesystem;
     for (fs::path at = path;; at = at.parent_path()) {
@@ -120,8 +133,8 @@ void check_folder(const std::string& path) {
         if (type == fs::file_type::not_found && at != ".") continue;
         if (type != fs::file_type::directory)
             fail_file("make the folder", path, failure ? failure.value() : ENOTDIR);
-        const bool may_write = ::faccessat(AT_FDCWD, at.c_str(), W_OK | X_OK, AT_EACCESS) == 0;
-        if (!may_write) fail_file(at == path ? "write to the folder" : "make the folder", path, errno);
+        if (const int status = try_to_write_in(at.string()); status != 0)
+            fail_file(at == path ? "write to the folder" : "make the folder", path, status);
         return;
     }
 }
@@ -137,9 +150,17 @@ void sync_file(const Descriptor& file, const std::string& path) {
 void sync_folder_of(const std::string& path) {
     std::string folder = std::filesystem::path(path).parent_path().string();
     if (folder.empty()) folder = ".";
-    const Descriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    if (!descriptor) fail_file("open for syncing", folder, errno);
-    sync_file(descriptor, folder);
+    const Descriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (!opened && errno != EACCES && errno != EPERM) fail_file("open for syncing", folder, errno);
+    int status = -1;
+    if (opened) {
+        do status = ::fsync(opened.get());
+        while (status != 0 && errno == EINTR);
+        if (status == 0 || errno == EINVAL) return;
+    }
+    // A folder may be writable and not readable (mode 1733). Its file system is synced through the file.
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    if (file) static_cast<void>(::syncfs(file.get()));
 }
 
 }  // namespace corda

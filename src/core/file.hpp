@@ -79,14 +79,19 @@ enum class FileUse { kRead, kWrite };
 /// Makes a folder and its missing parents. Throws corda::Error (kIo).
 void make_folder(const std::string& path);
 
+/// Tries to create a file in a folder, which leaves nothing there. Returns 0 or an errno value. Asking
+/// instead (faccessat2) fails under container runtimes that do not know the call.
+[[nodiscard]] int try_to_write_in(const std::string& folder);
+
 /// Checks that a folder can be made or, if it exists, written to. Throws corda::Error (kIo).
 void check_folder(const std::string& path);
 
 /// Forces what was written to an open file onto the disk. Throws corda::Error (kIo).
 void sync_file(const Descriptor& file, const std::string& path);
 
-/// Forces the entry of `path` in its folder onto the disk, so that a rename survives a power cut. Throws
-/// corda::Error (kIo).
+/// Forces the entry of `path` in its folder onto the disk, so that a rename survives a power cut. A folder
+/// that cannot be read or synced is no failure, because the entry is there: its file system is synced
+/// instead, as far as it can be. Throws corda::Error (kIo) if there is no such folder.
 void sync_folder_of(const std::string& path);
 
 }  // namespace corda

@@ -140,9 +140,8 @@ void check_output(const std::string& path, const std::string& input, bool force,
     }
     if (!force && is_taken(path)) fail_exists(path);
     const std::string folder = folder_of(force ? follow_links(path) : path).string();
-    if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) {
-        fail_file("write to the folder", folder, errno);
-    }
+    if (const int status = try_to_write_in(folder); status != 0)
+        fail_file("write to the folder", folder, status);
 }
 
 void remove_leftovers(const std::string& folder,

@@ -36,12 +36,25 @@ bool is_leftover(const Descriptor& part) {
     return part && ::fstat(part.get(), &status) == 0 && S_ISREG(status.st_mode) && status.st_size == 0;
 }
 
+/// Refuses a folder, a pipe, a device or a symbolic link under the name of a part: no render made it.
+void refuse_other_kinds(const std::string& path) {
+    struct stat status {};
+    if (::lstat(path.c_str(), &status) != 0 || S_ISREG(status.st_mode)) return;
+    const char* const kind = S_ISDIR(status.st_mode)    ? "a folder"
+                             : S_ISLNK(status.st_mode)  ? "a symbolic link"
+                             : S_ISFIFO(status.st_mode) ? "a pipe"
+                                                        : "a device or a socket";
+    throw Error(ExitCode::kIo, "'" + path + "' is " + kind +
+                                   ", and the unfinished video needs this name; move it away, or choose "
+                                   "another name for the output");
+}
+
 void remove_old(const std::string& path) {
+    refuse_other_kinds(path);
     const Descriptor old = open_existing(path);
     if (!old && errno == ENOENT) return;
-    // ELOOP: a symbolic link, through which no render writes.
-    if (!old && errno != ELOOP) fail_file("replace", path, errno);
-    if (old && !lock(old, path, LOCK_EX | LOCK_NB)) fail_busy("'" + path + "'");
+    if (!old) fail_file("replace", path, errno);
+    if (!lock(old, path, LOCK_EX | LOCK_NB)) fail_busy("'" + path + "'");
     if (::unlink(path.c_str()) != 0) fail_file("remove", path, errno);
 }
 
@@ -51,6 +64,7 @@ PartFile::PartFile(std::string path, Descriptor descriptor)
     : path_(std::move(path)), descriptor_(std::move(descriptor)) {}
 
 void PartFile::check(const std::string& path, const OutputOptions& options) {
+    refuse_other_kinds(path);
     const Descriptor old = open_existing(path);
     if (!old && errno == ENOENT) return;
     if (!old && errno == ENAMETOOLONG) fail_file("write", path, errno);
@@ -85,6 +99,7 @@ void PartFile::remove_unheld(const std::string& path) noexcept {
 }
 
 PartFile PartFile::open(std::string path) {
+    refuse_other_kinds(path);
     Descriptor file = open_existing(path);
     if (!file) fail_file("read", path, errno);
     if (!lock(file, path, LOCK_EX | LOCK_NB)) fail_busy("'" + path + "'");

@@ -26,6 +26,7 @@ class PartFile {
   public:
     /// Throws corda::Error (kIo) if a part file is in the way: with `force`, only one that another process
     /// holds. An empty one is not in the way: its process was killed before its first chunk was whole.
+    /// Anything but an ordinary file is refused in any case, here and below, and stays.
     static void check(const std::string& path, const OutputOptions& options);
 
     /// Creates the part file, in place of an empty one or, with `force`, of any. Throws as `check`, and if it

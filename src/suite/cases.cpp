@@ -66,6 +66,22 @@ Case make_case(const std::string& path, const SuiteDef& def, std::set<std::strin
     return made;
 }
 
+/// True for a TOML file of another program: it has no key `schema` on a line of its own. Files of a folder
+/// are judged by this before they are read as scenes; a file that is named is always read.
+bool is_foreign(const std::string& path) {
+    const FileHandle file = open_for_reading(path);
+    std::string text(file_size(path), '\0');
+    text.resize(read_bytes(file, path, text.data(), text.size()));
+    for (std::size_t at = 0; at < text.size(); at = std::min(text.find('\n', at), text.size() - 1) + 1) {
+        const std::size_t word = text.find_first_not_of(" \t\"'", at);
+        if (word == std::string::npos || text.compare(word, 6, "schema") != 0) continue;
+        const std::size_t next = text.find_first_not_of(" \t\"'", word + 6);
+        if (next != std::string::npos && text[next] == '=') return false;
+    }
+    // What uses the tables of scenes is a scene that lacks its schema, which is to be told.
+    return text.find("[golden]") == std::string::npos && text.find("[[rope]]") == std::string::npos;
+}
+
 /// What a picture says of how it was made; nothing if it cannot be read.
 Provenance provenance_in(const std::string& path) {
     try {
@@ -75,9 +91,41 @@ Provenance provenance_in(const std::string& path) {
     }
 }
 
+/// SCENE of a name SCENE_tSSSS_FFFFFF.png, as name_of() makes it; empty for other names.
+std::string scene_in_name(const std::string& name) {
+    constexpr std::string_view kPattern = "_tdddd_dddddd.png";
+    if (name.size() <= kPattern.size()) return "";
+    const std::size_t begin = name.size() - kPattern.size();
+    for (std::size_t i = 0; i < kPattern.size(); ++i) {
+        const char c = name[begin + i];
+        const bool is_digit = c >= '0' && c <= '9';
+        // The d of a pattern is a digit.
+        if (kPattern[i] == 'd' ? !is_digit : c != kPattern[i]) return "";
+    }
+    return name.substr(0, begin);
+}
+
 }  // namespace
 
-std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid) {
+bool is_no_png(const std::string& path) {
+    std::error_code none;
+    if (!fs::is_regular_file(path, none)) return false;
+    constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
+    std::string begin(kSignature.size(), '\0');
+    begin.resize(read_bytes(open_for_reading(path), path, begin.data(), begin.size()));
+    return begin != kSignature;
+}
+
+bool lacks_record(const std::string& path) {
+    try {
+        return !from_png_info(read_png_info(path)).is_golden();
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid,
+                             std::vector<std::string>& passed_over) {
     std::vector<Case> cases;
     std::set<std::string> names;
     const auto load = [&](const std::string& file) -> std::optional<Case> {
@@ -98,6 +146,10 @@ std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid)
         const std::vector<std::string> files =
             is_folder ? files_in<fs::recursive_directory_iterator>(path, ".toml") : std::vector{path};
         for (const std::string& file : files) {
+            if (is_folder && is_foreign(file)) {
+                passed_over.push_back(fmt::format("{}: passed over: no scene, as it has no schema", file));
+                continue;
+            }
             std::optional<Case> made = load(file);
             if (!made) continue;
             if (made->scene.golden)
@@ -152,7 +204,9 @@ std::vector<std::string> stale_ones(const SuiteDef& def, const std::vector<Case>
     for (const std::string& path : references) {
         if (used.contains(path)) continue;
         const Provenance made = provenance_in(path);
-        if (made.is_golden() && (has_folder || scenes.contains(made.scene))) stale.push_back(path);
+        const std::string scene =
+            made.is_golden() ? made.scene : printable(scene_in_name(fs::path(path).filename().string()));
+        if (!scene.empty() && (has_folder || scenes.contains(scene))) stale.push_back(path);
     }
     return stale;
 }

@@ -88,6 +88,10 @@ GoldenOutcome update(const fs::path& path, const Image& drawn, const std::string
         return {.matches = false,
                 .written = false,
                 .message = why + "; update it by corda golden --update, which made it"};
+    if (suite::is_no_png(path.string()))
+        return {.matches = false,
+                .written = false,
+                .message = why + "; the file is no PNG and stays; remove it to have the picture written"};
     make_folder(path.parent_path().string());
     PngInfo info;
     info.text = {{"Software", fmt::format("corda {}", version())}};

@@ -39,8 +39,10 @@ bool passes(const Drawn& drawn, const DifferenceLimits& limits, const std::strin
         reference = read_png(path);
     } catch (const Error& error) {
         picture.difference = {.same_size = false, .equal = false};
-        picture.cause =
-            fmt::format("the kept picture is damaged, and --update draws it anew ({})", error.what());
+        picture.cause = fmt::format("the kept picture {} ({})",
+                                    is_no_png(path) ? "is no PNG, and --update --force replaces it"
+                                                    : "is damaged, and --update draws it anew",
+                                    error.what());
         return false;
     }
     picture.difference = compare(reference, drawn.image);
@@ -244,6 +246,7 @@ class Runner {
             if (is_kept) return;
             picture.cause = "the same pixels, by another solver or camera";
         }
+        if (!def_.force && is_no_png((fs::path(def_.folder) / picture.name).string())) return;
         picture.changed = true;
         if (!def_.dry_run) staging_.add(picture.name, drawn, to_png_info(made, *job.film, picture.time_s));
     }
@@ -294,10 +297,34 @@ std::int64_t SuiteResult::count(Verdict verdict) const {
     });
 }
 
+namespace {
+
+/// Notes the kept pictures that freeze nothing because their texts are gone.
+void tell_lost_records(const SuiteDef& def, const std::vector<Case>& cases, SuiteResult& result) {
+    std::vector<std::string> names;
+    for (const Case& one : cases)
+        for (const Checked& picture : one.pictures)
+            if (lacks_record((fs::path(def.folder) / picture.name).string())) names.push_back(picture.name);
+    if (names.empty()) return;
+    constexpr std::size_t kMaxNames = 3;
+    const std::size_t shown = std::min(names.size(), kMaxNames);
+    std::string list = names.front();
+    for (std::size_t i = 1; i < shown; ++i) list += ", " + names[i];
+    if (names.size() > shown) list += ", ...";
+    result.notes.push_back(
+        fmt::format("{} of how it was made, so that solver and camera are not frozen: {}; run corda golden "
+                    "--update, and keep the texts of PNG files (a tool such as oxipng --strip removes them)",
+                    names.size() == 1 ? "1 picture has no record"
+                                      : fmt::format("{} pictures have no record", names.size()),
+                    list));
+}
+
+}  // namespace
+
 SuiteResult run(const SuiteDef& def) {
     std::vector<Checked> invalid;
-    std::vector<Case> cases = load_cases(def, invalid);
     SuiteResult result;
+    std::vector<Case> cases = load_cases(def, invalid, result.details);
     std::string settled = settle_update(def.folder, def.dry_run);
     if (!settled.empty()) result.notes.push_back(std::move(settled));
     const std::vector<std::string> references = references_in(def.folder);
@@ -305,18 +332,26 @@ SuiteResult run(const SuiteDef& def) {
     for (const Case& one : cases) all += std::ssize(one.pictures);
     Runner runner(def, references, all);
     runner.check(cases);
-    const std::vector<std::string> stale =
+    std::vector<std::string> stale =
         invalid.empty() ? stale_ones(def, cases, references) : std::vector<std::string>{};
+    if (!def.update) tell_lost_records(def, cases, result);
     for (Case& one : cases) {
         std::move(one.pictures.begin(), one.pictures.end(), std::back_inserter(result.pictures));
         if (!one.frozen.empty()) result.frozen.push_back(one.frozen);
     }
-    for (const std::string& path : stale)
-        result.pictures.push_back({.scene = {},
-                                   .name = fs::path(path).filename().string(),
-                                   .verdict = Verdict::kStale,
-                                   .cause = "no scene asks for it",
-                                   .changed = def.update});
+    for (const std::string& path : stale) {
+        const bool is_lost = lacks_record(path);
+        result.pictures.push_back(
+            {.scene = {},
+             .name = fs::path(path).filename().string(),
+             .verdict = Verdict::kStale,
+             .cause = is_lost ? "no scene asks for it; it has no record of how it was made, and --update "
+                                "--force removes it"
+                              : "no scene asks for it",
+             .changed = def.update && (!is_lost || def.force),
+             .has_no_record = is_lost});
+    }
+    if (!def.force) std::erase_if(stale, lacks_record);
     std::move(invalid.begin(), invalid.end(), std::back_inserter(result.pictures));
     if (def.update && !def.dry_run) runner.publish(stale);
     return result;

@@ -16,9 +16,11 @@ struct SuiteDef {
     std::vector<Setting> settings;  ///< of all scenes
     std::string folder;             ///< of the references
     bool update = false;            ///< replace references that differ, add missing ones, remove stale ones
-    bool replan = false;            ///< with `update`: choose solver and camera of all scenes anew
-    bool dry_run = false;           ///< with `update`: change nothing
-    int most_drawn = 0;             ///< of so many failed pictures what was drawn is kept, for a page
+    bool force =
+        false;  ///< with `update`: also replace files that are no PNG, and remove stale ones without a record
+    bool replan = false;   ///< with `update`: choose solver and camera of all scenes anew
+    bool dry_run = false;  ///< with `update`: change nothing
+    int most_drawn = 0;    ///< of so many failed pictures what was drawn is kept, for a page
     FilmDef film;
     OnProgress on_progress;  ///< called with the pictures done, by one thread at a time; false stops
 };
@@ -36,15 +38,17 @@ struct Checked {
     std::string cause{};           ///< why it failed, in words
     std::string change{};          ///< what its scene says that the kept one's did not
     bool changed = false;          ///< written or removed by an update, or to be: then it is no failure
+    bool has_no_record = false;    ///< stale by its name alone: removed with SuiteDef::force alone
     std::optional<Image> drawn{};  ///< if it failed, see SuiteDef::most_drawn
 
     [[nodiscard]] bool failed() const { return verdict != Verdict::kPassed && !changed; }
 };
 
 struct SuiteResult {
-    std::vector<Checked> pictures;    ///< scene by scene in order of time; stale ones, invalid scenes last
-    std::vector<std::string> frozen;  ///< per scene whose solver or camera its references fix: in words
-    std::vector<std::string> notes;   ///< what the user must know besides: sentences
+    std::vector<Checked> pictures;     ///< scene by scene in order of time; stale ones, invalid scenes last
+    std::vector<std::string> frozen;   ///< per scene whose solver or camera its references fix: in words
+    std::vector<std::string> details;  ///< files that were passed over, in words
+    std::vector<std::string> notes;    ///< what the user must know besides: sentences
 
     /// The pictures of a verdict, without those that an update has put right.
     [[nodiscard]] std::int64_t count(Verdict verdict) const;

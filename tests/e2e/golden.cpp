@@ -143,7 +143,9 @@ TEST_F(GoldenSuite, TellsAnotherSizeAndWhatCannotBeRead) {
     const auto told = nlohmann::json::parse(damaged.out);
     EXPECT_EQ(told["passed"], 2);
     EXPECT_THAT(told["pictures"][1]["cause"].get<std::string>(), HasSubstr(kMiddle));
-    EXPECT_EQ(run({"--update"}).exit_code, 0);
+    EXPECT_EQ(run({"--update"}).exit_code, 7);
+    EXPECT_EQ(test::read_file(reference(kMiddle)), "no picture");
+    EXPECT_EQ(run({"--update", "--force"}).exit_code, 0);
     EXPECT_EQ(run().exit_code, 0);
 }
 
@@ -266,10 +268,37 @@ TEST_F(GoldenSuite, LetsOneUpdateWriteAtATime) {
 }
 
 TEST_F(GoldenSuite, LeavesPicturesOfOthersAlone) {
-    write_png(reference("swing_t0009_000000.png"), Image(4, 4));
+    write_png(reference("swing_at_9.png"), Image(4, 4));
     EXPECT_EQ(run().exit_code, 0);
     EXPECT_EQ(run({"--update"}).exit_code, 0);
-    EXPECT_TRUE(std::filesystem::exists(reference("swing_t0009_000000.png")));
+    EXPECT_TRUE(std::filesystem::exists(reference("swing_at_9.png")));
+}
+
+TEST_F(GoldenSuite, SaysWhichPicturesLostTheirRecord) {
+    std::filesystem::copy(reference(kMiddle), reference("gone_t0000_500000.png"));
+    for (const char* const name : {kMiddle, "gone_t0000_500000.png"})
+        change_reference(name, [](Image&, PngInfo& info) { info.text.clear(); });
+    const auto result = run();
+    EXPECT_EQ(result.exit_code, 7);
+    EXPECT_THAT(result.err, AllOf(HasSubstr("1 picture has no record"), HasSubstr(kMiddle)));
+    EXPECT_THAT(result.out, HasSubstr("gone_t0000_500000.png: stale"));
+    EXPECT_EQ(run({"--update"}).exit_code, 7);
+    EXPECT_TRUE(std::filesystem::exists(reference("gone_t0000_500000.png")));
+    EXPECT_EQ(run({"--update", "--force"}).exit_code, 0);
+    EXPECT_FALSE(std::filesystem::exists(reference("gone_t0000_500000.png")));
+    const auto again = run();
+    EXPECT_EQ(again.exit_code, 0);
+    EXPECT_THAT(again.err, Not(HasSubstr("no record")));
+}
+
+TEST_F(GoldenSuite, PassesOverTomlFilesOfOtherPrograms) {
+    test::write_file(folder_.file("scenes/pyproject.toml"), "[project]\nname = \"x\"\n");
+    const auto result = run({"-v"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("pyproject.toml: passed over"));
+    EXPECT_EQ(test::run_corda({"golden", folder_.file("scenes/pyproject.toml"), "--dir", folder_.file("ref")})
+                  .exit_code,
+              3);
 }
 
 TEST_F(GoldenSuite, DrawsTheTimesOfOneSceneBySeveralThreads) {

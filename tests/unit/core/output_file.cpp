@@ -454,6 +454,18 @@ TEST_F(OutputFiles, AFolderThatCannotBeWrittenToIsRefusedEarly) {
     ASSERT_EQ(::chmod(folder_.path().c_str(), 0700), 0);
 }
 
+TEST_F(OutputFiles, AFolderThatMayBeWrittenAndNotReadIsWrittenTo) {
+    as_nobody(folder_.path(), [&] {
+        ASSERT_EQ(::chmod(folder_.path().c_str(), 01333), 0);
+        check_output(file("a"), "", false);
+        EXPECT_EQ(failure_of([&] { save(file("a"), "new", false); }).message, "");
+        EXPECT_EQ(failure_of([&] { save(file("a"), "newer", true); }).message, "");
+    });
+    ASSERT_EQ(::chmod(folder_.path().c_str(), 0700), 0);
+    EXPECT_EQ(test::read_file(file("a")), "newer");
+    EXPECT_EQ(folder_.files().size(), 1U);
+}
+
 TEST_F(OutputFiles, TheInputIsNeverReplaced) {
     const std::string input = folder_.write("scene.toml", "scene");
     fs::create_hard_link(input, file("alias"));

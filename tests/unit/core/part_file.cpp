@@ -121,10 +121,9 @@ TEST_F(PartFiles, LinksAreNotFollowed) {
     fs::create_symlink("victim", path_);
     EXPECT_EQ(failure_of([&] { static_cast<void>(PartFile::open(path_)); }).code, ExitCode::kIo);
     EXPECT_EQ(failure_of([&] { static_cast<void>(PartFile::create(path_, {})); }).code, ExitCode::kIo);
+    EXPECT_THAT(failure_of([&] { static_cast<void>(PartFile::create(path_, {.force = true})); }).message,
+                HasSubstr("is a symbolic link"));
     EXPECT_TRUE(fs::is_symlink(path_));
-    const PartFile part = PartFile::create(path_, {.force = true});
-    ASSERT_EQ(write_all(part.descriptor(), "text"), 0);
-    EXPECT_FALSE(fs::is_symlink(path_));
     EXPECT_EQ(test::read_file(folder_.file("victim")), "precious");
 }
 
@@ -132,6 +131,22 @@ TEST_F(PartFiles, ADanglingLinkIsNotFollowed) {
     fs::create_symlink("missing", path_);
     EXPECT_EQ(failure_of([&] { static_cast<void>(PartFile::create(path_, {})); }).code, ExitCode::kIo);
     EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.part"));
+}
+
+TEST_F(PartFiles, AFolderOrAPipeOfThatNameIsNamedAndStays) {
+    for (const char* const kind : {"a folder", "a pipe"}) {
+        if (kind == std::string("a pipe"))
+            ASSERT_EQ(::mkfifo(path_.c_str(), 0600), 0);
+        else
+            fs::create_directory(path_);
+        for (const std::function<void()>& work :
+             {std::function<void()>([&] { PartFile::check(path_, {.force = true}); }),
+              std::function<void()>([&] { static_cast<void>(PartFile::create(path_, {.force = true})); }),
+              std::function<void()>([&] { static_cast<void>(PartFile::open(path_)); })})
+            EXPECT_THAT(failure_of(work).message, HasSubstr(std::string("is ") + kind));
+        EXPECT_TRUE(fs::exists(path_));
+        fs::remove(path_);
+    }
 }
 
 TEST_F(PartFiles, OtherThingsOfThatNameAreErrors) {

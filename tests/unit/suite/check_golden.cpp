@@ -137,6 +137,10 @@ TEST_F(CheckGolden, ADamagedPictureDoesNotMatchAndIsUpdated) {
     EXPECT_TRUE(check_golden(with_dot(7), "dot.png").matches);  // a variant does
     std::filesystem::remove(folder_.file("ref/dot.older.png"));
     setenv("CORDA_UPDATE_GOLDENS", "1", 1);
+    const auto kept = check_golden(with_dot(7), "dot.png");
+    EXPECT_FALSE(kept.written);
+    EXPECT_THAT(kept.message, HasSubstr("is no PNG and stays"));
+    test::write_file(folder_.file("ref/dot.png"), "\x89PNG\r\n\x1a\n half");
     EXPECT_TRUE(check_golden(with_dot(7), "dot.png").written);
     EXPECT_EQ(read_png(folder_.file("ref/dot.png")), with_dot(7));
 }
