@@ -46,12 +46,13 @@ TEST(Times, OfASceneGoToItsEndAndItsLastFrame) {
     scene.world.duration_s = 0.1;  // rounded down, by 30 per second a bit less than 3 frames
     scene.video.fps = FrameRate(Rational{30, 1});
     EXPECT_EQ(last_frame_of(scene), 3);
-    EXPECT_TRUE(has_time(scene, 0.0));
-    EXPECT_TRUE(has_time(scene, 0.1));
-    EXPECT_TRUE(has_time(scene, scene.video.fps.time_s(3)));
-    EXPECT_FALSE(has_time(scene, -0.001));
-    EXPECT_FALSE(has_time(scene, 0.101));
-    EXPECT_FALSE(has_time(scene, std::nan("")));
+    EXPECT_TRUE(motion_time_s(scene, 0.0).has_value());
+    EXPECT_TRUE(motion_time_s(scene, 0.1).has_value());
+    EXPECT_TRUE(motion_time_s(scene, std::nextafter(0.1, 1.0)).has_value());
+    EXPECT_TRUE(motion_time_s(scene, scene.video.fps.time_s(3)).has_value());
+    EXPECT_FALSE(motion_time_s(scene, -0.001).has_value());
+    EXPECT_FALSE(motion_time_s(scene, 0.101).has_value());
+    EXPECT_FALSE(motion_time_s(scene, std::nan("")).has_value());
     const std::array<double, 2> stills_s{0.05, std::nan("")};
     EXPECT_EQ(failure_of([&] { validate(scene, stills_s); }).code, ExitCode::kUsage);
     EXPECT_EQ(failure_of([&] { validate(scene, std::span(stills_s).first(1)); }).code, ExitCode::kOk);
