@@ -209,10 +209,13 @@ const std::string kHangs = "LD_PRELOAD=" FOREIGN_FAULTS " X264_HANGS_FROM_PX=640
 
 TEST_F(Signals, EndAnEncoderThatDoesNotReturn) {
     const std::string video = folder_.file("a.mp4");
+    const std::string marker = folder_.file("hangs");
     for (const char* const jobs : {"1", "2"}) {
         for (const auto& [signal, exit_code] : {std::pair{"INT", 130}, {"TERM", 143}, {"HUP", 129}}) {
-            const Interrupted end = interrupt("render " + scene_ + " --json -o " + video + " --jobs " + jobs,
-                                              signal, "test -e " + video + ".part && sleep 0.3", kHangs);
+            const Interrupted end =
+                interrupt("render " + scene_ + " --json -o " + video + " --jobs " + jobs, signal,
+                          "test -e " + marker, kHangs + " X264_HANG_MARKER=" + marker);
+            std::filesystem::remove(marker);
             EXPECT_EQ(end.result.exit_code, exit_code) << end.result.err;
             EXPECT_THAT(end.result.err, HasSubstr(std::string("interrupted (SIG") + signal + ")"));
             EXPECT_THAT(end.result.out, HasSubstr("\"code\": " + std::to_string(exit_code)));
@@ -226,9 +229,10 @@ TEST_F(Signals, EndAnEncoderThatDoesNotReturn) {
 
 TEST_F(Signals, TheSecondEndsAtOnceEvenInsideAnEncoder) {
     const std::string video = folder_.file("a.mp4");
-    const Interrupted end =
-        interrupt("render " + scene_ + " --jobs 1 -o " + video, "TERM",
-                  "test -e " + video + ".part && sleep 0.3 && kill -INT $pid && sleep 0.2", kHangs);
+    const std::string marker = folder_.file("hangs");
+    const Interrupted end = interrupt("render " + scene_ + " --jobs 1 -o " + video, "TERM",
+                                      "test -e " + marker + " && kill -INT $pid && sleep 0.2",
+                                      kHangs + " X264_HANG_MARKER=" + marker);
     EXPECT_EQ(end.result.exit_code, 143);
     EXPECT_LT(end.ms, 600);  // measured 5 .. 20
 }

@@ -3,8 +3,10 @@
 //   THREADS_TO_START=N      the system starts N more threads, and then none
 //   PROCESSES_TO_START=N    the same of processes
 //   X264_HANGS_FROM_PX=N    x264 never returns from opening an encoder for pictures of N columns or more
+//   X264_HANG_MARKER=FILE   the file that is made when it begins to hang
 
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <pthread.h>
 #include <unistd.h>
 
@@ -54,7 +56,11 @@ pid_t fork() {
 
 #ifdef X264_BUILD
 x264_t* x264_encoder_open(x264_param_t* params) {
-    while (params->i_width >= number_in("X264_HANGS_FROM_PX", 1 << 30)) pause();
+    if (params->i_width >= number_in("X264_HANGS_FROM_PX", 1 << 30)) {
+        const char* const marker = std::getenv("X264_HANG_MARKER");
+        if (marker != nullptr) close(open(marker, O_CREAT | O_WRONLY, 0600));
+        while (true) pause();
+    }
     return next(&x264_encoder_open, CORDA_NAME_OF(x264_encoder_open))(params);
 }
 #endif

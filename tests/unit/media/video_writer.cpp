@@ -360,9 +360,10 @@ TEST_F(Video, ALinkAtThePlaceOfThePartIsNotFollowed) {
     fs::create_symlink("victim", file("a.mp4.part"));
     EXPECT_EQ(failure_of([&] { VideoWriter(file("a.mp4"), small_video(), {}); }).code, ExitCode::kIo);
     EXPECT_TRUE(fs::is_symlink(file("a.mp4.part")));
-    make_video(file("a.mp4"), small_video(), 4);
+    // Nor is it replaced, by --force either: no render made it.
+    EXPECT_EQ(failure_of([&] { make_video(file("a.mp4"), small_video(), 4); }).code, ExitCode::kIo);
     EXPECT_EQ(test::read_file(file("victim")), "precious");
-    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4", "victim"));
+    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.part", "victim"));
 }
 
 TEST_F(Video, AFullDiskIsAnIoErrorAndKeepsThePart) {

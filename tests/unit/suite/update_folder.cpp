@@ -108,7 +108,8 @@ TEST_F(UpdateFolderTest, TakesBackEverythingIfOnePictureCannotBeReplaced) {
     fs::create_directory(pictures() + "/" + name(150));
     const auto failure = failure_of([&] { update(); });
     EXPECT_EQ(failure.code, ExitCode::kIo);
-    EXPECT_THAT(failure.message, ::testing::AllOf(HasSubstr("a150.png"), HasSubstr("no picture was changed")));
+    EXPECT_THAT(failure.message,
+                ::testing::AllOf(HasSubstr("a150.png"), HasSubstr("no picture was changed")));
     fs::remove(pictures() + "/" + name(150));
     test::write_file(pictures() + "/" + name(150), "old");
     EXPECT_EQ(state(), "old");

@@ -23,10 +23,10 @@ DrawList written(const std::string& utf8, int size_px) {
     return list;
 }
 
-TEST(Font, NamesTheFirstCharacterThatItLacks) {
+TEST(Font, NamesEveryCharacterThatItLacks) {
     const Font font;
     EXPECT_EQ(font.missing("Pendel · ½ m, φ = 30° − 1.2·10⁻³"), "");
-    EXPECT_EQ(font.missing("a ball of yarn \U0001f9f6, 漢"), "U+1F9F6, U+6F22, U+5B57");
+    EXPECT_EQ(font.missing("a ball of yarn \U0001f9f6, 漢字"), "U+1F9F6, U+6F22, U+5B57");
     EXPECT_EQ(font.missing("two\nlines"), "U+000A");
 }
 
