@@ -16,7 +16,7 @@ work=$(mktemp -d --tmpdir corda-platforms.XXXXXX)
 trap 'rm -rf --one-file-system "$work"' EXIT
 cd "$root"
 
-# say TEXT: what has been done, and when.
+# say TEXT: reports a finished step with the time so far.
 say() { printf 'platforms: %s (%d s)\n' "$1" "$SECONDS"; }
 
 # make_outputs FOLDER COMMAND...: writes what the program that the command runs makes: `same` must have the same bytes on

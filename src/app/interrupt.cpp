@@ -44,7 +44,7 @@ constexpr std::int64_t kTickNs = 100'000'000;
 constexpr std::array kRequests{SIGHUP, SIGINT, SIGTERM};
 constexpr int kSignalBase = 128;  // a shell's exit code of a process that a signal ended, without its number
 
-/// What a process says that does not end by itself.
+/// Messages of a process that the watchdog ends.
 struct Words {
     std::string text;  ///< on standard error
     std::string json;  ///< on standard output; empty without --json

@@ -11,7 +11,7 @@ namespace corda {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// What is given to work that a request to stop still lets finish: true for 0.4 s.
+/// Returns true for 0.4 s after a request to stop: work that is nearly done may finish in this time.
 [[nodiscard]] inline GoesOn for_a_moment() {
     constexpr double kMomentS = 0.4;
     return [end_s = now_s() + kMomentS] { return now_s() < end_s; };

@@ -25,7 +25,7 @@ namespace corda {
 class PartFile {
   public:
     /// Throws corda::Error (kIo) if a part file is in the way: with `force`, only one that another process
-    /// holds. An empty one is not in the way: its process was killed before its first chunk was whole.
+    /// holds. An empty one is replaced: its process was killed before it finished a chunk.
     /// Anything but an ordinary file is refused in any case, here and below, and stays.
     static void check(const std::string& path, const OutputOptions& options);
 

@@ -23,7 +23,7 @@ template <class Work>
     return threads;
 }
 
-/// Starts `count` threads, and ends them: whether a library that needs so many at a time will get them.
+/// Starts and joins `count` threads. Returns false if the system starts fewer at a time.
 [[nodiscard]] inline bool can_start_threads(int count) {
     std::mutex mutex;
     std::condition_variable changed;

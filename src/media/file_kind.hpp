@@ -12,7 +12,7 @@ namespace corda::media {
 /// libav is not asked, because it takes a text file for ANSI art, and follows a playlist.
 [[nodiscard]] std::string file_kind(const std::string& path);
 
-/// What a file is that is taken for a picture or a video.
+/// The kind of a file that was given as a picture or a video.
 struct ForeignKind {
     std::string_view words;  ///< "a Git LFS pointer"
     std::string_view remedy;

@@ -23,7 +23,7 @@ constexpr double kLargestRatio = 1032.0;
 constexpr png_uint_32 kMostTexts = 32;
 constexpr png_alloc_size_t kLargestTextBytes = png_alloc_size_t{64} << 10;
 
-/// What a reader wants of a file.
+/// The parts of a file that a reader asks for.
 enum class Wanted { kPixels, kTexts };
 
 /// What libpng's callbacks work with. It lives outside the functions that longjmp returns to.
@@ -82,7 +82,7 @@ void on_read(png_structp png, png_bytep bytes, std::size_t count) {
 
 // libpng may leave the next functions by longjmp, so no object with a destructor lives in them.
 
-/// Leaves out what is not wanted. Colours are not converted, so chunks that describe them are among it.
+/// Skips chunks that the reader does not ask for. Colours are not converted, so chunks that describe them are among it.
 void skip_chunks(ReadJob& job) {
     static constexpr png_byte kOthers[] = "cHRM\0gAMA\0iCCP\0sBIT\0sPLT\0hIST\0bKGD\0eXIf\0tIME";
     static constexpr png_byte kTexts[] = "tEXt\0zTXt\0iTXt";

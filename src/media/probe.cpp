@@ -23,7 +23,7 @@ namespace corda::media {
 namespace {
 
 constexpr double kLongestS = 5.0;  // measured 0.01 .. 0.2 s; all cores may be busy with other work
-/// What a thread that draws takes of the address space, measured 400 to 430 MiB with Mesa 22.3.
+/// Address space of a drawing thread, measured as 400 to 430 MiB with Mesa 22.3.
 constexpr std::uint64_t kDrawingBytes = std::uint64_t{430} << 20U;
 /// Threads that an encoder starts by itself, at most: measured 11 to 16 of SVT-AV1 and 1 of libx265.
 int threads_of(const Codec& codec) {

@@ -85,7 +85,7 @@ void add_lost_velocity(const Scene& scene, const System& system, const Plan& pla
     });
 }
 
-/// Velocities in a list for each particle; one for all is meant for those that are free.
+/// Velocities in a list for each particle; a single one applies to the free particles.
 void add_pinned_velocity(const std::string& name, const std::vector<Vec2>& velocity_m_s,
                          const std::vector<std::uint32_t>& pinned, std::vector<std::string>& notes) {
     const auto is_same = [&](Vec2 v) {

@@ -200,7 +200,7 @@ std::vector<Pace> paces_of(const Scene& scene, const System& system, const Body&
     return paces;
 }
 
-/// What following a body at this pace costs.
+/// The cost of following a body at this pace.
 struct Work {
     double steps = 0.0;
     double updates = 0.0;  ///< of particles

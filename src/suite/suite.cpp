@@ -41,7 +41,7 @@ bool passes(const Drawn& drawn, const DifferenceLimits& limits, const std::strin
         picture.difference = {.same_size = false, .equal = false};
         picture.cause = fmt::format("the kept picture {} ({})",
                                     is_no_png(path) ? "is no PNG, and --update --force replaces it"
-                                                    : "is damaged, and --update draws it anew",
+                                                    : "is damaged, and --update replaces it",
                                     error.what());
         return false;
     }

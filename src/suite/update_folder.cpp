@@ -24,7 +24,7 @@ constexpr const char* kMarker = "/corda-golden-update";
 constexpr const char* kJournal = "/journal";
 constexpr const char* kUndo = "/undo";
 
-/// What stands under a name itself, be it a symbolic link.
+/// The status of a name itself; symbolic links are not followed.
 fs::file_type type_of(const std::string& path) {
     std::error_code none;
     return fs::symlink_status(path, none).type();

@@ -9,7 +9,7 @@
 namespace corda {
 namespace {
 
-/// Read anew each time, so that the CPU computes and not the compiler.
+/// Read each time, so that the CPU computes and not the compiler.
 volatile double least_normal = std::numeric_limits<double>::min();
 
 /// True if a result below the least normal number is 0.
