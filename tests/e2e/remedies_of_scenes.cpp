@@ -269,8 +269,9 @@ INSTANTIATE_TEST_SUITE_P(
         Remedy{"rate_that_is_none",
                rope_scene(kHang),
                "plan SCENE --set video.fps=many",
-               "0.001 .. 100000, as an integer or as a fraction in quotes such as \"30000/1001\"",
-               {{{"many", "24"}}, {{"many", "\"30000/1001\""}}}},
+               "0.001 .. 100000, as a number of up to three decimals or as a fraction in quotes such as "
+               "\"30000/1001\"",
+               {{{"many", "12.5"}}, {{"many", "\"30000/1001\""}}}},
         Remedy{"colour",
                rope_scene(kHang + "color = \"redd\""),
                "plan SCENE",
