@@ -82,7 +82,8 @@ void on_read(png_structp png, png_bytep bytes, std::size_t count) {
 
 // libpng may leave the next functions by longjmp, so no object with a destructor lives in them.
 
-/// Skips chunks that the reader does not ask for. Colours are not converted, so chunks that describe them are among it.
+/// Skips chunks that the reader does not ask for. Colours are not converted, so chunks that describe them are
+/// among it.
 void skip_chunks(ReadJob& job) {
     static constexpr png_byte kOthers[] = "cHRM\0gAMA\0iCCP\0sBIT\0sPLT\0hIST\0bKGD\0eXIf\0tIME";
     static constexpr png_byte kTexts[] = "tEXt\0zTXt\0iTXt";
