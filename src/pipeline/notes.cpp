@@ -75,13 +75,12 @@ void add_lost_velocity(const Scene& scene, const System& system, const Plan& pla
             kinetic_after_j(body, scene.world, plan.bodies[i].method, scene.video.fps.interval_s(), goes_on);
         if (!after_j || !(before_j - *after_j > kRounding * before_j)) return;
         const bool is_string = body.bodies.front().material.is_string;
-        notes.push_back(
-            fmt::format("{}: {:.3g} % of the kinetic energy at the start, {:.3g} J of {:.3g} J, is left out: "
-                        "velocity along {} "
-                        "of fixed length, which {}; give velocities across them, or a compliance",
-                        body_name(system, i), 100.0 * (1.0 - *after_j / before_j), before_j - *after_j,
-                        before_j, is_string ? "taut links" : "bars",
-                        is_string ? "cannot lengthen" : "can neither lengthen nor shorten"));
+        notes.push_back(fmt::format(
+            "{}: {:.3g} % of the kinetic energy at the start, {:.3g} J of {:.3g} J, is left out: "
+            "velocity along {} of fixed length, which {}; give velocities across them, or a compliance",
+            body_name(system, i), 100.0 * (1.0 - *after_j / before_j), before_j - *after_j, before_j,
+            is_string ? "taut links" : "bars",
+            is_string ? "cannot lengthen" : "can neither lengthen nor shorten"));
     });
 }
 

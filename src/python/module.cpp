@@ -72,24 +72,33 @@ corda::Image to_image(const py::object& picture) {
 /// Python.
 class Calls {
   public:
-    /// Counts one call, made without the interpreter's lock.
+    /// Releases the interpreter's lock during one call, which counts from before the release until the lock
+    /// is held again.
     class Scope {
       public:
         Scope() {
-            block_if_ended();
-            const std::lock_guard lock(mutex());
-            ++count();
+            if (has_ended()) never_return();
+            {
+                const std::lock_guard lock(mutex());
+                ++count();
+            }
+            state_ = PyEval_SaveThread();
         }
         Scope(const Scope&) = delete;
         Scope& operator=(const Scope&) = delete;
         ~Scope() {
+            while (has_given_up() && has_ended()) sleep_long();
+            PyEval_RestoreThread(state_);
             {
                 const std::lock_guard lock(mutex());
                 --count();
             }
             ended().notify_all();
-            block_if_ended();
+            if (has_ended()) never_return();
         }
+
+      private:
+        PyThreadState* state_;
     };
 
     /// True if another thread is ending the interpreter.
@@ -101,7 +110,7 @@ class Calls {
         is_ending() = true;
         const py::gil_scoped_release release;
         std::unique_lock lock(mutex());
-        ended().wait_for(lock, kPatience, [] { return count() == 0; });
+        has_given_up() = !ended().wait_for(lock, kPatience, [] { return count() <= 0; });
     }
 
     /// To be called in a forked child, where the calls of the parent's other threads do not exist.
@@ -112,8 +121,12 @@ class Calls {
     }
 
   private:
-    static void block_if_ended() {
-        while (has_ended()) std::this_thread::sleep_for(std::chrono::hours(1));
+    static void sleep_long() { std::this_thread::sleep_for(std::chrono::hours(1)); }
+
+    /// Gives up the interpreter's lock for good.
+    [[noreturn]] static void never_return() {
+        PyEval_SaveThread();
+        while (true) sleep_long();
     }
 
     // Never destroyed: blocked threads outlive the static objects.
@@ -132,6 +145,11 @@ class Calls {
     static std::atomic<bool>& is_ending() {
         static std::atomic<bool> is_ending{false};
         return is_ending;
+    }
+    /// True if a call did not end in time, so that the interpreter ends without it.
+    static std::atomic<bool>& has_given_up() {
+        static std::atomic<bool> has_given_up{false};
+        return has_given_up;
     }
     static std::thread::id& ending_thread() {
         static std::thread::id thread;
@@ -172,7 +190,6 @@ class Asking {
     template <class Work>
     auto run(const Work& work) {
         try {
-            const py::gil_scoped_release release;
             const Calls::Scope call;
             return work([this](std::int64_t done, std::int64_t total) { return (*this)(done, total); });
         } catch (const corda::Error&) {
@@ -208,7 +225,7 @@ class PyFilm {
     PyFilm(const PyFilm&) = delete;
     PyFilm& operator=(const PyFilm&) = delete;
     ~PyFilm() {
-        const py::gil_scoped_release release;
+        const Calls::Scope call;
         const std::unique_lock lock(mutex_, std::try_to_lock);
         // What a thread that never returns was using is left as it is.
         if (!lock.owns_lock() || is_cut_off()) static_cast<void>(film_.release());
