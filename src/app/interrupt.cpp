@@ -34,7 +34,7 @@ constexpr std::int64_t kSameWishNs = 100'000'000;
 
 /// Time from the first signal until the process ends, whatever its threads wait for. A sanitized program is
 /// ten times slower.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef CORDA_SANITIZE
 constexpr std::int64_t kLongestNs = 20'000'000'000;
 #else
 constexpr std::int64_t kLongestNs = 800'000'000;
