@@ -57,7 +57,7 @@ TEST(VideoComment, NumbersBeyondTheRangeAreNone) {
 }
 
 TEST_F(Video, WithANestedCommentIsNoSoundOne) {
-    for (const int levels : {17, 20'000}) {
+    for (const int levels : {17, 1000}) {
         leave_nested_part(file("a.mp4"), levels);
         const auto failure = failure_of([&] { recover_part(file("a.mp4.part"), file("b.mp4")); });
         EXPECT_EQ(failure.code, ExitCode::kMismatch);
