@@ -166,7 +166,7 @@ class Asking {
     bool operator()(std::int64_t done, std::int64_t total) {
         constexpr std::chrono::milliseconds kPause{50};
         const auto now = std::chrono::steady_clock::now();
-        const bool is_last = done == total && !std::exchange(has_told_last_, done == total);
+        const bool is_last = done == total && !std::exchange(has_told_last_, true);
         if (Calls::has_ended()) return false;
         if (raised_ || (now - last_ < kPause && !is_last)) return !raised_;
         last_ = now;

@@ -332,15 +332,18 @@ SuiteResult run(const SuiteDef& def) {
     for (const Case& one : cases) all += std::ssize(one.pictures);
     Runner runner(def, references, all);
     runner.check(cases);
-    std::vector<std::string> stale =
+    const std::vector<std::string> stale =
         invalid.empty() ? stale_ones(def, cases, references) : std::vector<std::string>{};
     if (!def.update) tell_lost_records(def, cases, result);
     for (Case& one : cases) {
         std::move(one.pictures.begin(), one.pictures.end(), std::back_inserter(result.pictures));
         if (!one.frozen.empty()) result.frozen.push_back(one.frozen);
     }
+    std::vector<std::string> removed;
     for (const std::string& path : stale) {
         const bool is_lost = lacks_record(path);
+        const bool is_removed = def.update && (!is_lost || def.force);
+        if (is_removed) removed.push_back(path);
         result.pictures.push_back(
             {.scene = {},
              .name = fs::path(path).filename().string(),
@@ -348,12 +351,11 @@ SuiteResult run(const SuiteDef& def) {
              .cause = is_lost ? "no scene asks for it; it has no record of how it was made, and --update "
                                 "--force removes it"
                               : "no scene asks for it",
-             .changed = def.update && (!is_lost || def.force),
+             .changed = is_removed,
              .has_no_record = is_lost});
     }
-    if (!def.force) std::erase_if(stale, lacks_record);
     std::move(invalid.begin(), invalid.end(), std::back_inserter(result.pictures));
-    if (def.update && !def.dry_run) runner.publish(stale);
+    if (def.update && !def.dry_run) runner.publish(removed);
     return result;
 }
 
