@@ -232,8 +232,7 @@ void add_simulate(CLI::App& app, Action& action) {
     options->scene.add_to(*command);
     command->add_option("-o,--output", options->output,
                         "CSV file, or - for standard output; none: figures only. Its first line names the "
-                        "columns: t in s, x0, "
-                        "y0, ... in m");
+                        "columns: t in s, x0, y0, ... in m");
     options->scene.add_shortcut(*command, "--fps", "video.fps", "rows per second");
     options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
     command->add_flag("--velocity", options->columns.velocities,

@@ -7,6 +7,7 @@
 #include "corda/media/animation_frames.hpp"
 #include "corda/media/big_endian.hpp"
 #include "corda/media/exact_pictures.hpp"
+#include "corda/media/file_kind.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/png_bytes.hpp"
 
@@ -15,7 +16,6 @@
 namespace corda::media {
 namespace {
 
-constexpr std::string_view kPngSignature("\x89PNG\r\n\x1a\n");
 constexpr std::size_t kChunkHeadBytes = 8;  // of a chunk: length and type
 constexpr std::size_t kChecksumBytes = 4;
 

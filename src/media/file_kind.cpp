@@ -77,6 +77,10 @@ const ForeignKind* foreign_kind_of(const std::string& path) {
     return foreign_kind(first_bytes(path, kHeadBytes));
 }
 
+bool is_png(const std::string& path) {
+    return first_bytes(path, kPngSignature.size()) == kPngSignature;
+}
+
 std::string file_kind(const std::string& path) {
     const std::string head = first_bytes(path, 4096);
     const auto at = [&head](std::size_t offset, std::string_view bytes) {
@@ -86,7 +90,7 @@ std::string file_kind(const std::string& path) {
     if (at(0, "\x1a\x45\xdf\xa3")) return "matroska";
     if (at(0, "GIF8")) return "gif";
     // What makes a picture an animation comes before its pixels.
-    if (at(0, "\x89PNG\r\n\x1a\n") && head.find("acTL") < head.find("IDAT")) return "apng";
+    if (at(0, kPngSignature) && head.find("acTL") < head.find("IDAT")) return "apng";
     if (at(0, "RIFF") && at(8, "WEBP")) return "webp";
     if (at(0, "YUV4MPEG2 ")) return "yuv4mpegpipe";
     return {};

@@ -12,6 +12,12 @@ namespace corda::media {
 /// libav is not asked, because it takes a text file for ANSI art, and follows a playlist.
 [[nodiscard]] std::string file_kind(const std::string& path);
 
+/// The first bytes of every PNG.
+inline constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
+
+/// True if a file begins as every PNG does. Throws corda::Error (kIo) if it cannot be read.
+[[nodiscard]] bool is_png(const std::string& path);
+
 /// The kind of a file that was given as a picture or a video.
 struct ForeignKind {
     std::string_view words;  ///< "a Git LFS pointer"

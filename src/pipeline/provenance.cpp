@@ -1,7 +1,6 @@
 #include "corda/pipeline/provenance.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <utility>
@@ -127,14 +126,6 @@ std::string text_in_video(const std::string& path, const OnProgress& on_progress
     return provenance.dump();
 }
 
-bool is_png(const std::string& path) {
-    constexpr std::string_view kSignature("\x89PNG\r\n\x1a\n", 8);
-    const FileHandle file = open_for_reading(path);
-    std::array<char, 8> begin{};
-    const std::size_t count = read_bytes(file, path, begin.data(), begin.size());
-    return std::string_view(begin.data(), count) == kSignature;
-}
-
 }  // namespace
 
 Provenance provenance_of(const Scene& scene) {
@@ -189,7 +180,7 @@ Provenance read_provenance(const std::string& path, const OnProgress& on_progres
     if (kind == "gif" || kind == "apng" || kind == "webp")
         fail_at(path, "is a GIF, an APNG or a WebP, none of which tells what it was made from");
     PngTexts png;
-    if (is_png(path))
+    if (media::is_png(path))
         png = texts_in_png(path, on_progress);
     else
         png.provenance = text_in_video(path, on_progress);

@@ -12,6 +12,7 @@
 #include "corda/core/text.hpp"
 #include "corda/core/timeline.hpp"
 #include "corda/golden/variant.hpp"
+#include "corda/media/file_kind.hpp"
 #include "corda/suite/provenance.hpp"
 
 namespace corda::suite {
@@ -109,11 +110,7 @@ std::string scene_in_name(const std::string& name) {
 
 bool is_no_png(const std::string& path) {
     std::error_code none;
-    if (!fs::is_regular_file(path, none)) return false;
-    constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
-    std::string begin(kSignature.size(), '\0');
-    begin.resize(read_bytes(open_for_reading(path), path, begin.data(), begin.size()));
-    return begin != kSignature;
+    return fs::is_regular_file(path, none) && !media::is_png(path);
 }
 
 bool lacks_record(const std::string& path) {
