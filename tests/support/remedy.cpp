@@ -16,11 +16,12 @@ void replace_all(std::string& text, const std::string& was, const std::string& i
 
 CommandResult run(const std::string& scene, const std::string& command) {
     const ScratchFolder folder;
-    const std::string file = folder.write("scene.toml", scene);
+    write_file(folder.file("scene.toml"), scene);
     std::istringstream words(command);
     std::vector<std::string> arguments;
     for (std::string word; words >> word;) {
-        replace_all(word, "SCENE", file);
+        // In this order: the name of a scratch folder is random and may have "DIR" in it.
+        replace_all(word, "SCENE", "DIR/scene.toml");
         replace_all(word, "DIR", folder.path());
         arguments.push_back(word == "EMPTY" ? "" : word);
     }
