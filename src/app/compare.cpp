@@ -6,6 +6,7 @@
 #include <memory>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
@@ -28,18 +29,18 @@ bool is_png(const std::filesystem::path& path) {
 }
 
 /// Compares two pictures of files, the first of which is decoded. `keeps_b`: `b` is wanted in any case.
-Difference difference_of(const std::string& path_a, const Image& a, const std::string& path_b, Image& b,
+Difference difference_of(const std::string& path_a, const Picture& a, const std::string& path_b, Picture& b,
                          const PerceivedFigures& figures, const OnProgress& goes_on, const Image* mask,
                          bool keeps_b) {
+    Difference difference;
     if (mask == nullptr && media::have_same_picture_chunks(path_a, path_b)) {
         if (keeps_b) b = a;
-        Difference none;
-        if (figures.flip) none.flip = 0.0;
-        if (figures.ssim) none.ssim = 1.0;
-        return none;
+    } else {
+        b = read_picture(path_b, goes_on);
+        difference = compare(a, b, goes_on, mask);
     }
-    b = read_png(path_b, goes_on);
-    return compare_perceived(a, b, figures, goes_on, mask);
+    add_perceived(a.image, b.image, figures, difference, goes_on, mask);
+    return difference;
 }
 
 std::string words_of(const ComparedPicture& compared, const Image& a, const Image& b) {
@@ -56,12 +57,25 @@ std::string words_of(const ComparedPicture& compared, const Image& a, const Imag
     return words;
 }
 
+/// What the comparison does not use of two files.
+std::vector<std::string> notes_of(const std::string& a, const std::string& b) {
+    std::vector<std::string> notes;
+    for (const std::string& path : {a, b}) {
+        const std::vector<std::string> chunks = media::color_chunks_beside_srgb(path);
+        if (chunks.empty()) continue;
+        notes.push_back(fmt::format("{}: {} {} ignored: the numbers in the file are compared as sRGB", path,
+                                    fmt::join(chunks, ", "), chunks.size() == 1 ? "is" : "are"));
+    }
+    return notes;
+}
+
 ExitCode compare_pictures(const Console& console, const CompareOptions& options,
                           const std::optional<Image>& mask) {
     std::vector<std::string> references{options.b};
     references.insert(references.end(), options.variants.begin(), options.variants.end());
     const ComparedPicture compared =
         compare_picture(options, options.a, references, mask, options.diff, usable_cores());
+    for (const std::string& note : compared.notes) console.warning(note);
     console.result(compared.words);
     if (!options.diff.empty()) console.info(fmt::format("difference picture: {}", options.diff));
     nlohmann::json json = figures_json(compared.difference);
@@ -70,6 +84,7 @@ ExitCode compare_pictures(const Console& console, const CompareOptions& options,
     json["reference"] = printable(compared.reference);
     json["variant"] =
         compared.variant.empty() ? nlohmann::json() : nlohmann::json(printable(compared.variant));
+    json["notes"] = notes_json(compared.notes);
     console.report(json);
     return compared.passed ? ExitCode::kOk : ExitCode::kMismatch;
 }
@@ -128,11 +143,22 @@ nlohmann::json figures_json(const Difference& difference) {
                         {"flip", nullptr},
                         {"ssim", nullptr}};
     if (!difference.same_size) return json;
-    json["max"] = difference.max;
+    json["max"] = max_json(difference);
     json["mean"] = difference.mean;
     json["share"] = difference.share;
     if (difference.flip) json["flip"] = *difference.flip;
     if (difference.ssim) json["ssim"] = *difference.ssim;
+    return json;
+}
+
+nlohmann::json max_json(const Difference& difference) {
+    const auto whole = static_cast<int>(difference.max);
+    return difference.max == whole ? nlohmann::json(whole) : nlohmann::json(difference.max);
+}
+
+nlohmann::json notes_json(const std::vector<std::string>& notes) {
+    nlohmann::json json = nlohmann::json::array();
+    for (const std::string& note : notes) json.push_back(printable(note));
     return json;
 }
 
@@ -144,23 +170,24 @@ ComparedPicture compare_picture(const CompareOptions& options, const std::string
                                 const std::vector<std::string>& references, const std::optional<Image>& mask,
                                 const std::string& diff, int threads) {
     const OnProgress goes_on = stopping_if_asked();
-    const Image a = read_png(picture, goes_on);
+    const Picture a = read_picture(picture, goes_on);
     const Image* const its_mask = mask ? &*mask : nullptr;
     PerceivedFigures figures = figures_for(options);
     figures.threads = threads;
     std::optional<ComparedPicture> chosen;
-    Image chosen_picture;
+    Picture chosen_picture;
     for (const std::string& path : references) {
-        Image b;
+        Picture b;
         // Small pictures have no SSIM; only who asks for it is told.
-        const bool is_small = std::min(a.width(), a.height()) < kLeastSsimSidePx;
+        const bool is_small = std::min(a.image.width(), a.image.height()) < kLeastSsimSidePx;
         if (is_small && !options.limits.ssim) figures.ssim = false;
         ComparedPicture compared;
         compared.difference = difference_of(picture, a, path, b, figures, goes_on, its_mask, !diff.empty());
         compared.passed = compared.difference.within(options.limits);
         compared.reference = path;
         if (compared.passed && path != references.front()) compared.variant = variant_cause(path);
-        compared.words = words_of(compared, a, b);
+        compared.words = words_of(compared, a.image, b.image);
+        compared.notes = notes_of(picture, path);
         if (chosen && !compared.passed) continue;
         chosen = std::move(compared);
         chosen_picture = std::move(b);

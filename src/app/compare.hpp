@@ -25,6 +25,9 @@ struct CompareOptions {
 
 /// The figures of a difference; null for those that were not computed.
 [[nodiscard]] nlohmann::json figures_json(const Difference& difference);
+/// The largest difference: a whole number, but of pictures with 16 bits.
+[[nodiscard]] nlohmann::json max_json(const Difference& difference);
+[[nodiscard]] nlohmann::json notes_json(const std::vector<std::string>& notes);
 /// Which figures the limits ask for.
 [[nodiscard]] PerceivedFigures figures_for(const CompareOptions& options);
 
@@ -42,6 +45,7 @@ struct ComparedPicture {
     std::string reference;  ///< the file that the figures are of
     std::string variant;    ///< the cause of the variant that passed; empty: none, or the first reference
     std::string words;
+    std::vector<std::string> notes;  ///< what the files say that the comparison does not use
 };
 
 /// Compares `picture` with `references`: the first that passes counts, or else the first of all. Writes the

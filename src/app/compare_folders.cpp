@@ -149,6 +149,7 @@ ExitCode compare_folders(const Console& console, const CompareOptions& options,
     Difference worst;
     std::int64_t failed = 0;
     nlohmann::json files = nlohmann::json::array();
+    std::vector<std::string> notes;
     for (const Pair& pair : pairs) {
         nlohmann::json file{{"name", printable(pair.name)}};
         if (!pair.is_in_a || !pair.is_in_b) {
@@ -168,16 +169,21 @@ ExitCode compare_folders(const Console& console, const CompareOptions& options,
         take_worst(compared.difference, worst);
         file.update(figures_json(compared.difference));
         file["passed"] = compared.passed;
+        file["notes"] = notes_json(compared.notes);
+        notes.insert(notes.end(), compared.notes.begin(), compared.notes.end());
         file["variant"] =
             compared.variant.empty() ? nlohmann::json() : nlohmann::json(printable(compared.variant));
         files.push_back(file);
     }
+    if (!notes.empty())
+        console.warning(notes.front() +
+                        (notes.size() > 1 ? fmt::format("; and so of {} more", notes.size() - 1) : ""));
     console.result(fmt::format("{}: {}", counted(std::ssize(pairs), "picture"),
                                worst.equal   ? "all equal"
                                : failed == 0 ? "all within the limits"
                                              : fmt::format("{} failed", failed)));
     nlohmann::json json = figures_json(worst);
-    json.update({{"schema", 1}, {"passed", failed == 0}, {"files", files}});
+    json.update({{"schema", 1}, {"passed", failed == 0}, {"files", files}, {"notes", notes_json(notes)}});
     console.report(json);
     return failed == 0 ? ExitCode::kOk : ExitCode::kMismatch;
 }

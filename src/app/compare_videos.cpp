@@ -62,7 +62,9 @@ void take_frames(const CompareOptions& options, const std::array<media::StoredPi
     PerceivedFigures figures = figures_for(options);
     figures.flip = options.limits.flip.has_value();
     figures.ssim = options.limits.ssim.has_value();
-    Difference difference = compare_perceived(images[0], images[1], figures, {}, mask ? &*mask : nullptr);
+    const Image* const its_mask = mask ? &*mask : nullptr;
+    Difference difference = compare(images[0], images[1], {}, its_mask);
+    add_perceived(images[0], images[1], figures, difference, {}, its_mask);
     // Of one format, other samples can have the same bytes of colour; a mask tells no samples apart.
     if (is_stored_alike && !mask) difference.equal = false;
     if (difference.equal) return;
@@ -103,12 +105,9 @@ VideoDifference compare_all_frames(const CompareOptions& options, const std::str
     }
     PerceivedFigures figures = figures_for(options);
     figures.threads = 1;
-    if (result.differing > 0 && result.worst.same_size && options.json) {
-        const bool equal = result.worst.equal;
-        result.worst = compare_perceived(result.worst_pictures[0], result.worst_pictures[1], figures, {},
-                                         mask ? &*mask : nullptr);
-        result.worst.equal = equal;
-    }
+    if (result.differing > 0 && options.json)
+        add_perceived(result.worst_pictures[0], result.worst_pictures[1], figures, result.worst, {},
+                      mask ? &*mask : nullptr);
     return result;
 }
 
@@ -118,7 +117,7 @@ Json json_of(const VideoDifference& found) {
     const bool same_times = are_same_rate(found.rates) && found.time_s <= kSameTimeS;
     Json json = figures_json(found.worst);
     if (found.worst.same_size) {
-        json["max"] = found.largest.max;
+        json["max"] = max_json(found.largest);
         json["mean"] = found.largest.mean;
         json["share"] = found.largest.share;
     }

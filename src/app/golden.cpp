@@ -74,7 +74,7 @@ nlohmann::json to_json(const Checked& picture) {
                         {"mean", nullptr},
                         {"share", nullptr}};
     if (picture.variant.empty() || !picture.difference.same_size) return json;
-    json["max"] = picture.difference.max;
+    json["max"] = max_json(picture.difference);
     json["mean"] = picture.difference.mean;
     json["share"] = picture.difference.share;
     return json;

@@ -70,11 +70,12 @@ struct PixelRect {
 /// The parts of a picture that may differ from the last one. They may overlap.
 using Damage = std::vector<PixelRect>;
 
-/// A picture of 8-bit RGBA pixels (sRGB, straight alpha), row by row, row 0 on top, no padding.
-class Image {
+/// A picture of RGBA pixels (sRGB, straight alpha), row by row, row 0 on top, no padding.
+template <class Sample>
+class BasicImage {
   public:
-    Image() = default;
-    Image(int width, int height)
+    BasicImage() = default;
+    BasicImage(int width, int height)
         : width_(width),
           height_(height),
           rgba_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4) {}
@@ -82,17 +83,19 @@ class Image {
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] int height() const { return height_; }
     [[nodiscard]] PixelRect rect() const { return {0, 0, width_, height_}; }
-    [[nodiscard]] std::size_t row_bytes() const { return static_cast<std::size_t>(width_) * 4; }
+    [[nodiscard]] std::size_t row_bytes() const {
+        return static_cast<std::size_t>(width_) * 4 * sizeof(Sample);
+    }
 
-    [[nodiscard]] std::uint8_t* data() { return rgba_.data(); }
-    [[nodiscard]] const std::uint8_t* data() const { return rgba_.data(); }
-    [[nodiscard]] std::size_t size_bytes() const { return rgba_.size(); }
+    [[nodiscard]] Sample* data() { return rgba_.data(); }
+    [[nodiscard]] const Sample* data() const { return rgba_.data(); }
+    [[nodiscard]] std::size_t size_bytes() const { return rgba_.size() * sizeof(Sample); }
 
-    /// The four bytes of pixel (x, y).
-    [[nodiscard]] std::uint8_t* pixel(int x, int y) { return rgba_.data() + offset(x, y); }
-    [[nodiscard]] const std::uint8_t* pixel(int x, int y) const { return rgba_.data() + offset(x, y); }
+    /// The four samples of pixel (x, y).
+    [[nodiscard]] Sample* pixel(int x, int y) { return rgba_.data() + offset(x, y); }
+    [[nodiscard]] const Sample* pixel(int x, int y) const { return rgba_.data() + offset(x, y); }
 
-    friend bool operator==(const Image&, const Image&) = default;
+    friend bool operator==(const BasicImage&, const BasicImage&) = default;
 
   private:
     [[nodiscard]] std::size_t offset(int x, int y) const {
@@ -103,7 +106,18 @@ class Image {
 
     int width_ = 0;
     int height_ = 0;
-    std::vector<std::uint8_t> rgba_;
+    std::vector<Sample> rgba_;
+};
+
+/// 8 bits per channel, as Corda draws.
+using Image = BasicImage<std::uint8_t>;
+/// 16 bits per channel, as PNG files of others may have.
+using DeepImage = BasicImage<std::uint16_t>;
+
+/// A picture of a file.
+struct Picture {
+    Image image;                         ///< rounded to 8 bits if the file has more
+    std::optional<DeepImage> deep = {};  ///< of files that have 16 bits per channel alone
 };
 
 }  // namespace corda

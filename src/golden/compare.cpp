@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
-#include <string>
 
 #include "corda/golden/perceived.hpp"
 
@@ -21,7 +20,12 @@ struct PixelDifference {
     int sum = 0;
 };
 
-PixelDifference difference_of(const std::uint8_t* a, const std::uint8_t* b) {
+/// What a difference of 1 at 8 bits is in samples.
+template <class Sample>
+constexpr int kSamplesPerUnit = sizeof(Sample) == 1 ? 1 : 257;
+
+template <class Sample>
+PixelDifference difference_of(const Sample* a, const Sample* b) {
     PixelDifference result;
     for (int c = 0; c < kChannels; ++c) {
         const int difference = std::abs(int{a[c]} - int{b[c]});
@@ -45,12 +49,11 @@ std::array<std::uint8_t, kChannels> heat(int difference) {
     return {static_cast<std::uint8_t>(red), static_cast<std::uint8_t>(difference), 0, 255};
 }
 
-void check_mask(const Image& picture, const Image* mask) {
-    if (mask == nullptr || mask->rect() == picture.rect()) return;
-    throw Error(ExitCode::kUsage, "the mask has " + std::to_string(mask->width()) + "x" +
-                                      std::to_string(mask->height()) + " pixels, the pictures have " +
-                                      std::to_string(picture.width()) + "x" +
-                                      std::to_string(picture.height()) + "; give a mask of their size");
+void check_mask(const PixelRect& picture, const Image& mask) {
+    if (mask.rect() == picture) return;
+    throw Error(ExitCode::kUsage,
+                fmt::format("the mask has {}x{} pixels, the pictures have {}x{}; give a mask of their size",
+                            mask.width(), mask.height(), picture.width(), picture.height()));
 }
 
 /// Black in the mask.
@@ -60,32 +63,17 @@ bool is_left_out(const Image* mask, int x, int y) {
     return rgba[0] == 0 && rgba[1] == 0 && rgba[2] == 0;
 }
 
-}  // namespace
-
-bool Difference::within(const DifferenceLimits& limits) const {
-    if (!same_size) return false;
-    if (!limits.max && !limits.mean && !limits.share && !limits.flip && !limits.ssim) return equal;
-    return (!limits.max || max <= *limits.max) && (!limits.mean || mean <= *limits.mean) &&
-           (!limits.share || share <= *limits.share) && (!limits.flip || (flip && *flip <= *limits.flip)) &&
-           (!limits.ssim || (ssim && *ssim >= *limits.ssim));
-}
-
-std::string figures_text(const Difference& difference) {
-    std::string text =
-        fmt::format("max {}, mean {:.6g}, share {:.6g}", difference.max, difference.mean, difference.share);
-    if (difference.flip) text += fmt::format(", FLIP {:.6g}", *difference.flip);
-    if (difference.ssim) text += fmt::format(", SSIM {:.6g}", *difference.ssim);
-    return text;
-}
-
-Difference compare(const Image& a, const Image& b, const OnProgress& on_progress, const Image* mask) {
+template <class Sample>
+Difference compare_samples(const BasicImage<Sample>& a, const BasicImage<Sample>& b,
+                           const OnProgress& on_progress, const Image* mask) {
     Difference result;
-    if (a.width() != b.width() || a.height() != b.height()) {
+    if (a.rect() != b.rect()) {
         result.same_size = false;
         result.equal = false;
         return result;
     }
-    check_mask(a, mask);
+    if (mask != nullptr) check_mask(a.rect(), *mask);
+    int max = 0;
     std::uint64_t sum = 0;
     std::uint64_t differing = 0;
     std::uint64_t pixels = 0;
@@ -99,7 +87,7 @@ Difference compare(const Image& a, const Image& b, const OnProgress& on_progress
         for (int x = 0; x < a.width(); ++x) {
             if (is_left_out(mask, x, y)) continue;
             const PixelDifference pixel = difference_of(a.pixel(x, y), b.pixel(x, y));
-            result.max = std::max(result.max, pixel.max);
+            max = std::max(max, pixel.max);
             sum += static_cast<std::uint64_t>(pixel.sum);
             differing += pixel.max > 0 ? 1 : 0;
             ++pixels;
@@ -111,19 +99,86 @@ Difference compare(const Image& a, const Image& b, const OnProgress& on_progress
                     "the mask is black everywhere, which leaves nothing to compare; what is to "
                     "be compared must not be black in it");
     if (pixels == 0) return result;
-    result.mean = static_cast<double>(sum) / static_cast<double>(pixels * kChannels);
+    constexpr int kUnit = kSamplesPerUnit<Sample>;
+    result.max = static_cast<double>(max) / kUnit;
+    result.mean = static_cast<double>(sum) / static_cast<double>(pixels * kChannels * kUnit);
     result.share = static_cast<double>(differing) / static_cast<double>(pixels);
     return result;
 }
 
-Difference compare_perceived(const Image& a, const Image& b, const PerceivedFigures& figures,
-                             const OnProgress& on_progress, const Image* mask) {
-    Difference result = compare(a, b, on_progress, mask);
-    if (!result.same_size) return result;
-    if (result.equal) {
-        if (figures.flip) result.flip = 0.0;
-        if (figures.ssim) result.ssim = 1.0;
-        return result;
+/// `shown` is `a` at 8 bits.
+template <class Sample>
+Image image_of_differences(const Image& shown, const BasicImage<Sample>& a, const BasicImage<Sample>& b,
+                           const OnProgress& on_progress, const Image* mask) {
+    constexpr std::array<std::uint8_t, kChannels> kOfOne{0, 0, 255, 255};
+    constexpr int kUnit = kSamplesPerUnit<Sample>;
+    if (mask != nullptr && a.rect() == b.rect()) check_mask(a.rect(), *mask);
+    Image result(std::max(a.width(), b.width()), std::max(a.height(), b.height()));
+    const PixelRect both = a.rect().intersected(b.rect());
+    for (int y = 0; y < result.height(); ++y) {
+        report_progress(on_progress, y, result.height());
+        for (int x = 0; x < result.width(); ++x) {
+            std::array<std::uint8_t, kChannels> rgba = kOfOne;
+            if (x < both.x1 && y < both.y1) {
+                const bool counts = a.rect() != b.rect() || !is_left_out(mask, x, y);
+                const int difference = counts ? difference_of(a.pixel(x, y), b.pixel(x, y)).max : 0;
+                const std::uint8_t grey = dim_grey(shown.pixel(x, y));
+                rgba = difference > 0 ? heat((difference + kUnit - 1) / kUnit)
+                                      : std::array<std::uint8_t, kChannels>{grey, grey, grey, 255};
+            }
+            std::copy(rgba.begin(), rgba.end(), result.pixel(x, y));
+        }
+    }
+    return result;
+}
+
+/// The picture at 16 bits; `made` keeps it if it has but 8.
+const DeepImage& deep_of(const Picture& picture, DeepImage& made) {
+    if (picture.deep) return *picture.deep;
+    const Image& image = picture.image;
+    made = DeepImage(image.width(), image.height());
+    std::transform(image.data(), image.data() + image.size_bytes(), made.data(), [](std::uint8_t sample) {
+        return static_cast<std::uint16_t>(sample * kSamplesPerUnit<std::uint16_t>);
+    });
+    return made;
+}
+
+}  // namespace
+
+bool Difference::within(const DifferenceLimits& limits) const {
+    if (!same_size) return false;
+    if (!limits.max && !limits.mean && !limits.share && !limits.flip && !limits.ssim) return equal;
+    return (!limits.max || max <= *limits.max) && (!limits.mean || mean <= *limits.mean) &&
+           (!limits.share || share <= *limits.share) && (!limits.flip || (flip && *flip <= *limits.flip)) &&
+           (!limits.ssim || (ssim && *ssim >= *limits.ssim));
+}
+
+std::string figures_text(const Difference& difference) {
+    std::string text = fmt::format("max {:.6g}, mean {:.6g}, share {:.6g}", difference.max, difference.mean,
+                                   difference.share);
+    if (difference.flip) text += fmt::format(", FLIP {:.6g}", *difference.flip);
+    if (difference.ssim) text += fmt::format(", SSIM {:.6g}", *difference.ssim);
+    return text;
+}
+
+Difference compare(const Image& a, const Image& b, const OnProgress& on_progress, const Image* mask) {
+    return compare_samples(a, b, on_progress, mask);
+}
+
+Difference compare(const Picture& a, const Picture& b, const OnProgress& on_progress, const Image* mask) {
+    if (!a.deep && !b.deep) return compare_samples(a.image, b.image, on_progress, mask);
+    DeepImage of_a;
+    DeepImage of_b;
+    return compare_samples(deep_of(a, of_a), deep_of(b, of_b), on_progress, mask);
+}
+
+void add_perceived(const Image& a, const Image& b, const PerceivedFigures& figures, Difference& difference,
+                   const OnProgress& on_progress, const Image* mask) {
+    if (!difference.same_size) return;
+    if (difference.equal) {
+        if (figures.flip) difference.flip = 0.0;
+        if (figures.ssim) difference.ssim = 1.0;
+        return;
     }
     // What the mask leaves out must not show in its neighbours.
     Image masked;
@@ -134,31 +189,19 @@ Difference compare_perceived(const Image& a, const Image& b, const PerceivedFigu
                 if (is_left_out(mask, x, y)) std::copy_n(a.pixel(x, y), kChannels, masked.pixel(x, y));
     }
     const Image& other = mask == nullptr ? b : masked;
-    if (figures.flip) result.flip = flip(a, other, on_progress, figures.threads);
-    if (figures.ssim) result.ssim = ssim(a, other, on_progress);
-    return result;
+    if (figures.flip) difference.flip = flip(a, other, on_progress, figures.threads);
+    if (figures.ssim) difference.ssim = ssim(a, other, on_progress);
+}
+
+Image difference_image(const Picture& a, const Picture& b, const OnProgress& on_progress, const Image* mask) {
+    if (!a.deep && !b.deep) return difference_image(a.image, b.image, on_progress, mask);
+    DeepImage of_a;
+    DeepImage of_b;
+    return image_of_differences(a.image, deep_of(a, of_a), deep_of(b, of_b), on_progress, mask);
 }
 
 Image difference_image(const Image& a, const Image& b, const OnProgress& on_progress, const Image* mask) {
-    constexpr std::array<std::uint8_t, kChannels> kOfOne{0, 0, 255, 255};
-    if (a.rect() == b.rect()) check_mask(a, mask);
-    Image result(std::max(a.width(), b.width()), std::max(a.height(), b.height()));
-    const PixelRect both = a.rect().intersected(b.rect());
-    for (int y = 0; y < result.height(); ++y) {
-        report_progress(on_progress, y, result.height());
-        for (int x = 0; x < result.width(); ++x) {
-            std::array<std::uint8_t, kChannels> rgba = kOfOne;
-            if (x < both.x1 && y < both.y1) {
-                const bool counts = a.rect() != b.rect() || !is_left_out(mask, x, y);
-                const int difference = counts ? difference_of(a.pixel(x, y), b.pixel(x, y)).max : 0;
-                const std::uint8_t grey = dim_grey(a.pixel(x, y));
-                rgba = difference > 0 ? heat(difference)
-                                      : std::array<std::uint8_t, kChannels>{grey, grey, grey, 255};
-            }
-            std::copy(rgba.begin(), rgba.end(), result.pixel(x, y));
-        }
-    }
-    return result;
+    return image_of_differences(a, a, b, on_progress, mask);
 }
 
 }  // namespace corda

@@ -22,9 +22,9 @@ struct DifferenceLimits {
 /// How far two pictures differ.
 struct Difference {
     bool same_size = true;  ///< if false, the figures below are meaningless
-    bool equal = true;      ///< all bytes are the same
-    int max = 0;            ///< largest difference of a channel (R, G, B and A)
-    double mean = 0.0;      ///< mean difference over all channels and pixels
+    bool equal = true;      ///< all samples are the same
+    double max = 0.0;       ///< largest difference of a channel (R, G, B and A), 0 .. 255
+    double mean = 0.0;      ///< mean difference over all channels and pixels, 0 .. 255
     double share = 0.0;     ///< share of the compared pixels that differ in any channel
     // Not always computed.
     std::optional<double> flip = {};  ///< see flip(); of all pixels, those that a mask leaves out are equal
@@ -43,21 +43,27 @@ struct Difference {
 [[nodiscard]] Difference compare(const Image& a, const Image& b, const OnProgress& on_progress = {},
                                  const Image* mask = nullptr);
 
-/// Which figures that take long compare_perceived() computes.
+/// As above, at 16 bits if one of them has as many. A difference of 1 in 65535 is then one of 1/257.
+[[nodiscard]] Difference compare(const Picture& a, const Picture& b, const OnProgress& on_progress = {},
+                                 const Image* mask = nullptr);
+
+/// Which figures that take long add_perceived() computes.
 struct PerceivedFigures {
     bool flip = false;
     bool ssim = false;
     int threads = 1;  ///< for FLIP
 };
 
-/// As compare(), with more figures. Throws kUsage, too, for an ssim() of pictures that are too small and
-/// differ.
-[[nodiscard]] Difference compare_perceived(const Image& a, const Image& b, const PerceivedFigures& figures,
-                                           const OnProgress& on_progress = {}, const Image* mask = nullptr);
+/// Adds figures to what compare() has found, at 8 bits. Throws kUsage for an ssim() of pictures that are too
+/// small and differ, kInterrupted as compare().
+void add_perceived(const Image& a, const Image& b, const PerceivedFigures& figures, Difference& difference,
+                   const OnProgress& on_progress = {}, const Image* mask = nullptr);
 
 /// A picture of where two pictures differ. Equal pixels are a dim grey copy of `a`, and so are those that the
-/// mask leaves out. Others go from red to yellow with the size of the difference; even the smallest is bright
-/// enough to be seen. What only one of them has is blue. Throws as compare.
+/// mask leaves out. Others go from red to yellow with the size of the difference; even the smallest, at 16
+/// bits, too, is bright enough to be seen. What only one of them has is blue. Throws as compare().
+[[nodiscard]] Image difference_image(const Picture& a, const Picture& b, const OnProgress& on_progress = {},
+                                     const Image* mask = nullptr);
 [[nodiscard]] Image difference_image(const Image& a, const Image& b, const OnProgress& on_progress = {},
                                      const Image* mask = nullptr);
 

@@ -73,6 +73,9 @@ void write_png(const std::string& path, const Image& image, const PngInfo& info 
 /// `on_progress`, called with its rows, asks to stop.
 [[nodiscard]] Image read_png(const std::string& path, const OnProgress& on_progress = {});
 
+/// As read_png(), with all 16 bits if the file has as many per channel, which takes three times its memory.
+[[nodiscard]] Picture read_picture(const std::string& path, const OnProgress& on_progress = {});
+
 /// The texts of a PNG: of the first 30 in it (tEXt, zTXt and iTXt) those of at most 64 KiB. Throws
 /// as read_png.
 [[nodiscard]] PngInfo read_png_info(const std::string& path, const OnProgress& on_progress = {});

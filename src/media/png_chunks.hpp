@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace corda::media {
 
@@ -8,5 +9,10 @@ namespace corda::media {
 /// times, resolutions, colour spaces. Then they show the same, if they can be read. Others may do so too: the
 /// same pixels may be packed in several ways. False for files that are no PNG, or are cut off.
 [[nodiscard]] bool have_same_picture_chunks(const std::string& a, const std::string& b);
+
+/// What a PNG file says of its colours other than sRGB, which read_png() does not use: gAMA, cHRM, iCCP and
+/// cICP with their values, such as "gAMA (1)". Empty if a chunk that overrides them says sRGB (PNG
+/// specification, third edition, 4.3), and for what is no PNG file.
+[[nodiscard]] std::vector<std::string> color_chunks_beside_srgb(const std::string& path);
 
 }  // namespace corda::media

@@ -2,11 +2,14 @@
 #include <png.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <bit>
 #include <cerrno>
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <utility>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
@@ -104,28 +107,39 @@ bool read_header(ReadJob& job) {
     return true;
 }
 
-/// Turns every format (palette, grey, 1 to 16 bits, tRNS) into 8-bit RGBA. Colours are not converted (gAMA,
-/// iCCP), because a comparison wants the numbers in the file.
-bool request_rgba8(ReadJob& job) {
+/// Turns every format (palette, grey, 1 to 16 bits, tRNS) into RGBA, of 16 bits if the file has as many, else
+/// of 8. Colours are not converted (gAMA, iCCP), because a comparison wants the numbers in the file.
+bool request_rgba(ReadJob& job) {
     if (setjmp(png_jmpbuf(job.png)) != 0) return false;
     png_set_expand(job.png);
-    png_set_scale_16(job.png);
     png_set_gray_to_rgb(job.png);
-    png_set_add_alpha(job.png, 0xff, PNG_FILLER_AFTER);
+    png_set_add_alpha(job.png, 0xffff, PNG_FILLER_AFTER);
+    if (std::endian::native == std::endian::little) png_set_swap(job.png);
     png_set_interlace_handling(job.png);
     png_read_update_info(job.png, job.info);
     return true;
 }
 
-bool read_rows(ReadJob& job, Image& image) {
+/// Reads the rows to `pixels`, which has room for them.
+bool read_rows(ReadJob& job, png_bytep pixels) {
     if (setjmp(png_jmpbuf(job.png)) != 0) return false;
-    job.total = std::int64_t{png_set_interlace_handling(job.png)} * image.height();
+    const std::size_t row_bytes = png_get_rowbytes(job.png, job.info);
+    const auto height = static_cast<std::int64_t>(png_get_image_height(job.png, job.info));
+    job.total = std::int64_t{png_set_interlace_handling(job.png)} * height;
     for (; job.done < job.total; ++job.done) {
         if (!goes_on(job)) return false;
-        png_read_row(job.png, image.pixel(0, static_cast<int>(job.done % image.height())), nullptr);
+        png_read_row(job.png, pixels + row_bytes * static_cast<std::size_t>(job.done % height), nullptr);
     }
     png_read_end(job.png, job.info);
     return true;
+}
+
+/// Rounded to the nearest, in one way: half a step does not occur, as 257 is odd.
+Image rounded(const DeepImage& deep) {
+    Image image(deep.width(), deep.height());
+    std::transform(deep.data(), deep.data() + image.size_bytes(), image.data(),
+                   [](std::uint16_t sample) { return static_cast<std::uint8_t>((sample + 128) / 257); });
+    return image;
 }
 
 [[noreturn]] void fail_png(const std::string& path, std::string_view reason) {
@@ -178,14 +192,24 @@ void check_png_size(const ReadJob& job, const std::string& path) {
     }
 }
 
-Image read_pixels(ReadJob& job, const std::string& path) {
-    check_png_size(job, path);
-    if (!request_rgba8(job)) fail_png(path, job);
-    Image image(static_cast<int>(png_get_image_width(job.png, job.info)),
-                static_cast<int>(png_get_image_height(job.png, job.info)));
-    if (png_get_rowbytes(job.png, job.info) != image.row_bytes()) fail_png(path, "libpng gave no 8-bit RGBA");
-    if (!read_rows(job, image)) fail_png(path, job);
+template <class Sample>
+BasicImage<Sample> read_samples(ReadJob& job, const std::string& path) {
+    BasicImage<Sample> image(static_cast<int>(png_get_image_width(job.png, job.info)),
+                             static_cast<int>(png_get_image_height(job.png, job.info)));
+    if (png_get_rowbytes(job.png, job.info) != image.row_bytes()) fail_png(path, "libpng gave no RGBA");
+    void* const pixels = image.data();
+    if (!read_rows(job, static_cast<png_bytep>(pixels))) fail_png(path, job);
     return image;
+}
+
+Picture read_pixels(ReadJob& job, const std::string& path) {
+    check_png_size(job, path);
+    const bool is_deep = png_get_bit_depth(job.png, job.info) == 16;
+    if (!request_rgba(job)) fail_png(path, job);
+    if (!is_deep) return {.image = read_samples<std::uint8_t>(job, path)};
+    DeepImage deep = read_samples<std::uint16_t>(job, path);
+    Image image = rounded(deep);
+    return {.image = std::move(image), .deep = std::move(deep)};
 }
 
 std::string from_latin1(std::string_view latin1) {
@@ -220,12 +244,16 @@ PngInfo collect_info(const ReadJob& job) {
 
 }  // namespace
 
-Image read_png(const std::string& path, const OnProgress& on_progress) {
+Picture read_picture(const std::string& path, const OnProgress& on_progress) {
     const FileHandle file = open_for_reading(path);
     ReadJob job(on_progress, Wanted::kPixels);
     job.file = file.get();
     open_job(job, path);
     return read_pixels(job, path);
+}
+
+Image read_png(const std::string& path, const OnProgress& on_progress) {
+    return read_picture(path, on_progress).image;
 }
 
 PngInfo read_png_info(const std::string& path, const OnProgress& on_progress) {

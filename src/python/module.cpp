@@ -460,10 +460,21 @@ PYBIND11_MODULE(_corda, module) {
     module.def("begin_end", &Calls::begin_end);
     module.def("forget_calls", &Calls::forget);
     module.def("compare", [](const py::object& a, const py::object& b) {
-        const corda::Image first = to_image(a);
-        const corda::Image second = to_image(b);
-        const corda::Difference difference =
-            Asking().run([&](const corda::OnProgress& ask) { return corda::compare(first, second, ask); });
+        // Paths, which are bytes, are read at their 16 bits if they have them.
+        const std::array<const py::object*, 2> given{&a, &b};
+        std::array<std::string, 2> paths;
+        std::array<corda::Picture, 2> pictures;
+        for (std::size_t i = 0; i < 2; ++i) {
+            if (py::isinstance<py::bytes>(*given[i]))
+                paths[i] = given[i]->cast<std::string>();
+            else
+                pictures[i].image = to_image(*given[i]);
+        }
+        const corda::Difference difference = Asking().run([&](const corda::OnProgress& ask) {
+            for (std::size_t i = 0; i < 2; ++i)
+                if (py::isinstance<py::bytes>(*given[i])) pictures[i] = corda::read_picture(paths[i], ask);
+            return corda::compare(pictures[0], pictures[1], ask);
+        });
         return py::make_tuple(difference.same_size, difference.equal, difference.max, difference.mean,
                               difference.share);
     });

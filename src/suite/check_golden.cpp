@@ -41,7 +41,7 @@ std::string text_of(const Difference& difference, const Image& golden, const Ima
 
 /// Writes the pictures that show a failure; says where.
 std::string keep_artifacts(const std::string& name, const fs::path& golden_folder, const Image& drawn,
-                           const std::optional<Image>& golden) {
+                           const std::optional<Picture>& golden) {
     const std::string folder = environment("CORDA_GOLDEN_ARTIFACTS");
     if (folder.empty())
         return "; set CORDA_GOLDEN_ARTIFACTS to a folder for the new picture and the difference";
@@ -59,7 +59,7 @@ std::string keep_artifacts(const std::string& name, const fs::path& golden_folde
     write_png(drawn_path, drawn, {}, {.force = true});
     if (!golden) return "; see " + drawn_path;
     const std::string difference_path = stem.string() + ".difference.png";
-    write_png(difference_path, difference_image(*golden, drawn), {}, {.force = true});
+    write_png(difference_path, difference_image(*golden, {.image = drawn}), {}, {.force = true});
     return fmt::format("; see {} and {}", drawn_path, difference_path);
 }
 
@@ -73,9 +73,9 @@ bool is_of_suite(const std::string& path) {
 }
 
 /// What to say of a golden picture that cannot be read; empty if it can.
-std::string read_golden(const std::string& path, Image& golden) {
+std::string read_golden(const std::string& path, Picture& golden) {
     try {
-        golden = read_png(path);
+        golden = read_picture(path);
         return "";
     } catch (const Error& error) {
         if (error.code() != ExitCode::kIo) throw;
@@ -114,18 +114,21 @@ GoldenOutcome check_golden(const Image& drawn, const std::string& name, const Go
                 .message = "the picture has one colour alone: nothing is in view" +
                            keep_artifacts(name, folder, drawn, std::nullopt)};
     std::string why = fmt::format("there is no golden picture '{}'", path.string());
-    std::optional<Image> golden;
+    std::optional<Picture> golden;
+    const Picture shown{.image = drawn};
     for (const std::string& variant : suite::variants_of(suite::references_in(folder.string()), file)) {
-        Image one;
+        Picture one;
         if (const std::string damage = read_golden(variant, one); !damage.empty()) {
             if (!golden) why = damage;
             continue;
         }
-        const Difference difference = compare_perceived(
-            one, drawn, {.flip = options.limits.flip.has_value(), .ssim = options.limits.ssim.has_value()});
+        Difference difference = compare(one, shown);
+        add_perceived(one.image, drawn,
+                      {.flip = options.limits.flip.has_value(), .ssim = options.limits.ssim.has_value()},
+                      difference);
         if (difference.within(options.limits)) return {.matches = true, .written = false, .message = {}};
         if (golden && fs::path(variant).filename() != file) continue;
-        why = fmt::format("differs from '{}': {}", variant, text_of(difference, one, drawn));
+        why = fmt::format("differs from '{}': {}", variant, text_of(difference, one.image, drawn));
         golden = std::move(one);
     }
     if (is_update()) return update(path, drawn, why);

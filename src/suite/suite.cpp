@@ -34,9 +34,9 @@ struct Drawn {
 /// Compares a picture with one of its references; false if it does not pass.
 bool passes(const Drawn& drawn, const DifferenceLimits& limits, const std::string& path, Checked& picture) {
     picture.variant = fs::path(path).filename().string();
-    Image reference;
+    Picture reference;
     try {
-        reference = read_png(path);
+        reference = read_picture(path);
     } catch (const Error& error) {
         picture.difference = {.same_size = false, .equal = false};
         picture.cause = fmt::format("the kept picture {} ({})",
@@ -45,13 +45,14 @@ bool passes(const Drawn& drawn, const DifferenceLimits& limits, const std::strin
                                     error.what());
         return false;
     }
-    picture.difference = compare(reference, drawn.image);
+    picture.difference =
+        reference.deep ? compare(reference, {.image = drawn.image}) : compare(reference.image, drawn.image);
     if (picture.difference.within(limits)) return true;
     picture.cause = cause_of(from_png_info(read_png_info(path)), drawn.made);
     picture.change = scene_change(path, drawn.scene);
     if (!picture.difference.same_size)
-        picture.cause = fmt::format("{}x{} pixels, now {}x{}", reference.width(), reference.height(),
-                                    drawn.image.width(), drawn.image.height());
+        picture.cause = fmt::format("{}x{} pixels, now {}x{}", reference.image.width(),
+                                    reference.image.height(), drawn.image.width(), drawn.image.height());
     return false;
 }
 

@@ -9,6 +9,7 @@
 
 #include "corda/media/defs.hpp"
 #include "support/command.hpp"
+#include "support/png_chunks.hpp"
 
 namespace corda {
 namespace {
@@ -108,6 +109,52 @@ TEST_F(CompareFiles, SixteenBitsGreyAndAlpha) {
         ASSERT_EQ(made.exit_code, 0) << made.err;
         EXPECT_EQ(code({a, other, "--max", "1"}), 0) << format;  // grey by ffmpeg may be off by 1
     }
+}
+
+TEST_F(CompareFiles, OfSixteenBitsDifferByTheirLowerEight) {
+    const std::string grey = "ffmpeg -v error -y -f rawvideo -pix_fmt rgb48be -s 12x12 -i ";
+    for (const char* const name : {"a", "b"}) {
+        std::string pixels(12 * 12 * 6, 'd');
+        if (name[0] == 'b') pixels[7] = 'e';
+        test::write_file(file(name), pixels);
+        ASSERT_EQ(run_shell(grey + file(name) + " -pix_fmt rgb48be " + file(name) + ".png").exit_code, 0);
+    }
+    const std::string a = file("a.png");
+    const std::string b = file("b.png");
+    EXPECT_EQ(code({a, a}), 0);
+    const auto result = run_corda({"compare", a, b, "--diff", file("d.png")});
+    EXPECT_EQ(result.exit_code, 7);
+    EXPECT_THAT(result.out, HasSubstr("max 0.00389105,"));  // 1/257
+    EXPECT_NE(read_png(file("d.png")).pixel(1, 0)[0], read_png(file("d.png")).pixel(2, 0)[0]);
+    EXPECT_EQ(code({a, b, "--max", "0.01"}), 0);
+    EXPECT_DOUBLE_EQ(report({a, b})["max"].get<double>(), 1.0 / 257.0);
+    EXPECT_EQ(report({a, b})["ssim"], 1.0);  // of eight bits, of which all are equal
+    // And of 8 bits beside 16.
+    ASSERT_EQ(run_shell("ffmpeg -v error -y -i " + a + " -pix_fmt rgb24 " + file("c.png")).exit_code, 0);
+    EXPECT_EQ(report({a, file("c.png")})["max"], 0);
+    EXPECT_EQ(code({b, file("c.png")}), 7);
+}
+
+TEST_F(CompareFiles, ColourSpacesThatAreIgnoredAreNamed) {
+    const std::string a = put("a.png", drawn());
+    EXPECT_EQ(report({a, a})["notes"], nlohmann::json::array());
+    const std::string png = test::read_file(a);
+    // Chunks that stand before the pixels, in place of sRGB and the gAMA and cHRM that belong to it.
+    const std::string plain = test::without_chunks(png, {"sRGB", "gAMA", "cHRM"});
+    const std::vector<std::array<std::string, 3>> chunks{
+        {"gAMA", std::string("\0\1\x86\xa0", 4), "gAMA (1)"},
+        {"cICP", std::string("\x09\x10\0\1", 4), "cICP (9, 16, 0, 1)"},
+        {"cHRM", std::string(32, '\1'), "cHRM"},
+        {"iCCP", std::string("Display P3\0\0", 12) + "profile", "iCCP ('Display P3')"}};
+    for (const auto& [type, data, words] : chunks) {
+        test::write_file(file("b.png"), test::with_chunk(plain, type, data, "IDAT"));
+        const auto result = run_corda({"compare", a, file("b.png")});
+        EXPECT_EQ(result.exit_code, 0) << type;
+        EXPECT_THAT(result.err, HasSubstr("b.png: " + words + " is ignored")) << type;
+        EXPECT_EQ(report({a, file("b.png")})["notes"].size(), 1U) << type;
+    }
+    test::write_file(file("b.png"), test::with_chunk(png, "gAMA", chunks[0][1], "IDAT"));
+    EXPECT_EQ(report({a, file("b.png")})["notes"].size(), 0U) << "sRGB overrides it";
 }
 
 TEST_F(CompareFiles, CorruptPicturesAreNoMismatch) {

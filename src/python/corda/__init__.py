@@ -250,18 +250,23 @@ class Difference(_NamedTuple):
 
     same_size: bool
     equal: bool  #: all bytes are the same
-    max: int  #: largest difference of a channel, 0 .. 255
-    mean: float  #: mean difference over all channels and pixels
+    max: float  #: largest difference of a channel, 0 .. 255; whole but for files with 16 bits
+    mean: float  #: mean difference over all channels and pixels, 0 .. 255
     share: float  #: share of the pixels that differ, 0 .. 1
 
 
+def _is_path(picture):
+    return isinstance(picture, (str, bytes, _os.PathLike))
+
+
 def _pixels(picture):
-    return read_png(picture) if isinstance(picture, (str, bytes, _os.PathLike)) else picture
+    return read_png(picture) if _is_path(picture) else picture
 
 
 def compare(a, b):
-    """Compares two pictures, arrays or paths of PNG files, pixel by pixel; returns a Difference."""
-    return Difference(*_corda.compare(_pixels(a), _pixels(b)))
+    """Compares two pictures, arrays or paths of PNG files, pixel by pixel, at 16 bits if a file has them; returns a
+    Difference."""
+    return Difference(*_corda.compare(*(_path(given) if _is_path(given) else given for given in (a, b))))
 
 
 def read_png(path):

@@ -31,6 +31,26 @@ TEST(Compare, EqualPictures) {
     EXPECT_TRUE(result.within({}));
 }
 
+Picture deep_grey(std::uint16_t level) {
+    DeepImage deep(3, 2);
+    std::fill(deep.pixel(0, 0), deep.pixel(0, 0) + 4 * 3 * 2, level);
+    return {.image = grey(3, 2, 100), .deep = deep};
+}
+
+TEST(Compare, CountsSixteenBits) {
+    const Difference result = compare(deep_grey(25700), deep_grey(25701));
+    EXPECT_FALSE(result.equal);
+    EXPECT_DOUBLE_EQ(result.max, 1.0 / 257.0);
+    EXPECT_DOUBLE_EQ(result.mean, 1.0 / 257.0);
+    EXPECT_EQ(result.share, 1.0);
+    EXPECT_TRUE(result.within({.max = 0.01, .mean = {}, .share = {}}));
+    EXPECT_TRUE(compare(deep_grey(25700), {.image = grey(3, 2, 100)}).equal);
+    EXPECT_FALSE(compare({.image = grey(3, 2, 100)}, deep_grey(25699)).equal);
+    EXPECT_TRUE(compare(deep_grey(5), deep_grey(5)).equal);
+    // Bright enough to be seen.
+    EXPECT_EQ(pixel(difference_image(deep_grey(25700), deep_grey(25701)), 1, 1)[0], 161);
+}
+
 TEST(Compare, LeavesOutWhatIsBlackInTheMask) {
     Image b = grey(5, 4);
     b.pixel(4, 3)[0] = 250;

@@ -14,6 +14,7 @@
 #include "corda/media/png_chunks.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"
+#include "support/png_chunks.hpp"
 
 namespace corda::media {
 namespace {
@@ -245,32 +246,13 @@ TEST_F(Png, AFailedReadIsNoEndOfTheFile) {
     }
 }
 
-/// Appends a chunk before the end of a PNG.
-std::string with_chunk(const std::string& png, const std::string& type, const std::string& data) {
-    const auto big_endian = [](std::uint32_t number) {
-        std::string bytes;
-        for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<char>(number >> shift));
-        return bytes;
-    };
-    const std::string checked = type + data;
-    std::uint32_t crc = 0xffffffffU;
-    for (const char c : checked) {
-        crc ^= static_cast<unsigned char>(c);
-        for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1U) ^ ((crc & 1U) != 0 ? 0xedb88320U : 0U);
-    }
-    const std::string chunk =
-        big_endian(static_cast<std::uint32_t>(data.size())) + checked + big_endian(~crc);
-    const std::size_t end = png.rfind("IEND") - 4;
-    return png.substr(0, end) + chunk + png.substr(end);
-}
-
 TEST_F(Png, LongAndManyTextsAreLeftOut) {
     const Image image = random_image(8, 8, true);
     write_png(file("a.png"), image, {{{"First", "kept"}}, 96.0});
     std::string png = test::read_file(file("a.png"));
-    png = with_chunk(png, "tEXt", std::string("Long") + '\0' + std::string(200'000, 'a'));
+    png = test::with_chunk(png, "tEXt", std::string("Long") + '\0' + std::string(200'000, 'a'));
     for (int i = 0; i < 100; ++i)
-        png = with_chunk(png, "tEXt", std::string("Many") + '\0' + std::string(60'000, 'b'));
+        png = test::with_chunk(png, "tEXt", std::string("Many") + '\0' + std::string(60'000, 'b'));
     test::write_file(file("b.png"), png);
     EXPECT_TRUE(read_png(file("b.png")) == image);
     const PngInfo info = read_png_info(file("b.png"));
@@ -285,7 +267,7 @@ TEST_F(Png, StopsInTheMidstOfItsTexts) {
     write_png(file("a.png"), random_image(8, 8, true));
     std::string png = test::read_file(file("a.png"));
     for (int i = 0; i < 4; ++i)
-        png = with_chunk(png, "tEXt", std::string("Long") + '\0' + std::string(1'000'000, 'a'));
+        png = test::with_chunk(png, "tEXt", std::string("Long") + '\0' + std::string(1'000'000, 'a'));
     test::write_file(file("b.png"), png);
     int asked = 0;
     const auto stop = [&](std::int64_t, std::int64_t) { return ++asked < 3; };
