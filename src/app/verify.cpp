@@ -21,6 +21,7 @@ nlohmann::json to_json(const std::string& path, const media::VerifyReport& repor
             {"container", report.container},
             {"codec", report.codec},
             {"profile", report.profile},
+            {"level", report.h264_level > 0 ? nlohmann::json(report.h264_level / 10.0) : nlohmann::json()},
             {"pixel_format", report.pixel_format},
             {"width", report.width_px},
             {"height", report.height_px},

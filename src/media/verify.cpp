@@ -42,6 +42,7 @@ std::string probed_container(const std::string& path) {
 void fill_report(const DecodedVideo& video, VerifyReport& report) {
     report.codec = video.codec;
     report.profile = video.profile;
+    report.h264_level = video.h264_level;
     report.pixel_format = video.pixel_format;
     report.width_px = video.width_px;
     report.height_px = video.height_px;

@@ -29,6 +29,7 @@ struct VerifyReport {
     std::string container;
     std::string codec;
     std::string profile;  ///< empty if the codec has none
+    int h264_level = 0;   ///< ten times the stated level; 0: not H.264, or not stated
     std::string pixel_format;
     int width_px = 0;
     int height_px = 0;
@@ -42,8 +43,8 @@ struct VerifyReport {
     std::vector<std::string> notes;     ///< in words, such as what a browser will do with it
 
     [[nodiscard]] bool ok() const { return problems.empty(); }
-    /// Codec and profile, e.g. "h264 High", "gif".
-    [[nodiscard]] std::string coding() const { return profile.empty() ? codec : codec + " " + profile; }
+    /// Codec, profile and level, e.g. "h264 High 4.0", "gif".
+    [[nodiscard]] std::string coding() const;
 
     friend bool operator==(const VerifyReport&, const VerifyReport&) = default;
 };

@@ -15,9 +15,9 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Rational, num, den)
 
 namespace media {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(VerifyReport, container, codec, profile, pixel_format, width_px, height_px,
-                                   fps, frames, duration_s, range, matrix, primaries, transfer,
-                                   chroma_location, faststart, alpha, problems, notes)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(VerifyReport, container, codec, profile, h264_level, pixel_format,
+                                   width_px, height_px, fps, frames, duration_s, range, matrix, primaries,
+                                   transfer, chroma_location, faststart, alpha, problems, notes)
 
 namespace {
 

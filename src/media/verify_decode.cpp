@@ -283,6 +283,8 @@ class Decoding {
         video_.codec_tag = av_fourcc_make_string(tag.data(), file_.stream->codecpar->codec_tag);
         const char* const profile = avcodec_profile_name(file_.context->codec_id, file_.context->profile);
         video_.profile = profile == nullptr ? "" : profile;
+        if (file_.context->codec_id == AV_CODEC_ID_H264)
+            video_.h264_level = std::max(0, file_.context->level);
     }
 
     static constexpr std::int64_t kNever = 1'000'000'000;

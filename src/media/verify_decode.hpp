@@ -23,6 +23,7 @@ struct DecodedVideo {
     bool opened = false;      ///< the demuxer and a decoder accepted the file
     std::string open_reason;  ///< why it was not opened
     std::string codec, profile, pixel_format;
+    int h264_level = 0;     ///< ten times the stated level; 0: not H.264, or not stated
     std::string codec_tag;  ///< four letters in MP4 and QuickTime
     std::string range, matrix, primaries, transfer, chroma_location;
     /// Range, matrix, primaries and transfer of the colr box, which QuickTime believes.

@@ -78,6 +78,65 @@ std::string_view plain(std::string_view container) {
     return container.substr(0, container.find(' '));
 }
 
+/// What a level of H.264 allows, from Table A-1 of Rec. ITU-T H.264 (08/2021).
+struct H264Level {
+    int level_times_10;
+    std::int64_t macroblocks_per_s;
+    std::int64_t macroblocks;  ///< of a frame
+};
+
+constexpr std::array kH264Levels{
+    H264Level{10, 1485, 99},        H264Level{11, 3000, 396},       H264Level{12, 6000, 396},
+    H264Level{13, 11880, 396},      H264Level{20, 11880, 396},      H264Level{21, 19800, 792},
+    H264Level{22, 20250, 1620},     H264Level{30, 40500, 1620},     H264Level{31, 108000, 3600},
+    H264Level{32, 216000, 5120},    H264Level{40, 245760, 8192},    H264Level{41, 245760, 8192},
+    H264Level{42, 522240, 8704},    H264Level{50, 589824, 22080},   H264Level{51, 983040, 36864},
+    H264Level{52, 2073600, 36864},  H264Level{60, 4177920, 139264}, H264Level{61, 8355840, 139264},
+    H264Level{62, 16711680, 139264}};
+
+/// The highest that the hardware and the programs of the table of players decode.
+constexpr int kHighestPlayedLevel = 52;
+
+/// The least level for the size and the rate of a video, times 10 (A.3.1, A.3.3); 0: none allows them.
+int least_h264_level(const VerifyReport& report) {
+    const std::int64_t width = (report.width_px + 15) / 16;
+    const std::int64_t height = (report.height_px + 15) / 16;
+    const auto allows = [&](const H264Level& level) {
+        const std::int64_t side_squared = 8 * level.macroblocks;
+        return width * height <= level.macroblocks && width * width <= side_squared &&
+               height * height <= side_squared &&
+               static_cast<double>(width * height) * report.fps.value() <=
+                   static_cast<double>(level.macroblocks_per_s);
+    };
+    const auto* const least = std::find_if(kH264Levels.begin(), kH264Levels.end(), allows);
+    return least == kH264Levels.end() ? 0 : least->level_times_10;
+}
+
+/// Why few play a video that has the right profile; empty if nothing speaks against it.
+std::string trouble_of_level(const VerifyReport& report) {
+    if (report.codec != "h264") return "";
+    const int least = least_h264_level(report);
+    const std::string what =
+        fmt::format("{}x{} at {} frames per second", report.width_px, report.height_px, report.fps.text());
+    if (least == 0) return what + " is beyond every level of H.264";
+    const int level = std::max(least, report.h264_level);
+    if (level <= kHighestPlayedLevel) return "";
+    return fmt::format("{} takes level {:.1f}", what, level / 10.0);
+}
+
+/// A level that is stated too low.
+void check_level(VerifyReport& report) {
+    const int least = report.codec == "h264" ? least_h264_level(report) : 0;
+    constexpr int kLevel1b = 9;  // or 11, and nothing needs it that does not need 1.1
+    if (report.h264_level <= 0 || report.h264_level == kLevel1b || least <= report.h264_level) return;
+    problem(report,
+            "the stated H.264 level is {:.1f}, and {}x{} at {} frames per second takes {:.1f}: decoders may "
+            "refuse it; remedy: {}",
+            report.h264_level / 10.0, report.width_px, report.height_px, report.fps.text(), least / 10.0,
+            copy_command(report, report.container == "matroska" ? "mkv" : plain(report.container),
+                         fmt::format("-bsf:v h264_metadata=level={} ", least / 10.0)));
+}
+
 const Players* players_of(const VerifyReport& report) {
     const auto* const row =
         std::find_if(kPlayers.begin(), kPlayers.end(), [&report](const Players& candidate) {
@@ -101,6 +160,13 @@ bool has_tags(const VerifyReport& report) {
 }
 
 }  // namespace
+
+std::string VerifyReport::coding() const {
+    std::string words = codec;
+    if (!profile.empty()) words += ' ' + profile;
+    if (h264_level > 0) words += fmt::format(" {:.1f}", h264_level / 10.0);
+    return words;
+}
 
 void check_picture_format(const DecodedVideo& video, VerifyReport& report) {
     if (video.frames == 0) return;
@@ -132,6 +198,7 @@ void check_picture_format(const DecodedVideo& video, VerifyReport& report) {
                 "the H.264 profile is {}, which browsers and QuickTime refuse; encode High with yuv420p",
                 report.profile.empty() ? "unknown" : report.profile);
     }
+    check_level(report);
     if (video.codec_tag == "hev1") {
         problem(report, "H.265 is tagged hev1, which Safari and QuickTime refuse; remedy: {}",
                 copy_command(report, plain(report.container)));
@@ -174,7 +241,14 @@ void check_tags(const DecodedVideo& video, VerifyReport& report) {
 }
 
 void add_notes(const DecodedVideo& video, VerifyDepth depth, VerifyReport& report) {
-    if (const Players* const players = players_of(report))
+    const std::string trouble = trouble_of_level(report);
+    if (!trouble.empty())
+        report.notes.push_back(fmt::format(
+            "{}, {}: {}: VLC, mpv and ffmpeg play it, browsers only without the hardware's decoder; "
+            "QuickTime, "
+            "PowerPoint and phones refuse it; for those, render fewer pixels or frames, or take H.265 or AV1",
+            report.coding(), report.pixel_format, trouble));
+    else if (const Players* const players = players_of(report))
         report.notes.push_back(
             fmt::format("{}, {}: {}", report.coding(), report.pixel_format, players->words));
     if (!report.ok()) return;

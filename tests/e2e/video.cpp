@@ -121,7 +121,10 @@ TEST_F(Video, IsMendedByTheRemedyThatVerifyGives) {
         {"libx264", "60", "", "other.mkv"},
         {"libx265", "60", "", "hevc.mkv"},
         {"libx265", "60", "-tag:v hev1 -movflags +faststart ", "hev1.mp4"},
-        {"libx264", "50", "", "other.mov"}};
+        {"libx264", "50", "", "other.mov"},
+        {"libx264", "60",
+         "-video_track_timescale 60 -movie_timescale 60 -movflags +faststart -bsf:v h264_metadata=level=1 ",
+         "level.mp4"}};
     for (const auto& [codec, fps, options, name] : copies) {
         ASSERT_EQ(
             run_corda({"render", scene_, "-o", video_, "--codec", codec, "--fps", fps, "--force"}).exit_code,
@@ -143,6 +146,23 @@ TEST_F(Video, IsMendedByTheRemedyThatVerifyGives) {
         ASSERT_EQ(test::run_shell("ffmpeg -v error -y " + arguments).exit_code, 0);
         const auto after = run_corda({"verify", mended});
         EXPECT_EQ(after.exit_code, 0) << name << after.out << after.err;
+    }
+}
+
+TEST_F(Video, OfALevelThatFewDecodeIsPlayedByFew) {
+    const std::vector<std::array<const char*, 4>> videos{
+        {"640x360", "20000", "beyond every level of H.264", "PowerPoint and phones refuse it"},
+        {"8192x4320", "1", "takes level 6.0", "PowerPoint and phones refuse it"},
+        {"4096x2304", "30", "h264 High 5.2, yuv420p: Chrome", "PowerPoint play it"}};
+    for (const auto& [size, rate, what, who] : videos) {
+        ASSERT_EQ(test::run_shell(fmt::format("ffmpeg -v error -y -f lavfi -i color=s={}:r={} -frames:v 2 "
+                                              "-vf format=yuv420p -c:v libx264 -x264-params threads=1 "
+                                              "-profile:v high {}",
+                                              size, rate, video_))
+                      .exit_code,
+                  0);
+        const auto report = run_corda({"verify", video_});
+        EXPECT_THAT(report.out + report.err, testing::AllOf(HasSubstr(what), HasSubstr(who))) << size;
     }
 }
 

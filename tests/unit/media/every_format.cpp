@@ -254,7 +254,7 @@ TEST_F(Video, AWebpOfAnyRateAndCountIsSound) {
 }
 
 TEST_F(Video, VerifyTellsCodecsAndTheProfilesOfThoseThatHaveAny) {
-    for (const auto& [ending, words] : {std::pair{".mp4", "h264 High"},
+    for (const auto& [ending, words] : {std::pair{".mp4", "h264 High 2.1"},
                                         {".mov", "prores 4444"},
                                         {".mkv", "ffv1"},
                                         {".webm", "vp9 Profile 0"},
