@@ -91,6 +91,7 @@ RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOpt
     const OnProgress still_done = [&](std::int64_t, std::int64_t) {
         return !options.on_progress || options.on_progress(done, total);
     };
+    if (def.is_untrusted) check_part_in_child(part.path(), ending.kind == FileKind::kAnimation, still_done);
     const PartIndex index = index_part(part.path(), still_done);
     RemuxResult result{static_cast<std::int64_t>(index.frame_of.size()), index.is_cut || index.is_damaged,
                        index.is_damaged};
@@ -113,7 +114,9 @@ RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOpt
         remux(index, part.path(), ending, still_done, output);
     }
     done = total;
-    VerifyReport report = verify(output.temporary_path(), still_done, def.depth, def.rendered, index.fps);
+    VerifyReport report =
+        def.is_untrusted ? verify_in_child(output.temporary_path(), still_done, index.fps)
+                         : verify(output.temporary_path(), still_done, def.depth, def.rendered, index.fps);
     check_animation(index, ending, report);
     if (!report.ok()) {
         throw Error(ExitCode::kMismatch,
@@ -132,6 +135,7 @@ RemuxResult recover_part(const std::string& part_path, const std::string& path, 
     PartFile part = PartFile::open(part_path);
     FinishDef def;
     def.keep_part = keep_part;
+    def.is_untrusted = true;
     return finish_part(part, path, options, def);
 }
 

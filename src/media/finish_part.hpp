@@ -37,6 +37,7 @@ struct FinishDef {
     std::vector<FrameColors> rendered;  ///< as verify() takes them
     int jobs = 0;                       ///< threads that encode an animation; 0: one per core
     bool keep_part = false;
+    bool is_untrusted = false;  ///< its origin is unknown: it is read and decoded in a child process first
 };
 
 /// As recover_part, for a part that this process holds. Also throws kMismatch if it has another number of

@@ -7,6 +7,8 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/media/child_process.hpp"
+#include "corda/media/libav_handles.hpp"
+#include "corda/media/part_reader.hpp"
 #include "corda/media/verify.hpp"
 
 namespace corda {
@@ -56,7 +58,7 @@ bool has_little_memory() {
 
 /// What the child tells: the report, or the error that `verify` threw. As CBOR, because the words may quote
 /// any bytes of the file.
-std::string told(const std::string& path, bool has_little) {
+std::string told(const std::string& path, bool has_little, std::optional<Rational> fps) {
     Json json;
     const auto fail = [&](ExitCode code, const char* message) {
         if (code == ExitCode::kTemporary && !has_little) {
@@ -67,7 +69,7 @@ std::string told(const std::string& path, bool has_little) {
         }
     };
     try {
-        json["report"] = verify(path);
+        json["report"] = verify(path, {}, VerifyDepth::kAllFrames, {}, fps);
     } catch (const Error& error) {
         fail(error.code(), error.what());
     } catch (const std::bad_alloc&) {
@@ -80,16 +82,35 @@ std::string told(const std::string& path, bool has_little) {
 
 }  // namespace
 
-VerifyReport verify_in_child(const std::string& path, const OnProgress& on_progress) {
+VerifyReport verify_in_child(const std::string& path, const OnProgress& on_progress,
+                             std::optional<Rational> fps) {
     const bool has_little = has_little_memory();
     const auto on_wait = [&] { report_progress(on_progress, 0, 0); };
-    const auto end = run_in_child([&] { return told(path, has_little); }, limits_for(path), on_wait);
-    if (!end) return verify(path, on_progress);
+    const auto end = run_in_child([&] { return told(path, has_little, fps); }, limits_for(path), on_wait);
+    if (!end) return verify(path, on_progress, VerifyDepth::kAllFrames, {}, fps);
     if (!end->finished) return damaged(end->text);
     const Json json = Json::from_cbor(end->text);
     if (!json.contains("error")) return json.at("report");
     const Json& error = json["error"];
     throw Error(static_cast<ExitCode>(error.at("code").get<int>()), error.at("message").get<std::string>());
+}
+
+void check_part_in_child(const std::string& path, bool decodes, const OnProgress& on_progress) {
+    const QuietLog quiet;
+    const auto read = [&]() -> std::string {
+        try {
+            static_cast<void>(index_part(path, {}));
+            if (decodes) static_cast<void>(verify(path));
+        } catch (const std::exception&) {
+            return "done";  // this process comes to the same point, and tells
+        }
+        return "done";
+    };
+    const auto end = run_in_child(read, limits_for(path), [&] { report_progress(on_progress, 0, 0); });
+    if (end && !end->finished)
+        throw Error(
+            ExitCode::kMismatch,
+            fmt::format("'{}' is damaged: reading it {}; render it again (--force)", path, end->text));
 }
 
 }  // namespace media

@@ -17,6 +17,7 @@
 #include "corda/media/job_memory.hpp"
 #include "corda/media/part_reader.hpp"
 #include "corda/media/probe.hpp"
+#include "corda/media/verify.hpp"
 #include "corda/media/video_comment.hpp"
 #include "corda/media/video_sink.hpp"
 #include "corda/media/video_writer.hpp"
@@ -59,6 +60,7 @@ void check_part(const std::string& path, const std::map<std::string, std::string
                         "anew (--force without --resume)",
                         part, problem, other));
     };
+    media::check_part_in_child(part, false, on_progress);
     const media::PartComment comment = media::part_comment(part, on_progress);
     if (comment.is_damaged) fail("is damaged in its first chunk", "move it away");
     if (!comment.text) {

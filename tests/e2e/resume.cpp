@@ -100,6 +100,20 @@ TEST_F(Resume, MakesTheSameVideoOfWhatWasKilledAtAnyMoment) {
     RecordProperty("parts", parts);
 }
 
+TEST_F(Resume, APartThatCrashesItsReaderIsDamaged) {
+    interrupt("a.mp4", "KILL", 0.0, From::kFirstChunk, {"--preset", "medium", "--duration", "15"});
+    const std::string part = read_file(file("a.mp4.part"));
+    ASSERT_FALSE(part.empty());
+    const std::string crashes = "LD_PRELOAD=" FOREIGN_FAULTS " DEMUXER_CRASHES=1";
+    const auto resume = render("a.mp4", {"--preset", "medium", "--duration", "15", "--resume"});
+    for (const auto& command : {std::vector<std::string>{"recover", file("a.mp4.part")}, resume}) {
+        const auto result = run_corda(command, crashes);
+        EXPECT_EQ(result.exit_code, 7) << result.err;
+        EXPECT_THAT(result.err, HasSubstr("a.mp4.part' is damaged: reading it crashed (Aborted)"));
+        EXPECT_TRUE(read_file(file("a.mp4.part")) == part);
+    }
+}
+
 TEST_F(Resume, MakesTheSameVideoInEveryFormat) {
     using Words = std::vector<std::string>;
     for (const auto& [name, more] : std::vector<std::pair<std::string, Words>>{

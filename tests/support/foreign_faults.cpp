@@ -2,6 +2,7 @@
 // environment.
 //   THREADS_TO_START=N      the system starts N more threads, and then none
 //   PROCESSES_TO_START=N    the same of processes
+//   DEMUXER_CRASHES=1       libavformat ends the process that reads a packet
 //   X264_HANGS_FROM_PX=N    x264 never returns from opening an encoder for pictures of N columns or more
 //   X264_HANG_MARKER=FILE   the file that is made when it begins to hang
 
@@ -52,6 +53,11 @@ pid_t fork() {
     if (left-- > 0) return next(&fork, "fork")();
     errno = EAGAIN;
     return -1;
+}
+
+int av_read_frame(struct AVFormatContext* format, struct AVPacket* packet) {
+    if (number_in("DEMUXER_CRASHES", 0) != 0) std::abort();
+    return next(&av_read_frame, "av_read_frame")(format, packet);
 }
 
 #ifdef X264_BUILD
