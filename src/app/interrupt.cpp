@@ -40,6 +40,10 @@ constexpr std::int64_t kLongestNs = 20'000'000'000;
 constexpr std::int64_t kLongestNs = 800'000'000;
 #endif
 constexpr std::int64_t kTickNs = 100'000'000;
+/// Until then work has longer that computes on a busy machine: what waits uses next to no time of a
+/// processor.
+constexpr std::int64_t kLongestOfWorkNs = 3 * kLongestNs;
+constexpr std::int64_t kNextToNoNs = 100'000'000;
 
 constexpr std::array kRequests{SIGHUP, SIGINT, SIGTERM};
 constexpr int kSignalBase = 128;  // a shell's exit code of a process that a signal ended, without its number
@@ -59,6 +63,7 @@ struct LastWords {
 
 std::atomic<int> asked_to_stop_by{0};
 std::atomic<std::int64_t> asked_at_ns{0};
+std::atomic<std::int64_t> asked_at_processor_ns{0};
 std::atomic<int> exit_code_of_ended_work{-1};
 std::atomic<const LastWords*> last_words{nullptr};
 bool reports_json = false;
@@ -66,10 +71,19 @@ static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<int>
                   std::atomic<const LastWords*>::is_always_lock_free,
               "a signal handler may use nothing else");
 
-std::int64_t now_ns() {
+std::int64_t ns_of(clockid_t clock) {
     timespec now{};
-    clock_gettime(CLOCK_MONOTONIC, &now);
+    clock_gettime(clock, &now);
     return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+std::int64_t now_ns() {
+    return ns_of(CLOCK_MONOTONIC);
+}
+
+/// Of all threads.
+std::int64_t processor_ns() {
+    return ns_of(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 Words words_for(int signal, const std::string& kept) {
@@ -122,6 +136,13 @@ void write_at_once(int descriptor, std::string_view text) {
     _exit(ended < 0 ? kSignalBase + signal : ended);
 }
 
+/// Whether the time of the work is over, so long after the first signal.
+bool is_overdue(std::int64_t waited_ns) {
+    if (waited_ns < kLongestNs) return false;
+    const std::int64_t computed_ns = processor_ns() - asked_at_processor_ns;
+    return computed_ns < kNextToNoNs || computed_ns >= kLongestNs || waited_ns >= kLongestOfWorkNs;
+}
+
 /// A call that began to wait just after the signal does not know of it: from now on SIGALRM breaks off every
 /// one that takes long, and ends the process if none of that helps.
 void begin_to_tick() {
@@ -135,9 +156,10 @@ void on_signal(int signal) {
     std::int64_t first_ns = 0;
     if (signal == SIGALRM) {
         first_ns = asked_at_ns;
-        if (first_ns != 0 && at_ns - first_ns >= kLongestNs) end_process(asked_to_stop_by, true);
+        if (first_ns != 0 && is_overdue(at_ns - first_ns)) end_process(asked_to_stop_by, true);
     } else if (asked_at_ns.compare_exchange_strong(first_ns, at_ns)) {
         asked_to_stop_by = signal;
+        asked_at_processor_ns = processor_ns();
         begin_to_tick();
     } else if (at_ns - first_ns > kSameWishNs) {
         end_process(signal, false);
