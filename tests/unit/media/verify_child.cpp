@@ -6,7 +6,6 @@
 
 #include <cerrno>
 
-#include "corda/media/child_process.hpp"
 #include "support/failure.hpp"
 #include "video_support.hpp"
 
@@ -47,34 +46,6 @@ class VerifyChild : public Video {
   protected:
     ~VerifyChild() override { threads_are_scarce = processes_are_scarce = false; }
 };
-
-// The first test, as others leave freed memory behind.
-#ifndef CORDA_SANITIZE  // which reserves more memory than any limit
-TEST_F(VerifyChild, DoesNotBlameTheFileIfTheUserAllowsLittleMemory) {
-    const auto make = [&] {
-        VideoDef def;
-        def.width_px = 1920;
-        def.height_px = 1080;
-        VideoWriter writer(file("a.mp4"), def, {"", "{}"});
-        const Image image(def.width_px, def.height_px);
-        for (int k = 0; k < 12; ++k) writer.write(image, {image.rect()});
-        writer.finish();
-        return std::string("made");
-    };
-    constexpr ChildLimits kEnough{std::uint64_t{4} << 30, 60, 60.0};
-    ASSERT_TRUE(run_in_child(make, kEnough)->finished);  // in a child, or this process would keep the memory
-    const auto code = [&] {
-        return std::to_string(static_cast<int>(test::code_of([&] {
-            const VerifyReport report = verify_in_child(file("a.mp4"));
-            if (!report.ok()) throw Error(ExitCode::kMismatch, all_problems(report));
-        })));
-    };
-    std::string codes;
-    for (const std::uint64_t mib : {8, 16, 24, 32, 48, 64, 256})
-        codes += run_in_child(code, {mib << 20, 20, 20.0})->text + " ";
-    EXPECT_THAT(codes, testing::MatchesRegex("75 (75 )*(0 )*0 "));  // measured: enough are 64 MiB
-}
-#endif
 
 TEST_F(VerifyChild, FindsWhatThisProcessFinds) {
     make_video(file("a.mp4"), small_video({24000, 1001}), 30);
