@@ -89,6 +89,8 @@ struct SceneOptions {
     [[nodiscard]] const std::string& input() const { return is_from() ? from_ : path; }
 
   private:
+    void check_size_from_file(const VideoDef& video) const;
+
     std::string from_;
     std::vector<Setting> of_options_;          ///< those of `settings` that did not come from --set
     mutable std::optional<std::string> text_;  ///< of the scene file, which may be a pipe

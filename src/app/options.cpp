@@ -118,6 +118,25 @@ const Provenance& SceneOptions::provenance(const Console& console) const {
     return *provenance_;
 }
 
+/// Whoever made the file must not decide how much memory this machine gives.
+void SceneOptions::check_size_from_file(const VideoDef& video) const {
+    constexpr std::int64_t kMostUnaskedPx = std::int64_t{1} << 25;
+    constexpr double kBytesPerPx = 12.0;         // measured: 775 MB for 16384x4096
+    constexpr double kBytesPerEncodedPx = 25.0;  // 1640 MB by libx264 with the preset ultrafast
+    const std::int64_t pixels = std::int64_t{video.width_px} * video.height_px;
+    const bool is_asked_for = std::any_of(settings.begin(), settings.end(), [](const std::string& setting) {
+        return setting.starts_with("video.size");
+    });
+    if (pixels <= kMostUnaskedPx || is_asked_for) return;
+    throw Error(
+        ExitCode::kInvalidScene,
+        fmt::format("{}: its scene asks for {}x{} pixels, which take some {:.1f} GB to draw and {:.1f} "
+                    "GB or more to encode; allow that by --size {}x{}, or give a smaller size",
+                    from_, video.width_px, video.height_px, static_cast<double>(pixels) * kBytesPerPx * 1e-9,
+                    static_cast<double>(pixels) * kBytesPerEncodedPx * 1e-9, video.width_px,
+                    video.height_px));
+}
+
 Scene SceneOptions::load(const Console& console) const {
     const auto read = [&] {
         if (!is_from()) return parse({}, {}, {});
@@ -126,6 +145,7 @@ Scene SceneOptions::load(const Console& console) const {
                          [&](const std::vector<Setting>& some) { return scene_of(origin, from_, some); });
     };
     Scene scene = read();
+    if (is_from()) check_size_from_file(scene.video);
     if (const std::string notice = scene::cost_notice(scene); !notice.empty()) console.info(notice);
     return scene;
 }
