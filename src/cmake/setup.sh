@@ -54,6 +54,7 @@ if [[ "${1:-build}" != build ]]; then
         librsvg2-bin        # a second opinion on SVG: rsvg-convert
         poppler-utils       # a second opinion on PDF: pdftoppm
         python3-pytest      # the tests of the Python module
+        python3-pytest-xdist  # tests of users in several processes, each of which draws
         jupyter-nbconvert   # runs the example notebook
         python3-ipykernel   # in which it runs
         python3-jsonschema  # a second opinion on the JSON Schema of scenes

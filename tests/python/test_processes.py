@@ -46,6 +46,23 @@ def test_spawned_processes_draw():
         assert pool.map_async(total_of_frame, [3, 5]).get(60) == [total_of_frame(3), total_of_frame(5)]
 
 
+def test_golden_pictures_hold_in_all_workers_of_xdist(tmp_path):
+    (tmp_path / "test_pictures.py").write_text(textwrap.dedent(f"""
+        import pytest, corda, corda.testing
+        film = corda.Film(text={SCENE!r})
+        @pytest.mark.parametrize("k", range(8))
+        def test_frame(k):
+            corda.testing.assert_matches_golden(film.frame(k), f"frame_{{k}}.png", folder={str(tmp_path)!r})
+    """))
+    command = [sys.executable, "-m", "pytest", "-q", "-n", "2", "-p", "no:cacheprovider", str(tmp_path)]
+    for more in ({"CORDA_UPDATE_GOLDENS": "1"}, {}):
+        ended = subprocess.run(command, capture_output=True, text=True, timeout=60, env={**os.environ, **more}, cwd=tmp_path)
+        assert "8 passed" in ended.stdout, ended.stdout + ended.stderr
+    (tmp_path / "frame_3.png").write_bytes((tmp_path / "frame_4.png").read_bytes())
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=60, cwd=tmp_path)
+    assert "1 failed, 7 passed" in ended.stdout, ended.stdout
+
+
 def test_processes_forked_before_any_drawing_draw():
     ended = run("""
         import multiprocessing

@@ -56,6 +56,10 @@ def test_none_leaves_a_key_as_it_is():
 
 @pytest.mark.parametrize("keywords, words", [
     ({"size": b"64x48"}, "size: takes"), ({"duration": object()}, "duration: takes"), ({"world__drag": 1j}, "world__drag: takes"),
+    ({"size": {64, 48}}, "size: takes"), ({"duration": np.timedelta64(1, "s")}, "^duration: takes seconds as a number"),
+    ({"duration": np.array(["2020"], dtype="datetime64[ns]")}, "^duration: takes seconds"), ({"backend": 3}, "^backend: takes a str"),
+    ({"settings": "rope"}, "^settings: takes a dictionary"), ({"settings": {3: 4}}, "^settings: takes a str, not int"),
+    ({"settings": {"rope[0].hang": {1: 2}}}, r"^rope\[0\].hang: takes a str, not int"),
 ])
 def test_other_types_are_refused_by_their_keyword(keywords, words):
     with pytest.raises(TypeError, match=words):
@@ -67,6 +71,10 @@ def test_other_types_are_refused_by_their_keyword(keywords, words):
     ({"world__drag": float("nan")}, "^world__drag=nan: "), ({"settings": {"rope[0].mas": 2}}, r"^rope\[0\].mas=2: "),
     ({"rope__0__mass": 2}, r"use settings=\{'rope\[0\]\.mass': 2\}$"),
     ({"overlay__title": "\ud800"}, "^overlay__title: character 0 is the lone surrogate"),
+    ({"duration": decimal.Decimal("1e400")}, "^duration: takes a number that a float can hold"),
+    ({"duration": decimal.Decimal("sNaN")}, "^duration: takes a number that a float can hold"),
+    ({"duration": fractions.Fraction(10**400)}, "^duration: takes a number that a float can hold"),
+    ({"jobs": 10**30}, "^jobs: takes no number as large"), ({"settings": {"rope[0].mass=2": 3}}, "has a =; give the value"),
 ])
 def test_errors_name_the_keyword_of_the_caller(keywords, words):
     with pytest.raises(corda.Error, match=words) as refused:
@@ -89,8 +97,17 @@ def test_frames_and_times_have_numbers():
     for k in (10**30, -(10**30), 31, -1):
         with pytest.raises(corda.Error, match=f"^frame {k} is not within 0 .. 30$"):
             some.frame(k)
-    with pytest.raises(TypeError, match="^time: takes a number"):
-        some.still("soon")
+    for time in ("soon", "0.5", None):
+        with pytest.raises(TypeError, match="^time: takes a number"):
+            some.still(time)
+    with pytest.raises(corda.Error, match="^time: takes a number that a float can hold"):
+        some.still(10**400)
+
+
+def test_controls_in_texts_are_those_of_the_caller():
+    for text in ("a\tb", "a\x7fb", "\x01"):  # which no picture can show
+        with pytest.raises(corda.Error, match="^overlay__title=.* has a control character"):
+            film(overlay__title=text)
 
 
 def test_names_of_files_are_any_bytes(tmp_path):
@@ -109,6 +126,8 @@ def test_names_of_files_are_any_bytes(tmp_path):
 def test_a_name_with_nul_is_refused(tmp_path):
     with pytest.raises(corda.Error, match="path: .* holds a NUL character"):
         corda.Film("a\0.toml")
+    with pytest.raises(TypeError, match="^path: takes a str, bytes or a path, not 3"):
+        corda.Film(3)
     (tmp_path / "a").write_text("kept")
     with pytest.raises(corda.Error, match="holds a NUL character"):
         film().save(str(tmp_path / "a") + "\0b.mp4", force=True)

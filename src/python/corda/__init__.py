@@ -16,6 +16,7 @@ import collections.abc as _abc
 import decimal as _decimal
 import fractions as _fractions
 import json as _json
+import math as _math
 import numbers as _numbers
 import operator as _operator
 import os as _os
@@ -39,7 +40,6 @@ _SHORT = {"size": "video.size", "fps": "video.fps", "duration": "world.duration"
           "preset": "video.preset", "codec": "video.codec", "jobs": "video.jobs"}
 
 
-
 def _error(message, code=2):
     error = Error(message)
     error.code = code
@@ -48,7 +48,10 @@ def _error(message, code=2):
 
 def _path(path, name="path"):
     """The bytes of a file's name; os.fsencode takes what os.listdir gives, in any encoding."""
-    name_bytes = _os.fsencode(path)
+    try:
+        name_bytes = _os.fsencode(path)
+    except TypeError:
+        raise TypeError(f"{name}: takes a str, bytes or a path, not {path!r}") from None
     if b"\0" in name_bytes:
         raise _error(f"{name}: {path!r} holds a NUL character, which no file name can; leave it out")
     return name_bytes
@@ -66,27 +69,55 @@ def _text(text, name):
     return text
 
 
+def _quoted(text, name):
+    """A string of TOML, which takes no control characters, as JSON takes the one of 0x7f."""
+    return _json.dumps(_text(text, name), ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _float(value, name):
+    """The float that is nearest to any kind of number."""
+    if isinstance(value, (str, bytes, bytearray)):
+        raise TypeError(f"{name}: takes a number, not {value!r}")
+    try:
+        number = float(value)
+    except TypeError:
+        raise TypeError(f"{name}: takes a number, not {value!r}") from None
+    except (OverflowError, ValueError):  # of an int, and of a signalling NaN
+        raise _error(f"{name}: takes a number that a float can hold, not {value!r:.40}") from None
+    if _math.isinf(number) and not isinstance(value, (float, _np.floating)) and value - value == 0:
+        raise _error(f"{name}: takes a number that a float can hold, not {value!r:.40}")
+    return number
+
+
+def _limit(value, name):
+    return None if value is None else _float(value, name)
+
+
 def _toml(value, name):
     """A value of Python or numpy as a value of TOML. `name` is the keyword that it was given by."""
+    if getattr(getattr(value, "dtype", None), "kind", "") in "mM" and hasattr(value, "dtype"):
+        raise TypeError(f"{name}: takes seconds as a number, not {value.dtype}; divide by numpy.timedelta64(1, 's')")
     if isinstance(value, _np.generic) or (isinstance(value, _np.ndarray) and value.ndim == 0):
         value = value.item()
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return _json.dumps(_text(value, name), ensure_ascii=False)
+        return _quoted(value, name)
     if isinstance(value, _numbers.Integral):
+        if not -2**63 <= value < 2**63:
+            raise _error(f"{name}: takes no number as large as {value!r:.40}")
         return str(int(value))
     if isinstance(value, _fractions.Fraction) and value.denominator != 1 and name in ("fps", "video.fps", "video__fps"):
         return f'"{value.numerator}/{value.denominator}"'
     if isinstance(value, (_numbers.Real, _decimal.Decimal)):
-        number = float(value)
+        number = _float(value, name)
         # A rate is whole, or exact in a few decimals.
         return str(int(number)) if number.is_integer() and abs(number) < 2**53 else repr(number)
     if isinstance(value, _np.ndarray):
         value = value.tolist()
     if isinstance(value, _abc.Mapping):
-        return "{" + ", ".join(f"{_json.dumps(str(key))} = {_toml(one, name)}" for key, one in value.items()) + "}"
-    if isinstance(value, _abc.Iterable) and not isinstance(value, (bytes, bytearray)):
+        return "{" + ", ".join(f"{_quoted(key, name)} = {_toml(one, name)}" for key, one in value.items()) + "}"
+    if isinstance(value, _abc.Iterable) and not isinstance(value, (bytes, bytearray, _abc.Set)):
         return "[" + ", ".join(_toml(one, name) for one in value) + "]"
     raise TypeError(f"{name}: takes numbers, text, lists, tuples, arrays and dictionaries of these, not "
                     f"{type(value).__name__}")
@@ -94,7 +125,12 @@ def _toml(value, name):
 
 def _settings(settings, keys):
     """Lines key=value as --set takes them, with the name that the caller used for each. None leaves a key as it is."""
-    named = {key: (key, value) for key, value in dict(settings or {}).items()}
+    if not isinstance(settings, (_abc.Mapping, type(None))):
+        raise TypeError(f"settings: takes a dictionary of keys and values, not {settings!r}")
+    named = {key: (key, value) for key, value in (settings or {}).items()}
+    for key in named:
+        if "=" in _text(key, "settings"):
+            raise _error(f"settings: a key is a name such as 'rope[0].mass', and {key!r} has a =; give the value as a value")
     for name, value in keys.items():
         parts = name.split("__")
         if any(part.isdigit() for part in parts):
@@ -117,13 +153,6 @@ def _index(value, name):
         return _operator.index(value)
     except TypeError:
         raise TypeError(f"{name}: takes an integer, not {value!r}") from None
-
-
-def _number(value, name):
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise TypeError(f"{name}: takes a number, not {value!r}") from None
 
 
 def _answering(on_progress):
@@ -161,6 +190,7 @@ class Film:
             raise TypeError("Film takes a path or text=..., and not both")
         lines = _settings(settings, keys)
         source = _path(path) if path is not None else b"text"
+        backend = _text(backend, "backend") if backend is not None else ""
         self._gl = (backend or _os.environ.get("CORDA_BACKEND") or "auto", bool(require_gpu))
         try:
             self._film = _corda.Film(_text(text or "", "text"), source, path is not None, list(lines), *self._gl)
@@ -195,7 +225,7 @@ class Film:
 
     def still(self, time, shutter=0.0):
         """The picture at a time in seconds, 0 .. duration, as frame(); `shutter`, 0 .. 1, blurs it as video.shutter does."""
-        return self._film.still(_number(time, "time"), _number(shutter, "shutter"))
+        return self._film.still(_float(time, "time"), _float(shutter, "shutter"))
 
     @property
     def positions(self):

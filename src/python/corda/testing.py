@@ -10,7 +10,7 @@
 
 import sys as _sys
 
-from . import _corda, _path, _pixels
+from . import _corda, _limit, _path, _pixels
 
 __all__ = ["assert_matches_golden"]
 
@@ -26,8 +26,9 @@ def assert_matches_golden(picture, name, *, folder=None, max=None, mean=None, sh
     folder for NAME.new.png and NAME.difference.png. Raises corda.Error for a picture that cannot be read or written.
     """
     __tracebackhide__ = True  # pytest shows the line of the test
-    matches, written, message = _corda.check_golden(_pixels(picture), _path(name, "name"), _path(folder or "", "folder"),
-                                                    (max, mean, share, flip, ssim))
+    given = {"max": max, "mean": mean, "share": share, "flip": flip, "ssim": ssim}
+    limits = tuple(_limit(value, key) for key, value in given.items())
+    matches, written, message = _corda.check_golden(_pixels(picture), _path(name, "name"), _path(folder or "", "folder"), limits)
     if written:
         print(message, file=_sys.stderr)
     if not matches:
