@@ -57,7 +57,7 @@ std::string words_of(const ComparedPicture& compared, const Image& a, const Imag
     return words;
 }
 
-/// What the comparison does not use of two files.
+/// Notes on colour chunks of the two files that the comparison ignores.
 std::vector<std::string> notes_of(const std::string& a, const std::string& b) {
     std::vector<std::string> notes;
     for (const std::string& path : {a, b}) {

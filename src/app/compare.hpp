@@ -45,7 +45,7 @@ struct ComparedPicture {
     std::string reference;  ///< the file that the figures are of
     std::string variant;    ///< the cause of the variant that passed; empty: none, or the first reference
     std::string words;
-    std::vector<std::string> notes;  ///< what the files say that the comparison does not use
+    std::vector<std::string> notes;  ///< on contents of the files that the comparison ignores
 };
 
 /// Compares `picture` with `references`: the first that passes counts, or else the first of all. Writes the

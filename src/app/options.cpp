@@ -120,14 +120,14 @@ const Provenance& SceneOptions::provenance(const Console& console) const {
 
 /// Whoever made the file must not decide how much memory this machine gives.
 void SceneOptions::check_size_from_file(const VideoDef& video) const {
-    constexpr std::int64_t kMostUnaskedPx = std::int64_t{1} << 25;
+    constexpr std::int64_t kMaxUnaskedPx = std::int64_t{1} << 25;
     constexpr double kBytesPerPx = 12.0;         // measured: 775 MB for 16384x4096
     constexpr double kBytesPerEncodedPx = 25.0;  // 1640 MB by libx264 with the preset ultrafast
     const std::int64_t pixels = std::int64_t{video.width_px} * video.height_px;
     const bool is_asked_for = std::any_of(settings.begin(), settings.end(), [](const std::string& setting) {
         return setting.starts_with("video.size");
     });
-    if (pixels <= kMostUnaskedPx || is_asked_for) return;
+    if (pixels <= kMaxUnaskedPx || is_asked_for) return;
     throw Error(
         ExitCode::kInvalidScene,
         fmt::format("{}: its scene asks for {}x{} pixels, which take some {:.1f} GB to draw and {:.1f} "

@@ -20,7 +20,7 @@ struct PixelDifference {
     int sum = 0;
 };
 
-/// What a difference of 1 at 8 bits is in samples.
+/// The number of sample steps in one step of 8 bits.
 template <class Sample>
 constexpr int kSamplesPerUnit = sizeof(Sample) == 1 ? 1 : 257;
 

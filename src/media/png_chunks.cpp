@@ -129,8 +129,8 @@ bool is_srgb_by_code_points(std::span<const unsigned char> bytes) {
 }  // namespace
 
 std::vector<std::string> color_chunks_beside_srgb(const std::string& path) {
-    constexpr int kMostChunks = 1000;  // before the pixels
-    constexpr std::size_t kMostBytes = 80;
+    constexpr int kMaxChunks = 1000;  // before the pixels
+    constexpr std::size_t kMaxBytes = 80;
     std::error_code none;
     if (!std::filesystem::is_regular_file(path, none) || !is_png(path)) return {};
     const ChunkFile file(path);
@@ -139,9 +139,9 @@ std::vector<std::string> color_chunks_beside_srgb(const std::string& path) {
     bool is_srgb = false;
     std::optional<bool> is_srgb_for_certain;
     ChunkHead head;
-    for (int i = 0; i < kMostChunks && file.read(head.bytes) && !head.is("IDAT"); ++i) {
-        std::array<unsigned char, kMostBytes> block{};
-        const auto bytes = std::span(block).first(std::min(head.length(), kMostBytes));
+    for (int i = 0; i < kMaxChunks && file.read(head.bytes) && !head.is("IDAT"); ++i) {
+        std::array<unsigned char, kMaxBytes> block{};
+        const auto bytes = std::span(block).first(std::min(head.length(), kMaxBytes));
         if (!file.read(bytes) || !file.skip(head.length() - bytes.size() + kCrcBytes)) break;
         std::string words;
         if (head.is("gAMA")) words = words_of_gamma(bytes);

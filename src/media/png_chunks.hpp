@@ -10,9 +10,9 @@ namespace corda::media {
 /// same pixels may be packed in several ways. False for files that are no PNG, or are cut off.
 [[nodiscard]] bool have_same_picture_chunks(const std::string& a, const std::string& b);
 
-/// What a PNG file says of its colours other than sRGB, which read_png() does not use: gAMA, cHRM, iCCP and
-/// cICP with their values, such as "gAMA (1)". Empty if a chunk that overrides them says sRGB (PNG
-/// specification, third edition, 4.3), and for what is no PNG file.
+/// The chunks of a PNG file that declare colours other than sRGB, which read_png() ignores: gAMA, cHRM, iCCP
+/// and cICP with their values, such as "gAMA (1)". Empty if a chunk of higher precedence declares sRGB (PNG
+/// specification, third edition, 4.3), or if the file is not a PNG.
 [[nodiscard]] std::vector<std::string> color_chunks_beside_srgb(const std::string& path);
 
 }  // namespace corda::media

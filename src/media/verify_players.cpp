@@ -78,7 +78,7 @@ std::string_view plain(std::string_view container) {
     return container.substr(0, container.find(' '));
 }
 
-/// What a level of H.264 allows, from Table A-1 of Rec. ITU-T H.264 (08/2021).
+/// The limits of a level of H.264, from Table A-1 of Rec. ITU-T H.264 (08/2021).
 struct H264Level {
     int level_times_10;
     std::int64_t macroblocks_per_s;

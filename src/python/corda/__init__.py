@@ -280,7 +280,7 @@ class Difference(_NamedTuple):
 
     same_size: bool
     equal: bool  #: all bytes are the same
-    max: float  #: largest difference of a channel, 0 .. 255; whole but for files with 16 bits
+    max: float  #: largest difference of a channel, 0 .. 255; a fraction only for files with 16 bits
     mean: float  #: mean difference over all channels and pixels, 0 .. 255
     share: float  #: share of the pixels that differ, 0 .. 1
 
