@@ -10,10 +10,18 @@
 #include <system_error>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 
 namespace corda {
 
+void check_path(const std::string& path) {
+    if (path.find('\0') == std::string::npos) return;
+    throw Error(ExitCode::kUsage,
+                "'" + printable(path) + "' holds a NUL character, which no file name can; leave it out");
+}
+
 FileHandle open_for_reading(const std::string& path) {
+    check_path(path);
     FileHandle file(std::fopen(path.c_str(), "rbe"));
     if (!file) fail_file("read", path, errno);
     struct stat status {};
@@ -107,6 +115,7 @@ void fail_busy(const std::string& what) {
 }
 
 void make_folder(const std::string& path) {
+    check_path(path);
     std::error_code reason;
     std::filesystem::create_directories(path, reason);
     if (reason) fail_file("make the folder", path, reason.value());

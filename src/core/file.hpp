@@ -17,6 +17,9 @@ struct FileCloser {
 /// A C file. What is to stay is written by OutputFile, which also checks the close.
 using FileHandle = std::unique_ptr<std::FILE, FileCloser>;
 
+/// Throws corda::Error (kUsage) if the path holds a NUL character, where the system would end it.
+void check_path(const std::string& path);
+
 /// Opens a file for reading. Throws corda::Error: kIo, also for a folder; kInterrupted if a signal comes
 /// while it waits for the writer of a pipe.
 [[nodiscard]] FileHandle open_for_reading(const std::string& path);

@@ -111,6 +111,7 @@ bool is_standard_output(const std::string& path) {
 }
 
 void check_output(const std::string& path, const std::string& input, bool force, OutputKind kind) {
+    check_path(path);
     if (kind == OutputKind::kStream && is_standard_output(path)) return;
     if (fs::path(path).filename().empty()) {
         throw Error(ExitCode::kUsage, "the output '" + path + "' names no file; give it a name");
@@ -168,6 +169,7 @@ void remove_leftovers(const std::string& path) noexcept {
 
 OutputFile::OutputFile(std::string path, const OutputOptions& options)
     : path_(std::move(path)), target_(path_), options_(options) {
+    check_path(path_);
     if (is_standard_output(path_)) {
         descriptor_ = Descriptor(::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
         if (!descriptor_) fail_file("write", path_, errno);

@@ -99,6 +99,7 @@ void PartFile::remove_unheld(const std::string& path) noexcept {
 }
 
 PartFile PartFile::open(std::string path) {
+    check_path(path);
     refuse_other_kinds(path);
     Descriptor file = open_existing(path);
     if (!file) fail_file("read", path, errno);

@@ -34,6 +34,7 @@ FileHandle open(const std::string& path) {
 }  // namespace
 
 std::string read_file(const std::string& path) {
+    check_path(path);
     const std::string name = source_name(path);
     const FileHandle file = open(path);
     if (!file) fail_io(name, errno);

@@ -8,7 +8,11 @@
 #include <array>
 #include <cerrno>
 #include <filesystem>
+#include <functional>
+#include <vector>
 
+#include "corda/core/output_file.hpp"
+#include "corda/core/part_file.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"
 
@@ -36,6 +40,21 @@ TEST(Files, ThatCannotBeReadAreErrors) {
         EXPECT_EQ(failure.code, ExitCode::kIo);
         EXPECT_THAT(failure.message, HasSubstr("cannot read '" + path + "'"));
     }
+}
+
+TEST(Files, HaveNamesWithoutNul) {
+    const test::ScratchFolder folder;
+    const std::string name = folder.file("a") + std::string("\0.png", 5);
+    const std::vector<std::function<void()>> uses{
+        [&] { static_cast<void>(open_for_reading(name)); }, [&] { make_folder(name); },
+        [&] { check_output(name, "", true); }, [&] { const OutputFile file(name, {.force = true}); },
+        [&] { static_cast<void>(PartFile::open(name)); }};
+    for (const auto& use : uses) {
+        const test::Failure failure = failure_of(use);
+        EXPECT_EQ(failure.code, ExitCode::kUsage);
+        EXPECT_THAT(failure.message, HasSubstr("a\\x00.png' holds a NUL character"));
+    }
+    EXPECT_TRUE(folder.files().empty());
 }
 
 TEST(Files, TellTheirSizes) {
