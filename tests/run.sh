@@ -1,14 +1,17 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds Corda with warnings as errors and runs every test with ctest.
-# Usage: tests/run.sh [--preset ci|asan|debug] [--long] [-- CTEST ARGUMENTS]
+# Usage: tests/run.sh [--preset ci|asan|debug] [--long | --units] [-- CTEST ARGUMENTS]
 #   --long   the long form of the slow suites, and tests/platforms.sh
+#   --units  the tests of unit and fuzz alone
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 preset=ci
+target=all
 while [[ $# -gt 0 ]]; do
     case "$1" in
         --preset) preset=${2:?--preset needs a name}; shift 2 ;;
         --long) export CORDA_TEST_LONG=1; shift ;;
+        --units) target=unit_tests; shift ;;
         --) shift; break ;;
         *) echo "run.sh: unknown argument $1; see the head of this file" >&2; exit 2 ;;
     esac
@@ -17,6 +20,7 @@ done
 "$root/src/cmake/setup.sh" test
 cd "$root"
 [[ -f "build/$preset/build.ninja" ]] || cmake --preset "$preset" >/dev/null
-cmake --build "build/$preset"
+cmake --build "build/$preset" --target "$target"
+[[ "$target" == all ]] || set -- -L 'unit|fuzz' -E fuzz.random_scenes "$@"
 ctest --preset "$preset" "$@"
 if [[ -n "${CORDA_TEST_LONG:-}" && "$preset" == ci && $# -eq 0 ]]; then tests/platforms.sh; fi

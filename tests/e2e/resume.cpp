@@ -65,7 +65,7 @@ TEST_F(Resume, MakesTheSameVideoOfWhatWasKilledAtAnyMoment) {
     // So long that most moments are before its end.
     const std::vector<std::string> slowly{"--preset", "medium", "--duration", "15"};
     const std::string whole = bytes_of_a_whole("whole.mp4", slowly);
-    const int kills = std::getenv("CORDA_TEST_LONG") != nullptr ? 100 : 6;
+    const int kills = std::getenv("CORDA_TEST_LONG") != nullptr ? 100 : 4;
     std::mt19937 random(20261123);  // NOLINT(cert-msc51-cpp): the same kills on every run
     std::uniform_real_distribution<double> moment_s(0.0, 1.5);
     int parts = 0;
