@@ -7,12 +7,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <utility>
 
 #include "corda/core/output_file.hpp"
+#include "corda/core/saving.hpp"
 
 namespace corda::suite {
 namespace {
@@ -31,7 +33,15 @@ fs::file_type type_of(const std::string& path) {
 }
 
 bool exists(const std::string& path) {
-    return type_of(path) != fs::file_type::not_found;
+    const fs::file_type type = type_of(path);
+    return type != fs::file_type::not_found && type != fs::file_type::none;  // none: it cannot be looked up
+}
+
+std::string bytes_of(const std::string& path) {
+    std::string text(file_size(path), '\0');
+    if (read_bytes(open_for_reading(path), path, text.data(), text.size()) < text.size())
+        fail_file("read", path, EIO);
+    return text;
 }
 
 void rename_or_fail(const std::string& from, const std::string& to, const std::string& told) {
@@ -102,8 +112,9 @@ bool UpdateFolder::has_journal() const {
 }
 
 void UpdateFolder::publish(const std::vector<std::string>& written, const std::vector<std::string>& removed) {
+    const Saving saving;
     std::string text;  // each entry ends with a zero byte, which no file name contains
-    for (const std::string& name : written) text += "w" + name + '\0';
+    for (const std::string& name : written) text += (exists(picture(name)) ? "w" : "a") + name + '\0';
     for (const std::string& name : removed) text += "r" + name + '\0';
     OutputFile journal(inside_ + kJournal);
     journal.write(text);
@@ -126,8 +137,15 @@ void UpdateFolder::publish(const std::vector<std::string>& written, const std::v
 }
 
 std::string UpdateFolder::settle() {
+    const Saving saving;
     if (exists(inside_ + kJournal)) {
         const std::vector<Change> changes = read_journal(kJournal);
+        if (is_restored(changes)) {
+            take_back(changes);
+            return fmt::format(
+                "took back an interrupted update of '{}', some of whose pictures were restored since",
+                pictures_);
+        }
         try {
             apply(changes);
             return fmt::format("completed an interrupted update of '{}': {} pictures", pictures_,
@@ -156,9 +174,7 @@ void UpdateFolder::remove() noexcept {
 
 std::vector<UpdateFolder::Change> UpdateFolder::read_journal(const std::string& name) const {
     const std::string path = inside_ + name;
-    std::string text(file_size(path), '\0');
-    if (read_bytes(open_for_reading(path), path, text.data(), text.size()) < text.size())
-        fail_file("read", path, EIO);
+    const std::string text = bytes_of(path);
     // A link here would make the renames move files of other folders.
     for (const char* const folder : {"/new", "/old"})
         if (type_of(inside_ + folder) != fs::file_type::directory)
@@ -168,19 +184,30 @@ std::vector<UpdateFolder::Change> UpdateFolder::read_journal(const std::string& 
         const std::size_t end = std::min(text.find('\0', begin), text.size());
         std::string entry = text.substr(begin, end - begin);
         begin = end + 1;
-        const bool is_valid = entry.size() > 1 && (entry[0] == 'w' || entry[0] == 'r') &&
+        const bool is_valid = entry.size() > 1 && (entry[0] == 'w' || entry[0] == 'a' || entry[0] == 'r') &&
                               entry.find('/') == std::string::npos && entry.substr(1) != "." &&
                               entry.substr(1) != "..";
         if (!is_valid)
             throw Error(ExitCode::kIo, fmt::format("'{}' is damaged; restore the pictures of '{}' (git "
                                                    "checkout), and remove '{}'",
                                                    path, pictures_, inside_));
-        changes.push_back({.is_removal = entry[0] == 'r', .name = entry.substr(1)});
+        changes.push_back({.kind = entry[0], .name = entry.substr(1)});
     }
     return changes;
 }
 
-void UpdateFolder::save_old(const std::string& name, bool is_removal) const {
+/// Whether the user has put a replaced picture back, as `git checkout` does.
+bool UpdateFolder::is_restored(const std::vector<Change>& changes) const {
+    return std::any_of(changes.begin(), changes.end(), [this](const Change& change) {
+        return change.kind == 'w' && !exists(staged(change.name)) && exists(old(change.name)) &&
+               type_of(picture(change.name)) == fs::file_type::regular &&
+               bytes_of(picture(change.name)) == bytes_of(old(change.name));
+    });
+}
+
+void UpdateFolder::save_old(const Change& change) const {
+    const bool is_removal = change.kind == 'r';
+    const std::string& name = change.name;
     const std::string path = picture(name);
     if (exists(old(name)) && !is_removal) return;
     if (!exists(path)) return;
@@ -193,10 +220,10 @@ void UpdateFolder::save_old(const std::string& name, bool is_removal) const {
 
 void UpdateFolder::apply(const std::vector<Change>& changes) const {
     for (const Change& change : changes) {
-        if (!change.is_removal && !exists(staged(change.name))) continue;  // it is published
-        save_old(change.name, change.is_removal);
-        if (!change.is_removal)
-            rename_or_fail(staged(change.name), picture(change.name), picture(change.name));
+        const bool is_removal = change.kind == 'r';
+        if (!is_removal && !exists(staged(change.name))) continue;  // it is published
+        save_old(change);
+        if (!is_removal) rename_or_fail(staged(change.name), picture(change.name), picture(change.name));
     }
     sync_folder_of(picture("any"));
     if (::unlink((inside_ + kJournal).c_str()) != 0) fail_file("remove", inside_ + kJournal, errno);
@@ -211,7 +238,7 @@ void UpdateFolder::take_back(const std::vector<Change>& changes) const {
         const std::string path = picture(change.name);
         if (exists(old(change.name)))
             rename_or_fail(old(change.name), path, path);
-        else if (!change.is_removal && !exists(staged(change.name)) && exists(path))
+        else if (change.kind == 'a' && !exists(staged(change.name)) && exists(path))
             rename_or_fail(path, staged(change.name), path);
     }
     sync_folder_of(picture("any"));

@@ -46,7 +46,8 @@ class UpdateFolder {
 
   private:
     struct Change {
-        bool is_removal = false;
+        char kind =
+            'w';  ///< the letter in the journal: 'w' replaces a picture, 'a' adds one, 'r' removes one
         std::string name;
     };
 
@@ -56,7 +57,8 @@ class UpdateFolder {
     [[nodiscard]] std::string old(const std::string& name) const { return inside_ + "/old/" + name; }
     [[nodiscard]] std::vector<Change> read_journal(const std::string& name) const;
     void apply(const std::vector<Change>& changes) const;
-    void save_old(const std::string& name, bool is_removal) const;
+    void save_old(const Change& change) const;
+    [[nodiscard]] bool is_restored(const std::vector<Change>& changes) const;
     void take_back(const std::vector<Change>& changes) const;
 
     std::string pictures_;

@@ -80,7 +80,7 @@ TEST_F(UpdateFolderTest, IsAllOrNothingAfterAKillAtAnyMoment) {
     std::mt19937 random(20261125);  // NOLINT(cert-msc51-cpp): the same kills on every run
     std::uniform_int_distribution<useconds_t> moment_us(0, 3000);  // most fall into the renames
     [[maybe_unused]] int mixed = 0;
-    for (int i = 0; i < kills; ++i) {
+    for (int i = 0; i < kills || (mixed == 0 && i < 100); ++i) {
         make_old();
         const pid_t child = fork();
         if (child == 0) {
@@ -119,13 +119,37 @@ TEST_F(UpdateFolderTest, TakesBackEverythingIfOnePictureCannotBeReplaced) {
     EXPECT_EQ(state(), "new");
 }
 
+TEST_F(UpdateFolderTest, ContinuesToTakeBackWhatAKillInterrupted) {
+    make_old();
+    static_cast<void>(UpdateFolder::create(pictures()));
+    // The first is back, the second and the added one are not.
+    test::write_file(inside() + "/undo", "w" + name(1) + '\0' + "w" + name(2) + '\0' + "a" + name(0) + '\0');
+    fs::rename(pictures() + "/" + name(2), inside() + "/old/" + name(2));
+    test::write_file(pictures() + "/" + name(2), "new");
+    test::write_file(pictures() + "/" + name(0), "new");
+    EXPECT_THAT(settle_update(pictures(), false), HasSubstr("took back a failed update"));
+    EXPECT_EQ(state(), "old");
+    EXPECT_FALSE(fs::exists(inside()));
+}
+
+TEST_F(UpdateFolderTest, DoesNotCompleteWhatTheUserHasTakenBack) {
+    make_old();
+    static_cast<void>(UpdateFolder::create(pictures()));
+    // The first picture was replaced before the kill, and the user has restored it since.
+    test::write_file(inside() + "/journal", "w" + name(1) + '\0' + "w" + name(2) + '\0');
+    test::write_file(inside() + "/old/" + name(1), "old");
+    test::write_file(inside() + "/new/" + name(2), "new");
+    EXPECT_THAT(settle_update(pictures(), false), HasSubstr("some of whose pictures were restored since"));
+    EXPECT_EQ(state(), "old");
+}
+
 TEST_F(UpdateFolderTest, TakesBackAKilledUpdateThatCannotBeCompleted) {
     make_old();
     static_cast<void>(UpdateFolder::create(pictures()));  // not removed, as by a kill
     std::string journal;
     for (const std::string& one : names_) {
         test::write_file(inside() + "/new/" + one, "new");
-        journal += "w" + one + '\0';
+        journal += (one == name(0) ? "a" : "w") + one + '\0';
     }
     test::write_file(inside() + "/journal", journal);
     fs::remove(pictures() + "/" + name(150));
