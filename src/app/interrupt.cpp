@@ -24,6 +24,7 @@
 #include <nlohmann/json.hpp>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/saving.hpp"
 #include "corda/core/text.hpp"
 
 namespace corda::app {
@@ -40,10 +41,12 @@ constexpr std::int64_t kLongestNs = 20'000'000'000;
 constexpr std::int64_t kLongestNs = 800'000'000;
 #endif
 constexpr std::int64_t kTickNs = 100'000'000;
-/// Until then work has longer that computes on a busy machine: what waits uses next to no time of a
-/// processor.
-constexpr std::int64_t kLongestOfWorkNs = 3 * kLongestNs;
-constexpr std::int64_t kNextToNoNs = 100'000'000;
+/// The same for a process that uses a processor: on a busy machine it may need this long to notice the
+/// signal. A process that waits for a driver uses less processor time than kMinWorkNs.
+constexpr std::int64_t kMaxWorkNs = 3 * kLongestNs;
+constexpr std::int64_t kMinWorkNs = 100'000'000;
+/// The same while results are flushed to disk and get their names.
+constexpr std::int64_t kMaxSavingNs = 30'000'000'000;
 
 constexpr std::array kRequests{SIGHUP, SIGINT, SIGTERM};
 constexpr int kSignalBase = 128;  // a shell's exit code of a process that a signal ended, without its number
@@ -88,9 +91,8 @@ std::int64_t processor_ns() {
 
 Words words_for(int signal, const std::string& kept) {
     const std::string message = fmt::format(
-        "interrupted (SIG{}) while a driver, an encoder or another program did not return "
-        "within {} s{}",
-        sigabbrev_np(signal), static_cast<double>(kLongestNs) * 1e-9, kept);
+        "interrupted (SIG{}); the work, a driver, an encoder or another program did not stop in time{}",
+        sigabbrev_np(signal), kept);
     Words words{fmt::format("{}corda: error: {}\n", isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "", message),
                 {}};
     if (reports_json) {
@@ -136,11 +138,12 @@ void write_at_once(int descriptor, std::string_view text) {
     _exit(ended < 0 ? kSignalBase + signal : ended);
 }
 
-/// Whether the time of the work is over, so long after the first signal.
+/// True if the process has not ended in the time that it has after the first signal.
 bool is_overdue(std::int64_t waited_ns) {
     if (waited_ns < kLongestNs) return false;
-    const std::int64_t computed_ns = processor_ns() - asked_at_processor_ns;
-    return computed_ns < kNextToNoNs || computed_ns >= kLongestNs || waited_ns >= kLongestOfWorkNs;
+    if (Saving::is_active()) return waited_ns >= kMaxSavingNs;
+    const std::int64_t worked_ns = processor_ns() - asked_at_processor_ns;
+    return worked_ns < kMinWorkNs || worked_ns >= kLongestNs || waited_ns >= kMaxWorkNs;
 }
 
 /// A call that began to wait just after the signal does not know of it: from now on SIGALRM breaks off every

@@ -8,9 +8,10 @@ namespace corda::app {
 
 /// From now on the first SIGINT, SIGTERM or, unless it is ignored, SIGHUP only asks the program to stop at a
 /// point that loses no work. If it has not ended 0.8 s later, because a driver or an encoder does not return,
-/// the handler says so (with `json` on standard output too) and ends the process with the exit code of the
-/// interruption. A second signal, more than a tenth of a second after the first, ends it at once. SIGPIPE and
-/// SIGXFSZ become ordinary write errors.
+/// or if it still works after 0.8 s of processor time, or 2.4 s in all, the handler says so (with `json` on
+/// standard output too) and ends the process with the exit code of the interruption; not while a Saving
+/// exists, for half a minute. A second signal, more than a tenth of a second after the first, ends it at
+/// once. SIGPIPE and SIGXFSZ become ordinary write errors.
 void install_signal_handlers(bool json);
 
 /// Sets the part file that the message of a process that was ended by its handler names, if it exists and is

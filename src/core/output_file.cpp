@@ -16,6 +16,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/part_file.hpp"
+#include "corda/core/saving.hpp"
 
 namespace corda {
 namespace {
@@ -276,6 +277,7 @@ int OutputFile::rename_to(const std::string& name) const {
 }
 
 void OutputFile::commit() {
+    const Saving saving;
     const Descriptor lock = second_lock();
     bool is_blocked = false;
     if (options_.force && !temporary_.empty()) {
@@ -299,6 +301,7 @@ void OutputFile::commit() {
 }
 
 std::string OutputFile::keep() {
+    const Saving saving;
     const Descriptor lock = second_lock();
     if (descriptor_) close();
     if (temporary_.empty()) return path_;

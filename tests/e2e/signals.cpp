@@ -227,6 +227,16 @@ TEST_F(Signals, EndAnEncoderThatDoesNotReturn) {
     EXPECT_EQ(run_corda({"render", scene_, "-o", video, "-q", "--duration", "1"}).exit_code, 0);
 }
 
+TEST_F(Signals, LetASlowDiskTakeWhatIsKept) {
+    const std::string table = folder_.file("a.csv");
+    const Interrupted end = interrupt("simulate " + scene_ + " --duration 3000 -o " + table, "TERM",
+                                      "ls " + folder_.path() + "/a.csv.*.tmp",
+                                      "LD_PRELOAD=" FOREIGN_FAULTS " FSYNC_TAKES_MS=1500");
+    EXPECT_EQ(end.result.exit_code, 143);
+    EXPECT_THAT(end.result.err, HasSubstr("a.csv.part"));
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"a.csv.part", "scene.toml"}));
+}
+
 TEST_F(Signals, TheSecondEndsAtOnceEvenInsideAnEncoder) {
     const std::string video = folder_.file("a.mp4");
     const std::string marker = folder_.file("hangs");

@@ -2,6 +2,7 @@
 // environment.
 //   THREADS_TO_START=N      the system starts N more threads, and then none
 //   PROCESSES_TO_START=N    the same of processes
+//   FSYNC_TAKES_MS=N        flushing a file to disk takes N ms, whatever signals come
 //   DEMUXER_CRASHES=1       libavformat ends the process that reads a packet
 //   X264_HANGS_FROM_PX=N    x264 never returns from opening an encoder for pictures of N columns or more
 //   X264_HANG_MARKER=FILE   the file that is made when it begins to hang
@@ -15,6 +16,7 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstdlib>
+#include <ctime>
 
 #if __has_include(<x264.h>)
 extern "C" {
@@ -53,6 +55,18 @@ pid_t fork() {
     if (left-- > 0) return next(&fork, "fork")();
     errno = EAGAIN;
     return -1;
+}
+
+int fsync(int descriptor) {
+    timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    const std::int64_t end_ms =
+        now.tv_sec * std::int64_t{1000} + now.tv_nsec / 1'000'000 + number_in("FSYNC_TAKES_MS", 0);
+    while (now.tv_sec * std::int64_t{1000} + now.tv_nsec / 1'000'000 < end_ms) {
+        usleep(10'000);
+        clock_gettime(CLOCK_MONOTONIC, &now);
+    }
+    return next(&fsync, "fsync")(descriptor);
 }
 
 int av_read_frame(struct AVFormatContext* format, struct AVPacket* packet) {
