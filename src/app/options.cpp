@@ -146,7 +146,7 @@ Scene SceneOptions::load(const Console& console) const {
     };
     Scene scene = read();
     if (is_from()) check_size_from_file(scene.video);
-    if (const std::string notice = scene::cost_notice(scene); !notice.empty()) console.info(notice);
+    if (const std::string notice = cost_notice(scene); !notice.empty()) console.info(notice);
     return scene;
 }
 

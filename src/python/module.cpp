@@ -166,14 +166,15 @@ class Asking {
     bool operator()(std::int64_t done, std::int64_t total) {
         constexpr std::chrono::milliseconds kPause{50};
         const auto now = std::chrono::steady_clock::now();
-        const bool is_last = done == total && !std::exchange(has_told_last_, true);
+        const bool counts = total > 0;  // or it only asks whether to stop
+        const bool is_last = counts && done == total && !std::exchange(has_told_last_, true);
         if (Calls::has_ended()) return false;
         if (raised_ || (now - last_ < kPause && !is_last)) return !raised_;
         last_ = now;
         const py::gil_scoped_acquire hold;
         try {
             if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-            if (on_progress_.is_none()) return true;
+            if (on_progress_.is_none() || !counts) return true;
             const py::object answer = on_progress_(done, total);
             return !(py::isinstance<py::bool_>(answer) && !answer.cast<bool>());
         } catch (py::error_already_set&) {
@@ -407,12 +408,16 @@ void add_film(py::module_& module) {
         .def(py::init([](const std::string& text, const std::string& source, bool is_path,
                          const std::vector<std::string>& settings, const std::string& backend,
                          bool require_gpu) {
-            const corda::Scene scene = Asking().run([&](const corda::OnProgress& ask) {
+            const auto [scene, notice] = Asking().run([&](const corda::OnProgress& ask) {
                 corda::Scene read = is_path ? corda::load_scene(source, settings)
                                             : corda::parse_scene(text, source, settings);
+                std::string cost = corda::cost_notice(read);
                 corda::report_progress(ask, 1, 1);
-                return read;
+                return std::pair(std::move(read), std::move(cost));
             });
+            // Of the line that makes the film.
+            if (!notice.empty() && PyErr_WarnEx(PyExc_UserWarning, notice.c_str(), 2) != 0)
+                throw py::error_already_set();
             return std::make_unique<PyFilm>(scene, backend, require_gpu);
         }))
         .def("frame_count",

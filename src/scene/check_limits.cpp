@@ -297,7 +297,12 @@ void check_motion(const Sections& sections, const Scene& scene) {
     for (std::size_t i = 0; i < system.bodies.size(); ++i) check_pace(sections, scene, system, solvers[i], i);
 }
 
+}  // namespace corda::scene
+
+namespace corda {
+
 std::string cost_notice(const Scene& scene) {
+    using namespace scene;
     constexpr double kMinToldSeconds = 5.0;
     constexpr double kBarUpdatesPerSecond = 1.2e8;
     const System system = system_of(scene);
@@ -339,4 +344,4 @@ std::string cost_notice(const Scene& scene) {
                        duration_text(all_s), reason);
 }
 
-}  // namespace corda::scene
+}  // namespace corda

@@ -29,9 +29,4 @@ void check_work(const Sections& sections, const SolverSection& solver, const Sce
 /// gravity, drag or unequal masses do it.
 void check_motion(const Sections& sections, const Scene& scene);
 
-/// For a scene without problems: about how long computing its motion once may take and why, with a remedy, if
-/// that is more than a few seconds; otherwise empty. It is an upper estimate from the start alone, like
-/// check_motion().
-[[nodiscard]] std::string cost_notice(const Scene& scene);
-
 }  // namespace corda::scene

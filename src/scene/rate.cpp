@@ -16,11 +16,11 @@ namespace {
 
 /// The fraction that someone who rounded a number such as 29.97 or 16.667 means.
 std::optional<Rational> rounded_fraction(double fps) {
-    constexpr double kBroadcast = 2e-4;  // 23.98 for 24000/1001 is the coarsest habit
     constexpr std::array<std::int64_t, 7> kBroadcastRates{12, 15, 24, 30, 48, 60, 120};
     for (const std::int64_t rate : kBroadcastRates) {
         const Rational fraction{rate * 1000, 1001};
-        if (std::abs(fps / fraction.value() - 1.0) < kBroadcast) return fraction;
+        for (const double digits : {1e2, 1e3, 1e4, 1e5, 1e6})  // 23.98, 23.976 ...
+            if (std::round(fraction.value() * digits) / digits == fps) return fraction;
     }
     constexpr double kThird = 1.5e-3;  // of 0.333 and 16.667
     const double thirds = std::round(3.0 * fps);

@@ -178,7 +178,7 @@ class Film:
     kind, text, and lists, arrays and dictionaries of these; None leaves a key as it is. `backend` and `require_gpu`: how to
     reach OpenGL, as --backend and --require-gpu.
 
-    Raises Error for a scene that cannot be read or simulated. Ctrl-C ends every call. Threads may share a film; it serves
+    Raises Error for a scene that cannot be read or simulated; warns before it simulates one for many seconds. Ctrl-C ends every call. Threads may share a film; it serves
     one at a time, without holding the interpreter's lock.
     """
 

@@ -60,7 +60,7 @@ class Film:
 class Difference(NamedTuple):
     same_size: bool
     equal: bool
-    max: int
+    max: float
     mean: float
     share: float
 
