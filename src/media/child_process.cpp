@@ -13,7 +13,10 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <system_error>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
@@ -114,6 +117,12 @@ std::string fate(int status, const ChildLimits& limits) {
 }
 
 }  // namespace
+
+bool has_other_threads() {
+    std::error_code failure;
+    const std::filesystem::directory_iterator tasks("/proc/self/task", failure);
+    return failure || std::distance(tasks, {}) > 1;
+}
 
 std::optional<ChildEnd> run_in_child(const std::function<std::string()>& work, const ChildLimits& limits,
                                      const std::function<void()>& on_wait) {

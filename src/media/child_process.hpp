@@ -20,6 +20,9 @@ struct ChildEnd {
     std::string text;  ///< what the work returned, or what ended it: "crashed (Aborted)"
 };
 
+/// Whether this process has more than one thread.
+[[nodiscard]] bool has_other_threads();
+
 /// Runs `work` in a copy of this process within `limits`, and waits for it; std::nullopt if the system starts
 /// no further process. `work` returns at least one character; if it throws, that is a crash. `on_wait` is
 /// called at least ten times a second, and may throw: then the child is killed first. No child outlives the

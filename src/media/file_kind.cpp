@@ -66,10 +66,11 @@ const ForeignKind* foreign_kind(std::string_view head) {
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
     const std::size_t begin = text.find_first_not_of("\xef\xbb\xbf \t\r\n");
     if (begin == std::string::npos || text[begin] != '<') return nullptr;
-    if (text.find("<svg") != std::string::npos) return &kSvg;
-    return text.find("<html") != std::string::npos || text.find("<!doctype html") != std::string::npos
-               ? &kHtml
-               : nullptr;
+    // A page may hold an SVG.
+    const bool is_html =
+        text.find("<html") != std::string::npos || text.find("<!doctype html") != std::string::npos;
+    if (is_html) return &kHtml;
+    return text.find("<svg") != std::string::npos ? &kSvg : nullptr;
 }
 
 const ForeignKind* foreign_kind_of(const std::string& path) {

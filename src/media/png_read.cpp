@@ -161,7 +161,11 @@ void open_job(ReadJob& job, const std::string& path) {
     const std::size_t count = std::fread(signature, 1, sizeof signature, job.file);
     if (std::ferror(job.file) != 0) fail_file("read", path, errno);
     if (count < sizeof signature || png_sig_cmp(signature, 0, sizeof signature) != 0) {
-        const media::ForeignKind* const kind = media::foreign_kind_of(path);
+        // Judged by the same file: a pipe cannot be opened again.
+        std::string head(reinterpret_cast<const char*>(signature), count);
+        head.resize(512);
+        head.resize(count + std::fread(&head[count], 1, head.size() - count, job.file));
+        const media::ForeignKind* const kind = media::foreign_kind(head);
         if (kind == nullptr) fail_png(path, "it does not begin like a PNG");
         throw Error(ExitCode::kIo,
                     fmt::format("cannot read PNG '{}': it is {}; {}", path, kind->words, kind->remedy));

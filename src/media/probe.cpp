@@ -49,12 +49,6 @@ std::optional<std::uint64_t> address_space_left() {
     return limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, used);
 }
 
-bool has_other_threads() {
-    std::error_code failure;
-    const std::filesystem::directory_iterator tasks("/proc/self/task", failure);
-    return failure || std::distance(tasks, {}) > 1;
-}
-
 /// Encodes a picture by `jobs` encoders that are open at a time; returns what failed.
 std::string encode_one(const Format& format, const VideoDef& def, int jobs) {
     const Image image(def.width_px, def.height_px);
@@ -79,11 +73,10 @@ struct Trial {
 
 /// Tries an encoder in a child process with a time limit, which other threads rule out: see run_in_child.
 /// With a limited address space the encoders have what drawing will leave of it, and their own size.
-Trial try_encoder(const Format& format, const VideoDef& video, std::uint64_t kept_bytes,
-                  const std::function<void()>& on_wait) {
+Trial try_encoders(const Format& format, const VideoDef& video, int jobs, std::uint64_t kept_bytes,
+                   const std::function<void()>& on_wait) {
     const auto left = address_space_left();
     const VideoDef def = left ? video : small_video(video);
-    const int jobs = left ? jobs_of(video.encoder.jobs) : 1;
     ChildLimits limits{std::uint64_t{1} << 46U, std::int64_t{60}, kLongestS};
     if (left) limits.memory_bytes = *left - std::min(*left, kept_bytes * static_cast<std::uint64_t>(jobs));
     const auto work = [&] { return "-" + encode_one(format, def, jobs); };
@@ -113,6 +106,15 @@ Trial try_encoder(const Format& format, const VideoDef& video, std::uint64_t kep
         trial.failure += "; try again on a less busy machine, or another codec";
         trial.is_temporary = true;
     }
+    return trial;
+}
+
+/// As try_encoders(). A render takes as few jobs as its memory asks for, so one that encodes is enough.
+Trial try_encoder(const Format& format, const VideoDef& video, std::uint64_t kept_bytes,
+                  const std::function<void()>& on_wait) {
+    const int jobs = address_space_left() ? jobs_of(video.encoder.jobs) : 1;
+    Trial trial = try_encoders(format, video, jobs, kept_bytes, on_wait);
+    if (!trial.failure.empty() && jobs > 1) trial = try_encoders(format, video, 1, kept_bytes, on_wait);
     return trial;
 }
 

@@ -96,6 +96,7 @@ VerifyReport verify_in_child(const std::string& path, const OnProgress& on_progr
 }
 
 void check_part_in_child(const std::string& path, bool decodes, const OnProgress& on_progress) {
+    if (has_other_threads()) return;  // see run_in_child
     const QuietLog quiet;
     const auto read = [&]() -> std::string {
         try {
@@ -107,6 +108,11 @@ void check_part_in_child(const std::string& path, bool decodes, const OnProgress
         return "done";
     };
     const auto end = run_in_child(read, limits_for(path), [&] { report_progress(on_progress, 0, 0); });
+    if (end && !end->finished && has_little_memory())
+        throw Error(
+            ExitCode::kTemporary,
+            fmt::format("reading '{}' {} in the memory that the system allows (ulimit -v); raise the limit",
+                        path, end->text));
     if (end && !end->finished)
         throw Error(
             ExitCode::kMismatch,

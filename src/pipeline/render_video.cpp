@@ -234,9 +234,10 @@ media::VideoWriter make_writer(const Film& film, const std::string& path, const 
 void check_render(const Scene& scene, const std::string& path, const RenderDef& def,
                   const std::string& input) {
     const media::Format format = checked_format(scene, path, def, input);
-    media::check_encoder_starts(format, scene.video, [&](std::int64_t, std::int64_t) {
+    const OnProgress waiting = [&](std::int64_t, std::int64_t) {
         return !def.on_progress || def.on_progress(0, scene.video.fps.frame_count(scene.world.duration_s));
-    });
+    };
+    media::check_encoder_starts(format, scene.video, waiting);
 }
 
 Rendered render_video(Film& film, const std::string& path, const RenderDef& def) {
@@ -244,7 +245,10 @@ Rendered render_video(Film& film, const std::string& path, const RenderDef& def)
     const std::int64_t end = def.end.value_or(film.frame_count());
     static_cast<void>(film.camera());  // what can fail does so before a file is made
     static_cast<void>(film.gl());
-    media::check_encoder_starts(format, film.scene().video, def.on_progress);
+    const OnProgress waiting = [&def, all = end - def.first](std::int64_t, std::int64_t) {
+        return !def.on_progress || def.on_progress(0, all);
+    };
+    media::check_encoder_starts(format, film.scene().video, waiting);
     media::VideoWriter writer = make_writer(film, path, format, def, end);
     const OnProgress drawn = [&def, passes = media::passes(*format.ending)](std::int64_t k,
                                                                             std::int64_t all) {

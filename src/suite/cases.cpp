@@ -67,6 +67,25 @@ Case make_case(const std::string& path, const SuiteDef& def, std::set<std::strin
     return made;
 }
 
+/// True for a text with a table `golden` or tables `rope` or `net`, in any of TOML's spellings: it is a scene
+/// even without its schema, whose absence is then an error.
+bool has_tables_of_scenes(std::string_view text) {
+    for (std::size_t at = 0; at < text.size(); at = std::min(text.find('\n', at), text.size() - 1) + 1) {
+        const std::size_t word = text.find_first_not_of(" \t\"'[", at);
+        if (word == std::string_view::npos) return false;
+        for (const std::string_view table : {"golden", "rope", "net"}) {
+            if (!text.substr(word).starts_with(table)) continue;
+            const std::size_t next = text.find_first_not_of(" \t\"'", word + table.size());
+            // Cargo has a table [net].
+            const bool is_list = text.substr(at, word - at).find("[[") != std::string_view::npos;
+            if (next != std::string_view::npos && (table != "net" || is_list) &&
+                std::string_view("].=").find(text[next]) != std::string_view::npos)
+                return true;
+        }
+    }
+    return false;
+}
+
 /// True for a TOML file of another program: it has no key `schema` on a line of its own. Files of a folder
 /// are judged by this before they are read as scenes; a file that is named is always read.
 bool is_foreign(const std::string& path) {
@@ -79,8 +98,7 @@ bool is_foreign(const std::string& path) {
         const std::size_t next = text.find_first_not_of(" \t\"'", word + 6);
         if (next != std::string::npos && text[next] == '=') return false;
     }
-    // What uses the tables of scenes is a scene that lacks its schema, which is to be told.
-    return text.find("[golden]") == std::string::npos && text.find("[[rope]]") == std::string::npos;
+    return !has_tables_of_scenes(text);
 }
 
 /// What a picture says of how it was made; nothing if it cannot be read.
