@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "corda/gl/context.hpp"
 #include "corda/gl/driver.hpp"
+#include "corda/media/format.hpp"
 #include "corda/media/probe.hpp"
 #include "corda/render/driver_check.hpp"
 
@@ -110,9 +111,10 @@ ExitCode doctor(const Console& console) {
         std::any_of(encoders.begin(), encoders.end(),
                     [](const media::EncoderProbe& encoder) { return encoder.is_temporary; });
     if (!missing.empty()) {
-        console.result(fmt::format(
-            "It cannot write {}{}", fmt::join(missing, ", "),
-            lacks_resources ? " for now, for the reasons above" : ": apt-get install libavcodec59"));
+        console.result(fmt::format("It cannot write {}{}", fmt::join(missing, ", "),
+                                   lacks_resources
+                                       ? " for now, for the reasons above"
+                                       : fmt::format(": apt-get install {}", media::libavcodec_package())));
     }
     nlohmann::json json = {{"schema", 1}, {"can_draw", has_gl}, {"can_write", written}};
     json["contexts"] = nlohmann::json::array();

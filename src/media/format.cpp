@@ -51,9 +51,9 @@ std::string missing_text(const Codec& codec) {
     if (codec.origin == EncoderOrigin::kX264)
         return "this Corda was built without libx264; build it with CORDA_X264, or use --codec libsvtav1";
     return fmt::format(
-        "this libavcodec was built without {}; install one that has it (Debian: apt-get install "
-        "libavcodec59), and see `corda doctor`",
-        codec.name);
+        "this libavcodec was built without {}; install one that has it (Debian: apt-get install {}), and see "
+        "`corda doctor`",
+        codec.name, libavcodec_package());
 }
 
 const AVPixFmtDescriptor& descriptor_of(const char* pixel_format) {
@@ -121,8 +121,8 @@ const Codec& choose_codec(const Ending& ending, std::string_view path, const Enc
         throw Error(
             ExitCode::kEncoder,
             fmt::format("'{}': none of the encoders {} is here; install a libavcodec that has them (Debian: "
-                        "apt-get install libavcodec59), and see `corda doctor`",
-                        path, fmt::join(names, ", ")));
+                        "apt-get install {}), and see `corda doctor`",
+                        path, fmt::join(names, ", "), libavcodec_package()));
     }
     const Codec* chosen = nullptr;
     for (const std::string_view name : names) {
@@ -363,6 +363,10 @@ void check_video_def(const VideoDef& def) {
     }
     if (!def.encoder.codec.empty() && find_codec(def.encoder.codec) == nullptr)
         fail_usage("unknown codec '{}'; use {}", def.encoder.codec, fmt::join(codec_names(), ", "));
+}
+
+std::string libavcodec_package() {
+    return fmt::format("libavcodec{}", AV_VERSION_MAJOR(avcodec_version()));
 }
 
 std::string endings_with_alpha() {

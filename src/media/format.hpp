@@ -116,6 +116,9 @@ struct Format {
 /// value and what is allowed.
 void check_video_def(const VideoDef& def);
 
+/// Debian's package of the libavcodec that this program uses: "libavcodec59" in Debian 12.
+[[nodiscard]] std::string libavcodec_package();
+
 /// A ground that has transparency needs a format that keeps it: the endings that do, as ".webm, .mov".
 [[nodiscard]] std::string endings_with_alpha();
 /// Whether the first codec of an ending keeps alpha.

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <limits>
 
 extern "C" {
@@ -42,6 +43,10 @@ TEST(Formats, AreNamedAsLibavNamesThem) {
         for (const char* const format : codec.pixel_formats)
             EXPECT_TRUE(format == nullptr || av_get_pix_fmt(format) != AV_PIX_FMT_NONE) << format;
     }
+}
+
+TEST(Formats, TheAdvisedPackageIsOneOfThisRelease) {
+    EXPECT_TRUE(std::filesystem::exists("/usr/share/doc/" + libavcodec_package())) << libavcodec_package();
 }
 
 TEST(Formats, AreFoundByTheEndingOfAName) {
