@@ -27,6 +27,7 @@ packages=(
     libfreetype-dev         # glyphs of text in pictures
     fonts-dejavu-core       # their font, which becomes part of the program
     libpng-dev              # stills and golden images, with their sRGB, pHYs and text chunks
+    zlib1g-dev              # plots as PDF, which cairo 1.18 compresses with their date
     libcli11-dev            # the command line
     libtomlplusplus-dev     # scene files, with line and column of every value
     nlohmann-json3-dev      # the --json output

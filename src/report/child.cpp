@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -42,8 +43,8 @@ std::string contents(const FileHandle& file) {
 }
 
 /// Becomes the program. Between a fork of a process with threads and this, no lock may be taken.
-[[noreturn]] void become(char* const* arguments, const std::array<int, 3>& streams, pid_t parent,
-                         int report) {
+[[noreturn]] void become(char* const* arguments, char* const* environment, const std::array<int, 3>& streams,
+                         pid_t parent, int report) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // no orphan, whatever ends corda
     if (getppid() != parent) _exit(EXIT_FAILURE);
     // In a process group of its own: Ctrl-C at a terminal asks corda alone, which still needs what is drawn.
@@ -54,11 +55,20 @@ std::string contents(const FileHandle& file) {
     for (int stream = 0; stream < 3; ++stream)
         if (dup2(streams[static_cast<std::size_t>(stream)], stream) < 0) failure = errno;
     if (failure == 0) {
-        execvp(arguments[0], arguments);
+        execvpe(arguments[0], arguments, environment);
         failure = errno;
     }
     static_cast<void>(!write(report, &failure, sizeof failure));
     _exit(EXIT_FAILURE);
+}
+
+/// That of this process, but in UTC: what a program writes is not to depend on where it runs.
+std::vector<char*> environment_in_utc(std::string& time_zone) {
+    std::vector<char*> result{time_zone.data()};
+    for (char** entry = environ; entry != nullptr && *entry != nullptr; ++entry)
+        if (!std::string_view(*entry).starts_with("TZ=")) result.push_back(*entry);
+    result.push_back(nullptr);
+    return result;
 }
 
 /// Starts the program; returns its process. Throws corda::Error: kTemporary for want of processes or memory,
@@ -69,13 +79,15 @@ pid_t start(const std::vector<std::string>& command, const std::array<int, 3>& s
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
+    std::string time_zone = "TZ=UTC0";
+    const std::vector<char*> environment = environment_in_utc(time_zone);
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) fail("cannot make a pipe for", command.front(), errno);
     const Descriptor in(ends[0]);
     Descriptor out(ends[1]);
     const pid_t parent = getpid();
     const pid_t child = fork();
-    if (child == 0) become(arguments.data(), streams, parent, out.get());
+    if (child == 0) become(arguments.data(), environment.data(), streams, parent, out.get());
     int failure = child < 0 ? errno : 0;
     static_cast<void>(out.close());
     if (child > 0) {

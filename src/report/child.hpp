@@ -13,8 +13,8 @@ struct ChildResult {
 };
 
 /// Runs a program found in PATH with `input` on its standard input, and waits for it. No shell is involved.
-/// It does not outlive this process or the calling thread. Throws corda::Error if it cannot be started:
-/// kTemporary for want of processes or memory, else kIo, which ends with `hint`.
+/// Its time zone is UTC. It does not outlive this process or the calling thread. Throws corda::Error if it
+/// cannot be started: kTemporary for want of processes or memory, else kIo, which ends with `hint`.
 [[nodiscard]] ChildResult run_child(const std::vector<std::string>& command, const std::string& input,
                                     const std::string& hint);
 

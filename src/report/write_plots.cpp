@@ -11,6 +11,7 @@
 #include "corda/core/image.hpp"
 #include "corda/core/text.hpp"
 #include "corda/report/child.hpp"
+#include "corda/report/pdf_time.hpp"
 #include "corda/report/writers.hpp"
 
 namespace corda::report {
@@ -221,14 +222,6 @@ void add_resolution(std::string& png) {
     constexpr std::string_view kChunk("\0\0\0\x09pHYs\0\0\x2e\x23\0\0\x2e\x23\x01\x78\xa5\x3f\x76", 21);
     constexpr std::size_t kEndOfHeader = 33;
     png.insert(std::min(kEndOfHeader, png.size()), kChunk);
-}
-
-/// Puts a fixed time in the place of that at which a PDF was made.
-void forget_time(std::string& pdf) {
-    constexpr std::string_view kDate = "/CreationDate (D:";
-    constexpr std::string_view kTime = "20000101000000";
-    const std::size_t at = pdf.find(kDate);
-    if (at != std::string::npos) pdf.replace(at + kDate.size(), kTime.size(), kTime);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <thread>
 
 #include "corda/media/defs.hpp"
@@ -22,16 +23,17 @@ using testing::Not;
 /// Sets an environment variable for as long as it lives.
 class Environment {
   public:
-    Environment(const char* name, const std::string& value) : name_(name), old_(std::getenv(name)) {
+    Environment(const char* name, const std::string& value) : name_(name) {
+        if (const char* const old = std::getenv(name)) old_ = old;
         setenv(name, value.c_str(), 1);
     }
     Environment(const Environment&) = delete;
     Environment& operator=(const Environment&) = delete;
-    ~Environment() { setenv(name_, old_.c_str(), 1); }
+    ~Environment() { old_ ? setenv(name_, old_->c_str(), 1) : unsetenv(name_); }
 
   private:
     const char* name_;
-    std::string old_;
+    std::optional<std::string> old_;
 };
 
 TEST(Plots, ScriptsQuoteEveryText) {
@@ -122,6 +124,8 @@ TEST(Plots, HaveTheSameBytesAtAnotherTime) {
         const std::string first = draw_plot(small_plot(), format);
         std::this_thread::sleep_for(std::chrono::milliseconds(1100));
         EXPECT_EQ(draw_plot(small_plot(), format), first) << ending(format);
+        const Environment zone("TZ", "Asia/Kolkata");
+        EXPECT_EQ(draw_plot(small_plot(), format), first) << ending(format) << " in another time zone";
     }
 }
 
