@@ -245,8 +245,8 @@ void add_notes(const DecodedVideo& video, VerifyDepth depth, VerifyReport& repor
     if (!trouble.empty())
         report.notes.push_back(fmt::format(
             "{}, {}: {}: VLC, mpv and ffmpeg play it, browsers only without the hardware's decoder; "
-            "QuickTime, "
-            "PowerPoint and phones refuse it; for those, render fewer pixels or frames, or take H.265 or AV1",
+            "QuickTime, PowerPoint and phones refuse it; for those, render fewer pixels or frames, "
+            "or take H.265 or AV1",
             report.coding(), report.pixel_format, trouble));
     else if (const Players* const players = players_of(report))
         report.notes.push_back(
