@@ -339,7 +339,7 @@ def test_forked_workers_draw_after_their_parent_has_drawn(tmp_path):
 
         for work in (own, inherited, save):
             with multiprocessing.get_context("fork").Pool(2) as pool:
-                print(pool.map_async(work, [3, 3]).get(timeout=60))
+                print(pool.map_async(work, [3, 3]).get(timeout=60), flush=True)
         child = os.fork()
         if child == 0:
             sys.exit(0 if grandchild(3) else 1)
