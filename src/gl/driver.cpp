@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -161,6 +162,20 @@ void note_driver_use(bool is_safe_after_fork) {
     DriverUse& use = driver_use();
     if (use.process == 0 || !is_safe_after_fork) use.process = getpid();
     use.is_safe_after_fork = use.is_safe_after_fork && is_safe_after_fork;
+}
+
+namespace {
+
+std::atomic<bool> is_faulty{false};
+
+}  // namespace
+
+void note_faulty_driver() {
+    is_faulty = true;
+}
+
+bool is_driver_faulty() {
+    return is_faulty;
 }
 
 void require_driver_after_fork() {

@@ -26,6 +26,13 @@ void note_driver_use(bool is_safe_after_fork);
 /// Throws corda::Error (kNoGl) in a process whose parent has used a driver that does not survive fork().
 void require_driver_after_fork();
 
+/// Records that a driver draws wrongly. Its contexts are not destroyed from now on: Mesa 25's driver that
+/// draws nothing (GALLIUM_NOOP) crashes there.
+void note_faulty_driver();
+
+/// True after note_faulty_driver().
+[[nodiscard]] bool is_driver_faulty();
+
 /// The environment variables that are set and choose, replace or change a driver, as "NAME=value", separated
 /// by commas; empty if none is set.
 [[nodiscard]] std::string driver_variables();

@@ -265,7 +265,7 @@ void EglSession::read_info() {
 }
 
 void EglSession::close() {
-    if (is_inherited() || context_ == EGL_NO_CONTEXT) return;
+    if (is_inherited() || is_driver_faulty() || context_ == EGL_NO_CONTEXT) return;
     if (eglGetCurrentContext() == context_)
         eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display_, context_);

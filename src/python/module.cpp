@@ -465,27 +465,20 @@ PYBIND11_MODULE(_corda, module) {
     module.def("begin_end", &Calls::begin_end);
     module.def("forget_calls", &Calls::forget);
     module.def("compare", [](const py::object& a, const py::object& b) {
-        // Paths, which are bytes, are read at their 16 bits if they have them.
-        const std::array<const py::object*, 2> given{&a, &b};
-        std::array<std::string, 2> paths;
-        std::array<corda::Picture, 2> pictures;
-        for (std::size_t i = 0; i < 2; ++i) {
-            if (py::isinstance<py::bytes>(*given[i]))
-                paths[i] = given[i]->cast<std::string>();
-            else
-                pictures[i].image = to_image(*given[i]);
-        }
-        const corda::Difference difference = Asking().run([&](const corda::OnProgress& ask) {
-            for (std::size_t i = 0; i < 2; ++i)
-                if (py::isinstance<py::bytes>(*given[i])) pictures[i] = corda::read_picture(paths[i], ask);
-            return corda::compare(pictures[0], pictures[1], ask);
+        const auto picture_of = [](const py::object& given) {
+            if (!py::isinstance<py::bytes>(given)) return corda::Picture{.image = to_image(given)};
+            return Asking().run([path = given.cast<std::string>()](const corda::OnProgress& ask) {
+                return corda::read_picture(path, ask);
+            });
+        };
+        const std::pair pictures(picture_of(a), picture_of(b));
+        const corda::Difference found = Asking().run([&](const corda::OnProgress& ask) {
+            return corda::compare(pictures.first, pictures.second, ask);
         });
-        return py::make_tuple(difference.same_size, difference.equal, difference.max, difference.mean,
-                              difference.share);
+        return py::make_tuple(found.same_size, found.equal, found.max, found.mean, found.share);
     });
     module.def("write_png", [](const std::string& path, const py::object& picture, bool force) {
-        const corda::Image image = to_image(picture);
-        Asking().run([&](const corda::OnProgress& ask) {
+        Asking().run([&, image = to_image(picture)](const corda::OnProgress& ask) {
             corda::write_png(path, image, {}, {.force = force, .on_progress = ask});
             return true;
         });

@@ -75,6 +75,7 @@ void check_driver(const gl::Context& context) {
         renderer.render(list);
         const auto difference = first_difference(renderer.image(), render_reference(list));
         if (!difference) continue;
+        gl::note_faulty_driver();
         const std::string variables = gl::driver_variables();
         throw Error(
             ExitCode::kNoGl,
