@@ -137,6 +137,14 @@ void check_level(VerifyReport& report) {
                          fmt::format("-bsf:v h264_metadata=level={} ", least / 10.0)));
 }
 
+/// True for an H.264 profile that browsers and QuickTime refuse; that of 4:4:4 has a row of its own.
+bool has_odd_profile(const VerifyReport& report) {
+    constexpr std::array<std::string_view, 4> kPlayable{"Constrained Baseline", "Baseline", "Main", "High"};
+    const bool is_playable = std::find(kPlayable.begin(), kPlayable.end(), report.profile) != kPlayable.end();
+    const bool is_444 = report.profile == "High 4:4:4 Predictive" && report.pixel_format == "yuv444p";
+    return report.codec == "h264" && !is_playable && !is_444;
+}
+
 const Players* players_of(const VerifyReport& report) {
     const auto* const row =
         std::find_if(kPlayers.begin(), kPlayers.end(), [&report](const Players& candidate) {
@@ -188,12 +196,7 @@ void check_picture_format(const DecodedVideo& video, VerifyReport& report) {
                 is_uneven ? fmt::format("encode it again, as .{}", container)
                           : copy_command(report, container == "matroska" ? "mkv" : container));
     }
-    static constexpr std::array<std::string_view, 4> kPlayable{"Constrained Baseline", "Baseline", "Main",
-                                                               "High"};
-    const bool is_odd_profile =
-        std::find(kPlayable.begin(), kPlayable.end(), report.profile) == kPlayable.end();
-    const bool is_444 = report.profile == "High 4:4:4 Predictive" && report.pixel_format == "yuv444p";
-    if (report.codec == "h264" && is_odd_profile && !is_444) {
+    if (has_odd_profile(report)) {
         problem(report,
                 "the H.264 profile is {}, which browsers and QuickTime refuse; encode High with yuv420p",
                 report.profile.empty() ? "unknown" : report.profile);
@@ -242,15 +245,18 @@ void check_tags(const DecodedVideo& video, VerifyReport& report) {
 
 void add_notes(const DecodedVideo& video, VerifyDepth depth, VerifyReport& report) {
     const std::string trouble = trouble_of_level(report);
-    if (!trouble.empty())
+    if (has_odd_profile(report)) {
+        // Which the problems say.
+    } else if (!trouble.empty()) {
         report.notes.push_back(fmt::format(
             "{}, {}: {}: VLC, mpv and ffmpeg play it, browsers only without the hardware's decoder; "
             "QuickTime, PowerPoint and phones refuse it; for those, render fewer pixels or frames, "
             "or take H.265 or AV1",
             report.coding(), report.pixel_format, trouble));
-    else if (const Players* const players = players_of(report))
+    } else if (const Players* const players = players_of(report)) {
         report.notes.push_back(
             fmt::format("{}, {}: {}", report.coding(), report.pixel_format, players->words));
+    }
     if (!report.ok()) return;
     report.notes.push_back(fmt::format(
         "checked: structure, time stamps, tags, that {} decodes, and {}; a picture that was "

@@ -166,6 +166,19 @@ TEST_F(Video, OfALevelThatFewDecodeIsPlayedByFew) {
     }
 }
 
+TEST_F(Video, OfAProfileThatFewDecodeIsNotSaidToPlay) {
+    ASSERT_EQ(
+        test::run_shell("ffmpeg -v error -f lavfi -i testsrc=s=160x90:r=25 -frames:v 5 -c:v libx264 -qp 0 "
+                        "-pix_fmt yuv420p " +
+                        video_)
+            .exit_code,
+        0);
+    const auto report = run_corda({"verify", video_});
+    EXPECT_THAT(report.out + report.err,
+                testing::AllOf(HasSubstr("the H.264 profile is High 4:4:4 Predictive, which browsers"),
+                               testing::Not(HasSubstr("PowerPoint play it"))));
+}
+
 TEST_F(Video, IsRecoveredFromWhatAKilledRenderLeaves) {
     // Killed as soon as a chunk is whole, long before the last one.
     const std::string part = video_ + ".part";
