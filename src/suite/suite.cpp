@@ -342,16 +342,18 @@ SuiteResult run(const SuiteDef& def) {
     }
     std::vector<std::string> removed;
     for (const std::string& path : stale) {
-        const bool is_lost = lacks_record(path);
+        const bool is_foreign = is_no_png(path);
+        const bool is_lost = is_foreign || lacks_record(path);
         const bool is_removed = def.update && (!is_lost || def.force);
         if (is_removed) removed.push_back(path);
         result.pictures.push_back(
             {.scene = {},
              .name = fs::path(path).filename().string(),
              .verdict = Verdict::kStale,
-             .cause = is_lost ? "no scene asks for it; it has no record of how it was made, and --update "
-                                "--force removes it"
-                              : "no scene asks for it",
+             .cause = is_foreign ? "no scene asks for it; it is no PNG, and --update --force removes it"
+                      : is_lost  ? "no scene asks for it; it has no record of how it was made, and --update "
+                                   "--force removes it"
+                                 : "no scene asks for it",
              .changed = is_removed,
              .has_no_record = is_lost});
     }
