@@ -43,7 +43,8 @@ corda::Image to_image(const py::object& picture) {
     // Other numbers are refused: 0.0 .. 1.0 as bytes would all be black, and equal.
     if (!py::isinstance<py::array_t<std::uint8_t>>(picture))
         throw py::type_error(
-            "a picture is a numpy array of uint8; convert it, for instance by .astype(numpy.uint8)");
+            "a picture is a numpy array of uint8; scale it to 0 .. 255, then convert it by "
+            ".astype(numpy.uint8)");
     const Pixels pixels(picture);
     if (pixels.ndim() != 3 || (pixels.shape(2) != 3 && pixels.shape(2) != 4))
         throw py::value_error(
@@ -65,11 +66,10 @@ corda::Image to_image(const py::object& picture) {
     return image;
 }
 
-/// Calls in progress, and the end of the interpreter. A thread that asks for the interpreter's lock after
-/// Py_Finalize has begun is ended by pthread_exit (before Python 3.14), whose unwinding C++ cannot survive,
-/// and a driver that still draws does not survive the handlers of exit(). So an atexit function calls
-/// begin_end(): it stops the calls of all other threads and waits for them, and these threads never return to
-/// Python.
+/// Calls in progress, and the end of the interpreter. Python before 3.14 ends threads that ask for its lock
+/// after Py_Finalize by pthread_exit, whose unwinding C++ does not survive, and a driver that still draws
+/// does not survive exit(). So an atexit function calls begin_end(): it stops the calls of all other threads
+/// and waits for them, and these threads never return to Python.
 class Calls {
   public:
     /// Releases the interpreter's lock during one call, which counts from before the release until the lock
@@ -166,16 +166,16 @@ class Asking {
     bool operator()(std::int64_t done, std::int64_t total) {
         constexpr std::chrono::milliseconds kPause{50};
         const auto now = std::chrono::steady_clock::now();
-        const bool counts = total > 0;  // or it only asks whether to stop
-        const bool is_last = counts && done == total && !std::exchange(has_told_last_, true);
+        const bool is_last = total > 0 && done == total && !std::exchange(has_told_last_, true);
         if (Calls::has_ended()) return false;
         if (raised_ || (now - last_ < kPause && !is_last)) return !raised_;
         last_ = now;
         const py::gil_scoped_acquire hold;
         try {
             if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-            if (on_progress_.is_none() || !counts) return true;
+            if (on_progress_.is_none() || total <= 0) return true;
             const py::object answer = on_progress_(done, total);
+            last_ = std::chrono::steady_clock::now();  // a callback that takes long has its pause, too
             return !(py::isinstance<py::bool_>(answer) && !answer.cast<bool>());
         } catch (py::error_already_set&) {
             raised_ = std::current_exception();
@@ -193,8 +193,10 @@ class Asking {
         try {
             const Calls::Scope call;
             return work([this](std::int64_t done, std::int64_t total) { return (*this)(done, total); });
-        } catch (const corda::Error&) {
+        } catch (const corda::Error& error) {
             raise();
+            const bool is_ctrl_c = error.code() == corda::ExitCode::kInterrupted && PyErr_CheckSignals() != 0;
+            if (is_ctrl_c) throw py::error_already_set();
             throw;
         }
     }
@@ -415,7 +417,6 @@ void add_film(py::module_& module) {
                 corda::report_progress(ask, 1, 1);
                 return std::pair(std::move(read), std::move(cost));
             });
-            // Of the line that makes the film.
             if (!notice.empty() && PyErr_WarnEx(PyExc_UserWarning, notice.c_str(), 2) != 0)
                 throw py::error_already_set();
             return std::make_unique<PyFilm>(scene, backend, require_gpu);
@@ -480,17 +481,16 @@ PYBIND11_MODULE(_corda, module) {
     module.def("write_png", [](const std::string& path, const py::object& picture, bool force) {
         Asking().run([&, image = to_image(picture)](const corda::OnProgress& ask) {
             corda::write_png(path, image, {}, {.force = force, .on_progress = ask});
-            return true;
         });
     });
     module.def(
         "check_golden", [](const py::object& picture, const std::string& name, const std::string& folder,
                            const std::array<std::optional<double>, 5>& limits) {
-            const corda::Image image = to_image(picture);
             const corda::testing::GoldenOptions options{
                 .folder = folder, .limits = {limits[0], limits[1], limits[2], limits[3], limits[4]}};
-            const auto outcome = Asking().run(
-                [&](const corda::OnProgress&) { return corda::testing::check_golden(image, name, options); });
+            const auto outcome = Asking().run([&, image = to_image(picture)](const corda::OnProgress&) {
+                return corda::testing::check_golden(image, name, options);
+            });
             return std::tuple(outcome.matches, outcome.written, outcome.message);
         });
     module.def("read_png", [](const std::string& path) {

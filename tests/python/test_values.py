@@ -40,6 +40,8 @@ def test_a_duration_is_any_number(duration):
 def test_a_rate_is_exact():
     assert film(fps=np.int32(25)).fps == 25
     assert film(fps=25.0).fps == 25
+    assert film(fps=np.float32(0.1), duration=20).fps == 0.1
+    assert film(codec="libaom-av1", preset=8).size == (160, 90)
     assert film(fps=fractions.Fraction(30000, 1001)).fps == 30000 / 1001
     assert film(fps="30000/1001").fps == 30000 / 1001
 
@@ -68,6 +70,7 @@ def test_none_leaves_a_key_as_it_is():
     ({"size": {64, 48}}, "size: takes"), ({"duration": np.timedelta64(1, "s")}, "^duration: takes seconds as a number"),
     ({"duration": np.array(["2020"], dtype="datetime64[ns]")}, "^duration: takes seconds"), ({"backend": 3}, "^backend: takes a str"),
     ({"settings": "rope"}, "^settings: takes a dictionary"), ({"settings": {3: 4}}, "^settings: takes a str, not int"),
+    ({"fps": 25, "settings": {"video.fps": 30}}, "^fps: is given by video.fps, too"), ({"require_gpu": "no"}, "^require_gpu: "),
     ({"settings": {"rope[0].hang": {1: 2}}}, r"^rope\[0\].hang: takes a str, not int"),
 ])
 def test_other_types_are_refused_by_their_keyword(keywords, words):
@@ -81,6 +84,7 @@ def test_other_types_are_refused_by_their_keyword(keywords, words):
     ({"rope__0__mass": 2}, r"use settings=\{'rope\[0\]\.mass': 2\}$"),
     ({"overlay__title": "\ud800"}, "^overlay__title: character 0 is the lone surrogate"),
     ({"duration": decimal.Decimal("1e400")}, "^duration: takes a number that a float can hold"),
+    ({"duration": decimal.Decimal("Infinity")}, "^duration=inf: "),
     ({"duration": decimal.Decimal("sNaN")}, "^duration: takes a number that a float can hold"),
     ({"duration": fractions.Fraction(10**400)}, "^duration: takes a number that a float can hold"),
     ({"jobs": 10**30}, "^jobs: takes no number as large"), ({"settings": {"rope[0].mass=2": 3}}, "has a =; give the value"),
@@ -137,6 +141,8 @@ def test_a_name_with_nul_is_refused(tmp_path):
         corda.Film("a\0.toml")
     with pytest.raises(TypeError, match="^path: takes a str, bytes or a path, not 3"):
         corda.Film(3)
+    with pytest.raises(corda.Error, match="^path: .* has a lone surrogate"):
+        corda.Film("\ud800x")
     (tmp_path / "a").write_text("kept")
     with pytest.raises(corda.Error, match="holds a NUL character"):
         film().save(str(tmp_path / "a") + "\0b.mp4", force=True)

@@ -52,6 +52,8 @@ def _path(path, name="path"):
         name_bytes = _os.fsencode(path)
     except TypeError:
         raise TypeError(f"{name}: takes a str, bytes or a path, not {path!r}") from None
+    except UnicodeEncodeError as error:
+        raise _error(f"{name}: {path!a} has a lone surrogate at {error.start}, which no file name holds") from None
     if b"\0" in name_bytes:
         raise _error(f"{name}: {path!r} holds a NUL character, which no file name can; leave it out")
     return name_bytes
@@ -84,7 +86,7 @@ def _float(value, name):
         raise TypeError(f"{name}: takes a number, not {value!r}") from None
     except (OverflowError, ValueError):  # of an int, and of a signalling NaN
         raise _error(f"{name}: takes a number that a float can hold, not {value!r:.40}") from None
-    if _math.isinf(number) and not isinstance(value, (float, _np.floating)) and value - value == 0:
+    if _math.isinf(number) and value != number:
         raise _error(f"{name}: takes a number that a float can hold, not {value!r:.40}")
     return number
 
@@ -97,6 +99,8 @@ def _toml(value, name):
     """A value of Python or numpy as a value of TOML. `name` is the keyword that it was given by."""
     if getattr(getattr(value, "dtype", None), "kind", "") in "mM" and hasattr(value, "dtype"):
         raise TypeError(f"{name}: takes seconds as a number, not {value.dtype}; divide by numpy.timedelta64(1, 's')")
+    if isinstance(value, _np.floating) and not isinstance(value, float):
+        value = float(str(value))  # numpy.float32(0.1) is 0.1, not the nearest double of 24 bits
     if isinstance(value, _np.generic) or (isinstance(value, _np.ndarray) and value.ndim == 0):
         value = value.item()
     if isinstance(value, bool):
@@ -104,6 +108,8 @@ def _toml(value, name):
     if isinstance(value, str):
         return _quoted(value, name)
     if isinstance(value, _numbers.Integral):
+        if name in ("preset", "video.preset", "video__preset"):  # those of libaom and SVT-AV1 are numbers
+            return f'"{int(value)}"'
         if not -2**63 <= value < 2**63:
             raise _error(f"{name}: takes no number as large as {value!r:.40}")
         return str(int(value))
@@ -136,7 +142,10 @@ def _settings(settings, keys):
         if any(part.isdigit() for part in parts):
             key = "".join(f"[{part}]" if part.isdigit() else f".{part}" for part in parts).lstrip(".")
             raise _error(f"{name}: a keyword cannot hold an index; use settings={{{key!r}: {value!r}}}")
-        named[_SHORT.get(name, ".".join(parts))] = (name, value)
+        key = _SHORT.get(name, ".".join(parts))
+        if value is not None and named.get(key, (key, None))[1] is not None:
+            raise TypeError(f"{name}: is given by {named[key][0]}, too; leave one of them out")
+        named[key] = (name, value)
     return {f"{key}={_toml(value, name)}": (key, name) for key, (name, value) in named.items() if value is not None}
 
 
@@ -191,6 +200,8 @@ class Film:
         lines = _settings(settings, keys)
         source = _path(path) if path is not None else b"text"
         backend = _text(backend, "backend") if backend is not None else ""
+        if not isinstance(require_gpu, (bool, _np.bool_)):
+            raise TypeError(f"require_gpu: takes True or False, not {require_gpu!r}")
         self._gl = (backend or _os.environ.get("CORDA_BACKEND") or "auto", bool(require_gpu))
         try:
             self._film = _corda.Film(_text(text or "", "text"), source, path is not None, list(lines), *self._gl)
