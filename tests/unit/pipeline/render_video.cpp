@@ -74,6 +74,8 @@ TEST_F(RenderVideo, WritesEveryFrameOnce) {
     EXPECT_TRUE(rendered.complete);
     EXPECT_EQ(rendered.kept_part, "");
     EXPECT_EQ(rendered.encoder, "libx264");
+    // Again and again 0 while a child tries the encoder, in a process without other threads.
+    while (heard.size() > 1 && heard[1] == 0) heard.erase(heard.begin());
     ASSERT_GT(heard.size(), 21U);  // the last ones while the video is copied and verified
     for (std::size_t i = 0; i < heard.size(); ++i)
         EXPECT_EQ(heard[i], std::min<std::int64_t>(static_cast<std::int64_t>(i), 20));
