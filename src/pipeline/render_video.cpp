@@ -245,7 +245,8 @@ Rendered render_video(Film& film, const std::string& path, const RenderDef& def)
     const std::int64_t end = def.end.value_or(film.frame_count());
     static_cast<void>(film.camera());  // what can fail does so before a file is made
     static_cast<void>(film.gl());
-    const OnProgress waiting = [&def, all = end - def.first](std::int64_t, std::int64_t) {
+    const OnProgress waiting = [&def, all = media::passes(*format.ending) * (end - def.first)](std::int64_t,
+                                                                                               std::int64_t) {
         return !def.on_progress || def.on_progress(0, all);
     };
     media::check_encoder_starts(format, film.scene().video, waiting);

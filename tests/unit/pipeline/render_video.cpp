@@ -1,7 +1,9 @@
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
+#include <thread>
 
 #include "corda/media/finish_part.hpp"
 #include "corda/media/verify.hpp"
@@ -58,6 +60,12 @@ class RenderVideo : public testing::Test {
     }
 
     test::ScratchFolder folder_;
+
+  private:
+    /// Beside it no encoder is tried in a child, which would ask for progress an unknown number of times.
+    std::jthread other_{[](const std::stop_token& stop) {
+        while (!stop.stop_requested()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }};
 };
 
 TEST_F(RenderVideo, WritesEveryFrameOnce) {
@@ -74,8 +82,6 @@ TEST_F(RenderVideo, WritesEveryFrameOnce) {
     EXPECT_TRUE(rendered.complete);
     EXPECT_EQ(rendered.kept_part, "");
     EXPECT_EQ(rendered.encoder, "libx264");
-    // Again and again 0 while a child tries the encoder, in a process without other threads.
-    while (heard.size() > 1 && heard[1] == 0) heard.erase(heard.begin());
     ASSERT_GT(heard.size(), 21U);  // the last ones while the video is copied and verified
     for (std::size_t i = 0; i < heard.size(); ++i)
         EXPECT_EQ(heard[i], std::min<std::int64_t>(static_cast<std::int64_t>(i), 20));
