@@ -18,6 +18,7 @@
 
 #include "corda/core/file.hpp"
 #include "corda/core/text.hpp"
+#include "corda/media/big_endian.hpp"
 #include "corda/media/file_kind.hpp"
 
 namespace corda::media {
@@ -26,14 +27,16 @@ namespace {
 constexpr std::size_t kCrcBytes = 4;
 constexpr std::size_t kBlockBytes = std::size_t{1} << 16;
 
+std::uint32_t number_at(std::span<const unsigned char> bytes, std::size_t at) {
+    const void* const four = &bytes[at];
+    return static_cast<std::uint32_t>(from_big_endian({static_cast<const char*>(four), 4}));
+}
+
 /// What a chunk begins with: its length and its type (PNG specification, third edition, 5.3).
 struct ChunkHead {
     std::array<unsigned char, 8> bytes{};
 
-    [[nodiscard]] std::size_t length() const {
-        return std::size_t{bytes[0]} << 24U | std::size_t{bytes[1]} << 16U | std::size_t{bytes[2]} << 8U |
-               bytes[3];
-    }
+    [[nodiscard]] std::size_t length() const { return number_at(bytes, 0); }
     [[nodiscard]] bool is(std::string_view type) const { return std::memcmp(&bytes[4], type.data(), 4) == 0; }
     /// Critical chunks have a type that begins with a capital (5.4); of the others transparency counts.
     [[nodiscard]] bool is_of_pixels() const { return (bytes[4] & 0x20U) == 0 || is("tRNS"); }
@@ -83,11 +86,6 @@ bool are_equal(const ChunkFile& a, const ChunkFile& b, std::size_t count) {
 }
 
 constexpr std::size_t kBytesOfSignature = 8;
-
-std::uint32_t number_at(std::span<const unsigned char> bytes, std::size_t at) {
-    return std::uint32_t{bytes[at]} << 24U | std::uint32_t{bytes[at + 1]} << 16U |
-           std::uint32_t{bytes[at + 2]} << 8U | bytes[at + 3];
-}
 
 /// "gAMA (1)"; empty for that of sRGB.
 std::string words_of_gamma(std::span<const unsigned char> bytes) {
