@@ -245,15 +245,14 @@ void check_tags(const DecodedVideo& video, VerifyReport& report) {
 
 void add_notes(const DecodedVideo& video, VerifyDepth depth, VerifyReport& report) {
     const std::string trouble = trouble_of_level(report);
-    if (has_odd_profile(report)) {
-        // Which the problems say.
-    } else if (!trouble.empty()) {
+    const Players* const players = players_of(report);
+    if (!trouble.empty() && !has_odd_profile(report)) {
         report.notes.push_back(fmt::format(
             "{}, {}: {}: VLC, mpv and ffmpeg play it, browsers only without the hardware's decoder; "
             "QuickTime, PowerPoint and phones refuse it; for those, render fewer pixels or frames, "
             "or take H.265 or AV1",
             report.coding(), report.pixel_format, trouble));
-    } else if (const Players* const players = players_of(report)) {
+    } else if (players != nullptr && !has_odd_profile(report)) {
         report.notes.push_back(
             fmt::format("{}, {}: {}", report.coding(), report.pixel_format, players->words));
     }

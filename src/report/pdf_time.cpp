@@ -17,7 +17,7 @@
 namespace corda::report {
 namespace {
 
-/// A stream that has been inflated, and what stands before it in its object.
+/// An inflated stream and the text before it in its object.
 struct Stream {
     std::string_view dictionary;
     std::string data;
@@ -39,7 +39,7 @@ std::optional<std::size_t> number_of(std::string_view dictionary, std::string_vi
     return at == std::string_view::npos ? std::nullopt : number_at(dictionary, at + key.size());
 }
 
-/// What zlib made of a text with which `packed` begins; or nothing.
+/// The inflated text of the zlib stream at the beginning of `packed`; std::nullopt if there is none.
 std::optional<std::string> inflated(std::string_view packed) {
     z_stream state{};
     if (inflateInit(&state) != Z_OK) return {};
@@ -161,7 +161,7 @@ std::optional<std::string> without_object_streams(std::string_view pdf) {
     if (!table) return {};
     const auto root = number_of(table->dictionary, "/Root ");
     const auto info = number_of(table->dictionary, "/Info ");
-    std::map<std::size_t, std::size_t> numbers;  // of what is in the file, by its offset
+    std::map<std::size_t, std::size_t> numbers;  // of objects, by their offset in the file
     std::set<std::size_t> streams;
     const std::vector<Row> rows = rows_of(*table);
     for (std::size_t number = 0; number < rows.size(); ++number) {
