@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 
 #include "compare.hpp"
+#include "corda/core/child_process.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/golden/variant.hpp"
-#include "corda/media/child_process.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/media/stored_video.hpp"
 #include "interrupt.hpp"
@@ -179,7 +179,7 @@ std::string told_of_videos(const CompareOptions& options, const std::string& pat
     return json.dump(-1, ' ', true, Json::error_handler_t::replace) + '\n' + pixels;
 }
 
-media::ChildLimits limits_of_videos(const std::string& a, const std::string& b) {
+ChildLimits limits_of_videos(const std::string& a, const std::string& b) {
     constexpr std::int64_t kLeastS = 60;
     constexpr std::int64_t kBytesPerS = 500;  // a still scene has small frames, each of which takes its time
     std::uintmax_t bytes = 0;
@@ -195,8 +195,8 @@ media::ChildLimits limits_of_videos(const std::string& a, const std::string& b) 
 /// The report of the child; writes the picture of the differences.
 Json compare_two(const CompareOptions& options, const std::string& path_b, const std::optional<Image>& mask,
                  std::string& pixels) {
-    const auto end = media::run_in_child([&] { return told_of_videos(options, path_b, mask); },
-                                         limits_of_videos(options.a, path_b), [] { stop_if_asked(); });
+    const auto end = run_in_child([&] { return told_of_videos(options, path_b, mask); },
+                                  limits_of_videos(options.a, path_b), [] { stop_if_asked(); });
     if (end && !end->finished) {
         throw Error(ExitCode::kIo,
                     fmt::format("cannot compare '{}' with '{}': decoding {}; `corda verify` says "

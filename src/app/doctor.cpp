@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,18 @@
 
 namespace corda::app {
 namespace {
+
+/// Every way to OpenGL, unless a driver crashes.
+std::vector<gl::Attempt> probe_drivers() {
+    using Backend = gl::ContextDef::Backend;
+    try {
+        for (const Backend backend : {Backend::kDevice, Backend::kSurfaceless, Backend::kDefault})
+            render::try_driver({backend, std::nullopt, false});
+    } catch (const Error& error) {
+        return {{gl::kEveryPlatform, std::nullopt, error.what(), error.code()}};
+    }
+    return gl::probe_contexts(render::check_driver);
+}
 
 void print_contexts(const Console& console, const std::vector<gl::Attempt>& attempts) {
     console.result("Ways to OpenGL, in the order in which they are tried:");
@@ -92,7 +105,7 @@ std::string cannot_draw(const std::vector<gl::Attempt>& attempts) {
 ExitCode doctor(const Console& console) {
     // First, while there are no threads of a driver: each is tried in a child process.
     const std::vector<media::EncoderProbe> encoders = media::probe_encoders();
-    const std::vector<gl::Attempt> attempts = gl::probe_contexts(render::check_driver);
+    const std::vector<gl::Attempt> attempts = probe_drivers();
     const bool has_gl =
         std::any_of(attempts.begin(), attempts.end(), [](const gl::Attempt& a) { return a.is_usable(); });
     const bool is_temporary = std::any_of(attempts.begin(), attempts.end(), [](const gl::Attempt& a) {

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "corda/core/basics.hpp"
-#include "corda/media/child_process.hpp"
+#include "corda/core/child_process.hpp"
 
 namespace corda::bench {
 
@@ -18,8 +18,8 @@ json in_child(const std::function<void()>& on_wait, const std::function<json()>&
         }
     };
     constexpr double kLongestS = 86'400.0;
-    const media::ChildLimits limits{std::uint64_t{1} << 46U, static_cast<std::int64_t>(kLongestS), kLongestS};
-    const auto end = media::run_in_child(told, limits, on_wait);
+    const ChildLimits limits{std::uint64_t{1} << 46U, static_cast<std::int64_t>(kLongestS), kLongestS};
+    const auto end = run_in_child(told, limits, on_wait);
     if (!end) throw Error(ExitCode::kTemporary, "the system starts no further process; try again");
     if (!end->finished) throw Error(ExitCode::kTemporary, "the process that measures " + end->text);
     json result = json::parse(end->text);

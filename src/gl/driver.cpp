@@ -5,6 +5,7 @@
 #include <pthread.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdlib>
@@ -91,11 +92,53 @@ bool replaces_driver(std::string_view value) {
         const std::size_t end = std::min(value.find_first_of(": ", at), value.size());
         const fs::path path = value.substr(at, end - at);
         at = end + 1;
-        if (!path.empty() && holds_any(path, {"libEGL", "libGL", "libOpenGL", "libgallium", "libglapi",
-                                              "libLLVM", "libstdc++", "libdrm", "libexpat", "libz."}))
+        if (!path.empty() &&
+            holds_any(path, {"libEGL", "libGL", "libOpenGL", "libgallium", "libglapi", "libgbm", "libLLVM",
+                             "libstdc++", "libdrm", "libexpat", "libz."}))
             return true;
     }
     return false;
+}
+
+/// Beginnings of the names of variables that the EGL of libglvnd, Mesa and NVIDIA read. Those in small
+/// letters are Mesa's options for single applications (force_glsl_version, allow_higher_compat_version).
+constexpr std::array<std::string_view, 18> kVariablesOfDrivers{
+    "EGL_",  "__EGL_", "LIBGL_",   "MESA_", "GALLIUM_", "GALLIVM_", "LP_",    "DRAW_",  "SOFTPIPE_",
+    "TGSI_", "NIR_",   "ST_DEBUG", "GBM_",  "__GL_",    "__NV_",    "force_", "allow_", "disable_"};
+/// Those of them that only log or cache, or that prepare_driver() sets.
+constexpr std::array<std::string_view, 9> kHarmlessVariables{
+    "EGL_LOG_",        "LIBGL_DEBUG",    "MESA_DEBUG",
+    "MESA_LOG",        "MESA_SHADER_",   "MESA_GLSL_CACHE",
+    "MESA_DISK_CACHE", "LP_NUM_THREADS", "LP_NATIVE_VECTOR_WIDTH"};
+constexpr std::array<std::string_view, 4> kUsualVariables{
+    "EGL_PLATFORM=surfaceless", "GALLIUM_DRIVER=llvmpipe", "LIBGL_ALWAYS_SOFTWARE=1",
+    "LIBGL_ALWAYS_SOFTWARE=true"};
+
+/// See prepare_driver().
+bool set_llvmpipe_variables() {
+    setenv("LP_NUM_THREADS", "0", 0);
+    const char* const bits = std::getenv("LP_NATIVE_VECTOR_WIDTH");
+    if (bits != nullptr && std::string_view(bits) != "128" && std::string_view(bits) != "256")
+        unsetenv("LP_NATIVE_VECTOR_WIDTH");
+    return true;
+}
+
+/// The variables that are set and may change what a driver does, as "NAME=value", sorted.
+std::vector<std::string> variables_of_driver() {
+    std::vector<std::string> set;
+    for (char** variable = environ; variable != nullptr && *variable != nullptr; ++variable) {
+        const std::string_view text(*variable);
+        const auto begins = [&](std::string_view beginning) { return text.starts_with(beginning); };
+        const bool has_value = text.find('=') + 1 < text.size();
+        const bool is_of_driver =
+            begins("LD_LIBRARY_PATH=")
+                ? replaces_driver(text.substr(text.find('=') + 1))
+                : std::any_of(kVariablesOfDrivers.begin(), kVariablesOfDrivers.end(), begins) &&
+                      std::none_of(kHarmlessVariables.begin(), kHarmlessVariables.end(), begins);
+        if (has_value && is_of_driver) set.emplace_back(text);
+    }
+    std::sort(set.begin(), set.end());
+    return set;
 }
 
 /// Debian's packages whose files no driver can do without and that are missing.
@@ -153,8 +196,8 @@ bool has_libraries() {
 void prepare_driver() {
     const bool is_first = driver_use().process == 0;
     require_address_space(is_first ? kFirstContextBytes : kContextBytes, "OpenGL");
-    static const int set = setenv("LP_NUM_THREADS", "0", 0);  // once: other threads may read the environment
-    static_cast<void>(set);
+    static const bool is_set = set_llvmpipe_variables();  // once: other threads may read the environment
+    static_cast<void>(is_set);
     if (!has_libraries()) throw Error(ExitCode::kNoGl, "no usable OpenGL: " + missing_library());
 }
 
@@ -189,20 +232,14 @@ void require_driver_after_fork() {
 }
 
 std::string driver_variables() {
-    std::vector<std::string> set;
-    for (const char* const name :
-         {"LIBGL_DRIVERS_PATH", "__EGL_VENDOR_LIBRARY_DIRS", "__EGL_VENDOR_LIBRARY_FILENAMES",
-          "__EGL_EXTERNAL_PLATFORM_CONFIG_DIRS", "GALLIUM_DRIVER", "GALLIUM_NOOP",
-          "MESA_LOADER_DRIVER_OVERRIDE", "MESA_GL_VERSION_OVERRIDE", "MESA_GLSL_VERSION_OVERRIDE",
-          "MESA_EXTENSION_OVERRIDE", "MESA_EXTENSION_MAX_YEAR", "EGL_PLATFORM", "EGL_DRIVER",
-          "LIBGL_ALWAYS_SOFTWARE", "LD_LIBRARY_PATH"}) {
-        const char* const value = std::getenv(name);
-        if (value == nullptr || *value == '\0') continue;
-        const std::string_view text(name);
-        if (text == "LD_LIBRARY_PATH" && !replaces_driver(value)) continue;
-        set.push_back(fmt::format("{}={}", name, value));
-    }
-    return fmt::format("{}", fmt::join(set, ", "));
+    return fmt::format("{}", fmt::join(variables_of_driver(), ", "));
+}
+
+bool has_unusual_variables() {
+    const std::vector<std::string> set = variables_of_driver();
+    return std::any_of(set.begin(), set.end(), [](const std::string& variable) {
+        return std::find(kUsualVariables.begin(), kUsualVariables.end(), variable) == kUsualVariables.end();
+    });
 }
 
 std::string driver_remedy() {

@@ -3,7 +3,7 @@
 #include <new>
 
 #include "corda/core/basics.hpp"
-#include "corda/media/child_process.hpp"
+#include "corda/core/child_process.hpp"
 #include "corda/media/open_video.hpp"
 #include "corda/media/part_reader.hpp"
 #include "corda/media/video_comment.hpp"

@@ -13,8 +13,8 @@
 #include <string_view>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/child_process.hpp"
 #include "corda/core/threads.hpp"
-#include "corda/media/child_process.hpp"
 #include "corda/media/encoders.hpp"
 #include "corda/media/format.hpp"
 #include "corda/media/job_memory.hpp"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "corda/core/basics.hpp"
-#include "corda/media/child_process.hpp"
+#include "corda/core/child_process.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/part_reader.hpp"
 #include "corda/media/verify.hpp"

@@ -54,7 +54,7 @@ inline constexpr const char* kProvenanceKey = "provenance";
 /// As a JSON object of at most kMostBytes: without the scene, or without the picture, if they do not fit.
 [[nodiscard]] std::string provenance_text(Provenance provenance);
 
-/// Reads what a PNG or a video carries; a video in a child process (see media/child_process.hpp), and
+/// Reads what a PNG or a video carries; a video in a child process (see core/child_process.hpp), and
 /// `on_progress` is asked meanwhile. Throws corda::Error: kIo if the file cannot be read, kUsage if it
 /// carries nothing or no scene, or what it carries is damaged.
 [[nodiscard]] Provenance read_provenance(const std::string& path, const OnProgress& on_progress = {});

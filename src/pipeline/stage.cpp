@@ -90,10 +90,12 @@ view::Camera Stage::map_of(const CameraDef& camera) const {
 void Stage::open(Needs needs) {
     // A forked child draws in a context of its own, and leaves its parent's alone.
     if (canvas_ && canvas_->context.is_inherited()) static_cast<void>(canvas_.release());
-    if (canvas_)
+    if (canvas_) {
         canvas_->context.make_current();
-    else
+    } else {
+        render::try_driver(gl_);
         canvas_ = std::make_unique<Canvas>(gl_);
+    }
     if (needs == Needs::kContext || canvas_->renderer) return;
     const auto lock = canvas_->context.exclusive();
     render::check_driver(canvas_->context);

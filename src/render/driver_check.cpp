@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/child_process.hpp"
 #include "corda/gl/driver.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/render/reference_renderer.hpp"
@@ -21,6 +22,9 @@ namespace {
 // Larger than a tile of llvmpipe (64 pixels), and no multiple of one.
 constexpr int kWidth = 88;
 constexpr int kHeight = 72;
+
+/// A trial takes 0.1 s, and as much memory as it needs.
+constexpr ChildLimits kTrialLimits{std::uint64_t{1} << 46U, 20, 20.0};
 
 /// Lines and discs with and without halo, wide and thin, opaque and transparent, tinted and not, that overlap
 /// and leave the picture, on a gradient. `shift_px` moves them.
@@ -59,6 +63,26 @@ std::optional<std::string> first_difference(const Image& drawn, const Image& wan
 }
 
 }  // namespace
+
+void try_driver(const gl::ContextDef& def) {
+    static std::set<gl::ContextDef::Backend> tried;
+    const auto lock = gl::lock_driver();
+    if (!gl::has_unusual_variables() || !tried.insert(def.backend).second) return;
+    gl::prepare_driver();
+    const auto draw = [&def]() -> std::string {
+        try {
+            const gl::Context context(def);
+            check_driver(context);
+        } catch (const Error&) {  // this process will throw it, too
+        }
+        return "done";
+    };
+    const auto end = run_in_child(draw, kTrialLimits);
+    if (!end || end->finished) return;
+    throw Error(ExitCode::kNoGl, fmt::format("the OpenGL driver {} when it was tried in a child process\n"
+                                             "Unset what chooses or changes the driver: {}",
+                                             end->text, gl::driver_variables()));
+}
 
 void check_driver(const gl::Context& context) {
     static std::set<std::string> checked;

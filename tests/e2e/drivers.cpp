@@ -64,6 +64,35 @@ TEST_F(Drivers, ThatVariablesBreakAreRepairedByUnsettingThose) {
     EXPECT_EQ(still("").exit_code, 0);
 }
 
+// Mesa does not check the values of its variables: each of these crashed it (Mesa 22.3).
+TEST_F(Drivers, ThatVariablesCrashAreTriedInAChild) {
+    for (const char* const variable : {"MESA_EXTENSION_OVERRIDE=-GL_ARB_texture_float",
+                                       "MESA_EXTENSION_OVERRIDE=-GL_ARB_framebuffer_object"}) {
+        for (const auto& [command, words] :
+             {std::pair(std::vector<std::string>{"still", scene_, "--at", "0.1", "-o", folder_.file("a.png")},
+                        &test::CommandResult::err),
+              std::pair(std::vector<std::string>{"render", scene_, "-o", folder_.file("a.mp4")},
+                        &test::CommandResult::err),
+              std::pair(std::vector<std::string>{"doctor"}, &test::CommandResult::out)}) {
+            const auto result = run_corda(command, variable);
+            EXPECT_EQ(result.exit_code, 4) << variable << command.front() << result.err;
+            EXPECT_THAT(result.*words,
+                        HasSubstr("Unset what chooses or changes the driver: " + std::string(variable)));
+        }
+    }
+}
+
+// Without a cache of compiled shaders, as llvmpipe (Mesa 22.3) takes those of another width from it.
+TEST_F(Drivers, DrawWhateverTheWidthOfTheirVectors) {
+    ASSERT_EQ(still("").exit_code, 0);
+    const std::string picture = test::read_file(folder_.file("a.png"));
+    for (const char* const width : {"0", "1", "3", "64", "128", "256", "512", "1024", "wide"}) {
+        const auto result = still("MESA_SHADER_CACHE_DISABLE=1 LP_NATIVE_VECTOR_WIDTH=" + std::string(width));
+        ASSERT_EQ(result.exit_code, 0) << width << result.err;
+        EXPECT_EQ(test::read_file(folder_.file("a.png")), picture) << width;
+    }
+}
+
 TEST_F(Drivers, WhoseLibrariesAreMissingAreNamedWithTheirPackage) {
     const auto hiding = [](const std::string& libraries) {
         return "LD_PRELOAD=" HIDDEN_LIBRARIES " CORDA_TEST_HIDES='" + libraries + "'";

@@ -207,7 +207,7 @@ TEST_P(EveryFormat, ItsPartIsToBeRecoveredSaysVerify) {
     const VerifyReport report = verify(part);
     EXPECT_EQ(report.frames, kVideoFrames);
     ASSERT_EQ(report.problems.size(), 1U) << all_problems(report);
-    EXPECT_THAT(report.problems[0], HasSubstr("corda recover makes it a video"));
+    EXPECT_THAT(report.problems[0], testing::HasSubstr("corda recover makes it a video"));
 }
 
 TEST_P(EveryFormat, APartWhosePictureHasNoSizeIsRefused) {
@@ -230,7 +230,7 @@ TEST_F(Video, VerifyFindsWrongChecksumsOfFfv1) {
     std::string bytes = test::read_file(file("a.mkv"));
     for (std::size_t i = 0; i < 16; ++i) bytes[bytes.size() / 2 + i] ^= 0x55;
     test::write_file(file("b.mkv"), bytes);
-    EXPECT_THAT(all_problems(verify(file("b.mkv"))), HasSubstr("slice CRC mismatch"));
+    EXPECT_THAT(all_problems(verify(file("b.mkv"))), testing::HasSubstr("slice CRC mismatch"));
 }
 
 TEST_F(Video, AWebpOfAnyRateAndCountIsSound) {

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "corda/core/basics.hpp"
-#include "corda/media/child_process.hpp"
+#include "corda/core/child_process.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/media/png_chunks.hpp"
 #include "support/command.hpp"

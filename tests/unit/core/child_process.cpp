@@ -1,4 +1,4 @@
-#include "corda/media/child_process.hpp"
+#include "corda/core/child_process.hpp"
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,7 +14,7 @@
 #include "corda/core/clock.hpp"
 #include "support/failure.hpp"
 
-namespace corda::media {
+namespace corda {
 namespace {
 
 using testing::HasSubstr;
@@ -96,4 +96,4 @@ TEST(ChildProcess, EndedFromOutsideIsNoFindingOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace corda::media
+}  // namespace corda

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace corda::media {
+namespace corda {
 
 /// How much a child process may take.
 struct ChildLimits {
@@ -34,4 +34,4 @@ struct ChildEnd {
                                                    const ChildLimits& limits,
                                                    const std::function<void()>& on_wait = {});
 
-}  // namespace corda::media
+}  // namespace corda

@@ -1,7 +1,6 @@
-#include "corda/media/child_process.hpp"
+#include "corda/core/child_process.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -16,12 +15,13 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <system_error>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
 
-namespace corda::media {
+namespace corda {
 namespace {
 
 constexpr int kWaitMs = 100;
@@ -103,17 +103,16 @@ bool receive(const Descriptor& in, double wall_s, const std::function<void()>& o
 
 /// What ended a child that did not finish; throws if it was not its own doing.
 std::string fate(int status, const ChildLimits& limits) {
-    if (!WIFSIGNALED(status)) return fmt::format("crashed (status {})", WEXITSTATUS(status));
+    if (!WIFSIGNALED(status)) return "crashed (status " + std::to_string(WEXITSTATUS(status)) + ")";
     const int signal = WTERMSIG(status);
     for (const int foreign : {SIGKILL, SIGTERM, SIGINT, SIGHUP}) {
         if (signal == foreign)
-            throw Error(ExitCode::kTemporary,
-                        fmt::format("a child process was ended from outside ({}), as a system does "
-                                    "that runs out of memory; try again",
-                                    strsignal(signal)));
+            throw Error(ExitCode::kTemporary, std::string("a child process was ended from outside (") +
+                                                  strsignal(signal) +
+                                                  "), as a system does that runs out of memory; try again");
     }
-    if (signal == SIGXCPU) return fmt::format("took more than {} s of computing", limits.cpu_s);
-    return fmt::format("crashed ({})", strsignal(signal));
+    if (signal == SIGXCPU) return "took more than " + std::to_string(limits.cpu_s) + " s of computing";
+    return std::string("crashed (") + strsignal(signal) + ")";
 }
 
 }  // namespace
@@ -143,7 +142,9 @@ std::optional<ChildEnd> run_in_child(const std::function<std::string()>& work, c
     ChildEnd end;
     if (!receive(in, limits.wall_s, on_wait, end.text)) {
         child.kill();
-        end.text = fmt::format("did not end within {} s", limits.wall_s);
+        std::ostringstream words;
+        words << "did not end within " << limits.wall_s << " s";
+        end.text = words.str();
         return end;
     }
     const int status = child.wait();
@@ -153,4 +154,4 @@ std::optional<ChildEnd> run_in_child(const std::function<std::string()>& work, c
     return end;
 }
 
-}  // namespace corda::media
+}  // namespace corda
