@@ -411,8 +411,8 @@ void add_film(py::module_& module) {
                          const std::vector<std::string>& settings, const std::string& backend,
                          bool require_gpu) {
             const auto [scene, notice] = Asking().run([&](const corda::OnProgress& ask) {
-                corda::Scene read = is_path ? corda::load_scene(source, settings)
-                                            : corda::parse_scene(text, source, settings);
+                corda::Scene read = is_path ? corda::load_scene(source, settings, ask)
+                                            : corda::parse_scene(text, source, settings, ask);
                 std::string cost = corda::cost_notice(read);
                 corda::report_progress(ask, 1, 1);
                 return std::pair(std::move(read), std::move(cost));

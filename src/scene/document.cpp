@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
+#include <istream>
+#include <streambuf>
+#include <utility>
 
 #include "corda/core/basics.hpp"
 #include "corda/scene/read_file.hpp"
@@ -29,6 +33,53 @@ std::size_t skip_string(std::string_view text, std::size_t begin) {
     }
     return text.size();
 }
+
+/// A text for the parser, which tells `on_progress` at every block of it. The parser makes any exception its
+/// own error, so a request to stop ends the text, and is thrown by check().
+class AskingBuffer : public std::streambuf {
+  public:
+    AskingBuffer(std::string_view text, const OnProgress& on_progress)
+        : text_(text), on_progress_(&on_progress) {
+        set_place(0);
+    }
+
+    void check() const {
+        if (stop_) std::rethrow_exception(stop_);
+    }
+
+  protected:
+    int_type underflow() override {
+        constexpr std::size_t kBlock = 65536;
+        if (stop_ || end_ == text_.size()) return traits_type::eof();
+        try {
+            report_progress(*on_progress_, 0, 0);
+        } catch (...) {
+            stop_ = std::current_exception();
+            return traits_type::eof();
+        }
+        const std::size_t begin = std::exchange(end_, std::min(end_ + kBlock, text_.size()));
+        set_place(begin);
+        return traits_type::to_int_type(text_[begin]);
+    }
+
+    /// The parser goes back to the beginning once it has looked for a byte order mark.
+    pos_type seekoff(off_type by, std::ios_base::seekdir from, std::ios_base::openmode) override {
+        const off_type place = from == std::ios_base::cur ? gptr() - eback() : 0;
+        set_place(static_cast<std::size_t>(place + by));
+        return place + by;
+    }
+    pos_type seekpos(pos_type place, std::ios_base::openmode which) override {
+        return seekoff(place, std::ios_base::beg, which);
+    }
+
+  private:
+    void set_place(std::size_t place) { setg(text_.data(), text_.data() + place, text_.data() + end_); }
+
+    std::string text_;  // std::streambuf takes no pointer to const
+    const OnProgress* on_progress_;
+    std::exception_ptr stop_;
+    std::size_t end_ = 0;
+};
 
 }  // namespace
 
@@ -64,7 +115,8 @@ std::size_t find_deep_key(std::string_view text) {
     return std::string_view::npos;
 }
 
-toml::table parse_document(std::string_view text, const std::string& source_name) {
+toml::table parse_document(std::string_view text, const std::string& source_name,
+                           const OnProgress& on_progress) {
     check_file_bytes(source_name, text.size());
     const std::size_t deep = find_deep_key(text);
     if (deep != std::string_view::npos) {
@@ -76,9 +128,14 @@ toml::table parse_document(std::string_view text, const std::string& source_name
                     fmt::format("{}:{}:{}: a key of more than {} parts; no key of a scene has that many",
                                 source_name, line, column, kKeyParts));
     }
+    AskingBuffer buffer(text, on_progress);
+    std::istream stream(&buffer);
     try {
-        return toml::parse(text, std::string_view(source_name));
+        toml::table document = toml::parse(stream, std::string_view(source_name));
+        buffer.check();
+        return document;
     } catch (const toml::parse_error& error) {
+        buffer.check();
         const auto& begin = error.source().begin;
         throw Error(ExitCode::kInvalidScene,
                     fmt::format("{}:{}:{}: {}; see https://toml.io for the syntax", source_name, begin.line,

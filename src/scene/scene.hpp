@@ -68,12 +68,15 @@ using Setting = std::string;
 
 /// Reads a scene file, or standard input for "-", with `settings` in place of what it says. Throws
 /// corda::Error: kIo if the file cannot be read, kInvalidScene with all that is wrong in it, one problem per
-/// line, kUsage for a setting that is not key=value.
-[[nodiscard]] Scene load_scene(const std::string& path, const std::vector<Setting>& settings = {});
+/// line, kUsage for a setting that is not key=value, kInterrupted if `on_progress` asks to stop; it is asked
+/// some ten times a second in a scene of a million particles, without a total.
+[[nodiscard]] Scene load_scene(const std::string& path, const std::vector<Setting>& settings = {},
+                               const OnProgress& on_progress = {});
 
 /// The same for TOML text; `source_name` stands in the messages in place of the path.
 [[nodiscard]] Scene parse_scene(std::string_view toml, const std::string& source_name,
-                                const std::vector<Setting>& settings = {});
+                                const std::vector<Setting>& settings = {},
+                                const OnProgress& on_progress = {});
 
 /// About how long computing the motion of a scene once may take and why, with a remedy, if that is more than
 /// a few seconds; otherwise empty. An upper estimate from the start alone.

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <tuple>
 
+#include "support/failure.hpp"
 #include "unit/scene/support.hpp"
 
 namespace corda::scene {
@@ -264,6 +266,28 @@ TEST(SceneReader, PalettesOfAnyNumberOfColours) {
     std::string colors;
     for (int i = 0; i < 1000; ++i) colors += "\"red\", ";
     EXPECT_EQ(parse_scene(with("[style]\npalette = [" + colors + "]"), "a").style.palette.size(), 1000U);
+}
+
+// Longer than the blocks in which the parser gets a text, and with a byte order mark, after which it goes
+// back.
+TEST(SceneReader, LongFilesAreReadUntilTheCallerStops) {
+    std::string points;
+    for (int i = 0; i < 20'000; ++i) points += "[" + std::to_string(i) + ".25, 1.5],\n";
+    const std::string text = "\xef\xbb\xbfschema = 1\n[[rope]]\nstring = true\npoints = [" + points + "]\n";
+    ASSERT_GT(text.size(), 200'000U);
+    int asked = 0;
+    const auto stop_at = [&asked](int last) {
+        return [&asked, last](std::int64_t, std::int64_t) { return ++asked != last; };
+    };
+    const Scene scene = parse_scene(text, "a", {}, stop_at(0));
+    EXPECT_EQ(scene.ropes[0].points_m.size(), 20'000U);
+    EXPECT_EQ(scene.ropes[0].points_m.back().x - scene.ropes[0].points_m.front().x, 19'999.0);
+    EXPECT_GE(asked, 7);
+    for (int last = asked; last > 0; --last) {
+        asked = 0;
+        const auto code = test::code_of([&] { std::ignore = parse_scene(text, "a", {}, stop_at(last)); });
+        EXPECT_EQ(code, ExitCode::kInterrupted) << last;
+    }
 }
 
 TEST(SceneReader, FrameRatesOfUpToThreeDecimalsAreExact) {
