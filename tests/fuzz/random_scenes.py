@@ -6,7 +6,7 @@ error or a timeout: after TIME_S the run gets SIGTERM, which it must answer with
 alone, so that a failure can be repeated.
 
 Usage: random_scenes.py CORDA [--first I] [--count N] [--keep FOLDER]
-N is 80, or 10 000 with CORDA_TEST_LONG=1.
+N is 500, or 10 000 with CORDA_TEST_LONG=1.
 """
 
 import argparse
@@ -22,7 +22,7 @@ import tempfile
 import time
 
 MEMORY_BYTES = 2 << 30
-TIME_S = 10.0 if os.environ.get("CORDA_TEST_LONG") else 2.5
+TIME_S = 10.0 if os.environ.get("CORDA_TEST_LONG") else 1.5
 ANSWER_S = 5.0
 ALLOWED = {0: "ok", 2: "usage", 3: "invalid scene", 5: "encoder", 8: "diverged", 75: "temporary", 143: "stopped by SIGTERM"}
 MAX_PARTICLES = 60
@@ -232,7 +232,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("corda")
     parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--count", type=int, default=10_000 if os.environ.get("CORDA_TEST_LONG") else 80)
+    parser.add_argument("--count", type=int, default=10_000 if os.environ.get("CORDA_TEST_LONG") else 500)
     parser.add_argument("--keep", help="folder for scenes that fail")
     arguments = parser.parse_args()
     schema = json.loads(subprocess.run([arguments.corda, "schema"], check=True, capture_output=True).stdout)
