@@ -56,6 +56,16 @@ bool has_little_memory() {
     return limit.rlim_cur < kMemoryBytes;
 }
 
+/// Throws corda::Error (kTemporary) for a file whose reading ended as `fate` says, if memory may be the
+/// reason.
+void require_memory(const std::string& path, const std::string& fate) {
+    if (!has_little_memory()) return;
+    throw Error(
+        ExitCode::kTemporary,
+        fmt::format("reading '{}' {} in the memory that the system allows (ulimit -v); raise the limit", path,
+                    fate));
+}
+
 /// What the child tells: the report, or the error that `verify` threw. As CBOR, because the words may quote
 /// any bytes of the file.
 std::string told(const std::string& path, bool has_little, std::optional<Rational> fps) {
@@ -88,7 +98,10 @@ VerifyReport verify_in_child(const std::string& path, const OnProgress& on_progr
     const auto on_wait = [&] { report_progress(on_progress, 0, 0); };
     const auto end = run_in_child([&] { return told(path, has_little, fps); }, limits_for(path), on_wait);
     if (!end) return verify(path, on_progress, VerifyDepth::kAllFrames, {}, fps);
-    if (!end->finished) return damaged(end->text);
+    if (!end->finished) {
+        require_memory(path, end->text);
+        return damaged(end->text);
+    }
     const Json json = Json::from_cbor(end->text);
     if (!json.contains("error")) return json.at("report");
     const Json& error = json["error"];
@@ -108,15 +121,10 @@ void check_part_in_child(const std::string& path, bool decodes, const OnProgress
         return "done";
     };
     const auto end = run_in_child(read, limits_for(path), [&] { report_progress(on_progress, 0, 0); });
-    if (end && !end->finished && has_little_memory())
-        throw Error(
-            ExitCode::kTemporary,
-            fmt::format("reading '{}' {} in the memory that the system allows (ulimit -v); raise the limit",
-                        path, end->text));
-    if (end && !end->finished)
-        throw Error(
-            ExitCode::kMismatch,
-            fmt::format("'{}' is damaged: reading it {}; render it again (--force)", path, end->text));
+    if (!end || end->finished) return;
+    require_memory(path, end->text);
+    throw Error(ExitCode::kMismatch,
+                fmt::format("'{}' is damaged: reading it {}; render it again (--force)", path, end->text));
 }
 
 }  // namespace media

@@ -89,13 +89,17 @@ TEST_F(Scarcity, OfMemoryForAVideoIsNotTakenForItsDamage) {
     ASSERT_EQ(
         run_corda({"render", scene_, "-o", video_, "--size", "1920x1080", "--duration", "0.2"}).exit_code, 0);
     std::string codes;
-    for (int mib = 140; mib < 300; mib += 10) {
+    for (int mib = 140; mib < 320; mib += 10) {
         const auto result = run_shell("ulimit -v " + std::to_string(mib * 1000) + "; exec " +
                                       test::quoted(CORDA_PROGRAM) + " verify " + video_);
-        // Less than the libraries themselves take is found by the loader.
-        if (result.exit_code != 127) codes += std::to_string(result.exit_code) + " ";
+        // Less than the libraries themselves take is found by the loader, or ends one of them (Debian 13's
+        // libvpl).
+        if (result.exit_code == 127 || (codes.empty() && result.exit_code == 134)) continue;
+        codes += std::to_string(result.exit_code) + " ";
     }
-    EXPECT_THAT(codes, testing::MatchesRegex("(75 )+(0 )+"));  // measured: 210 MiB are enough
+    // Measured: 210 MiB are enough on Debian 12, but for a run in ten whose decoder has threads that get no
+    // memory of their own.
+    EXPECT_THAT(codes, testing::MatchesRegex("75 ((75|0) )+0 "));
 }
 
 TEST_F(Scarcity, AProgramThatTheSystemDoesNotStartIsNotTakenForMissing) {
