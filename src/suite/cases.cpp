@@ -20,13 +20,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files of a folder with this ending, sorted; with Iterator also those of the folders in it.
+/// Files and links of a folder with this ending, sorted; with Iterator also those of the folders in it.
 template <class Iterator = fs::directory_iterator>
 std::vector<std::string> files_in(const std::string& folder, const std::string& ending) {
     std::vector<std::string> paths;
     std::error_code failure;
+    std::error_code none;  // what cannot be looked up is for the reader to tell
     for (Iterator entry(folder, failure), end; !failure && entry != end; entry.increment(failure))
-        if (entry->path().extension() == ending) paths.push_back(entry->path().string());
+        if (entry->path().extension() == ending && !entry->is_directory(none))
+            paths.push_back(entry->path().string());
     if (failure) fail_file("read", folder, failure.value());
     std::sort(paths.begin(), paths.end());
     return paths;
@@ -86,19 +88,28 @@ bool has_tables_of_scenes(std::string_view text) {
     return false;
 }
 
-/// True for a TOML file of another program: it has no key `schema` on a line of its own. Files of a folder
+/// True for a key `schema` of the root whose value is no string: those are other programs' (addresses of JSON
+/// Schemas for instance).
+bool has_schema(std::string_view text) {
+    for (std::size_t at = 0; at < text.size(); at = std::min(text.find('\n', at), text.size() - 1) + 1) {
+        const std::size_t word = text.find_first_not_of(" \t\"'", at);
+        if (word == std::string_view::npos || text[word] == '[') return false;
+        if (!text.substr(word).starts_with("schema")) continue;
+        const std::size_t sign = text.find_first_not_of(" \t\"'", word + 6);
+        if (sign == std::string_view::npos || text[sign] != '=') continue;
+        const std::size_t value = text.find_first_not_of(" \t", sign + 1);
+        return value != std::string_view::npos && text[value] != '"' && text[value] != '\'';
+    }
+    return false;
+}
+
+/// True for a TOML file of another program: it has neither a `schema` nor tables of scenes. Files of a folder
 /// are judged by this before they are read as scenes; a file that is named is always read.
 bool is_foreign(const std::string& path) {
     const FileHandle file = open_for_reading(path);
     std::string text(file_size(path), '\0');
     text.resize(read_bytes(file, path, text.data(), text.size()));
-    for (std::size_t at = 0; at < text.size(); at = std::min(text.find('\n', at), text.size() - 1) + 1) {
-        const std::size_t word = text.find_first_not_of(" \t\"'", at);
-        if (word == std::string::npos || text.compare(word, 6, "schema") != 0) continue;
-        const std::size_t next = text.find_first_not_of(" \t\"'", word + 6);
-        if (next != std::string::npos && text[next] == '=') return false;
-    }
-    return !has_tables_of_scenes(text);
+    return !has_schema(text) && !has_tables_of_scenes(text);
 }
 
 /// What a picture says of how it was made; nothing if it cannot be read.
@@ -161,6 +172,10 @@ std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid,
         const std::vector<std::string> files =
             is_folder ? files_in<fs::recursive_directory_iterator>(path, ".toml") : std::vector{path};
         for (const std::string& file : files) {
+            if (is_folder && !fs::exists(file, none)) {
+                passed_over.push_back(fmt::format("{}: passed over: a link to nothing", file));
+                continue;
+            }
             if (is_folder && is_foreign(file)) {
                 passed_over.push_back(fmt::format("{}: passed over: no scene, as it has no schema", file));
                 continue;

@@ -320,12 +320,25 @@ void tell_lost_records(const SuiteDef& def, const std::vector<Case>& cases, Suit
                     list));
 }
 
+/// Throws corda::Error (kIo) if there is a folder where a picture is to be.
+void require_no_folders(const SuiteDef& def, const std::vector<Case>& cases) {
+    std::error_code none;
+    for (const Case& one : cases)
+        for (const Checked& picture : one.pictures)
+            if (const auto path = fs::path(def.folder) / picture.name; fs::is_directory(path, none))
+                throw Error(ExitCode::kIo,
+                            fmt::format("'{}' is a folder, and a picture needs this name; move "
+                                        "the folder away",
+                                        path.string()));
+}
+
 }  // namespace
 
 SuiteResult run(const SuiteDef& def) {
     std::vector<Checked> invalid;
     SuiteResult result;
     std::vector<Case> cases = load_cases(def, invalid, result.details);
+    require_no_folders(def, cases);
     std::string settled = settle_update(def.folder, def.dry_run);
     if (!settled.empty()) result.notes.push_back(std::move(settled));
     const std::vector<std::string> references = references_in(def.folder);

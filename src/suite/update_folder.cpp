@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <string_view>
 #include <utility>
 
 #include "corda/core/output_file.hpp"
@@ -25,6 +26,8 @@ constexpr const char* kFolder = "/.corda-golden-update";
 constexpr const char* kMarker = "/corda-golden-update";
 constexpr const char* kJournal = "/journal";
 constexpr const char* kUndo = "/undo";
+/// The last entry of a journal, without which it breaks off.
+constexpr std::string_view kEndOfJournal{"end\0", 4};
 
 /// The status of a name itself; symbolic links are not followed.
 fs::file_type type_of(const std::string& path) {
@@ -116,6 +119,7 @@ void UpdateFolder::publish(const std::vector<std::string>& written, const std::v
     std::string text;  // each entry ends with a zero byte, which no file name contains
     for (const std::string& name : written) text += (exists(picture(name)) ? "w" : "a") + name + '\0';
     for (const std::string& name : removed) text += "r" + name + '\0';
+    text += kEndOfJournal;
     OutputFile journal(inside_ + kJournal);
     journal.write(text);
     sync_folder_of(inside_);
@@ -174,23 +178,27 @@ void UpdateFolder::remove() noexcept {
 
 std::vector<UpdateFolder::Change> UpdateFolder::read_journal(const std::string& name) const {
     const std::string path = inside_ + name;
-    const std::string text = bytes_of(path);
+    std::string text = bytes_of(path);
     // A link here would make the renames move files of other folders.
     for (const char* const folder : {"/new", "/old"})
         if (type_of(inside_ + folder) != fs::file_type::directory)
             fail_file("read", inside_ + folder, ENOTDIR);
+    const auto require = [&](bool is_valid) {
+        if (is_valid) return;
+        throw Error(
+            ExitCode::kIo,
+            fmt::format("'{}' is damaged; restore the pictures of '{}' (git checkout), and remove '{}'", path,
+                        pictures_, inside_));
+    };
+    require(text.ends_with(kEndOfJournal));
+    text.resize(text.size() - kEndOfJournal.size());
     std::vector<Change> changes;
     for (std::size_t begin = 0; begin < text.size();) {
         const std::size_t end = std::min(text.find('\0', begin), text.size());
         std::string entry = text.substr(begin, end - begin);
         begin = end + 1;
-        const bool is_valid = entry.size() > 1 && (entry[0] == 'w' || entry[0] == 'a' || entry[0] == 'r') &&
-                              entry.find('/') == std::string::npos && entry.substr(1) != "." &&
-                              entry.substr(1) != "..";
-        if (!is_valid)
-            throw Error(ExitCode::kIo, fmt::format("'{}' is damaged; restore the pictures of '{}' (git "
-                                                   "checkout), and remove '{}'",
-                                                   path, pictures_, inside_));
+        require(entry.size() > 1 && (entry[0] == 'w' || entry[0] == 'a' || entry[0] == 'r') &&
+                entry.find('/') == std::string::npos && entry.substr(1) != "." && entry.substr(1) != "..");
         changes.push_back({.kind = entry[0], .name = entry.substr(1)});
     }
     return changes;

@@ -17,7 +17,8 @@ namespace corda::suite {
 ///   corda-golden-update   a marker: without it a folder of this name is not ours, and is left alone
 ///   new/NAME              pictures that are not published yet
 ///   old/NAME              pictures that were replaced or removed
-///   journal               the names to write and to remove; named `undo` while the changes are taken back
+///   journal               the names to write and to remove, and an end; named `undo` while the changes are
+///                         taken back
 class UpdateFolder {
   public:
     /// Makes the folder in `pictures`. Throws corda::Error: kTemporary if another update is at work; kIo,

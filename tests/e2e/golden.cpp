@@ -244,7 +244,8 @@ TEST_F(GoldenSuite, TheNextCheckCompletesAnUpdateThatWasKilled) {
     std::filesystem::create_directories(reference(".corda-golden-update/new"));
     std::filesystem::create_directories(reference(".corda-golden-update/old"));
     test::write_file(reference(".corda-golden-update/corda-golden-update"), "");
-    test::write_file(reference(".corda-golden-update/journal"), std::string("w") + kMiddle + '\0');
+    test::write_file(reference(".corda-golden-update/journal"),
+                     std::string("w") + kMiddle + '\0' + "end" + '\0');
     std::filesystem::rename(reference(kMiddle),
                             reference(std::string(".corda-golden-update/new/") + kMiddle));
     const auto result = run();
@@ -293,12 +294,29 @@ TEST_F(GoldenSuite, SaysWhichPicturesLostTheirRecord) {
 
 TEST_F(GoldenSuite, PassesOverTomlFilesOfOtherPrograms) {
     test::write_file(folder_.file("scenes/pyproject.toml"), "[project]\nname = \"x\"\n");
+    test::write_file(folder_.file("scenes/address.toml"), "schema = \"https://example.org/a.json\"\n");
+    test::write_file(folder_.file("scenes/nested.toml"), "[tool.a]\nschema = 1\n");
+    std::filesystem::create_symlink("nothing", folder_.file("scenes/link.toml"));
+    std::filesystem::create_directory(folder_.file("scenes/folder.toml"));
     const auto result = run({"-v"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_THAT(result.err, HasSubstr("pyproject.toml: passed over"));
+    for (const char* const name : {"pyproject", "address", "nested", "link"})
+        EXPECT_THAT(result.err, HasSubstr(name + std::string(".toml: passed over")));
     EXPECT_EQ(test::run_corda({"golden", folder_.file("scenes/pyproject.toml"), "--dir", folder_.file("ref")})
                   .exit_code,
               3);
+}
+
+TEST_F(GoldenSuite, NamesAFolderThatIsWhereAPictureIsToBe) {
+    std::filesystem::remove(reference(kMiddle));
+    std::filesystem::create_directory(reference(kMiddle));
+    for (const auto& options : {std::vector<std::string>{}, {"--update"}}) {
+        const auto result = run(options);
+        EXPECT_EQ(result.exit_code, 6);
+        EXPECT_THAT(result.err, AllOf(HasSubstr(kMiddle), HasSubstr("move the folder away")));
+    }
+    std::filesystem::remove(reference(kMiddle));
+    EXPECT_EQ(run({"--update"}).exit_code, 0);
 }
 
 TEST_F(GoldenSuite, DrawsTheTimesOfOneSceneBySeveralThreads) {

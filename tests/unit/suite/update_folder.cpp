@@ -26,6 +26,9 @@ namespace fs = std::filesystem;
 using test::failure_of;
 using ::testing::HasSubstr;
 
+/// The last entry of a journal.
+const std::string kEnd("end\0", 4);
+
 class UpdateFolderTest : public ::testing::Test {
   protected:
     static constexpr int kCount = 200;
@@ -123,7 +126,8 @@ TEST_F(UpdateFolderTest, ContinuesToTakeBackWhatAKillInterrupted) {
     make_old();
     static_cast<void>(UpdateFolder::create(pictures()));
     // The first is back, the second and the added one are not.
-    test::write_file(inside() + "/undo", "w" + name(1) + '\0' + "w" + name(2) + '\0' + "a" + name(0) + '\0');
+    test::write_file(inside() + "/undo",
+                     "w" + name(1) + '\0' + "w" + name(2) + '\0' + "a" + name(0) + '\0' + kEnd);
     fs::rename(pictures() + "/" + name(2), inside() + "/old/" + name(2));
     test::write_file(pictures() + "/" + name(2), "new");
     test::write_file(pictures() + "/" + name(0), "new");
@@ -136,7 +140,7 @@ TEST_F(UpdateFolderTest, DoesNotCompleteWhatTheUserHasTakenBack) {
     make_old();
     static_cast<void>(UpdateFolder::create(pictures()));
     // The first picture was replaced before the kill, and the user has restored it since.
-    test::write_file(inside() + "/journal", "w" + name(1) + '\0' + "w" + name(2) + '\0');
+    test::write_file(inside() + "/journal", "w" + name(1) + '\0' + "w" + name(2) + '\0' + kEnd);
     test::write_file(inside() + "/old/" + name(1), "old");
     test::write_file(inside() + "/new/" + name(2), "new");
     EXPECT_THAT(settle_update(pictures(), false), HasSubstr("some of whose pictures were restored since"));
@@ -151,7 +155,7 @@ TEST_F(UpdateFolderTest, TakesBackAKilledUpdateThatCannotBeCompleted) {
         test::write_file(inside() + "/new/" + one, "new");
         journal += (one == name(0) ? "a" : "w") + one + '\0';
     }
-    test::write_file(inside() + "/journal", journal);
+    test::write_file(inside() + "/journal", journal + kEnd);
     fs::remove(pictures() + "/" + name(150));
     fs::create_directory(pictures() + "/" + name(150));
     EXPECT_EQ(failure_of([&] { static_cast<void>(settle_update(pictures(), true)); }).code, ExitCode::kIo);
@@ -180,10 +184,23 @@ TEST_F(UpdateFolderTest, FollowsNoJournalOutOfItsFolder) {
     static_cast<void>(UpdateFolder::create(pictures()));
     const std::string outside = folder_.write("outside.png", "outside");
     test::write_file(inside() + "/new/x", "new");
-    test::write_file(inside() + "/journal", std::string("w../outside.png") + '\0');
+    test::write_file(inside() + "/journal", std::string("w../outside.png") + '\0' + kEnd);
     EXPECT_THAT(failure_of([&] { static_cast<void>(settle_update(pictures(), false)); }).message,
                 HasSubstr("is damaged"));
     EXPECT_EQ(test::read_file(outside), "outside");
+}
+
+TEST_F(UpdateFolderTest, CompletesNoJournalThatBreaksOff) {
+    make_old();
+    static_cast<void>(UpdateFolder::create(pictures()));
+    for (const std::string& text :
+         {std::string(), "w" + name(1) + '\0', "w" + name(1) + '\0' + "w" + name(2)}) {
+        test::write_file(inside() + "/new/" + name(1), "new");
+        test::write_file(inside() + "/journal", text);
+        EXPECT_THAT(failure_of([&] { static_cast<void>(settle_update(pictures(), false)); }).message,
+                    HasSubstr("is damaged; restore the pictures"));
+        EXPECT_EQ(state(), "old");
+    }
 }
 
 }  // namespace
