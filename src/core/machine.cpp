@@ -79,8 +79,9 @@ int allowed_cores() {
     return static_cast<int>(std::thread::hardware_concurrency());
 }
 
-/// What the limit on the address space of this process leaves (ulimit -v); empty without one.
-std::optional<std::uint64_t> left_of_address_space(const std::filesystem::path& root) {
+}  // namespace
+
+std::optional<std::uint64_t> address_space_left(const std::filesystem::path& root) {
     rlimit limit{};
     if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
     const auto used_kib = number_after(root / "proc/self/status", "VmSize:");
@@ -88,21 +89,19 @@ std::optional<std::uint64_t> left_of_address_space(const std::filesystem::path& 
     return limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, *used_kib * 1024);
 }
 
-}  // namespace
-
 std::optional<std::uint64_t> available_memory_bytes(const std::filesystem::path& root) {
     std::optional<std::uint64_t> least = number_after(root / "proc/meminfo", "MemAvailable:");
     if (least) *least *= 1024;
     const auto heed = [&least](std::optional<std::uint64_t> left) {
         if (left) least = least ? std::min(*least, *left) : *left;
     };
-    heed(left_of_address_space(root));
+    heed(address_space_left(root));
     for_each_group(root, [&heed](const std::filesystem::path& group) { heed(left_in(group)); });
     return least;
 }
 
 void require_address_space(std::uint64_t bytes, const std::string& what) {
-    const auto left = left_of_address_space("/");
+    const auto left = address_space_left();
     if (!left || *left >= bytes) return;
     throw Error(ExitCode::kTemporary, what + " needs " + std::to_string((bytes + (1U << 20U) - 1) >> 20U) +
                                           " MiB of address space, and the limit of this process leaves " +

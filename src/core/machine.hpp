@@ -12,6 +12,9 @@ namespace corda {
 /// none of these is told. `root` is the folder with proc/ and sys/.
 [[nodiscard]] std::optional<std::uint64_t> available_memory_bytes(const std::filesystem::path& root = "/");
 
+/// Bytes that the limit on the address space of this process leaves (ulimit -v); empty without one.
+[[nodiscard]] std::optional<std::uint64_t> address_space_left(const std::filesystem::path& root = "/");
+
 /// Throws corda::Error (kTemporary) if the limit on this process's address space (ulimit -v) leaves less than
 /// `bytes`, which `what` needs. Libraries that cannot allocate memory may crash or hang, so call this before
 /// they try.

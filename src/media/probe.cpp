@@ -1,19 +1,18 @@
 #include "corda/media/probe.hpp"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string_view>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/child_process.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/core/threads.hpp"
 #include "corda/media/encoders.hpp"
 #include "corda/media/format.hpp"
@@ -31,22 +30,22 @@ int threads_of(const Codec& codec) {
     return name == "libsvtav1" ? 16 : name == "libx265" ? 2 : 0;
 }
 
+/// Why an encoder would wait for ever for its threads; empty if the system starts that many.
+std::string lack_of_threads(const Codec& codec) {
+    const int threads = threads_of(codec);
+    if (can_start_threads(threads)) return "";
+    return fmt::format(
+        "{} starts {} threads, and the system gives fewer: run fewer processes, or raise the limits (ulimit "
+        "-u, ulimit -v)",
+        codec.name, threads);
+}
+
 /// Large enough for the minimum of every encoder, small enough to open at once.
 VideoDef small_video(const VideoDef& like) {
     VideoDef def = like;
     def.width_px = 320;
     def.height_px = 192;
     return def;
-}
-
-/// Bytes of address space that this process may still take; std::nullopt without a limit (ulimit -v).
-std::optional<std::uint64_t> address_space_left() {
-    rlimit limit{};
-    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
-    std::uint64_t pages = 0;
-    std::ifstream("/proc/self/statm") >> pages;
-    const std::uint64_t used = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-    return limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, used);
 }
 
 /// Encodes a picture by `jobs` encoders that are open at a time; returns what failed.
@@ -60,7 +59,9 @@ std::string encode_one(const Format& format, const VideoDef& def, int jobs) {
             encoders.back()->encode(image, {image.rect()}, ignore);
         }
         for (const auto& encoder : encoders) encoder->drain(ignore);
-    } catch (const std::exception& error) {  // of std::bad_alloc, too
+    } catch (const std::bad_alloc&) {
+        return std::string(format.codec->name) + " got no memory";
+    } catch (const std::exception& error) {
         return error.what();
     }
     return {};
@@ -75,14 +76,15 @@ struct Trial {
 /// With a limited address space the encoders have what drawing will leave of it, and their own size.
 Trial try_encoders(const Format& format, const VideoDef& video, int jobs, std::uint64_t kept_bytes,
                    const std::function<void()>& on_wait) {
+    if (std::string lack = lack_of_threads(*format.codec); !lack.empty()) return {std::move(lack), true};
     const auto left = address_space_left();
     const VideoDef def = left ? video : small_video(video);
     ChildLimits limits{std::uint64_t{1} << 46U, std::int64_t{60}, kLongestS};
     if (left) limits.memory_bytes = *left - std::min(*left, kept_bytes * static_cast<std::uint64_t>(jobs));
     const auto work = [&] { return "-" + encode_one(format, def, jobs); };
     const auto end = run_in_child(work, limits, on_wait);
-    const int threads = 1 + threads_of(*format.codec);
-    if (!end && can_start_threads(threads)) return {};
+    const bool starts_threads = can_start_threads(1 + threads_of(*format.codec));
+    if (!end && starts_threads) return {};
     if (!end)
         return {
             "the system starts no further process or thread; run fewer processes, or raise the limit (ulimit "
@@ -95,10 +97,10 @@ Trial try_encoders(const Format& format, const VideoDef& video, int jobs, std::u
     if (left) {
         trial.failure += fmt::format(
             "; {} KiB of address space are left (ulimit -v), some {} of them for drawing: "
-            "raise the limit, or choose a smaller size or fewer jobs (--jobs 1)",
+            "raise the limit, or choose a smaller size",
             *left >> 10U, (kept_bytes >> 10U) * static_cast<std::uint64_t>(jobs));
         trial.is_temporary = true;
-    } else if (!can_start_threads(threads)) {
+    } else if (!starts_threads) {
         trial.failure +=
             "; the system starts no further threads: run fewer processes, or raise the limit (ulimit -u)";
         trial.is_temporary = true;
@@ -160,12 +162,9 @@ std::vector<EncoderProbe> probe_encoders() {
 void check_encoder_starts(const Format& format, const VideoDef& def, const OnProgress& on_progress) {
     if (format.codec->is_hardware || format.codec->origin == EncoderOrigin::kPng) return;
     if (has_other_threads()) {
-        const int threads = threads_of(*format.codec);
-        if (can_start_threads(threads)) return;
-        throw Error(ExitCode::kTemporary,
-                    fmt::format("{} starts {} threads, and the system gives fewer: run fewer processes, or "
-                                "raise the limits (ulimit -u, ulimit -v)",
-                                format.codec->name, threads));
+        const std::string lack = lack_of_threads(*format.codec);
+        if (lack.empty()) return;
+        throw Error(ExitCode::kTemporary, lack);
     }
     const Trial trial = try_encoder(format, def, kDrawingBytes, [&] { report_progress(on_progress, 0, 0); });
     if (trial.failure.empty()) return;

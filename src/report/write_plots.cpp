@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <string_view>
 #include <vector>
 
@@ -205,6 +207,7 @@ std::string last_words(const std::string& text) {
     constexpr std::size_t kMost = 400;
     std::string words = text.substr(text.size() > kMost ? text.size() - kMost : 0);
     while (!words.empty() && (words.back() == '\n' || words.back() == ' ')) words.pop_back();
+    words.erase(0, words.find_first_not_of(" \n"));
     return words.empty() ? "without a message" : words;
 }
 
@@ -263,8 +266,14 @@ std::string draw_plot(const Plot& plot, PlotFormat format, std::optional<int> wi
     // -d: without the user's .gnuplot.
     const ChildResult child = run_child({"gnuplot", "-d"}, gnuplot_script(plot, format, width_mm), kHint);
     if (child.exit_code != 0 || child.out.empty()) {
-        throw Error(ExitCode::kIo, fmt::format("gnuplot cannot draw '{}' (status {}): {}", plot.id,
-                                               child.exit_code, last_words(child.err)));
+        // pango ends gnuplot if it cannot start a thread.
+        const bool lacks_resources = child.err.find(std::strerror(EAGAIN)) != std::string::npos ||
+                                     child.err.find(std::strerror(ENOMEM)) != std::string::npos;
+        throw Error(
+            lacks_resources ? ExitCode::kTemporary : ExitCode::kIo,
+            fmt::format(
+                "gnuplot cannot draw '{}' (status {}): {}{}", plot.id, child.exit_code, last_words(child.err),
+                lacks_resources ? "; run fewer processes, or raise the limits (ulimit -u, ulimit -v)" : ""));
     }
     std::string picture = child.out;
     if (!is_whole(picture, format)) {

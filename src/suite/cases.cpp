@@ -25,7 +25,7 @@ template <class Iterator = fs::directory_iterator>
 std::vector<std::string> files_in(const std::string& folder, const std::string& ending) {
     std::vector<std::string> paths;
     std::error_code failure;
-    std::error_code none;  // what cannot be looked up is for the reader to tell
+    std::error_code none;  // the reader reports the error
     for (Iterator entry(folder, failure), end; !failure && entry != end; entry.increment(failure))
         if (entry->path().extension() == ending && !entry->is_directory(none))
             paths.push_back(entry->path().string());
