@@ -11,7 +11,7 @@ std::optional<double> time_within(double time_s, double end_s) {
     constexpr double kRounding = 1e-12;
     const double rounding_s = kRounding * end_s;
     if (!(time_s >= -rounding_s && time_s <= end_s + rounding_s)) return std::nullopt;
-    return std::clamp(time_s, 0.0, end_s);
+    return std::clamp(time_s, 0.0, end_s) + 0.0;  // not -0.0, whose sign would be in names of files
 }
 
 Timeline::Timeline(FrameRate fps, std::int64_t last_frame, std::vector<double> still_times_s)

@@ -9,8 +9,6 @@
 namespace corda::media {
 namespace {
 
-constexpr std::string_view kConvert = "convert it to PNG";
-
 /// A kind of file by the bytes at a place in it.
 struct Signature {
     std::size_t offset;
@@ -24,25 +22,25 @@ constexpr std::array kSignatures{
     Signature{0, "../.git/annex/", {"a git-annex pointer", "run: git annex get"}},
     Signature{0, "\x89PNG\n", {"a PNG whose line endings were changed", "copy it in binary mode"}},
     Signature{0, "\x89PNG\r\r\n", {"a PNG whose line endings were changed", "copy it in binary mode"}},
-    Signature{0, "\xff\xd8\xff", {"a JPEG", kConvert}},
-    Signature{0, "GIF8", {"a GIF", kConvert}},
-    Signature{8, "WEBP", {"a WebP", kConvert}},
-    Signature{0, "BM", {"a BMP", kConvert}},
-    Signature{0, {"II*\0", 4}, {"a TIFF", kConvert}},
-    Signature{0, {"MM\0*", 4}, {"a TIFF", kConvert}},
-    Signature{4, "ftypavif", {"an AVIF", kConvert}},
-    Signature{4, "ftyphei", {"a HEIC", kConvert}},
-    Signature{0, "\xff\x0a", {"a JPEG XL", kConvert}},
+    Signature{0, "\xff\xd8\xff", {"a JPEG", kConvertToPng}},
+    Signature{0, "GIF8", {"a GIF", kConvertToPng}},
+    Signature{8, "WEBP", {"a WebP", kConvertToPng}},
+    Signature{0, "BM", {"a BMP", kConvertToPng}},
+    Signature{0, {"II*\0", 4}, {"a TIFF", kConvertToPng}},
+    Signature{0, {"MM\0*", 4}, {"a TIFF", kConvertToPng}},
+    Signature{4, "ftypavif", {"an AVIF", kConvertToPng}},
+    Signature{4, "ftyphei", {"a HEIC", kConvertToPng}},
+    Signature{0, "\xff\x0a", {"a JPEG XL", kConvertToPng}},
     Signature{4, "ftyp", {"an MP4 or QuickTime file", "give a picture of it"}},
     Signature{0, "\x1a\x45\xdf\xa3", {"a Matroska or WebM video", "give a picture of it"}},
-    Signature{0, "%PDF-", {"a PDF", kConvert}},
+    Signature{0, "%PDF-", {"a PDF", kConvertToPng}},
     Signature{0, "\x1f\x8b", {"compressed by gzip", "run gunzip on it"}},
     Signature{0, "PK\x03\x04", {"a ZIP archive", "unpack it"}},
 };
 
 constexpr ForeignKind kEmpty{"empty", "write or copy it again"};
 constexpr ForeignKind kHtml{"an HTML page", "download the file itself: a server answered with a page"};
-constexpr ForeignKind kSvg{"an SVG", kConvert};
+constexpr ForeignKind kSvg{"an SVG", kConvertToPng};
 
 bool has_at(std::string_view head, std::size_t offset, std::string_view bytes) {
     return head.size() >= offset && head.substr(offset).starts_with(bytes);

@@ -18,6 +18,9 @@ inline constexpr std::string_view kPngSignature = "\x89PNG\r\n\x1a\n";
 /// True if a file begins as every PNG does. Throws corda::Error (kIo) if it cannot be read.
 [[nodiscard]] bool is_png(const std::string& path);
 
+/// The remedy for a picture of another kind that was given as a picture.
+inline constexpr std::string_view kConvertToPng = "convert it to PNG";
+
 /// The kind of a file that was given as a picture or a video.
 struct ForeignKind {
     std::string_view words;  ///< "a Git LFS pointer"

@@ -160,7 +160,8 @@ std::string container_of(const std::string& kind, const std::string& path) {
 /// The problem of a file of no known kind.
 void refuse(const std::string& path, VerifyReport& report) {
     if (const ForeignKind* const foreign = foreign_kind_of(path); foreign != nullptr) {
-        problem(report, "this is no video: it is {}; {}", foreign->words, foreign->remedy);
+        problem(report, "this is no video: it is {}; {}", foreign->words,
+                foreign->remedy == kConvertToPng ? "give a video" : foreign->remedy);
         return;
     }
     report.container = probed_container(path);

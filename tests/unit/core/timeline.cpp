@@ -50,6 +50,7 @@ TEST(Timeline, IncreasesForEveryRate) {
 TEST(TimeWithin, TakesATimeBeyondTheEndByRoundingForTheEnd) {
     EXPECT_EQ(time_within(0.1 + 0.1 + 0.1, 0.3), 0.3);  // 0.30000000000000004
     EXPECT_EQ(time_within(0.3 - 0.1 - 0.2, 0.3), 0.0);  // -2.8e-17
+    EXPECT_FALSE(std::signbit(time_within(-0.0, 0.3).value()));
     EXPECT_EQ(time_within(0.25, 0.3), 0.25);
     EXPECT_EQ(time_within(0.3001, 0.3), std::nullopt);
     EXPECT_EQ(time_within(-1e-6, 0.3), std::nullopt);
