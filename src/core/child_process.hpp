@@ -28,8 +28,9 @@ struct ChildEnd {
 /// called at least ten times a second, and may throw: then the child is killed first. No child outlives the
 /// call, or this thread.
 ///
-/// The child is a fork without an exec, so this process must have no other thread: a lock that one holds
-/// would stay locked in the child. Throws corda::Error (kTemporary) if the child was killed by someone else.
+/// The child is a fork without an exec: a lock that another thread of this process holds stays locked in the
+/// child. So there must be no other thread (has_other_threads()), or `work` takes none of their locks. Throws
+/// corda::Error (kTemporary) if the child was killed by someone else.
 [[nodiscard]] std::optional<ChildEnd> run_in_child(const std::function<std::string()>& work,
                                                    const ChildLimits& limits,
                                                    const std::function<void()>& on_wait = {});

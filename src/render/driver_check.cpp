@@ -3,9 +3,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -62,12 +64,10 @@ std::optional<std::string> first_difference(const Image& drawn, const Image& wan
     return std::nullopt;
 }
 
-}  // namespace
-
-void try_driver(const gl::ContextDef& def) {
-    static std::set<gl::ContextDef::Backend> tried;
-    const auto lock = gl::lock_driver();
-    if (!gl::has_unusual_variables() || !tried.insert(def.backend).second) return;
+/// How making a context and drawing in it ends a child process: "crashed (Aborted)"; empty if it does not.
+/// This process may have other threads: fork() leaves the locks of memory, of the loader and of the driver
+/// usable in the child, and it takes no others.
+std::string failure_in_child(const gl::ContextDef& def) {
     gl::prepare_driver();
     const auto draw = [&def]() -> std::string {
         try {
@@ -78,10 +78,22 @@ void try_driver(const gl::ContextDef& def) {
         return "done";
     };
     const auto end = run_in_child(draw, kTrialLimits);
-    if (!end || end->finished) return;
+    return !end || end->finished ? "" : end->text;
+}
+
+}  // namespace
+
+void try_driver(const gl::ContextDef& def) {
+    // How each trial failed; empty if it did not. Other variables are another trial.
+    static std::map<std::tuple<gl::ContextDef::Backend, std::optional<int>, std::string>, std::string> trials;
+    const auto lock = gl::lock_driver();
+    if (!gl::has_unusual_variables()) return;
+    const auto [trial, is_new] = trials.try_emplace({def.backend, def.device, gl::driver_variables()});
+    if (is_new) trial->second = failure_in_child(def);
+    if (trial->second.empty()) return;
     throw Error(ExitCode::kNoGl, fmt::format("the OpenGL driver {} when it was tried in a child process\n"
                                              "Unset what chooses or changes the driver: {}",
-                                             end->text, gl::driver_variables()));
+                                             trial->second, gl::driver_variables()));
 }
 
 void check_driver(const gl::Context& context) {

@@ -6,9 +6,9 @@ namespace corda::render {
 
 /// Tries in a child process to make a context by `def` and to draw in it, if the environment has variables
 /// that are known to make drivers crash (see gl::has_unusual_variables()): Mesa does not check their values.
-/// Once per process and backend; later calls return at once. Call it before the first context. Throws
-/// corda::Error (kNoGl) if the child crashes or hangs, with the variables to unset. Any other failure is left
-/// to the caller to meet.
+/// Once per process, backend and value of those variables; later calls return or throw at once. Call it
+/// before a context is made. Throws corda::Error (kNoGl) if the child crashes or hangs, with the variables to
+/// unset. Any other failure is left to the caller to meet.
 void try_driver(const gl::ContextDef& def);
 
 /// Draws a small picture with every shader program of the current context and compares it with

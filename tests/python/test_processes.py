@@ -142,3 +142,20 @@ def test_ctrl_c_ends_the_reading_of_a_large_scene(tmp_path):
     _, words = process.communicate(timeout=30)
     assert process.returncode != 0
     assert "KeyboardInterrupt" in words
+
+
+def test_a_driver_that_variables_crash_does_not_end_the_process():
+    """Mesa 22.3 crashes of this value; a process with threads is told so each time, and draws without it."""
+    ended = run("""
+        threading.Thread(target=time.sleep, args=(1.0,), daemon=True).start()
+        film = corda.Film(text=SCENE)
+        os.environ["MESA_EXTENSION_OVERRIDE"] = "-GL_ARB_texture_float"
+        for _ in range(2):
+            try:
+                film.frame(0)
+            except corda.Error as error:
+                print("Unset" in str(error))
+        del os.environ["MESA_EXTENSION_OVERRIDE"]
+        print(film.frame(0).shape)
+    """)
+    assert ended.stdout in ("True\nTrue\n(90, 160, 4)\n", "(90, 160, 4)\n"), ended.stdout + ended.stderr
