@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,18 +15,6 @@
 
 namespace corda::app {
 namespace {
-
-/// Every way to OpenGL, unless a driver crashes.
-std::vector<gl::Attempt> probe_drivers() {
-    using Backend = gl::ContextDef::Backend;
-    try {
-        for (const Backend backend : {Backend::kDevice, Backend::kSurfaceless, Backend::kDefault})
-            render::try_driver({backend, std::nullopt, false});
-    } catch (const Error& error) {
-        return {{gl::kEveryPlatform, std::nullopt, error.what(), error.code()}};
-    }
-    return gl::probe_contexts(render::check_driver);
-}
 
 void print_contexts(const Console& console, const std::vector<gl::Attempt>& attempts) {
     console.result("Ways to OpenGL, in the order in which they are tried:");
@@ -105,13 +92,17 @@ std::string cannot_draw(const std::vector<gl::Attempt>& attempts) {
 ExitCode doctor(const Console& console) {
     // First, while there are no threads of a driver: each is tried in a child process.
     const std::vector<media::EncoderProbe> encoders = media::probe_encoders();
-    const std::vector<gl::Attempt> attempts = probe_drivers();
+    const std::vector<gl::Attempt> attempts = gl::probe_contexts(render::check_driver, render::try_driver);
     const bool has_gl =
         std::any_of(attempts.begin(), attempts.end(), [](const gl::Attempt& a) { return a.is_usable(); });
     const bool is_temporary = std::any_of(attempts.begin(), attempts.end(), [](const gl::Attempt& a) {
         return a.code == ExitCode::kTemporary;
     });
     print_contexts(console, attempts);
+    const std::string dropped = gl::dropped_variable();
+    if (!dropped.empty())
+        console.result(fmt::format(
+            "  {} is ignored: llvmpipe crashes with it, and pictures do not depend on it", dropped));
     const std::vector<Writable> formats = writable(encoders);
     print_formats(console, formats);
     console.result(has_gl ? "This machine can draw." : cannot_draw(attempts));
@@ -130,6 +121,7 @@ ExitCode doctor(const Console& console) {
                                        : fmt::format(": apt-get install {}", media::libavcodec_package())));
     }
     nlohmann::json json = {{"schema", 1}, {"can_draw", has_gl}, {"can_write", written}};
+    if (!dropped.empty()) json["ignored_variable"] = dropped;
     json["contexts"] = nlohmann::json::array();
     for (const gl::Attempt& attempt : attempts) json["contexts"].push_back(to_json(attempt));
     json["encoders"] = nlohmann::json::array();

@@ -10,12 +10,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <sstream>
 #include <system_error>
 
 #include "corda/core/basics.hpp"
@@ -142,9 +142,9 @@ std::optional<ChildEnd> run_in_child(const std::function<std::string()>& work, c
     ChildEnd end;
     if (!receive(in, limits.wall_s, on_wait, end.text)) {
         child.kill();
-        std::ostringstream words;
-        words << "did not end within " << limits.wall_s << " s";
-        end.text = words.str();
+        std::array<char, 32> seconds{};
+        const auto [stop, status] = std::to_chars(seconds.begin(), seconds.end(), limits.wall_s);
+        end.text = "did not end within " + std::string(seconds.begin(), stop) + " s";
         return end;
     }
     const int status = child.wait();

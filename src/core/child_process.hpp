@@ -29,8 +29,8 @@ struct ChildEnd {
 /// call, or this thread.
 ///
 /// The child is a fork without an exec: a lock that another thread of this process holds stays locked in the
-/// child. So there must be no other thread (has_other_threads()), or `work` takes none of their locks. Throws
-/// corda::Error (kTemporary) if the child was killed by someone else.
+/// child, which then waits until `limits` end it. So there should be no other thread (has_other_threads()).
+/// Throws corda::Error (kTemporary) if the child was killed by someone else.
 [[nodiscard]] std::optional<ChildEnd> run_in_child(const std::function<std::string()>& work,
                                                    const ChildLimits& limits,
                                                    const std::function<void()>& on_wait = {});

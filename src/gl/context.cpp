@@ -12,6 +12,23 @@
 #include "corda/gl/egl_display.hpp"
 
 namespace corda::gl {
+namespace {
+
+/// What chooses a platform alone.
+ContextDef def_of(const Platform& platform) {
+    using Backend = ContextDef::Backend;
+    switch (platform.kind) {
+        case Platform::Kind::kDevice:
+            return {.backend = Backend::kDevice, .device = platform.device_index};
+        case Platform::Kind::kSurfaceless:
+            return {.backend = Backend::kSurfaceless, .device = {}};
+        case Platform::Kind::kDefault:
+            break;
+    }
+    return {.backend = Backend::kDefault, .device = {}};
+}
+
+}  // namespace
 
 struct Context::Impl {
     std::string platform;
@@ -131,7 +148,8 @@ SavedContext::~SavedContext() {
     eglBindAPI(api_);
 }
 
-std::vector<Attempt> probe_contexts(const std::function<void(const Context&)>& check) {
+std::vector<Attempt> probe_contexts(const std::function<void(const Context&)>& check,
+                                    const std::function<void(const ContextDef&)>& before) {
     const auto lock = lock_driver();
     const SavedContext saved;
     std::vector<Attempt> attempts;
@@ -146,6 +164,7 @@ std::vector<Attempt> probe_contexts(const std::function<void(const Context&)>& c
     for (const Platform& platform : platforms) {
         Attempt& attempt = attempts.emplace_back(Attempt{platform.name, std::nullopt, "", ExitCode::kOk});
         try {
+            if (before) before(def_of(platform));
             const Context context(platform);
             attempt.info = context.info();
             if (check) check(context);

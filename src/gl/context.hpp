@@ -82,7 +82,8 @@ class Context {
     [[nodiscard]] const std::string& platform() const;
 
   private:
-    friend std::vector<Attempt> probe_contexts(const std::function<void(const Context&)>& check);
+    friend std::vector<Attempt> probe_contexts(const std::function<void(const Context&)>& check,
+                                               const std::function<void(const ContextDef&)>& before);
     explicit Context(const Platform& platform);
 
     struct Impl;
@@ -109,8 +110,10 @@ class SavedContext {
     pid_t process_;
 };
 
-/// Tries every platform and reports what each gives. `check` is called with each context while it is current;
-/// what it throws is the failure of the platform. The thread's current context stays current.
-[[nodiscard]] std::vector<Attempt> probe_contexts(const std::function<void(const Context&)>& check = {});
+/// Tries every platform and reports what each gives. `before` is called with what chooses a platform before
+/// its context is made, and `check` with the context while it is current; what they throw is the failure of
+/// the platform. The thread's current context stays current.
+[[nodiscard]] std::vector<Attempt> probe_contexts(const std::function<void(const Context&)>& check = {},
+                                                  const std::function<void(const ContextDef&)>& before = {});
 
 }  // namespace corda::gl

@@ -102,25 +102,53 @@ bool replaces_driver(std::string_view value) {
 
 /// Beginnings of the names of variables that the EGL of libglvnd, Mesa and NVIDIA read. Those in small
 /// letters are Mesa's options for single applications (force_glsl_version, allow_higher_compat_version).
-constexpr std::array<std::string_view, 18> kVariablesOfDrivers{
-    "EGL_",  "__EGL_", "LIBGL_",   "MESA_", "GALLIUM_", "GALLIVM_", "LP_",    "DRAW_",  "SOFTPIPE_",
-    "TGSI_", "NIR_",   "ST_DEBUG", "GBM_",  "__GL_",    "__NV_",    "force_", "allow_", "disable_"};
+constexpr std::array kVariablesOfDrivers{std::string_view("EGL_"),
+                                         std::string_view("__EGL_"),
+                                         std::string_view("LIBGL_"),
+                                         std::string_view("MESA_"),
+                                         std::string_view("GALLIUM_"),
+                                         std::string_view("GALLIVM_"),
+                                         std::string_view("LP_"),
+                                         std::string_view("DRAW_USE_LLVM"),
+                                         std::string_view("SOFTPIPE_"),
+                                         std::string_view("TGSI_"),
+                                         std::string_view("NIR_"),
+                                         std::string_view("ST_DEBUG"),
+                                         std::string_view("GBM_BACKEND"),
+                                         std::string_view("__GL_"),
+                                         std::string_view("__NV_"),
+                                         std::string_view("force_gl"),
+                                         std::string_view("force_compat"),
+                                         std::string_view("allow_glsl_"),
+                                         std::string_view("allow_higher_compat"),
+                                         std::string_view("disable_glsl"),
+                                         std::string_view("disable_arb_"),
+                                         std::string_view("disable_blend_")};
 /// Those of them that only log or cache, or that prepare_driver() sets.
-constexpr std::array<std::string_view, 9> kHarmlessVariables{
-    "EGL_LOG_",        "LIBGL_DEBUG",    "MESA_DEBUG",
-    "MESA_LOG",        "MESA_SHADER_",   "MESA_GLSL_CACHE",
-    "MESA_DISK_CACHE", "LP_NUM_THREADS", "LP_NATIVE_VECTOR_WIDTH"};
+constexpr std::array kHarmlessVariables{
+    std::string_view("EGL_LOG_"),          std::string_view("LIBGL_DEBUG"),
+    std::string_view("MESA_DEBUG"),        std::string_view("MESA_LOG"),
+    std::string_view("MESA_SHADER_CACHE"), std::string_view("MESA_GLSL_CACHE"),
+    std::string_view("MESA_DISK_CACHE"),   std::string_view("__GL_SHADER_DISK_CACHE"),
+    std::string_view("LP_NUM_THREADS"),    std::string_view("LP_NATIVE_VECTOR_WIDTH")};
 constexpr std::array<std::string_view, 4> kUsualVariables{
     "EGL_PLATFORM=surfaceless", "GALLIUM_DRIVER=llvmpipe", "LIBGL_ALWAYS_SOFTWARE=1",
     "LIBGL_ALWAYS_SOFTWARE=true"};
 
-/// See prepare_driver().
-bool set_llvmpipe_variables() {
+/// See prepare_driver(). Returns the value that LP_NATIVE_VECTOR_WIDTH had if it is unset.
+std::string set_llvmpipe_variables() {
     setenv("LP_NUM_THREADS", "0", 0);
-    const char* const bits = std::getenv("LP_NATIVE_VECTOR_WIDTH");
-    if (bits != nullptr && std::string_view(bits) != "128" && std::string_view(bits) != "256")
-        unsetenv("LP_NATIVE_VECTOR_WIDTH");
-    return true;
+    const char* const given = std::getenv("LP_NATIVE_VECTOR_WIDTH");
+    const std::string bits = given != nullptr ? given : "";
+    if (bits.empty() || bits == "128" || bits == "256") return "";
+    unsetenv("LP_NATIVE_VECTOR_WIDTH");
+    return bits;
+}
+
+/// The value of LP_NATIVE_VECTOR_WIDTH that prepare_driver() has dropped.
+std::string& dropped_width() {
+    static std::string bits;
+    return bits;
 }
 
 /// The variables that are set and may change what a driver does, as "NAME=value", sorted.
@@ -196,7 +224,8 @@ bool has_libraries() {
 void prepare_driver() {
     const bool is_first = driver_use().process == 0;
     require_address_space(is_first ? kFirstContextBytes : kContextBytes, "OpenGL");
-    static const bool is_set = set_llvmpipe_variables();  // once: other threads may read the environment
+    // Once: other threads may read the environment.
+    static const bool is_set = (dropped_width() = set_llvmpipe_variables(), true);
     static_cast<void>(is_set);
     if (!has_libraries()) throw Error(ExitCode::kNoGl, "no usable OpenGL: " + missing_library());
 }
@@ -229,6 +258,11 @@ void require_driver_after_fork() {
         "the parent process has drawn with threads or hardware that a forked process does not have; start "
         "processes by spawn (Python: multiprocessing.get_context(\"spawn\")), or fork before the first "
         "picture");
+}
+
+std::string dropped_variable() {
+    const auto lock = lock_driver();
+    return dropped_width().empty() ? "" : "LP_NATIVE_VECTOR_WIDTH=" + dropped_width();
 }
 
 std::string driver_variables() {

@@ -16,10 +16,13 @@ namespace corda::gl {
 /// Prepares the process for EGL; call it before any other use of EGL, under lock_driver(). Sets
 /// LP_NUM_THREADS to 0 unless it is set: llvmpipe waits for ever for threads that could not start or that
 /// fork() left in the parent, and the threads cost more than they save. Unsets LP_NATIVE_VECTOR_WIDTH unless
-/// it is 128 or 256: of other values, 512 too, llvmpipe crashes (Mesa 22.3), and pictures do not depend on
-/// it. Throws corda::Error: kNoGl with the
-/// Debian package if a library is missing, kTemporary if the limit on the address space leaves too little.
+/// it is 128 or 256: llvmpipe crashes with other values, including 512 (Mesa 22.3), and pictures do not
+/// depend on it. Throws corda::Error: kNoGl with the Debian package if a library is missing, kTemporary if
+/// the limit on the address space leaves too little.
 void prepare_driver();
+
+/// The variable that prepare_driver() has unset, as "NAME=value"; empty if there is none.
+[[nodiscard]] std::string dropped_variable();
 
 /// Records how this process uses its driver. `is_safe` is true if a child of fork() may make a context, as
 /// no thread of the driver is lost in it.
@@ -39,8 +42,8 @@ void note_faulty_driver();
 /// alphabetical order, separated by commas; empty if none is set. Those that only log or cache are left out.
 [[nodiscard]] std::string driver_variables();
 
-/// True if a variable of driver_variables() is set other than the usual ones for a machine without a screen,
-/// which no driver is known to crash of.
+/// True if a variable of driver_variables() is set other than the usual ones of a machine without a screen,
+/// with which no driver is known to crash.
 [[nodiscard]] bool has_unusual_variables();
 
 /// Remedy if no driver gives a context, as a sentence: variables to unset, packages that are missing, or how

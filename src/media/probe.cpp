@@ -76,15 +76,15 @@ struct Trial {
 /// With a limited address space the encoders have what drawing will leave of it, and their own size.
 Trial try_encoders(const Format& format, const VideoDef& video, int jobs, std::uint64_t kept_bytes,
                    const std::function<void()>& on_wait) {
+    const auto left = address_space_left();  // first, as threads leave some of it to the allocator
     if (std::string lack = lack_of_threads(*format.codec); !lack.empty()) return {std::move(lack), true};
-    const auto left = address_space_left();
     const VideoDef def = left ? video : small_video(video);
     ChildLimits limits{std::uint64_t{1} << 46U, std::int64_t{60}, kLongestS};
     if (left) limits.memory_bytes = *left - std::min(*left, kept_bytes * static_cast<std::uint64_t>(jobs));
     const auto work = [&] { return "-" + encode_one(format, def, jobs); };
     const auto end = run_in_child(work, limits, on_wait);
-    const bool starts_threads = can_start_threads(1 + threads_of(*format.codec));
-    if (!end && starts_threads) return {};
+    const auto starts_threads = [&] { return can_start_threads(1 + threads_of(*format.codec)); };
+    if (!end && starts_threads()) return {};
     if (!end)
         return {
             "the system starts no further process or thread; run fewer processes, or raise the limit (ulimit "
@@ -100,7 +100,7 @@ Trial try_encoders(const Format& format, const VideoDef& video, int jobs, std::u
             "raise the limit, or choose a smaller size",
             *left >> 10U, (kept_bytes >> 10U) * static_cast<std::uint64_t>(jobs));
         trial.is_temporary = true;
-    } else if (!starts_threads) {
+    } else if (!starts_threads()) {
         trial.failure +=
             "; the system starts no further threads: run fewer processes, or raise the limit (ulimit -u)";
         trial.is_temporary = true;

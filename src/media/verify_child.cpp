@@ -56,14 +56,15 @@ bool has_little_memory() {
     return limit.rlim_cur < kMemoryBytes;
 }
 
-/// Throws corda::Error (kTemporary) for a file whose reading ended as `fate` says, if memory may be the
-/// reason.
-void require_memory(const std::string& path, const std::string& fate) {
-    if (!has_little_memory()) return;
+/// Throws corda::Error (kTemporary) for a file whose reading ended as `fate` says, if a lack of memory may be
+/// the reason.
+void throw_if_memory_may_lack(const std::string& path, const std::string& fate) {
+    if (!has_little_memory() || !fate.starts_with("crashed")) return;
     throw Error(
         ExitCode::kTemporary,
-        fmt::format("reading '{}' {} in the memory that the system allows (ulimit -v); raise the limit", path,
-                    fate));
+        fmt::format("reading '{}' {}, perhaps because the system allows little memory (ulimit -v): raise "
+                    "the limit; if that changes nothing, the file is damaged",
+                    path, fate));
 }
 
 /// What the child tells: the report, or the error that `verify` threw. As CBOR, because the words may quote
@@ -99,7 +100,7 @@ VerifyReport verify_in_child(const std::string& path, const OnProgress& on_progr
     const auto end = run_in_child([&] { return told(path, has_little, fps); }, limits_for(path), on_wait);
     if (!end) return verify(path, on_progress, VerifyDepth::kAllFrames, {}, fps);
     if (!end->finished) {
-        require_memory(path, end->text);
+        throw_if_memory_may_lack(path, end->text);
         return damaged(end->text);
     }
     const Json json = Json::from_cbor(end->text);
@@ -122,7 +123,7 @@ void check_part_in_child(const std::string& path, bool decodes, const OnProgress
     };
     const auto end = run_in_child(read, limits_for(path), [&] { report_progress(on_progress, 0, 0); });
     if (!end || end->finished) return;
-    require_memory(path, end->text);
+    throw_if_memory_may_lack(path, end->text);
     throw Error(ExitCode::kMismatch,
                 fmt::format("'{}' is damaged: reading it {}; render it again (--force)", path, end->text));
 }

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <map>
 #include <optional>
 #include <set>
@@ -26,7 +27,7 @@ constexpr int kWidth = 88;
 constexpr int kHeight = 72;
 
 /// A trial takes 0.1 s, and as much memory as it needs.
-constexpr ChildLimits kTrialLimits{std::uint64_t{1} << 46U, 20, 20.0};
+constexpr ChildLimits kTrialLimits{std::uint64_t{1} << 46U, 10, 10.0};
 
 /// Lines and discs with and without halo, wide and thin, opaque and transparent, tinted and not, that overlap
 /// and leave the picture, on a gradient. `shift_px` moves them.
@@ -64,12 +65,13 @@ std::optional<std::string> first_difference(const Image& drawn, const Image& wan
     return std::nullopt;
 }
 
-/// How making a context and drawing in it ends a child process: "crashed (Aborted)"; empty if it does not.
-/// This process may have other threads: fork() leaves the locks of memory, of the loader and of the driver
-/// usable in the child, and it takes no others.
-std::string failure_in_child(const gl::ContextDef& def) {
-    gl::prepare_driver();
+/// How a child process ends that makes a context and draws in it: "crashed (Aborted)"; empty if it finishes,
+/// std::nullopt if that was not found out. A child of a process with other threads may wait for a lock that
+/// one of them held, so that its hanging says nothing of the driver.
+std::optional<std::string> fate_of_trial(const gl::ContextDef& def) {
     const auto draw = [&def]() -> std::string {
+        // This process hears what a terminal sends to both, and ends the child with itself.
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_IGN);
         try {
             const gl::Context context(def);
             check_driver(context);
@@ -77,23 +79,31 @@ std::string failure_in_child(const gl::ContextDef& def) {
         }
         return "done";
     };
+    const bool may_wait_for_locks = has_other_threads();
     const auto end = run_in_child(draw, kTrialLimits);
-    return !end || end->finished ? "" : end->text;
+    if (!end || (may_wait_for_locks && !end->finished && !end->text.starts_with("crashed")))
+        return std::nullopt;
+    return end->finished ? "" : end->text;
 }
 
 }  // namespace
 
 void try_driver(const gl::ContextDef& def) {
-    // How each trial failed; empty if it did not. Other variables are another trial.
-    static std::map<std::tuple<gl::ContextDef::Backend, std::optional<int>, std::string>, std::string> trials;
+    using Key = std::tuple<gl::ContextDef::Backend, std::optional<int>, bool, std::string>;
+    static std::map<Key, std::string> fates;  // other variables are another trial
     const auto lock = gl::lock_driver();
     if (!gl::has_unusual_variables()) return;
-    const auto [trial, is_new] = trials.try_emplace({def.backend, def.device, gl::driver_variables()});
-    if (is_new) trial->second = failure_in_child(def);
-    if (trial->second.empty()) return;
+    const Key key{def.backend, def.device, def.require_gpu, gl::driver_variables()};
+    if (!fates.contains(key)) {
+        gl::prepare_driver();
+        const auto fate = fate_of_trial(def);
+        if (!fate) return;
+        fates[key] = *fate;
+    }
+    if (fates[key].empty()) return;
     throw Error(ExitCode::kNoGl, fmt::format("the OpenGL driver {} when it was tried in a child process\n"
                                              "Unset what chooses or changes the driver: {}",
-                                             trial->second, gl::driver_variables()));
+                                             fates[key], gl::driver_variables()));
 }
 
 void check_driver(const gl::Context& context) {

@@ -4,11 +4,11 @@
 
 namespace corda::render {
 
-/// Tries in a child process to make a context by `def` and to draw in it, if the environment has variables
-/// that are known to make drivers crash (see gl::has_unusual_variables()): Mesa does not check their values.
-/// Once per process, backend and value of those variables; later calls return or throw at once. Call it
-/// before a context is made. Throws corda::Error (kNoGl) if the child crashes or hangs, with the variables to
-/// unset. Any other failure is left to the caller to meet.
+/// Tries in a child process to make a context by `def` and to draw in it, if the environment has unusual
+/// variables (see gl::has_unusual_variables()): Mesa crashes with some of their values. Once per process,
+/// `def` and variables; later calls return or throw at once. Call it before a context is made. Throws
+/// corda::Error: kNoGl if the child crashes or hangs, with the variables to unset; what gl::prepare_driver()
+/// and run_in_child() throw. Says nothing of a driver that gives no context: Context does.
 void try_driver(const gl::ContextDef& def);
 
 /// Draws a small picture with every shader program of the current context and compares it with

@@ -62,11 +62,14 @@ std::string contents(const FileHandle& file) {
     _exit(EXIT_FAILURE);
 }
 
-/// That of this process, but in UTC: what a program writes is not to depend on where it runs.
-std::vector<char*> environment_in_utc(std::string& time_zone) {
-    std::vector<char*> result{time_zone.data()};
-    for (char** entry = environ; entry != nullptr && *entry != nullptr; ++entry)
-        if (!std::string_view(*entry).starts_with("TZ=")) result.push_back(*entry);
+/// That of this process, but in UTC and English: what a program writes does not depend on where it runs.
+std::vector<char*> environment_of_child(std::string& time_zone, std::string& locale) {
+    std::vector<char*> result{time_zone.data(), locale.data()};
+    for (char** entry = environ; entry != nullptr && *entry != nullptr; ++entry) {
+        const std::string_view text(*entry);
+        if (!text.starts_with("TZ=") && !text.starts_with("LC_ALL=") && !text.starts_with("LANGUAGE="))
+            result.push_back(*entry);
+    }
     result.push_back(nullptr);
     return result;
 }
@@ -80,7 +83,8 @@ pid_t start(const std::vector<std::string>& command, const std::array<int, 3>& s
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     std::string time_zone = "TZ=UTC0";
-    const std::vector<char*> environment = environment_in_utc(time_zone);
+    std::string locale = "LC_ALL=C.UTF-8";
+    const std::vector<char*> environment = environment_of_child(time_zone, locale);
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) fail("cannot make a pipe for", command.front(), errno);
     const Descriptor in(ends[0]);

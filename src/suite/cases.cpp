@@ -70,8 +70,9 @@ Case make_case(const std::string& path, const SuiteDef& def, std::set<std::strin
 }
 
 /// True for a text with a table `golden` or tables `rope` or `net`, in any of TOML's spellings: it is a scene
-/// even without its schema, whose absence is then an error.
+/// even without its schema, whose absence is then an error. `rope = ` in a table is another program's.
 bool has_tables_of_scenes(std::string_view text) {
+    bool is_in_root = true;
     for (std::size_t at = 0; at < text.size(); at = std::min(text.find('\n', at), text.size() - 1) + 1) {
         const std::size_t word = text.find_first_not_of(" \t\"'[", at);
         if (word == std::string_view::npos) return false;
@@ -81,15 +82,16 @@ bool has_tables_of_scenes(std::string_view text) {
             // Cargo has a table [net].
             const bool is_list = text.substr(at, word - at).find("[[") != std::string_view::npos;
             if (next != std::string_view::npos && (table != "net" || is_list) &&
-                std::string_view("].=").find(text[next]) != std::string_view::npos)
+                std::string_view(is_in_root ? "].=" : "].").find(text[next]) != std::string_view::npos)
                 return true;
         }
+        is_in_root = is_in_root && text.substr(at, word - at).find('[') == std::string_view::npos;
     }
     return false;
 }
 
-/// True for a key `schema` of the root whose value is no string: those are other programs' (addresses of JSON
-/// Schemas for instance).
+/// True for a key `schema` of the root whose value is a number. Another value belongs to another program, for
+/// instance the address of a JSON Schema.
 bool has_schema(std::string_view text) {
     for (std::size_t at = 0; at < text.size(); at = std::min(text.find('\n', at), text.size() - 1) + 1) {
         const std::size_t word = text.find_first_not_of(" \t\"'", at);
@@ -98,7 +100,7 @@ bool has_schema(std::string_view text) {
         const std::size_t sign = text.find_first_not_of(" \t\"'", word + 6);
         if (sign == std::string_view::npos || text[sign] != '=') continue;
         const std::size_t value = text.find_first_not_of(" \t", sign + 1);
-        return value != std::string_view::npos && text[value] != '"' && text[value] != '\'';
+        return value != std::string_view::npos && text[value] >= '0' && text[value] <= '9';
     }
     return false;
 }
@@ -154,8 +156,20 @@ std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid,
                              std::vector<std::string>& passed_over) {
     std::vector<Case> cases;
     std::set<std::string> names;
-    const auto load = [&](const std::string& file) -> std::optional<Case> {
+    std::error_code none;  // the reader reports the error
+    const auto load = [&](const std::string& file, bool is_folder) -> std::optional<Case> {
         try {
+            if (fs::status(file, none).type() == fs::file_type::not_found && fs::is_symlink(file, none))
+                throw Error(
+                    ExitCode::kInvalidScene,
+                    fmt::format("{}: a link to nothing; restore that file, or remove the link", file));
+            if (is_folder && is_foreign(file)) {
+                passed_over.push_back(
+                    fmt::format("{}: passed over: no scene, as it has neither schema = 1 nor [golden], "
+                                "[[rope]] or [[net]]",
+                                file));
+                return std::nullopt;
+            }
             return make_case(file, def, names);
         } catch (const Error& error) {
             if (error.code() != ExitCode::kInvalidScene || def.update) throw;
@@ -167,20 +181,11 @@ std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid,
         }
     };
     for (const std::string& path : def.paths) {
-        std::error_code none;  // who reads it tells what is wrong
         const bool is_folder = fs::is_directory(path, none);
         const std::vector<std::string> files =
             is_folder ? files_in<fs::recursive_directory_iterator>(path, ".toml") : std::vector{path};
         for (const std::string& file : files) {
-            if (is_folder && !fs::exists(file, none)) {
-                passed_over.push_back(fmt::format("{}: passed over: a link to nothing", file));
-                continue;
-            }
-            if (is_folder && is_foreign(file)) {
-                passed_over.push_back(fmt::format("{}: passed over: no scene, as it has no schema", file));
-                continue;
-            }
-            std::optional<Case> made = load(file);
+            std::optional<Case> made = load(file, is_folder);
             if (!made) continue;
             if (made->scene.golden)
                 cases.push_back(std::move(*made));

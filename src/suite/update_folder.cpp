@@ -190,7 +190,7 @@ std::vector<UpdateFolder::Change> UpdateFolder::read_journal(const std::string& 
             fmt::format("'{}' is damaged; restore the pictures of '{}' (git checkout), and remove '{}'", path,
                         pictures_, inside_));
     };
-    require(text.ends_with(kEndOfJournal));
+    require(text == kEndOfJournal || text.ends_with('\0' + std::string(kEndOfJournal)));
     text.resize(text.size() - kEndOfJournal.size());
     std::vector<Change> changes;
     for (std::size_t begin = 0; begin < text.size();) {

@@ -296,15 +296,24 @@ TEST_F(GoldenSuite, PassesOverTomlFilesOfOtherPrograms) {
     test::write_file(folder_.file("scenes/pyproject.toml"), "[project]\nname = \"x\"\n");
     test::write_file(folder_.file("scenes/address.toml"), "schema = \"https://example.org/a.json\"\n");
     test::write_file(folder_.file("scenes/nested.toml"), "[tool.a]\nschema = 1\n");
-    std::filesystem::create_symlink("nothing", folder_.file("scenes/link.toml"));
+    test::write_file(folder_.file("scenes/table.toml"), "schema = { a = 1 }\n[packages]\nrope = \"^1\"\n");
     std::filesystem::create_directory(folder_.file("scenes/folder.toml"));
     const auto result = run({"-v"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
-    for (const char* const name : {"pyproject", "address", "nested", "link"})
+    for (const char* const name : {"pyproject", "address", "nested", "table"})
         EXPECT_THAT(result.err, HasSubstr(name + std::string(".toml: passed over")));
     EXPECT_EQ(test::run_corda({"golden", folder_.file("scenes/pyproject.toml"), "--dir", folder_.file("ref")})
                   .exit_code,
               3);
+}
+
+TEST_F(GoldenSuite, NamesALinkToNothingAndChecksTheOthers) {
+    std::filesystem::create_symlink("nothing", folder_.file("scenes/link.toml"));
+    const auto result = run({"--json"});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_THAT(result.out, HasSubstr("link.toml: a link to nothing"));
+    EXPECT_GT(nlohmann::json::parse(result.out)["passed"], 0);
+    EXPECT_EQ(run({"--update"}).exit_code, 3);  // or the pictures of that scene would be removed
 }
 
 TEST_F(GoldenSuite, NamesAFolderThatIsWhereAPictureIsToBe) {
