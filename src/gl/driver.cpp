@@ -139,7 +139,7 @@ constexpr std::array<std::string_view, 4> kUsualVariables{
 std::string set_llvmpipe_variables() {
     setenv("LP_NUM_THREADS", "0", 0);
     const char* const given = std::getenv("LP_NATIVE_VECTOR_WIDTH");
-    const std::string bits = given != nullptr ? given : "";
+    std::string bits = given != nullptr ? given : "";
     if (bits.empty() || bits == "128" || bits == "256") return "";
     unsetenv("LP_NATIVE_VECTOR_WIDTH");
     return bits;
