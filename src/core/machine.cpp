@@ -79,14 +79,24 @@ int allowed_cores() {
     return static_cast<int>(std::thread::hardware_concurrency());
 }
 
+/// What a limit of this process leaves; `used` is what /proc/self/status calls its use. Empty without one.
+std::optional<std::uint64_t> left_of_limit(decltype(RLIMIT_AS) resource, const char* used,
+                                           const std::filesystem::path& root) {
+    rlimit limit{};
+    if (::getrlimit(resource, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
+    const auto used_kib = number_after(root / "proc/self/status", used);
+    if (!used_kib) return std::nullopt;
+    return limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, *used_kib * 1024);
+}
+
 }  // namespace
 
 std::optional<std::uint64_t> address_space_left(const std::filesystem::path& root) {
-    rlimit limit{};
-    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
-    const auto used_kib = number_after(root / "proc/self/status", "VmSize:");
-    if (!used_kib) return std::nullopt;
-    return limit.rlim_cur - std::min<std::uint64_t>(limit.rlim_cur, *used_kib * 1024);
+    return left_of_limit(RLIMIT_AS, "VmSize:", root);
+}
+
+std::optional<std::uint64_t> data_left(const std::filesystem::path& root) {
+    return left_of_limit(RLIMIT_DATA, "VmData:", root);
 }
 
 std::optional<std::uint64_t> available_memory_bytes(const std::filesystem::path& root) {
@@ -96,16 +106,22 @@ std::optional<std::uint64_t> available_memory_bytes(const std::filesystem::path&
         if (left) least = least ? std::min(*least, *left) : *left;
     };
     heed(address_space_left(root));
+    heed(data_left(root));
     for_each_group(root, [&heed](const std::filesystem::path& group) { heed(left_in(group)); });
     return least;
 }
 
-void require_address_space(std::uint64_t bytes, const std::string& what) {
-    const auto left = address_space_left();
-    if (!left || *left >= bytes) return;
-    throw Error(ExitCode::kTemporary, what + " needs " + std::to_string((bytes + (1U << 20U) - 1) >> 20U) +
-                                          " MiB of address space, and the limit of this process leaves " +
-                                          std::to_string(*left >> 20U) + " MiB; raise the limit (ulimit -v)");
+void require_address_space(std::uint64_t bytes, const std::string& what, std::uint64_t data_bytes) {
+    const auto require = [&what](std::uint64_t needed, std::optional<std::uint64_t> left, const char* of,
+                                 const char* limit) {
+        if (!left || *left >= needed) return;
+        throw Error(ExitCode::kTemporary,
+                    what + " needs " + std::to_string((needed + (1U << 20U) - 1) >> 20U) + " MiB of " + of +
+                        ", and the limit of this process leaves " + std::to_string(*left >> 20U) +
+                        " MiB; raise the limit (" + limit + ")");
+    };
+    require(bytes, address_space_left(), "address space", "ulimit -v");
+    require(data_bytes != 0 ? data_bytes : bytes, data_left(), "data", "ulimit -d");
 }
 
 int usable_cores(const std::filesystem::path& root) {

@@ -15,10 +15,13 @@ namespace corda {
 /// Bytes that the limit on the address space of this process leaves (ulimit -v); empty without one.
 [[nodiscard]] std::optional<std::uint64_t> address_space_left(const std::filesystem::path& root = "/");
 
-/// Throws corda::Error (kTemporary) if the limit on this process's address space (ulimit -v) leaves less than
-/// `bytes`, which `what` needs. Libraries that cannot allocate memory may crash or hang, so call this before
-/// they try.
-void require_address_space(std::uint64_t bytes, const std::string& what);
+/// The same of the limit on its data (ulimit -d): the memory that it may write to, but for what it shares.
+[[nodiscard]] std::optional<std::uint64_t> data_left(const std::filesystem::path& root = "/");
+
+/// Throws corda::Error (kTemporary) if the limits on this process's address space or data leave less than
+/// `bytes`, which `what` needs, or `data_bytes` of data, if those are given. Libraries that cannot allocate
+/// memory may crash or hang, so call this before they try.
+void require_address_space(std::uint64_t bytes, const std::string& what, std::uint64_t data_bytes = 0);
 
 /// How many cores this process may keep busy, at least 1: those that the calling thread may run on (taskset,
 /// a container's set of cores), or fewer if the processor time of its control groups (version 2) is that of

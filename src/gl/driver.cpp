@@ -42,6 +42,8 @@ void guard_fork() {
 /// Address space that the first context takes: measured 200 MB on Mesa 22.3 with LLVM 15, of which most is
 /// the driver's code. Later LLVM is larger.
 constexpr std::uint64_t kFirstContextBytes = 320U << 20U;
+/// Of these, what is written to.
+constexpr std::uint64_t kFirstContextData = 96U << 20U;
 /// A further context, its programs and their compilation: measured below 10 MB.
 constexpr std::uint64_t kContextBytes = 48U << 20U;
 
@@ -223,7 +225,8 @@ bool has_libraries() {
 
 void prepare_driver() {
     const bool is_first = driver_use().process == 0;
-    require_address_space(is_first ? kFirstContextBytes : kContextBytes, "OpenGL");
+    require_address_space(is_first ? kFirstContextBytes : kContextBytes, "OpenGL",
+                          is_first ? kFirstContextData : kContextBytes);
     // Once: other threads may read the environment.
     static const bool is_set = (dropped_width() = set_llvmpipe_variables(), true);
     static_cast<void>(is_set);

@@ -94,11 +94,18 @@ Trial try_encoders(const Format& format, const VideoDef& video, int jobs, std::u
     Trial trial{end->finished ? end->text.substr(1) : fmt::format("{} {}", format.codec->name, end->text),
                 false};
     const bool hangs = !end->finished && end->text.starts_with("did not end");
-    if (left) {
+    if (format.codec->is_hardware) return trial;  // it is the device that is missing
+    if (data_left()) {
+        trial.failure +=
+            "; the limit on data may be the reason: raise it (ulimit -d), or choose a smaller size";
+        trial.is_temporary = true;
+    } else if (left) {
         trial.failure += fmt::format(
-            "; {} KiB of address space are left (ulimit -v), some {} of them for drawing: "
-            "raise the limit, or choose a smaller size",
-            *left >> 10U, (kept_bytes >> 10U) * static_cast<std::uint64_t>(jobs));
+            "; {} KiB of address space are left (ulimit -v){}: raise the limit, or choose a smaller size",
+            *left >> 10U,
+            kept_bytes == 0 ? ""
+                            : fmt::format(", and drawing needs some {}",
+                                          (kept_bytes >> 10U) * static_cast<std::uint64_t>(jobs)));
         trial.is_temporary = true;
     } else if (!starts_threads()) {
         trial.failure +=

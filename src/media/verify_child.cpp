@@ -1,12 +1,13 @@
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <filesystem>
 #include <new>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/child_process.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/part_reader.hpp"
 #include "corda/media/verify.hpp"
@@ -51,9 +52,8 @@ VerifyReport damaged(const std::string& decoding) {
 
 /// Whether the user allows less memory than a child may take: then a lack of it is not the file's fault.
 bool has_little_memory() {
-    rlimit limit{};
-    getrlimit(RLIMIT_AS, &limit);
-    return limit.rlim_cur < kMemoryBytes;
+    const auto is_little = [](std::optional<std::uint64_t> left) { return left && *left < kMemoryBytes; };
+    return is_little(address_space_left()) || is_little(data_left());
 }
 
 /// Throws corda::Error (kTemporary) for a file whose reading ended as `fate` says, if a lack of memory may be
@@ -62,9 +62,26 @@ void throw_if_memory_may_lack(const std::string& path, const std::string& fate) 
     if (!has_little_memory() || !fate.starts_with("crashed")) return;
     throw Error(
         ExitCode::kTemporary,
-        fmt::format("reading '{}' {}, perhaps because the system allows little memory (ulimit -v): raise "
-                    "the limit; if that changes nothing, the file is damaged",
-                    path, fate));
+        fmt::format(
+            "reading '{}' {}, perhaps because the system allows little memory (ulimit -v, ulimit -d): raise "
+            "the limit; if that changes nothing, the file is damaged",
+            path, fate));
+}
+
+/// The same for problems that were found: without memory libavformat loses packets, and libavcodec frames,
+/// and both say nothing (FFmpeg 7.1).
+void throw_if_memory_may_lack(const std::string& path, const VerifyReport& report) {
+    constexpr std::uint64_t kFrames = 24;  // that a decoder may hold
+    const std::uint64_t needed = (std::uint64_t{32} << 20) + kFrames * 4 *
+                                                                 static_cast<std::uint64_t>(report.width_px) *
+                                                                 static_cast<std::uint64_t>(report.height_px);
+    const auto is_less = [&](std::optional<std::uint64_t> left) { return left && *left < needed; };
+    if (report.problems.empty() || !(is_less(address_space_left()) || is_less(data_left()))) return;
+    throw Error(
+        ExitCode::kTemporary,
+        fmt::format("'{}' cannot be judged in the memory that the system allows (ulimit -v, ulimit -d): "
+                    "raise the limit (found: {})",
+                    path, report.problems.front()));
 }
 
 /// What the child tells: the report, or the error that `verify` threw. As CBOR, because the words may quote
@@ -104,7 +121,11 @@ VerifyReport verify_in_child(const std::string& path, const OnProgress& on_progr
         return damaged(end->text);
     }
     const Json json = Json::from_cbor(end->text);
-    if (!json.contains("error")) return json.at("report");
+    if (!json.contains("error")) {
+        const VerifyReport report = json.at("report");
+        throw_if_memory_may_lack(path, report);
+        return report;
+    }
     const Json& error = json["error"];
     throw Error(static_cast<ExitCode>(error.at("code").get<int>()), error.at("message").get<std::string>());
 }

@@ -122,6 +122,12 @@ TEST_F(Drivers, WithoutMemoryEndWithExitCode75) {
         EXPECT_EQ(result.exit_code, 75) << mib << result.err;
         EXPECT_THAT(result.err, HasSubstr("address space"));
     }
+    for (const int mib : {50, 70, 90}) {
+        const auto result = still("ulimit -d " + std::to_string(mib << 10) + ";");
+        EXPECT_EQ(result.exit_code, 75) << mib << result.err;
+        EXPECT_THAT(result.err, HasSubstr("ulimit -d"));
+    }
+    EXPECT_EQ(still("ulimit -d " + std::to_string(200 << 10) + ";").exit_code, 0);
 }
 
 }  // namespace
