@@ -20,14 +20,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files and links of a folder with this ending, sorted; with Iterator also those of the folders in it.
+/// Files of a folder with this ending, and links to nothing, sorted; with Iterator also those of the folders
+/// in it.
 template <class Iterator = fs::directory_iterator>
 std::vector<std::string> files_in(const std::string& folder, const std::string& ending) {
     std::vector<std::string> paths;
     std::error_code failure;
     std::error_code none;  // the reader reports the error
     for (Iterator entry(folder, failure), end; !failure && entry != end; entry.increment(failure))
-        if (entry->path().extension() == ending && !entry->is_directory(none))
+        if (entry->path().extension() == ending && (entry->is_regular_file(none) || !entry->exists(none)))
             paths.push_back(entry->path().string());
     if (failure) fail_file("read", folder, failure.value());
     std::sort(paths.begin(), paths.end());

@@ -245,7 +245,8 @@ class Runner {
             const bool is_kept =
                 picture.variant != picture.name || from_png_info(read_png_info(path)).is_frozen_as(made);
             if (is_kept) return;
-            picture.cause = "the same pixels, by another solver or camera";
+            picture.cause = lacks_record(path) ? "the same pixels, without a record of how they were made"
+                                               : "the same pixels, by another solver or camera";
         }
         if (!def_.force && is_no_png((fs::path(def_.folder) / picture.name).string())) return;
         picture.changed = true;
@@ -320,16 +321,17 @@ void tell_lost_records(const SuiteDef& def, const std::vector<Case>& cases, Suit
                     list));
 }
 
-/// Throws corda::Error (kIo) if there is a folder where a picture is to be.
-void require_no_folders(const SuiteDef& def, const std::vector<Case>& cases) {
+/// Throws corda::Error (kIo) if there is a folder, a pipe or a device where a picture is to be.
+void require_files(const SuiteDef& def, const std::vector<Case>& cases) {
     std::error_code none;
     for (const Case& one : cases)
         for (const Checked& picture : one.pictures)
-            if (const auto path = fs::path(def.folder) / picture.name; fs::is_directory(path, none))
-                throw Error(ExitCode::kIo,
-                            fmt::format("'{}' is a folder, and a picture needs this name; move "
-                                        "the folder away",
-                                        path.string()));
+            if (const auto path = fs::path(def.folder) / picture.name;
+                fs::exists(path, none) && !fs::is_regular_file(path, none))
+                throw Error(
+                    ExitCode::kIo,
+                    fmt::format("'{}' is {}, and a picture needs this name; move it away", path.string(),
+                                fs::is_directory(path, none) ? "a folder" : "no file"));
 }
 
 }  // namespace
@@ -338,7 +340,7 @@ SuiteResult run(const SuiteDef& def) {
     std::vector<Checked> invalid;
     SuiteResult result;
     std::vector<Case> cases = load_cases(def, invalid, result.details);
-    require_no_folders(def, cases);
+    require_files(def, cases);
     std::string settled = settle_update(def.folder, def.dry_run);
     if (!settled.empty()) result.notes.push_back(std::move(settled));
     const std::vector<std::string> references = references_in(def.folder);
