@@ -32,7 +32,7 @@ std::optional<Rational> rounded_fraction(double fps) {
 
 /// The fraction of few digits that a number with many is, such as 0.142857142857.
 std::optional<Rational> nearest_fraction(double fps) {
-    constexpr std::int64_t kLargestDenominator = 1000;
+    constexpr std::int64_t kLargestDenominator = 1001;  // of 30000/1001
     for (std::int64_t den = 2; den <= kLargestDenominator; ++den) {
         const double num = std::round(fps * static_cast<double>(den));
         if (std::abs(fps * static_cast<double>(den) - num) < 1e-9 * num) {

@@ -72,10 +72,15 @@ def test_none_leaves_a_key_as_it_is():
     ({"settings": "rope"}, "^settings: takes a dictionary"), ({"settings": {3: 4}}, "^settings: takes a str, not int"),
     ({"fps": 25, "settings": {"video.fps": 30}}, "^fps: is given by video.fps, too"), ({"require_gpu": "no"}, "^require_gpu: "),
     ({"settings": {"rope[0].hang": {1: 2}}}, r"^rope\[0\].hang: takes a str, not int"),
+    ({"world__drag": np.ma.masked}, "^world__drag: takes a value, not a masked one"),
 ])
 def test_other_types_are_refused_by_their_keyword(keywords, words):
     with pytest.raises(TypeError, match=words):
         film(**keywords)
+
+
+HOLDS_ITSELF = [1.0]
+HOLDS_ITSELF.append(HOLDS_ITSELF)
 
 
 @pytest.mark.parametrize("keywords, words", [
@@ -87,6 +92,8 @@ def test_other_types_are_refused_by_their_keyword(keywords, words):
     ({"duration": decimal.Decimal("Infinity")}, "^duration=inf: "),
     ({"duration": decimal.Decimal("sNaN")}, "^duration: takes a number that a float can hold"),
     ({"duration": fractions.Fraction(10**400)}, "^duration: takes a number that a float can hold"),
+    ({"fps": 30000 / 1001}, '29.97002997002997 is not exact; write "30000/1001"'),
+    ({"settings": {"rope[0].mass": HOLDS_ITSELF}}, r"^rope\[0\].mass: takes no list or dictionary that holds itself"),
     ({"jobs": 10**30}, "^jobs: takes no number as large"), ({"settings": {"rope[0].mass=2": 3}}, "has a =; give the value"),
 ])
 def test_errors_name_the_keyword_of_the_caller(keywords, words):

@@ -78,7 +78,7 @@ def _quoted(text, name):
 
 def _float(value, name):
     """The float that is nearest to any kind of number."""
-    if isinstance(value, (str, bytes, bytearray)):
+    if isinstance(value, (str, bytes, bytearray)) or value is _np.ma.masked:
         raise TypeError(f"{name}: takes a number, not {value!r}")
     try:
         number = float(value)
@@ -97,6 +97,15 @@ def _limit(value, name):
 
 def _toml(value, name):
     """A value of Python or numpy as a value of TOML. `name` is the keyword that it was given by."""
+    try:
+        return _toml_of(value, name)
+    except RecursionError:
+        raise _error(f"{name}: takes no list or dictionary that holds itself") from None
+
+
+def _toml_of(value, name):
+    if value is _np.ma.masked:
+        raise TypeError(f"{name}: takes a value, not a masked one")
     if getattr(getattr(value, "dtype", None), "kind", "") in "mM" and hasattr(value, "dtype"):
         raise TypeError(f"{name}: takes seconds as a number, not {value.dtype}; divide by numpy.timedelta64(1, 's')")
     if isinstance(value, _np.floating) and not isinstance(value, float):
@@ -122,9 +131,9 @@ def _toml(value, name):
     if isinstance(value, _np.ndarray):
         value = value.tolist()
     if isinstance(value, _abc.Mapping):
-        return "{" + ", ".join(f"{_quoted(key, name)} = {_toml(one, name)}" for key, one in value.items()) + "}"
+        return "{" + ", ".join(f"{_quoted(key, name)} = {_toml_of(one, name)}" for key, one in value.items()) + "}"
     if isinstance(value, _abc.Iterable) and not isinstance(value, (bytes, bytearray, _abc.Set)):
-        return "[" + ", ".join(_toml(one, name) for one in value) + "]"
+        return "[" + ", ".join(_toml_of(one, name) for one in value) + "]"
     raise TypeError(f"{name}: takes numbers, text, lists, tuples, arrays and dictionaries of these, not "
                     f"{type(value).__name__}")
 
