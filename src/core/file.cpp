@@ -91,6 +91,9 @@ std::string_view hint_for_errno(int error_number, FileUse use) {
             return is_read ? "check the path" : "choose a shorter name";
         case EFBIG:
             return "this file system or a ulimit forbids files of that size";
+        case EMFILE:
+        case ENFILE:
+            return "close some files, or raise the limit (ulimit -n)";
         default:
             return "";
     }
@@ -106,7 +109,8 @@ void fail_file(std::string_view action, const std::string& path, int error_numbe
     std::string message =
         "cannot " + std::string(action) + " '" + path + "': " + std::generic_category().message(error_number);
     if (!hint.empty()) message += "; " + std::string(hint);
-    throw Error(ExitCode::kIo, message);
+    const bool is_temporary = error_number == EMFILE || error_number == ENFILE;
+    throw Error(is_temporary ? ExitCode::kTemporary : ExitCode::kIo, message);
 }
 
 void fail_busy(const std::string& what) {
