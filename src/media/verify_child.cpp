@@ -122,7 +122,7 @@ VerifyReport verify_in_child(const std::string& path, const OnProgress& on_progr
     }
     const Json json = Json::from_cbor(end->text);
     if (!json.contains("error")) {
-        const VerifyReport report = json.at("report");
+        VerifyReport report = json.at("report");
         throw_if_memory_may_lack(path, report);
         return report;
     }
