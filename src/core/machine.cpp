@@ -79,7 +79,8 @@ int allowed_cores() {
     return static_cast<int>(std::thread::hardware_concurrency());
 }
 
-/// What a limit of this process leaves; `used` is what /proc/self/status calls its use. Empty without one.
+/// Bytes that a limit of this process leaves; empty without a limit. `used` names the line of
+/// /proc/self/status that counts them.
 std::optional<std::uint64_t> left_of_limit(decltype(RLIMIT_AS) resource, const char* used,
                                            const std::filesystem::path& root) {
     rlimit limit{};

@@ -15,7 +15,8 @@ namespace corda {
 /// Bytes that the limit on the address space of this process leaves (ulimit -v); empty without one.
 [[nodiscard]] std::optional<std::uint64_t> address_space_left(const std::filesystem::path& root = "/");
 
-/// The same of the limit on its data (ulimit -d): the memory that it may write to, but for what it shares.
+/// Bytes that the limit on the data of this process leaves (ulimit -d); empty without one. Data is private
+/// memory that can be written to.
 [[nodiscard]] std::optional<std::uint64_t> data_left(const std::filesystem::path& root = "/");
 
 /// Throws corda::Error (kTemporary) if the limits on this process's address space or data leave less than

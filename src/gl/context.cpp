@@ -14,7 +14,7 @@
 namespace corda::gl {
 namespace {
 
-/// What chooses a platform alone.
+/// The definition that selects this platform and no other.
 ContextDef def_of(const Platform& platform) {
     using Backend = ContextDef::Backend;
     switch (platform.kind) {

@@ -42,7 +42,7 @@ void guard_fork() {
 /// Address space that the first context takes: measured 200 MB on Mesa 22.3 with LLVM 15, of which most is
 /// the driver's code. Later LLVM is larger.
 constexpr std::uint64_t kFirstContextBytes = 320U << 20U;
-/// Of these, what is written to.
+/// The first context writes to this much of its address space.
 constexpr std::uint64_t kFirstContextData = 96U << 20U;
 /// A further context, its programs and their compilation: measured below 10 MB.
 constexpr std::uint64_t kContextBytes = 48U << 20U;
@@ -104,38 +104,35 @@ bool replaces_driver(std::string_view value) {
 
 /// Beginnings of the names of variables that the EGL of libglvnd, Mesa and NVIDIA read. Those in small
 /// letters are Mesa's options for single applications (force_glsl_version, allow_higher_compat_version).
-constexpr std::array kVariablesOfDrivers{std::string_view("EGL_"),
-                                         std::string_view("__EGL_"),
-                                         std::string_view("LIBGL_"),
-                                         std::string_view("MESA_"),
-                                         std::string_view("GALLIUM_"),
-                                         std::string_view("GALLIVM_"),
-                                         std::string_view("LP_"),
-                                         std::string_view("DRAW_USE_LLVM"),
-                                         std::string_view("SOFTPIPE_"),
-                                         std::string_view("TGSI_"),
-                                         std::string_view("NIR_"),
-                                         std::string_view("ST_DEBUG"),
-                                         std::string_view("GBM_BACKEND"),
-                                         std::string_view("__GL_"),
-                                         std::string_view("__NV_"),
-                                         std::string_view("force_gl"),
-                                         std::string_view("force_compat"),
-                                         std::string_view("allow_glsl_"),
-                                         std::string_view("allow_higher_compat"),
-                                         std::string_view("disable_glsl"),
-                                         std::string_view("disable_arb_"),
-                                         std::string_view("disable_blend_")};
+constexpr auto kVariablesOfDrivers = std::to_array<std::string_view>({"EGL_",
+                                                                      "__EGL_",
+                                                                      "LIBGL_",
+                                                                      "MESA_",
+                                                                      "GALLIUM_",
+                                                                      "GALLIVM_",
+                                                                      "LP_",
+                                                                      "DRAW_USE_LLVM",
+                                                                      "SOFTPIPE_",
+                                                                      "TGSI_",
+                                                                      "NIR_",
+                                                                      "ST_DEBUG",
+                                                                      "GBM_BACKEND",
+                                                                      "__GL_",
+                                                                      "__NV_",
+                                                                      "force_gl",
+                                                                      "force_compat",
+                                                                      "allow_glsl_",
+                                                                      "allow_higher_compat",
+                                                                      "disable_glsl",
+                                                                      "disable_arb_",
+                                                                      "disable_blend_"});
 /// Those of them that only log or cache, or that prepare_driver() sets.
-constexpr std::array kHarmlessVariables{
-    std::string_view("EGL_LOG_"),          std::string_view("LIBGL_DEBUG"),
-    std::string_view("MESA_DEBUG"),        std::string_view("MESA_LOG"),
-    std::string_view("MESA_SHADER_CACHE"), std::string_view("MESA_GLSL_CACHE"),
-    std::string_view("MESA_DISK_CACHE"),   std::string_view("__GL_SHADER_DISK_CACHE"),
-    std::string_view("LP_NUM_THREADS"),    std::string_view("LP_NATIVE_VECTOR_WIDTH")};
-constexpr std::array<std::string_view, 4> kUsualVariables{
-    "EGL_PLATFORM=surfaceless", "GALLIUM_DRIVER=llvmpipe", "LIBGL_ALWAYS_SOFTWARE=1",
-    "LIBGL_ALWAYS_SOFTWARE=true"};
+constexpr auto kHarmlessVariables = std::to_array<std::string_view>(
+    {"EGL_LOG_", "LIBGL_DEBUG", "MESA_DEBUG", "MESA_LOG", "MESA_SHADER_CACHE", "MESA_GLSL_CACHE",
+     "MESA_DISK_CACHE", "__GL_SHADER_DISK_CACHE", "LP_NUM_THREADS", "LP_NATIVE_VECTOR_WIDTH"});
+constexpr auto kUsualVariables =
+    std::to_array<std::string_view>({"EGL_PLATFORM=surfaceless", "GALLIUM_DRIVER=llvmpipe",
+                                     "LIBGL_ALWAYS_SOFTWARE=1", "LIBGL_ALWAYS_SOFTWARE=true"});
 
 /// See prepare_driver(). Returns the value that LP_NATIVE_VECTOR_WIDTH had if it is unset.
 std::string set_llvmpipe_variables() {

@@ -30,7 +30,7 @@ int threads_of(const Codec& codec) {
     return name == "libsvtav1" ? 16 : name == "libx265" ? 2 : 0;
 }
 
-/// Why an encoder would wait for ever for its threads; empty if the system starts that many.
+/// Explains that the system starts fewer threads than an encoder waits for; empty if it starts enough.
 std::string lack_of_threads(const Codec& codec) {
     const int threads = threads_of(codec);
     if (can_start_threads(threads)) return "";

@@ -94,16 +94,17 @@ void try_driver(const gl::ContextDef& def) {
     const auto lock = gl::lock_driver();
     if (!gl::has_unusual_variables()) return;
     const Key key{def.backend, def.device, def.require_gpu, gl::driver_variables()};
-    if (!fates.contains(key)) {
+    auto known = fates.find(key);
+    if (known == fates.end()) {
         gl::prepare_driver();
         const auto fate = fate_of_trial(def);
         if (!fate) return;
-        fates[key] = *fate;
+        known = fates.emplace(key, *fate).first;
     }
-    if (fates[key].empty()) return;
+    if (known->second.empty()) return;
     throw Error(ExitCode::kNoGl, fmt::format("the OpenGL driver {} when it was tried in a child process\n"
                                              "Unset what chooses or changes the driver: {}",
-                                             fates[key], gl::driver_variables()));
+                                             known->second, gl::driver_variables()));
 }
 
 void check_driver(const gl::Context& context) {

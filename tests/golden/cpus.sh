@@ -2,8 +2,8 @@
 # Fails unless golden pictures and positions are the same on older CPUs and with other vectors of the driver: the C
 # library without AVX and FMA, llvmpipe on other instructions and of other widths, and any driver replaced by llvmpipe.
 # Usage: cpus.sh PROGRAM
-# PROGRAM is corda. Each variable is shown to work first, or a misspelt one would check nothing; but for vectors of 512
-# bits, with which llvmpipe crashes, so that Corda leaves that variable out.
+# PROGRAM is corda. Each variable is shown to work first, or a misspelt one would check nothing. Vectors of 512 bits are
+# not: llvmpipe crashes with them, and Corda unsets that variable.
 set -euo pipefail
 corda=${1:?usage: cpus.sh PROGRAM}
 cd "$(dirname "${BASH_SOURCE[0]}")"
