@@ -17,9 +17,6 @@ namespace {
 /// Two parts are joined again if the doubled span stays below this share of the guard. Below 1, because
 /// otherwise parts would change with every ripple, and each change costs some energy.
 constexpr double kJoinShare = 0.8;
-/// A step that no scene names stays within the guard under this many times the weight that hangs below each
-/// link: the tension that a pendulum released from the horizontal reaches.
-constexpr double kLoadFactor = 3.0;
 /// A step is divided into at most 2^24 parts, so that a step of 1 s can follow frequencies of 1e7 / s.
 constexpr int kMaxLevel = 24;
 constexpr std::uint64_t kSmallestParts = std::uint64_t{1} << kMaxLevel;

@@ -38,6 +38,10 @@ namespace corda::sim {
 /// none, the run has diverged.
 class Rattle final : public Solver {
   public:
+    /// A step that no scene names stays within the guard under this many times the weight that hangs below
+    /// each link: the tension that a pendulum released from the horizontal reaches.
+    static constexpr double kLoadFactor = 3.0;
+
     /// If `def` names no step, `frame_interval_s` is divided by the smallest whole number that makes a stable
     /// step. Throws corda::Refusal for a rigid rope that is straight between two pins, for rigid bars that
     /// depend on each other at the start but not in the motion that follows, and for rigid strings. `goes_on`

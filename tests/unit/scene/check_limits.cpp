@@ -254,6 +254,16 @@ TEST(CostNotice, IsGivenOfAMotionThatTakesLongWithItsReason) {
     EXPECT_THAT(notice_of("world.duration = 0.05\n[[rope]]\nstring = true\n"
                           "hang = { links = 30000, length = 3.0 }\n"),
                 HasSubstr("may take 12 s"));  // measured 20 s
+    EXPECT_THAT(notice_of("world.duration = 0.05\n[solver]\nmethod = \"rattle\"\n[[rope]]\n"
+                          "hang = { links = 30000, length = 3.0 }\n"),
+                HasSubstr("may take 70 s"));  // measured 77 s
+    EXPECT_THAT(notice_of("world.duration = 1.0\n[solver]\nmethod = \"rattle\"\norder = 8\n[[rope]]\n"
+                          "hang = { links = 2000, length = 3.0, angle_deg = 80 }\n"),
+                HasSubstr("may take 19 s"));  // measured 20 s
+    EXPECT_THAT(
+        notice_of("world.duration = 0.05\n[[net]]\ngrid = { rows = 50, columns = 50, spacing = 0.01 }\n"
+                  "string = true\ncompliance = 1e-5\n"),
+        HasSubstr("may take 42 s"));  // measured 37 s
     EXPECT_THAT(
         notice_of("[solver]\nmethod = \"relaxation\"\nreach = 1\nsweeps = 100\nstep = 0.00001\n" + rope),
         HasSubstr("takes 1e+06 steps; give a longer step"));
@@ -262,6 +272,9 @@ TEST(CostNotice, IsGivenOfAMotionThatTakesLongWithItsReason) {
 TEST(CostNotice, IsNotGivenOfAMotionThatTakesASecond) {
     EXPECT_EQ(notice_of("[[rope]]\nhang = { links = 40, length = 1.0, angle_deg = 90 }\n"), "");
     EXPECT_EQ(notice_of("[[rope]]\nhang = { links = 1000, length = 1.0, angle_deg = 0 }\n"), "");
+    EXPECT_EQ(notice_of("world.duration = 0.05\n[solver]\nmethod = \"rattle\"\n[[net]]\n"
+                        "grid = { rows = 60, columns = 60, spacing = 0.01 }\n"),
+              "");
 }
 
 }  // namespace
