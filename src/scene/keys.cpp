@@ -193,7 +193,8 @@ std::vector<Key> rope_keys() {
          "the bending stiffness E I", "not for a string"},
         {"rope", "link_length", or_list(number(kLength), "a list with one per link"), "m",
          otherwise("the distance at the start"), "the length of a link at rest",
-         "needs compliance or string"},
+         "needs compliance or string; a string that is too short for its points starts pulled in towards the "
+         "pin"},
     };
 }
 

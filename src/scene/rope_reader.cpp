@@ -4,6 +4,7 @@
 
 #include "corda/scene/readers.hpp"
 #include "corda/sim/distance.hpp"
+#include "corda/sim/system.hpp"
 
 namespace corda::scene {
 namespace {
@@ -25,19 +26,21 @@ void refuse_contradictions(const TableReader& rope, const RopeDef& def) {
     }
 }
 
-/// The rest length of the link between particles `a` and `b`.
-double read_link_length(const Value& entry, const RopeDef& def, std::size_t a, std::size_t b) {
+/// The rest length of link `k`. One that is too short is pulled in before the start, unless pins hold it.
+double read_link_length(const Value& entry, const RopeDef& def, std::size_t k) {
     const auto rest_m = entry.as<double>();
     if (def.material.compliance_1_n > 0.0) return rest_m;
-    const Vec2 along = def.points_m[b] - def.points_m[a];
+    const Vec2 along = def.points_m[(k + 1) % def.points_m.size()] - def.points_m[k];
     const double distance_m = sim::length(along.x, along.y);
-    if (rest_m < (1.0 - kLengthSlack) * distance_m) {
+    if (rest_m >= (1.0 - kLengthSlack) * distance_m) return std::max(rest_m, distance_m);
+    if (is_between_pins(def, k)) {
         entry.add_problem(
-            fmt::format("{} m are less than the {} m between particles {} and {}, which a string that "
-                        "does not stretch cannot span; give at least that, or a compliance",
-                        rest_m, distance_m, a, b));
+            fmt::format("{} m are less than the {} m between particles {} and {}, which lie between pins, "
+                        "and which a string that does not stretch cannot span; give at least that, or a "
+                        "compliance",
+                        rest_m, distance_m, k, k + 1));
     }
-    return std::max(rest_m, distance_m);
+    return rest_m;
 }
 
 void read_link_lengths(const TableReader& rope, RopeDef& def) {
@@ -49,8 +52,7 @@ void read_link_lengths(const TableReader& rope, RopeDef& def) {
             "start; give compliance or string = true, or remove it");
         return;
     }
-    const std::size_t particles = def.points_m.size();
-    const std::size_t links = def.closed ? particles : particles - 1;
+    const std::size_t links = def.closed ? def.points_m.size() : def.points_m.size() - 1;
     if (value->is_list() && value->size() != links) {
         value->add_problem(fmt::format("{} values for {} links; give one per link", value->size(), links));
         return;
@@ -58,7 +60,7 @@ void read_link_lengths(const TableReader& rope, RopeDef& def) {
     def.rest_m.reserve(links);
     for (std::size_t k = 0; k < links; ++k) {
         const Value entry = value->is_list() ? value->at(k) : *value;
-        def.rest_m.push_back(read_link_length(entry, def, k, (k + 1) % particles));
+        def.rest_m.push_back(read_link_length(entry, def, k));
     }
 }
 

@@ -70,7 +70,7 @@ struct RopeDef {
     int reach = 1;
     bool closed = false;  ///< the last particle is joined to the first one too; needs at least 3
     /// Rest lengths, one per link (the closing one last), > 0; empty: the initial distances. Others are for
-    /// materials that stretch, and for strings: there at least the initial distance.
+    /// materials that stretch, and for strings: see pulled_in().
     std::vector<double> rest_m;
     MaterialDef material;
     /// Bending stiffness E I in N m^2, >= 0: every inner particle has the energy E I / a (1 - cos(angle)),

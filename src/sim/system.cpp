@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <ranges>
 
 #include "corda/sim/distance.hpp"
 #include "corda/sim/validate.hpp"
@@ -87,7 +88,8 @@ void append_bends(const RopeDef& rope, const Body& body, System& system) {
     }
 }
 
-void append(const RopeDef& rope, System& system) {
+void append(const RopeDef& def, System& system) {
+    const RopeDef rope = pulled_in(def);
     Body body = append_particles(rope, system);
     append_bars(rope, body, system);
     append_bends(rope, body, system);
@@ -110,6 +112,42 @@ void append(const NetDef& net, System& system) {
 }
 
 }  // namespace
+
+bool is_between_pins(const RopeDef& rope, std::size_t k) {
+    if (rope.closed) return true;
+    const auto [first, last] = std::minmax_element(rope.pinned.begin(), rope.pinned.end());
+    return first != last && *first <= k && k < *last;
+}
+
+RopeDef pulled_in(RopeDef rope) {
+    if (rope.rest_m.empty() || !rope.material.is_string || rope.material.compliance_1_n > 0.0) return rope;
+    const auto is_short = [&](std::size_t k) {
+        return !is_between_pins(rope, k) && rope.rest_m[k] < distance_m(rope, k, k + 1);
+    };
+    const auto links = std::views::iota(std::size_t{0}, rope.rest_m.size());
+    if (std::ranges::none_of(links, is_short)) return rope;
+    const std::vector<Vec2> given_m = rope.points_m;
+    std::vector<Vec2> lack_m(links.size());
+    for (const std::size_t k : links) {
+        if (is_short(k))
+            lack_m[k] = (1.0 - rope.rest_m[k] / distance_m(rope, k, k + 1)) * (given_m[k + 1] - given_m[k]);
+    }
+    const std::size_t anchor =
+        rope.pinned.empty() ? 0 : *std::min_element(rope.pinned.begin(), rope.pinned.end());
+    Vec2 shift_m;
+    for (std::size_t k = anchor; k < links.size(); ++k) {
+        shift_m = shift_m - lack_m[k];
+        rope.points_m[k + 1] = given_m[k + 1] + shift_m;
+    }
+    shift_m = {};
+    for (std::size_t k = anchor; k-- > 0;) {
+        shift_m = shift_m + lack_m[k];
+        rope.points_m[k] = given_m[k] + shift_m;
+    }
+    // Rounding must not leave a link longer than it can be.
+    for (const std::size_t k : links) rope.rest_m[k] = std::max(rope.rest_m[k], distance_m(rope, k, k + 1));
+    return rope;
+}
 
 std::size_t System::link_count() const {
     std::size_t count = 0;

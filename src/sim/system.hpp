@@ -64,6 +64,14 @@ struct System {
     [[nodiscard]] bool is_pinned(std::size_t particle) const { return inverse_mass_1_kg[particle] == 0.0; }
 };
 
+/// Whether links before and after link `k` of a rope lead to pinned particles.
+[[nodiscard]] bool is_between_pins(const RopeDef& rope, std::size_t k);
+
+/// The rope as it starts. A string without compliance cannot span more than its rest lengths: a link that is
+/// given a larger distance starts taut, in the same direction, and what is beyond it, seen from the pins
+/// (from the first particle if there are none), moves along. Distances between pins stay as they are.
+[[nodiscard]] RopeDef pulled_in(RopeDef rope);
+
 /// Sum of the rest lengths of a body's links, in m.
 [[nodiscard]] double links_length_m(const System& system, const Body& body);
 

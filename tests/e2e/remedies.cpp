@@ -454,8 +454,11 @@ TEST(RemediesInCode, RigidStrings) {
     expect_to_run(stretched());
     rope.bending_n_m2 = 0.0;
     rope.rest_m = {0.4, 0.4};
+    expect_to_run(scene);  // pulled in
+    rope.pinned = {0, 2};
     expect_refused(scene, "give a larger link_length, or a compliance");
     expect_to_run(stretched());
+    rope.pinned = {0};
     rope.rest_m = {0.5, 0.5};
     expect_to_run(scene);
 }

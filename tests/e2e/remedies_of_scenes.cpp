@@ -94,13 +94,13 @@ INSTANTIATE_TEST_SUITE_P(
                "plan SCENE",
                "give a compliance, or remove string or closed",
                {{{"string", "compliance = 1e-3\nstring"}}, {{"string = true", ""}}, {{"closed = true", ""}}}},
-        Remedy{
-            "short_string",
-            rope_scene(kHang + "string = true\nlink_length = 0.2"),
-            "plan SCENE",
-            "0.2 m are less than the 0.25 m between particles 0 and 1, which a string that does not stretch "
-            "cannot span; give at least that, or a compliance",
-            {{{"0.2\n", "0.25\n"}}, {{"string", "compliance = 1e-3\nstring"}}}},
+        Remedy{"short_string",
+               rope_scene("points = [[0, 0], [0.3, -0.4], [0.6, 0]]\npinned = [0, -1]\n"
+                          "string = true\nlink_length = 0.2"),
+               "plan SCENE",
+               "0.2 m are less than the 0.5 m between particles 0 and 1, which lie between pins, and which "
+               "a string that does not stretch cannot span; give at least that, or a compliance",
+               {{{"0.2\n", "0.5\n"}}, {{"string", "compliance = 1e-3\nstring"}}}},
         Remedy{"rigid_link_length",
                rope_scene(kHang + "link_length = 0.3"),
                "plan SCENE",

@@ -49,6 +49,15 @@ TEST(Notes, TellOfAStringThatItsLinksCannotLengthen) {
     EXPECT_THAT(notes_of(string + "[-3, 4]]\n"), IsEmpty());
 }
 
+TEST(Notes, TellOfAStringThatIsPulledIn) {
+    const std::string string =
+        "[[rope]]\npoints = [[0, 0], [0, -1], [0, -1], [1, -1]]\nstring = true\nlink_length = ";
+    EXPECT_THAT(notes_of(string + "0.5\n"),
+                ElementsAre(HasSubstr("particle 3 at [0.5, -0.5] instead of [1, -1]")));
+    EXPECT_THAT(notes_of(string + "0.5\ncompliance = 1e-3\n"), IsEmpty());
+    EXPECT_THAT(notes_of(string + "1.0\n"), IsEmpty());
+}
+
 TEST(Notes, TellOfAListOfVelocitiesThatMovesAPinnedParticle) {
     EXPECT_THAT(notes_of("[[rope]]\npoints = [[0, 0], [1, 0]]\nvelocity = [[1, 0], [0, 2]]\n"),
                 ElementsAre(HasSubstr("velocity [1, 0] of particle 0 is left out")));

@@ -225,11 +225,12 @@ TEST(SceneErrors, LinkLengths) {
         {rope_with("link_length = 2"), "swing.toml:4:15: rope[0].link_length: ",
          "links that neither stretch nor hang slack are as long as their particles are apart at the start; "
          "give compliance or string = true, or remove it"},
-        {rope_with("string = true\nlink_length = 0.5"), "swing.toml:5:15: rope[0].link_length: ",
-         "0.5 m are less than the 1 m between particles 0 and 1, which a string that does not stretch "
-         "cannot span; give at least that, or a compliance"},
-        {rope_with("string = true\nlink_length = [2, 0.5]"),
-         "swing.toml:5:19: rope[0].link_length[1]: ", "between particles 1 and 2"},
+        {rope_with("string = true\npinned = [0, -1]\nlink_length = 0.5"),
+         "swing.toml:6:15: rope[0].link_length: ",
+         "0.5 m are less than the 1 m between particles 0 and 1, which lie between pins, and which a string "
+         "that does not stretch cannot span; give at least that, or a compliance"},
+        {rope_with("string = true\npinned = [0, -1]\nlink_length = [2, 0.5]"),
+         "swing.toml:6:19: rope[0].link_length[1]: ", "between particles 1 and 2"},
         {rope_with("string = true\nlink_length = [2]"),
          "swing.toml:5:15: rope[0].link_length: ", "1 values for 2 links"},
         {square_with("closed = true\ncompliance = 1\nlink_length = [1, 1, 1]"),

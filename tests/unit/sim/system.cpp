@@ -1,16 +1,20 @@
 #include "corda/sim/system.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 #include <utility>
 
 #include "corda/reference/ropes.hpp"
+#include "corda/sim/distance.hpp"
 
 namespace corda::sim {
 namespace {
+
+using testing::ElementsAre;
 
 TEST(BarCount, IsTheReportsSevenTimesNLessTwentyEight) {
     EXPECT_EQ(bar_count(20, 7), 112U);
@@ -50,6 +54,48 @@ TEST(System, OrdersBarsByReachAndThenAlongTheRope) {
         EXPECT_EQ(system.bars[i].b, expected[i][1]);
         EXPECT_EQ(system.bars[i].reach, expected[i][2]);
     }
+}
+
+TEST(System, PullsInAStringThatIsTooShortForItsPoints) {
+    RopeDef rope = reference::rope_through({{0, 0}, {0, -1}, {0, -1}, {1, -1}});
+    rope.material.is_string = true;
+    rope.rest_m = {0.5, 0.5, 0.5};
+    const System hung = build_system({&rope, 1});
+    EXPECT_THAT(hung.x_m, ElementsAre(0.0, 0.0, 0.0, 0.5));
+    EXPECT_THAT(hung.y_m, ElementsAre(0.0, -0.5, -0.5, -0.5));
+    rope.pinned = {3};  // pulled towards the other end
+    const System held = build_system({&rope, 1});
+    EXPECT_THAT(held.x_m, ElementsAre(0.5, 0.5, 0.5, 1.0));
+    EXPECT_THAT(held.y_m, ElementsAre(-0.5, -1.0, -1.0, -1.0));
+    rope.pinned = {1, 2};  // links outside of the pins alone
+    const System between = build_system({&rope, 1});
+    EXPECT_THAT(between.x_m, ElementsAre(0.0, 0.0, 0.0, 0.5));
+    EXPECT_THAT(between.y_m, ElementsAre(-0.5, -1.0, -1.0, -1.0));
+}
+
+TEST(System, PullsNoLinkBeyondItsLength) {
+    RopeDef rope = reference::rope_through({{0, 0}, {0.3, -1.1}, {0.7, -1.9}, {1.3, -2.3}, {1.9, -2.2}});
+    rope.material.is_string = true;
+    rope.rest_m = {0.7, 2.0, 0.1, std::sqrt(0.37)};
+    const System system = build_system({&rope, 1});
+    for (std::size_t k = 0; k < rope.rest_m.size(); ++k) {
+        const Bar& bar = system.bars[k];
+        const double distance_m =
+            length(system.x_m[bar.b] - system.x_m[bar.a], system.y_m[bar.b] - system.y_m[bar.a]);
+        EXPECT_LE(distance_m, bar.rest_m) << k;
+        EXPECT_NEAR(bar.rest_m, rope.rest_m[k], 1e-15) << k;
+    }
+}
+
+TEST(System, LeavesRopesWithinTheirLengthAsTheyAre) {
+    RopeDef rope = reference::rope_through({{-0.0, 0}, {0, -1}, {1, -1}});
+    rope.material.is_string = true;
+    rope.rest_m = {1.0, 2.0};
+    EXPECT_EQ(pulled_in(rope).points_m, rope.points_m);
+    EXPECT_EQ(pulled_in(rope).rest_m, rope.rest_m);
+    rope.material.compliance_1_n = 1e-3;  // it stretches
+    rope.rest_m = {0.5, 0.5};
+    EXPECT_EQ(pulled_in(rope).points_m, rope.points_m);
 }
 
 TEST(System, SharesItsArraysAmongRopes) {

@@ -31,9 +31,11 @@ TEST(ExactRefusesAString, ThatResistsBending) {
     EXPECT_EQ(refusal_of(rope), Reason::kRigidBendingString);
 }
 
-TEST(ExactRefusesAString, ThatIsLongerThanItsRestLength) {
-    EXPECT_EQ(refusal_of(test::string_of({{0.0, 0.0}, {1.0, 0.0}}, {1.0})), std::nullopt);
-    EXPECT_EQ(refusal_of(test::string_of({{0.0, 0.0}, {1.0, 0.0}}, {0.99})), Reason::kStretchedString);
+TEST(ExactRefusesAString, ThatIsLongerThanItsRestLengthBetweenPins) {
+    RopeDef rope = test::string_of({{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.5}}, {0.99, 2.0});
+    EXPECT_EQ(refusal_of(rope), std::nullopt);
+    rope.pinned = {0, 2};
+    EXPECT_EQ(refusal_of(rope), Reason::kStretchedString);
 }
 
 TEST(ExactRefusesAString, ThatIsStraightBetweenTwoPins) {
