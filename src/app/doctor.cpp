@@ -92,7 +92,8 @@ std::string cannot_draw(const std::vector<gl::Attempt>& attempts) {
 ExitCode doctor(const Console& console) {
     // First, while there are no threads of a driver: each is tried in a child process.
     const std::vector<media::EncoderProbe> encoders = media::probe_encoders();
-    const std::vector<gl::Attempt> attempts = gl::probe_contexts(render::check_driver, render::try_driver);
+    const std::vector<gl::Attempt> attempts = gl::probe_contexts(
+        [](const gl::Context& context) { render::check_driver(context); }, render::try_driver);
     const bool has_gl =
         std::any_of(attempts.begin(), attempts.end(), [](const gl::Attempt& a) { return a.is_usable(); });
     const bool is_temporary = std::any_of(attempts.begin(), attempts.end(), [](const gl::Attempt& a) {

@@ -98,8 +98,13 @@ void Stage::open(Needs needs) {
     }
     if (needs == Needs::kContext || canvas_->renderer) return;
     const auto lock = canvas_->context.exclusive();
-    render::check_driver(canvas_->context);
     canvas_->renderer.emplace(canvas_->context, scene_->video.width_px, scene_->video.height_px);
+    try {
+        render::check_driver(canvas_->context, *canvas_->renderer, false);
+    } catch (...) {
+        canvas_->renderer.reset();
+        throw;
+    }
 }
 
 Damage Stage::draw(const State& state, const view::Camera& map, const view::Caption& caption,
@@ -136,6 +141,7 @@ void Stage::expose(std::int64_t picture, const State& state, const view::Camera&
     if (picture != pictures_) throw Overdrawn();
     list(state, map, traces);
     shows_nothing_ = list_.shows_nothing() && shows_nothing_;
+    check_tints();
     const OnProgress ask = asking(on_progress);
     report_progress(ask, 0, 1);
     canvas_->renderer->expose(list_, ask);
@@ -153,7 +159,14 @@ Damage Stage::paint(const OnProgress& on_progress) {
     canvas_->context.make_current();  // a callback since open() may have left another one
     ++pictures_;
     shows_nothing_ = list_.shows_nothing();
+    check_tints();
     return canvas_->renderer->render(list_, asking(on_progress));
+}
+
+void Stage::check_tints() {
+    if (canvas_->has_checked_tints || !list_.has_tints()) return;
+    render::check_driver(canvas_->context, *canvas_->renderer, true);
+    canvas_->has_checked_tints = true;
 }
 
 OnProgress Stage::asking(const OnProgress& on_progress) {

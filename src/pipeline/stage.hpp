@@ -100,6 +100,7 @@ class Stage {
         explicit Canvas(const gl::ContextDef& def) : context(def) {}
         gl::Context context;
         std::optional<render::FrameRenderer> renderer;
+        bool has_checked_tints = false;
     };
 
     void open(Needs needs);
@@ -108,6 +109,8 @@ class Stage {
     /// Asks `on_progress` whether to go on with the picture that was begun last.
     [[nodiscard]] OnProgress asking(const OnProgress& on_progress);
     Damage paint(const OnProgress& on_progress);
+    /// Lets the driver draw what the list needs for the first time in a small picture, which is checked.
+    void check_tints();
 
     const Scene* scene_;
     const System* system_;

@@ -29,14 +29,15 @@ constexpr int kHeight = 72;
 /// A trial takes 0.1 s, and as much memory as it needs.
 constexpr ChildLimits kTrialLimits{std::uint64_t{1} << 46U, 10, 10.0};
 
-/// Lines and discs with and without halo, wide and thin, opaque and transparent, tinted and not, that overlap
-/// and leave the picture, on a gradient. `shift_px` moves them.
-view::DrawList test_picture(double shift_px) {
+/// Lines and discs with and without halo, wide and thin, opaque and transparent, that overlap and leave the
+/// picture, on a gradient, and tinted ones among them if `with_tints`. `shift_px` moves them.
+view::DrawList test_picture(double shift_px, bool with_tints) {
     view::DrawList list;
     list.width = kWidth;
     list.height = kHeight;
     list.ground = {{250, 240, 230}, {20, 60, 90}};
     for (const bool is_tinted : {false, true}) {
+        if (is_tinted && !with_tints) break;
         for (const bool is_opaque : {true, false}) {
             list.add_layer({200, 30, 10, static_cast<std::uint8_t>(is_opaque ? 255 : 120)}, is_tinted);
             const double x = shift_px + (is_opaque ? 3.3 : 40.7);
@@ -107,20 +108,20 @@ void try_driver(const gl::ContextDef& def) {
                                              known->second, gl::driver_variables()));
 }
 
-void check_driver(const gl::Context& context) {
+void check_driver(const gl::Context& context, const FrameRenderer& renderer, bool with_tints) {
     static std::set<std::string> checked;
     const auto lock = gl::lock_driver();
     const gl::ContextInfo& info = context.info();
     const std::string driver = fmt::format("{} ({}), OpenGL {}, by {}", info.gl_renderer, info.gl_vendor,
                                            info.gl_version, context.platform());
     // A forked child repeats the check: parts of the driver are lost in it.
-    const std::string key = fmt::format("{} {}", getpid(), driver);
+    const std::string key = fmt::format("{} {} {}", getpid(), with_tints, driver);
     if (checked.contains(key)) return;
-    FrameRenderer renderer(context, kWidth, kHeight);
+    FrameRenderer small(renderer, kWidth, kHeight);
     for (const double shift_px : {0.0, 5.5}) {  // the second picture is drawn over the first one
-        const view::DrawList list = test_picture(shift_px);
-        renderer.render(list);
-        const auto difference = first_difference(renderer.image(), render_reference(list));
+        const view::DrawList list = test_picture(shift_px, with_tints);
+        small.render(list);
+        const auto difference = first_difference(small.image(), render_reference(list));
         if (!difference) continue;
         gl::note_faulty_driver();
         const std::string variables = gl::driver_variables();
@@ -132,6 +133,12 @@ void check_driver(const gl::Context& context) {
                                           : "Unset what chooses or changes the driver: " + variables));
     }
     checked.insert(key);
+}
+
+void check_driver(const gl::Context& context) {
+    const auto lock = context.exclusive();
+    const FrameRenderer renderer(context, kWidth, kHeight);
+    for (const bool with_tints : {false, true}) check_driver(context, renderer, with_tints);
 }
 
 }  // namespace corda::render

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "corda/gl/context.hpp"
+#include "corda/render/frame_renderer.hpp"
 
 namespace corda::render {
 
@@ -11,10 +12,14 @@ namespace corda::render {
 /// and run_in_child() throw. Says nothing of a driver that gives no context: Context does.
 void try_driver(const gl::ContextDef& def);
 
-/// Draws a small picture with every shader program of the current context and compares it with
-/// render_reference(): a driver that draws nothing, or wrongly, is found before it draws a frame. Done once
-/// per process and driver; later calls return at once. Throws corda::Error: kNoGl with the driver and the
-/// first pixel that differs, kTemporary.
+/// Draws a small picture with the shader programs of a renderer in the current context and compares it with
+/// render_reference(): a driver that draws nothing, or wrongly, is found before it draws a frame. Those of
+/// tinted layers, which few films have, are checked by `with_tints`. Each is done once per process and
+/// driver; later calls return at once. Throws corda::Error: kNoGl with the driver and the first pixel that
+/// differs, kTemporary.
+void check_driver(const gl::Context& context, const FrameRenderer& renderer, bool with_tints);
+
+/// Checks all of them with a renderer of its own.
 void check_driver(const gl::Context& context);
 
 }  // namespace corda::render

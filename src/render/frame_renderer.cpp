@@ -113,33 +113,40 @@ void make_target(const gl::Framebuffer& target, std::initializer_list<const gl::
 
 }  // namespace
 
-FrameRenderer::Tints::Tints()
-    : capsule_program("tinted capsule", tinted(shaders::kCapsuleVert).c_str(),
-                      tinted(shaders::kCapsuleFrag).c_str()) {}
+FrameRenderer::Programs::Programs()
+    : capsule("capsule", shaders::kCapsuleVert, shaders::kCapsuleFrag),
+      clear("clear", shaders::kClearVert, shaders::kClearFrag) {}
 
 FrameRenderer::FrameRenderer(const gl::Context& context, int width, int height)
+    : FrameRenderer(context, std::make_shared<Programs>(), width, height) {}
+
+FrameRenderer::FrameRenderer(const FrameRenderer& other, int width, int height)
+    : FrameRenderer(*other.context_, other.programs_, width, height) {}
+
+FrameRenderer::FrameRenderer(const gl::Context& context, std::shared_ptr<Programs> programs, int width,
+                             int height)
     : context_(&context),
       image_((check_size(width, height), require_memory(width, height, kFrameBytes), Image(width, height))),
       exposure_(width, height),
-      capsule_program_("capsule", shaders::kCapsuleVert, shaders::kCapsuleFrag),
-      clear_program_("clear", shaders::kClearVert, shaders::kClearFrag),
+      programs_(std::move(programs)),
       last_touched_(tile_count(width, height)) {
     make_texture(masks_, GL_RG8, image_);
     make_target(mask_target_, {&masks_}, making_frame(image_));
     describe_capsules();
     describe_runs();
-    set_frame_size(clear_program_);
-    set_capsule_uniforms(capsule_program_);
     gl::check_errors("preparing the renderer");
 }
 
 void FrameRenderer::make_tints() {
     require_memory(image_.width(), image_.height(), kTintBytes);
     const auto lock = context_->exclusive();
+    if (!programs_->tinted_capsule) {
+        programs_->tinted_capsule.emplace("tinted capsule", tinted(shaders::kCapsuleVert).c_str(),
+                                          tinted(shaders::kCapsuleFrag).c_str());
+    }
     auto tints = std::make_unique<Tints>();
     make_texture(tints->sums, GL_RGBA32F, image_);
     make_target(tints->target, {&masks_, &tints->sums}, making_frame(image_));
-    set_capsule_uniforms(tints->capsule_program);
     tints_ = std::move(tints);
 }
 
@@ -170,14 +177,14 @@ void FrameRenderer::describe_runs() {
     glVertexAttribIFormat(0, 4, GL_INT, offsetof(TileRun, rect));
 }
 
-void FrameRenderer::set_frame_size(const gl::Program& program) const {
+void FrameRenderer::use(const gl::Program& program) const {
     program.use();
     glUniform2f(program.uniform("frame_size"), static_cast<float>(image_.width()),
                 static_cast<float>(image_.height()));
 }
 
-void FrameRenderer::set_capsule_uniforms(const gl::Program& program) const {
-    set_frame_size(program);
+void FrameRenderer::use_for_capsules(const gl::Program& program) const {
+    use(program);
     glUniform1f(program.uniform("edge_margin"), view::kEdgeMargin);
 }
 
@@ -255,9 +262,7 @@ void FrameRenderer::upload(const view::DrawList& list) {
 }
 
 void FrameRenderer::begin(const view::DrawList& list) {
-    const bool has_tints = std::any_of(list.layers.begin(), list.layers.end(),
-                                       [](const view::Layer& layer) { return layer.is_tinted; });
-    if (has_tints && !tints_) make_tints();
+    if (list.has_tints() && !tints_) make_tints();
     if (ground_ && ground_->ground() == list.ground) return;
     ground_.emplace(list.ground, image_.height());
     everything_is_stale_ = true;
@@ -304,7 +309,7 @@ void FrameRenderer::set_state(const PixelRect& band) const {
 
 void FrameRenderer::draw_masks(const Batch& batch) const {
     glDisable(GL_BLEND);
-    clear_program_.use();
+    use(programs_->clear);
     glBindVertexArray(run_array_.id());
     glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.run_count),
                                       static_cast<GLuint>(batch.first_run));
@@ -313,7 +318,7 @@ void FrameRenderer::draw_masks(const Batch& batch) const {
         glBlendEquationi(1, GL_FUNC_ADD);
         glBlendFunci(1, GL_ONE, GL_ONE);
     }
-    (batch.is_tinted ? tints_->capsule_program : capsule_program_).use();
+    use_for_capsules(batch.is_tinted ? *programs_->tinted_capsule : programs_->capsule);
     glBindVertexArray(capsule_array_.id());
     glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.capsule_count),
                                       static_cast<GLuint>(batch.first_capsule));

@@ -37,6 +37,8 @@ class FrameRenderer {
     /// works. Throws corda::Error: kNoGl if the driver cannot draw a frame of that size, kTemporary if memory
     /// is too little.
     FrameRenderer(const gl::Context& context, int width, int height);
+    /// In the context of another renderer, with its programs, which no driver then translates again.
+    FrameRenderer(const FrameRenderer& other, int width, int height);
 
     /// Draws the next frame; `list` has this renderer's size. Returns what may differ from the last frame. A
     /// large one is drawn in bands, and `on_progress` is asked between them. Throws corda::Error: kNoGl,
@@ -56,19 +58,25 @@ class FrameRenderer {
     [[nodiscard]] const Image& image() const { return image_; }
 
   private:
+    struct Programs {
+        Programs();
+        gl::Program capsule;
+        gl::Program clear;
+        std::optional<gl::Program> tinted_capsule;  ///< made when the first tinted layer is drawn
+    };
+
     /// What tinted layers take besides; made when the first one is drawn.
     struct Tints {
-        Tints();
-        gl::Program capsule_program;
         gl::Texture sums;
         gl::Framebuffer target;  ///< masks and sums
     };
 
+    FrameRenderer(const gl::Context& context, std::shared_ptr<Programs> programs, int width, int height);
     void make_tints();
     void describe_capsules();
     void describe_runs();
-    void set_frame_size(const gl::Program& program) const;
-    void set_capsule_uniforms(const gl::Program& program) const;
+    void use(const gl::Program& program) const;
+    void use_for_capsules(const gl::Program& program) const;
     /// Sets the state that drawing depends on: another renderer may have drawn in this context meanwhile.
     void set_state(const PixelRect& band) const;
     /// Prepares for drawing on a ground.
@@ -98,8 +106,7 @@ class FrameRenderer {
     Image image_;  ///< while a frame is drawn, colours times alpha
     Tiles tiles_;
     Exposure exposure_;
-    gl::Program capsule_program_;
-    gl::Program clear_program_;
+    std::shared_ptr<Programs> programs_;
     gl::VertexArray capsule_array_;
     gl::VertexArray run_array_;
     gl::Buffer capsule_buffer_;

@@ -6,6 +6,10 @@
 
 namespace corda::view {
 
+bool DrawList::has_tints() const {
+    return std::any_of(layers.begin(), layers.end(), [](const Layer& layer) { return layer.is_tinted; });
+}
+
 bool DrawList::shows_nothing() const {
     const auto is_outside = [this](const Capsule& capsule) {
         const Surroundings box = surroundings(capsule, capsule.radius);

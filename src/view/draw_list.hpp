@@ -88,6 +88,7 @@ struct DrawList {
 
     /// Whether all capsules of layers that are no notes are outside of the frame, or there are none.
     [[nodiscard]] bool shows_nothing() const;
+    [[nodiscard]] bool has_tints() const;
     /// Removes layers and stamps, but keeps their memory.
     void clear();
     /// Adds an empty layer on top of the others.

@@ -3,7 +3,11 @@
 #include <gmock/gmock.h>
 
 #include "corda/gl/context.hpp"
+#include "corda/render/frame_renderer.hpp"
+#include "corda/render/reference_renderer.hpp"
+#include "support/draw_lists.hpp"
 #include "support/failure.hpp"
+#include "support/image_matchers.hpp"
 
 namespace corda {
 namespace {
@@ -17,6 +21,17 @@ TEST(DriverChecks, PassOnEveryUsablePlatform) {
     });
     EXPECT_GT(checked, 0);
     for (const gl::Attempt& attempt : attempts) EXPECT_EQ(attempt.is_usable(), attempt.info.has_value());
+}
+
+TEST(DriverChecks, LeaveTheRendererAsItWas) {
+    const gl::Context context;
+    render::FrameRenderer renderer(context, 64, 48);
+    const view::DrawList list = test::random_draw_list(1, 64, 48, 4, 20, 6);
+    for (const bool with_tints : {false, true}) {
+        render::check_driver(context, renderer, with_tints);
+        renderer.render(list);
+        EXPECT_TRUE(test::equal_images(renderer.image(), render::render_reference(list)));
+    }
 }
 
 TEST(DriverChecks, ThatFailAreTheFailureOfThePlatform) {
