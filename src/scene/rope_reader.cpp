@@ -27,13 +27,13 @@ void refuse_contradictions(const TableReader& rope, const RopeDef& def) {
 }
 
 /// The rest length of link `k`. One that is too short is pulled in before the start, unless pins hold it.
-double read_link_length(const Value& entry, const RopeDef& def, std::size_t k) {
+double read_link_length(const Value& entry, const RopeDef& def, bool is_between_pins, std::size_t k) {
     const auto rest_m = entry.as<double>();
     if (def.material.compliance_1_n > 0.0) return rest_m;
     const Vec2 along = def.points_m[(k + 1) % def.points_m.size()] - def.points_m[k];
     const double distance_m = sim::length(along.x, along.y);
     if (rest_m >= (1.0 - kLengthSlack) * distance_m) return std::max(rest_m, distance_m);
-    if (is_between_pins(def, k)) {
+    if (is_between_pins) {
         entry.add_problem(
             fmt::format("{} m are less than the {} m between particles {} and {}, which lie between pins, "
                         "and which a string that does not stretch cannot span; give at least that, or a "
@@ -58,9 +58,10 @@ void read_link_lengths(const TableReader& rope, RopeDef& def) {
         return;
     }
     def.rest_m.reserve(links);
+    const LinkRange between = links_between_pins(def);
     for (std::size_t k = 0; k < links; ++k) {
         const Value entry = value->is_list() ? value->at(k) : *value;
-        def.rest_m.push_back(read_link_length(entry, def, k));
+        def.rest_m.push_back(read_link_length(entry, def, between.contains(k), k));
     }
 }
 

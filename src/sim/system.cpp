@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <ranges>
 
 #include "corda/sim/distance.hpp"
 #include "corda/sim/validate.hpp"
@@ -113,39 +112,40 @@ void append(const NetDef& net, System& system) {
 
 }  // namespace
 
-bool is_between_pins(const RopeDef& rope, std::size_t k) {
-    if (rope.closed) return true;
+LinkRange links_between_pins(const RopeDef& rope) {
+    if (rope.closed) return {0, rope.points_m.size()};
+    if (rope.pinned.empty()) return {};
     const auto [first, last] = std::minmax_element(rope.pinned.begin(), rope.pinned.end());
-    return first != last && *first <= k && k < *last;
+    return {*first, *last};
 }
 
 RopeDef pulled_in(RopeDef rope) {
     if (rope.rest_m.empty() || !rope.material.is_string || rope.material.compliance_1_n > 0.0) return rope;
-    const auto is_short = [&](std::size_t k) {
-        return !is_between_pins(rope, k) && rope.rest_m[k] < distance_m(rope, k, k + 1);
-    };
-    const auto links = std::views::iota(std::size_t{0}, rope.rest_m.size());
-    if (std::ranges::none_of(links, is_short)) return rope;
-    const std::vector<Vec2> given_m = rope.points_m;
-    std::vector<Vec2> lack_m(links.size());
-    for (const std::size_t k : links) {
-        if (is_short(k))
-            lack_m[k] = (1.0 - rope.rest_m[k] / distance_m(rope, k, k + 1)) * (given_m[k + 1] - given_m[k]);
+    const LinkRange fixed = links_between_pins(rope);
+    const std::size_t links = rope.rest_m.size();
+    std::vector<Vec2> lack_m(links);
+    bool lacks = false;
+    for (std::size_t k = 0; k < links; ++k) {
+        if (fixed.contains(k) || rope.rest_m[k] >= distance_m(rope, k, k + 1)) continue;
+        lack_m[k] =
+            (1.0 - rope.rest_m[k] / distance_m(rope, k, k + 1)) * (rope.points_m[k + 1] - rope.points_m[k]);
+        lacks = true;
     }
-    const std::size_t anchor =
-        rope.pinned.empty() ? 0 : *std::min_element(rope.pinned.begin(), rope.pinned.end());
+    if (!lacks) return rope;
     Vec2 shift_m;
-    for (std::size_t k = anchor; k < links.size(); ++k) {
+    for (std::size_t k = fixed.begin; k < links; ++k) {
         shift_m = shift_m - lack_m[k];
-        rope.points_m[k + 1] = given_m[k + 1] + shift_m;
+        rope.points_m[k + 1] = rope.points_m[k + 1] + shift_m;
     }
     shift_m = {};
-    for (std::size_t k = anchor; k-- > 0;) {
+    for (std::size_t k = fixed.begin; k-- > 0;) {
         shift_m = shift_m + lack_m[k];
-        rope.points_m[k] = given_m[k] + shift_m;
+        rope.points_m[k] = rope.points_m[k] + shift_m;
     }
     // Rounding must not leave a link longer than it can be.
-    for (const std::size_t k : links) rope.rest_m[k] = std::max(rope.rest_m[k], distance_m(rope, k, k + 1));
+    for (std::size_t k = 0; k < links; ++k) {
+        if (!fixed.contains(k)) rope.rest_m[k] = std::max(rope.rest_m[k], distance_m(rope, k, k + 1));
+    }
     return rope;
 }
 

@@ -64,8 +64,16 @@ struct System {
     [[nodiscard]] bool is_pinned(std::size_t particle) const { return inverse_mass_1_kg[particle] == 0.0; }
 };
 
-/// Whether links before and after link `k` of a rope lead to pinned particles.
-[[nodiscard]] bool is_between_pins(const RopeDef& rope, std::size_t k);
+/// Some consecutive links of a rope.
+struct LinkRange {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+
+    [[nodiscard]] bool contains(std::size_t k) const { return begin <= k && k < end; }
+};
+
+/// The links between the outermost pinned particles of a rope; all links of a closed one.
+[[nodiscard]] LinkRange links_between_pins(const RopeDef& rope);
 
 /// The rope as it starts. A string without compliance cannot span more than its rest lengths: a link that is
 /// given a larger distance starts taut, in the same direction, and what is beyond it, seen from the pins

@@ -71,6 +71,8 @@ TEST(System, PullsInAStringThatIsTooShortForItsPoints) {
     const System between = build_system({&rope, 1});
     EXPECT_THAT(between.x_m, ElementsAre(0.0, 0.0, 0.0, 0.5));
     EXPECT_THAT(between.y_m, ElementsAre(-0.5, -1.0, -1.0, -1.0));
+    rope.pinned = {0, 2};  // pins hold the first link longer than it can be, for a solver to refuse
+    EXPECT_EQ(build_system({&rope, 1}).bars[0].rest_m, 0.5);
 }
 
 TEST(System, PullsNoLinkBeyondItsLength) {
