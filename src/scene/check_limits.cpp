@@ -209,8 +209,8 @@ struct Work {
     double updates = 0.0;  ///< of particles
 };
 
-/// What a step of rattle costs per particle: 27 ns for each of its stages, measured with chains of 300 to
-/// 30 000 links, beside the 144 ns of an update.
+/// The cost of a step of rattle per particle, in updates of 144 ns: each of its stages takes 27 ns, measured
+/// with chains of 300 to 30 000 links.
 double updates_of_rattle(const RattleDef& rattle) {
     constexpr double kUpdatesPerStage = 0.19;
     return kUpdatesPerStage * static_cast<double>(sim::stage_count(rattle));
@@ -259,7 +259,7 @@ void check_pace(const Sections& sections, const Scene& scene, const System& syst
     }
 }
 
-/// Cost of a net whose bars stretch beside that of a chain of as many particles: it has more bars, and
+/// Cost of a net whose bars stretch relative to that of a chain of as many particles: it has more bars, and
 /// shorter steps. If they are strings, some always come taut or slack, and the error of such a step falls
 /// slowly with its length. Measured with 10 x 10 to 70 x 70 particles: without strings 5 times; with strings,
 /// `exact` took 9 to 22 times as long as without, and `auto`, whose checks are tighter, 60 to 300 times.

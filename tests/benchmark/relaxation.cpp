@@ -24,6 +24,8 @@ const char* name_of(RelaxationKernel kernel) {
             return "scalar";
         case RelaxationKernel::kSse2:
             return "sse2";
+        case RelaxationKernel::kAvx2:
+            return "avx2";
     }
     return "";
 }
@@ -80,7 +82,7 @@ void relaxation_step(benchmark::State& bench) {
     const int steps = std::max(8, static_cast<int>(200'000.0 / bars));
     const int steps_at_once = bench.range(3) > 0 ? static_cast<int>(bench.range(3)) : steps;
     std::vector<TimedRun> runs;
-    for (const RelaxationKernel kernel : {RelaxationKernel::kScalar, kFastestRelaxation})
+    for (const RelaxationKernel kernel : relaxation_kernels())
         runs.emplace_back(system, kernel, steps, steps_at_once);
     for (auto _ : bench) {
         for (TimedRun& run : runs) run.run_slice();

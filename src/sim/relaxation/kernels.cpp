@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <array>
 
+#include "corda/core/cpu.hpp"
 #include "corda/sim/distance.hpp"
 
 #if defined(__x86_64__)
-#include <emmintrin.h>
+#include <immintrin.h>
+// Compiled for AVX2 where a function for AVX2 calls them.
+#define CORDA_INLINE [[gnu::always_inline]] inline
 #endif
 
 namespace corda::sim {
@@ -51,6 +54,7 @@ struct Cursor {
 /// What the kernel needs of a schedule and of the motion, at hand.
 struct Pointers {
     const RelaxationPacket* packets;
+    const std::uint8_t* next_is_independent;
     const std::uint32_t* updates;
     const std::uint32_t* update_begin;
     double* position_m;
@@ -71,7 +75,7 @@ struct Pointers {
 }
 
 /// Verlet's update of one particle.
-inline void update_particle(const Pointers& p, std::uint32_t particle) {
+CORDA_INLINE void update_particle(const Pointers& p, std::uint32_t particle) {
     const std::size_t at = std::size_t{2} * particle;
     __m128d position = _mm_loadu_pd(p.position_m + at);
     const __m128d last =
@@ -84,8 +88,15 @@ inline void update_particle(const Pointers& p, std::uint32_t particle) {
     _mm_storeu_pd(p.position_m + at, position);
 }
 
+CORDA_INLINE void update_before(const Pointers& p, const Cursor& sweep) {
+    if (!sweep.updates) return;
+    const std::size_t k = sweep.packet;
+    for (std::uint32_t j = p.update_begin[k]; j < p.update_begin[k + 1]; ++j)
+        update_particle(p, p.updates[j]);
+}
+
 /// Relaxes the bars of a packet.
-inline void relax_two(const RelaxationPacket& packet, double* position_m) {
+CORDA_INLINE void relax_two(const RelaxationPacket& packet, double* position_m) {
     double* const a0 = position_m + packet.a[0];
     double* const a1 = position_m + packet.a[1];
     double* const b0 = position_m + packet.b[0];
@@ -113,22 +124,117 @@ inline void relax_two(const RelaxationPacket& packet, double* position_m) {
     _mm_storeu_pd(b1, _mm_sub_pd(at_b1, _mm_mul_pd(_mm_set1_pd(packet.share_b[1]), move1)));
 }
 
+/// Runs the next packet of a sweep.
+CORDA_INLINE void advance_one(const Pointers& p, Cursor& sweep) {
+    update_before(p, sweep);
+    relax_two(p.packets[sweep.packet++], p.position_m);
+}
+
 /// Runs `packets` packets of each sweep under way, one of each in turn.
-void run_together(const Pointers& p, std::span<Cursor> sweeps, std::size_t packets) {
+void run_by_sse2(const Pointers& p, std::span<Cursor> sweeps, std::size_t packets) {
     for (; packets > 0; --packets) {
-        for (Cursor& sweep : sweeps) {
-            const std::size_t k = sweep.packet++;
-            if (sweep.updates) {
-                for (std::uint32_t j = p.update_begin[k]; j < p.update_begin[k + 1]; ++j)
-                    update_particle(p, p.updates[j]);
-            }
-            relax_two(p.packets[k], p.position_m);
-        }
+        for (Cursor& sweep : sweeps) advance_one(p, sweep);
     }
 }
 
+/// Two pairs of numbers.
+CORDA_AVX2 CORDA_INLINE __m256d load_pairs(const double* first, const double* second) {
+    return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(first)), _mm_loadu_pd(second), 1);
+}
+
+CORDA_AVX2 CORDA_INLINE void store_pairs(double* first, double* second, __m256d pairs) {
+    _mm_storeu_pd(first, _mm256_castpd256_pd128(pairs));
+    _mm_storeu_pd(second, _mm256_extractf128_pd(pairs, 1));
+}
+
+/// The first number of each pair, twice, and the second.
+CORDA_AVX2 CORDA_INLINE __m256d first_of(__m256d pairs) {
+    return _mm256_movedup_pd(pairs);
+}
+CORDA_AVX2 CORDA_INLINE __m256d second_of(__m256d pairs) {
+    return _mm256_permute_pd(pairs, 0xf);
+}
+
+/// Relaxes the bars of two packets without a common particle, as relax_two() does those of one.
+CORDA_AVX2 CORDA_INLINE void relax_four(const RelaxationPacket& first, const RelaxationPacket& second,
+                                        double* position_m) {
+    const __m256d at_a0 = load_pairs(position_m + first.a[0], position_m + second.a[0]);
+    const __m256d at_a1 = load_pairs(position_m + first.a[1], position_m + second.a[1]);
+    const __m256d at_b0 = load_pairs(position_m + first.b[0], position_m + second.b[0]);
+    const __m256d at_b1 = load_pairs(position_m + first.b[1], position_m + second.b[1]);
+    const __m256d along0 = _mm256_sub_pd(at_b0, at_a0);
+    const __m256d along1 = _mm256_sub_pd(at_b1, at_a1);
+    const __m256d square0 = _mm256_mul_pd(along0, along0);
+    const __m256d square1 = _mm256_mul_pd(along1, along1);
+    const __m256d distance = _mm256_sqrt_pd(
+        _mm256_add_pd(_mm256_unpacklo_pd(square0, square1), _mm256_unpackhi_pd(square0, square1)));
+    if (_mm256_movemask_pd(_mm256_cmp_pd(distance, _mm256_setzero_pd(), _CMP_EQ_OQ)) != 0) [[unlikely]] {
+        relax_one_by_one(first, position_m);
+        return relax_one_by_one(second, position_m);
+    }
+    const __m256d adjust = _mm256_sub_pd(distance, load_pairs(first.rest_m.data(), second.rest_m.data()));
+    const __m256d move0 = _mm256_mul_pd(_mm256_div_pd(along0, first_of(distance)), first_of(adjust));
+    const __m256d move1 = _mm256_mul_pd(_mm256_div_pd(along1, second_of(distance)), second_of(adjust));
+    const __m256d share_a = load_pairs(first.share_a.data(), second.share_a.data());
+    const __m256d share_b = load_pairs(first.share_b.data(), second.share_b.data());
+    store_pairs(position_m + first.a[0], position_m + second.a[0],
+                _mm256_add_pd(at_a0, _mm256_mul_pd(first_of(share_a), move0)));
+    store_pairs(position_m + first.a[1], position_m + second.a[1],
+                _mm256_add_pd(at_a1, _mm256_mul_pd(second_of(share_a), move1)));
+    store_pairs(position_m + first.b[0], position_m + second.b[0],
+                _mm256_sub_pd(at_b0, _mm256_mul_pd(first_of(share_b), move0)));
+    store_pairs(position_m + first.b[1], position_m + second.b[1],
+                _mm256_sub_pd(at_b1, _mm256_mul_pd(second_of(share_b), move1)));
+}
+
+/// Runs the next packet of two sweeps. Packets at least `lag` apart have no particle in common.
+CORDA_AVX2 CORDA_INLINE void advance_two(const Pointers& p, Cursor& first, Cursor& second) {
+    update_before(p, first);
+    update_before(p, second);
+    relax_four(p.packets[first.packet++], p.packets[second.packet++], p.position_m);
+}
+
+/// Runs `packets` packets of each of `count` sweeps under way, two at a time: those of two sweeps, or two of
+/// the last sweep if the count is odd.
+template <std::size_t count>
+CORDA_AVX2 void run_count_by_avx2(const Pointers& p, Cursor* under_way, std::size_t packets) {
+    std::array<Cursor, count> sweeps;
+    std::copy_n(under_way, count, sweeps.begin());
+    constexpr std::size_t kPaired = count / 2 * 2;
+    for (; packets >= 2; packets -= 2) {
+        for (int k = 0; k < 2; ++k) {
+            for (std::size_t i = 0; i < kPaired; i += 2) advance_two(p, sweeps[i], sweeps[i + 1]);
+        }
+        if constexpr (kPaired < count) {
+            Cursor& last = sweeps[kPaired];
+            if (p.next_is_independent[last.packet] != 0) {
+                Cursor next{last.packet + 1, last.updates};
+                advance_two(p, last, next);
+                last.packet = next.packet;
+            } else {
+                advance_one(p, last);
+                advance_one(p, last);
+            }
+        }
+    }
+    if (packets > 0) {
+        for (std::size_t i = 0; i < kPaired; i += 2) advance_two(p, sweeps[i], sweeps[i + 1]);
+        if constexpr (kPaired < count) advance_one(p, sweeps[kPaired]);
+    }
+    std::copy_n(sweeps.begin(), count, under_way);
+}
+
+void run_by_avx2(const Pointers& p, std::span<Cursor> sweeps, std::size_t packets) {
+    static constexpr std::array kRun{run_count_by_avx2<1>, run_count_by_avx2<2>, run_count_by_avx2<3>,
+                                     run_count_by_avx2<4>, run_count_by_avx2<5>, run_count_by_avx2<6>};
+    static_assert(kRun.size() == kSweepsAtOnce);
+    kRun[sweeps.size() - 1](p, sweeps.data(), packets);
+}
+
 /// Runs sweeps of `length` packets, each at least `lag` packets behind the one before.
-void run_staggered(const Pointers& p, const RelaxationSweeps& sweeps, std::size_t length, std::size_t lag) {
+void run_staggered(const Pointers& p, const RelaxationSweeps& sweeps, std::size_t length, std::size_t lag,
+                   bool is_by_avx2) {
+    const auto run_together = is_by_avx2 ? run_by_avx2 : run_by_sse2;
     std::array<Cursor, kSweepsAtOnce> cursors;
     std::size_t under_way = 0;
     std::uint64_t next = sweeps.begin;
@@ -166,14 +272,28 @@ void run_sweeps(std::span<const RelaxationBar> bars, const RelaxationSweeps& swe
     }
 }
 
-void run_sweeps([[maybe_unused]] const RelaxationSchedule& schedule,
-                [[maybe_unused]] const RelaxationSweeps& sweeps, [[maybe_unused]] RelaxationMotion& motion) {
+std::span<const RelaxationKernel> relaxation_kernels() {
+    static constexpr std::array kKernels{RelaxationKernel::kScalar, RelaxationKernel::kSse2,
+                                         RelaxationKernel::kAvx2};
 #if defined(__x86_64__)
-    const Pointers pointers{schedule.packets.data(),   schedule.updates.data(), schedule.update_begin.data(),
-                            motion.position_m.data(),  motion.move_m.data(),    motion.unrelaxed_m.data(),
-                            motion.last_move_m.data(), motion.push_m.data(),    motion.keep};
+    return std::span(kKernels).first(__builtin_cpu_supports("avx2") != 0 ? 3 : 2);
+#else
+    return std::span(kKernels).first(1);
+#endif
+}
+
+void run_sweeps([[maybe_unused]] const RelaxationSchedule& schedule,
+                [[maybe_unused]] const RelaxationSweeps& sweeps, [[maybe_unused]] RelaxationKernel kernel,
+                [[maybe_unused]] RelaxationMotion& motion) {
+#if defined(__x86_64__)
+    const Pointers pointers{schedule.packets.data(),   schedule.next_is_independent.data(),
+                            schedule.updates.data(),   schedule.update_begin.data(),
+                            motion.position_m.data(),  motion.move_m.data(),
+                            motion.unrelaxed_m.data(), motion.last_move_m.data(),
+                            motion.push_m.data(),      motion.keep};
     if (!schedule.packets.empty())
-        return run_staggered(pointers, sweeps, schedule.packets.size(), schedule.lag);
+        return run_staggered(pointers, sweeps, schedule.packets.size(), schedule.lag,
+                             kernel == RelaxationKernel::kAvx2 && schedule.is_wide);
     for (std::uint64_t sweep = sweeps.begin; sweep < sweeps.end; ++sweep) {
         if (!sweeps.updates_before(sweep)) continue;
         for (const std::uint32_t particle : schedule.updates) update_particle(pointers, particle);

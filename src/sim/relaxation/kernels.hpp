@@ -18,24 +18,17 @@ struct RelaxationMotion {
     double keep = 1.0;                ///< share of the velocity kept per step
 };
 
-/// Code that relaxes. Both kernels give the same bits: they do the same correctly rounded operations on each
+/// Code that relaxes. All kernels give the same bits: they do the same correctly rounded operations on each
 /// particle in the same order.
 ///
 /// kScalar takes the bars one by one in the given order and waits for each: a bar's square root and division
 /// take some 50 cycles, and the next bar of the same reach starts from their result. kSse2 takes packets of
 /// two bars (RelaxationSchedule), and several sweeps at once, each `lag` packets behind the one before, so
-/// that they wait for little but the divider's throughput.
-enum class RelaxationKernel {
-    kScalar,
-    kSse2,  ///< every x86-64 CPU
-};
+/// that they wait for little but the divider's throughput. kAvx2 takes the packets of two sweeps at once.
+enum class RelaxationKernel { kScalar, kSse2, kAvx2 };
 
-/// The fastest kernel of this CPU.
-#if defined(__x86_64__)
-inline constexpr RelaxationKernel kFastestRelaxation = RelaxationKernel::kSse2;
-#else
-inline constexpr RelaxationKernel kFastestRelaxation = RelaxationKernel::kScalar;
-#endif
+/// The kernels that this CPU can run, the fastest last.
+[[nodiscard]] std::span<const RelaxationKernel> relaxation_kernels();
 
 /// Which sweeps to run: `begin` <= k < `end`, counted from the start of a step, `per_step` in each step.
 /// Verlet's update of all particles precedes the first sweep of a step.
@@ -54,7 +47,8 @@ struct RelaxationSweeps {
 void run_sweeps(std::span<const RelaxationBar> bars, const RelaxationSweeps& sweeps,
                 RelaxationMotion& motion);
 
-/// The same for the bars and particles of a schedule, by kernel kSse2.
-void run_sweeps(const RelaxationSchedule& schedule, const RelaxationSweeps& sweeps, RelaxationMotion& motion);
+/// The same for the bars and particles of a schedule, by a kernel of this CPU other than kScalar.
+void run_sweeps(const RelaxationSchedule& schedule, const RelaxationSweeps& sweeps, RelaxationKernel kernel,
+                RelaxationMotion& motion);
 
 }  // namespace corda::sim

@@ -30,7 +30,7 @@ constexpr std::size_t kParticlesTogether = 256;
 /// them. Fewer would make the kernel wait more often for the last sweep to end.
 constexpr std::uint64_t kMostAtOnce = 1'000'000;
 /// But of no fewer sweeps, so that what a rope too large for the caches reads from memory is still shared.
-constexpr std::uint64_t kFewestSweeps = 12;
+constexpr std::uint64_t kMinSweeps = 12;
 /// Bars or particles that take as long as one update of a StopCheck.
 constexpr std::uint64_t kBarsPerUpdate = 8;
 
@@ -70,6 +70,18 @@ std::vector<Vec2> forces_on_particles(const System& system, const Forces& forces
     if (!def.force_n) return force_n;
     for (std::size_t i = 0; i < force_n.size(); ++i) force_n[i] = system.is_pinned(i) ? Vec2{} : *def.force_n;
     return force_n;
+}
+
+/// Runs sweeps over `size` bars and particles, and asks after each piece of them whether to stop.
+template <class Run>
+void run_in_pieces(RelaxationSweeps sweeps, std::size_t size, StopCheck& stop, const Run& run) {
+    const std::uint64_t at_once = std::max<std::uint64_t>(kMinSweeps, kMostAtOnce / (1 + size));
+    const std::uint64_t end = sweeps.end;
+    for (; sweeps.begin < end; sweeps.begin = sweeps.end) {
+        sweeps.end = sweeps.begin + std::min(at_once, end - sweeps.begin);
+        run(sweeps);
+        stop.spend(1 + (sweeps.end - sweeps.begin) * size / kBarsPerUpdate);
+    }
 }
 
 }  // namespace
@@ -130,10 +142,14 @@ void Relaxation::advance(std::uint64_t steps, StopCheck& stop) {
         motion_.unrelaxed_m = motion_.position_m;
     }
     const RelaxationSweeps sweeps{0, steps * sweeps_, sweeps_, starts_updated};
-    if (kernel_ == RelaxationKernel::kScalar) sweep(bars_, bars_.size() + size / 2, sweeps, stop);
+    if (kernel_ == RelaxationKernel::kScalar) {
+        run_in_pieces(sweeps, bars_.size() + size / 2, stop,
+                      [this](const RelaxationSweeps& piece) { run_sweeps(bars_, piece, motion_); });
+    }
     for (const RelaxationSchedule& schedule : schedules_) {
         const std::size_t bars = RelaxationPacket::kLanes * schedule.packets.size();
-        sweep(schedule, bars + schedule.updates.size(), sweeps, stop);
+        run_in_pieces(sweeps, bars + schedule.updates.size(), stop,
+                      [&](const RelaxationSweeps& piece) { run_sweeps(schedule, piece, kernel_, motion_); });
     }
     // The move takes up what the bars moved. Within several steps the next update does this.
     for (std::size_t k = 0; k < size; ++k) {
@@ -141,17 +157,6 @@ void Relaxation::advance(std::uint64_t steps, StopCheck& stop) {
         motion_.unrelaxed_m[k] = motion_.position_m[k];
     }
     step_ += steps;
-}
-
-template <class Bars>
-void Relaxation::sweep(const Bars& bars, std::size_t size, RelaxationSweeps sweeps, StopCheck& stop) {
-    const std::uint64_t at_once = std::max<std::uint64_t>(kFewestSweeps, kMostAtOnce / (1 + size));
-    const std::uint64_t end = sweeps.end;
-    for (; sweeps.begin < end; sweeps.begin = sweeps.end) {
-        sweeps.end = sweeps.begin + std::min(at_once, end - sweeps.begin);
-        run_sweeps(bars, sweeps, motion_);
-        stop.spend(1 + (sweeps.end - sweeps.begin) * size / kBarsPerUpdate);
-    }
 }
 
 void Relaxation::interpolate(double fraction, State& state) const {

@@ -30,7 +30,7 @@ class Relaxation final : public Solver {
   public:
     /// `default_step_s`: the step if `def` names none. `kernel` changes the time taken, not the bits.
     Relaxation(const System& system, const Forces& forces, const RelaxationDef& def, double default_step_s,
-               RelaxationKernel kernel = kFastestRelaxation);
+               RelaxationKernel kernel = relaxation_kernels().back());
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;
@@ -42,8 +42,6 @@ class Relaxation final : public Solver {
   private:
     void advance(std::uint64_t steps, StopCheck& stop);
     /// Runs sweeps over some bars, to which `size` bars and particles belong, as one run_sweeps() would.
-    template <class Bars>
-    void sweep(const Bars& bars, std::size_t size, RelaxationSweeps sweeps, StopCheck& stop);
     void interpolate(double fraction, State& state) const;
 
     RelaxationDef def_;  ///< with its step
@@ -57,7 +55,7 @@ class Relaxation final : public Solver {
     std::vector<double> mass_kg_;
     std::vector<Vec2> force_n_;                  ///< 0 for a pinned particle
     std::vector<RelaxationBar> bars_;            ///< for kScalar
-    std::vector<RelaxationSchedule> schedules_;  ///< for kSse2; of some bodies each
+    std::vector<RelaxationSchedule> schedules_;  ///< for the others; of some bodies each
 };
 
 }  // namespace corda::sim

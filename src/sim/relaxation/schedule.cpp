@@ -20,6 +20,21 @@ std::vector<std::uint32_t> sorted_by(const std::vector<std::uint32_t>& key) {
     return order;
 }
 
+/// A schedule of this many packets has independent ones even if sweeps cannot overlap: it holds several
+/// ropes.
+constexpr std::size_t kManyPackets = 400;
+
+/// Whether no particle is in both.
+bool are_apart(const RelaxationPacket& first, const RelaxationPacket& second) {
+    const auto has = [&](std::uint32_t at) {
+        const auto is_it = [at](std::uint32_t other) { return other == at; };
+        return std::any_of(second.a.begin(), second.a.end(), is_it) ||
+               std::any_of(second.b.begin(), second.b.end(), is_it);
+    };
+    return std::none_of(first.a.begin(), first.a.end(), has) &&
+           std::none_of(first.b.begin(), first.b.end(), has);
+}
+
 /// Bars in packets.
 class Packing {
   public:
@@ -111,6 +126,9 @@ RelaxationSchedule schedule_bars(std::span<const RelaxationBar> bars, std::uint3
     RelaxationSchedule schedule;
     schedule.packets.reserve(packing.size());
     for (std::size_t k = 0; k < packing.size(); ++k) schedule.packets.push_back(packing.packet(k));
+    schedule.next_is_independent.assign(packing.size(), 0);
+    for (std::size_t k = 0; k + 1 < packing.size(); ++k)
+        schedule.next_is_independent[k] = are_apart(schedule.packets[k], schedule.packets[k + 1]) ? 1 : 0;
     const std::vector<std::uint32_t> first = packing.first();
     schedule.updates = sorted_by(first);
     schedule.update_begin.assign(packing.size() + 1, particle_count);
@@ -122,6 +140,7 @@ RelaxationSchedule schedule_bars(std::span<const RelaxationBar> bars, std::uint3
         const std::uint32_t end = packing.end_of_last()[i];
         if (end > first[i]) schedule.lag = std::max<std::size_t>(schedule.lag, end - first[i]);
     }
+    schedule.is_wide = 2 * packing.size() >= 3 * schedule.lag || packing.size() >= kManyPackets;
     for (std::uint32_t& particle : schedule.updates) particle += first_particle;
     return schedule;
 }

@@ -42,12 +42,16 @@ struct alignas(64) RelaxationPacket {
 /// stays `lag` packets behind.
 struct RelaxationSchedule {
     std::vector<RelaxationPacket> packets;
+    std::vector<std::uint8_t> next_is_independent;  ///< per packet: 1 if the next one has other particles
     /// Particles in the order of their first packet; those without a bar come first.
     std::vector<std::uint32_t> updates;
     /// Packet k is preceded by the updates[j] with update_begin[k] <= j < update_begin[k + 1].
     std::vector<std::uint32_t> update_begin;
     /// Packet k of a sweep comes after packet k + lag - 1 of the sweep before; 1 .. number of packets.
     std::size_t lag = 1;
+    /// False for a single short rope: most of its packets depend on the one before, and two that run together
+    /// wait for both.
+    bool is_wide = false;
 };
 
 /// Schedules `bars`, to be relaxed in this order, of the `particle_count` particles from `first_particle` on;

@@ -1,7 +1,8 @@
-// The SIMD kernel of the relaxation method gives the bits of the scalar one.
+// The SIMD kernels of the relaxation method give the bits of the scalar one.
 
 #include "corda/sim/relaxation/kernels.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -36,13 +37,20 @@ struct KernelRun {
     State state;
 };
 
-TEST(FastestRelaxation, HasTheBitsOfTheScalarOneOnRandomBodies) {
+class RelaxationKernels : public testing::TestWithParam<RelaxationKernel> {};
+
+INSTANTIATE_TEST_SUITE_P(OfThisCpu, RelaxationKernels, testing::ValuesIn(relaxation_kernels()),
+                         [](const auto& param) {
+                             return fmt::format("kernel_{}", static_cast<int>(param.param));
+                         });
+
+TEST_P(RelaxationKernels, HaveTheBitsOfTheScalarOneOnRandomBodies) {
     for (unsigned seed = 0; seed < 250; ++seed) {
         test::Random random(seed);
         const System system = test::random_system(random);
         const RelaxationDef def = random_method(random);
         KernelRun scalar(system, def, RelaxationKernel::kScalar);
-        KernelRun run(system, def, kFastestRelaxation);
+        KernelRun run(system, def, GetParam());
         double time_s = 0.0;
         // Single steps, many at once, and times between two steps.
         for (const double steps : {1.0, 1.0, 1.0, 2.0, 0.25, 0.75, 5.0, 20.0, 1.5, 2.5}) {
@@ -56,11 +64,11 @@ TEST(FastestRelaxation, HasTheBitsOfTheScalarOneOnRandomBodies) {
     }
 }
 
-TEST(FastestRelaxation, HasTheBitsOfTheScalarOneOverManySteps) {
+TEST_P(RelaxationKernels, HaveTheBitsOfTheScalarOneOverManySteps) {
     for (const int particles : {20, 40, 100, 300}) {
         const System system = test::report_system(particles);
         KernelRun scalar(system, RelaxationDef{}, RelaxationKernel::kScalar);
-        KernelRun run(system, RelaxationDef{}, kFastestRelaxation);
+        KernelRun run(system, RelaxationDef{}, GetParam());
         ASSERT_EQ(scalar.relaxation.advance_to(60.0, scalar.state, test::unstopped), Status::kOk);
         ASSERT_EQ(run.relaxation.advance_to(60.0, run.state, test::unstopped), Status::kOk);
         EXPECT_LT(std::abs(scalar.state.x_m.back()), particles);
@@ -69,7 +77,7 @@ TEST(FastestRelaxation, HasTheBitsOfTheScalarOneOverManySteps) {
     }
 }
 
-TEST(Relaxing, InPiecesOfSweepsGivesTheSameBits) {
+TEST_P(RelaxationKernels, GiveTheSameBitsInPiecesOfSweeps) {
     const System system = test::report_system(40);
     std::vector<RelaxationBar> bars;
     for (const Bar& bar : system.bars) {
@@ -87,15 +95,19 @@ TEST(Relaxing, InPiecesOfSweepsGivesTheSameBits) {
     start.unrelaxed_m = start.position_m;
     start.move_m.assign(start.position_m.size(), 0.0);
     start.last_move_m = start.move_m;
+    const auto run = [&](RelaxationMotion& motion, const RelaxationSweeps& sweeps) {
+        if (GetParam() == RelaxationKernel::kScalar) return run_sweeps(bars, sweeps, motion);
+        run_sweeps(schedule, sweeps, GetParam(), motion);
+    };
     for (const bool starts_updated : {false, true}) {
         RelaxationMotion whole = start;
-        run_sweeps(schedule, {0, 100, 7, starts_updated}, whole);
+        run(whole, {0, 100, 7, starts_updated});
         for (const std::uint64_t piece : {1, 3, 7, 8, 50}) {
             RelaxationMotion packed = start;
             RelaxationMotion scalar = start;
             for (std::uint64_t k = 0; k < 100; k += piece) {
                 const RelaxationSweeps sweeps{k, std::min<std::uint64_t>(100, k + piece), 7, starts_updated};
-                run_sweeps(schedule, sweeps, packed);
+                run(packed, sweeps);
                 run_sweeps(bars, sweeps, scalar);
             }
             EXPECT_TRUE(same_bits(packed.position_m, whole.position_m)) << piece;
@@ -105,7 +117,7 @@ TEST(Relaxing, InPiecesOfSweepsGivesTheSameBits) {
     }
 }
 
-TEST(FastestRelaxation, LeavesAFoldedRopeAloneWhoseBarsHaveNoLength) {
+TEST_P(RelaxationKernels, LeaveAFoldedRopeAloneWhoseBarsHaveNoLength) {
     // Particles in turn in two places, weightless and motionless: bars of even reach have no length, ever.
     RopeDef rope = reference::report_rope(50);
     for (std::size_t i = 0; i < rope.points_m.size(); ++i) rope.points_m[i] = {0.0, i % 2 == 0 ? 0.0 : -1.0};
@@ -113,7 +125,7 @@ TEST(FastestRelaxation, LeavesAFoldedRopeAloneWhoseBarsHaveNoLength) {
     def.force_n = Vec2{};
     rope.reach = 7;
     const System system = build_system({&rope, 1});
-    KernelRun run(system, def, kFastestRelaxation);
+    KernelRun run(system, def, GetParam());
     ASSERT_EQ(run.relaxation.advance_to(2.0, run.state, test::unstopped), Status::kOk);
     EXPECT_EQ(run.state.x_m, system.x_m);
     EXPECT_EQ(run.state.y_m, system.y_m);
