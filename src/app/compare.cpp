@@ -179,7 +179,7 @@ ComparedPicture compare_picture(const CompareOptions& options, const std::string
     for (const std::string& path : references) {
         Picture b;
         // Small pictures have no SSIM; only who asks for it is told.
-        const bool is_small = std::min(a.image.width(), a.image.height()) < kLeastSsimSidePx;
+        const bool is_small = std::min(a.image.width(), a.image.height()) < kMinSsimSidePx;
         if (is_small && !options.limits.ssim) figures.ssim = false;
         ComparedPicture compared;
         compared.difference = difference_of(picture, a, path, b, figures, goes_on, its_mask, !diff.empty());

@@ -86,7 +86,7 @@ void compare_pair(const CompareOptions& options, const std::optional<Image>& mas
 }
 
 /// Two pictures may take 512 MiB.
-constexpr int kMostThreads = 4;
+constexpr int kMaxThreads = 4;
 
 /// Compares several pairs at a time.
 void compare_all(const CompareOptions& options, const std::optional<Image>& mask, std::vector<Pair>& pairs) {
@@ -104,7 +104,7 @@ void compare_all(const CompareOptions& options, const std::optional<Image>& mask
         }
     };
     {
-        const auto threads = std::min<std::size_t>(std::min(usable_cores(), kMostThreads), pairs.size());
+        const auto threads = std::min<std::size_t>(std::min(usable_cores(), kMaxThreads), pairs.size());
         const auto helpers = start_threads(static_cast<int>(threads) - 1, work);
         work();
     }

@@ -180,7 +180,7 @@ std::string told_of_videos(const CompareOptions& options, const std::string& pat
 }
 
 ChildLimits limits_of_videos(const std::string& a, const std::string& b) {
-    constexpr std::int64_t kLeastS = 60;
+    constexpr std::int64_t kMinS = 60;
     constexpr std::int64_t kBytesPerS = 500;  // a still scene has small frames, each of which takes its time
     std::uintmax_t bytes = 0;
     for (const std::string& path : {a, b}) {
@@ -188,7 +188,7 @@ ChildLimits limits_of_videos(const std::string& a, const std::string& b) {
         const std::uintmax_t size = std::filesystem::file_size(path, none);
         if (!none) bytes += size;
     }
-    const std::int64_t cpu_s = kLeastS + static_cast<std::int64_t>(bytes) / kBytesPerS;
+    const std::int64_t cpu_s = kMinS + static_cast<std::int64_t>(bytes) / kBytesPerS;
     return {std::uint64_t{8} << 30, cpu_s, 3.0 * static_cast<double>(cpu_s)};
 }
 

@@ -78,14 +78,14 @@ Scene FigureOptions::load(const Console& console) const {
     VideoDef& video = loaded.video;
     const double width_px = std::round(*width_mm / kMmPerInch * pixels_per_inch.value_or(kPrintPpi));
     const double height_px = std::round(width_px * video.height_px / video.width_px);
-    const bool is_sane = std::max(width_px, height_px) <= kLargestSidePx;
+    const bool is_sane = std::max(width_px, height_px) <= kMaxSidePx;
     if (!is_sane || !is_picture_size(std::lround(width_px), std::lround(height_px))) {
         throw Error(
             ExitCode::kUsage,
             fmt::format("--width-mm {} at {} pixels per inch is {}x{} pixels, not 1 .. {} per side and "
                         "{} in all; choose another width or --ppi",
-                        *width_mm, pixels_per_inch.value_or(kPrintPpi), width_px, height_px, kLargestSidePx,
-                        kMostPicturePx));
+                        *width_mm, pixels_per_inch.value_or(kPrintPpi), width_px, height_px, kMaxSidePx,
+                        kMaxPicturePx));
     }
     video.width_px = static_cast<int>(width_px);
     video.height_px = static_cast<int>(height_px);

@@ -26,7 +26,7 @@ struct GoldenOptions {
 };
 
 /// A page of more pictures is too large to open.
-constexpr int kMostOnPage = 200;
+constexpr int kMaxOnPage = 200;
 
 const char* word_of(Verdict verdict) {
     switch (verdict) {
@@ -136,7 +136,7 @@ ExitCode run_suite(const Console& console, GoldenOptions options) {
         throw Error(ExitCode::kUsage, "--dry-run, --replan and --force say how --update works; add --update");
     for (const std::string& path : {options.junit, options.html})
         if (!path.empty()) check_output(path, "", true);
-    if (!options.html.empty()) options.def.most_drawn = kMostOnPage;
+    if (!options.html.empty()) options.def.most_drawn = kMaxOnPage;
     options.gl.apply_to(options.def.film);
     options.def.film.on_progress = stopping_if_asked(kSomethingWritten);
     options.def.on_progress = stopping_if_asked(kSomethingWritten);

@@ -36,14 +36,14 @@ constexpr std::int64_t kSameWishNs = 100'000'000;
 /// Time from the first signal until the process ends, whatever its threads wait for. A sanitized program is
 /// ten times slower.
 #ifdef CORDA_SANITIZE
-constexpr std::int64_t kLongestNs = 20'000'000'000;
+constexpr std::int64_t kMaxNs = 20'000'000'000;
 #else
-constexpr std::int64_t kLongestNs = 800'000'000;
+constexpr std::int64_t kMaxNs = 800'000'000;
 #endif
 constexpr std::int64_t kTickNs = 100'000'000;
 /// The same for a process that uses a processor: on a busy machine it may need this long to notice the
 /// signal. A process that waits for a driver uses less processor time than kMinWorkNs.
-constexpr std::int64_t kMaxWorkNs = 3 * kLongestNs;
+constexpr std::int64_t kMaxWorkNs = 3 * kMaxNs;
 constexpr std::int64_t kMinWorkNs = 100'000'000;
 /// The same while results are flushed to disk and get their names.
 constexpr std::int64_t kMaxSavingNs = 30'000'000'000;
@@ -140,10 +140,10 @@ void write_at_once(int descriptor, std::string_view text) {
 
 /// True if the process has not ended in the time that it has after the first signal.
 bool is_overdue(std::int64_t waited_ns) {
-    if (waited_ns < kLongestNs) return false;
+    if (waited_ns < kMaxNs) return false;
     if (Saving::is_active()) return waited_ns >= kMaxSavingNs;
     const std::int64_t worked_ns = processor_ns() - asked_at_processor_ns;
-    return worked_ns < kMinWorkNs || worked_ns >= kLongestNs || waited_ns >= kMaxWorkNs;
+    return worked_ns < kMinWorkNs || worked_ns >= kMaxNs || waited_ns >= kMaxWorkNs;
 }
 
 /// A call that began to wait just after the signal does not know of it: from now on SIGALRM breaks off every

@@ -175,10 +175,10 @@ int run(int argc, char** argv) {
 
 /// Lets the memory of one chunk's encoder serve the next one: zeroing fresh pages took 14 % of a render.
 void keep_memory() {
-    constexpr int kLargestOfHeap = 32 << 20;  // glibc's limit
-    constexpr int kMostKept = 1 << 30;
-    static_cast<void>(mallopt(M_MMAP_THRESHOLD, kLargestOfHeap));
-    static_cast<void>(mallopt(M_TRIM_THRESHOLD, kMostKept));
+    constexpr int kMaxOfHeap = 32 << 20;  // glibc's limit
+    constexpr int kMaxKept = 1 << 30;
+    static_cast<void>(mallopt(M_MMAP_THRESHOLD, kMaxOfHeap));
+    static_cast<void>(mallopt(M_TRIM_THRESHOLD, kMaxKept));
 }
 
 /// SVT-AV1 prints its settings for every chunk unless told otherwise; a wish of the user stays.

@@ -12,7 +12,7 @@ namespace corda::app {
 namespace {
 
 /// So many pictures are a video.
-constexpr std::int64_t kMostShots = 100'000;
+constexpr std::int64_t kMaxShots = 100'000;
 
 /// Reads a whole number into `frame`; false for any other text.
 template <typename Frame>
@@ -85,10 +85,10 @@ std::vector<Shot> ShotOptions::list(const Scene& scene) const {
     for (const std::string& word : frames) {
         const FrameRange range = frames_of(word, scene);
         const auto count = static_cast<std::int64_t>(shots.size()) + *range.end - range.first;
-        if (count > kMostShots) {
+        if (count > kMaxShots) {
             throw Error(ExitCode::kUsage, fmt::format("--frame {}: are {} pictures or more, over the limit "
                                                       "of {}; `corda render` makes a video of them",
-                                                      word, count, kMostShots));
+                                                      word, count, kMaxShots));
         }
         for (std::int64_t k = range.first; k < *range.end; ++k)
             shots.push_back({scene.video.fps.time_s(k), k});

@@ -29,7 +29,7 @@ using nlohmann::json;
 
 constexpr double kMib = 1024.0 * 1024.0;
 /// Of the pictures that an encoder is fed from memory.
-constexpr double kMostPictureBytes = 1024.0 * kMib;
+constexpr double kMaxPictureBytes = 1024.0 * kMib;
 
 double cpu_s() {
     rusage usage{};
@@ -89,7 +89,7 @@ void draw_frames(const Film& film, std::int64_t frames, const Use& use) {
 std::int64_t most_pictures(const VideoDef& video) {
     constexpr double kBytesPerPixel = 1.5;
     const double bytes = kBytesPerPixel * video.width_px * video.height_px;
-    return std::max<std::int64_t>(2, static_cast<std::int64_t>(kMostPictureBytes / bytes));
+    return std::max<std::int64_t>(2, static_cast<std::int64_t>(kMaxPictureBytes / bytes));
 }
 
 json encode_alone(const BenchDef& def) {

@@ -17,8 +17,8 @@ json in_child(const std::function<void()>& on_wait, const std::function<json()>&
             return json{{"code", static_cast<int>(error.code())}, {"error", error.what()}}.dump();
         }
     };
-    constexpr double kLongestS = 86'400.0;
-    const ChildLimits limits{std::uint64_t{1} << 46U, static_cast<std::int64_t>(kLongestS), kLongestS};
+    constexpr double kMaxS = 86'400.0;
+    const ChildLimits limits{std::uint64_t{1} << 46U, static_cast<std::int64_t>(kMaxS), kMaxS};
     const auto end = run_in_child(told, limits, on_wait);
     if (!end) throw Error(ExitCode::kTemporary, "the system starts no further process; try again");
     if (!end->finished) throw Error(ExitCode::kTemporary, "the process that measures " + end->text);

@@ -31,13 +31,13 @@ struct Color {
 };
 
 /// The largest side of a picture that Corda draws or reads, and the most pixels of one.
-inline constexpr int kLargestSidePx = 16384;
-inline constexpr std::int64_t kMostPicturePx = std::int64_t{1} << 26;
+inline constexpr int kMaxSidePx = 16384;
+inline constexpr std::int64_t kMaxPicturePx = std::int64_t{1} << 26;
 
 /// Whether Corda draws and reads pictures of this size.
 constexpr bool is_picture_size(std::int64_t width, std::int64_t height) {
-    return width >= 1 && height >= 1 && width <= kLargestSidePx && height <= kLargestSidePx &&
-           width * height <= kMostPicturePx;
+    return width >= 1 && height >= 1 && width <= kMaxSidePx && height <= kMaxSidePx &&
+           width * height <= kMaxPicturePx;
 }
 
 /// A half-open rectangle of pixels, x0 <= x < x1 and y0 <= y < y1, row 0 on top.

@@ -14,7 +14,7 @@
 namespace corda {
 namespace {
 
-constexpr int kMostCores = 1 << 16;
+constexpr int kMaxCores = 1 << 16;
 
 /// The number after `key` in a file of lines "key number ..."; empty if there is none.
 std::optional<std::uint64_t> number_after(const std::filesystem::path& file, const std::string& key) {
@@ -67,7 +67,7 @@ std::optional<int> cores_of(const std::filesystem::path& group) {
     std::int64_t quota = 0;
     std::int64_t period = 0;
     if (!(text >> quota >> period) || quota <= 0 || period <= 0) return std::nullopt;
-    return static_cast<int>(std::min<std::int64_t>((quota - 1) / period + 1, kMostCores));
+    return static_cast<int>(std::min<std::int64_t>((quota - 1) / period + 1, kMaxCores));
 }
 
 /// How many cores this process may run on.
@@ -126,7 +126,7 @@ void require_address_space(std::uint64_t bytes, const std::string& what, std::ui
 }
 
 int usable_cores(const std::filesystem::path& root) {
-    int least = std::clamp(allowed_cores(), 1, kMostCores);
+    int least = std::clamp(allowed_cores(), 1, kMaxCores);
     for_each_group(root, [&least](const std::filesystem::path& group) {
         least = std::min(least, cores_of(group).value_or(least));
     });

@@ -9,12 +9,12 @@
 namespace corda {
 namespace {
 
-constexpr std::size_t kLongestWord = 64;  // longer than any candidate; bounds the work on hostile input
-constexpr std::size_t kShortestPrefix = 3;
+constexpr std::size_t kMaxWord = 64;  // longer than any candidate; bounds the work on hostile input
+constexpr std::size_t kMinPrefix = 3;
 
 /// Whether a word is the beginning of a candidate, or a candidate of which it has half and more.
 bool is_prefix(std::string_view word, std::string_view candidate) {
-    if (std::min(word.size(), candidate.size()) < kShortestPrefix) return false;
+    if (std::min(word.size(), candidate.size()) < kMinPrefix) return false;
     return candidate.starts_with(word) ||
            (word.starts_with(candidate) && 2 * candidate.size() >= word.size());
 }
@@ -42,7 +42,7 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::optional<std::string_view> nearest(std::string_view word, std::span<const std::string_view> candidates) {
-    if (word.empty() || word.size() > kLongestWord) return std::nullopt;
+    if (word.empty() || word.size() > kMaxWord) return std::nullopt;
     std::optional<std::string_view> closest;
     std::size_t smallest = std::numeric_limits<std::size_t>::max();
     for (const std::string_view candidate : candidates) {

@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 16;
-constexpr std::size_t kLongestStem = 230;  // file systems allow 255 bytes; ".12345678.tmp" needs 13
+constexpr std::size_t kMaxStem = 230;  // file systems allow 255 bytes; ".12345678.tmp" needs 13
 constexpr std::string_view kTemporaryEnding = ".tmp";
 
 fs::path folder_of(const std::string& path) {
@@ -35,7 +35,7 @@ fs::path folder_of(const std::string& path) {
 /// What the names of the temporary files of an output begin with.
 std::string temporary_stem(const std::string& path) {
     const fs::path whole(path);
-    return (whole.parent_path() / whole.filename().string().substr(0, kLongestStem)).string() + ".";
+    return (whole.parent_path() / whole.filename().string().substr(0, kMaxStem)).string() + ".";
 }
 
 /// The name of the output that a file is a temporary one of, cut to the longest stem; none for other files.
@@ -56,8 +56,8 @@ void remove_unheld(const std::string& path) {
 
 /// The file that `path` leads to through symbolic links; it may be missing.
 std::string follow_links(std::string path) {
-    constexpr int kMostLinks = 40;  // the kernel's own limit
-    for (int i = 0; i < kMostLinks; ++i) {
+    constexpr int kMaxLinks = 40;  // the kernel's own limit
+    for (int i = 0; i < kMaxLinks; ++i) {
         std::error_code ignored;
         if (!fs::is_symlink(fs::symlink_status(path, ignored))) return path;
         path = (fs::path(path).parent_path() / fs::read_symlink(path, ignored)).string();
@@ -161,7 +161,7 @@ void remove_leftovers(const std::string& folder,
 void remove_leftovers(const std::string& path) noexcept {
     try {
         const std::string target = follow_links(path);
-        const std::string stem = fs::path(target).filename().string().substr(0, kLongestStem);
+        const std::string stem = fs::path(target).filename().string().substr(0, kMaxStem);
         remove_leftovers(folder_of(target).string(), [&](const std::string& name) { return name == stem; });
     } catch (const std::exception&) {
         return;
@@ -208,8 +208,8 @@ void OutputFile::open_temporary() {
     // Nobody may read a new version of a private file before it has the old one's permissions.
     const mode_t mode = replaced_ ? 0600 : 0666;
     const std::string stem = temporary_stem(target_);
-    constexpr int kMostAttempts = 100;
-    for (int i = 0; i < kMostAttempts; ++i) {
+    constexpr int kMaxAttempts = 100;
+    for (int i = 0; i < kMaxAttempts; ++i) {
         temporary_ = stem + random_text() + std::string(kTemporaryEnding);
         descriptor_ = create_new(temporary_, mode);
         if (!descriptor_ && errno == EEXIST) continue;

@@ -39,13 +39,13 @@ bool is_held(const Descriptor& file, std::int64_t first, std::int64_t length) {
 
 RangeLock::RangeLock(std::string path, std::int64_t first, std::int64_t end, const std::string& what)
     : path_(std::move(path)) {
-    constexpr int kMostTries = 10'000;
+    constexpr int kMaxTries = 10'000;
     for (int tries = 0;; ++tries) {
         file_ = Descriptor(::open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666));
         if (!file_) fail_file("write", path_, errno);
         const Locked locked = lock_range(file_, first, end - first);
         if (locked == Locked::kCannot || (locked == Locked::kYes && leads_to(path_, file_))) return;
-        if (tries == kMostTries || (locked == Locked::kNo && is_held(file_, first, end - first)))
+        if (tries == kMaxTries || (locked == Locked::kNo && is_held(file_, first, end - first)))
             fail_busy(what);
         std::this_thread::sleep_for(std::chrono::microseconds(100));  // while the file is removed
     }

@@ -13,8 +13,7 @@ std::optional<std::int64_t> parse_part(std::string_view text) {
     std::int64_t value = 0;
     const char* end = text.data() + text.size();
     const auto [stop, status] = std::from_chars(text.data(), end, value);
-    if (status != std::errc{} || stop != end || value < 0 || value > Rational::kLargestPart)
-        return std::nullopt;
+    if (status != std::errc{} || stop != end || value < 0 || value > Rational::kMaxPart) return std::nullopt;
     return value;
 }
 

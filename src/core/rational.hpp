@@ -11,13 +11,13 @@ namespace corda {
 /// A fraction of two integers in lowest terms, `den > 0`.
 struct Rational {
     /// The largest part of one that is read from a text or given as a rate.
-    static constexpr std::int64_t kLargestPart = 1'000'000'000;
+    static constexpr std::int64_t kMaxPart = 1'000'000'000;
 
     std::int64_t num = 0;
     std::int64_t den = 1;
 
     /// Reads "60" or "30000/1001". Returns std::nullopt for any other text, a zero denominator, or a part
-    /// over kLargestPart.
+    /// over kMaxPart.
     static std::optional<Rational> parse(std::string_view text);
 
     /// The fraction in lowest terms. Requires `den != 0`.
@@ -26,10 +26,8 @@ struct Rational {
     /// "60" or "30000/1001".
     [[nodiscard]] std::string text() const;
 
-    /// Whether it can be a frame rate: both parts are within 1 .. kLargestPart.
-    [[nodiscard]] bool is_rate() const {
-        return num >= 1 && num <= kLargestPart && den >= 1 && den <= kLargestPart;
-    }
+    /// Whether it can be a frame rate: both parts are within 1 .. kMaxPart.
+    [[nodiscard]] bool is_rate() const { return num >= 1 && num <= kMaxPart && den >= 1 && den <= kMaxPart; }
 
     [[nodiscard]] double value() const { return static_cast<double>(num) / static_cast<double>(den); }
 

@@ -96,11 +96,11 @@ void fit_height(report::Plot& plot) {
 }
 
 std::string thinning_text(const Reading& reading) {
-    if (reading.rows <= Thinner::kMostPoints) return {};
+    if (reading.rows <= Thinner::kMaxPoints) return {};
     return fmt::format(
         " Of the {} rows, {} points at most are drawn: of each of the blocks that they are divided into, the "
         "first, the last and the extremes. The CSV has all rows.",
-        reading.rows, Thinner::kMostPoints);
+        reading.rows, Thinner::kMaxPoints);
 }
 
 std::string left_out_text(const System& system, const Reading& reading) {

@@ -43,8 +43,8 @@ std::string unknown_text(const Film& film, const Reading& reading) {
 void add_tensions_along(const Film& film, const Reading& reading, report::Chapter& chapter) {
     const System& system = film.system();
     const Body& body = system.bodies[reading.tension.body];
-    constexpr std::size_t kFewestLinks = 3;
-    if (body.is_net || body.link_count < kFewestLinks) return;
+    constexpr std::size_t kMinLinks = 3;
+    if (body.is_net || body.link_count < kMinLinks) return;
     Thinner thinner(static_cast<std::int64_t>(body.link_count));
     double at_m = 0.0;
     for (std::size_t k = 0; k < body.link_count; ++k) {

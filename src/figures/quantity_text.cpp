@@ -10,9 +10,9 @@
 namespace corda::figures {
 
 std::string quantity_text(double value, const std::string& unit) {
-    constexpr double kSmallestPlain = 1e-3;
+    constexpr double kMinPlain = 1e-3;
     if (unit.empty()) {
-        const bool is_plain = value == 0.0 || std::abs(value) >= kSmallestPlain || !std::isfinite(value);
+        const bool is_plain = value == 0.0 || std::abs(value) >= kMinPlain || !std::isfinite(value);
         return is_plain ? report::short_number(value) : view::power_text(value);
     }
     // " (kN)"

@@ -9,11 +9,11 @@ namespace {
 
 constexpr std::int64_t kPointsPerBlock = 6;
 /// Longer blocks may hold a whole turn of a path, at 60 rows per second and a turn in half a second.
-constexpr std::int64_t kMostRowsOfAPath = 24;
+constexpr std::int64_t kMaxRowsOfAPath = 24;
 
 std::int64_t rows_per_block(std::int64_t rows, std::int64_t points_per_block) {
-    if (rows <= Thinner::kMostPoints) return 1;
-    return (rows - 1) / ((Thinner::kMostPoints - kPointsPerBlock) / points_per_block) + 1;
+    if (rows <= Thinner::kMaxPoints) return 1;
+    return (rows - 1) / ((Thinner::kMaxPoints - kPointsPerBlock) / points_per_block) + 1;
 }
 
 void sort_out(std::vector<CurvePoint>& points, std::size_t first) {
@@ -27,7 +27,7 @@ void sort_out(std::vector<CurvePoint>& points, std::size_t first) {
 }  // namespace
 
 Thinner::Thinner(std::int64_t rows, Kind kind)
-    : is_sparse_(kind == Kind::kPath && rows_per_block(rows, kPointsPerBlock) > kMostRowsOfAPath),
+    : is_sparse_(kind == Kind::kPath && rows_per_block(rows, kPointsPerBlock) > kMaxRowsOfAPath),
       block_rows_(rows_per_block(rows, is_sparse_ ? 1 : kPointsPerBlock)) {}
 
 void Thinner::Block::include(const CurvePoint& point) {

@@ -24,9 +24,9 @@ class Thinner {
     enum class Kind { kOverTime, kPath };
 
     /// A curve has at most so many points.
-    static constexpr std::int64_t kMostPoints = 2000;
+    static constexpr std::int64_t kMaxPoints = 2000;
 
-    /// `rows`: how many will be added at most. Up to kMostPoints all stay.
+    /// `rows`: how many will be added at most. Up to kMaxPoints all stay.
     explicit Thinner(std::int64_t rows, Kind kind = Kind::kOverTime);
 
     /// A point that is not finite breaks the curve if no other of its block is left.

@@ -32,7 +32,7 @@ std::string path_thinning_text(const Reading& reading) {
     return fmt::format(
         " Of the {} rows, {} at most are drawn, as dots: evenly spread ones, the last, and where x or y is "
         "least or largest. The CSV has all rows.",
-        reading.rows, Thinner::kMostPoints);
+        reading.rows, Thinner::kMaxPoints);
 }
 
 /// Whether all bodies turn about their pins: an angle about a point says nothing beside it.

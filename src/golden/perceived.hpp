@@ -12,7 +12,7 @@ namespace corda {
 /// from 0.7 m, as in the authors' program.
 inline constexpr double kFlipPixelsPerDegree = 3840.0 * std::numbers::pi / 180.0;
 /// The least side of pictures that have an ssim().
-inline constexpr int kLeastSsimSidePx = 11;
+inline constexpr int kMinSsimSidePx = 11;
 
 /// Mean of LDR-FLIP, the difference that one sees who flips between two sRGB pictures of one size: 0 for
 /// equal ones, at most 1. Transparent pictures are laid over black and over white, and the larger figure
@@ -31,7 +31,7 @@ inline constexpr int kLeastSsimSidePx = 11;
 ///
 /// Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli: Image quality assessment: from error visibility to
 /// structural similarity. IEEE Transactions on Image Processing 13(4), 2004, pages 600-612. Throws
-/// corda::Error: kUsage for different sizes, and a side below kLeastSsimSidePx; kInterrupted.
+/// corda::Error: kUsage for different sizes, and a side below kMinSsimSidePx; kInterrupted.
 [[nodiscard]] double ssim(const Image& a, const Image& b, const OnProgress& on_progress = {});
 
 }  // namespace corda

@@ -10,7 +10,7 @@
 namespace corda {
 namespace {
 
-constexpr int kTaps = kLeastSsimSidePx;
+constexpr int kTaps = kMinSsimSidePx;
 /// Means of a, b, aa, bb and ab.
 constexpr std::size_t kMoments = 5;
 
@@ -95,7 +95,7 @@ class Rows {
 
 double ssim(const Image& a, const Image& b, const OnProgress& on_progress) {
     if (a.rect() != b.rect()) throw Error(ExitCode::kUsage, "SSIM is of two pictures of one size");
-    if (std::min(a.width(), a.height()) < kLeastSsimSidePx) {
+    if (std::min(a.width(), a.height()) < kMinSsimSidePx) {
         throw Error(ExitCode::kUsage,
                     "SSIM is of pictures of at least 11x11 pixels; compare smaller ones by --max or --mean");
     }

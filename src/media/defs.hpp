@@ -22,25 +22,25 @@ enum class PixelChoice {
 
 /// How a video is encoded. What is left open, the ending of the file decides.
 struct EncoderDef {
-    static constexpr int kLargestCrf = 63;
-    static constexpr int kMostThreads = 64;
+    static constexpr int kMaxCrf = 63;
+    static constexpr int kMaxThreads = 64;
 
     /// libav's name of the encoder or a short one ("h264"), see `corda doctor`; empty: by the ending.
     std::string codec;
     std::string preset;      ///< a word or a number of the encoder; empty: its default
-    std::optional<int> crf;  ///< the encoder's constant rate factor, 0 .. kLargestCrf; empty: its default
+    std::optional<int> crf;  ///< the encoder's constant rate factor, 0 .. kMaxCrf; empty: its default
     PixelChoice pix = PixelChoice::kAuto;
-    /// Threads of each encoder, 1 .. kMostThreads. Fixed, never "as many as there are cores": x264's bytes
+    /// Threads of each encoder, 1 .. kMaxThreads. Fixed, never "as many as there are cores": x264's bytes
     /// depend on it.
     int threads = 1;
-    /// How many chunks of a video are drawn and encoded at a time, 0 .. kMostThreads; 0: one per core. The
+    /// How many chunks of a video are drawn and encoded at a time, 0 .. kMaxThreads; 0: one per core. The
     /// bytes do not depend on it.
     int jobs = 0;
 };
 
 /// The picture size and rate of a video, and how long its frames are exposed.
 struct VideoDef {
-    static constexpr int kMostSubframes = 64;
+    static constexpr int kMaxSubframes = 64;
 
     int width_px = 1920;  ///< see is_picture_size(); even for 4:2:0
     int height_px = 1080;
@@ -49,7 +49,7 @@ struct VideoDef {
     /// not at all. It is open for as long before a frame's time as after, so that the frame shows on average
     /// where things are at its time; not before the motion's start, nor after its end.
     double shutter = 0.0;
-    int subframes = 16;  ///< 2 .. kMostSubframes: of how many pictures a blurred one is the mean
+    int subframes = 16;  ///< 2 .. kMaxSubframes: of how many pictures a blurred one is the mean
     EncoderDef encoder;
 };
 

@@ -6,7 +6,7 @@
 namespace corda::media {
 
 void EdgeFill::search_row(const Image& image, int y, const PixelRect& grown, Found* row) const {
-    const auto shows = [&](int x) { return image.pixel(x, y)[3] >= kLeastAlpha; };
+    const auto shows = [&](int x) { return image.pixel(x, y)[3] >= kMinAlpha; };
     constexpr int kNone = kReachPx + 1;
     int last = grown.x0 - kReachPx;  // the nearest pixel that shows, to the left
     bool has_last = false;
@@ -58,7 +58,7 @@ PixelRect EdgeFill::update(const Image& image, const PixelRect& part) {
             const std::uint8_t* const from = image.pixel(x, y);
             std::uint8_t* const to = picture_.pixel(x, y);
             std::copy_n(from, 4, to);
-            if (from[3] >= kLeastAlpha) continue;
+            if (from[3] >= kMinAlpha) continue;
             const Found* nearest = nullptr;
             int least = kReachPx * kReachPx + 1;  // squared
             for (int d = 0; d <= kReachPx && d * d < least; ++d) {

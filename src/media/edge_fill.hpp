@@ -15,7 +15,7 @@ class EdgeFill {
     /// How far colours are spread.
     static constexpr int kReachPx = 4;
     /// Pixels of less alpha get another colour: their own, divided by so small an alpha, is imprecise.
-    static constexpr int kLeastAlpha = 32;
+    static constexpr int kMinAlpha = 32;
 
     /// Takes the part of a picture that differs from the last one, or all of another size; returns what of
     /// picture() that changes.

@@ -205,7 +205,7 @@ void check_crf(const Format& format, const EncoderDef& def) {
 }
 
 /// Of what counts milliseconds.
-constexpr double kMostMsRate = 1000.0;
+constexpr double kMaxMsRate = 1000.0;
 
 /// The pauses of a GIF are whole hundredths of a second, and what is shorter than two plays slowly.
 void check_gif_rate(Rational fps) {
@@ -221,7 +221,7 @@ void check_gif_rate(Rational fps) {
         "a GIF cannot have {} frames per second: its pauses are hundredths of a second, two at least; use {} "
         "(--fps {}){}",
         fps.text(), slower == faster ? slower : slower + " or " + faster, slower,
-        fps.value() <= kMostMsRate ? ", or .apng or .webp" : "");
+        fps.value() <= kMaxMsRate ? ", or .apng or .webp" : "");
 }
 
 void check_rate_for(const Format& format, const VideoDef& def) {
@@ -233,9 +233,9 @@ void check_rate_for(const Format& format, const VideoDef& def) {
             "an APNG cannot have {} frames per second: it counts up to 65535; use a rate such as 30000/1001",
             fps.text());
     const bool counts_ms = muxer == "matroska" || muxer == "webm" || muxer == "webp";
-    if (counts_ms && fps.value() > kMostMsRate)
+    if (counts_ms && fps.value() > kMaxMsRate)
         fail_usage("{} cannot have {} frames per second: it counts milliseconds; use {} or less, or .mp4",
-                   format.ending->words, fps.text(), kMostMsRate);
+                   format.ending->words, fps.text(), kMaxMsRate);
 }
 
 }  // namespace
@@ -347,19 +347,19 @@ void check_video_def(const VideoDef& def) {
     if (!is_picture_size(def.width_px, def.height_px)) {
         fail_usage(
             "video size {}x{} is out of range: each side is 1 to {}, and a frame has at most {} pixels",
-            def.width_px, def.height_px, kLargestSidePx, kMostPicturePx);
+            def.width_px, def.height_px, kMaxSidePx, kMaxPicturePx);
     }
     if (!def.fps.rational().is_rate()) {
         fail_usage("frame rate {} is out of range; use a positive rate such as 60 or 30000/1001",
                    def.fps.rational().text());
     }
-    if (def.encoder.threads < 1 || def.encoder.threads > EncoderDef::kMostThreads) {
+    if (def.encoder.threads < 1 || def.encoder.threads > EncoderDef::kMaxThreads) {
         fail_usage("{} encoder threads are out of range; use 1 to {}", def.encoder.threads,
-                   EncoderDef::kMostThreads);
+                   EncoderDef::kMaxThreads);
     }
-    if (def.encoder.jobs < 0 || def.encoder.jobs > EncoderDef::kMostThreads) {
+    if (def.encoder.jobs < 0 || def.encoder.jobs > EncoderDef::kMaxThreads) {
         fail_usage("{} encoder jobs are out of range; use 0 (one per core) to {}", def.encoder.jobs,
-                   EncoderDef::kMostThreads);
+                   EncoderDef::kMaxThreads);
     }
     if (!def.encoder.codec.empty() && find_codec(def.encoder.codec) == nullptr)
         fail_usage("unknown codec '{}'; use {}", def.encoder.codec, fmt::join(codec_names(), ", "));

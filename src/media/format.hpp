@@ -44,7 +44,7 @@ struct Codec {
     bool is_hardware = false;  ///< it may be listed and not work
     EncoderOrigin origin = EncoderOrigin::kLibav;
     EncoderSettings (*settings)(const Format& format, const VideoDef& def) = nullptr;  ///< of libav's
-    int most_height_px = kLargestSidePx;
+    int most_height_px = kMaxSidePx;
     int default_crf_of_alpha = 0;  ///< in place of default_crf for transparent videos; 0: the same
 };
 
@@ -66,7 +66,7 @@ struct Ending {
     /// libav's names of the codecs that it takes, the default first; of an animation, what its part holds.
     std::array<const char*, 5> codecs;
     const char* players;  ///< who shows it
-    int most_side_px = kLargestSidePx;
+    int most_side_px = kMaxSidePx;
 };
 
 /// How many times all frames are gone through: those of an animation are drawn, and encoded afterwards.

@@ -18,13 +18,13 @@ constexpr int kFewFrames = 12;
 /// Of FFV1, whose encoder clears 148 bytes per pixel when it opens.
 constexpr int kFfv1Frames = 36;
 /// FFV1 splits a picture into 2x2 slices.
-constexpr int kLeastFfv1SidePx = 2;
+constexpr int kMinFfv1SidePx = 2;
 /// What SVT-AV1 itself allows; AV1 allows more.
-constexpr int kLargestSvtAv1HeightPx = 8704;
+constexpr int kMaxSvtAv1HeightPx = 8704;
 /// At 32 one clear pixel in 5000 has an alpha over 8, which shows as specks on white; at 20, one in 50 000.
 constexpr int kVp9AlphaCrf = 20;
 /// WebP stores each side in 14 bits.
-constexpr int kLargestWebpSidePx = (1 << 14) - 1;
+constexpr int kMaxWebpSidePx = (1 << 14) - 1;
 
 constexpr std::array kCodecs{
     Codec{"libx264",
@@ -65,7 +65,7 @@ constexpr std::array kCodecs{
           false,
           EncoderOrigin::kLibav,
           &svt_av1_settings,
-          kLargestSvtAv1HeightPx},
+          kMaxSvtAv1HeightPx},
     Codec{"libaom-av1",
           "av1",
           "AV1",
@@ -92,7 +92,7 @@ constexpr std::array kCodecs{
           false,
           EncoderOrigin::kLibav,
           &vp9_settings,
-          kLargestSidePx,
+          kMaxSidePx,
           kVp9AlphaCrf},
     Codec{"h264_nvenc",
           "nvenc",
@@ -128,7 +128,7 @@ constexpr std::array kCodecs{
           "",
           {},
           0,
-          kLeastFfv1SidePx,
+          kMinFfv1SidePx,
           kFfv1Frames,
           false,
           EncoderOrigin::kLibav,
@@ -187,7 +187,7 @@ constexpr std::array kEndings{
     Ending{".mkv", "Matroska", FileKind::kVideo, "matroska", "matroska", {"ffv1"}, "VLC, mpv, ffmpeg"},
     Ending{".gif", "GIF", FileKind::kAnimation, "gif", "mov", {"qtrle"}, "everything; PowerPoint"},
     Ending{".apng", "APNG", FileKind::kAnimation, "apng", "mov", {"qtrle"}, "browsers"},
-    Ending{".webp", "WebP", FileKind::kAnimation, "webp", "mov", {"qtrle"}, "browsers", kLargestWebpSidePx},
+    Ending{".webp", "WebP", FileKind::kAnimation, "webp", "mov", {"qtrle"}, "browsers", kMaxWebpSidePx},
     Ending{"%04d.png", "PNG pictures", FileKind::kPictures, "", "", {"png"}, "everything, as pictures"},
     Ending{"-", "YUV4MPEG2", FileKind::kStream, "", "", {"rawvideo"}, "ffmpeg and other encoders"},
 };

@@ -13,7 +13,7 @@
 namespace corda::media {
 namespace {
 
-constexpr std::size_t kLongestLog = 400;  // characters; a broken stream can complain once per macroblock
+constexpr std::size_t kMaxLog = 400;  // characters; a broken stream can complain once per macroblock
 
 std::atomic<int> quiet_logs{0};
 thread_local LogCapture* innermost_capture = nullptr;
@@ -88,7 +88,7 @@ LogCapture::~LogCapture() {
 }
 
 void LogCapture::add(std::string_view line) {
-    if (line.empty() || text_.size() + line.size() > kLongestLog) return;
+    if (line.empty() || text_.size() + line.size() > kMaxLog) return;
     if (text_.find(line) != std::string::npos) return;
     if (!text_.empty()) text_ += "; ";
     text_ += line;

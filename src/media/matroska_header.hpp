@@ -16,7 +16,7 @@ inline constexpr bool kHasOldMatroska = LIBAVFORMAT_VERSION_MAJOR < 61;
 inline constexpr int kNewMatroskaBytes = 14;
 
 /// The bytes before the room's end that a longest header has.
-inline constexpr std::size_t kLongestMatroskaHeader = std::size_t{1} << 20;
+inline constexpr std::size_t kMaxMatroskaHeader = std::size_t{1} << 20;
 
 /// `file`, the beginning of a finished Matroska file with one video track and room in its header, as
 /// FFmpeg 7.1 writes it: its track has room for HDR metadata that may follow, and its duration in words ends

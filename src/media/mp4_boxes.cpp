@@ -12,8 +12,8 @@
 namespace corda::media {
 namespace {
 
-constexpr std::uint64_t kLargestIndex = std::uint64_t{1} << 28;  // bytes; an index takes about 20 per frame
-constexpr int kMostBoxes = 10'000'000;                           // years of fragments
+constexpr std::uint64_t kMaxIndex = std::uint64_t{1} << 28;  // bytes; an index takes about 20 per frame
+constexpr int kMaxBoxes = 10'000'000;                        // years of fragments
 
 /// Big-endian numbers of a byte range; reading past its end gives 0.
 class Bytes {
@@ -142,7 +142,7 @@ Mp4Boxes read_mp4_boxes(const std::string& path) {
     boxes.file_bytes = file_size;
     bool saw_data = false;
     std::uint64_t offset = 0;
-    for (int i = 0; i < kMostBoxes && offset < file_size; ++i) {
+    for (int i = 0; i < kMaxBoxes && offset < file_size; ++i) {
         const auto header = header_in(read_range(file, path, offset, 16), file_size - offset);
         if (!header) break;
         if (i == 0) boxes.is_mp4 = header->type == "ftyp";
@@ -151,7 +151,7 @@ Mp4Boxes read_mp4_boxes(const std::string& path) {
         if (header->type == "mdat") saw_data = true;
         if (header->type == "moof") boxes.fragmented = true;
         if (header->size > file_size - offset) break;
-        if (header->type == "moov" && header->size <= kLargestIndex && !boxes.has_index) {
+        if (header->type == "moov" && header->size <= kMaxIndex && !boxes.has_index) {
             boxes.index_first = !saw_data;
             read_index(
                 read_range(file, path, offset + header->header_size, header->size - header->header_size),

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kDecoderThreads = 2;
 // A decoder aligns the sides of its frames, at most to multiples of this.
-constexpr std::int64_t kLargestAlignment = 64;
+constexpr std::int64_t kMaxAlignment = 64;
 
 /// libav's own allocation of a frame, which also notes a lack of memory.
 int get_buffer(AVCodecContext* context, AVFrame* frame, int flags) {
@@ -31,7 +31,7 @@ int open_decoder(OpenVideo& file, const AVCodec* codec, int threads) {
     context.opaque = file.lacks_memory.get();
     context.get_buffer2 = get_buffer;
     context.pkt_timebase = file.stream->time_base;
-    context.max_pixels = kMostPicturePx + kLargestAlignment * kLargestSidePx;
+    context.max_pixels = kMaxPicturePx + kMaxAlignment * kMaxSidePx;
     // A damaged picture is an error; libav would conceal it.
     context.err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_EXPLODE;
     return avcodec_open2(&context, codec, nullptr);

@@ -7,7 +7,7 @@
 namespace corda::media {
 namespace {
 
-constexpr std::size_t kMostKnown = 1 << 20;
+constexpr std::size_t kMaxKnown = 1 << 20;
 constexpr int kHalfOpaque = 128;
 
 std::uint32_t packed(const std::uint8_t* p) {
@@ -109,7 +109,7 @@ std::uint8_t Palette::nearest(std::uint32_t rgb) const {
 }
 
 void Palette::map(const std::uint8_t* rgba, int count, std::uint8_t* indices) {
-    if (known_.size() > kMostKnown) known_.clear();
+    if (known_.size() > kMaxKnown) known_.clear();
     std::uint32_t last = 0;
     int last_index = -1;
     for (int x = 0; x < count; ++x, rgba += 4) {
@@ -129,7 +129,7 @@ void Palette::map(const std::uint8_t* rgba, int count, std::uint8_t* indices) {
 }
 
 void PaletteMaker::add(std::uint32_t rgb, std::uint64_t count) {
-    if (exact_.size() <= kMostColors) exact_.insert(rgb);
+    if (exact_.size() <= kMaxColors) exact_.insert(rgb);
     constexpr unsigned kDropped = 8 - kBits;
     const std::array<std::uint64_t, 3> levels{rgb >> 16U, rgb >> 8U & 0xffU, rgb & 0xffU};
     PaletteBin& bin =
@@ -156,7 +156,7 @@ void PaletteMaker::add(const Image& picture) {
 }
 
 void PaletteMaker::add(const PaletteMaker& other) {
-    if (exact_.size() <= kMostColors) exact_.insert(other.exact_.begin(), other.exact_.end());
+    if (exact_.size() <= kMaxColors) exact_.insert(other.exact_.begin(), other.exact_.end());
     for (std::size_t i = 0; i < bins_.size(); ++i) {
         bins_[i].count += other.bins_[i].count;
         for (std::size_t c = 0; c < 3; ++c) bins_[i].sums[c] += other.bins_[i].sums[c];
@@ -169,7 +169,7 @@ std::vector<Color> PaletteMaker::cut_boxes() const {
         if (bin.count > 0) bins.push_back(bin);
     std::vector<Box> boxes;
     if (!bins.empty()) boxes.push_back(box_of(bins, 0, bins.size()));
-    while (!boxes.empty() && boxes.size() < kMostColors) {
+    while (!boxes.empty() && boxes.size() < kMaxColors) {
         const auto heaviest = std::max_element(
             boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a.weight < b.weight; });
         if (heaviest->weight == 0) break;
@@ -184,7 +184,7 @@ std::vector<Color> PaletteMaker::cut_boxes() const {
 }
 
 Palette PaletteMaker::make() const {
-    if (exact_.size() > kMostColors) return Palette(cut_boxes());
+    if (exact_.size() > kMaxColors) return Palette(cut_boxes());
     std::vector<std::uint32_t> sorted(exact_.begin(), exact_.end());
     std::sort(sorted.begin(), sorted.end());  // the order of the set is no order
     std::vector<Color> colors;

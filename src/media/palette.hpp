@@ -51,7 +51,7 @@ class PaletteMaker {
 
   private:
     static constexpr int kBits = 6;
-    static constexpr std::size_t kMostColors = Palette::kSize - 1;
+    static constexpr std::size_t kMaxColors = Palette::kSize - 1;
 
     void add(std::uint32_t rgb, std::uint64_t count);
     [[nodiscard]] std::vector<Color> cut_boxes() const;

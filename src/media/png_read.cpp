@@ -20,11 +20,11 @@ namespace corda {
 namespace {
 
 // Deflate shrinks by at most 1032 to 1, so a file that promises more is not whole.
-constexpr double kLargestRatio = 1032.0;
+constexpr double kMaxRatio = 1032.0;
 
 // What all texts together may take: libpng leaves out those that are larger, and those after so many.
-constexpr png_uint_32 kMostTexts = 32;
-constexpr png_alloc_size_t kLargestTextBytes = png_alloc_size_t{64} << 10;
+constexpr png_uint_32 kMaxTexts = 32;
+constexpr png_alloc_size_t kMaxTextBytes = png_alloc_size_t{64} << 10;
 
 /// The parts of a file that a reader asks for.
 enum class Wanted { kPixels, kTexts };
@@ -99,8 +99,8 @@ bool read_header(ReadJob& job) {
     if (setjmp(png_jmpbuf(job.png)) != 0) return false;
     png_set_read_fn(job.png, &job, on_read);
     png_set_user_limits(job.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // check_png_size has better words
-    png_set_chunk_cache_max(job.png, kMostTexts);
-    png_set_chunk_malloc_max(job.png, kLargestTextBytes);
+    png_set_chunk_cache_max(job.png, kMaxTexts);
+    png_set_chunk_malloc_max(job.png, kMaxTextBytes);
     png_set_benign_errors(job.png, 1);  // a text that is too long is left out
     skip_chunks(job);
     png_read_info(job.png, job.info);
@@ -185,12 +185,12 @@ void check_png_size(const ReadJob& job, const std::string& path) {
         throw Error(ExitCode::kIo,
                     fmt::format("cannot read PNG '{}': it has {} x {} pixels, and at most {} per side and {} "
                                 "in all are read; give a smaller picture",
-                                path, width, height, kLargestSidePx, kMostPicturePx));
+                                path, width, height, kMaxSidePx, kMaxPicturePx));
     }
     struct stat status {};
     const bool known_size = ::fstat(::fileno(job.file), &status) == 0 && S_ISREG(status.st_mode);
     const double stored_bytes = static_cast<double>(png_get_rowbytes(job.png, job.info)) * height;
-    if (known_size && stored_bytes > kLargestRatio * static_cast<double>(status.st_size)) {
+    if (known_size && stored_bytes > kMaxRatio * static_cast<double>(status.st_size)) {
         fail_png(path,
                  fmt::format("a file of {} bytes cannot hold {} x {} pixels", status.st_size, width, height));
     }

@@ -19,8 +19,8 @@ namespace corda {
 namespace {
 
 constexpr double kInchesPerMetre = 1000.0 / kMmPerInch;
-constexpr std::size_t kLongestKeyword = 79;
-constexpr std::size_t kLongestPlainText = 1000;  // of longer ones deflate leaves a third
+constexpr std::size_t kMaxKeyword = 79;
+constexpr std::size_t kMaxPlainText = 1000;  // of longer ones deflate leaves a third
 // Measured on 1080p pictures of a few lines on one colour: level 4 without a filter takes 24 ms and half the
 // bytes of level 3 (14 ms); level 6 saves 1 % more. Row filters make such pictures larger.
 constexpr int kLevel = 4;
@@ -123,17 +123,17 @@ std::vector<png_text> libpng_texts(const PngInfo& info, std::vector<std::string>
     storage.reserve(info.text.size() * 2);
     std::vector<png_text> texts;
     for (const auto& [keyword, bytes] : info.text) {
-        if (keyword.empty() || keyword.size() > kLongestKeyword) {
+        if (keyword.empty() || keyword.size() > kMaxKeyword) {
             throw Error(ExitCode::kUsage,
                         fmt::format("PNG text keyword '{}' has {} characters; it must have 1 to {}", keyword,
-                                    keyword.size(), kLongestKeyword));
+                                    keyword.size(), kMaxKeyword));
         }
         const std::string text = utf8(bytes);
         const auto latin1 = to_latin1(text);
         std::string& key = storage.emplace_back(keyword);
         std::string& value = storage.emplace_back(latin1 ? *latin1 : text);
         png_text entry{};
-        const bool is_long = value.size() > kLongestPlainText;
+        const bool is_long = value.size() > kMaxPlainText;
         entry.compression = latin1 ? (is_long ? PNG_TEXT_COMPRESSION_zTXt : PNG_TEXT_COMPRESSION_NONE)
                                    : (is_long ? PNG_ITXT_COMPRESSION_zTXt : PNG_ITXT_COMPRESSION_NONE);
         entry.key = key.data();

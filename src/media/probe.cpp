@@ -21,7 +21,7 @@
 namespace corda::media {
 namespace {
 
-constexpr double kLongestS = 5.0;  // measured 0.01 .. 0.2 s; all cores may be busy with other work
+constexpr double kMaxS = 5.0;  // measured 0.01 .. 0.2 s; all cores may be busy with other work
 /// Address space of a drawing thread, measured as 400 to 430 MiB with Mesa 22.3.
 constexpr std::uint64_t kDrawingBytes = std::uint64_t{430} << 20U;
 /// Threads that an encoder starts by itself, at most: measured 11 to 16 of SVT-AV1 and 1 of libx265.
@@ -79,7 +79,7 @@ Trial try_encoders(const Format& format, const VideoDef& video, int jobs, std::u
     const auto left = address_space_left();  // first, as threads leave some of it to the allocator
     if (std::string lack = lack_of_threads(*format.codec); !lack.empty()) return {std::move(lack), true};
     const VideoDef def = left ? video : small_video(video);
-    ChildLimits limits{std::uint64_t{1} << 46U, std::int64_t{60}, kLongestS};
+    ChildLimits limits{std::uint64_t{1} << 46U, std::int64_t{60}, kMaxS};
     if (left) limits.memory_bytes = *left - std::min(*left, kept_bytes * static_cast<std::uint64_t>(jobs));
     const auto work = [&] { return "-" + encode_one(format, def, jobs); };
     const auto end = run_in_child(work, limits, on_wait);

@@ -26,20 +26,20 @@ namespace {
 
 using Json = nlohmann::json;
 
-// A frame of kMostPicturePx has 100 MB, and a decoder holds up to some 20; others are far smaller.
+// A frame of kMaxPicturePx has 100 MB, and a decoder holds up to some 20; others are far smaller.
 constexpr int kMemoryGib = 4;
 constexpr std::uint64_t kMemoryBytes = std::uint64_t{kMemoryGib} << 30;
 
 /// In time, more than a sound file takes: measured are 0.06 s per kB, in a still scene, whose frames are
 /// small.
 ChildLimits limits_for(const std::string& path) {
-    constexpr std::int64_t kLeastS = 20;
+    constexpr std::int64_t kMinS = 20;
     constexpr std::int64_t kBytesPerS = 1000;
     constexpr double kWallPerCpu = 3.0;  // the machine may be busy
     std::error_code none;                // for what is no regular file
     const std::uintmax_t size = std::filesystem::file_size(path, none);
     const std::int64_t bytes = none ? 0 : static_cast<std::int64_t>(size);
-    const std::int64_t cpu_s = kLeastS + bytes / kBytesPerS;
+    const std::int64_t cpu_s = kMinS + bytes / kBytesPerS;
     return {kMemoryBytes, cpu_s, kWallPerCpu * static_cast<double>(cpu_s)};
 }
 

@@ -178,7 +178,7 @@ class Decoding {
         }
         stamps_.push(packet.pts);
         ++packets_;
-        take_stamps(kMostReordered);
+        take_stamps(kMaxReordered);
     }
 
     /// Takes the stamps of packets in the order in which their frames are shown, but for so many.
@@ -197,7 +197,7 @@ class Decoding {
                 note_bad(status);
                 // While draining, libav reports one error per bad frame and goes on; otherwise the next
                 // packet is due.
-                if (packet != nullptr || video_.bad_frames > kMostBadFrames) return;
+                if (packet != nullptr || video_.bad_frames > kMaxBadFrames) return;
                 continue;
             }
             // A wrong checksum of FFV1 is only logged, and the slice concealed.
@@ -288,9 +288,9 @@ class Decoding {
     }
 
     static constexpr std::int64_t kNever = 1'000'000'000;
-    static constexpr std::int64_t kMostBadFrames = 1000;
+    static constexpr std::int64_t kMaxBadFrames = 1000;
     /// No codec decodes more frames than that ahead of one that is shown before them.
-    static constexpr std::size_t kMostReordered = 32;
+    static constexpr std::size_t kMaxReordered = 32;
 
     DecodedVideo& video_;
     VerifyDepth depth_;

@@ -58,8 +58,8 @@ std::optional<ColorPatch> parse_patch(const Json& json) {
 }  // namespace
 
 std::string comment_problem(std::string_view comment) {
-    if (comment.size() > kLargestJsonBytes)
-        return fmt::format("has {} bytes, more than {}", comment.size(), kLargestJsonBytes);
+    if (comment.size() > kMaxJsonBytes)
+        return fmt::format("has {} bytes, more than {}", comment.size(), kMaxJsonBytes);
     bool is_too_deep = false;
     static_cast<void>(parse_to_level(comment, is_too_deep));
     return is_too_deep ? fmt::format("is JSON nested more than {} levels deep", kDeepestJsonLevel) : "";

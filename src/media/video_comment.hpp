@@ -19,7 +19,7 @@ inline constexpr const char* kOriginKey = "made_from";
 
 /// The largest JSON text that is read from a file, in bytes, and how deeply it may be nested. Corda writes
 /// less: QuickTime's comments end at this size, and the deepest value in one is at level 5.
-inline constexpr std::size_t kLargestJsonBytes = std::size_t{64} << 10;
+inline constexpr std::size_t kMaxJsonBytes = std::size_t{64} << 10;
 inline constexpr int kDeepestJsonLevel = 16;
 
 /// Parses JSON text from a file of unknown origin. Throws corda::Error (kMismatch) with the reason alone if

@@ -14,13 +14,13 @@
 namespace corda::media {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{1} << 31;
+constexpr std::size_t kMaxBytes = std::size_t{1} << 31;
 
 std::string all_of(const std::string& path) {
     const FileHandle file = open_for_reading(path);
     std::string all;
     std::array<char, 1 << 16> piece{};
-    for (std::size_t count = 1; count > 0 && all.size() < kMostBytes;) {
+    for (std::size_t count = 1; count > 0 && all.size() < kMaxBytes;) {
         count = read_bytes(file, path, piece.data(), piece.size());
         all.append(piece.data(), count);
     }
@@ -37,7 +37,7 @@ bool fits(Rational fps, const std::vector<std::int64_t>& ends_ms) {
 
 /// The fraction of smallest denominator that fits.
 std::optional<Rational> simplest_rate(const std::vector<std::int64_t>& ends_ms) {
-    constexpr std::int64_t kLargestDenominator = 10'000;
+    constexpr std::int64_t kMaxDenominator = 10'000;
     double low = 0.0;  // that fitting rates are above, and those up to which they are
     double high = 2000.0;
     for (std::size_t i = 0; i < ends_ms.size(); ++i) {
@@ -46,7 +46,7 @@ std::optional<Rational> simplest_rate(const std::vector<std::int64_t>& ends_ms) 
         low = std::max(low, frames / (twice_end + 1.0));
         if (twice_end > 0.0) high = std::min(high, frames / (twice_end - 1.0));
     }
-    for (std::int64_t den = 1; den <= kLargestDenominator; ++den) {
+    for (std::int64_t den = 1; den <= kMaxDenominator; ++den) {
         const auto num = static_cast<std::int64_t>(std::floor(high * static_cast<double>(den)));
         if (num > 0 && static_cast<double>(num) > low * static_cast<double>(den) && fits({num, den}, ends_ms))
             return Rational{num, den};

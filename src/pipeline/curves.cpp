@@ -17,11 +17,11 @@ namespace corda::pipeline {
 namespace {
 
 /// Of a longer motion, every so many states are read.
-constexpr std::size_t kMostSamples = 100'000;
+constexpr std::size_t kMaxSamples = 100'000;
 /// A few per pixel of a wide plot.
 constexpr std::size_t kFinestSamples = 4000;
 /// Of the states that are recorded for a plot alone.
-constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 /// What changes less, per size of the scene at its start, and per duration, stands still.
 constexpr double kStill = 1e-3;
 
@@ -56,7 +56,7 @@ std::vector<double> Curves::times_s() const {
     if (plot_ == LivePlot::kNone) return {};
     constexpr std::size_t kNumbersPerParticle = 4;
     const std::size_t state_bytes = kNumbersPerParticle * sizeof(double) * system_->particle_count();
-    const std::size_t count = std::min(kFinestSamples, kMostBytes / state_bytes);
+    const std::size_t count = std::min(kFinestSamples, kMaxBytes / state_bytes);
     std::vector<double> times_s;
     for (std::size_t i = 0; i < count; ++i)
         times_s.push_back(scene_->world.duration_s * static_cast<double>(i) / static_cast<double>(count));
@@ -103,7 +103,7 @@ view::PlotData Curves::read(std::span<const MethodDef> methods, double end_s,
     if (plot_ == LivePlot::kEnergy) meter.emplace(*system_, scene_->world, methods);
     const FrameRate fps = scene_->video.fps;
     const Timeline timeline(fps, fps.last_frame_within(scene_->world.duration_s), times_s());
-    const std::size_t stride = timeline.size() / kMostSamples + 1;
+    const std::size_t stride = timeline.size() / kMaxSamples + 1;
     for (std::size_t i = 0; i < timeline.size() && timeline.time_s(i) <= end_s; i += stride)
         add(state_at(timeline.time_s(i)), meter, data);
     if (plot_ != LivePlot::kEnergy) return data;

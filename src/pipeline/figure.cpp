@@ -19,12 +19,12 @@
 namespace corda {
 namespace {
 
-constexpr int kSmallestCellPx = 40;
+constexpr int kMinCellPx = 40;
 constexpr double kGapPerSide = 1.0 / 90.0;  // of the sheet's shorter side
 constexpr double kBlankCell = 3.0;
 constexpr double kTextPerSide = 1.0 / 20.0;  // of the shorter side of a cell and its caption
-constexpr int kSmallestTextPx = 8;
-constexpr int kLargestTextPx = 60;
+constexpr int kMinTextPx = 8;
+constexpr int kMaxTextPx = 60;
 constexpr double kLinePerText = 1.6;
 constexpr double kCapitalPerText = 0.73;  // of DejaVu Sans
 
@@ -34,7 +34,7 @@ class Sheet {
     Sheet(int width_px, int height_px, int columns, int count)
         : width_px_(width_px),
           height_px_(height_px),
-          columns_(std::min(columns, kLargestSidePx)),  // more have no room
+          columns_(std::min(columns, kMaxSidePx)),  // more have no room
           rows_((count - 1) / columns_ + 1),
           gap_px_(std::max(1, static_cast<int>(kGapPerSide * std::min(width_px, height_px)))) {}
 
@@ -42,12 +42,10 @@ class Sheet {
     [[nodiscard]] int cell_height_px() const { return row_height_px() - caption_px(); }
     [[nodiscard]] int text_px() const {
         return std::clamp(static_cast<int>(kTextPerSide * std::min(cell_width_px(), row_height_px())),
-                          kSmallestTextPx, kLargestTextPx);
+                          kMinTextPx, kMaxTextPx);
     }
     [[nodiscard]] int caption_px() const { return static_cast<int>(kLinePerText * text_px()); }
-    [[nodiscard]] bool has_room() const {
-        return std::min(cell_width_px(), cell_height_px()) >= kSmallestCellPx;
-    }
+    [[nodiscard]] bool has_room() const { return std::min(cell_width_px(), cell_height_px()) >= kMinCellPx; }
     /// The upper left corner of cell `i` of that size. What division leaves is shared out among the gaps.
     [[nodiscard]] int x_px(int i, int cell_px) const {
         return edge(i % columns_, columns_, cell_px, width_px_);
@@ -127,10 +125,10 @@ Color gap_color(const view::Look& look) {
 /// at least apart.
 std::vector<std::string> captions_of(const std::vector<double>& times_s) {
     constexpr int kFewDigits = 3;
-    constexpr int kMostDigits = 9;
+    constexpr int kMaxDigits = 9;
     std::vector<std::string> captions;
     double steps_1_s = 1.0;  // of the last digit
-    for (int digits = 1; digits <= kMostDigits; ++digits) {
+    for (int digits = 1; digits <= kMaxDigits; ++digits) {
         captions.clear();
         bool is_exact = true;
         steps_1_s *= 10.0;
@@ -163,7 +161,7 @@ view::DrawList list_captions(const Film& film, const FigureDef& def) {
             widest = std::max(widest, font.width_px(caption, size_px));
         return widest;
     };
-    while (size_px > kSmallestTextPx && widest_px() > video.width_px) --size_px;
+    while (size_px > kMinTextPx && widest_px() > video.width_px) --size_px;
     for (int i = 0; i < static_cast<int>(captions.size()); ++i) {
         const int middle_px = sheet.x_px(i, video.width_px) + video.width_px / 2;
         const int bottom_px = sheet.y_px(i, video.height_px) + video.height_px;
@@ -263,7 +261,7 @@ FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns) 
             ExitCode::kUsage,
             fmt::format("{} cells in {} have no room in a contact sheet of {}x{} pixels (each "
                         "takes {} at least); ask for fewer times or a larger size",
-                        count, counted(columns, "column"), video.width_px, video.height_px, kSmallestCellPx));
+                        count, counted(columns, "column"), video.width_px, video.height_px, kMinCellPx));
     }
     scene.overlay.time = false;  // it stands below the cell
     video.width_px = sheet.cell_width_px();

@@ -24,7 +24,7 @@ namespace {
 
 /// More capsules of several poses are refused: they would take hundreds of megabytes, and nobody could tell
 /// them apart.
-constexpr std::size_t kMostPoseCapsules = 5'000'000;
+constexpr std::size_t kMaxPoseCapsules = 5'000'000;
 
 /// How much of pose `k` of `count` shows: of the last one all, of earlier ones the less the earlier.
 double pose_opacity(std::size_t k, std::size_t count) {
@@ -81,8 +81,8 @@ struct Film::Impl {
         const std::int64_t last_frame = pipeline::last_frame_of(scene);
         std::vector<double> times_s = curves.times_s();
         times_s.insert(times_s.end(), def.stills_s.begin(), def.stills_s.end());
-        constexpr std::size_t kMostNumbersPerParticle = 5;
-        const std::size_t state_bytes = kMostNumbersPerParticle * sizeof(double) * system.particle_count();
+        constexpr std::size_t kMaxNumbersPerParticle = 5;
+        const std::size_t state_bytes = kMaxNumbersPerParticle * sizeof(double) * system.particle_count();
         const std::size_t most_states = def.motion_budget_bytes / 2 / state_bytes;
         const auto subframes = static_cast<std::size_t>((last_frame + 1) * video.subframes);
         const bool has_room = subframes <= most_states;
@@ -204,10 +204,10 @@ struct Film::Impl {
                 Color& color = list.layers[l].color;
                 color.a = static_cast<std::uint8_t>(std::lround(opacity * color.a));
             }
-            if (k > 0 && list.capsules.size() > kMostPoseCapsules) {
+            if (k > 0 && list.capsules.size() > kMaxPoseCapsules) {
                 throw Error(ExitCode::kUsage,
                             fmt::format("{} of {} poses have over {} lines in all; ask for fewer times",
-                                        k + 1, times_s.size(), kMostPoseCapsules));
+                                        k + 1, times_s.size(), kMaxPoseCapsules));
             }
         }
         const State& last = read(times_s.back(), brush);

@@ -41,7 +41,7 @@ std::size_t most_central(const System& system, const std::vector<std::size_t>& p
 std::vector<Followed> list_followed(const System& system) {
     const std::vector<std::size_t> ends = view::free_ends(system);
     std::vector<Followed> all;
-    for (std::size_t b = 0; b < system.bodies.size() && all.size() < kMostBodies; ++b) {
+    for (std::size_t b = 0; b < system.bodies.size() && all.size() < kMaxBodies; ++b) {
         const Body& body = system.bodies[b];
         const std::vector<std::size_t> free = particles_of(system, body, false);
         if (free.empty()) continue;

@@ -10,7 +10,7 @@
 namespace corda::pipeline {
 
 /// Most bodies whose curves one figure shows.
-inline constexpr std::size_t kMostBodies = 6;
+inline constexpr std::size_t kMaxBodies = 6;
 
 /// A particle whose motion stands for that of its body: the free end of an open rope (of two the last), the
 /// middle one of the free particles of another rope, and of a net the free one that is nearest to the mean of
@@ -22,7 +22,7 @@ struct Followed {
     std::optional<std::size_t> pin = {};  ///< the only pinned particle of the body, of the system
 };
 
-/// Those of the bodies with free particles, at most kMostBodies: the first ones.
+/// Those of the bodies with free particles, at most kMaxBodies: the first ones.
 [[nodiscard]] std::vector<Followed> list_followed(const System& system);
 
 /// How many bodies have free particles.

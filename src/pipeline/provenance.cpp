@@ -23,9 +23,9 @@ namespace {
 using Json = nlohmann::json;
 
 /// Larger scenes are not even tried: most have more text than there is room for.
-constexpr std::size_t kMostParticles = 100'000;
-constexpr std::size_t kMostTimes = 1000;
-constexpr std::size_t kLongestName = 200;
+constexpr std::size_t kMaxParticles = 100'000;
+constexpr std::size_t kMaxTimes = 1000;
+constexpr std::size_t kMaxName = 200;
 
 [[noreturn]] void fail_at(const std::string& path, const std::string& problem) {
     throw Error(ExitCode::kUsage,
@@ -72,7 +72,7 @@ PictureOrigin picture_of(const Json& json) {
 
 /// Names of files are made of it.
 bool is_sound_name(const std::string& name) {
-    return !name.empty() && name.size() <= kLongestName && name != "." && name != ".." &&
+    return !name.empty() && name.size() <= kMaxName && name != "." && name != ".." &&
            std::none_of(name.begin(), name.end(),
                         [](char c) { return c == '/' || static_cast<unsigned char>(c) < 0x20; });
 }
@@ -135,9 +135,9 @@ Provenance provenance_of(const Scene& scene) {
     std::size_t particles = 0;
     for (const RopeDef& rope : scene.ropes) particles += rope.points_m.size();
     for (const NetDef& net : scene.nets) particles += net.points_m.size();
-    if (particles > kMostParticles) {
+    if (particles > kMaxParticles) {
         provenance.left_out =
-            fmt::format("the scene has {} particles, more than {}", particles, kMostParticles);
+            fmt::format("the scene has {} particles, more than {}", particles, kMaxParticles);
         return provenance;
     }
     try {
@@ -149,9 +149,9 @@ Provenance provenance_of(const Scene& scene) {
 }
 
 std::string provenance_text(Provenance provenance) {
-    constexpr std::size_t kMostReason = 500;
-    if (provenance.picture && (provenance.picture->times.size() > kMostTimes ||
-                               provenance.picture->film_times_s.size() > kMostTimes))
+    constexpr std::size_t kMaxReason = 500;
+    if (provenance.picture &&
+        (provenance.picture->times.size() > kMaxTimes || provenance.picture->film_times_s.size() > kMaxTimes))
         provenance.picture.reset();
     const auto text_of = [&] {
         Json json{{"corda", provenance.corda}, {"name", provenance.name}};
@@ -161,14 +161,14 @@ std::string provenance_text(Provenance provenance) {
         if (provenance.picture) json["picture"] = json_of(*provenance.picture);
         return json.dump(-1, ' ', true, Json::error_handler_t::replace);
     };
-    if (provenance.left_out.size() > kMostReason) provenance.left_out.resize(kMostReason);
+    if (provenance.left_out.size() > kMaxReason) provenance.left_out.resize(kMaxReason);
     std::string text = text_of();
-    if (text.size() <= Provenance::kMostBytes) return text;
-    provenance.left_out = fmt::format("the scene takes {} bytes, more than {}", provenance.scene.size(),
-                                      Provenance::kMostBytes);
+    if (text.size() <= Provenance::kMaxBytes) return text;
+    provenance.left_out =
+        fmt::format("the scene takes {} bytes, more than {}", provenance.scene.size(), Provenance::kMaxBytes);
     provenance.scene.clear();
     text = text_of();
-    if (text.size() <= Provenance::kMostBytes) return text;
+    if (text.size() <= Provenance::kMaxBytes) return text;
     provenance.picture.reset();
     return text_of();
 }
@@ -186,7 +186,7 @@ Provenance read_provenance(const std::string& path, const OnProgress& on_progres
         png.provenance = text_in_video(path, on_progress);
     const std::string& text = png.provenance;
     if (text.empty()) fail_at(path, "does not tell what it was made from");
-    if (text.size() > 2 * Provenance::kMostBytes) fail_at(path, "tells more than corda writes");
+    if (text.size() > 2 * Provenance::kMaxBytes) fail_at(path, "tells more than corda writes");
     Provenance provenance;
     try {
         provenance = parsed(media::parse_untrusted_json(text));

@@ -33,7 +33,7 @@ struct PictureOrigin {
 /// What a file was made from.
 struct Provenance {
     /// Of the text that a file carries. QuickTime's comments end at 64 KiB.
-    static constexpr std::size_t kMostBytes = std::size_t{32} << 10;
+    static constexpr std::size_t kMaxBytes = std::size_t{32} << 10;
 
     std::string corda;     ///< the version that made it
     std::string name;      ///< Scene::name, printable
@@ -51,7 +51,7 @@ inline constexpr const char* kProvenanceKey = "provenance";
 /// it. No folder, host or date is part of it.
 [[nodiscard]] Provenance provenance_of(const Scene& scene);
 
-/// As a JSON object of at most kMostBytes: without the scene, or without the picture, if they do not fit.
+/// As a JSON object of at most kMaxBytes: without the scene, or without the picture, if they do not fit.
 [[nodiscard]] std::string provenance_text(Provenance provenance);
 
 /// Reads what a PNG or a video carries; a video in a child process (see core/child_process.hpp), and

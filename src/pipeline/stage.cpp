@@ -22,14 +22,14 @@ const Scene& drawable(const Scene& scene) {
         throw Error(ExitCode::kInvalidScene,
                     fmt::format("video.shutter: {} is not within 0 .. 1", video.shutter));
     }
-    if (video.subframes < 2 || video.subframes > VideoDef::kMostSubframes) {
+    if (video.subframes < 2 || video.subframes > VideoDef::kMaxSubframes) {
         throw Error(ExitCode::kInvalidScene, fmt::format("video.subframes: {} is not within 2 .. {}",
-                                                         video.subframes, VideoDef::kMostSubframes));
+                                                         video.subframes, VideoDef::kMaxSubframes));
     }
     if (is_picture_size(video.width_px, video.height_px)) return scene;
     throw Error(ExitCode::kInvalidScene,
                 fmt::format("video.size: {}x{} is not within 1 .. {} pixels per side and {} in all",
-                            video.width_px, video.height_px, kLargestSidePx, kMostPicturePx));
+                            video.width_px, video.height_px, kMaxSidePx, kMaxPicturePx));
 }
 
 }  // namespace

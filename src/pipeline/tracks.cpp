@@ -8,7 +8,7 @@ namespace corda::pipeline {
 namespace {
 
 /// More would be shorter than a pixel.
-constexpr double kMostPoints = 400.0;
+constexpr double kMaxPoints = 400.0;
 
 /// A point that is closer to the end has no direction to it, as a share of the frames' interval.
 constexpr double kTooClose = 1e-6;
@@ -19,7 +19,7 @@ Tracks::Tracks(std::vector<std::size_t> particles, double trail_s, FrameRate fps
     : particles_(std::move(particles)),
       trail_s_(trail_s),
       fps_(fps),
-      stride_(std::max<std::int64_t>(1, std::llround(std::ceil(trail_s / fps.interval_s() / kMostPoints)))),
+      stride_(std::max<std::int64_t>(1, std::llround(std::ceil(trail_s / fps.interval_s() / kMaxPoints)))),
       trails_(particles_.size()) {}
 
 void Tracks::read(Motion& motion, double end_s, const OnProgress& on_progress) {

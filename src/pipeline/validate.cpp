@@ -18,7 +18,7 @@ void validate_frames(const Scene& scene) {
     if (!fps.is_rate()) {
         throw Error(ExitCode::kInvalidScene,
                     fmt::format("video: fps {}/{} is not a fraction of integers within 1 .. {}", fps.num,
-                                fps.den, Rational::kLargestPart));
+                                fps.den, Rational::kMaxPart));
     }
     const double frames = scene.world.duration_s * scene.video.fps.per_second();
     constexpr auto kMost = static_cast<double>(scene::Limits::kFrames);

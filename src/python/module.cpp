@@ -49,7 +49,7 @@ corda::Image to_image(const py::object& picture) {
     if (pixels.ndim() != 3 || (pixels.shape(2) != 3 && pixels.shape(2) != 4))
         throw py::value_error(
             "a picture is an array of uint8 of shape (height, width, 4), or (height, width, 3)");
-    const py::ssize_t most = corda::kLargestSidePx;
+    const py::ssize_t most = corda::kMaxSidePx;
     if (pixels.shape(0) < 1 || pixels.shape(1) < 1 || pixels.shape(0) > most || pixels.shape(1) > most)
         throw py::value_error("each side of a picture has 1 to " + std::to_string(most) + " pixels");
     corda::Image image(static_cast<int>(pixels.shape(1)), static_cast<int>(pixels.shape(0)));

@@ -49,8 +49,8 @@ int band_rows(const PixelRect& damage, const view::DrawList& list, const Tiles& 
     const std::size_t row = static_cast<std::size_t>(damage.width()) +
                             tiles.tiles() * kTile / static_cast<std::size_t>(damage.height());
     const std::size_t rows = std::max(kBand, kCapsule * list.capsules.size()) / row;
-    return kLlvmpipeTilePx * static_cast<int>(std::clamp<std::size_t>(rows / kLlvmpipeTilePx, 1,
-                                                                      kLargestSidePx / kLlvmpipeTilePx));
+    return kLlvmpipeTilePx *
+           static_cast<int>(std::clamp<std::size_t>(rows / kLlvmpipeTilePx, 1, kMaxSidePx / kLlvmpipeTilePx));
 }
 
 void check_size(int width, int height) {
@@ -274,7 +274,7 @@ void FrameRenderer::draw(const view::DrawList& list, const Damage& parts, const 
     if (all.empty()) return;
     const bool was_stale = std::exchange(everything_is_stale_, true);  // if it fails on the way
     upload(list);
-    const int rows = on_progress ? band_rows(all, list, tiles_) : kLargestSidePx;
+    const int rows = on_progress ? band_rows(all, list, tiles_) : kMaxSidePx;
     for (PixelRect band = all; band.y0 < all.y1; band.y0 = band.y1) {
         if (band.y0 > all.y0) report_progress(on_progress, band.y0 - all.y0, all.height());
         band.y1 = std::min((band.y0 + rows) / kLlvmpipeTilePx * kLlvmpipeTilePx, all.y1);

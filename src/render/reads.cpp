@@ -30,7 +30,7 @@ std::vector<std::span<const Read>> slices_of(std::span<const Read> reads) {
     std::vector<std::span<const Read>> slices;
     for (std::size_t first = 0, end = 0; first < reads.size(); first = end) {
         std::size_t pixels = pixels_of(reads[end++].rect);
-        while (end < reads.size() && (pixels += pixels_of(reads[end].rect)) <= kMostReadPx) ++end;
+        while (end < reads.size() && (pixels += pixels_of(reads[end].rect)) <= kMaxReadPx) ++end;
         slices.push_back(reads.subspan(first, end - first));
     }
     return slices;
@@ -48,7 +48,7 @@ std::vector<Read> plan_reads(const Tiles& tiles, const PixelRect& band) {
                 Read& last = reads.back();
                 const PixelRect both = last.rect.united(rect);
                 const std::size_t apart = pixels_of(last.rect) + pixels_of(rect) + cost_px;
-                if (pixels_of(both) <= std::min(apart, kMostReadPx)) {
+                if (pixels_of(both) <= std::min(apart, kMaxReadPx)) {
                     last.rect = both;
                     last.end_run = run + 1;
                     continue;

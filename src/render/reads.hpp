@@ -19,13 +19,13 @@ struct Read {
 };
 
 /// The most pixels that are read before they are painted: a row of tiles of the widest frame.
-inline constexpr std::size_t kMostReadPx = std::size_t{kLargestSidePx} * Tiles::kSidePx;
+inline constexpr std::size_t kMaxReadPx = std::size_t{kMaxSidePx} * Tiles::kSidePx;
 
 /// The reads of all runs in some rows, in the order of the runs. Runs of a batch that follow one another are
-/// one read, within kMostReadPx, if the pixels between them take less time than a second read would.
+/// one read, within kMaxReadPx, if the pixels between them take less time than a second read would.
 [[nodiscard]] std::vector<Read> plan_reads(const Tiles& tiles, const PixelRect& band);
 
-/// Reads that follow one another, in parts within kMostReadPx.
+/// Reads that follow one another, in parts within kMaxReadPx.
 [[nodiscard]] std::vector<std::span<const Read>> slices_of(std::span<const Read> reads);
 
 [[nodiscard]] std::size_t pixels_of(const PixelRect& rect);

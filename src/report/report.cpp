@@ -15,8 +15,8 @@ namespace corda::report {
 namespace {
 
 // From here to there a number is written in full: exponents would be harder to read than zeros.
-constexpr double kSmallestRounded = 1e3;
-constexpr double kLargestInFull = 1e6;
+constexpr double kMinRounded = 1e3;
+constexpr double kMaxInFull = 1e6;
 
 void check_name(const std::string& name, const char* kind, std::set<std::string>& seen) {
     const bool is_plain =
@@ -93,7 +93,7 @@ std::string short_number(double value) {
     const std::string three_digits = fmt::format("{:.2e}", value);
     const bool is_whole = value == std::round(value);
     const double shown = is_whole ? value : std::strtod(three_digits.c_str(), nullptr);
-    if (std::abs(shown) < kLargestInFull && (is_whole || std::abs(shown) >= kSmallestRounded)) {
+    if (std::abs(shown) < kMaxInFull && (is_whole || std::abs(shown) >= kMinRounded)) {
         return fmt::format("{:.0f}", shown + 0.0);  // + 0.0: -0 becomes 0
     }
     std::string text = fmt::format("{:.3g}", value);

@@ -196,10 +196,10 @@ std::string terminal(const Plot& plot, PlotFormat format, std::optional<int> wid
 
 /// Whether a picture has its end. gnuplot does not say that it could not write all of it.
 bool is_whole(std::string_view picture, PlotFormat format) {
-    constexpr std::size_t kLongestEnd = 16;
+    constexpr std::size_t kMaxEnd = 16;
     const std::array<const char*, 3> ends{"IEND", "</svg>", "%%EOF"};
     const std::size_t end = picture.rfind(ends[static_cast<std::size_t>(format)]);
-    return end != std::string_view::npos && picture.size() - end <= kLongestEnd;
+    return end != std::string_view::npos && picture.size() - end <= kMaxEnd;
 }
 
 /// The end of gnuplot's messages, which has the reason.

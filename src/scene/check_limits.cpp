@@ -15,8 +15,8 @@ namespace {
 
 /// A whole number in words that can be read: in scientific notation from a million on.
 std::string about(double value) {
-    constexpr double kMostInFull = 1e6;
-    return value < kMostInFull ? fmt::format("{:.0f}", value) : fmt::format("{:.1e}", value);
+    constexpr double kMaxInFull = 1e6;
+    return value < kMaxInFull ? fmt::format("{:.0f}", value) : fmt::format("{:.1e}", value);
 }
 
 struct Place {
@@ -121,14 +121,14 @@ double trail_bytes(const Scene& scene) {
     if (scene.style.trail_s == 0.0) return 0.0;
     constexpr double kPerPoint = 2.0 * sizeof(Vec2);  // a vector that grows has as much again
     constexpr double kPerPointInPicture = 2.0 * 26.0 * 32.0;
-    constexpr double kMostPoints = 400.0;
+    constexpr double kMaxPoints = 400.0;
     const double in_trail = scene.style.trail_s * scene.video.fps.per_second();
-    const double stride = std::max(1.0, in_trail / kMostPoints);
+    const double stride = std::max(1.0, in_trail / kMaxPoints);
     // A film of more frames is refused for its duration.
     const double frames =
         std::min(scene.world.duration_s * scene.video.fps.per_second(), static_cast<double>(Limits::kFrames));
     const double points = frames / stride;
-    return kPerPoint * points + kPerPointInPicture * std::min({in_trail, points, kMostPoints});
+    return kPerPoint * points + kPerPointInPicture * std::min({in_trail, points, kMaxPoints});
 }
 
 /// Adds one body to what all ask for together. Returns whether that is within the limits.

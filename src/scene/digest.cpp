@@ -14,8 +14,8 @@
 namespace corda {
 namespace {
 
-constexpr std::size_t kMostBodies = 100;
-constexpr std::size_t kLongestText = 64;
+constexpr std::size_t kMaxBodies = 100;
+constexpr std::size_t kMaxText = 64;
 constexpr std::string_view kHashed = "hash ";
 
 /// FNV-1a, by Fowler, Noll and Vo.
@@ -81,7 +81,7 @@ class Table {
             add(key, std::optional(value));
         } else {
             std::string text = text_of(value);
-            if (text.size() > kLongestText) text = fmt::format("{}{:016x}", kHashed, hash_of(text));
+            if (text.size() > kMaxText) text = fmt::format("{}{:016x}", kHashed, hash_of(text));
             digest_->emplace(name_ + "." + key, std::move(text));
         }
     }
@@ -235,7 +235,7 @@ std::map<std::string, std::string> digest(const Scene& scene) {
     add_picture(scene, digest);
     std::map<std::string, std::string> bodies;
     add_bodies(scene, bodies);
-    if (scene.ropes.size() + scene.nets.size() <= kMostBodies) {
+    if (scene.ropes.size() + scene.nets.size() <= kMaxBodies) {
         digest.merge(bodies);
         return digest;
     }

@@ -19,11 +19,11 @@ constexpr Range kAny{};
 constexpr Range kAbove0{.low = 0.0, .low_open = true};
 constexpr Range kFrom0{.low = 0.0};
 constexpr Range kCoordinate{.low = -Limits::kCoordinateMetres, .high = Limits::kCoordinateMetres};
-constexpr Range kDistance{.low = kShortestBarMetres, .high = Limits::kCoordinateMetres};
-constexpr Range kLength{.low = kShortestBarMetres, .high = 4 * Limits::kCoordinateMetres};
+constexpr Range kDistance{.low = kMinBarMetres, .high = Limits::kCoordinateMetres};
+constexpr Range kLength{.low = kMinBarMetres, .high = 4 * Limits::kCoordinateMetres};
 constexpr Range kMass{.low = 1e-12, .high = 1e12};
 constexpr Range kWidthPx{.low = 0.1, .high = 1000.0};
-constexpr double kMostParticles = Limits::kParticles;
+constexpr double kMaxParticles = Limits::kParticles;
 
 Type of(Kind kind, const Range& range = kAny) {
     return {.kind = kind, .range = range};
@@ -202,11 +202,11 @@ std::vector<Key> rope_shape_keys() {
     const Type from = pair("[x, y]", kCoordinate);
     const std::string_view first = "the position of the first particle";
     return {
-        {"rope.line", "particles", integer(2, kMostParticles), "", required(), "the number of particles"},
+        {"rope.line", "particles", integer(2, kMaxParticles), "", required(), "the number of particles"},
         {"rope.line", "from", from, "m", at(Vec2{}), first},
         {"rope.line", "step", pair("[dx, dy]", kCoordinate), "m", required(),
          "the way from one particle to the next"},
-        {"rope.hang", "links", integer(1, kMostParticles - 1), "", required(), "the number of links",
+        {"rope.hang", "links", integer(1, kMaxParticles - 1), "", required(), "the number of links",
          "one less than particles"},
         {"rope.hang", "length", number(kAbove0), "m", required(), "the length of the whole rope"},
         {"rope.hang", "angle_deg", number(), "degrees", at(0),
@@ -234,9 +234,9 @@ std::vector<Key> net_keys() {
          "the indices of the particles that never move", "-1 is the last; a grid also takes [column, row]"},
         {"net", "string", boolean, "", at(MaterialDef{}.is_string), "bars pull and never push",
          "needs compliance"},
-        {"net.grid", "columns", integer(1, kMostParticles), "", required(),
-         "the number of particles in a row", "indices go row by row from the upper left"},
-        {"net.grid", "rows", integer(1, kMostParticles), "", required(), "the number of rows"},
+        {"net.grid", "columns", integer(1, kMaxParticles), "", required(), "the number of particles in a row",
+         "indices go row by row from the upper left"},
+        {"net.grid", "rows", integer(1, kMaxParticles), "", required(), "the number of rows"},
         {"net.grid", "from", pair("[x, y]", kCoordinate), "m", at(Vec2{}),
          "the position of the upper left particle"},
         {"net.grid", "spacing", or_pair(number(kDistance), "[dx, dy]"), "m", required(),
@@ -262,7 +262,7 @@ std::vector<Key> method_keys(std::string_view section) {
     const Words rattle{RattleDef::kName};
     const Words relaxation{RelaxationDef::kName};
     const Words stepped{RattleDef::kName, RelaxationDef::kName};
-    constexpr Range kTolerance{.low = ExactDef::kTightestTolerance, .high = ExactDef::kLoosestTolerance};
+    constexpr Range kTolerance{.low = ExactDef::kMinTolerance, .high = ExactDef::kMaxTolerance};
     const RelaxationDef def;
     return {
         {section, "tolerance", number(kTolerance), "", at(ExactDef{}.tolerance),
@@ -271,7 +271,7 @@ std::vector<Key> method_keys(std::string_view section) {
          rattle},
         {section, "step", number({.low = 1e-9}), "s", otherwise("one frame; rattle: a stable part of one"),
          "the step", "", stepped},
-        {section, "reach", integer(1, kMostParticles), "", at(kDefaultReach), "the reach",
+        {section, "reach", integer(1, kMaxParticles), "", at(kDefaultReach), "the reach",
          "ropes have bars to the next 1..reach particles", relaxation,
          ": bars to farther particles make a straight rope a rigid rod, and its equations singular"},
         {section, "sweeps", integer(1, 1e6), "", at(def.sweeps),
@@ -319,10 +319,10 @@ std::vector<Key> video_keys() {
     const VideoDef def;
     const std::vector<std::string_view> presets = media::preset_names();
     const Words pix{"auto", "420", "444", "rgba"};
-    Type size = pair("[width, height]", {.low = 1, .high = kLargestSidePx});
+    Type size = pair("[width, height]", {.low = 1, .high = kMaxSidePx});
     size.kind = Kind::kInteger;
     static const std::string size_note =
-        fmt::format("even for a video in 4:2:0; {} pixels in all at most", kMostPicturePx);
+        fmt::format("even for a video in 4:2:0; {} pixels in all at most", kMaxPicturePx);
     return {
         {"video", "size", size, "px", at(std::vector<int>{def.width_px, def.height_px}),
          "the size of the picture", size_note},
@@ -332,20 +332,20 @@ std::vector<Key> video_keys() {
         {"video", "shutter", number({.low = 0.0, .high = 1.0}), "", at(def.shutter),
          "how long a frame is exposed, as a share of the time from frame to frame",
          "for motion blur in videos; the exposure is centred on the frame's time"},
-        {"video", "subframes", integer(2, VideoDef::kMostSubframes), "", at(def.subframes),
+        {"video", "subframes", integer(2, VideoDef::kMaxSubframes), "", at(def.subframes),
          "the number of pictures that a blurred frame is the mean of"},
         {"video", "codec", one_of(media::codec_names()), "", otherwise("the ending's"), "the encoder",
          "h264, h265, av1, vp9 and so on stand for libav's names"},
         {"video", "preset", one_of({presets.begin(), presets.end()}), "", otherwise("the encoder's"),
          "how long the encoder searches for a smaller file",
          "words of H.264 and H.265; AV1 and VP9 count from 0, the slowest; the others have none"},
-        {"video", "crf", integer(1, EncoderDef::kLargestCrf), "", otherwise("the encoder's"),
+        {"video", "crf", integer(1, EncoderDef::kMaxCrf), "", otherwise("the encoder's"),
          "the constant rate factor", "1 is the best; up to 51 of H.264 and H.265"},
         {"video", "pix", one_of(pix), "", at(pix, def.encoder.pix), "how pixels are stored",
          "444 sharpens coloured edges; browsers and QuickTime refuse H.264 so"},
-        {"video", "threads", integer(1, EncoderDef::kMostThreads), "", at(def.encoder.threads),
+        {"video", "threads", integer(1, EncoderDef::kMaxThreads), "", at(def.encoder.threads),
          "the number of threads of each encoder", "the bytes depend on it"},
-        {"video", "jobs", integer(0, EncoderDef::kMostThreads), "", at(def.encoder.jobs),
+        {"video", "jobs", integer(0, EncoderDef::kMaxThreads), "", at(def.encoder.jobs),
          "how many chunks of the video are made at a time", "0: one per core; the bytes do not depend on it"},
     };
 }
@@ -427,7 +427,7 @@ std::vector<Key> camera_keys() {
 
 std::vector<Key> golden_keys() {
     const GoldenDef def;
-    Type size = pair("[width, height]", {.low = 1, .high = kLargestSidePx});
+    Type size = pair("[width, height]", {.low = 1, .high = kMaxSidePx});
     size.kind = Kind::kInteger;
     Type times = list(Kind::kNumber, 1);
     times.range = kFrom0;

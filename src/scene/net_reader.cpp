@@ -114,7 +114,7 @@ std::optional<NetBar> read_bar(const Value& entry, const NetDef& def) {
     const Vec2 along = def.points_m[*b] - def.points_m[*a];
     if (*a == *b) {
         entry.add_problem(fmt::format("a bar from particle {} to itself; join two different ones", *a));
-    } else if (sim::length(along.x, along.y) < kShortestBarMetres) {
+    } else if (sim::length(along.x, along.y) < kMinBarMetres) {
         entry.add_problem(fmt::format(
             "particles {} and {} coincide, and a bar without length has no direction; move one", *a, *b));
     }

@@ -25,9 +25,9 @@ VideoDef read_video(const TableReader& video) {
         def.width_px = size->at(0).as<int>();
         def.height_px = size->at(1).as<int>();
         const std::int64_t pixels = std::int64_t{def.width_px} * def.height_px;
-        if (pixels > kMostPicturePx)
+        if (pixels > kMaxPicturePx)
             size->add_problem(fmt::format("{} x {} are {} pixels, over the limit of {}; give a smaller size",
-                                          def.width_px, def.height_px, pixels, kMostPicturePx));
+                                          def.width_px, def.height_px, pixels, kMaxPicturePx));
     }
     if (const auto fps = video.find("fps")) def.fps = FrameRate(std::get<Rational>(read_rate(fps->node())));
     video.read("shutter", def.shutter);
@@ -109,8 +109,7 @@ GoldenDef read_golden(const Sections& sections) {
         def.width_px = size->at(0).as<int>();
         def.height_px = size->at(1).as<int>();
         if (!is_picture_size(def.width_px, def.height_px))
-            size->add_problem(
-                fmt::format("over the limit of {} pixels; give a smaller size", kMostPicturePx));
+            size->add_problem(fmt::format("over the limit of {} pixels; give a smaller size", kMaxPicturePx));
     }
     golden.read("max", def.max);
     golden.read("share", def.share);

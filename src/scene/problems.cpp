@@ -10,8 +10,8 @@
 namespace corda::scene {
 namespace {
 
-constexpr std::size_t kMostShown = 20;
-constexpr std::size_t kMostKept = 10'000;  // bounds the memory for a file that is not a scene at all
+constexpr std::size_t kMaxShown = 20;
+constexpr std::size_t kMaxKept = 10'000;  // bounds the memory for a file that is not a scene at all
 
 bool is_continuation(char c) {
     return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U;
@@ -50,7 +50,7 @@ double number_of(const toml::node& node) {
 }
 
 void Problems::add(const toml::source_region& region, std::string_view key, std::string_view problem) {
-    if (problems_.size() == kMostKept) {
+    if (problems_.size() == kMaxKept) {
         ++not_kept_;
         return;
     }
@@ -77,10 +77,10 @@ void Problems::throw_if_any() const {
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const Problem& a, const Problem& b) { return a.place() < b.place(); });
     std::string text;
-    for (std::size_t i = 0; i < std::min(sorted.size(), kMostShown); ++i)
+    for (std::size_t i = 0; i < std::min(sorted.size(), kMaxShown); ++i)
         text += (i == 0 ? "" : "\n") + sorted[i].message;
     const std::size_t count = sorted.size() + not_kept_;
-    if (count > kMostShown) text += fmt::format("\nand {} more", count - kMostShown);
+    if (count > kMaxShown) text += fmt::format("\nand {} more", count - kMaxShown);
     throw Error(ExitCode::kInvalidScene, text);
 }
 

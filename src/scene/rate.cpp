@@ -32,8 +32,8 @@ std::optional<Rational> rounded_fraction(double fps) {
 
 /// The fraction of few digits that a number with many is, such as 0.142857142857.
 std::optional<Rational> nearest_fraction(double fps) {
-    constexpr std::int64_t kLargestDenominator = 1001;  // of 30000/1001
-    for (std::int64_t den = 2; den <= kLargestDenominator; ++den) {
+    constexpr std::int64_t kMaxDenominator = 1001;  // of 30000/1001
+    for (std::int64_t den = 2; den <= kMaxDenominator; ++den) {
         const double num = std::round(fps * static_cast<double>(den));
         if (std::abs(fps * static_cast<double>(den) - num) < 1e-9 * num) {
             return Rational::reduced(static_cast<std::int64_t>(num), den);
@@ -44,7 +44,7 @@ std::optional<Rational> nearest_fraction(double fps) {
 
 std::variant<Rational, std::string> rate_from_number(double fps) {
     if (!std::isfinite(fps)) return fmt::format("{} is not a finite number", fps);
-    if (std::abs(fps) > static_cast<double>(Rational::kLargestPart) / 1000.0)
+    if (std::abs(fps) > static_cast<double>(Rational::kMaxPart) / 1000.0)
         return fmt::format("{} is out of range", fps);
     if (fps == std::floor(fps)) return Rational{static_cast<std::int64_t>(fps), 1};
     if (const auto meant = rounded_fraction(fps))

@@ -15,7 +15,7 @@
 namespace corda::scene {
 
 /// Bars shorter than this have no direction: the solvers' squared lengths come near the smallest number.
-inline constexpr double kShortestBarMetres = 1e-12;
+inline constexpr double kMinBarMetres = 1e-12;
 
 // Defaults that no Def holds.
 inline constexpr double kDefaultMassKg = 1.0;

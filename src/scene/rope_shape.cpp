@@ -33,9 +33,9 @@ bool read_line(const TableReader& line, std::int64_t particles, RopeDef& def) {
     const auto step_value = line.find("step");
     if (!step_value) return false;
     const auto step = step_value->as<Vec2>();
-    if (distance_m({}, step) < kShortestBarMetres) {
+    if (distance_m({}, step) < kMinBarMetres) {
         step_value->add_problem(fmt::format("[{}, {}] is no distance; give a step of at least {} m", step.x,
-                                            step.y, number_text(kShortestBarMetres)));
+                                            step.y, number_text(kMinBarMetres)));
         return false;
     }
     line.read("from", def.origin_m);
@@ -51,9 +51,9 @@ bool read_hang(const TableReader& hang, std::int64_t particles, RopeDef& def) {
     if (!length_value) return false;
     const auto links = static_cast<double>(particles - 1);
     const auto length_m = length_value->as<double>();
-    if (length_m / links < kShortestBarMetres) {
+    if (length_m / links < kMinBarMetres) {
         length_value->add_problem(fmt::format("{} m are less than {} m per link; make the rope longer",
-                                              length_m, number_text(kShortestBarMetres)));
+                                              length_m, number_text(kMinBarMetres)));
         return false;
     }
     double angle_deg = 0.0;
@@ -92,7 +92,7 @@ bool check_short_bars(const Value& points, const RopeDef& def, bool has_rest_len
     for (std::size_t k = has_rest_lengths && def.material.is_string ? 2 : 1; k <= longest; ++k) {
         for (std::size_t a = 0; a < (def.closed ? count : count - k); ++a) {
             const std::size_t b = (a + k) % count;
-            if (distance_m(def.points_m[a], def.points_m[b]) >= kShortestBarMetres) continue;
+            if (distance_m(def.points_m[a], def.points_m[b]) >= kMinBarMetres) continue;
             const auto [first, last] = std::minmax(a, b);
             points.at(last).add_problem(short_bar_problem(first, last, k, b < a, def.reach));
             return false;

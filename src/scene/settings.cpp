@@ -16,7 +16,7 @@
 namespace corda::scene {
 namespace {
 
-constexpr std::size_t kLongestLabel = 80;
+constexpr std::size_t kMaxLabel = 80;
 constexpr std::string_view kWhitespace = " \t\r\n";
 
 /// One part of a dotted key: a name, or an index if the name is empty.
@@ -28,7 +28,7 @@ struct Step {
 };
 
 std::string label_of(const Setting& setting) {
-    return "--set " + excerpt(setting, kLongestLabel);
+    return "--set " + excerpt(setting, kMaxLabel);
 }
 
 [[noreturn]] void fail_usage(const Setting& setting, std::string_view problem) {

@@ -100,11 +100,11 @@ struct NetDef {
 /// Method `exact`: adaptive and of high order.
 struct ExactDef {
     static constexpr std::string_view kName = "exact";
-    static constexpr double kTightestTolerance = 1e-15;
-    static constexpr double kLoosestTolerance = 1e-2;
+    static constexpr double kMinTolerance = 1e-15;
+    static constexpr double kMaxTolerance = 1e-2;
 
-    /// Error of the positions after some seconds, relative to the rope's length; kTightestTolerance ..
-    /// kLoosestTolerance.
+    /// Error of the positions after some seconds, relative to the rope's length; kMinTolerance ..
+    /// kMaxTolerance.
     double tolerance = 1e-9;
 
     friend bool operator==(const ExactDef&, const ExactDef&) = default;

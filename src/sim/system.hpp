@@ -76,8 +76,8 @@ struct LinkRange {
 [[nodiscard]] LinkRange links_between_pins(const RopeDef& rope);
 
 /// The rope as it starts. A string without compliance cannot span more than its rest lengths: a link that is
-/// given a larger distance starts taut, in the same direction, and the particles beyond it, seen from the pins
-/// (from the first particle if there are none), move along. Distances between pins stay as they are.
+/// given a larger distance starts taut, in the same direction, and the particles beyond it, seen from the
+/// pins (from the first particle if there are none), move along. Distances between pins stay as they are.
 [[nodiscard]] RopeDef pulled_in(RopeDef rope);
 
 /// Sum of the rest lengths of a body's links, in m.

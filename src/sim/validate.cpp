@@ -93,8 +93,7 @@ void validate(const MethodDef& method) {
     const std::string what(method_name(method));
     const auto is_step = [](const std::optional<double>& step_s) { return !step_s || is_positive(*step_s); };
     if (const auto* exact = std::get_if<ExactDef>(&method)) {
-        require(exact->tolerance >= ExactDef::kTightestTolerance &&
-                    exact->tolerance <= ExactDef::kLoosestTolerance,
+        require(exact->tolerance >= ExactDef::kMinTolerance && exact->tolerance <= ExactDef::kMaxTolerance,
                 what, "tolerance is not within its range");
     } else if (const auto* rattle = std::get_if<RattleDef>(&method)) {
         const auto& orders = RattleDef::kOrders;

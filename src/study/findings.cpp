@@ -14,7 +14,7 @@ namespace corda::study {
 namespace {
 
 constexpr std::array<double, 3> kMasses{0.1, 1.0, 10.0};
-constexpr int kLongestReach = 10;
+constexpr int kMaxReach = 10;
 
 struct Findings {
     std::vector<Rate> rates;
@@ -127,7 +127,7 @@ void add_bars(const Shared& findings, bool is_quick, std::vector<Job>& jobs) {
                             const auto truth = true_swing(SwingDef{}.particles, mass_kg);
                             for (const int sweeps : {1, 4, 16, 256}) {
                                 if (is_quick && sweeps == 4) continue;
-                                for (int reach = 1; reach <= kLongestReach; ++reach) {
+                                for (int reach = 1; reach <= kMaxReach; ++reach) {
                                     // Many sweeps take long, and are of interest for the report's bars.
                                     if (sweeps == 256 && (reach != 7 || is_quick)) continue;
                                     const SwingDef def{SwingDef{}.particles, mass_kg, reach, sweeps};

@@ -10,7 +10,7 @@
 namespace corda::study {
 namespace {
 
-constexpr int kMostHalvings = 8;
+constexpr int kMaxHalvings = 8;
 
 /// A run that would take longer, in seconds, is left out.
 double longest_run_s(bool is_quick) {
@@ -25,9 +25,9 @@ double forecast_s(const System& system, double duration_s, const MethodDef& meth
 }
 
 void add_relaxation(const Problem& problem, bool is_quick, std::vector<SweepRun>& runs) {
-    constexpr double kLongestStepSeconds = 1.0 / 60.0;
+    constexpr double kMaxStepSeconds = 1.0 / 60.0;
     const double frame_s = problem.fps.interval_s();
-    const double longest_step_s = frame_s / std::ceil(frame_s / kLongestStepSeconds - 1e-9);
+    const double longest_step_s = frame_s / std::ceil(frame_s / kMaxStepSeconds - 1e-9);
     const std::size_t bars = problem.system().bars.size();
     for (const int reach : {1, 7}) {
         const Problem reaching = with_reach(problem, reach);
@@ -37,7 +37,7 @@ void add_relaxation(const Problem& problem, bool is_quick, std::vector<SweepRun>
         const bool is_refused = !refusal(reaching, RelaxationDef{longest_step_s}).empty();
         for (const int sweeps : {1, 4, 16, 64}) {
             const std::string label = fmt::format("relaxation, reach {}, sweeps {}", reach, sweeps);
-            for (int halving = 0; halving <= kMostHalvings; halving += is_quick ? 2 : 1) {
+            for (int halving = 0; halving <= kMaxHalvings; halving += is_quick ? 2 : 1) {
                 const double step_s = std::ldexp(longest_step_s, -halving);
                 const MethodDef method = RelaxationDef{step_s, sweeps};
                 const double run_s = forecast_s(system, problem.world.duration_s, method, step_s);
@@ -62,7 +62,7 @@ void add_rattle(const Problem& problem, bool is_quick, std::vector<SweepRun>& ru
         // High orders reach rounding after a few halvings: they take two points per halving.
         const bool is_high = order >= 6;
         const int points_per_halving = is_high && !is_quick ? 2 : 1;
-        const int last_point = points_per_halving * (is_high ? 2 : kMostHalvings);
+        const int last_point = points_per_halving * (is_high ? 2 : kMaxHalvings);
         for (int point = 0; point <= last_point; ++point) {
             const double finer = std::exp2(static_cast<double>(point) / points_per_halving);
             const double step_s = frame_s / std::round(steps_per_frame * finer);

@@ -92,7 +92,7 @@ Provenance provenance_of(const Film& film, double time_s) {
     }
     made.state = hash_of(made.positions_m);
     const std::size_t count = state.x_m.size();
-    const std::size_t stride = (count + Provenance::kMostKept - 1) / Provenance::kMostKept;
+    const std::size_t stride = (count + Provenance::kMaxKept - 1) / Provenance::kMaxKept;
     if (stride < 2) return made;
     std::vector<double> some;
     for (std::size_t i = 0; i < count; i += stride)

@@ -21,10 +21,10 @@ struct Provenance {
     std::string height;    ///< setting "camera.height=..."
     std::string margin;    ///< camera.margin, to which both were fitted; empty if it is not known
     std::string state;     ///< FNV-1a of the positions' bits, in hexadecimal
-    /// x and y of each particle in turn; of more than kMostKept, of every second, third, ... alone.
+    /// x and y of each particle in turn; of more than kMaxKept, of every second, third, ... alone.
     std::vector<double> positions_m;
 
-    static constexpr std::size_t kMostKept = 256;
+    static constexpr std::size_t kMaxKept = 256;
 
     /// Whether `corda golden` wrote this; other pictures are none of its business.
     [[nodiscard]] bool is_golden() const { return !state.empty(); }

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A thread of its own draws no fewer pictures: the context that it needs takes as long as some of them.
-constexpr std::size_t kFewestApart = 8;
+constexpr std::size_t kMinApart = 8;
 
 /// A picture as it was drawn.
 struct Drawn {
@@ -116,7 +116,7 @@ class Runner {
         const std::size_t count = one.pictures.size();
         const bool may_split = job->film->scene().video.shutter == 0.0;
         const std::size_t pieces =
-            may_split ? std::clamp<std::size_t>(count / kFewestApart, 1, static_cast<std::size_t>(threads_))
+            may_split ? std::clamp<std::size_t>(count / kMinApart, 1, static_cast<std::size_t>(threads_))
                       : std::size_t{1};
         for (std::size_t i = 0; i < pieces; ++i)
             crew_.next([this, job, first = count * i / pieces, end = count * (i + 1) / pieces, pieces] {

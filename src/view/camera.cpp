@@ -9,7 +9,7 @@ namespace corda::view {
 namespace {
 
 /// The extent that is shown of a scene in which all particles stay in one place, in metres.
-constexpr double kSmallestViewMetres = 1e-6;
+constexpr double kMinViewMetres = 1e-6;
 
 /// A scale at which pixels do not count.
 constexpr double kFinest = 1e100;
@@ -59,7 +59,7 @@ class Axis {
         double least = 1e300;
         for (const Span& span : spans_) {
             const auto limit = [&](double away_m, double extent_px) {
-                const double half_m = std::max(away_m, 0.5 * kSmallestViewMetres);
+                const double half_m = std::max(away_m, 0.5 * kMinViewMetres);
                 scale = std::min(scale, (0.5 * room_px - extent_px) / half_m);
                 least = std::min(least, 0.1 * 0.5 * room_px / half_m);
             };
@@ -88,7 +88,7 @@ class Axis {
     }
 
     [[nodiscard]] static double extent_m(const Ends& ends) {
-        return std::max(ends.high->high_m - ends.low->low_m, kSmallestViewMetres);
+        return std::max(ends.high->high_m - ends.low->low_m, kMinViewMetres);
     }
 
     std::vector<Span> spans_;

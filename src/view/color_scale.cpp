@@ -59,8 +59,8 @@ constexpr double kFarBeyond = 2.0;
 /// A scale goes below 0 if values do by more than this share of its end.
 constexpr double kBelowZero = 0.02;
 /// Less is rounding.
-constexpr double kSmallestEnd = 1e-12;
-constexpr double kSmallestStrain = 1e-9;
+constexpr double kMinEnd = 1e-12;
+constexpr double kMinStrain = 1e-9;
 
 /// The next of these digits times a power of 10, whose halves are short.
 double rounded_end(double value) {
@@ -103,7 +103,7 @@ ColorScale scale_of(Quantity quantity, const sim::Spread& spread, const StyleDef
     scale.quantity = quantity;
     scale.unknown = look_of(style).support;
     double end = 1.0;
-    const double smallest = quantity == Quantity::kStrain ? kSmallestStrain : kSmallestEnd;
+    const double smallest = quantity == Quantity::kStrain ? kMinStrain : kMinEnd;
     if (!spread.empty() && std::max(-spread.least(), spread.largest()) > smallest) {
         const double largest = std::max(-spread.least(), spread.largest());
         const double usual = spread.size_exceeded_by(kRare);

@@ -13,8 +13,8 @@ int em_of(int side_px) {
     constexpr double kEm = 1.0 / 40.0;
     constexpr double kSmallEm = 1.0 / 16.0;  // of frames in which kEm is too small to read
     constexpr double kReadablePx = 12.0;
-    constexpr double kSmallestPx = 7.0;
-    return rounded(std::max({kEm * side_px, std::min(kReadablePx, kSmallEm * side_px), kSmallestPx}));
+    constexpr double kMinPx = 7.0;
+    return rounded(std::max({kEm * side_px, std::min(kReadablePx, kSmallEm * side_px), kMinPx}));
 }
 
 int edge_of(int side_px, int em_px) {

@@ -94,10 +94,10 @@ std::string number_text(double value, int digits) {
 }
 
 NumberTitle title_of(const std::string& name, const std::string& unit, double largest) {
-    constexpr double kFewestDecimals = 0.01;
-    constexpr double kMostDigits = 1e4;
-    const double least = unit.empty() ? kFewestDecimals : 10.0 * kFewestDecimals;
-    const bool is_plain = largest == 0.0 || (largest >= least * (1.0 - 1e-9) && largest < kMostDigits);
+    constexpr double kMinDecimals = 0.01;
+    constexpr double kMaxDigits = 1e4;
+    const double least = unit.empty() ? kMinDecimals : 10.0 * kMinDecimals;
+    const bool is_plain = largest == 0.0 || (largest >= least * (1.0 - 1e-9) && largest < kMaxDigits);
     const int exponent = is_plain ? 0 : thousands_below(largest);
     const std::string power = exponent == 0 ? "" : power_of_10_text(exponent);
     if (unit.empty()) return {name + (power.empty() ? "" : " (" + power + ")"), power_of_10(exponent)};

@@ -25,10 +25,10 @@ constexpr double kLegendTick = 0.2;
 constexpr int kGradientStepPx = 2;
 
 /// In frames whose shorter side is less, overlays are in the way.
-constexpr int kSmallestSidePx = 160;
+constexpr int kMinSidePx = 160;
 
 constexpr double kBarPerWidth = 0.2;
-constexpr int kMostDecimals = 9;
+constexpr int kMaxDecimals = 9;
 
 /// U+2007, as wide as a digit.
 constexpr const char* kFigureSpace = "\u2007";
@@ -60,12 +60,12 @@ Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int he
     panel_.right_panel_px = width - width_;
     panel_.bottom_panel_px = height - height_;
     const Look look = look_of(style);
-    const bool by_default = side_px_ >= kSmallestSidePx && look.ground.is_opaque();
+    const bool by_default = side_px_ >= kMinSidePx && look.ground.is_opaque();
     time_ = def.time.value_or(by_default);
     scale_bar_ = def.scale_bar.value_or(by_default);
     legend_ = quantity_of(style.color_by) && def.legend.value_or(by_default);
     color_ = text_color(look);
-    while (decimals_ < kMostDecimals && interval_s * power_of_10(decimals_) < 1.0) ++decimals_;
+    while (decimals_ < kMaxDecimals && interval_s * power_of_10(decimals_) < 1.0) ++decimals_;
     time_digits_ = fmt::format("{:.{}f}", std::max(0.0, end_s - interval_s), decimals_).size();
 }
 

@@ -25,20 +25,20 @@ constexpr double kDotPerCurve = 3.0;
 // Shares of the em.
 constexpr double kTickLength = 0.25;
 constexpr double kAboveBox = 1.1;  // from the baseline above it
-constexpr double kSmallestBox = 4.0;
+constexpr double kMinBox = 4.0;
 constexpr double kNarrowestPanel = 9.5;
 constexpr double kLowestPanel = 13.0;
 constexpr double kPerLabel = 3.0;  // of the height
 
-constexpr int kFewestLabels = 2;
-constexpr int kMostLabels = 6;
+constexpr int kMinLabels = 2;
+constexpr int kMaxLabels = 6;
 constexpr std::uint8_t kGridAlpha = 0x2c;
 constexpr std::uint8_t kBoxAlpha = 0x90;
 
 /// Points that are closer than this to the last one are left out.
 constexpr double kTooClosePx = 0.5;
 /// Of a curve that is not over time, the last so many points show.
-constexpr std::size_t kMostPoints = 4000;
+constexpr std::size_t kMaxPoints = 4000;
 
 struct Range {
     double low = std::numeric_limits<double>::infinity();
@@ -231,13 +231,13 @@ bool PlotPanel::place_box(const PixelRect& panel, bool is_over_time, Font& font)
     const int all_px = panel.height() - top_px - edge_px - above_px - below_px;
     const int most_px = is_beside ? rounded(kHeightPerWidth * panel.width()) : all_px;
     const int height_px = std::min(all_px, most_px);
-    const int least_px = rounded(kSmallestBox * em_px_);
+    const int least_px = rounded(kMinBox * em_px_);
     if (height_px < least_px) return false;
     box_.y0 = panel.y0 + top_px + (all_px - height_px) / 2 + above_px;
     box_.y1 = box_.y0 + height_px;
     y_.low_px = box_.y1 - 1;
     y_.high_px = box_.y0;
-    const int y_labels = std::clamp(rounded(height_px / (kPerLabel * em_px_)), kFewestLabels, kMostLabels);
+    const int y_labels = std::clamp(rounded(height_px / (kPerLabel * em_px_)), kMinLabels, kMaxLabels);
     const RoundNumber y_step = step_of(y_.high - y_.low, y_labels);
     y_.low = y_step.times(std::floor(y_.low / y_step.value()));
     y_.high = y_step.times(std::ceil(y_.high / y_step.value()));
@@ -251,11 +251,11 @@ bool PlotPanel::place_box(const PixelRect& panel, bool is_over_time, Font& font)
     x_.low_px = box_.x0;
     x_.high_px = box_.x1 - 1;
     if (!is_over_time) {
-        const RoundNumber step = step_of(x_.high - x_.low, kMostLabels);
+        const RoundNumber step = step_of(x_.high - x_.low, kMaxLabels);
         x_.low = step.times(std::floor(x_.low / step.value()));
         x_.high = step.times(std::ceil(x_.high / step.value()));
     }
-    for (int most = kMostLabels; most >= 1; --most) {
+    for (int most = kMaxLabels; most >= 1; --most) {
         add_labels(x_, most);
         int end_px = std::numeric_limits<int>::min();
         bool fits = true;
@@ -272,13 +272,13 @@ bool PlotPanel::place_box(const PixelRect& panel, bool is_over_time, Font& font)
 void PlotPanel::add_labels(Axis& axis, int most) const {
     axis.labels.clear();
     constexpr double kSlack = 1e-9;
-    constexpr int kFewestDigits = 6;
-    constexpr int kMostDigits = 15;
+    constexpr int kMinDigits = 6;
+    constexpr int kMaxDigits = 15;
     const RoundNumber step = step_of(axis.high - axis.low, most);
     // Far from 0 it takes more digits to tell neighbours apart.
-    int digits = kFewestDigits;
+    int digits = kMinDigits;
     const double steps = std::max(std::abs(axis.low), std::abs(axis.high)) / step.value();
-    while (digits < kMostDigits && power_of_10(digits - 1) < steps) ++digits;
+    while (digits < kMaxDigits && power_of_10(digits - 1) < steps) ++digits;
     const auto first = static_cast<std::int64_t>(std::ceil(axis.low / step.value() - kSlack));
     const auto last = static_cast<std::int64_t>(std::floor(axis.high / step.value() + kSlack));
     for (std::int64_t k = first; k <= last; ++k) {
@@ -317,7 +317,7 @@ void PlotPanel::draw_curves(double time_s, DrawList& list) const {
         const auto later = std::lower_bound(curve.times_s.begin(), curve.times_s.end(), now.time_s);
         const auto end = static_cast<std::size_t>(later - curve.times_s.begin());
         const PixelPoint dot{x_.px(now.x), y_.px(now.y)};
-        for (std::size_t k = end - std::min(end, kMostPoints); k < end; ++k)
+        for (std::size_t k = end - std::min(end, kMaxPoints); k < end; ++k)
             list.add_capsule(curve.points[k], k + 1 < end ? curve.points[k + 1] : dot, radius_px);
         list.add_capsule(dot, dot, kDotPerCurve * radius_px);
     }

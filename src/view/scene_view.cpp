@@ -14,8 +14,8 @@ constexpr double kNetWidth = 1.0 / 240.0;   // so that the cells of a cloth stay
 constexpr double kPinnedRim = 1.0 / 150.0;  // rim: how far a marker extends beyond the line
 constexpr double kFreeRim = 1.0 / 400.0;
 constexpr double kOutlineWidth = 1.0 / 400.0;
-constexpr double kSmallestBall = 0.018;
-constexpr double kLargestBall = 0.055;
+constexpr double kMinBall = 0.018;
+constexpr double kMaxBall = 0.055;
 
 constexpr double kThinnestLinePx = 2.0;
 constexpr double kNetWidthPerRopeWidth = 0.5;
@@ -30,7 +30,7 @@ constexpr double kThinnestBarPx = 1.0;
 constexpr std::uint8_t kBallWeight = 64;
 
 /// More balls than that have no outlines, which are many capsules each.
-constexpr std::size_t kMostOutlines = 1000;
+constexpr std::size_t kMaxOutlines = 1000;
 
 /// Ropes of so few links are pendulums: their masses are what swings.
 constexpr std::size_t kLinksOfPendulum = 3;
@@ -44,9 +44,9 @@ double cube_root(double value) {
 
 /// A payload as a ball of even density: its radius grows with the cube root of its mass.
 double ball_radius(double mass_kg, double rope_kg) {
-    constexpr double kLargestRatio = 1000.0;
-    const double ratio = std::clamp(mass_kg / rope_kg, 1.0, kLargestRatio);
-    return std::min(kSmallestBall * cube_root(ratio), kLargestBall);
+    constexpr double kMaxRatio = 1000.0;
+    const double ratio = std::clamp(mass_kg / rope_kg, 1.0, kMaxRatio);
+    return std::min(kMinBall * cube_root(ratio), kMaxBall);
 }
 
 Drawn around(const MotionBounds& bounds, double radius_px) {
@@ -245,7 +245,7 @@ void SceneView::draw_body(std::size_t i, const Positions& positions, DrawList& l
         list.add_capsule(positions.px(ball.particle), positions.px(ball.particle), inside_px(ball), halo_px,
                          tint);
     }
-    if (ball_count_ > kMostOutlines) return;
+    if (ball_count_ > kMaxOutlines) return;
     list.add_layer(look_.outline);
     for (const Ball& ball : look.balls)
         list.add_ring(positions.px(ball.particle), inside_px(ball), outline_px);

@@ -9,8 +9,8 @@ namespace {
 /// An arc of a few pixels needs few steps.
 int step_count(double length_px) {
     constexpr double kPixelsPerStep = 5.0;
-    constexpr int kMostPairs = (Arc::kMostPoints - 1) / 2;
-    return 2 * std::clamp(static_cast<int>(std::min(length_px / (2.0 * kPixelsPerStep), 1e6)), 3, kMostPairs);
+    constexpr int kMaxPairs = (Arc::kMaxPoints - 1) / 2;
+    return 2 * std::clamp(static_cast<int>(std::min(length_px / (2.0 * kPixelsPerStep), 1e6)), 3, kMaxPairs);
 }
 
 }  // namespace
@@ -24,8 +24,8 @@ Arc hang_slack(PixelPoint a, PixelPoint b, double length_px, PixelPoint down) {
     // The length is a convex, growing function of the sag, and that of the sag alone is at most this:
     // Newton's method comes down to the root.
     double sag_px = 0.5 * length_px + std::sqrt(dx * dx + dy * dy) * steps;
-    constexpr int kMostIterations = 50;
-    for (int i = 0; i < kMostIterations; ++i) {
+    constexpr int kMaxIterations = 50;
+    for (int i = 0; i < kMaxIterations; ++i) {
         double sum_px = 0.0;
         double slope = 0.0;
         for (int k = 0; k < steps; ++k) {

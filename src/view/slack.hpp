@@ -9,8 +9,8 @@ namespace corda::view {
 
 /// Points of a curve.
 struct Arc {
-    static constexpr std::size_t kMostPoints = 49;
-    std::array<PixelPoint, kMostPoints> points;
+    static constexpr std::size_t kMaxPoints = 49;
+    std::array<PixelPoint, kMaxPoints> points;
     std::size_t count = 0;
 };
 

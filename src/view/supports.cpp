@@ -21,7 +21,7 @@ constexpr double kStepPerStroke = 3.0;  // at least, so that there are gaps
 constexpr double kRingPerLine = 1.6;    // radius, at least, so that it shows on a wide line
 
 /// More would hide what hangs from them; they are dots.
-constexpr std::size_t kMostSupports = 1000;
+constexpr std::size_t kMaxSupports = 1000;
 
 /// How far above a pin a particle may rise, as a share of the length of its body: the plate still hides it.
 constexpr double kHidden = 0.01;
@@ -99,7 +99,7 @@ void Supports::list(std::vector<Drawn>& drawn) const {
 void Supports::draw(const Camera& camera, DrawList& list) const {
     const double length_px = kPlateLength * side_px_;
     const auto at_px = [&](Vec2 v) { return PixelPoint{camera.x_px(v.x), camera.y_px(v.y)}; };
-    if (plates_.size() + rings_.size() > kMostSupports) {
+    if (plates_.size() + rings_.size() > kMaxSupports) {
         const auto dot = [&](PixelPoint at) { list.add_capsule(at, at, width_px(kRingWidth, side_px_)); };
         for (const Plate& plate : plates_) dot(at_px(plate.pin_m));
         for (const Ring& ring : rings_) dot(at_px(ring.center_m));

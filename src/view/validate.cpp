@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kThinnestPx = 0.1;
 constexpr double kThickestPx = 1000.0;
-constexpr double kSmallestTextPx = 4.0;
-constexpr double kLargestTextPx = 400.0;
-constexpr double kLongestTrail = 3600.0;
+constexpr double kMinTextPx = 4.0;
+constexpr double kMaxTextPx = 400.0;
+constexpr double kMaxTrail = 3600.0;
 constexpr double kWidestMargin = 0.45;
 
 void require_range(bool holds, const std::string& field, const char* range) {
@@ -28,8 +28,7 @@ void validate_width(const std::optional<double>& width_px, const std::string& fi
 }  // namespace
 
 void validate(const StyleDef& style, const std::vector<BodyStyleDef>& body_styles) {
-    require_range(style.trail_s >= 0.0 && style.trail_s <= kLongestTrail, "style: trail_s",
-                  "within 0 .. 3600");
+    require_range(style.trail_s >= 0.0 && style.trail_s <= kMaxTrail, "style: trail_s", "within 0 .. 3600");
     validate_width(style.rope_width_px, "style: rope_width_px");
     validate_width(style.net_width_px, "style: net_width_px");
     validate_width(style.marker_radius_px, "style: marker_radius_px");
@@ -40,7 +39,7 @@ void validate(const StyleDef& style, const std::vector<BodyStyleDef>& body_style
 
 void validate(const OverlayDef& overlay) {
     const auto& text_px = overlay.text_px;
-    require_range(!text_px || (*text_px >= kSmallestTextPx && *text_px <= kLargestTextPx), "overlay: text_px",
+    require_range(!text_px || (*text_px >= kMinTextPx && *text_px <= kMaxTextPx), "overlay: text_px",
                   "within 4 .. 400");
     if (const std::string missing = missing_glyph(overlay.title); !missing.empty())
         throw Error(ExitCode::kInvalidScene, "overlay: title: " + missing);

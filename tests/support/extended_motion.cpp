@@ -15,7 +15,7 @@ constexpr Real kShare = 3e-18L;  // of the size of the system: the error of a st
 /// light particles whip, steps are so short that positions alone do not show it.
 constexpr Real kVelocityShare = 1e-3L;
 /// Steps after which a scene is given up: some minutes.
-constexpr long kMostSteps = 300000;
+constexpr long kMaxSteps = 300000;
 
 }  // namespace
 
@@ -58,7 +58,7 @@ bool ExtendedMotion::fail(const char* reason) {
 bool ExtendedMotion::advance_to(double time_s) {
     if (!failure_.empty()) return false;
     while (time_ < time_s) {
-        if (++steps_ > kMostSteps) return fail("the truth takes too many steps");
+        if (++steps_ > kMaxSteps) return fail("the truth takes too many steps");
         const Real left = time_s - time_;
         const Real step = std::min({step_, left, longest_step()});
         Vector change;

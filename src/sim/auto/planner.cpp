@@ -15,7 +15,7 @@ namespace {
 /// size, shows the same bits. They are told by their digits.
 constexpr std::array<double, 16> kTolerance{1.0,  1e-1, 1e-2,  1e-3,  1e-4,  1e-5,  1e-6,  1e-7,
                                             1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15};
-constexpr std::size_t kLoosestDigits = 3;
+constexpr std::size_t kMaxDigits = 3;
 constexpr std::size_t kNextDigits = 2;  ///< more than the last trial's
 /// A check's over its run's. The run may err far less than its tolerance, by luck along the one direction
 /// that the motion magnifies; its check then errs as much. False claims of 900 random chains: 2 at 2, none at
@@ -59,7 +59,7 @@ std::vector<Trial> exact_trials(const System& system, double tolerance_m) {
     std::vector<Trial> trials;
     const TightestDigits& tightest = has_kinks(system) ? kWithKinks : kSmooth;
     const double wanted = tolerance_m / largest_length_m(system);
-    std::size_t digits = kLoosestDigits;
+    std::size_t digits = kMaxDigits;
     while (digits < tightest.run && kTolerance[digits] > wanted) ++digits;
     for (;; digits = std::min(digits + kNextDigits, tightest.run)) {
         Trial& trial = trials.emplace_back();
@@ -261,8 +261,7 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
     const std::int64_t none_done = 0;
     const GoesOn goes_on = reporting(def, none_done);
     BodyPlan plan;
-    const auto exact_refusal =
-        refusal(system, world, ExactDef{kTolerance[kLoosestDigits]}, interval_s, goes_on);
+    const auto exact_refusal = refusal(system, world, ExactDef{kTolerance[kMaxDigits]}, interval_s, goes_on);
     if (!exact_refusal) {
         plan.reason = PlanReason::kExact;
         MotionBounds start;

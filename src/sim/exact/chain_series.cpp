@@ -205,7 +205,7 @@ ChainSeries::ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Cha
       starts_pinned_(chain.starts_pinned),
       inverse_timescale_1_s_(chain.inverse_timescale_1_s),
       length_m_(chain.length_m) {
-    assert(order >= kLastTerms && order <= kLargestSeriesOrder);
+    assert(order >= kLastTerms && order <= kMaxSeriesOrder);
     SeriesArrays& a = arrays_;
     a.order = order;
     a.links = chain.link_count;

@@ -10,13 +10,13 @@
 namespace corda::sim {
 
 /// The highest order of a ChainSeries.
-inline constexpr std::size_t kLargestSeriesOrder = 20;
+inline constexpr std::size_t kMaxSeriesOrder = 20;
 
 /// Links of a block, on which a ChainSeries works together.
 inline constexpr std::size_t kSeriesLanes = 4;
 
 /// Coefficients of a power series in time.
-using Series = std::array<double, kLargestSeriesOrder + 1>;
+using Series = std::array<double, kMaxSeriesOrder + 1>;
 
 /// The memory of a ChainSeries. Links are kept in blocks of kSeriesLanes; the last block is padded with
 /// zeros. A joint has the index of the link before it. Arrays with one entry per link have some room at both
@@ -95,7 +95,7 @@ enum class SeriesKernel {
 /// (steps from the last coefficients).
 class ChainSeries {
   public:
-    /// `order`: of the series of w, 4 .. kLargestSeriesOrder (a ChainPart takes 12 and more). `chain`: one of
+    /// `order`: of the series of w, 4 .. kMaxSeriesOrder (a ChainPart takes 12 and more). `chain`: one of
     /// `dynamics`.
     ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Chain& chain, std::size_t order,
                 SeriesKernel kernel = series_kernels().back());

@@ -16,8 +16,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Step control as in the book (II.4): a step aims at an error below the tolerance, and changes by no more
 // than these factors at a time.
 constexpr double kSafety = 0.9;
-constexpr double kLargestGrowth = 6.0;
-constexpr double kLargestShrink = 1.0 / 3.0;
+constexpr double kMaxGrowth = 6.0;
+constexpr double kMaxShrink = 1.0 / 3.0;
 constexpr double kShrinkOfNotFinite = 0.1;
 
 /// Components are worked on in blocks of this size, so that errors need no array of their own.
@@ -94,8 +94,8 @@ void Dop853::evaluate(const dop853::Row<Count>& row, double step_s, const std::v
 
 Status Dop853::step(StopCheck& stop) {
     std::swap(slope_[dop853::k1], slope_[dop853::k13]);
-    double largest_growth = kLargestGrowth;
-    while (accepted_ + rejected_ < StepControl::kMostSteps) {
+    double largest_growth = kMaxGrowth;
+    while (accepted_ + rejected_ < StepControl::kMaxSteps) {
         // Time and step agree to the last bit, so that no rounding of times adds up.
         const double end_s = time_s_ + next_step_s_;
         const double step_s = end_s - time_s_;
@@ -103,9 +103,9 @@ Status Dop853::step(StopCheck& stop) {
         stop.spend(1 + y_.size());
         evaluate_stages(step_s);
         const double step_error = error(step_s);
-        const double factor = step_error < kInfinity ? std::clamp(kSafety / eighth_root(step_error),
-                                                                  kLargestShrink, largest_growth)
-                                                     : kShrinkOfNotFinite;
+        const double factor = step_error < kInfinity
+                                  ? std::clamp(kSafety / eighth_root(step_error), kMaxShrink, largest_growth)
+                                  : kShrinkOfNotFinite;
         next_step_s_ = std::min(step_s * factor, control_.largest_s);
         if (step_error <= 1.0) {
             accept(end_s);

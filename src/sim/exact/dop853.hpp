@@ -47,7 +47,7 @@ struct StepControl {
     double largest_s = 1.0;     ///< keeps the interpolation accurate if nothing else limits the steps
     double smallest_s = 1e-14;  ///< the run has diverged if a step would have to be shorter
     /// The run has diverged if it would take more steps: a day of computing even for a short rope.
-    static constexpr std::uint64_t kMostSteps = 1'000'000'000;
+    static constexpr std::uint64_t kMaxSteps = 1'000'000'000;
 };
 
 /// The explicit Runge-Kutta method of order 8 by Dormand and Prince with Hairer's error estimate (orders 5

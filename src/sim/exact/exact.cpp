@@ -16,7 +16,7 @@ namespace {
 /// The series of a longer rope do not fit into a processor's own cache, and fetching them costs more than
 /// longer steps save: they take half the time of Dop853 at 1000 links, the same at 3000, 1.6 times as much at
 /// 100 000.
-constexpr std::size_t kMostLinksOfSeries = 2000;
+constexpr std::size_t kMaxLinksOfSeries = 2000;
 
 void refuse_imaginary_bars(const System& system) {
     for (const Bar& bar : system.bars) {
@@ -58,7 +58,7 @@ std::unique_ptr<ExactPart> make_part(const System& system, const Forces& forces,
     if (!body.material.is_string) refuse_rigid_graph(body);
     refuse_imaginary_bars(system);
     if (body.material.is_string) return string_part(system, forces, def, stop);
-    if (body.link_count <= kMostLinksOfSeries && system.bends.empty()) {
+    if (body.link_count <= kMaxLinksOfSeries && system.bends.empty()) {
         return std::make_unique<ChainPart>(system, body, forces, def.tolerance);
     }
     return std::make_unique<OdePart>(std::make_unique<ChainDynamics>(system, system.bodies, forces),

@@ -12,8 +12,8 @@ namespace {
 // its check at a tolerance a hundred times tighter, whose difference tells the error, must not take the same
 // steps even if nothing else limits them.
 constexpr double kFirstStep = 4e-3;
-constexpr double kLargestStep = 1.0;
-constexpr double kSmallestStep = 1e-14;
+constexpr double kMaxStep = 1.0;
+constexpr double kMinStep = 1e-14;
 
 /// Errors of steps add up and, in a rope, grow. With this share per step, positions after some seconds are
 /// right to about the tolerance unless the motion is chaotic (R5: 1e-13 .. 6e-10 at 1e-9, R1 after 2000 s:
@@ -21,15 +21,15 @@ constexpr double kSmallestStep = 1e-14;
 constexpr double kShareOfAStep = 0.01;
 
 /// Of a step: below this the error estimate is rounding alone.
-constexpr double kSmallestShare = 1e-15;
+constexpr double kMinShare = 1e-15;
 
 }  // namespace
 
 StepControl step_control(double inverse_timescale_1_s, double tolerance) {
-    assert(tolerance >= ExactDef::kTightestTolerance && tolerance <= ExactDef::kLoosestTolerance);
+    assert(tolerance >= ExactDef::kMinTolerance && tolerance <= ExactDef::kMaxTolerance);
     const double pace = std::sqrt(std::sqrt(std::sqrt(std::sqrt(tolerance))));
-    return {std::max(kShareOfAStep * tolerance, kSmallestShare), pace * kFirstStep / inverse_timescale_1_s,
-            pace * kLargestStep / inverse_timescale_1_s, kSmallestStep / inverse_timescale_1_s};
+    return {std::max(kShareOfAStep * tolerance, kMinShare), pace * kFirstStep / inverse_timescale_1_s,
+            pace * kMaxStep / inverse_timescale_1_s, kMinStep / inverse_timescale_1_s};
 }
 
 OdePart::OdePart(std::unique_ptr<Dynamics> dynamics, double tolerance)

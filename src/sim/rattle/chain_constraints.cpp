@@ -164,7 +164,7 @@ bool ChainConstraints::meet_lengths(const Chain& chain, double span_s, Motion& m
     // A bar that turns by an angle changes by |e - d|^2 = 2 rest_m^2 (1 - cos(angle)).
     const double* const vx = motion.vx_m_s.data() + chain.first_particle;
     const double* const vy = motion.vy_m_s.data() + chain.first_particle;
-    const double factor = span_s * span_s / (2.0 * (1.0 - Stage::kSmallestTurnCosine));
+    const double factor = span_s * span_s / (2.0 * (1.0 - Stage::kMinTurnCosine));
     int all_gentle = 1;
     for (std::size_t k = 0; k < chain.count; ++k) {
         const double ux = vx[k + 1] - vx[k];

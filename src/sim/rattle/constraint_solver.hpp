@@ -53,7 +53,7 @@ struct Stage {
     Vec2 push_m_s;  ///< of every free particle
     /// Newton's method gives up if a bar turns by more than about 60 degrees in a stage: beyond that its
     /// linear equations are poor, and beyond 90 degrees another solution is nearer.
-    static constexpr double kSmallestTurnCosine = 0.5;
+    static constexpr double kMinTurnCosine = 0.5;
 };
 
 /// Keeps rigid bars at their rest lengths: the linear algebra of method `rattle`. Impulses are per length, in

@@ -276,7 +276,7 @@ bool GraphConstraints::correct(double span_s, const Motion& motion) {
         const double excess = ex * ex + ey * ey - square;
         right_[static_cast<Eigen::Index>(k)] = 0.5 / span_s * excess;
         met = met && std::abs(excess) <= kExcessTolerance * square &&
-              ex * dx_m_[k] + ey * dy_m_[k] >= Stage::kSmallestTurnCosine * square;
+              ex * dx_m_[k] + ey * dy_m_[k] >= Stage::kMinTurnCosine * square;
     }
     return met;
 }

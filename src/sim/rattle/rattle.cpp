@@ -19,7 +19,7 @@ namespace {
 constexpr double kJoinShare = 0.8;
 /// A step is divided into at most 2^24 parts, so that a step of 1 s can follow frequencies of 1e7 / s.
 constexpr int kMaxLevel = 24;
-constexpr std::uint64_t kSmallestParts = std::uint64_t{1} << kMaxLevel;
+constexpr std::uint64_t kMinParts = std::uint64_t{1} << kMaxLevel;
 /// A stage whose kick is this much shorter than its span does not tell the tension.
 constexpr double kShortKick = 1e-3;
 
@@ -107,8 +107,8 @@ Status Rattle::advance_to(double time_s, State& state, StopCheck& stop) {
 bool Rattle::advance(double span_s, Trajectory& trajectory, History* history, StopCheck& stop) {
     const double limit = guard_ * composition_.stable_omega_h;
     std::uint64_t done = 0;
-    while (done < kSmallestParts) {
-        const std::uint64_t part = kSmallestParts >> trajectory.level;
+    while (done < kMinParts) {
+        const std::uint64_t part = kMinParts >> trajectory.level;
         const double part_s = span_s * power_of_half(trajectory.level);
         const bool stable = trajectory.frequency_1_s * part_s <= limit;
         if (stable) part_start_ = trajectory;
@@ -122,9 +122,9 @@ bool Rattle::advance(double span_s, Trajectory& trajectory, History* history, St
         } else {
             if (stable) std::swap(trajectory, part_start_);
             if (trajectory.level == kMaxLevel) {
-                const auto rest = static_cast<double>(kSmallestParts - done);
+                const auto rest = static_cast<double>(kMinParts - done);
                 if (!leap(span_s * power_of_half(kMaxLevel) * rest, trajectory, stop)) return false;
-                done = kSmallestParts;
+                done = kMinParts;
             } else {
                 ++trajectory.level;
             }

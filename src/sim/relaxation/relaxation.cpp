@@ -28,7 +28,7 @@ constexpr std::size_t kParticlesTogether = 256;
 
 /// Sweeps run in pieces of this many bars and particles, a few milliseconds, after which a StopCheck hears of
 /// them. Fewer would make the kernel wait more often for the last sweep to end.
-constexpr std::uint64_t kMostAtOnce = 1'000'000;
+constexpr std::uint64_t kMaxAtOnce = 1'000'000;
 /// But of no fewer sweeps, so that what a rope too large for the caches reads from memory is still shared.
 constexpr std::uint64_t kMinSweeps = 12;
 /// Bars or particles that take as long as one update of a StopCheck.
@@ -75,7 +75,7 @@ std::vector<Vec2> forces_on_particles(const System& system, const Forces& forces
 /// Runs sweeps over `size` bars and particles, and asks after each piece of them whether to stop.
 template <class Run>
 void run_in_pieces(RelaxationSweeps sweeps, std::size_t size, StopCheck& stop, const Run& run) {
-    const std::uint64_t at_once = std::max<std::uint64_t>(kMinSweeps, kMostAtOnce / (1 + size));
+    const std::uint64_t at_once = std::max<std::uint64_t>(kMinSweeps, kMaxAtOnce / (1 + size));
     const std::uint64_t end = sweeps.end;
     for (; sweeps.begin < end; sweeps.begin = sweeps.end) {
         sweeps.end = sweeps.begin + std::min(at_once, end - sweeps.begin);

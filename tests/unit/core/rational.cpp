@@ -6,7 +6,7 @@ namespace corda {
 namespace {
 
 TEST(Rational, IsARateIfBothPartsArePositiveAndNotTooLarge) {
-    constexpr std::int64_t kLargest = Rational::kLargestPart;
+    constexpr std::int64_t kLargest = Rational::kMaxPart;
     for (const Rational rate : {Rational{1, 1}, Rational{30000, 1001}, Rational{kLargest, kLargest}})
         EXPECT_TRUE(rate.is_rate()) << rate.text();
     for (const Rational other : {Rational{0, 1}, Rational{-60, 1}, Rational{60, 0}, Rational{60, -1},

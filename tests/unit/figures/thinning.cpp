@@ -11,8 +11,8 @@ namespace corda::figures {
 namespace {
 
 TEST(Thinner, KeepsShortCurvesAsTheyAre) {
-    Thinner thinner(Thinner::kMostPoints);
-    for (int k = 0; k < Thinner::kMostPoints; ++k) thinner.add({1.0 * k, std::cos(k), std::sin(k)});
+    Thinner thinner(Thinner::kMaxPoints);
+    for (int k = 0; k < Thinner::kMaxPoints; ++k) thinner.add({1.0 * k, std::cos(k), std::sin(k)});
     const auto points = thinner.points();
     ASSERT_EQ(points.size(), 2000U);
     EXPECT_EQ(points[1234].x, std::cos(1234));

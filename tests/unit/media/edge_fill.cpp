@@ -25,7 +25,7 @@ bool is_filled(const Image& image, const Image& filled, int x, int y) {
     const std::uint8_t* const own = image.pixel(x, y);
     const std::uint8_t* const is = filled.pixel(x, y);
     if (is[3] != own[3]) return false;
-    if (own[3] >= EdgeFill::kLeastAlpha) return std::equal(own, own + 3, is);
+    if (own[3] >= EdgeFill::kMinAlpha) return std::equal(own, own + 3, is);
     int least = kReach * kReach + 1;
     bool has_color = std::equal(own, own + 3, is);
     for (int row = std::max(0, y - kReach); row <= std::min(image.height() - 1, y + kReach); ++row) {
@@ -33,7 +33,7 @@ bool is_filled(const Image& image, const Image& filled, int x, int y) {
              ++column) {
             const std::uint8_t* const other = image.pixel(column, row);
             const int square = (row - y) * (row - y) + (column - x) * (column - x);
-            if (other[3] < EdgeFill::kLeastAlpha || square > least || square > kReach * kReach) continue;
+            if (other[3] < EdgeFill::kMinAlpha || square > least || square > kReach * kReach) continue;
             if (square < least) has_color = false;
             least = square;
             has_color = has_color || std::equal(other, other + 3, is);

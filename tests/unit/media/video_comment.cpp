@@ -45,7 +45,7 @@ TEST(VideoComment, IsRefusedByItsDepth) {
 }
 
 TEST(VideoComment, IsRefusedByItsSize) {
-    const std::string comment = R"({"frames":1,"a":")" + std::string(kLargestJsonBytes, 'a') + "\"}";
+    const std::string comment = R"({"frames":1,"a":")" + std::string(kMaxJsonBytes, 'a') + "\"}";
     EXPECT_THAT(comment_problem(comment), HasSubstr("more than 65536"));
     EXPECT_EQ(told_number(comment, "frames"), std::nullopt);
 }

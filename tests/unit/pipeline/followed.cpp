@@ -44,7 +44,7 @@ TEST(Followed, AreFewAndMove) {
     for (int i = 0; i < 9; ++i) bodies += "[[rope]]\nhang = { links = 2, length = 1.0 }\n";
     const System system = system_with(bodies);
     const auto followed = list_followed(system);
-    ASSERT_EQ(followed.size(), kMostBodies);
+    ASSERT_EQ(followed.size(), kMaxBodies);
     EXPECT_EQ(followed.front().body, 1U);
     EXPECT_EQ(moving_count(system), 9U);
     EXPECT_EQ(describe(system, followed), "the free ends of rope 1 to rope 6 (particle 2 of each)");

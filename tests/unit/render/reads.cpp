@@ -22,7 +22,7 @@ TEST(Reads, HoldEveryRunOnceAndInOrder) {
             EXPECT_EQ(read.is_first_of_batch, read.batch != last);
             EXPECT_GE(read.first_run, read.batch->first_run);
             EXPECT_LE(read.end_run, read.batch->first_run + read.batch->run_count);
-            EXPECT_LE(pixels_of(read.rect), kMostReadPx);
+            EXPECT_LE(pixels_of(read.rect), kMaxReadPx);
             EXPECT_EQ(read.rect, read.rect.intersected(band));
             EXPECT_GE(read.first_run, next);
             for (; next < read.first_run; ++next)  // those beside the band
@@ -62,7 +62,7 @@ TEST(Reads, AreFewWhereLittleIsBetweenTheRuns) {
 }
 
 TEST(Reads, AreSlicedByWhatTheBufferHolds) {
-    constexpr int kRows = static_cast<int>(kMostReadPx / 1024);
+    constexpr int kRows = static_cast<int>(kMaxReadPx / 1024);
     const auto read_of = [](int rows) { return Read{.rect = {0, 0, 1024, rows}}; };
     const std::vector<Read> reads{read_of(kRows / 2), read_of(kRows - kRows / 2), read_of(1), read_of(kRows),
                                   read_of(1)};
@@ -72,7 +72,7 @@ TEST(Reads, AreSlicedByWhatTheBufferHolds) {
     const Read* next = reads.data();
     for (const std::span<const Read> slice : slices) {
         EXPECT_EQ(slice.data(), next);
-        EXPECT_LE(pixels_of(slice), kMostReadPx);
+        EXPECT_LE(pixels_of(slice), kMaxReadPx);
         next += slice.size();
     }
     EXPECT_EQ(next, reads.data() + reads.size());

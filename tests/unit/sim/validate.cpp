@@ -122,8 +122,8 @@ TEST(ValidateWorld, RefusesWhatIsOutsideOfTheDeclarations) {
 }
 
 TEST(ValidateMethod, TakesTheEndsOfTheRangesAndNothingBeyond) {
-    EXPECT_EQ(problem_of(ExactDef{ExactDef::kTightestTolerance}), "");
-    EXPECT_EQ(problem_of(ExactDef{ExactDef::kLoosestTolerance}), "");
+    EXPECT_EQ(problem_of(ExactDef{ExactDef::kMinTolerance}), "");
+    EXPECT_EQ(problem_of(ExactDef{ExactDef::kMaxTolerance}), "");
     for (const double tolerance : {0.9e-15, 1.1e-2, kNaN})
         EXPECT_EQ(problem_of(ExactDef{tolerance}), "exact: tolerance is not within its range") << tolerance;
     for (const int order : RattleDef::kOrders) EXPECT_EQ(problem_of(RattleDef{order}), "") << order;

@@ -25,18 +25,18 @@ constexpr double kRounding = 1e-12;
 
 /// Rounding of a tension comes from all masses that hang on it, however far away: at least this share of the
 /// whole string's mass counts.
-constexpr double kLeastShareOfMass = 1e-3;
+constexpr double kMinShareOfMass = 1e-3;
 
 /// A link that shortens by less than this share of its length and comes back counts as taut all the time: a
 /// share of the tolerance, because one that does not come back after all goes on from there, and a tighter
 /// run has to show it. Within the limits: far above the rounding of lengths, within which a returning link
 /// gains speed, so that bounces might never end, and below any error that could be seen.
 constexpr double kNoBouncePerTolerance = 1e-2;
-constexpr double kLeastNoBounce = 1e-13;
-constexpr double kMostNoBounce = 1e-10;
+constexpr double kMinNoBounce = 1e-13;
+constexpr double kMaxNoBounce = 1e-10;
 
 /// Tensions accelerate a link by at most this many times what they have to balance.
-constexpr double kMostAcceleration = 100.0;
+constexpr double kMaxAcceleration = 100.0;
 
 Vec2 between(const std::vector<double>& x, const std::vector<double>& y, std::size_t link) {
     return {x[link + 1] - x[link], y[link + 1] - y[link]};
@@ -50,7 +50,7 @@ double cross(Vec2 a, Vec2 b) {
 
 StringContacts::StringContacts(const System& string, const Forces& forces, double tolerance)
     : forces_(forces),
-      no_bounce_(std::clamp(kNoBouncePerTolerance * tolerance, kLeastNoBounce, kMostNoBounce)),
+      no_bounce_(std::clamp(kNoBouncePerTolerance * tolerance, kMinNoBounce, kMaxNoBounce)),
       direction_(string.bars.size()),
       inward_m_s_(string.bars.size()),
       lcp_(string.inverse_mass_1_kg) {
@@ -63,7 +63,7 @@ StringContacts::StringContacts(const System& string, const Forces& forces, doubl
         length_m_ += rest_m_.back();
         const double inverse_1_kg = string.inverse_mass_1_kg[k] + string.inverse_mass_1_kg[k + 1];
         largest_mass_kg_.push_back(
-            std::max(inverse_1_kg > 0.0 ? 1.0 / inverse_1_kg : 0.0, kLeastShareOfMass * mass_kg));
+            std::max(inverse_1_kg > 0.0 ? 1.0 / inverse_1_kg : 0.0, kMinShareOfMass * mass_kg));
     }
 }
 
@@ -109,7 +109,7 @@ bool StringContacts::find_tensions(const System& string, StopCheck& stop) {
     };
     for (std::size_t k = 0; k < links; ++k) {
         lcp_.z_error[k] = tension_error_n(k);
-        if (leaves(k, kMostAcceleration * largest_m_s2)) lcp_.side[k] = Side::kAbsent;
+        if (leaves(k, kMaxAcceleration * largest_m_s2)) lcp_.side[k] = Side::kAbsent;
     }
     for (;;) {
         if (!lcp_.solve(acceleration_error_m_s2_, stop)) return false;

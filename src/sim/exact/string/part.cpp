@@ -24,7 +24,7 @@ constexpr double kTooLong = 1e-9;
 
 /// More events per link than this within kBurst of the string's time scale never come to an end. A snap that
 /// runs along the string takes some events per link.
-constexpr std::uint64_t kMostEventsALink = 1000;
+constexpr std::uint64_t kMaxEventsALink = 1000;
 constexpr double kBurst = 1e-6;
 
 double distance_m(const System& string, const Bar& link) {
@@ -200,7 +200,7 @@ bool StringPart::count_event() {
         burst_s_ = start_s_;
         burst_ = 0;
     }
-    return ++burst_ <= kMostEventsALink * string_.bars.size();
+    return ++burst_ <= kMaxEventsALink * string_.bars.size();
 }
 
 double StringPart::energy_j() const {
