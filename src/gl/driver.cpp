@@ -208,6 +208,20 @@ std::string missing_library() {
     return load_failure("libGL.so.1", "libopengl0");
 }
 
+/// Lets libGLX see a fork before a context is current. libglvnd resets what is current when libGLX is first
+/// called in a child, and libepoxy calls it to look up a function: the context would be lost in the middle.
+void settle_glx() {
+    static pid_t settled_in = 0;
+    if (settled_in == getpid()) return;
+    settled_in = getpid();
+    void* const glx = dlopen("libGLX.so.0", RTLD_LAZY | RTLD_NOLOAD);
+    if (glx == nullptr) return;
+    using GetCurrentContext = void* (*)();
+    const auto get = reinterpret_cast<GetCurrentContext>(dlsym(glx, "glXGetCurrentContext"));
+    if (get != nullptr) static_cast<void>(get());
+    dlclose(glx);
+}
+
 }  // namespace
 
 std::unique_lock<std::recursive_mutex> lock_driver() {
@@ -228,6 +242,7 @@ void prepare_driver() {
     static const bool is_set = (dropped_width() = set_llvmpipe_variables(), true);
     static_cast<void>(is_set);
     if (!has_libraries()) throw Error(ExitCode::kNoGl, "no usable OpenGL: " + missing_library());
+    settle_glx();
 }
 
 void note_driver_use(bool is_safe_after_fork) {
