@@ -11,7 +11,7 @@
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/text.hpp"
-#include "corda/media/format.hpp"
+#include "corda/media/format/format.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {

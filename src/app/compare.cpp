@@ -18,7 +18,7 @@
 #include "corda/golden/perceived.hpp"
 #include "corda/golden/variant.hpp"
 #include "corda/media/defs.hpp"
-#include "corda/media/png_chunks.hpp"
+#include "corda/media/png/png.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {

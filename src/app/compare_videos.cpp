@@ -14,7 +14,7 @@
 #include "corda/core/text.hpp"
 #include "corda/golden/variant.hpp"
 #include "corda/media/defs.hpp"
-#include "corda/media/stored_video.hpp"
+#include "corda/media/read/stored_video.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {

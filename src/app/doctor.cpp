@@ -9,8 +9,8 @@
 #include "commands.hpp"
 #include "corda/gl/context.hpp"
 #include "corda/gl/driver.hpp"
-#include "corda/media/format.hpp"
-#include "corda/media/probe.hpp"
+#include "corda/media/encode/probe.hpp"
+#include "corda/media/format/format.hpp"
 #include "corda/render/driver_check.hpp"
 
 namespace corda::app {

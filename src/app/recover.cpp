@@ -11,7 +11,7 @@
 #include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
-#include "corda/media/finish_part.hpp"
+#include "corda/media/chunks/finish_part.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {

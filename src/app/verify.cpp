@@ -1,4 +1,4 @@
-#include "corda/media/verify.hpp"
+#include "corda/media/verify/verify.hpp"
 
 #include <memory>
 

@@ -15,11 +15,11 @@
 #include "corda/core/clock.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/temporary_folder.hpp"
-#include "corda/media/chunk.hpp"
-#include "corda/media/encoder_alone.hpp"
-#include "corda/media/format.hpp"
-#include "corda/media/video_writer.hpp"
-#include "corda/media/yuv420.hpp"
+#include "corda/media/chunks/chunk.hpp"
+#include "corda/media/chunks/video_writer.hpp"
+#include "corda/media/encode/baseline_encoder.hpp"
+#include "corda/media/encode/yuv420.hpp"
+#include "corda/media/format/format.hpp"
 #include "corda/pipeline/painter.hpp"
 
 namespace corda::bench {
@@ -94,7 +94,7 @@ std::int64_t most_pictures(const VideoDef& video) {
 
 json encode_alone(const BenchDef& def) {
     const VideoDef& video = def.scene.video;
-    media::EncoderAlone encoder(video);
+    media::BaselineEncoder encoder(video);
     {
         const Film film(def.scene, def.film);
         draw_frames(film, std::min(frames_of(def), most_pictures(video)),

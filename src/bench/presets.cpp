@@ -10,9 +10,9 @@
 #include "corda/core/clock.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/temporary_folder.hpp"
-#include "corda/media/format.hpp"
+#include "corda/media/format/format.hpp"
 #include "corda/media/picture_quality.hpp"
-#include "corda/media/video_reader.hpp"
+#include "corda/media/read/video_reader.hpp"
 #include "corda/pipeline/painter.hpp"
 
 namespace corda::bench {

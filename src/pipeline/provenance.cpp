@@ -13,8 +13,8 @@
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
 #include "corda/media/defs.hpp"
-#include "corda/media/file_kind.hpp"
-#include "corda/media/video_comment.hpp"
+#include "corda/media/format/file_kind.hpp"
+#include "corda/media/read/video_comment.hpp"
 #include "corda/scene/write_scene.hpp"
 
 namespace corda {

@@ -9,7 +9,7 @@
 
 #include "corda/core/clock.hpp"
 #include "corda/core/in_order.hpp"
-#include "corda/media/chunk.hpp"
+#include "corda/media/chunks/chunk.hpp"
 #include "corda/pipeline/painter.hpp"
 
 namespace corda::pipeline {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "corda/media/video_writer.hpp"
+#include "corda/media/chunks/video_writer.hpp"
 #include "corda/pipeline/film.hpp"
 
 namespace corda::pipeline {

@@ -7,7 +7,7 @@
 #include <type_traits>
 
 #include "corda/core/image.hpp"
-#include "corda/media/format.hpp"
+#include "corda/media/format/format.hpp"
 #include "corda/scene/readers.hpp"
 
 namespace corda::scene {

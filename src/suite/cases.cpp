@@ -12,7 +12,7 @@
 #include "corda/core/text.hpp"
 #include "corda/core/timeline.hpp"
 #include "corda/golden/variant.hpp"
-#include "corda/media/file_kind.hpp"
+#include "corda/media/format/file_kind.hpp"
 #include "corda/suite/provenance.hpp"
 
 namespace corda::suite {

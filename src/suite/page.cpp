@@ -7,7 +7,7 @@
 #include "corda/core/file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
-#include "corda/media/png_bytes.hpp"
+#include "corda/media/png/png.hpp"
 #include "corda/suite/markup.hpp"
 #include "corda/suite/page_text.hpp"
 #include "corda/suite/suite.hpp"

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "corda/media/chunks/finish_part.hpp"
 #include "corda/media/defs.hpp"
-#include "corda/media/finish_part.hpp"
 #include "support/command.hpp"
 
 namespace corda {

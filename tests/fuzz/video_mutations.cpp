@@ -8,8 +8,8 @@
 #include <random>
 #include <string>
 
-#include "corda/media/verify.hpp"
-#include "corda/media/video_writer.hpp"
+#include "corda/media/chunks/video_writer.hpp"
+#include "corda/media/verify/verify.hpp"
 #include "support/command.hpp"
 
 namespace corda::media {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "corda/media/yuv420.hpp"
+#include "corda/media/encode/yuv420.hpp"
 
 namespace corda::test {
 

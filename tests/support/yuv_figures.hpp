@@ -3,7 +3,7 @@
 #include <array>
 
 #include "corda/core/image.hpp"
-#include "corda/media/yuv420.hpp"
+#include "corda/media/encode/yuv420.hpp"
 
 namespace corda::test {
 

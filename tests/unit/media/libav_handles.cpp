@@ -7,7 +7,7 @@ extern "C" {
 }
 
 #include "support/command.hpp"
-#include "video_support.hpp"
+#include "unit/media/video_support.hpp"
 
 namespace corda::media {
 namespace {

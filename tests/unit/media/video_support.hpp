@@ -9,9 +9,9 @@
 #include <string>
 #include <string_view>
 
-#include "corda/media/part_checksum.hpp"
-#include "corda/media/verify.hpp"
-#include "corda/media/video_writer.hpp"
+#include "corda/media/chunks/part_checksum.hpp"
+#include "corda/media/chunks/video_writer.hpp"
+#include "corda/media/verify/verify.hpp"
 #include "support/command.hpp"
 
 namespace corda::media {

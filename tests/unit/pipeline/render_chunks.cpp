@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "corda/media/chunk.hpp"
-#include "corda/media/finish_part.hpp"
-#include "corda/media/verify.hpp"
+#include "corda/media/chunks/chunk.hpp"
+#include "corda/media/chunks/finish_part.hpp"
+#include "corda/media/verify/verify.hpp"
 #include "corda/pipeline/painter.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"

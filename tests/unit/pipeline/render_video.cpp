@@ -5,8 +5,8 @@
 #include <optional>
 #include <thread>
 
-#include "corda/media/finish_part.hpp"
-#include "corda/media/verify.hpp"
+#include "corda/media/chunks/finish_part.hpp"
+#include "corda/media/verify/verify.hpp"
 #include "corda/pipeline/film.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"

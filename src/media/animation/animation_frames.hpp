@@ -1,0 +1,65 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "corda/core/in_order.hpp"
+#include "corda/media/animation/animation.hpp"
+#include "corda/media/chunks/lossless_frames.hpp"
+
+namespace corda::media {
+
+/// Makes something of the frames first <= k < end. If `all` is stopped, nobody takes it.
+template <class Section>
+using MakeSection = std::function<Section(std::int64_t first, std::int64_t end, const InOrder<Section>& all)>;
+
+/// Makes something of sections of the frames on the threads of `def`, and takes it in order on this one.
+/// `new_maker` is called as InOrder does. Throws what they throw, and corda::Error (kInterrupted).
+template <class Section>
+void for_each_section(const AnimationDef& def, const OnProgress& on_progress,
+                      const std::function<MakeSection<Section>()>& new_maker,
+                      const std::function<void(Section)>& take) {
+    constexpr std::int64_t kFrames = 12;
+    const std::int64_t sections = (def.frames + kFrames - 1) / kFrames;
+    const auto threads = static_cast<int>(std::min<std::int64_t>(def.threads, sections));
+    InOrder<Section> all(0, sections, threads, [&] {
+        return [&def, make = new_maker()](std::int64_t section, const InOrder<Section>& every) {
+            return make(section * kFrames, std::min(def.frames, (section + 1) * kFrames), every);
+        };
+    });
+    for (std::int64_t taken = 0; taken < sections;) {
+        report_progress(on_progress, taken * kFrames, def.frames);
+        auto section = all.wait();
+        if (!section) continue;
+        take(std::move(*section));
+        ++taken;
+    }
+}
+
+/// Makes something of each frame, and takes it in order.
+template <class Frame>
+void for_each_frame(const AnimationDef& def, const OnProgress& on_progress,
+                    const std::function<Frame(const LosslessFrames&)>& make,
+                    const std::function<void(const Frame&)>& take) {
+    using Section = std::vector<Frame>;
+    const auto new_maker = [&] {
+        const auto pictures = std::make_shared<LosslessFrames>(def.part_path, def.bytes);
+        return [pictures, &make](std::int64_t first, std::int64_t end, const InOrder<Section>& all) {
+            Section section;
+            for (std::int64_t k = first; k < end && !all.is_stopped(); ++k) {
+                pictures->go_to(k);
+                section.push_back(make(*pictures));
+            }
+            return section;
+        };
+    };
+    for_each_section<Section>(def, on_progress, new_maker, [&take](const Section& section) {
+        for (const Frame& frame : section) take(frame);
+    });
+}
+
+}  // namespace corda::media

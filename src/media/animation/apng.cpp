@@ -1,0 +1,114 @@
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "corda/media/animation/animation.hpp"
+#include "corda/media/animation/animation_frames.hpp"
+#include "corda/media/big_endian.hpp"
+#include "corda/media/chunks/lossless_frames.hpp"
+#include "corda/media/format/file_kind.hpp"
+#include "corda/media/libav_handles.hpp"
+#include "corda/media/png/png.hpp"
+
+// Portable Network Graphics (PNG) Specification, third edition: 5.3 and 11.3.6, the chunks of animations.
+
+namespace corda::media {
+namespace {
+
+constexpr std::size_t kChunkHeadBytes = 8;  // of a chunk: length and type
+constexpr std::size_t kChecksumBytes = 4;
+
+std::string chunk(std::string_view type, std::string_view data) {
+    std::string bytes;
+    bytes += big_endian(data.size(), 4);
+    bytes.append(type).append(data);
+    const std::uint32_t crc =
+        ~av_crc(av_crc_get_table(AV_CRC_32_IEEE_LE), ~0U,
+                reinterpret_cast<const std::uint8_t*>(bytes.data()) + 4, bytes.size() - 4);
+    bytes += big_endian(crc, 4);
+    return bytes;
+}
+
+/// A frame, as far as it does not depend on those before.
+struct ApngFrame {
+    PixelRect part;
+    bool is_blended = false;
+    std::string head;  ///< what a PNG file of this picture has before its pixels, from the signature on
+    std::string data;  ///< its compressed pixels
+};
+
+ApngFrame encode_apng(const PictureChange& change) {
+    ApngFrame frame{change.part, change.is_blended, {}, {}};
+    const std::string png = png_bytes(change.picture, {}, {}, true);
+    for (std::size_t at = kPngSignature.size(); at < png.size();) {
+        const std::string_view rest = std::string_view(png).substr(at);
+        const auto length = static_cast<std::size_t>(from_big_endian(rest.substr(0, 4)));
+        if (rest.substr(4, 4) == "IDAT") {
+            if (frame.head.empty()) frame.head = png.substr(0, at);
+            frame.data += rest.substr(kChunkHeadBytes, length);
+        }
+        at += kChunkHeadBytes + length + kChecksumBytes;
+    }
+    return frame;
+}
+
+class ApngFile {
+  public:
+    ApngFile(Rational fps, std::int64_t frames, OutputFile& output)
+        : fps_(fps), frames_(frames), output_(output) {}
+
+    void write(const ApngFrame& frame) {
+        if (written_++ == 0) {
+            output_.write(frame.head + chunk("acTL", plays()) + control(frame) + chunk("IDAT", frame.data));
+        } else {
+            const std::string head = control(frame);
+            std::string data;
+            data += big_endian(sequence_++, 4);
+            output_.write(head + chunk("fdAT", data + frame.data));
+        }
+    }
+    void finish() {
+        output_.write(chunk("IEND", {}));
+        output_.flush();
+    }
+
+  private:
+    /// For ever.
+    [[nodiscard]] std::string plays() const {
+        std::string data;
+        data += big_endian(static_cast<std::uint64_t>(frames_), 4);
+        data += big_endian(0, 4);
+        return data;
+    }
+    /// Where and how long a frame is shown; it stays, under the next one.
+    std::string control(const ApngFrame& frame) {
+        std::string data;
+        data += big_endian(sequence_++, 4);
+        for (const int side : {frame.part.width(), frame.part.height(), frame.part.x0, frame.part.y0})
+            data += big_endian(static_cast<std::uint64_t>(side), 4);
+        data += big_endian(static_cast<std::uint64_t>(fps_.den), 2);
+        data += big_endian(static_cast<std::uint64_t>(fps_.num), 2);
+        data += big_endian(0, 1);
+        data += big_endian(frame.is_blended ? 1 : 0, 1);
+        return chunk("fcTL", data);
+    }
+
+    Rational fps_;
+    std::int64_t frames_;
+    OutputFile& output_;
+    std::int64_t written_ = 0;
+    std::uint32_t sequence_ = 0;
+};
+
+}  // namespace
+
+void write_apng(const AnimationDef& def, const OnProgress& on_progress, OutputFile& output) {
+    ApngFile file(def.fps, def.frames, output);
+    for_each_frame<ApngFrame>(
+        def, on_progress, [](const LosslessFrames& pictures) { return encode_apng(pictures.change()); },
+        [&file](const ApngFrame& frame) { file.write(frame); });
+    file.finish();
+}
+
+}  // namespace corda::media

@@ -1,0 +1,142 @@
+#include "corda/media/animation/webp_reader.hpp"
+
+#include <webp/decode.h>
+#include <webp/demux.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+#include "corda/core/file.hpp"
+#include "corda/core/image.hpp"
+
+namespace corda::media {
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{1} << 31;
+
+std::string all_of(const std::string& path) {
+    const FileHandle file = open_for_reading(path);
+    std::string all;
+    std::array<char, 1 << 16> piece{};
+    for (std::size_t count = 1; count > 0 && all.size() < kMaxBytes;) {
+        count = read_bytes(file, path, piece.data(), piece.size());
+        all.append(piece.data(), count);
+    }
+    return all;
+}
+
+bool fits(Rational fps, const std::vector<std::int64_t>& ends_ms) {
+    std::int64_t k = 0;
+    return std::all_of(ends_ms.begin(), ends_ms.end(), [&](std::int64_t end) {
+        ++k;
+        return (std::int64_t{2000} * k * fps.den + fps.num) / (2 * fps.num) == end;
+    });
+}
+
+/// The fraction of smallest denominator that fits.
+std::optional<Rational> simplest_rate(const std::vector<std::int64_t>& ends_ms) {
+    constexpr std::int64_t kMaxDenominator = 10'000;
+    double low = 0.0;  // that fitting rates are above, and those up to which they are
+    double high = 2000.0;
+    for (std::size_t i = 0; i < ends_ms.size(); ++i) {
+        const double frames = 2000.0 * static_cast<double>(i + 1);
+        const double twice_end = 2.0 * static_cast<double>(ends_ms[i]);
+        low = std::max(low, frames / (twice_end + 1.0));
+        if (twice_end > 0.0) high = std::min(high, frames / (twice_end - 1.0));
+    }
+    for (std::int64_t den = 1; den <= kMaxDenominator; ++den) {
+        const auto num = static_cast<std::int64_t>(std::floor(high * static_cast<double>(den)));
+        if (num > 0 && static_cast<double>(num) > low * static_cast<double>(den) && fits({num, den}, ends_ms))
+            return Rational{num, den};
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+struct WebpReader::Impl {
+    explicit Impl(const std::string& path) : bytes(all_of(path)) {
+        WebPAnimDecoderOptions options{};
+        WebPAnimDecoderOptionsInit(&options);
+        options.color_mode = MODE_RGBA;
+        const WebPData data{reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+        decoder.reset(WebPAnimDecoderNew(&data, &options));
+        WebPAnimInfo info{};
+        const bool is_sound = decoder && WebPAnimDecoderGetInfo(decoder.get(), &info) != 0 &&
+                              is_picture_size(info.canvas_width, info.canvas_height);
+        if (!is_sound) {
+            decoder.reset();
+            return;
+        }
+        width_px = static_cast<int>(info.canvas_width);
+        height_px = static_cast<int>(info.canvas_height);
+    }
+
+    std::string bytes;
+    std::unique_ptr<WebPAnimDecoder, decltype(&WebPAnimDecoderDelete)> decoder{nullptr,
+                                                                               &WebPAnimDecoderDelete};
+    int width_px = 0;
+    int height_px = 0;
+    std::vector<std::int64_t> ends_ms;
+};
+
+WebpReader::WebpReader(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
+
+WebpReader::~WebpReader() = default;
+
+bool WebpReader::is_open() const {
+    return impl_->decoder != nullptr;
+}
+
+int WebpReader::width_px() const {
+    return impl_->width_px;
+}
+
+int WebpReader::height_px() const {
+    return impl_->height_px;
+}
+
+bool WebpReader::has_next() const {
+    return is_open() && WebPAnimDecoderHasMoreFrames(impl_->decoder.get()) != 0;
+}
+
+const std::uint8_t* WebpReader::read() {
+    std::uint8_t* rgba = nullptr;
+    int end_ms = 0;
+    if (!has_next() || WebPAnimDecoderGetNext(impl_->decoder.get(), &rgba, &end_ms) == 0) return nullptr;
+    impl_->ends_ms.push_back(end_ms);
+    return rgba;
+}
+
+const std::vector<std::int64_t>& WebpReader::read_ends_ms() const {
+    return impl_->ends_ms;
+}
+
+std::vector<std::int64_t> WebpReader::told_ends_ms() const {
+    std::vector<std::int64_t> ends_ms;
+    if (!is_open()) return ends_ms;
+    const WebPDemuxer* const demuxer = WebPAnimDecoderGetDemuxer(impl_->decoder.get());
+    WebPIterator each{};
+    std::int64_t end_ms = 0;
+    for (int more = WebPDemuxGetFrame(demuxer, 1, &each); more != 0; more = WebPDemuxNextFrame(&each)) {
+        end_ms += each.duration;
+        ends_ms.push_back(end_ms);
+    }
+    WebPDemuxReleaseIterator(&each);
+    return ends_ms;
+}
+
+std::optional<Rational> rate_of_ms(const std::vector<std::int64_t>& ends_ms, std::optional<Rational> told) {
+    if (ends_ms.empty() || ends_ms.back() <= 0) return std::nullopt;
+    if (told && fits(*told, ends_ms)) return told;
+    for (const Rational usual :
+         {Rational{60, 1}, Rational{30, 1}, Rational{25, 1}, Rational{24, 1}, Rational{50, 1},
+          Rational{30000, 1001}, Rational{24000, 1001}, Rational{60000, 1001}})
+        if (fits(usual, ends_ms)) return usual;
+    const Rational mean = Rational::reduced(1000 * std::ssize(ends_ms), ends_ms.back());
+    return mean.den == 1 && fits(mean, ends_ms) ? mean : simplest_rate(ends_ms);
+}
+
+}  // namespace corda::media

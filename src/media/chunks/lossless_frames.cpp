@@ -1,0 +1,66 @@
+#include "corda/media/chunks/lossless_frames.hpp"
+
+#include <fmt/format.h>
+
+#include <cassert>
+#include <cstring>
+#include <utility>
+
+namespace corda::media {
+namespace {
+
+PixelRect difference(const Image& a, const Image& b) {
+    PixelRect changed;
+    for (int y = 0; y < a.height(); ++y) {
+        if (std::memcmp(a.pixel(0, y), b.pixel(0, y), a.row_bytes()) == 0) continue;
+        int x0 = 0;
+        int x1 = a.width();
+        while (std::memcmp(a.pixel(x0, y), b.pixel(x0, y), 4) == 0) ++x0;
+        while (std::memcmp(a.pixel(x1 - 1, y), b.pixel(x1 - 1, y), 4) == 0) --x1;
+        changed = changed.united({x0, y, x1, y + 1});
+    }
+    if (changed.empty()) return {0, 0, 1, 1};
+    return {changed.x0 / 2 * 2, changed.y0 / 2 * 2, changed.x1, changed.y1};
+}
+
+}  // namespace
+
+LosslessFrames::LosslessFrames(std::string part_path, std::uint64_t bytes)
+    : part_path_(std::move(part_path)), reader_(part_path_, bytes) {}
+
+void LosslessFrames::read(Image& picture) {
+    if (!reader_.read(picture))
+        throw Error(ExitCode::kIo, fmt::format("'{}' changed while it was read", part_path_));
+    ++next_;
+}
+
+void LosslessFrames::go_to(std::int64_t k) {
+    assert(k >= next_);
+    while (next_ < k - 1) {
+        reader_.skip();
+        ++next_;
+    }
+    if (next_ < k) read(picture_);
+    std::swap(last_, picture_);
+    read(picture_);
+}
+
+PictureChange LosslessFrames::change() const {
+    if (next_ == 1) return {picture_.rect(), picture_, false};
+    PictureChange change;
+    change.part = difference(picture_, last_);
+    change.is_blended = !has_alpha();
+    change.picture = Image(change.part.width(), change.part.height());
+    for (int y = 0; y < change.part.height(); ++y) {
+        const std::uint8_t* const from = picture_.pixel(change.part.x0, change.part.y0 + y);
+        const std::uint8_t* const before = last_.pixel(change.part.x0, change.part.y0 + y);
+        std::uint8_t* const to = change.picture.pixel(0, y);
+        std::memcpy(to, from, change.picture.row_bytes());
+        if (!change.is_blended) continue;
+        for (int x = 0; x < 4 * change.part.width(); x += 4)
+            if (std::memcmp(from + x, before + x, 4) == 0) std::memset(to + x, 0, 4);
+    }
+    return change;
+}
+
+}  // namespace corda::media

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/image.hpp"
+#include "corda/media/chunks/chunk.hpp"
+#include "corda/media/defs.hpp"
+#include "corda/media/encode/encoders.hpp"
+#include "corda/media/format/format.hpp"
+
+namespace corda::media {
+
+/// Refuses a video of frames first <= k < end that cannot be written, before any work is done: everything
+/// that check_video_def, find_format and corda::check_output refuse, an encoder of the hardware that does not
+/// open, and an interrupted render of the same name, unless `force` is set. Throws corda::Error (kUsage,
+/// kIo, kEncoder).
+Format check_video_output(const std::string& path, const VideoDef& def, const std::string& input, bool force,
+                          bool is_transparent = false, std::int64_t first = 0, std::int64_t end = 0,
+                          bool resume = false);
+
+/// What a video file says beside its pictures.
+struct VideoMetadata {
+    std::string title{};
+    /// Compact JSON that `verify` reads back; VideoWriter adds "frames", "fps", "crf" and "patches" to it
+    /// (see verify.hpp). What it tells under kOriginKey (see video_comment.hpp) stays in the part.
+    std::string comment_json = "{}";
+    bool is_transparent = false;  ///< whether pictures may be; a format that has alpha keeps it then
+    PictureInfo picture_info{};   ///< of formats of a file for each frame
+};
+
+/// Writes a video of one constant rational frame rate, in the format that the ending of its name tells.
+///
+/// While it runs, whole chunks go to `PATH.part`, which plays at any moment. `finish` ends the last chunk,
+/// copies the stream into a file of temporary name (of an animation, encodes it from the exact pictures of
+/// the part), verifies that, and only then gives it the final name. Whatever has the final name is complete
+/// and verified. Pictures and standard output have no part: each frame is complete as it is.
+class VideoWriter {
+  public:
+    /// The end of frames whose number is not known before.
+    static constexpr std::int64_t kNoEnd = std::int64_t{1} << 62U;
+
+    /// Opens the part file, for frames first <= k < end of a film, or for fewer. With `force`, an existing
+    /// video is replaced at the end, and the part of an interrupted render now. Throws corda::Error: kUsage
+    /// for an unknown ending or a bad def, kEncoder if the encoder is missing (one that does not open shows
+    /// with the first frame), kIo if the file cannot be made, exists, or is being written by another render.
+    VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata,
+                const OutputOptions& options = {}, std::int64_t first = 0, std::int64_t end = kNoEnd);
+    /// As above; goes on with the part of an interrupted render of the same video, if there is one: frames()
+    /// tells how many it has. Its bytes will be those of a render without interruption. Also throws kMismatch
+    /// for a part that cannot be read.
+    [[nodiscard]] static VideoWriter resume(std::string path, const VideoDef& def, VideoMetadata metadata,
+                                            const OutputOptions& options, std::int64_t first,
+                                            std::int64_t end);
+    VideoWriter(VideoWriter&&) noexcept;
+    VideoWriter(const VideoWriter&) = delete;
+    VideoWriter& operator=(const VideoWriter&) = delete;
+    /// Without `finish` or `abandon` the part file stays as it is, unless it is empty.
+    ~VideoWriter();
+
+    /// Adds the next frame, of the size of `def`. `damage` is what may differ from the previous frame (the
+    /// first is taken whole). With `is_last`, the frame's colours are verified too, as the first frame's are.
+    /// Throws kEncoder or kIo; ReaderLeft (see output_file.hpp) if whoever reads standard output closed it.
+    /// After a failure only abandon() is of use.
+    void write(const Image& frame, const Damage& damage, bool is_last = false);
+
+    /// Adds a chunk that was encoded elsewhere, and forces it onto the disk. All of the frames so far are in
+    /// chunks then, each of which ends where frames_per_chunk() says. Throws kIo, and kInternal if it is no
+    /// part of this video.
+    void append(Chunk chunk);
+
+    /// What it is written as.
+    [[nodiscard]] const Format& format() const;
+
+    /// How many frames a whole chunk has.
+    [[nodiscard]] std::int64_t frames_per_chunk() const;
+
+    /// What encodes a chunk for append(), from frame `frame` of the film on. May be called by any thread.
+    [[nodiscard]] ChunkEncoder chunk_encoder(std::int64_t frame) const;
+
+    /// Whether the part that was resumed was damaged after its whole chunks.
+    [[nodiscard]] bool was_part_damaged() const;
+
+    /// Frames written so far.
+    [[nodiscard]] std::int64_t frames() const;
+
+    /// Ends the last chunk, copies, verifies, and gives the video its name. Of codecs that take much longer
+    /// to encode than to decode (AV1, VP9, H.265) all frames are verified in any case. Needs at least one
+    /// frame. Throws kEncoder, kIo, kMismatch (the check found a problem), or kInterrupted if the options'
+    /// `on_progress` asks to stop; then the frames stay in `PATH.part`.
+    void finish(VerifyDepth depth = VerifyDepth::kKeyFrames);
+
+    /// Drains and ends the part file unless `finish` has, so that it stays as a playable `PATH.part`, and
+    /// returns its path. Without any frame the part is removed, and the path is empty. `goes_on` is asked
+    /// while frames are encoded that the encoder has held back; false drops the chunk that they belong to.
+    std::string abandon(const GoesOn& goes_on = {});
+
+  private:
+    struct Impl;
+    explicit VideoWriter(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace corda::media

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "corda/core/image.hpp"
+#include "corda/media/verify/verify.hpp"
+
+namespace corda::media {
+
+/// Side of a colour patch in pixels: one macroblock.
+inline constexpr int kPatchSide = 16;
+
+/// Up to five blocks of `frame`, at multiples of 16, without an edge in them or in the 8 pixels around them
+/// (as far as the frame goes), so that neither deblocking nor the chroma filter mixes in another colour. A
+/// ground that changes slowly has no edges. Blocks of different colours are preferred; then those in corners,
+/// in the centre and at the sides.
+[[nodiscard]] std::vector<ColorPatch> choose_patches(const Image& frame);
+
+/// R'G'B' (0 .. 255, not clipped) of BT.709 limited range Y'CbCr: the inverse of convert_to_yuv420.
+[[nodiscard]] std::array<double, 3> rgb_from_ycbcr(double y, double cb, double cr);
+
+/// Whether all of a patch is within a picture of this size.
+[[nodiscard]] constexpr bool is_within(const ColorPatch& patch, int width_px, int height_px) {
+    return patch.x >= 0 && patch.y >= 0 && patch.x <= width_px - kPatchSide &&
+           patch.y <= height_px - kPatchSide;
+}
+
+/// How far a shown R'G'B' is from a patch: the largest of the three differences, in 1/255.
+[[nodiscard]] double patch_error(const ColorPatch& patch, const std::array<double, 3>& shown);
+
+/// The largest error that a patch of a correct video may have at this x264 rate factor; more with chroma in
+/// full resolution (4:4:4).
+[[nodiscard]] double patch_tolerance(int crf, bool has_full_chroma = false);
+
+}  // namespace corda::media

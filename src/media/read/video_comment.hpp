@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/rational.hpp"
+#include "corda/media/verify/verify.hpp"
+
+namespace corda::media {
+
+/// The key of the origin in the comment of a part.
+inline constexpr const char* kOriginKey = "made_from";
+
+/// The largest JSON text that is read from a file, in bytes, and how deeply it may be nested. Corda writes
+/// less: QuickTime's comments end at this size, and the deepest value in one is at level 5.
+inline constexpr std::size_t kMaxJsonBytes = std::size_t{64} << 10;
+inline constexpr int kDeepestJsonLevel = 16;
+
+/// Parses JSON text from a file of unknown origin. Throws corda::Error (kMismatch) with the reason alone if
+/// the text is too large or too deeply nested, or is no JSON: the value can be copied and written without
+/// deep recursion.
+[[nodiscard]] nlohmann::json parse_untrusted_json(std::string_view text);
+
+/// Why a comment is not one that Corda reads: its size or its nesting. Empty for a sound one, and for text
+/// that is no JSON.
+[[nodiscard]] std::string comment_problem(std::string_view comment);
+
+// What the comment of a video tells, a JSON object of any origin.
+
+/// The rate; std::nullopt if there is none that libav can count with.
+[[nodiscard]] std::optional<Rational> told_rate(const std::string& comment);
+/// A whole number; std::nullopt if it is something else.
+[[nodiscard]] std::optional<std::int64_t> told_number(const std::string& comment, const char* key);
+/// The colour patches of the first frame.
+[[nodiscard]] std::vector<ColorPatch> told_patches(const std::string& comment);
+/// What the comment of a part tells of what it was made from, by keys; empty if it does not.
+[[nodiscard]] std::map<std::string, std::string> told_origin(const std::string& comment);
+/// The comment of a finished video, with the number of its frames and without its origin; unchanged if it is
+/// no JSON object.
+[[nodiscard]] std::string finished_comment(const std::string& comment, std::size_t frames);
+
+/// The comment of a video of any origin, read in a child process with limits on memory and time; empty if it
+/// has none. `on_progress` is asked at least ten times a second. Throws corda::Error: kIo if the file cannot
+/// be read or is no video, kUsage if its comment has a comment_problem(), and what run_in_child throws, which
+/// also says why this process must have no other thread.
+[[nodiscard]] std::string comment_in_child(const std::string& path, const OnProgress& on_progress = {});
+
+}  // namespace corda::media

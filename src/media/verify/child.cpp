@@ -1,0 +1,153 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <new>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/child_process.hpp"
+#include "corda/core/machine.hpp"
+#include "corda/media/chunks/part_reader.hpp"
+#include "corda/media/libav_handles.hpp"
+#include "corda/media/verify/verify.hpp"
+
+namespace corda {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Rational, num, den)
+
+namespace media {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(VerifyReport, container, codec, profile, h264_level, pixel_format,
+                                   width_px, height_px, fps, frames, duration_s, range, matrix, primaries,
+                                   transfer, chroma_location, faststart, alpha, problems, notes)
+
+namespace {
+
+using Json = nlohmann::json;
+
+// A frame of kMaxPicturePx has 100 MB, and a decoder holds up to some 20; others are far smaller.
+constexpr int kMemoryGib = 4;
+constexpr std::uint64_t kMemoryBytes = std::uint64_t{kMemoryGib} << 30;
+
+/// In time, more than a sound file takes: measured are 0.06 s per kB, in a still scene, whose frames are
+/// small.
+ChildLimits limits_for(const std::string& path) {
+    constexpr std::int64_t kMinS = 20;
+    constexpr std::int64_t kBytesPerS = 1000;
+    constexpr double kWallPerCpu = 3.0;  // the machine may be busy
+    std::error_code none;                // for what is no regular file
+    const std::uintmax_t size = std::filesystem::file_size(path, none);
+    const std::int64_t bytes = none ? 0 : static_cast<std::int64_t>(size);
+    const std::int64_t cpu_s = kMinS + bytes / kBytesPerS;
+    return {kMemoryBytes, cpu_s, kWallPerCpu * static_cast<double>(cpu_s)};
+}
+
+VerifyReport damaged(const std::string& decoding) {
+    VerifyReport report;
+    report.problems.push_back(
+        fmt::format("decoding {}; the file is damaged: copy or render it again", decoding));
+    return report;
+}
+
+/// Whether the user allows less memory than a child may take: then a lack of it is not the file's fault.
+bool has_little_memory() {
+    const auto is_little = [](std::optional<std::uint64_t> left) { return left && *left < kMemoryBytes; };
+    return is_little(address_space_left()) || is_little(data_left());
+}
+
+/// Throws corda::Error (kTemporary) for a file whose reading ended as `fate` says, if a lack of memory may be
+/// the reason.
+void throw_if_memory_may_lack(const std::string& path, const std::string& fate) {
+    if (!has_little_memory() || !fate.starts_with("crashed")) return;
+    throw Error(
+        ExitCode::kTemporary,
+        fmt::format(
+            "reading '{}' {}, perhaps because the system allows little memory (ulimit -v, ulimit -d): raise "
+            "the limit; if that changes nothing, the file is damaged",
+            path, fate));
+}
+
+/// The same for problems that were found: without memory libavformat loses packets, and libavcodec frames,
+/// and both say nothing (FFmpeg 7.1).
+void throw_if_memory_may_lack(const std::string& path, const VerifyReport& report) {
+    constexpr std::uint64_t kFrames = 24;  // that a decoder may hold
+    const std::uint64_t needed = (std::uint64_t{32} << 20) + kFrames * 4 *
+                                                                 static_cast<std::uint64_t>(report.width_px) *
+                                                                 static_cast<std::uint64_t>(report.height_px);
+    const auto is_less = [&](std::optional<std::uint64_t> left) { return left && *left < needed; };
+    if (report.problems.empty() || !(is_less(address_space_left()) || is_less(data_left()))) return;
+    throw Error(
+        ExitCode::kTemporary,
+        fmt::format("'{}' cannot be judged in the memory that the system allows (ulimit -v, ulimit -d): "
+                    "raise the limit (found: {})",
+                    path, report.problems.front()));
+}
+
+/// What the child tells: the report, or the error that `verify` threw. As CBOR, because the words may quote
+/// any bytes of the file.
+std::string told(const std::string& path, bool has_little, std::optional<Rational> fps) {
+    Json json;
+    const auto fail = [&](ExitCode code, const char* message) {
+        if (code == ExitCode::kTemporary && !has_little) {
+            json["report"] =
+                damaged(fmt::format("asks for more memory than it may have ({} GiB)", kMemoryGib));
+        } else {
+            json["error"] = {{"code", static_cast<int>(code)}, {"message", message}};
+        }
+    };
+    try {
+        json["report"] = verify(path, {}, VerifyDepth::kAllFrames, {}, fps);
+    } catch (const Error& error) {
+        fail(error.code(), error.what());
+    } catch (const std::bad_alloc&) {
+        fail(ExitCode::kTemporary, "out of memory");
+    }
+    std::string bytes;
+    Json::to_cbor(json, bytes);
+    return bytes;
+}
+
+}  // namespace
+
+VerifyReport verify_in_child(const std::string& path, const OnProgress& on_progress,
+                             std::optional<Rational> fps) {
+    const bool has_little = has_little_memory();
+    const auto on_wait = [&] { report_progress(on_progress, 0, 0); };
+    const auto end = run_in_child([&] { return told(path, has_little, fps); }, limits_for(path), on_wait);
+    if (!end) return verify(path, on_progress, VerifyDepth::kAllFrames, {}, fps);
+    if (!end->finished) {
+        throw_if_memory_may_lack(path, end->text);
+        return damaged(end->text);
+    }
+    const Json json = Json::from_cbor(end->text);
+    if (!json.contains("error")) {
+        VerifyReport report = json.at("report");
+        throw_if_memory_may_lack(path, report);
+        return report;
+    }
+    const Json& error = json["error"];
+    throw Error(static_cast<ExitCode>(error.at("code").get<int>()), error.at("message").get<std::string>());
+}
+
+void check_part_in_child(const std::string& path, bool decodes, const OnProgress& on_progress) {
+    if (has_other_threads()) return;  // see run_in_child
+    const QuietLog quiet;
+    const auto read = [&]() -> std::string {
+        try {
+            static_cast<void>(index_part(path, {}));
+            if (decodes) static_cast<void>(verify(path));
+        } catch (const std::exception&) {
+            return "done";  // this process comes to the same point, and tells
+        }
+        return "done";
+    };
+    const auto end = run_in_child(read, limits_for(path), [&] { report_progress(on_progress, 0, 0); });
+    if (!end || end->finished) return;
+    throw_if_memory_may_lack(path, end->text);
+    throw Error(ExitCode::kMismatch,
+                fmt::format("'{}' is damaged: reading it {}; render it again (--force)", path, end->text));
+}
+
+}  // namespace media
+}  // namespace corda

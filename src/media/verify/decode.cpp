@@ -1,0 +1,328 @@
+#include "corda/media/verify/decode.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <queue>
+
+#include "corda/core/basics.hpp"
+#include "corda/media/animation/apng_times.hpp"
+#include "corda/media/checked.hpp"
+#include "corda/media/libav_handles.hpp"
+#include "corda/media/read/color_patch.hpp"
+#include "corda/media/read/open_video.hpp"
+#include "corda/media/read/video_comment.hpp"
+
+namespace corda::media {
+namespace {
+
+std::string named(const char* name) {
+    return name == nullptr ? "unknown" : name;
+}
+
+/// The samples of one component in a square of a frame, of any pixel format, as a mean in 0 .. 255 (of more
+/// bits, in quarters and so on), and the least of them.
+struct Samples {
+    double mean = 0.0;
+    int least = 255;
+};
+
+Samples samples_of(const AVFrame& frame, int component, const PixelRect& part) {
+    const AVPixFmtDescriptor& descriptor = *av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
+    const bool is_chroma =
+        (descriptor.flags & AV_PIX_FMT_FLAG_RGB) == 0 && (component == 1 || component == 2);
+    const int right = is_chroma ? descriptor.log2_chroma_w : 0;
+    const int down = is_chroma ? descriptor.log2_chroma_h : 0;
+    const int depth = descriptor.comp[component].depth;
+    const std::uint8_t* data[4] = {frame.data[0], frame.data[1], frame.data[2], frame.data[3]};
+    std::vector<std::uint16_t> line(static_cast<std::size_t>(part.width() >> right));
+    std::int64_t sum = 0;
+    std::int64_t count = 0;
+    int least = (1 << depth) - 1;
+    for (int y = part.y0 >> down; y < part.y1 >> down; ++y) {
+        av_read_image_line2(line.data(), data, frame.linesize, &descriptor, part.x0 >> right, y, component,
+                            static_cast<int>(line.size()), 0, 2);
+        for (const std::uint16_t value : line) {
+            sum += value;
+            least = std::min(least, int{value});
+        }
+        count += std::ssize(line);
+    }
+    const double scale = static_cast<double>(1 << (depth - 8));
+    return {static_cast<double>(sum) / (scale * static_cast<double>(std::max<std::int64_t>(1, count))),
+            least >> (depth - 8)};
+}
+
+/// Mean R'G'B' of a square.
+std::array<double, 3> mean_rgb_of(const AVFrame& frame, const PixelRect& part) {
+    const AVPixFmtDescriptor& descriptor = *av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
+    std::array<double, 3> means{};
+    for (int c = 0; c < 3; ++c) means[static_cast<std::size_t>(c)] = samples_of(frame, c, part).mean;
+    return (descriptor.flags & AV_PIX_FMT_FLAG_RGB) != 0 ? means
+                                                         : rgb_from_ycbcr(means[0], means[1], means[2]);
+}
+
+/// Decodes one file and fills in a DecodedVideo.
+class Decoding {
+  public:
+    Decoding(DecodedVideo& video, VerifyDepth depth, const std::vector<FrameColors>& rendered)
+        : video_(video), depth_(depth), rendered_(rendered) {}
+
+    void run(const std::string& path, const OnProgress& on_progress) {
+        if (!open(path)) return;
+        video_.opened = true;
+        while (read_packet()) report_progress(on_progress, video_.frames, 0);
+        if (depth_ == VerifyDepth::kAllFrames)
+            receive(nullptr);
+        else
+            take_stamps(0);
+        // libav guesses the duration of the last frame; check_clocks in verify.cpp compares the end with the
+        // track's stored duration.
+        if (video_.frames == 1 && (rounded_to_ || counts_frames_))
+            video_.step = 1;
+        else if (video_.frames == 1)
+            video_.step =
+                is_sane_stamp(file_.stream->duration) ? std::max<std::int64_t>(file_.stream->duration, 0) : 0;
+        video_.end = last_pts_ + video_.step;
+        describe();
+    }
+
+  private:
+    bool open(const std::string& path) {
+        try {
+            file_ = open_video(path);
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::kIo) throw;
+            video_.open_reason = error.what();
+            return false;
+        }
+        frame_ = check_allocated(Frame(av_frame_alloc()), "a frame");
+        packet_ = check_allocated(Packet(av_packet_alloc()), "a packet");
+        const AVCodecParameters& parameters = *file_.stream->codecpar;
+        video_.container_tags = named(av_color_range_name(parameters.color_range)) + " " +
+                                named(av_color_space_name(parameters.color_space)) + " " +
+                                named(av_color_primaries_name(parameters.color_primaries)) + " " +
+                                named(av_color_transfer_name(parameters.color_trc));
+        const AVDictionaryEntry* comment = av_dict_get(file_.format->metadata, "comment", nullptr, 0);
+        if (comment != nullptr) video_.comment = comment->value;
+        video_.tick = {file_.stream->time_base.num, file_.stream->time_base.den};
+        find_rounded_rate();
+        if (file_.format->iformat == av_find_input_format("apng")) take_delays(read_apng_times(path));
+        return true;
+    }
+
+    /// Matroska counts milliseconds: then the rate that the file tells decides what is the nearest stamp.
+    void find_rounded_rate() {
+        if (file_.format->iformat != av_find_input_format("matroska")) return;
+        const auto told = told_rate(video_.comment);
+        const AVRational average = file_.stream->avg_frame_rate;
+        const Rational rate = told ? *told : Rational{average.num, average.den};
+        if (rate.num <= 0 || rate.den <= 0) return;
+        rounded_to_ = rate;
+        video_.is_rounded = true;
+        video_.tick = {rate.den, rate.num};
+    }
+
+    /// Of an APNG, whose stamps libav rounds.
+    void take_delays(const ApngTimes& times) {
+        if (times.delay_s.num <= 0) return;
+        counts_frames_ = true;
+        video_.tick = times.delay_s;
+        video_.uneven_at = times.uneven_at;
+    }
+
+    /// The number of the frame that a rounded stamp is the nearest to, or one that fits nowhere.
+    [[nodiscard]] std::int64_t unrounded(std::int64_t pts) const {
+        const AVRational frame = frame_time_base(*rounded_to_);
+        const std::int64_t k = av_rescale_q(pts, file_.stream->time_base, frame);
+        return av_rescale_q(k, frame, file_.stream->time_base) == pts ? k : last_pts_ + kNever;
+    }
+
+    void note_bad(int status) {
+        if (status == AVERROR(ENOMEM) || *file_.lacks_memory)
+            fail_libav(ExitCode::kTemporary, "decoding", AVERROR(ENOMEM));
+        note_bad(log_.text().empty() ? libav_text(status) : log_.text());
+    }
+
+    void note_bad(const std::string& reason) {
+        if (video_.bad_frames++ == 0) video_.bad_reason = reason;
+    }
+
+    bool read_packet() {
+        log_.clear();
+        const int status = av_read_frame(file_.format.get(), packet_.get());
+        if (status < 0) {
+            if (status != AVERROR_EOF) note_bad(status);
+            return false;
+        }
+        if (packet_->stream_index == file_.stream->index) {
+            if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) note_bad(AVERROR_INVALIDDATA);
+            if (depth_ == VerifyDepth::kAllFrames)
+                receive(packet_.get());
+            else
+                read_alone(*packet_);
+        }
+        av_packet_unref(packet_.get());
+        return true;
+    }
+
+    /// Decodes a packet of a key frame, apart from all others, and notes the stamp of any packet. If it is
+    /// known what was rendered, other key frames of that are left out.
+    void read_alone(const AVPacket& packet) {
+        const bool is_wanted = rendered_.empty() || packets_ < rendered_.front().frame ||
+                               find_rendered(rendered_, packets_) != nullptr;
+        if (is_wanted && (packet.flags & AV_PKT_FLAG_KEY) != 0) {
+            receive(&packet);
+            receive(nullptr);
+            avcodec_flush_buffers(file_.context.get());
+        }
+        stamps_.push(packet.pts);
+        ++packets_;
+        take_stamps(kMaxReordered);
+    }
+
+    /// Takes the stamps of packets in the order in which their frames are shown, but for so many.
+    void take_stamps(std::size_t kept) {
+        for (; stamps_.size() > kept; stamps_.pop()) take_stamp(stamps_.top());
+    }
+
+    /// Sends a packet, or the end of the stream if it is null, and takes every frame that is ready.
+    void receive(const AVPacket* packet) {
+        int status = avcodec_send_packet(file_.context.get(), packet);
+        if (status < 0) note_bad(status);
+        for (;;) {
+            status = avcodec_receive_frame(file_.context.get(), frame_.get());
+            if (status == AVERROR(EAGAIN) || status == AVERROR_EOF) return;
+            if (status < 0) {
+                note_bad(status);
+                // While draining, libav reports one error per bad frame and goes on; otherwise the next
+                // packet is due.
+                if (packet != nullptr || video_.bad_frames > kMaxBadFrames) return;
+                continue;
+            }
+            // A wrong checksum of FFV1 is only logged, and the slice concealed.
+            if (file_.context->codec_id == AV_CODEC_ID_FFV1 && !log_.text().empty()) note_bad(log_.text());
+            take_frame();
+            av_frame_unref(frame_.get());
+        }
+    }
+
+    void take_frame() {
+        const AVFrame& frame = *frame_;
+        if (frame.decode_error_flags != 0 || (frame.flags & AV_FRAME_FLAG_CORRUPT) != 0)
+            note_bad(AVERROR_INVALIDDATA);
+        if (!is_described_) describe_first_frame();
+        // Chunks are closed: as many frames are shown before a key frame as packets came before it.
+        if (is_readable_) measure_patches(depth_ == VerifyDepth::kAllFrames ? video_.frames : packets_);
+        // If no further pixels are measured, it is enough that frames decode.
+        if (rendered_.empty()) file_.context->skip_loop_filter = AVDISCARD_ALL;
+        if (depth_ == VerifyDepth::kAllFrames) take_stamp(frame.pts);
+    }
+
+    void take_stamp(std::int64_t pts) {
+        if (!is_sane_stamp(pts)) {
+            note_bad(pts == AV_NOPTS_VALUE ? "a frame has no time stamp"
+                                           : "a frame has the time stamp " + std::to_string(pts));
+            return;
+        }
+        if (rounded_to_) pts = unrounded(pts);
+        if (counts_frames_) pts = video_.frames;
+        if (video_.frames == 0) {
+            video_.first_pts = pts;
+        } else {
+            if (video_.frames == 1) video_.step = pts - last_pts_;
+            if (pts - last_pts_ != video_.step && video_.uneven_at < 0) video_.uneven_at = video_.frames;
+        }
+        last_pts_ = pts;
+        ++video_.frames;
+    }
+
+    void measure_patches(std::int64_t number) {
+        const bool is_gif = file_.context->codec_id == AV_CODEC_ID_GIF;
+        for (const ColorPatch& patch : patches_of(number)) {
+            const PixelRect square{patch.x, patch.y, patch.x + kPatchSide, patch.y + kPatchSide};
+            const bool is_inside = is_within(patch, frame_->width, frame_->height);
+            // A GIF has no colour where it is transparent.
+            if (is_gif && is_inside && samples_of(*frame_, 3, square).least < 255) continue;
+            ShownPatch& shown = video_.patches.emplace_back(ShownPatch{number, patch, std::nullopt});
+            if (is_inside) shown.rgb = mean_rgb_of(*frame_, square);
+        }
+    }
+
+    [[nodiscard]] std::vector<ColorPatch> patches_of(std::int64_t number) const {
+        if (const FrameColors* const known = find_rendered(rendered_, number)) return known->patches;
+        return number == 0 ? told_patches(video_.comment) : std::vector<ColorPatch>();
+    }
+
+    void describe_first_frame() {
+        is_described_ = true;
+        const AVFrame& frame = *frame_;
+        video_.width_px = frame.width;
+        video_.height_px = frame.height;
+        video_.pixel_format = named(av_get_pix_fmt_name(static_cast<AVPixelFormat>(frame.format)));
+        video_.range = named(av_color_range_name(frame.color_range));
+        video_.matrix = named(av_color_space_name(frame.colorspace));
+        video_.primaries = named(av_color_primaries_name(frame.color_primaries));
+        video_.transfer = named(av_color_transfer_name(frame.color_trc));
+        video_.chroma_location = named(av_chroma_location_name(frame.chroma_location));
+        const AVPixFmtDescriptor* const descriptor =
+            av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
+        is_readable_ = descriptor != nullptr && descriptor->nb_components >= 3 &&
+                       (descriptor->flags &
+                        (AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_FLOAT | AV_PIX_FMT_FLAG_HWACCEL)) == 0 &&
+                       descriptor->comp[0].depth >= 8;
+        if (!is_readable_) return;
+        video_.is_yuv = (descriptor->flags & AV_PIX_FMT_FLAG_RGB) == 0;
+        if ((descriptor->flags & AV_PIX_FMT_FLAG_ALPHA) != 0)
+            video_.has_alpha = samples_of(frame, 3, {0, 0, frame.width, frame.height}).least < 255;
+    }
+
+    void describe() {
+        video_.codec = avcodec_get_name(file_.context->codec_id);
+        std::array<char, AV_FOURCC_MAX_STRING_SIZE> tag{};
+        video_.codec_tag = av_fourcc_make_string(tag.data(), file_.stream->codecpar->codec_tag);
+        const char* const profile = avcodec_profile_name(file_.context->codec_id, file_.context->profile);
+        video_.profile = profile == nullptr ? "" : profile;
+        if (file_.context->codec_id == AV_CODEC_ID_H264)
+            video_.h264_level = std::max(0, file_.context->level);
+    }
+
+    static constexpr std::int64_t kNever = 1'000'000'000;
+    static constexpr std::int64_t kMaxBadFrames = 1000;
+    /// No codec decodes more frames than that ahead of one that is shown before them.
+    static constexpr std::size_t kMaxReordered = 32;
+
+    DecodedVideo& video_;
+    VerifyDepth depth_;
+    const std::vector<FrameColors>& rendered_;
+    LogCapture log_;
+    OpenVideo file_;
+    Frame frame_;
+    Packet packet_;
+    std::int64_t last_pts_ = 0;
+    std::optional<Rational> rounded_to_;
+    bool counts_frames_ = false;
+    bool is_described_ = false;
+    bool is_readable_ = false;  ///< its colours can be measured
+    std::int64_t packets_ = 0;  ///< so far, of kKeyFrames
+    /// Of packets, the least on top.
+    std::priority_queue<std::int64_t, std::vector<std::int64_t>, std::greater<>> stamps_;
+};
+
+}  // namespace
+
+const FrameColors* find_rendered(const std::vector<FrameColors>& rendered, std::int64_t frame) {
+    const auto known = std::lower_bound(
+        rendered.begin(), rendered.end(), frame,
+        [](const FrameColors& colors, std::int64_t number) { return colors.frame < number; });
+    return known != rendered.end() && known->frame == frame ? &*known : nullptr;
+}
+
+DecodedVideo decode(const std::string& path, VerifyDepth depth, const std::vector<FrameColors>& rendered,
+                    const OnProgress& on_progress) {
+    DecodedVideo video;
+    Decoding(video, depth, rendered).run(path, on_progress);
+    return video;
+}
+
+}  // namespace corda::media

@@ -1,0 +1,295 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "corda/media/verify/checks.hpp"
+
+namespace corda::media {
+namespace {
+
+/// Who plays a codec of a pixel format in a container.
+struct Players {
+    std::string_view containers;  ///< words, or all of them
+    std::string_view codec;       ///< libav's name
+    std::string_view pixel_format;
+    std::string_view words;
+};
+
+constexpr std::array kPlayers{
+    Players{"mp4", "h264", "yuv420p",
+            "Chrome, Edge, Firefox, Safari, QuickTime and PowerPoint play it, YouTube takes it"},
+    Players{
+        "mov", "h264", "yuv420p",
+        "QuickTime, Keynote, PowerPoint and Safari play it, YouTube takes it; some browsers do not play it"},
+    Players{"mov", "h264", "yuv444p",
+            "4:4:4, High 4:4:4 Predictive: VLC, mpv and ffmpeg play it; QuickTime, browsers and PowerPoint "
+            "do not"},
+    Players{"mp4", "h264", "yuv444p",
+            "4:4:4, High 4:4:4 Predictive: VLC, mpv and ffmpeg play it; browsers, QuickTime and PowerPoint "
+            "refuse it"},
+    Players{"mp4", "hevc", "yuv420p",
+            "Safari, QuickTime and new PowerPoint play it, YouTube takes it; Firefox and many Chromes do not "
+            "play it"},
+    Players{"mov", "hevc", "yuv420p",
+            "QuickTime, Keynote and Safari play it, YouTube takes it; browsers mostly do not"},
+    Players{"mp4", "hevc", "yuv444p",
+            "4:4:4: VLC, mpv and ffmpeg play it; browsers, QuickTime and PowerPoint mostly refuse it"},
+    Players{"mp4 webm", "av1", "yuv420p",
+            "Chrome, Edge and Firefox play it, Safari on new devices; YouTube takes it; PowerPoint and old "
+            "QuickTime do not"},
+    Players{
+        "mp4 webm", "av1", "yuv444p",
+        "4:4:4: Chrome, Firefox, VLC and mpv play it; hardware decoders, QuickTime and PowerPoint do not"},
+    Players{
+        "webm", "vp9", "yuv420p",
+        "Chrome, Edge, Firefox and new Safari play it, YouTube takes it; PowerPoint and QuickTime do not"},
+    Players{
+        "webm", "vp9", "yuva420p",
+        "Chrome, Edge and Firefox play it with its transparency; Safari, PowerPoint and QuickTime do not"},
+    Players{"webm", "vp9", "yuv444p",
+            "4:4:4: Chrome, Firefox, VLC and mpv play it; Safari and hardware decoders do not"},
+    Players{"mov", "prores", "",
+            "QuickTime, Keynote and video editors play it, YouTube takes it; browsers and PowerPoint on "
+            "Windows do not"},
+    Players{"matroska", "ffv1", "",
+            "VLC, mpv and ffmpeg play it; browsers, QuickTime, PowerPoint and YouTube do not"},
+    Players{"gif", "gif", "",
+            "browsers and PowerPoint play it; QuickTime does not, and YouTube takes no GIF"},
+    Players{"apng", "apng", "",
+            "browsers play it; PowerPoint, QuickTime and YouTube show its first picture or refuse it"},
+    Players{"webp", "webp", "", "browsers play it; PowerPoint, QuickTime and YouTube do not"},
+    Players{"yuv4mpegpipe", "rawvideo", "",
+            "for encoders such as ffmpeg; browsers, QuickTime and PowerPoint do not play it"},
+};
+
+bool holds_word(std::string_view words, std::string_view word) {
+    for (std::size_t at = words.find(word); at != std::string_view::npos; at = words.find(word, at + 1)) {
+        const bool begins = at == 0 || words[at - 1] == ' ';
+        const bool ends = at + word.size() == words.size() || words[at + word.size()] == ' ';
+        if (begins && ends) return true;
+    }
+    return false;
+}
+
+/// "mp4" of "mp4 (fragmented)".
+std::string_view plain(std::string_view container) {
+    return container.substr(0, container.find(' '));
+}
+
+/// The limits of a level of H.264, from Table A-1 of Rec. ITU-T H.264 (08/2021).
+struct H264Level {
+    int level_times_10;
+    std::int64_t macroblocks_per_s;
+    std::int64_t macroblocks;  ///< of a frame
+};
+
+constexpr std::array kH264Levels{
+    H264Level{10, 1485, 99},        H264Level{11, 3000, 396},       H264Level{12, 6000, 396},
+    H264Level{13, 11880, 396},      H264Level{20, 11880, 396},      H264Level{21, 19800, 792},
+    H264Level{22, 20250, 1620},     H264Level{30, 40500, 1620},     H264Level{31, 108000, 3600},
+    H264Level{32, 216000, 5120},    H264Level{40, 245760, 8192},    H264Level{41, 245760, 8192},
+    H264Level{42, 522240, 8704},    H264Level{50, 589824, 22080},   H264Level{51, 983040, 36864},
+    H264Level{52, 2073600, 36864},  H264Level{60, 4177920, 139264}, H264Level{61, 8355840, 139264},
+    H264Level{62, 16711680, 139264}};
+
+/// The highest that the hardware and the programs of the table of players decode.
+constexpr int kHighestPlayedLevel = 52;
+
+/// The least level for the size and the rate of a video, times 10 (A.3.1, A.3.3); 0: none allows them.
+int least_h264_level(const VerifyReport& report) {
+    const std::int64_t width = (report.width_px + 15) / 16;
+    const std::int64_t height = (report.height_px + 15) / 16;
+    const auto allows = [&](const H264Level& level) {
+        const std::int64_t side_squared = 8 * level.macroblocks;
+        return width * height <= level.macroblocks && width * width <= side_squared &&
+               height * height <= side_squared &&
+               static_cast<double>(width * height) * report.fps.value() <=
+                   static_cast<double>(level.macroblocks_per_s);
+    };
+    const auto* const least = std::find_if(kH264Levels.begin(), kH264Levels.end(), allows);
+    return least == kH264Levels.end() ? 0 : least->level_times_10;
+}
+
+/// Why few play a video that has the right profile; empty if nothing speaks against it.
+std::string trouble_of_level(const VerifyReport& report) {
+    if (report.codec != "h264") return "";
+    const int least = least_h264_level(report);
+    const std::string what =
+        fmt::format("{}x{} at {} frames per second", report.width_px, report.height_px, report.fps.text());
+    if (least == 0) return what + " is beyond every level of H.264";
+    const int level = std::max(least, report.h264_level);
+    if (level <= kHighestPlayedLevel) return "";
+    return fmt::format("{} takes level {:.1f}", what, level / 10.0);
+}
+
+/// A level that is stated too low.
+void check_level(VerifyReport& report) {
+    const int least = report.codec == "h264" ? least_h264_level(report) : 0;
+    constexpr int kLevel1b = 9;  // or 11, and nothing needs it that does not need 1.1
+    if (report.h264_level <= 0 || report.h264_level == kLevel1b || least <= report.h264_level) return;
+    problem(report,
+            "the stated H.264 level is {:.1f}, and {}x{} at {} frames per second takes {:.1f}: decoders may "
+            "refuse it; remedy: {}",
+            report.h264_level / 10.0, report.width_px, report.height_px, report.fps.text(), least / 10.0,
+            copy_command(report, report.container == "matroska" ? "mkv" : plain(report.container),
+                         fmt::format("-bsf:v h264_metadata=level={} ", least / 10.0)));
+}
+
+/// True for an H.264 profile that browsers and QuickTime refuse; that of 4:4:4 has a row of its own.
+bool has_odd_profile(const VerifyReport& report) {
+    constexpr std::array<std::string_view, 4> kPlayable{"Constrained Baseline", "Baseline", "Main", "High"};
+    const bool is_playable = std::find(kPlayable.begin(), kPlayable.end(), report.profile) != kPlayable.end();
+    const bool is_444 = report.profile == "High 4:4:4 Predictive" && report.pixel_format == "yuv444p";
+    return report.codec == "h264" && !is_playable && !is_444;
+}
+
+const Players* players_of(const VerifyReport& report) {
+    const auto* const row =
+        std::find_if(kPlayers.begin(), kPlayers.end(), [&report](const Players& candidate) {
+            return candidate.codec == report.codec &&
+                   holds_word(candidate.containers, plain(report.container)) &&
+                   (candidate.pixel_format.empty() || candidate.pixel_format == report.pixel_format);
+        });
+    return row == kPlayers.end() ? nullptr : row;
+}
+
+void check_tag(VerifyReport& report, const char* name, const std::string& value, std::string_view wanted,
+               std::string_view effect) {
+    if (value == wanted) return;
+    problem(report, "the {} tag is '{}' instead of '{}': {}; render it again, or set the tag", name, value,
+            wanted, effect);
+}
+
+/// Whether colours need tags: kinds of pictures are sRGB by definition, raw video has none.
+bool has_tags(const VerifyReport& report) {
+    return !holds_word("gif apng webp yuv4mpegpipe", report.container);
+}
+
+}  // namespace
+
+std::string VerifyReport::coding() const {
+    std::string words = codec;
+    if (!profile.empty()) words += ' ' + profile;
+    if (h264_level > 0) words += fmt::format(" {:.1f}", h264_level / 10.0);
+    return words;
+}
+
+void check_picture_format(const DecodedVideo& video, VerifyReport& report) {
+    if (video.frames == 0) return;
+    const auto plays = [&report](const Players& row) { return row.codec == report.codec; };
+    const auto* const usual = std::find_if(kPlayers.begin(), kPlayers.end(), plays);
+    const auto is_in = [&report](const Players& row) {
+        return holds_word(row.containers, plain(report.container));
+    };
+    const bool is_in_usual_container =
+        std::any_of(usual, kPlayers.end(), [&](const Players& row) { return plays(row) && is_in(row); });
+    if (usual == kPlayers.end()) {
+        problem(report, "the codec is {}; browsers and QuickTime play H.264 everywhere: render with libx264",
+                report.codec);
+    } else if (!is_in_usual_container) {
+        const std::string_view container = usual->containers.substr(0, usual->containers.find(' '));
+        // A copy keeps milliseconds, which such clocks cannot count.
+        const bool is_uneven = video.is_rounded && report.fps.den != 1 && container != "webm";
+        problem(report, "few programs play {} in {}; remedy: {}", report.codec, plain(report.container),
+                is_uneven ? fmt::format("encode it again, as .{}", container)
+                          : copy_command(report, container == "matroska" ? "mkv" : container));
+    }
+    if (has_odd_profile(report)) {
+        problem(report,
+                "the H.264 profile is {}, which browsers and QuickTime refuse; encode High with yuv420p",
+                report.profile.empty() ? "unknown" : report.profile);
+    }
+    check_level(report);
+    if (video.codec_tag == "hev1") {
+        problem(report, "H.265 is tagged hev1, which Safari and QuickTime refuse; remedy: {}",
+                copy_command(report, plain(report.container)));
+    }
+    const bool is_playable = std::any_of(usual, kPlayers.end(), [&](const Players& row) {
+        return plays(row) && (is_in(row) || !is_in_usual_container) &&
+               (row.pixel_format.empty() || row.pixel_format == report.pixel_format);
+    });
+    if (usual == kPlayers.end() ? report.pixel_format != "yuv420p" : !is_playable) {
+        problem(report,
+                "the pixel format is {}; only 8-bit yuv420p plays everywhere: encode with -pix_fmt yuv420p",
+                report.pixel_format);
+    }
+}
+
+void check_tags(const DecodedVideo& video, VerifyReport& report) {
+    if (report.frames == 0 || !has_tags(report)) return;
+    // The colr box of QuickTime has no range.
+    const std::string_view wanted = plain(report.container) == "mov" ? "unknown bt709 bt709 iec61966-2-1"
+                                    : video.is_yuv                   ? "tv bt709 bt709 iec61966-2-1"
+                                                                     : "pc gbr bt709 iec61966-2-1";
+    if (video.container_tags != wanted) {
+        problem(report,
+                "the container's colour tags ({}{}) are not '{}', and "
+                "QuickTime trusts them more than the stream's own; render it again",
+                holds_word("mp4 mov", plain(report.container)) ? "colr box: " : "", video.container_tags,
+                wanted);
+    }
+    if (!video.is_yuv) return;  // the tags of the container are all
+    check_tag(report, "range", report.range, "tv", "players may crush or wash out black and white");
+    check_tag(report, "matrix", report.matrix, "bt709", "players may guess BT.601 and shift the colours");
+    check_tag(report, "primaries", report.primaries, "bt709", "wide-gamut screens may over-saturate");
+    check_tag(report, "transfer", report.transfer, "iec61966-2-1",
+              "Safari and QuickTime change the brightness");
+    // VP9 and AV1 tell no siting, or not this one.
+    if ((report.codec == "h264" || report.codec == "hevc") && report.pixel_format == "yuv420p") {
+        check_tag(report, "chroma location", report.chroma_location, "left",
+                  "coloured edges shift by half a pixel");
+    }
+}
+
+void add_notes(const DecodedVideo& video, VerifyDepth depth, VerifyReport& report) {
+    const std::string trouble = trouble_of_level(report);
+    const Players* const players = players_of(report);
+    if (!trouble.empty() && !has_odd_profile(report)) {
+        report.notes.push_back(fmt::format(
+            "{}, {}: {}: VLC, mpv and ffmpeg play it, browsers only without the hardware's decoder; "
+            "QuickTime, PowerPoint and phones refuse it; for those, render fewer pixels or frames, "
+            "or take H.265 or AV1",
+            report.coding(), report.pixel_format, trouble));
+    } else if (players != nullptr && !has_odd_profile(report)) {
+        report.notes.push_back(
+            fmt::format("{}, {}: {}", report.coding(), report.pixel_format, players->words));
+    }
+    if (!report.ok()) return;
+    report.notes.push_back(fmt::format(
+        "checked: structure, time stamps, tags, that {} decodes, and {}; a picture that was "
+        "changed and still decodes is not found",
+        depth == VerifyDepth::kAllFrames ? "every frame" : "every key frame",
+        !video.patches.empty() ? "colours at a few places of the first frame alone" : "no colours"));
+    if (report.alpha)
+        report.notes.emplace_back("the first frame is transparent in places; alpha is straight");
+    if (video.is_rounded) {
+        report.notes.emplace_back(
+            "the container counts milliseconds: each frame's time is the nearest one to k/fps, the rate is "
+            "the one stated in the file");
+    }
+    if (report.faststart)
+        report.notes.emplace_back(
+            "the index comes first: a browser starts to play while it loads, and can seek");
+    if (holds_word("mp4 webm mov", report.container))
+        report.notes.push_back(
+            fmt::format("to show frame k in a browser, seek to its middle, (k + 1/2)/fps = {:.6g} s for "
+                        "frame 0: at k/fps browsers may show the frame before",
+                        0.5 / report.fps.value()));
+    if (has_tags(report) && video.is_yuv)
+        report.notes.push_back(fmt::format(
+            "colours are tagged BT.709 with the sRGB transfer: browsers and QuickTime show the rendered sRGB "
+            "values; a player that ignores tags {}",
+            report.height_px >= 720 ? "guesses right"
+                                    : "may shift them, as it does in any video below 720 lines"));
+    if (report.width_px > 4096 || report.height_px > 2304) {
+        report.notes.emplace_back(
+            "larger than 4096x2304: many phones and hardware decoders refuse this size");
+    }
+    if (report.fps.value() > 60.0) {
+        report.notes.emplace_back("more than 60 frames per second: most screens drop frames");
+    }
+}
+
+}  // namespace corda::media

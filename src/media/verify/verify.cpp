@@ -1,0 +1,217 @@
+#include "corda/media/verify/verify.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+
+#include "corda/core/file.hpp"
+#include "corda/media/checked.hpp"
+#include "corda/media/format/file_kind.hpp"
+#include "corda/media/libav_handles.hpp"
+#include "corda/media/read/color_patch.hpp"
+#include "corda/media/read/mp4_boxes.hpp"
+#include "corda/media/read/truncation.hpp"
+#include "corda/media/read/video_comment.hpp"
+#include "corda/media/verify/checks.hpp"
+#include "corda/media/verify/decode.hpp"
+
+namespace corda::media {
+namespace {
+
+/// libav's name for the kind of a file, judged by its beginning: "matroska,webm", "png_pipe"; empty if it
+/// knows none.
+std::string probed_container(const std::string& path) {
+    const FileHandle file = open_for_reading(path);
+    std::vector<unsigned char> head(4096 + AVPROBE_PADDING_SIZE);
+    const std::size_t count =
+        read_bytes(file, path, reinterpret_cast<char*>(head.data()), head.size() - AVPROBE_PADDING_SIZE);
+    if (count == 0) return {};
+    std::fill(head.begin() + static_cast<std::ptrdiff_t>(count), head.end(), static_cast<unsigned char>(0));
+    AVProbeData data{};
+    data.filename = "";
+    data.buf = head.data();
+    data.buf_size = static_cast<int>(count);
+    int score = 0;
+    const AVInputFormat* format = av_probe_input_format3(&data, 1, &score);
+    return format != nullptr && score >= AVPROBE_SCORE_EXTENSION ? format->name : "";
+}
+
+void fill_report(const DecodedVideo& video, VerifyReport& report) {
+    report.codec = video.codec;
+    report.profile = video.profile;
+    report.h264_level = video.h264_level;
+    report.pixel_format = video.pixel_format;
+    report.width_px = video.width_px;
+    report.height_px = video.height_px;
+    report.frames = video.frames;
+    report.range = video.range;
+    report.matrix = video.matrix;
+    report.primaries = video.primaries;
+    report.transfer = video.transfer;
+    report.chroma_location = video.chroma_location;
+    report.alpha = video.has_alpha;
+    if (video.tick.den <= 0 || video.tick.num <= 0) return;
+    const auto step = checked_multiply(video.step, video.tick.num);
+    if (step && *step > 0) report.fps = Rational::reduced(video.tick.den, *step);
+    const auto duration = checked_multiply(video.end - video.first_pts, video.tick.num);
+    if (duration) report.duration_s = Rational::reduced(*duration, video.tick.den);
+}
+
+/// The 255 colours of a GIF are shared by all of its frames: a ground from red to blue is up to 11 off.
+constexpr double kGifTolerance = 32.0;
+
+void check_decoding(const DecodedVideo& video, VerifyReport& report) {
+    if (video.bad_frames > 0) {
+        problem(report,
+                "{} packets or frames do not decode cleanly (first: {}); the file is damaged: copy or render "
+                "it again",
+                video.bad_frames, video.bad_reason);
+    }
+    if (video.frames == 0) {
+        problem(report, "no frame can be decoded; render it again");
+    }
+}
+
+void check_stamps(const DecodedVideo& video, VerifyReport& report) {
+    if (video.frames == 0) return;
+    if (video.first_pts != 0) {
+        problem(
+            report,
+            "the first frame is shown at tick {} instead of 0, so players start with a gap; render it again",
+            video.first_pts);
+    }
+    if (video.uneven_at >= 0) {
+        problem(
+            report,
+            "the frame rate is not constant: frame {} is not {} ticks after the one before; render it again",
+            video.uneven_at, video.step);
+    } else if (report.fps.num <= 0) {
+        problem(report, "the frames have no duration, so there is no frame rate; render it again");
+    }
+}
+
+/// The largest error that a patch of a correct video may have. The rate factors of VP9 and AV1 go up to 63.
+double tolerance_of(const DecodedVideo& video) {
+    if (video.codec == "gif") return kGifTolerance;
+    const auto told = std::clamp<std::int64_t>(told_number(video.comment, "crf").value_or(0), 0, 63);
+    const bool is_x26x = video.codec == "h264" || video.codec == "hevc";
+    const auto crf = static_cast<int>(is_x26x ? std::min<std::int64_t>(told, 51) : told * 51 / 63);
+    return patch_tolerance(crf, is_x26x && video.pixel_format == "yuv444p");
+}
+
+void check_patches(const DecodedVideo& video, VerifyReport& report) {
+    const double limit = tolerance_of(video);
+    for (const ShownPatch& patch : video.patches) {
+        if (!patch.rgb) {
+            problem(
+                report,
+                "the comment names colour patches outside the picture; the picture was cropped or scaled");
+            return;
+        }
+        const auto& rgb = *patch.rgb;
+        const auto& rendered = patch.rendered.rgb;
+        const double worst = patch_error(patch.rendered, rgb);
+        if (worst <= limit) continue;
+        problem(
+            report,
+            "at ({}, {}) frame {} shows R'G'B' {:.1f} {:.1f} {:.1f} but {} {} {} was rendered ({:.1f} off, "
+            "limit {:.1f}): the colours were converted wrongly, or the video was encoded again",
+            patch.rendered.x, patch.rendered.y, patch.frame, rgb[0], rgb[1], rgb[2], rendered[0], rendered[1],
+            rendered[2], worst, limit);
+    }
+}
+
+/// Compares what the file says about itself with what was found.
+void check_comment(const DecodedVideo& video, VerifyReport& report) {
+    if (const std::string found = comment_problem(video.comment); !found.empty()) {
+        problem(report, "the comment {}; corda writes none like it: remove it by {}", found,
+                copy_command(report, report.container == "matroska" ? "mkv" : report.container,
+                             "-metadata comment= "));
+        return;
+    }
+    const auto fps = told_rate(video.comment);
+    const auto frames = told_number(video.comment, "frames");
+    if (!fps && !frames) {
+        report.notes.emplace_back(
+            "the file does not say what corda rendered: frame count and colours cannot be compared with it");
+        return;
+    }
+    if (frames && *frames != report.frames) {
+        problem(report, "{} frames were rendered but {} decode; render it again", *frames, report.frames);
+    }
+    if (fps && report.frames > 0 && *fps != report.fps) {
+        problem(report, "it was rendered for {} fps but plays at {} fps; render it again", fps->text(),
+                report.fps.text());
+    }
+}
+
+/// The container of a kind of file, in words.
+std::string container_of(const std::string& kind, const std::string& path) {
+    if (kind != "matroska") return kind;
+    const FileHandle file = open_for_reading(path);
+    std::string head(64, '\0');
+    head.resize(read_bytes(file, path, head.data(), head.size()));
+    return head.find("webm") != std::string::npos ? "webm" : "matroska";
+}
+
+/// The problem of a file of no known kind.
+void refuse(const std::string& path, VerifyReport& report) {
+    if (const ForeignKind* const foreign = foreign_kind_of(path); foreign != nullptr) {
+        problem(report, "this is no video: it is {}; {}", foreign->words,
+                foreign->remedy == kConvertToPng ? "give a video" : foreign->remedy);
+        return;
+    }
+    report.container = probed_container(path);
+    problem(
+        report,
+        "this is not an MP4 file, nor of another kind that corda writes (libav takes it for {}); render it "
+        "again, or give the name of a video",
+        report.container.empty() ? "an unknown kind" : report.container);
+}
+
+}  // namespace
+
+VerifyReport verify(const std::string& path, const OnProgress& on_progress, VerifyDepth depth,
+                    const std::vector<FrameColors>& rendered, std::optional<Rational> fps) {
+    const LogCapture log;
+    VerifyReport report;
+    const std::string kind = file_kind(path);
+    const Mp4Boxes boxes = kind == "mov" ? read_mp4_boxes(path) : Mp4Boxes{};
+    report.container = container_of(kind, path);
+    if (kind.empty()) refuse(path, report);
+    if (kind == "mov") check_boxes(boxes, report);
+    if (is_truncated(path, kind))
+        problem(report, "the file breaks off before its end; copy or render it again");
+    if (kind.empty() || (kind == "mov" && !boxes.has_index)) return report;
+    const DecodedVideo video = kind == "webp" ? decode_webp(path, fps, rendered, on_progress)
+                                              : decode(path, depth, rendered, on_progress);
+    if (!video.opened) {
+        problem(report, "{}; the file is damaged: copy or render it again", video.open_reason);
+        return report;
+    }
+    fill_report(video, report);
+    check_decoding(video, report);
+    check_stamps(video, report);
+    if (!told_origin(video.comment).empty()) {
+        problem(
+            report,
+            "this is the part of an interrupted render: corda render --resume continues it, corda recover "
+            "makes it a video of these frames");
+        return report;
+    }
+    if (kind == "mov") {
+        check_index(boxes, report);
+        check_clocks(video, boxes, report);
+    }
+    check_picture_format(video, report);
+    check_tags(video, report);
+    check_comment(video, report);
+    check_patches(video, report);
+    add_notes(video, depth, report);
+    return report;
+}
+
+}  // namespace corda::media

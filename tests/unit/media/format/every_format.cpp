@@ -1,0 +1,368 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <ostream>
+#include <string_view>
+
+#include "corda/core/part_file.hpp"
+#include "corda/media/chunks/finish_part.hpp"
+#include "corda/media/chunks/video_writer.hpp"
+#include "corda/media/format/format.hpp"
+#include "corda/media/read/color_patch.hpp"
+#include "corda/media/verify/verify.hpp"
+#include "support/command.hpp"
+#include "support/decode_rgba.hpp"
+#include "support/failure.hpp"
+#include "unit/media/video_support.hpp"
+
+namespace corda::media {
+namespace {
+
+/// One format in one of its variants.
+struct Variant {
+    const char* name;  ///< of the test
+    const char* ending;
+    const char* codec;
+    PixelChoice pix;
+    bool is_transparent;
+    /// The least PSNR of the decoded frames, alpha included, over black and over white; 0: they are equal.
+    /// The measured one is beside it.
+    double psnr_db;
+};
+
+void PrintTo(const Variant& variant, std::ostream* out) {
+    *out << variant.name;
+}
+
+constexpr PixelChoice kAny = PixelChoice::kAuto;
+constexpr PixelChoice k444 = PixelChoice::k444;
+
+constexpr std::array kVariants{
+    Variant{"h264", ".mp4", "h264", kAny, false, 33.0},             // measured 33.4
+    Variant{"h264_444", ".mp4", "h264", k444, false, 48.0},         // measured 49.4
+    Variant{"h265", ".mp4", "h265", kAny, false, 33.0},             // measured 33.3
+    Variant{"h265_444", ".mp4", "h265", k444, false, 47.0},         // measured 48.1
+    Variant{"av1", ".mp4", "libsvtav1", kAny, false, 33.0},         // measured 33.4
+    Variant{"aom_444", ".mp4", "libaom-av1", k444, false, 49.0},    // measured 50.3
+    Variant{"vp9", ".webm", "vp9", kAny, false, 33.0},              // measured 33.4
+    Variant{"vp9_alpha", ".webm", "", kAny, true, 58.0},            // measured 58.9
+    Variant{"vp9_444", ".webm", "", k444, false, 49.0},             // measured 50.4
+    Variant{"av1_webm", ".webm", "av1", kAny, false, 33.0},         // measured 33.4
+    Variant{"aom_webm", ".webm", "libaom-av1", kAny, false, 33.0},  // measured 33.4
+    Variant{"prores", ".mov", "", kAny, false, 80.0},               // measured 80.9
+    Variant{"prores_alpha", ".mov", "", kAny, true, 55.0},          // measured 55.5
+    Variant{"ffv1", ".mkv", "", kAny, false, 0.0},
+    Variant{"ffv1_alpha", ".mkv", "", kAny, true, 0.0},
+    Variant{"gif", ".gif", "", kAny, false, 0.0},
+    Variant{"apng", ".apng", "", kAny, false, 0.0},
+    Variant{"apng_alpha", ".apng", "", kAny, true, 0.0},
+    Variant{"webp", ".webp", "", kAny, false, 0.0},
+    Variant{"webp_alpha", ".webp", "", kAny, true, 0.0},
+};
+
+/// More than one chunk of the codecs whose frames stand alone, and than one section of an animation.
+constexpr int kVideoFrames = 14;
+
+/// A moving square on a ground with a half transparent strip, or on an opaque one.
+Image picture_of(std::int64_t k, bool is_transparent) {
+    Image image = frame_image(k);
+    if (!is_transparent) return image;
+    for (int y = 0; y < image.height(); ++y) {
+        for (int x = 0; x < image.width(); ++x) {
+            std::uint8_t* const p = image.pixel(x, y);
+            const bool is_ground = p[0] == 18 && p[1] == 22 && p[2] == 30;
+            if (is_ground) p[3] = y < 140 ? 0 : 128;
+        }
+    }
+    return image;
+}
+
+VideoDef def_of(const Variant& variant) {
+    VideoDef def = small_video({50, 1});
+    def.encoder.codec = variant.codec;
+    def.encoder.pix = variant.pix;
+    if (std::string_view(variant.codec) == "libaom-av1") def.encoder.preset = "8";
+    if (std::string_view(variant.codec).find("av1") != std::string_view::npos && def.encoder.preset.empty())
+        def.encoder.preset = "12";
+    return def;
+}
+
+void write_variant(VideoWriter& writer, const Variant& variant) {
+    for (std::int64_t k = 0; k < kVideoFrames; ++k) {
+        const Image image = picture_of(k, variant.is_transparent);
+        writer.write(image, {image.rect()});
+    }
+}
+
+/// PSNR of the colours that show over a ground of this grey.
+double psnr_over(int grey, const Image& a, const Image& b) {
+    double squares = 0.0;
+    for (std::size_t i = 0; i < a.size_bytes(); i += 4) {
+        const auto over = [grey, i](const Image& image, int c) {
+            const double alpha = image.data()[i + 3] / 255.0;
+            return image.data()[i + c] * alpha + grey * (1.0 - alpha);
+        };
+        for (int c = 0; c < 3; ++c) squares += std::pow(over(a, c) - over(b, c), 2.0);
+    }
+    const double mean = squares / (static_cast<double>(a.size_bytes()) * 0.75);
+    return mean == 0.0 ? 1000.0 : 10.0 * std::log10(255.0 * 255.0 / mean);
+}
+
+class EveryFormat : public testing::TestWithParam<Variant> {
+  protected:
+    [[nodiscard]] std::string file(const std::string& name) const {
+        return folder_.file(name + GetParam().ending);
+    }
+    void make(const std::string& path) const {
+        const VideoDef def = def_of(GetParam());
+        VideoWriter writer(path, def, {.title = "A swing", .is_transparent = GetParam().is_transparent});
+        write_variant(writer, GetParam());
+        writer.finish();
+    }
+    test::ScratchFolder folder_;
+};
+
+INSTANTIATE_TEST_SUITE_P(Of, EveryFormat, testing::ValuesIn(kVariants),
+                         [](const auto& variant) { return std::string(variant.param.name); });
+
+TEST_P(EveryFormat, ShowsWhatWasDrawn) {
+    make(file("a"));
+    const test::DecodedRgba video = test::decode_rgba(file("a"));
+    ASSERT_EQ(video.pictures.size(), std::size_t{kVideoFrames});
+    for (std::size_t k = 0; k < video.pictures.size(); ++k) {
+        EXPECT_NEAR(video.times_s[k], static_cast<double>(k) / 50.0, 1e-9) << k;
+        const Image drawn = picture_of(static_cast<std::int64_t>(k), GetParam().is_transparent);
+        if (GetParam().psnr_db == 0.0) {
+            EXPECT_EQ(video.pictures[k], drawn) << k;
+            continue;
+        }
+        for (const int grey : {0, 255})
+            EXPECT_GE(psnr_over(grey, video.pictures[k], drawn), GetParam().psnr_db) << k << " over " << grey;
+    }
+}
+
+TEST_P(EveryFormat, IsFoundSoundWithItsFiguresByVerify) {
+    make(file("a"));
+    const VerifyReport report = verify(file("a"));
+    EXPECT_TRUE(report.ok()) << all_problems(report);
+    EXPECT_EQ(report.frames, kVideoFrames);
+    EXPECT_EQ(report.fps, (Rational{50, 1}));
+    EXPECT_EQ(report.duration_s, Rational::reduced(kVideoFrames, 50));
+    EXPECT_EQ(report.alpha, GetParam().is_transparent);
+    EXPECT_EQ(report.width_px, kWidth);
+}
+
+TEST_P(EveryFormat, IsComparedWithWhatWasDrawn) {
+    make(file("a"));
+    for (const std::int64_t frame : {0, kVideoFrames - 1}) {
+        const Image drawn = picture_of(frame, GetParam().is_transparent);
+        std::vector<ColorPatch> patches = choose_patches(drawn);
+        ASSERT_FALSE(patches.empty());
+        const auto problems = [&] {
+            return all_problems(verify(file("a"), {}, VerifyDepth::kAllFrames, {{frame, patches}}));
+        };
+        EXPECT_THAT(problems(), testing::IsEmpty());
+        patches[0].rgb[1] ^= 0x40;
+        EXPECT_THAT(problems(), testing::HasSubstr("frame " + std::to_string(frame) + " shows R'G'B'"));
+    }
+}
+
+TEST_P(EveryFormat, HasTheSameBytesAgainAndFromChunksMadeApart) {
+    make(file("a"));
+    const VideoDef def = def_of(GetParam());
+    VideoWriter writer(file("b"), def, {.title = "A swing", .is_transparent = GetParam().is_transparent});
+    const std::int64_t length = writer.frames_per_chunk();
+    for (std::int64_t first = 0; first < kVideoFrames; first += length) {
+        ChunkEncoder chunk = writer.chunk_encoder(first);
+        for (std::int64_t k = first; k < std::min<std::int64_t>(first + length, kVideoFrames); ++k) {
+            const Image image = picture_of(k, GetParam().is_transparent);
+            chunk.encode(image, {image.rect()});
+        }
+        writer.append(chunk.finish());
+    }
+    writer.finish();
+    EXPECT_EQ(test::read_file(file("a")), test::read_file(file("b")));
+}
+
+TEST_P(EveryFormat, IsRecoveredFromItsPart) {
+    make(file("a"));
+    {
+        VideoWriter writer(file("b"), def_of(GetParam()),
+                           {.title = "A swing", .is_transparent = GetParam().is_transparent});
+        write_variant(writer, GetParam());
+        EXPECT_EQ(writer.abandon(), part_path(file("b")));
+    }
+    EXPECT_EQ(recover_part(part_path(file("b")), file("b")).frames, kVideoFrames);
+    EXPECT_EQ(test::read_file(file("a")), test::read_file(file("b")));
+}
+
+TEST_P(EveryFormat, ItsPartIsToBeRecoveredSaysVerify) {
+    VideoDef def = def_of(GetParam());
+    VideoWriter writer(
+        file("a"), def,
+        {.comment_json = R"({"made_from":{"scene":"0"}})", .is_transparent = GetParam().is_transparent});
+    write_variant(writer, GetParam());
+    const std::string part = writer.abandon();
+    const VerifyReport report = verify(part);
+    EXPECT_EQ(report.frames, kVideoFrames);
+    ASSERT_EQ(report.problems.size(), 1U) << all_problems(report);
+    EXPECT_THAT(report.problems[0], testing::HasSubstr("corda recover makes it a video"));
+}
+
+TEST_P(EveryFormat, APartWhosePictureHasNoSizeIsRefused) {
+    VideoWriter writer(file("a"), def_of(GetParam()), {.is_transparent = GetParam().is_transparent});
+    write_variant(writer, GetParam());
+    std::string part = test::read_file(writer.abandon());
+    const std::string coded = {kWidth >> 8, static_cast<char>(kWidth & 255), kHeight >> 8,
+                               static_cast<char>(kHeight & 255)};  // of MP4
+    const std::size_t at = part.find(coded, part.find("stsd"));
+    if (part.find("stsd") == std::string::npos) return;  // Matroska has another place for it
+    ASSERT_NE(at, std::string::npos);
+    part.replace(at, 4, std::string(4, '\0'));
+    test::write_file(file("b") + ".part", with_checksums(part));
+    const test::Failure failure = test::failure_of([&] { recover_part(file("b") + ".part", file("b")); });
+    EXPECT_EQ(failure.code, ExitCode::kMismatch) << failure.message;
+}
+
+TEST_F(Video, VerifyFindsWrongChecksumsOfFfv1) {
+    make_video(file("a.mkv"), small_video(), 10);
+    std::string bytes = test::read_file(file("a.mkv"));
+    for (std::size_t i = 0; i < 16; ++i) bytes[bytes.size() / 2 + i] ^= 0x55;
+    test::write_file(file("b.mkv"), bytes);
+    EXPECT_THAT(all_problems(verify(file("b.mkv"))), testing::HasSubstr("slice CRC mismatch"));
+}
+
+TEST_F(Video, AWebpOfAnyRateAndCountIsSound) {
+    for (const Rational fps : {Rational{60000, 1001},
+                               {30000, 1001},
+                               {24000, 1001},
+                               {120000, 1001},
+                               {100, 1},
+                               {1000, 1},
+                               {2997, 100},
+                               {1197, 50},
+                               {7, 3},
+                               {1, 7}}) {
+        for (const std::int64_t frames : {2, 3, 10, 30}) {
+            make_video(file("a.webp"), small_video(fps), frames);
+            const VerifyReport report = verify(file("a.webp"));  // which is not told the rate
+            EXPECT_TRUE(report.ok()) << fps.text() << " " << frames << all_problems(report);
+            EXPECT_NEAR(report.fps.value() / fps.value(), 1.0, 0.6 / static_cast<double>(frames));
+        }
+    }
+}
+
+TEST_F(Video, VerifyTellsCodecsAndTheProfilesOfThoseThatHaveAny) {
+    for (const auto& [ending, words] : {std::pair{".mp4", "h264 High 2.1"},
+                                        {".mov", "prores 4444"},
+                                        {".mkv", "ffv1"},
+                                        {".webm", "vp9 Profile 0"},
+                                        {".gif", "gif"},
+                                        {".apng", "apng"},
+                                        {".webp", "webp"}}) {
+        const std::string path = file(std::string("a") + ending);
+        make_video(path, small_video({50, 1}), 3);
+        EXPECT_EQ(verify(path).coding(), words);
+    }
+}
+
+TEST_F(Video, EveryContainerKeepsRatesThatAreNoWholeNumbers) {
+    for (const Rational fps :
+         {Rational{30000, 1001}, Rational{24000, 1001}, Rational{30, 1}, Rational{60, 1}}) {
+        for (const char* const ending : {".mp4", ".mov", ".webm", ".mkv", ".apng", ".webp"}) {
+            const std::string path = file(std::string("a") + ending);
+            make_video(path, small_video(fps), 7);
+            const VerifyReport report = verify(path);
+            EXPECT_TRUE(report.ok()) << path << ": " << all_problems(report);
+            EXPECT_EQ(report.fps, fps) << path;
+            EXPECT_EQ(report.duration_s, Rational::reduced(7 * fps.den, fps.num)) << path;
+        }
+    }
+}
+
+TEST_F(Video, OneFrameIsAVideoWhereAContainerHoldsOne) {
+    for (const char* const ending : {".mp4", ".mov", ".webm", ".mkv", ".gif", ".apng"}) {
+        const std::string path = file(std::string("a") + ending);
+        EXPECT_NO_THROW(make_video(path, small_video({25, 1}), 1)) << path;
+        EXPECT_EQ(verify(path).frames, 1) << path;
+    }
+    const std::string path = file("a.webp");  // which would be a picture
+    const auto check = [&] { check_video_output(path, small_video({25, 1}), "", false, false, 7, 8); };
+    for (const test::Failure& failure : {test::failure_of(check), test::failure_of([&] {
+                                             make_video(path, small_video({25, 1}), 1);
+                                         })}) {
+        EXPECT_EQ(failure.code, ExitCode::kUsage);
+        EXPECT_THAT(failure.message, testing::HasSubstr("use .apng, or .png (corda still)"));
+    }
+}
+
+TEST_F(Video, AGifOfManyColoursHasTheNearest) {
+    const auto colourful = [](std::int64_t k) {
+        Image image(kWidth, kHeight);
+        for (int y = 0; y < kHeight; ++y) {
+            for (int x = 0; x < kWidth; ++x) {
+                std::uint8_t* const p = image.pixel(x, y);
+                p[0] = static_cast<std::uint8_t>(x * 255 / kWidth);
+                p[1] = static_cast<std::uint8_t>(y * 255 / kHeight);
+                p[2] = static_cast<std::uint8_t>(40 * k);
+                p[3] = 255;
+            }
+        }
+        return image;
+    };
+    VideoWriter writer(file("a.gif"), small_video({50, 1}), {});
+    for (std::int64_t k = 0; k < 5; ++k) {
+        const Image image = colourful(k);
+        writer.write(image, {image.rect()});
+    }
+    writer.finish();
+    const test::DecodedRgba video = test::decode_rgba(file("a.gif"));
+    ASSERT_EQ(video.pictures.size(), 5U);
+    for (std::int64_t k = 0; k < 5; ++k)
+        EXPECT_GT(psnr_over(0, video.pictures[static_cast<std::size_t>(k)], colourful(k)), 25.0) << k;
+}
+
+TEST_F(Video, AGifOnATransparentGroundShowsItThroughEveryFrame) {
+    const auto cut_out = [](std::int64_t k) {
+        Image image(kWidth, kHeight);
+        fill(image, bob(k), {240, 200, 90});
+        return image;
+    };
+    VideoWriter writer(file("a.gif"), small_video({50, 1}), {.is_transparent = true});
+    for (std::int64_t k = 0; k < 6; ++k) {
+        const Image image = cut_out(k);
+        writer.write(image, {image.rect()});
+    }
+    writer.finish();
+    EXPECT_TRUE(verify(file("a.gif")).alpha);
+    const test::DecodedRgba video = test::decode_rgba(file("a.gif"));
+    ASSERT_EQ(video.pictures.size(), 6U);
+    for (std::int64_t k = 0; k < 6; ++k) {
+        const Image& decoded = video.pictures[static_cast<std::size_t>(k)];
+        for (const int grey : {0, 255}) EXPECT_EQ(psnr_over(grey, decoded, cut_out(k)), 1000.0) << k;
+    }
+}
+
+TEST_F(Video, APartOfAnotherKindIsRefusedNamingWhatItHolds) {
+    abandon_video(file("a.mp4"), small_video(), 4);
+    const test::Failure failure =
+        test::failure_of([&] { static_cast<void>(recover_part(part_path(file("a.mp4")), file("a.webm"))); });
+    EXPECT_EQ(failure.code, ExitCode::kUsage);
+    EXPECT_THAT(failure.message, testing::HasSubstr("holds h264"));
+}
+
+TEST_F(Video, AGifHasNoColourToCompareWhereItIsTransparent) {
+    Image image = frame_image(0);
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x)  // also within a patch
+            image.pixel(x, y)[3] = static_cast<std::uint8_t>(std::clamp(2 * (y - 20), 0, 255));
+    VideoWriter writer(file("a.gif"), small_video({50, 1}), {.is_transparent = true});
+    for (int k = 0; k < 2; ++k) writer.write(image, {image.rect()});
+    EXPECT_NO_THROW(writer.finish());
+    const std::vector<FrameColors> rendered{{0, choose_patches(image)}};
+    EXPECT_TRUE(verify(file("a.gif"), {}, VerifyDepth::kAllFrames, rendered).ok());
+}
+
+}  // namespace
+}  // namespace corda::media
