@@ -93,10 +93,10 @@ Scene FigureOptions::load(const Console& console) const {
 }
 
 Film FigureOptions::film_of(const Console& console, const Scene& loaded,
-                            const std::vector<Shot>& some) const {
+                            const std::vector<RequestedTime>& some) const {
     FilmDef def;
     def.on_progress = show_progress(console, "simulate");
-    for (const Shot& shot : some) def.stills_s.push_back(shot.time_s);
+    for (const RequestedTime& shot : some) def.stills_s.push_back(shot.time_s);
     for (const double time_s : film_times_of_origin)
         if (time_s <= loaded.world.duration_s) def.stills_s.push_back(time_s);
     gl.apply_to(def);
@@ -107,26 +107,27 @@ Film FigureOptions::film_of(const Console& console, const Scene& loaded,
     return film;
 }
 
-std::vector<double> FigureOptions::film_times(const std::vector<Shot>& some) const {
+std::vector<double> FigureOptions::film_times(const std::vector<RequestedTime>& some) const {
     std::vector<double> times_s = film_times_of_origin;
-    for (const Shot& shot : some)
+    for (const RequestedTime& shot : some)
         if (!shot.frame) times_s.push_back(shot.time_s);
     std::sort(times_s.begin(), times_s.end());
     times_s.erase(std::unique(times_s.begin(), times_s.end()), times_s.end());
     return times_s;
 }
 
-PngInfo FigureOptions::describe(const Scene& loaded, const std::vector<Shot>& some, PictureOrigin origin,
-                                const std::vector<double>& all_s) const {
+PngInfo FigureOptions::describe(const Scene& loaded, const std::vector<RequestedTime>& some,
+                                PictureOrigin origin, const std::vector<double>& all_s) const {
     std::string times;
     std::string frames;
-    for (const Shot& shot : some) {
+    for (const RequestedTime& shot : some) {
         times += fmt::format("{}{}", times.empty() ? "" : ", ", shot.time_s);
         if (shot.frame) frames += fmt::format("{}{}", frames.empty() ? "" : ", ", *shot.frame);
     }
     const double ppi =
         width_mm ? loaded.video.width_px * kMmPerInch / *width_mm : pixels_per_inch.value_or(kScreenPpi);
-    for (const Shot& shot : some) origin.times.push_back({shot.frame, shot.frame ? 0.0 : shot.time_s});
+    for (const RequestedTime& shot : some)
+        origin.times.push_back({shot.frame, shot.frame ? 0.0 : shot.time_s});
     const bool are_its_own = std::all_of(all_s.begin(), all_s.end(), [&](double time_s) {
         return std::any_of(origin.times.begin(), origin.times.end(),
                            [&](const PictureTime& its) { return !its.frame && its.time_s == time_s; });
@@ -145,8 +146,8 @@ PngInfo FigureOptions::describe(const Scene& loaded, const std::vector<Shot>& so
     return info;
 }
 
-ExitCode FigureOptions::write_one(const Console& console, const Scene& loaded, const std::vector<Shot>& some,
-                                  const FigureDef& def) const {
+ExitCode FigureOptions::write_one(const Console& console, const Scene& loaded,
+                                  const std::vector<RequestedTime>& some, const FigureDef& def) const {
     if (!is_figure_path(output)) {
         throw Error(ExitCode::kUsage,
                     fmt::format("-o {}: is one picture, .png, .svg or .pdf; give such a name", output));

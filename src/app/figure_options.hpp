@@ -7,7 +7,7 @@
 
 #include "commands.hpp"
 #include "corda/pipeline/film.hpp"
-#include "shots.hpp"
+#include "time_options.hpp"
 
 namespace corda::app {
 
@@ -16,7 +16,7 @@ struct FigureOptions {
     SceneOptions scene;
     GlOptions gl;
     EmptyPictures empty;
-    ShotOptions shots;
+    TimeOptions shots;
     std::string output;
     std::optional<double> width_mm;
     std::optional<double> pixels_per_inch;
@@ -36,15 +36,15 @@ struct FigureOptions {
     /// What the file of `--from`, made by `command`, tells in place of what the command line does not.
     void take_origin(const Console& console, std::string_view command);
     /// The times beside those of frames that the film of these shots records.
-    [[nodiscard]] std::vector<double> film_times(const std::vector<Shot>& some) const;
+    [[nodiscard]] std::vector<double> film_times(const std::vector<RequestedTime>& some) const;
     [[nodiscard]] Film film_of(const Console& console, const Scene& scene,
-                               const std::vector<Shot>& some) const;
+                               const std::vector<RequestedTime>& some) const;
     /// What the file of a figure says of itself. `scene` has the size of the whole picture; `origin` gets its
     /// times, of which the film also has `all_s`.
-    [[nodiscard]] PngInfo describe(const Scene& scene, const std::vector<Shot>& some, PictureOrigin origin,
-                                   const std::vector<double>& all_s) const;
+    [[nodiscard]] PngInfo describe(const Scene& scene, const std::vector<RequestedTime>& some,
+                                   PictureOrigin origin, const std::vector<double>& all_s) const;
     /// Makes the only picture of a command, and reports it.
-    ExitCode write_one(const Console& console, const Scene& scene, const std::vector<Shot>& some,
+    ExitCode write_one(const Console& console, const Scene& scene, const std::vector<RequestedTime>& some,
                        const FigureDef& def) const;
 
   private:

@@ -8,7 +8,7 @@
 
 #include "commands.hpp"
 #include "corda/pipeline/describe.hpp"
-#include "corda/pipeline/terms.hpp"
+#include "corda/pipeline/model_summary.hpp"
 #include "corda/sim/auto/planner.hpp"
 
 namespace corda::app {

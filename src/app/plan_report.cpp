@@ -8,7 +8,7 @@
 #include "commands.hpp"
 #include "corda/core/clock.hpp"
 #include "corda/pipeline/describe.hpp"
-#include "corda/pipeline/terms.hpp"
+#include "corda/pipeline/model_summary.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {

@@ -22,7 +22,7 @@
 #include "corda/pipeline/film.hpp"
 #include "corda/view/look.hpp"
 #include "interrupt.hpp"
-#include "shots.hpp"
+#include "time_options.hpp"
 
 namespace corda::app {
 namespace {

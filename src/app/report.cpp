@@ -7,14 +7,14 @@
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
+#include "corda/figures/motion_summary.hpp"
 #include "corda/figures/paper.hpp"
-#include "corda/figures/reading.hpp"
 #include "corda/figures/scene_report.hpp"
 #include "corda/report/report_folder.hpp"
 #include "corda/report/writers.hpp"
 #include "interrupt.hpp"
 #include "page_folder.hpp"
-#include "shots.hpp"
+#include "time_options.hpp"
 
 namespace corda::app {
 namespace {
@@ -22,7 +22,7 @@ namespace {
 struct ReportOptions {
     SceneOptions scene;
     GlOptions gl;
-    ShotOptions shots;
+    TimeOptions shots;
     std::string output;
     bool force = false;
     bool dry_run = false;
@@ -47,11 +47,12 @@ class Parts {
 };
 
 /// Writes the report; returns why the motion ended early, if it did.
-std::optional<Error> write_report(const Console& console, const Film& film, const std::vector<Shot>& shots,
-                                  const ReportOptions& options, report::ReportFolder& folder) {
+std::optional<Error> write_report(const Console& console, const Film& film,
+                                  const std::vector<RequestedTime>& shots, const ReportOptions& options,
+                                  report::ReportFolder& folder) {
     Parts parts(console);
     figures::SceneReportDef def;
-    for (const Shot& shot : shots) def.at_s.push_back(shot.time_s);
+    for (const RequestedTime& shot : shots) def.at_s.push_back(shot.time_s);
     def.output = {.force = options.force, .on_progress = stopping_if_asked(kSomethingWritten)};
     def.on_part = [&](const std::string& part, std::int64_t done, std::int64_t total) {
         stop_if_asked(kSomethingWritten);
@@ -69,14 +70,14 @@ ExitCode report_command(const Console& console, const ReportOptions& options) {
     const double start_s = now_s();
     Scene scene = options.scene.load(console);
     figures::prefer_paper(scene);
-    const std::vector<Shot> shots = options.shots.list(scene);
+    const std::vector<RequestedTime> shots = options.shots.list(scene);
     report::check_gnuplot();
     prepare_page_folder(options.output, options.force, options.dry_run);
     OnProgress on_progress = show_progress(console, "simulate");
     FilmDef def;
     def.on_progress = [&on_progress](std::int64_t done, std::int64_t all) { return on_progress(done, all); };
     def.readings = figures::needed_readings();
-    for (const Shot& shot : shots) def.stills_s.push_back(shot.time_s);
+    for (const RequestedTime& shot : shots) def.stills_s.push_back(shot.time_s);
     options.gl.apply_to(def);
     const Film film(scene, def);
     report_plan(console, film);

@@ -14,9 +14,9 @@ ExitCode write_sheet(const Console& console, SheetOptions options) {
     options.take_origin(console, "sheet");
     if (options.columns == 0) options.columns = options.columns_of_origin;
     Scene scene = options.load(console);
-    const std::vector<Shot> shots = options.shots.list(scene);
+    const std::vector<RequestedTime> shots = options.shots.list(scene);
     std::vector<double> times_s;
-    for (const Shot& shot : shots) times_s.push_back(shot.time_s);
+    for (const RequestedTime& shot : shots) times_s.push_back(shot.time_s);
     const FigureDef def = contact_sheet(scene, times_s, options.columns);
     return options.write_one(console, scene, shots, def);
 }

@@ -16,7 +16,7 @@
 namespace corda::app {
 namespace {
 
-struct Still : Shot {
+struct Still : RequestedTime {
     std::string path;
 };
 
@@ -41,16 +41,16 @@ bool is_picture(const std::string& output) {
 
 /// What a folder calls it: names that sort by time, with one dot, so that no program takes a part of the
 /// time for the ending.
-std::string name_of(const Shot& shot, const Scene& scene) {
+std::string name_of(const RequestedTime& shot, const Scene& scene) {
     std::string name = shot.frame ? fmt::format("{}_f{:06}", scene.name, *shot.frame)
                                   : fmt::format("{}_t{:011.6f}", scene.name, shot.time_s);
     std::replace(name.begin(), name.end(), '.', '_');
     return name + ".png";
 }
 
-std::vector<Still> list_stills(const std::vector<Shot>& shots, const Scene& scene) {
+std::vector<Still> list_stills(const std::vector<RequestedTime>& shots, const Scene& scene) {
     std::vector<Still> stills;
-    for (const Shot& shot : shots) stills.push_back({shot, name_of(shot, scene)});
+    for (const RequestedTime& shot : shots) stills.push_back({shot, name_of(shot, scene)});
     const auto same = std::adjacent_find(stills.begin(), stills.end(),
                                          [](const Still& a, const Still& b) { return a.path == b.path; });
     if (same != stills.end()) {
@@ -107,7 +107,7 @@ void write_each(const std::vector<Still>& stills, const FigureOptions& options, 
 ExitCode write_stills(const Console& console, FigureOptions options) {
     options.take_origin(console, "still");
     const Scene scene = options.load(console);
-    const std::vector<Shot> shots = options.shots.list(scene);
+    const std::vector<RequestedTime> shots = options.shots.list(scene);
     std::vector<Still> stills = list_stills(shots, scene);
     set_paths(options, stills);
     const Film film = options.film_of(console, scene, shots);

@@ -9,9 +9,9 @@ namespace {
 ExitCode write_strobe(const Console& console, FigureOptions options) {
     options.take_origin(console, "strobe");
     const Scene scene = options.load(console);
-    const std::vector<Shot> shots = options.shots.list(scene);
+    const std::vector<RequestedTime> shots = options.shots.list(scene);
     FigureDef def;
-    for (const Shot& shot : shots) def.times_s.push_back(shot.time_s);
+    for (const RequestedTime& shot : shots) def.times_s.push_back(shot.time_s);
     return options.write_one(console, scene, shots, def);
 }
 

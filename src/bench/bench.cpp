@@ -20,7 +20,7 @@
 #include "corda/media/encode/baseline_encoder.hpp"
 #include "corda/media/encode/yuv420.hpp"
 #include "corda/media/format/format.hpp"
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 
 namespace corda::bench {
 namespace {
@@ -78,7 +78,7 @@ json render(const BenchDef& def, int jobs, const std::string& path) {
 /// Draws the frames one after the other.
 template <class Use>
 void draw_frames(const Film& film, std::int64_t frames, const Use& use) {
-    FilmPainter painter(film);
+    FilmRenderer painter(film);
     for (std::int64_t k = 0; k < frames; ++k) {
         const Damage damage = painter.draw(film.time_s(k));
         use(painter.image(), damage);

@@ -13,7 +13,7 @@
 #include "corda/media/format/format.hpp"
 #include "corda/media/picture_quality.hpp"
 #include "corda/media/read/video_reader.hpp"
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 
 namespace corda::bench {
 namespace {
@@ -25,7 +25,7 @@ constexpr std::int64_t kCompared = 10;
 
 /// The quality of the video at `path`.
 json quality_of(const Film& film, std::int64_t frames, const std::string& path) {
-    FilmPainter painter(film);
+    FilmRenderer painter(film);
     media::VideoReader reader(path);
     media::EdgeQuality edges;
     Image shown;

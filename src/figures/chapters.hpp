@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "corda/figures/moments.hpp"
-#include "corda/figures/reading.hpp"
+#include "corda/figures/figure_times.hpp"
+#include "corda/figures/motion_summary.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/report/report.hpp"
 
@@ -17,16 +17,16 @@ using WritePoses =
 
 /// What is modelled, by which method and how well, and how it looks: a strobe, stills and the largest
 /// figures.
-[[nodiscard]] report::Chapter motion_chapter(const Film& film, const Reading& reading, const Moments& moments,
-                                             const WritePoses& write);
+[[nodiscard]] report::Chapter motion_chapter(const Film& film, const MotionSummary& reading,
+                                             const FigureTimes& moments, const WritePoses& write);
 /// The paths of the followed particles.
-[[nodiscard]] report::Chapter path_chapter(const Film& film, const Reading& reading);
+[[nodiscard]] report::Chapter path_chapter(const Film& film, const MotionSummary& reading);
 /// Their phase portraits: angle and angular velocity about the pin if each has one and keeps away from it,
 /// else x and vx.
-[[nodiscard]] report::Chapter phase_chapter(const Film& film, const Reading& reading);
-[[nodiscard]] report::Chapter energy_chapter(const Film& film, const Reading& reading);
+[[nodiscard]] report::Chapter phase_chapter(const Film& film, const MotionSummary& reading);
+[[nodiscard]] report::Chapter energy_chapter(const Film& film, const MotionSummary& reading);
 /// The largest tension over time, and that along the rope when it is largest of all; or why it is not known.
-[[nodiscard]] report::Chapter tension_chapter(const Film& film, const Reading& reading);
-[[nodiscard]] report::Chapter strain_chapter(const Film& film, const Reading& reading);
+[[nodiscard]] report::Chapter tension_chapter(const Film& film, const MotionSummary& reading);
+[[nodiscard]] report::Chapter strain_chapter(const Film& film, const MotionSummary& reading);
 
 }  // namespace corda::figures

@@ -62,7 +62,7 @@ report::Plot make_plot(const std::string& id, const std::string& title, const Ax
     return plot;
 }
 
-std::vector<Curve> curves_of(const Scene& scene, const System& system, const Reading& reading,
+std::vector<Curve> curves_of(const Scene& scene, const System& system, const MotionSummary& reading,
                              Thinner BodyCurves::*curve) {
     std::vector<std::size_t> bodies;
     for (const BodyCurves& body : reading.bodies) bodies.push_back(body.followed.body);
@@ -95,7 +95,7 @@ void fit_height(report::Plot& plot) {
     plot.height_per_width = std::clamp(kBox * (y.high - y.low) / width + kLetters + key, kFlattest, kTallest);
 }
 
-std::string thinning_text(const Reading& reading) {
+std::string thinning_text(const MotionSummary& reading) {
     if (reading.rows <= Thinner::kMaxPoints) return {};
     return fmt::format(
         " Of the {} rows, {} points at most are drawn: of each of the blocks that they are divided into, the "
@@ -103,7 +103,7 @@ std::string thinning_text(const Reading& reading) {
         reading.rows, Thinner::kMaxPoints);
 }
 
-std::string left_out_text(const System& system, const Reading& reading) {
+std::string left_out_text(const System& system, const MotionSummary& reading) {
     const std::size_t moving = pipeline::moving_count(system);
     if (moving <= reading.bodies.size()) return {};
     const std::size_t count = moving - reading.bodies.size();

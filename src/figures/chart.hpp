@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "corda/figures/reading.hpp"
+#include "corda/figures/motion_summary.hpp"
 #include "corda/report/report.hpp"
 #include "corda/scene/scene.hpp"
 
@@ -30,16 +30,16 @@ struct AxisDef {
                                      const AxisDef& y, const std::vector<Curve>& curves);
 
 /// A curve per body, of the colour that it has in pictures; the only one needs no name.
-[[nodiscard]] std::vector<Curve> curves_of(const Scene& scene, const System& system, const Reading& reading,
-                                           Thinner BodyCurves::*curve);
+[[nodiscard]] std::vector<Curve> curves_of(const Scene& scene, const System& system,
+                                           const MotionSummary& reading, Thinner BodyCurves::*curve);
 
 /// Gives a plot of paths as high a picture as they are, within what fits a page.
 void fit_height(report::Plot& plot);
 
 /// " Of 36001 rows it keeps ...", a sentence for the caption of a curve that was thinned; empty otherwise.
-[[nodiscard]] std::string thinning_text(const Reading& reading);
+[[nodiscard]] std::string thinning_text(const MotionSummary& reading);
 
 /// "4 more bodies are not shown." as a sentence; empty if all are.
-[[nodiscard]] std::string left_out_text(const System& system, const Reading& reading);
+[[nodiscard]] std::string left_out_text(const System& system, const MotionSummary& reading);
 
 }  // namespace corda::figures

@@ -7,7 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "corda/core/text.hpp"
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 #include "corda/report/report.hpp"
 
 namespace corda::figures {
@@ -48,7 +48,7 @@ const Film& Drawings::look(double width_mm) {
     const auto known = looks_.find(width_mm);
     if (known != looks_.end()) return known->second;
     return looks_
-        .emplace(width_mm, FilmPainter::another_look(*film_, look_in_print(film_->scene(), width_mm)))
+        .emplace(width_mm, FilmRenderer::another_look(*film_, look_in_print(film_->scene(), width_mm)))
         .first->second;
 }
 

@@ -21,7 +21,7 @@ std::string link_text(const System& system, const Extreme& extreme) {
 }
 
 /// Why the tensions of some bodies are not known.
-std::string unknown_text(const Film& film, const Reading& reading) {
+std::string unknown_text(const Film& film, const MotionSummary& reading) {
     const auto relaxes = [&](std::size_t b) {
         return std::holds_alternative<RelaxationDef>(film.plan().bodies[b].method);
     };
@@ -40,7 +40,7 @@ std::string unknown_text(const Film& film, const Reading& reading) {
 }
 
 /// The tensions of the links of a chain or a ring when the largest of all is reached.
-void add_tensions_along(const Film& film, const Reading& reading, report::Chapter& chapter) {
+void add_tensions_along(const Film& film, const MotionSummary& reading, report::Chapter& chapter) {
     const System& system = film.system();
     const Body& body = system.bodies[reading.tension.body];
     constexpr std::size_t kMinLinks = 3;
@@ -66,7 +66,7 @@ void add_tensions_along(const Film& film, const Reading& reading, report::Chapte
 
 }  // namespace
 
-report::Chapter energy_chapter(const Film& film, const Reading& reading) {
+report::Chapter energy_chapter(const Film& film, const MotionSummary& reading) {
     report::Chapter chapter;
     chapter.title = "Energy";
     const auto error = film.diagnostics().largest.energy_error;
@@ -88,7 +88,7 @@ report::Chapter energy_chapter(const Film& film, const Reading& reading) {
     return chapter;
 }
 
-report::Chapter tension_chapter(const Film& film, const Reading& reading) {
+report::Chapter tension_chapter(const Film& film, const MotionSummary& reading) {
     report::Chapter chapter;
     chapter.title = "Tension";
     if (!reading.unknown_tensions.empty()) chapter.paragraphs.push_back(unknown_text(film, reading));
@@ -119,7 +119,7 @@ report::Chapter tension_chapter(const Film& film, const Reading& reading) {
     return chapter;
 }
 
-report::Chapter strain_chapter(const Film& film, const Reading& reading) {
+report::Chapter strain_chapter(const Film& film, const MotionSummary& reading) {
     report::Chapter chapter;
     chapter.title = "Strain";
     const System& system = film.system();

@@ -8,7 +8,7 @@
 #include "corda/figures/chapters.hpp"
 #include "corda/figures/quantity_text.hpp"
 #include "corda/pipeline/describe.hpp"
-#include "corda/pipeline/terms.hpp"
+#include "corda/pipeline/model_summary.hpp"
 
 namespace corda::figures {
 namespace {
@@ -43,7 +43,7 @@ std::string place_of(const Film& film, const Extreme& extreme, const char* what)
     return fmt::format("{} {} of {}", what, extreme.index, body_name(film.system(), extreme.body));
 }
 
-report::Table largest_table(const Film& film, const Reading& reading) {
+report::Table largest_table(const Film& film, const MotionSummary& reading) {
     report::Table table{
         "largest",
         "Largest figures, at frame times",
@@ -70,7 +70,7 @@ std::string times_text(const std::vector<double>& times_s) {
     return text + " s";
 }
 
-void add_pictures(const Film& film, const Moments& moments, const WritePoses& write,
+void add_pictures(const Film& film, const FigureTimes& moments, const WritePoses& write,
                   report::Chapter& chapter) {
     const std::string name = printable(film.scene().name);
     if (moments.strobe_s.size() > 1) {
@@ -95,7 +95,7 @@ void add_pictures(const Film& film, const Moments& moments, const WritePoses& wr
 
 }  // namespace
 
-report::Chapter motion_chapter(const Film& film, const Reading& reading, const Moments& moments,
+report::Chapter motion_chapter(const Film& film, const MotionSummary& reading, const FigureTimes& moments,
                                const WritePoses& write) {
     report::Chapter chapter;
     chapter.title = "Motion";

@@ -12,13 +12,13 @@
 #include "corda/figures/csv_file.hpp"
 #include "corda/figures/drawings.hpp"
 #include "corda/pipeline/describe.hpp"
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 
 namespace corda::figures {
 namespace {
 
 /// Reads the motion, and leaves its rows in the folder.
-Reading read_into(const Film& film, const SceneReportDef& def, report::ReportFolder& folder) {
+MotionSummary read_into(const Film& film, const SceneReportDef& def, report::ReportFolder& folder) {
     std::vector<std::pair<std::string, std::unique_ptr<CsvFile>>> files;
     const auto open = [&](const std::string& name, const std::vector<std::string>& keys) -> OnRow {
         const std::string path = folder.path_of(name);
@@ -29,7 +29,7 @@ Reading read_into(const Film& film, const SceneReportDef& def, report::ReportFol
         if (def.on_part) def.on_part("read", done, total);
         return !def.output.on_progress || def.output.on_progress(done, total);
     };
-    Reading reading = read_motion(film, open, on_progress);
+    MotionSummary reading = read_motion(film, open, on_progress);
     for (const auto& [path, file] : files) {
         file->commit();
         folder.note(path);
@@ -38,7 +38,7 @@ Reading read_into(const Film& film, const SceneReportDef& def, report::ReportFol
 }
 
 /// The numbers of the figure of the tensions along a rope.
-void write_tensions_along(const Film& film, const Reading& reading, const OutputOptions& options,
+void write_tensions_along(const Film& film, const MotionSummary& reading, const OutputOptions& options,
                           report::ReportFolder& folder) {
     const std::string path = folder.path_of("tension_along.csv");
     CsvFile file(path, options, {"link", "rest_length_m", "tension_n"});
@@ -52,8 +52,8 @@ void write_tensions_along(const Film& film, const Reading& reading, const Output
     folder.note(path);
 }
 
-std::vector<report::Chapter> list_chapters(const Film& film, const Reading& reading, const Moments& moments,
-                                           const WritePoses& write) {
+std::vector<report::Chapter> list_chapters(const Film& film, const MotionSummary& reading,
+                                           const FigureTimes& moments, const WritePoses& write) {
     std::vector<report::Chapter> chapters;
     chapters.push_back(motion_chapter(film, reading, moments, write));
     chapters.push_back(path_chapter(film, reading));
@@ -86,13 +86,13 @@ std::optional<Error> write_scene_report(const Film& film, const SceneReportDef& 
                                         report::ReportFolder& folder) {
     Drawings drawings(film);
     static_cast<void>(drawings.gl(kColumnMm));  // before anything is simulated, if the method is named
-    const Reading reading = read_into(film, def, folder);
+    const MotionSummary reading = read_into(film, def, folder);
     if (reading.tension.is_known) write_tensions_along(film, reading, def.output, folder);
-    const Moments moments = find_moments(film, reading, def.at_s);
+    const FigureTimes moments = find_figure_times(film, reading, def.at_s);
     std::vector<double> drawn_s = moments.strobe_s;
     drawn_s.insert(drawn_s.end(), moments.stills_s.begin(), moments.stills_s.end());
     std::sort(drawn_s.begin(), drawn_s.end());
-    FilmPainter::keep(film, drawn_s);
+    FilmRenderer::keep(film, drawn_s);
     const auto write = [&](const std::string& path, double width_mm, const std::vector<double>& times_s) {
         drawings.write(path, width_mm, times_s, def.output);
     };

@@ -12,14 +12,14 @@ namespace {
 
 constexpr const char* kTipData = "tip.csv";
 
-std::vector<pipeline::Followed> followed_of(const Reading& reading) {
-    std::vector<pipeline::Followed> followed;
+std::vector<pipeline::TrackedParticle> followed_of(const MotionSummary& reading) {
+    std::vector<pipeline::TrackedParticle> followed;
     for (const BodyCurves& body : reading.bodies) followed.push_back(body.followed);
     return followed;
 }
 
 /// Curves that are not over time: dots if lines would show what is not there.
-std::vector<Curve> tip_curves(const Film& film, const Reading& reading, Thinner BodyCurves::*curve) {
+std::vector<Curve> tip_curves(const Film& film, const MotionSummary& reading, Thinner BodyCurves::*curve) {
     std::vector<Curve> curves = curves_of(film.scene(), film.system(), reading, curve);
     for (std::size_t i = 0; i < curves.size(); ++i)
         curves[i].is_joined = (reading.bodies[i].*curve).is_joined();
@@ -27,7 +27,7 @@ std::vector<Curve> tip_curves(const Film& film, const Reading& reading, Thinner 
 }
 
 /// As thinning_text().
-std::string path_thinning_text(const Reading& reading) {
+std::string path_thinning_text(const MotionSummary& reading) {
     if (reading.bodies.front().path.is_joined()) return thinning_text(reading);
     return fmt::format(
         " Of the {} rows, {} at most are drawn, as dots: evenly spread ones, the last, and where x or y is "
@@ -36,7 +36,7 @@ std::string path_thinning_text(const Reading& reading) {
 }
 
 /// Whether all bodies turn about their pins: an angle about a point says nothing beside it.
-bool all_turn(const System& system, const Reading& reading) {
+bool all_turn(const System& system, const MotionSummary& reading) {
     constexpr double kNear = 0.1;
     return std::all_of(reading.bodies.begin(), reading.bodies.end(), [&](const BodyCurves& body) {
         const double length_m = links_length_m(system, system.bodies[body.followed.body]);
@@ -63,7 +63,7 @@ double extent_m(const std::vector<Curve>& curves) {
 
 }  // namespace
 
-report::Chapter path_chapter(const Film& film, const Reading& reading) {
+report::Chapter path_chapter(const Film& film, const MotionSummary& reading) {
     report::Chapter chapter;
     chapter.title = "Path";
     if (reading.bodies.empty()) {
@@ -100,7 +100,7 @@ report::Chapter path_chapter(const Film& film, const Reading& reading) {
     return chapter;
 }
 
-report::Chapter phase_chapter(const Film& film, const Reading& reading) {
+report::Chapter phase_chapter(const Film& film, const MotionSummary& reading) {
     report::Chapter chapter;
     chapter.title = "Phase portrait";
     if (reading.bodies.empty()) return chapter;

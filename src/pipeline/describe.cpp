@@ -10,7 +10,7 @@
 
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
-#include "corda/pipeline/freeze.hpp"
+#include "corda/pipeline/plan_toml.hpp"
 #include "corda/view/number_text.hpp"
 
 namespace corda {

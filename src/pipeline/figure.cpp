@@ -9,7 +9,7 @@
 
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 #include "corda/render/reference_renderer.hpp"
 #include "corda/render/vector.hpp"
 #include "corda/view/font.hpp"
@@ -206,10 +206,10 @@ Image draw(const Film& film, const FigureDef& def, const OnProgress& on_progress
         if (film.shows_nothing()) empty_s.push_back(def.times_s.front());
         return image;
     }
-    FilmPainter painter(film);
-    painter.draw(FilmPainter::poses(film, def.times_s, on_progress), on_progress);
+    FilmRenderer renderer(film);
+    renderer.draw(FilmRenderer::poses(film, def.times_s, on_progress), on_progress);
     if (film.shows_nothing()) empty_s.push_back(def.times_s.front());
-    return painter.image();
+    return renderer.image();
 }
 
 std::string ending_of(const std::string& path) {
@@ -235,7 +235,7 @@ std::string describe_lines(const std::string& ending, const Film& film, const Fi
     }
     const auto page = ending == ".svg" ? render::make_svg(page_def) : render::make_pdf(page_def);
     const auto add = [&](std::span<const double> times_s, int x, int y) {
-        const view::DrawList list = FilmPainter::poses(film, times_s, on_progress);
+        const view::DrawList list = FilmRenderer::poses(film, times_s, on_progress);
         if (list.shows_nothing()) empty_s.push_back(times_s.front());
         page->draw(list, x, y);
     };

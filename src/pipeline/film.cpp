@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 
 #include "corda/core/clock.hpp"
-#include "corda/pipeline/brush.hpp"
-#include "corda/pipeline/curves.hpp"
 #include "corda/pipeline/describe.hpp"
+#include "corda/pipeline/draw_context.hpp"
+#include "corda/pipeline/film_renderer.hpp"
+#include "corda/pipeline/live_plot_data.hpp"
 #include "corda/pipeline/methods.hpp"
 #include "corda/pipeline/motion.hpp"
 #include "corda/pipeline/notes.hpp"
-#include "corda/pipeline/painter.hpp"
 #include "corda/pipeline/validate.hpp"
 #include "corda/sim/auto/planner.hpp"
 #include "corda/sim/bounds.hpp"
@@ -49,18 +49,18 @@ struct Film::Run {
 };
 
 struct Film::Impl {
-    using Brush = pipeline::Brush;
+    using DrawContext = pipeline::DrawContext;
 
     Impl(const Scene& given, FilmDef options)
         : scene(given),
           def(std::move(options)),
           run(std::make_shared<Run>(scene)),
           system(run->system),
-          brush(scene, system, def),
-          curves(scene, system),
+          drawing(scene, system, def),
+          plot_data(scene, system),
           motion(run->motion.emplace(
               system, scene.world, pipeline::if_all_named(run->named), timeline(), def.motion_budget_bytes,
-              def.on_progress, quantity_of(scene.style.color_by), def.readings.with(curves.readings()))),
+              def.on_progress, quantity_of(scene.style.color_by), def.readings.with(plot_data.readings()))),
           plan(run->plan) {
         if (motion.methods().empty()) {
             plan = motion.record([&](const Timeline& timeline, sim::Recording& recording) {
@@ -79,7 +79,7 @@ struct Film::Impl {
     Timeline timeline() const {
         const VideoDef& video = scene.video;
         const std::int64_t last_frame = pipeline::last_frame_of(scene);
-        std::vector<double> times_s = curves.times_s();
+        std::vector<double> times_s = plot_data.times_s();
         times_s.insert(times_s.end(), def.stills_s.begin(), def.stills_s.end());
         constexpr std::size_t kMaxNumbersPerParticle = 5;
         const std::size_t state_bytes = kMaxNumbersPerParticle * sizeof(double) * system.particle_count();
@@ -109,15 +109,15 @@ struct Film::Impl {
           def(other.def),
           run(other.run),
           system(run->system),
-          brush(scene, system, def),
-          curves(scene, system),
+          drawing(scene, system, def),
+          plot_data(scene, system),
           motion(*run->motion),
           plan(run->plan) {}
 
     Plan plan_within(const Timeline& timeline, sim::Recording& recording) const {
         const double tolerance_px = std::get<AutoDef>(scene.solver).tolerance_px;
         const auto tolerance_m = [&](const MotionBounds& bounds) {
-            return tolerance_px / brush.stage.largest_pixels_per_metre(bounds);
+            return tolerance_px / drawing.renderer.largest_pixels_per_metre(bounds);
         };
         return sim::plan_methods(system, run->named, scene.world,
                                  {tolerance_m, timeline, def.on_progress, now_s}, recording);
@@ -126,32 +126,32 @@ struct Film::Impl {
     /// The camera, fitted once the motion is known as far as it needs it.
     const CameraDef& find_camera() {
         if (camera) return *camera;
-        if (brush.stage.needs_motion()) motion.run_to_end(def.on_progress);
+        if (drawing.renderer.needs_motion()) motion.run_to_end(def.on_progress);
         if (scene.overlay.plot != LivePlot::kNone) {
             const std::vector<MethodDef> methods = motion.methods();  // reading may begin the motion anew
-            plot = curves.read(methods, last_s(brush), [this](double time_s) -> const State& {
+            plot = plot_data.read(methods, last_s(drawing), [this](double time_s) -> const State& {
                 return motion.at(time_s, def.on_progress);
             });
         }
-        camera = fit(brush.stage);
+        camera = fit(drawing.renderer);
         return *camera;
     }
 
-    /// Fits a stage to the motion.
-    CameraDef fit(pipeline::Stage& stage) const {
-        if (plot) stage.set_plot(*plot);
+    /// Fits a renderer to the motion.
+    CameraDef fit(pipeline::SceneRenderer& renderer) const {
+        if (plot) renderer.set_plot(*plot);
         // The start is there even if the first step diverges.
         const sim::Recording& recording = motion.recording();
-        return stage.fit(recording.size() > 0 ? recording.particle_bounds() : bounds_of_start(system),
-                         recording.spread());
+        return renderer.fit(recording.size() > 0 ? recording.particle_bounds() : bounds_of_start(system),
+                            recording.spread());
     }
 
-    /// Another brush for what this film draws.
-    std::unique_ptr<Brush> another_brush() {
+    /// A second draw context of this film.
+    std::unique_ptr<DrawContext> another_context() {
         static_cast<void>(find_camera());
-        auto made = std::make_unique<Brush>(scene, system, def);
-        static_cast<void>(fit(made->stage));
-        made->tracks = brush.tracks;
+        auto made = std::make_unique<DrawContext>(scene, system, def);
+        static_cast<void>(fit(made->renderer));
+        made->trails = drawing.trails;
         return made;
     }
 
@@ -162,7 +162,7 @@ struct Film::Impl {
                                                   time_s, scene.world.duration_s));
     }
 
-    /// Painters in other threads may read the motion meanwhile.
+    /// Renderers in other threads may read the motion meanwhile.
     const State& at(double time_s) {
         time_s = checked_s(time_s);
         const std::lock_guard lock(run->reading);
@@ -171,34 +171,34 @@ struct Film::Impl {
         return asked;
     }
 
-    /// Whom to ask while the motion is simulated for a brush.
-    [[nodiscard]] OnProgress asking(const Brush& by) const {
+    /// The progress callback while the motion is simulated for a draw context.
+    [[nodiscard]] OnProgress asking(const DrawContext& by) const {
         return by.is_silent ? OnProgress() : def.on_progress;
     }
 
-    /// Reads the state at a time, and what the trails to it need, for a brush. Brushes may be used by several
-    /// threads.
-    const State& read(double time_s, Brush& by) {
+    /// Reads the state at a time, and the trails up to it, into a draw context. Several threads may do so,
+    /// each with its own.
+    const State& read(double time_s, DrawContext& by) {
         time_s = checked_s(time_s);
         const std::lock_guard lock(run->reading);
-        by.tracks.read(motion, time_s, asking(by));
+        by.trails.read(motion, time_s, asking(by));
         by.state = motion.at(time_s, asking(by));
         by.figures = motion.figures();
         return by.state;
     }
 
     view::DrawList poses(std::span<const double> times_s, const OnProgress& on_progress) {
-        pipeline::Stage& stage = brush.stage;
-        const view::Camera map = stage.map_of(find_camera());
-        const view::SceneView& view = stage.view();
+        pipeline::SceneRenderer& renderer = drawing.renderer;
+        const view::Camera map = renderer.map_of(find_camera());
+        const view::SceneView& view = renderer.view();
         view::DrawList list;
         view.start(list);
-        view.draw_trails(brush.tracks.to(read(times_s.back(), brush)), map, list);
+        view.draw_trails(drawing.trails.to(read(times_s.back(), drawing)), map, list);
         for (std::size_t k = 0; k < times_s.size(); ++k) {
             report_progress(on_progress, static_cast<std::int64_t>(k),
                             static_cast<std::int64_t>(times_s.size()));
             const std::size_t first_layer = list.layers.size();
-            view.draw_pose(read(times_s[k], brush), map, list);
+            view.draw_pose(read(times_s[k], drawing), map, list);
             const double opacity = pose_opacity(k, times_s.size());
             for (std::size_t l = first_layer; l < list.layers.size(); ++l) {
                 Color& color = list.layers[l].color;
@@ -210,53 +210,54 @@ struct Film::Impl {
                                         k + 1, times_s.size(), kMaxPoseCapsules));
             }
         }
-        const State& last = read(times_s.back(), brush);
+        const State& last = read(times_s.back(), drawing);
         view.draw_supports(last, map, list);
-        view::Caption caption = caption_of(brush, map);
+        view::Caption caption = caption_of(drawing, map);
         if (times_s.size() > 1) {  // it is of no one time
             caption.time_s.reset();
             caption.energy_error.reset();
         }
-        stage.draw_curves(last.time_s, list);
-        stage.annotate(caption, map, list);
+        renderer.draw_curves(last.time_s, list);
+        renderer.annotate(caption, map, list);
         return list;
     }
 
-    /// What there is to say of the last state that was read for a brush.
-    view::Caption caption_of(const Brush& by, const view::Camera& map) const {
+    /// The caption of the last state that was read into a draw context.
+    view::Caption caption_of(const DrawContext& by, const view::Camera& map) const {
         std::optional<double> bound_px;
         if (plan.error_bound_m) bound_px = *plan.error_bound_m * map.pixels_per_metre();
         return {by.state.time_s, by.figures.energy_error, method_caption(plan, bound_px)};
     }
 
-    /// Requires a Use of the brush's stage. `camera`: of find_camera().
+    /// Requires a Use of the context's renderer. `camera`: of find_camera().
     Damage draw(double time_s, double shutter, const CameraDef& camera_def, const OnProgress& on_progress,
-                Brush& by) {
+                DrawContext& by) {
         time_s = checked_s(time_s);
         if (!(shutter >= 0.0 && shutter <= 1.0))
             throw Error(ExitCode::kUsage, fmt::format("a shutter of {} is not within 0 .. 1", shutter));
-        const view::Camera map = by.stage.map_of(camera_def);
+        const view::Camera map = by.renderer.map_of(camera_def);
         const auto draw_asking = [&](const OnProgress& ask) {
             return shutter > 0.0 ? expose(time_s, shutter, map, ask, by) : draw_sharp(time_s, map, ask, by);
         };
         try {
             return draw_asking(on_progress);
-        } catch (const pipeline::Stage::Overdrawn&) {
+        } catch (const pipeline::SceneRenderer::Overdrawn&) {
             // Ask nobody: a callback would draw again.
             const pipeline::Silence silence(by);
             return draw_asking({});
         }
     }
 
-    Damage draw_sharp(double time_s, const view::Camera& map, const OnProgress& on_progress, Brush& by) {
+    Damage draw_sharp(double time_s, const view::Camera& map, const OnProgress& on_progress,
+                      DrawContext& by) {
         const State& state = read(time_s, by);
-        return by.stage.draw(state, map, caption_of(by, map), {by.tracks.to(state), state.time_s},
-                             on_progress);
+        return by.renderer.draw(state, map, caption_of(by, map), {by.trails.to(state), state.time_s},
+                                on_progress);
     }
 
     /// The end of the motion: that of the scene, or of the last recorded state if it diverges, which is only
     /// known once it has been simulated.
-    double last_s(const Brush& by) {
+    double last_s(const DrawContext& by) {
         const std::lock_guard lock(run->reading);
         motion.run_to_end(asking(by));
         const std::size_t states = motion.recording().size();
@@ -266,9 +267,9 @@ struct Film::Impl {
 
     /// The states are read in the order of time: what is not recorded is simulated on the way.
     Damage expose(double time_s, double shutter, const view::Camera& map, const OnProgress& on_progress,
-                  Brush& by) {
+                  DrawContext& by) {
         const double end_s = last_s(by);
-        const std::int64_t picture = by.stage.begin_exposure();
+        const std::int64_t picture = by.renderer.begin_exposure();
         std::optional<view::Caption> caption;
         const auto note = [&] {
             static_cast<void>(read(time_s, by));
@@ -278,22 +279,22 @@ struct Film::Impl {
             const double at_s = subframe_s(time_s, shutter, end_s, i);
             if (!caption && at_s >= time_s) note();
             const State& state = read(at_s, by);
-            by.stage.expose(picture, state, map, {by.tracks.to(state), time_s}, on_progress);
+            by.renderer.expose(picture, state, map, {by.trails.to(state), time_s}, on_progress);
         }
         if (!caption) note();
-        return by.stage.develop(picture, *caption, map);
+        return by.renderer.develop(picture, *caption, map);
     }
 
     /// Whether the frame at a time would show nothing.
     bool is_empty(double time_s) {
-        const view::Camera map = brush.stage.map_of(find_camera());
+        const view::Camera map = drawing.renderer.map_of(find_camera());
         const auto shows_nothing_at = [&](double at_s) {
-            const State& state = read(at_s, brush);
-            return brush.stage.would_show_nothing(state, map, {brush.tracks.to(state), time_s});
+            const State& state = read(at_s, drawing);
+            return drawing.renderer.would_show_nothing(state, map, {drawing.trails.to(state), time_s});
         };
         const VideoDef& video = scene.video;
         if (video.shutter == 0.0) return shows_nothing_at(time_s);
-        const double end_s = last_s(brush);
+        const double end_s = last_s(drawing);
         for (int i = 0; i < video.subframes; ++i)
             if (!shows_nothing_at(subframe_s(time_s, video.shutter, end_s, i))) return false;
         return true;
@@ -305,7 +306,7 @@ struct Film::Impl {
         const double last_frame_s = video.fps.time_s(end - 1);
         const double needed_s = video.shutter > 0.0
                                     ? std::max(last_frame_s, subframe_s(last_frame_s, video.shutter,
-                                                                        last_s(brush), video.subframes - 1))
+                                                                        last_s(drawing), video.subframes - 1))
                                     : last_frame_s;
         const auto last = motion.timeline().find(needed_s);
         if (!last) return false;
@@ -321,8 +322,8 @@ struct Film::Impl {
     FilmDef def;
     std::shared_ptr<Run> run;
     const System& system;
-    Brush brush;
-    pipeline::Curves curves;
+    DrawContext drawing;
+    pipeline::LivePlotData plot_data;
     pipeline::Motion& motion;
     Plan& plan;
     std::optional<view::PlotData> plot;
@@ -374,7 +375,7 @@ const Plan& Film::plan() const {
 
 std::optional<double> Film::error_bound_px() const {
     if (!plan().error_bound_m) return std::nullopt;
-    return *plan().error_bound_m * impl_->brush.stage.map_of(impl_->find_camera()).pixels_per_metre();
+    return *plan().error_bound_m * impl_->drawing.renderer.map_of(impl_->find_camera()).pixels_per_metre();
 }
 
 const CameraDef& Film::camera() const {
@@ -410,63 +411,66 @@ Image Film::frame(std::int64_t k, const OnProgress& on_progress) const {
 }
 
 Image Film::still(double time_s, const OnProgress& on_progress, double shutter) const {
-    const pipeline::Stage::Use use(impl_->brush.stage);
+    const pipeline::SceneRenderer::Use use(impl_->drawing.renderer);
     const CameraDef& camera = impl_->find_camera();
-    impl_->draw(time_s, shutter, camera, on_progress, impl_->brush);
-    return impl_->brush.stage.image();
+    impl_->draw(time_s, shutter, camera, on_progress, impl_->drawing);
+    return impl_->drawing.renderer.image();
 }
 
 bool Film::shows_nothing() const {
-    return impl_->brush.stage.shows_nothing();
+    return impl_->drawing.renderer.shows_nothing();
 }
 
 GlInfo Film::gl() const {
-    const pipeline::Stage::Use use(impl_->brush.stage, pipeline::Stage::Needs::kContext);
-    const gl::Context& context = impl_->brush.stage.context();
+    const pipeline::SceneRenderer::Use use(impl_->drawing.renderer, pipeline::SceneRenderer::Needs::kContext);
+    const gl::Context& context = impl_->drawing.renderer.context();
     return {context.info().gl_renderer, context.info().gl_vendor, context.info().gl_version,
             context.platform()};
 }
 
-FilmPainter::FilmPainter(const Film& film)
-    : film_(&film), brush_(&film.impl_->brush), use_(brush_->stage), camera_(film.impl_->find_camera()) {}
-
-FilmPainter::FilmPainter(const Film& film, Apart)
+FilmRenderer::FilmRenderer(const Film& film)
     : film_(&film),
-      own_(film.impl_->another_brush()),
-      brush_(own_.get()),
-      use_(brush_->stage),
+      drawing_(&film.impl_->drawing),
+      use_(drawing_->renderer),
       camera_(film.impl_->find_camera()) {}
 
-FilmPainter::~FilmPainter() = default;
+FilmRenderer::FilmRenderer(const Film& film, OwnContext)
+    : film_(&film),
+      own_(film.impl_->another_context()),
+      drawing_(own_.get()),
+      use_(drawing_->renderer),
+      camera_(film.impl_->find_camera()) {}
 
-bool FilmPainter::can_draw_apart(const Film& film, std::int64_t end) {
+FilmRenderer::~FilmRenderer() = default;
+
+bool FilmRenderer::can_draw_in_any_order(const Film& film, std::int64_t end) {
     return film.impl_->holds(end);
 }
 
-Damage FilmPainter::draw(double time_s, const OnProgress& on_progress) {
-    pipeline::Stage& stage = brush_->stage;
-    Damage damage = film_->impl_->draw(time_s, film_->scene().video.shutter, camera_, on_progress, *brush_);
-    const bool is_next = stage.pictures() == pictures_ + 1;
-    pictures_ = stage.pictures();
-    return is_next ? damage : Damage{stage.image().rect()};
+Damage FilmRenderer::draw(double time_s, const OnProgress& on_progress) {
+    pipeline::SceneRenderer& renderer = drawing_->renderer;
+    Damage damage = film_->impl_->draw(time_s, film_->scene().video.shutter, camera_, on_progress, *drawing_);
+    const bool is_next = renderer.pictures() == pictures_ + 1;
+    pictures_ = renderer.pictures();
+    return is_next ? damage : Damage{renderer.image().rect()};
 }
 
-void FilmPainter::draw(view::DrawList list, const OnProgress& on_progress) {
-    pipeline::Stage& stage = brush_->stage;
+void FilmRenderer::draw(view::DrawList list, const OnProgress& on_progress) {
+    pipeline::SceneRenderer& renderer = drawing_->renderer;
     try {
-        stage.draw(list, on_progress);
-    } catch (const pipeline::Stage::Overdrawn&) {
-        stage.draw(std::move(list));  // without asking: it would not end
+        renderer.draw(list, on_progress);
+    } catch (const pipeline::SceneRenderer::Overdrawn&) {
+        renderer.draw(std::move(list));  // without asking: it would not end
     }
     pictures_ = -1;
 }
 
-view::DrawList FilmPainter::poses(const Film& film, std::span<const double> times_s,
-                                  const OnProgress& on_progress) {
+view::DrawList FilmRenderer::poses(const Film& film, std::span<const double> times_s,
+                                   const OnProgress& on_progress) {
     return film.impl_->poses(times_s, on_progress);
 }
 
-Film FilmPainter::another_look(const Film& film, const Scene& look) {
+Film FilmRenderer::another_look(const Film& film, const Scene& look) {
     const Scene& scene = film.scene();
     const bool has_more = look.overlay.plot != LivePlot::kNone || look.style.color_by != scene.style.color_by;
     if (has_more)
@@ -474,23 +478,23 @@ Film FilmPainter::another_look(const Film& film, const Scene& look) {
     return Film(std::make_unique<Film::Impl>(*film.impl_, look));
 }
 
-void FilmPainter::keep(const Film& film, std::span<const double> times_s) {
+void FilmRenderer::keep(const Film& film, std::span<const double> times_s) {
     std::vector<double> checked_s;
     for (const double time_s : times_s) checked_s.push_back(film.impl_->checked_s(time_s));
     const std::lock_guard lock(film.impl_->run->reading);
     film.impl_->motion.keep(checked_s, film.impl_->def.on_progress);
 }
 
-bool FilmPainter::is_empty(const Film& film, double time_s) {
+bool FilmRenderer::is_empty(const Film& film, double time_s) {
     return film.impl_->is_empty(time_s);
 }
 
-const Image& FilmPainter::image() const {
-    return brush_->stage.image();
+const Image& FilmRenderer::image() const {
+    return drawing_->renderer.image();
 }
 
-bool FilmPainter::shows_nothing() const {
-    return brush_->stage.shows_nothing();
+bool FilmRenderer::shows_nothing() const {
+    return drawing_->renderer.shows_nothing();
 }
 
 }  // namespace corda

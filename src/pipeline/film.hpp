@@ -29,7 +29,7 @@ struct FilmDef {
     /// How to reach OpenGL: "auto", "device", "device:N", "surfaceless" or "default".
     std::string backend = "auto";
     bool require_gpu = false;  ///< refuse an OpenGL that runs on the CPU
-    Readings readings;         ///< what its states have besides positions
+    StateFields readings;      ///< what its states have besides positions
     /// Called with the frames done so far, in every pass of the simulation, and again during frames that take
     /// long; returning false ends what is being asked for by kInterrupted. It can be asked for again. It may
     /// query states that have already been simulated, and draw them; any other query throws kUsage.
@@ -106,7 +106,7 @@ class Film {
     [[nodiscard]] GlInfo gl() const;
 
   private:
-    friend class FilmPainter;
+    friend class FilmRenderer;
     struct Run;
     struct Impl;
     explicit Film(std::unique_ptr<Impl> impl);

@@ -31,7 +31,7 @@ class Motion::Stepping {
 
 Motion::Motion(const System& system, const WorldDef& world, std::vector<MethodDef> methods, Timeline timeline,
                std::size_t budget_bytes, const OnProgress& on_progress, std::optional<Quantity> quantity,
-               const Readings& readings)
+               const StateFields& readings)
     : system_(&system),
       world_(world),
       methods_(std::move(methods)),
@@ -52,7 +52,7 @@ void Motion::start(const OnProgress& on_progress) {
     next_ = 0;
     run_.reset();
     run_.emplace(*system_, world_, methods_, timeline_.fps().interval_s(), asking(on_progress));
-    run_->tell(recording_.readings());
+    run_->set_outputs(recording_.readings());
     methods_ = run_->methods();
 }
 

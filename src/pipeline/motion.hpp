@@ -24,7 +24,7 @@ class Motion {
     /// if a method cannot run its body, and corda::Error (kInterrupted) if asked to stop.
     Motion(const System& system, const WorldDef& world, std::vector<MethodDef> methods, Timeline timeline,
            std::size_t budget_bytes, const OnProgress& on_progress = {},
-           std::optional<Quantity> quantity = {}, const Readings& readings = {});
+           std::optional<Quantity> quantity = {}, const StateFields& readings = {});
     Motion(const Motion&) = delete;
     Motion& operator=(const Motion&) = delete;
 

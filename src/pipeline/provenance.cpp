@@ -118,8 +118,8 @@ std::string text_in_video(const std::string& path, const OnProgress& on_progress
     if (!comment.is_object() || !comment.contains(kProvenanceKey)) return {};
     Json& provenance = comment[kProvenanceKey];
     // Of a recovered video those that it has, not those that it was to have.
-    const auto first = media::told_number(text, "first_frame");
-    const auto frames = media::told_number(text, "frames");
+    const auto first = media::comment_number(text, "first_frame");
+    const auto frames = media::comment_number(text, "frames");
     const auto is_count = [](std::int64_t number) { return number >= 0 && number <= std::int64_t{1} << 53U; };
     if (provenance.is_object() && first && frames && is_count(*first) && is_count(*frames))
         provenance["frames"] = fmt::format("{}:{}", *first, *first + *frames);

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "corda/core/clock.hpp"
-#include "corda/core/in_order.hpp"
+#include "corda/core/ordered_workers.hpp"
 #include "corda/media/chunks/chunk.hpp"
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 
 namespace corda::pipeline {
 namespace {
@@ -34,18 +34,18 @@ class ChunkMaker {
     /// How many frames were drawn.
     [[nodiscard]] std::int64_t drawn() const { return drawn_; }
 
-    /// For a thread, which gets a painter of its own.
-    [[nodiscard]] InOrder<Made>::Make maker() {
+    /// For a thread, which gets a renderer of its own.
+    [[nodiscard]] OrderedWorkers<Made>::Make maker() {
         const std::lock_guard lock(making_);
-        const auto painter = std::make_shared<FilmPainter>(*film_, FilmPainter::Apart{});
-        return [this, painter](std::int64_t number, const InOrder<Made>& all) {
-            return make(number, all, *painter);
+        const auto renderer = std::make_shared<FilmRenderer>(*film_, FilmRenderer::OwnContext{});
+        return [this, renderer](std::int64_t number, const OrderedWorkers<Made>& all) {
+            return make(number, all, *renderer);
         };
     }
 
   private:
     /// A chunk, or the frames of it that were drawn when all were stopped.
-    Made make(std::int64_t number, const InOrder<Made>& all, FilmPainter& painter) {
+    Made make(std::int64_t number, const OrderedWorkers<Made>& all, FilmRenderer& renderer) {
         Made made;
         const OnProgress goes_on = [&all](std::int64_t, std::int64_t) { return !all.is_stopped(); };
         const std::int64_t first = std::max(from_, number * length_);
@@ -54,9 +54,9 @@ class ChunkMaker {
         for (std::int64_t k = first; k < end && !all.is_stopped(); ++k) {
             const double time_s = film_->time_s(k);
             try {
-                const Damage damage = painter.draw(time_s, goes_on);
-                if (painter.shows_nothing() && made.empty_frames++ == 0) made.first_empty_s = time_s;
-                encoder.encode(painter.image(), damage, k + 1 == end);
+                const Damage damage = renderer.draw(time_s, goes_on);
+                if (renderer.shows_nothing() && made.empty_frames++ == 0) made.first_empty_s = time_s;
+                encoder.encode(renderer.image(), damage, k + 1 == end);
             } catch (const Error& error) {
                 if (error.code() != ExitCode::kInterrupted || !all.is_stopped()) throw;
                 break;
@@ -70,7 +70,7 @@ class ChunkMaker {
     }
 
     /// Encodes what the encoder has held back; once all are stopped only for a moment.
-    static void finish(media::ChunkEncoder& encoder, const InOrder<Made>& all, Made& made) {
+    static void finish(media::ChunkEncoder& encoder, const OrderedWorkers<Made>& all, Made& made) {
         std::optional<GoesOn> moment;
         try {
             made.chunk = encoder.finish([&] {
@@ -88,7 +88,7 @@ class ChunkMaker {
     std::int64_t from_;
     std::int64_t end_;
     std::int64_t length_;
-    std::mutex making_;  ///< of painters, one by one
+    std::mutex making_;  ///< of renderers, one at a time
     std::atomic<std::int64_t> drawn_ = 0;
 };
 
@@ -105,7 +105,8 @@ bool render_chunks(const Film& film, std::int64_t from, std::int64_t end, int jo
                    const OnProgress& on_progress, media::VideoWriter& writer, Rendered& result) {
     const std::int64_t had = writer.frames();
     ChunkMaker maker(film, writer, from + had, end);
-    InOrder<Made> chunks(maker.first_chunk(), maker.end_chunk(), jobs, [&maker] { return maker.maker(); });
+    OrderedWorkers<Made> chunks(maker.first_chunk(), maker.end_chunk(), jobs,
+                                [&maker] { return maker.maker(); });
     if (!chunks.has_threads()) return false;
     bool is_adding = false;
     try {

@@ -23,7 +23,7 @@
 #include "corda/media/verify/verify.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 #include "corda/pipeline/provenance.hpp"
 #include "corda/pipeline/render_chunks.hpp"
 #include "corda/pipeline/validate.hpp"
@@ -148,10 +148,10 @@ void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProg
     std::int64_t k = first;
     for (; k < first + writer.frames(); ++k) {
         report_progress(on_progress, writer.frames(), end - first);
-        if (FilmPainter::is_empty(film, film.time_s(k))) note_empty(film.time_s(k), result);
+        if (FilmRenderer::is_empty(film, film.time_s(k))) note_empty(film.time_s(k), result);
     }
     const int wanted = jobs_for(video, writer.frames_per_chunk(), end - k);
-    if (wanted > 1 && FilmPainter::can_draw_apart(film, end)) {
+    if (wanted > 1 && FilmRenderer::can_draw_in_any_order(film, end)) {
         const int jobs = media::jobs_that_fit(wanted, media::bytes_per_job(writer.format(), video));
         result.is_short_of_memory = jobs < wanted;
         result.jobs = std::max(1, jobs);
@@ -160,15 +160,15 @@ void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProg
         pipeline::render_chunks(film, first, end, result.jobs, on_progress, writer, result))
         return;
     result.jobs = 1;
-    FilmPainter painter(film);
+    FilmRenderer renderer(film);
     const OnProgress ask = [&](std::int64_t, std::int64_t) {
         return !on_progress || on_progress(k - first, end - first);
     };
     for (; k < end; ++k) {
         report_progress(on_progress, k - first, end - first);
-        const Damage damage = painter.draw(film.time_s(k), ask);
+        const Damage damage = renderer.draw(film.time_s(k), ask);
         if (film.shows_nothing()) note_empty(film.time_s(k), result);
-        writer.write(painter.image(), damage, k + 1 == end);
+        writer.write(renderer.image(), damage, k + 1 == end);
     }
     report_progress(on_progress, end - first, end - first);
 }

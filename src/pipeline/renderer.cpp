@@ -6,14 +6,14 @@
 #include "corda/core/basics.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
-#include "corda/pipeline/stage.hpp"
+#include "corda/pipeline/scene_renderer.hpp"
 #include "corda/sim/bounds.hpp"
 
 namespace corda {
 
 struct Renderer::Impl {
     Impl(const Scene& given, const std::string& backend)
-        : scene(given), system(system_of(scene)), stage(scene, system, backend, false) {
+        : scene(given), system(system_of(scene)), renderer(scene, system, backend, false) {
         if (quantity_of(scene.style.color_by)) {
             throw Error(ExitCode::kInvalidScene,
                         "style: color_by is a quantity of a motion, and a Renderer draws positions alone; "
@@ -24,11 +24,11 @@ struct Renderer::Impl {
                 ExitCode::kInvalidScene,
                 "overlay: plot shows a whole motion, and a Renderer draws positions alone; leave it out");
         }
-        camera = stage.fit(bounds_of_start(system));
+        camera = renderer.fit(bounds_of_start(system));
     }
     Scene scene;
     System system;
-    pipeline::Stage stage;
+    pipeline::SceneRenderer renderer;
     CameraDef camera;
     State state;
 };
@@ -64,9 +64,9 @@ Image Renderer::draw(std::span<const Vec2> positions_m) {
         state.x_m[i] = positions_m[i].x - impl_->system.origin_m.x;
         state.y_m[i] = positions_m[i].y - impl_->system.origin_m.y;
     }
-    const pipeline::Stage::Use use(impl_->stage);
-    impl_->stage.draw(state, impl_->stage.map_of(impl_->camera));
-    return impl_->stage.image();
+    const pipeline::SceneRenderer::Use use(impl_->renderer);
+    impl_->renderer.draw(state, impl_->renderer.map_of(impl_->camera));
+    return impl_->renderer.image();
 }
 
 }  // namespace corda

@@ -8,7 +8,7 @@
 namespace corda::sim {
 
 Recording::Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes,
-                     std::size_t bar_count, std::optional<Quantity> quantity, const Readings& readings)
+                     std::size_t bar_count, std::optional<Quantity> quantity, const StateFields& readings)
     : particle_count_(particle_count),
       quantity_(quantity),
       readings_(quantity ? readings.with(readings_for(*quantity)) : readings),
@@ -47,7 +47,7 @@ void Recording::clear() {
 
 Status Recording::advance(Simulation& run, const Timeline& timeline, const std::function<double()>& clock_s,
                           const GoesOn& goes_on) {
-    run.tell(readings_);
+    run.set_outputs(readings_);
     const double start_s = clock_s ? clock_s() : 0.0;
     const Status status = run.advance_to(timeline.time_s(size()), goes_on);
     if (clock_s) wall_s_ += clock_s() - start_s;

@@ -21,7 +21,7 @@ class Recording {
     /// whose spread is wanted; states then have readings_for() it beside `readings`.
     Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes,
               std::size_t bar_count = 0, std::optional<Quantity> quantity = {},
-              const Readings& readings = {});
+              const StateFields& readings = {});
 
     /// An empty recording of some of the particles and bars that keeps as many states.
     [[nodiscard]] Recording for_part(std::size_t particle_count, std::size_t bar_count = 0) const;
@@ -52,7 +52,7 @@ class Recording {
     /// Of the quantity, of all links in all states added at frame times; empty without one.
     [[nodiscard]] const Spread& spread() const { return spread_; }
     /// What its states have.
-    [[nodiscard]] const Readings& readings() const { return readings_; }
+    [[nodiscard]] const StateFields& readings() const { return readings_; }
     /// Of the run up to the last state added.
     [[nodiscard]] const Diagnostics& diagnostics() const { return diagnostics_; }
 
@@ -72,7 +72,7 @@ class Recording {
 
     std::size_t particle_count_;
     std::optional<Quantity> quantity_;
-    Readings readings_;
+    StateFields readings_;
     std::array<Part, 5> parts_;
     std::size_t state_size_;
     std::size_t most_states_;

@@ -164,7 +164,7 @@ double Simulation::energy_change_j() const {
     return conserves_energy_ ? figures_.energy_change_j : std::numeric_limits<double>::quiet_NaN();
 }
 
-void Simulation::tell(const Readings& readings) {
+void Simulation::set_outputs(const StateFields& readings) {
     if (readings == readings_) return;
     readings_ = readings;
     read();

@@ -62,7 +62,7 @@ class Simulation {
 
     /// From now on, states have these too. Throws corda::Error (kInvalidScene) if a method does not know the
     /// tensions, unless unknown ones are allowed: `relaxation`, or `rattle` if bars depend on each other.
-    void tell(const Readings& readings);
+    void set_outputs(const StateFields& readings);
 
     /// Positions relative to `system().origin_m`, at the last time that was reached.
     [[nodiscard]] const State& state() const { return state_; }
@@ -86,7 +86,7 @@ class Simulation {
     std::unique_ptr<sim::Solver> solver_;
     State state_;
     State next_;  ///< kept for its memory
-    Readings readings_;
+    StateFields readings_;
     bool has_diverged_ = false;
     bool is_stepping_ = false;  ///< still, if an exception ended the steps
     bool conserves_energy_ = true;

@@ -15,7 +15,7 @@ constexpr std::size_t kBins = std::size_t{1} << (63U - kDropped);
 
 }  // namespace
 
-Readings readings_for(Quantity quantity) {
+StateFields readings_for(Quantity quantity) {
     return {.velocities = quantity == Quantity::kSpeed, .tensions = quantity == Quantity::kTension};
 }
 

@@ -10,7 +10,7 @@
 namespace corda::sim {
 
 /// What a state must have for a quantity to be read from it.
-[[nodiscard]] Readings readings_for(Quantity quantity);
+[[nodiscard]] StateFields readings_for(Quantity quantity);
 
 /// A quantity of bar `k` of a body; NaN if it is not known. The state has readings_for(quantity).
 [[nodiscard]] double value_of(Quantity quantity, const System& system, const Body& body, std::size_t k,

@@ -121,20 +121,20 @@ struct State {
 enum class Quantity { kTension, kSpeed, kStrain };
 
 /// What states have besides positions.
-struct Readings {
+struct StateFields {
     bool velocities = false;
     bool tensions = false;
     /// Tensions that a method does not know are NaN; otherwise asking for them is an error.
     bool unknown_tensions = false;
 
     /// What either has.
-    [[nodiscard]] Readings with(const Readings& other) const {
+    [[nodiscard]] StateFields with(const StateFields& other) const {
         const bool are_needed =
             (tensions && !unknown_tensions) || (other.tensions && !other.unknown_tensions);
         return {velocities || other.velocities, tensions || other.tensions,
                 !are_needed && (unknown_tensions || other.unknown_tensions)};
     }
-    friend bool operator==(const Readings&, const Readings&) = default;
+    friend bool operator==(const StateFields&, const StateFields&) = default;
 };
 
 /// Whether a run can go on. A run that diverged keeps the last good state.

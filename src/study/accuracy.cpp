@@ -110,7 +110,7 @@ void add_auto_row(const AccuracyRow& named, const Problem& problem, const Timing
     const auto tolerance_m = [&](const MotionBounds&) { return kTolerance * problem.length_m; };
     const Timeline timeline(problem.fps, problem.last_frame());
     const OnProgress on_frame = [](std::int64_t, std::int64_t) {
-        take_step();
+        check_cancelled();
         return true;
     };
     const BodyPlan plan =

@@ -40,8 +40,8 @@ void watch(const Problem& problem, std::span<const MethodDef> methods, Measureme
     bool is_compared = false;
     for (std::int64_t k = 1; k <= problem.last_frame(); ++k) {
         const double time_s = problem.fps.time_s(k);
-        take_step();
-        if (run.advance_to(time_s, take_step) == Status::kDiverged) {
+        check_cancelled();
+        if (run.advance_to(time_s, check_cancelled) == Status::kDiverged) {
             result.failure = fmt::format("diverged before {:.6g} s", time_s);
             return;
         }
@@ -61,14 +61,14 @@ void watch(const Problem& problem, std::span<const MethodDef> methods, Measureme
 report::Times stepping_s(const Problem& problem, const MethodDef& method, const Timing& timing) {
     const System system = problem.system();
     const std::int64_t last_frame = problem.last_frame();
-    const GoesOn goes_on = take_step;
+    const GoesOn goes_on = check_cancelled;
     StopCheck stop(goes_on);
     report::Times times_s;
     for (int repeat = 0; repeat < timing.repeats; ++repeat) {
         double sum_s = 0.0;
         int runs = 0;
         do {
-            take_step();
+            check_cancelled();
             const auto solver =
                 sim::make_solver(system, problem.world, {&method, 1}, problem.fps.interval_s());
             State state{0.0, system.x_m, system.y_m};

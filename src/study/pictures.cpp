@@ -18,7 +18,7 @@
 #include "corda/media/picture_quality.hpp"
 #include "corda/media/read/video_reader.hpp"
 #include "corda/pipeline/describe.hpp"
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 #include "corda/study/problems.hpp"
 #include "corda/study/step.hpp"
 #include "corda/study/truth.hpp"
@@ -69,7 +69,7 @@ struct RenderTime {
 FilmDef film_of(const StudyDef& def) {
     FilmDef film = def.film;
     film.on_progress = [](std::int64_t, std::int64_t) {
-        take_step();
+        check_cancelled();
         return true;
     };
     return film;
@@ -114,7 +114,7 @@ struct Pictures {
 /// Draws and encodes a film, which took `simulate_s` to simulate, and adds the times to `time`.
 void time_film(Film& film, const VideoDef& video, double simulate_s, const std::string& path,
                RenderTime& time) {
-    FilmPainter painter(film);
+    FilmRenderer renderer(film);
     std::error_code ignored;  // the write below reports what is in the way
     std::filesystem::remove(path, ignored);
     double draw_s = 0.0;
@@ -127,10 +127,10 @@ void time_film(Film& film, const VideoDef& video, double simulate_s, const std::
     media::VideoWriter writer(path, video, {});
     lap(encode_s);
     for (std::int64_t k = 0; k < film.frame_count(); ++k) {
-        take_step();
-        const Damage damage = painter.draw(film.time_s(k));
+        check_cancelled();
+        const Damage damage = renderer.draw(film.time_s(k));
         lap(draw_s);
-        writer.write(painter.image(), damage);
+        writer.write(renderer.image(), damage);
         lap(encode_s);
     }
     writer.finish();
@@ -185,7 +185,7 @@ void add_solver(const SolverSetting& setting, Pictures& pictures) {
 
 /// Adds luma PSNR and SSIM of a video against the frames that it was made of, drawn again.
 void add_quality(Film& film, const std::string& path, std::vector<report::Cell>& row) {
-    FilmPainter painter(film);
+    FilmRenderer renderer(film);
     media::VideoReader reader(path);
     const VideoDef& video = film.scene().video;
     media::Yuv420Image drawn(video.width_px, video.height_px);
@@ -194,9 +194,9 @@ void add_quality(Film& film, const std::string& path, std::vector<report::Cell>&
     double ssim = 0.0;
     const std::int64_t frames = film.frame_count();
     for (std::int64_t k = 0; k < frames; ++k) {
-        take_step();
-        painter.draw(film.time_s(k));
-        media::convert_to_yuv420(painter.image(), painter.image().rect(), drawn);
+        check_cancelled();
+        renderer.draw(film.time_s(k));
+        media::convert_to_yuv420(renderer.image(), renderer.image().rect(), drawn);
         if (!reader.read(decoded))
             throw Error(ExitCode::kMismatch, fmt::format("the trial video ends before frame {}", k));
         squares += media::luma_mean_square(drawn, decoded) / static_cast<double>(frames);

@@ -14,9 +14,9 @@ Probe::Probe(const RopeDef& rope, const WorldDef& world, const MethodDef& method
     : simulation_(build_system({&rope, 1}), world, method, frame_interval_s) {}
 
 void Probe::go(double time_s) {
-    take_step();
+    check_cancelled();
     const double from_s = now_s();
-    const Status status = simulation_.advance_to(time_s, take_step);
+    const Status status = simulation_.advance_to(time_s, check_cancelled);
     wall_s_ += now_s() - from_s;
     if (status == Status::kDiverged)
         throw Error(ExitCode::kDiverged, fmt::format("diverged before {:.6g} s", time_s));

@@ -9,13 +9,13 @@ thread_local const OnStep* heard_by = nullptr;
 
 }  // namespace
 
-HearSteps::HearSteps(const OnStep& on_step) : outer_(std::exchange(heard_by, &on_step)) {}
+CancelScope::CancelScope(const OnStep& on_step) : outer_(std::exchange(heard_by, &on_step)) {}
 
-HearSteps::~HearSteps() {
+CancelScope::~CancelScope() {
     heard_by = outer_;
 }
 
-bool take_step() {
+bool check_cancelled() {
     if (heard_by != nullptr && *heard_by) (*heard_by)();
     return true;
 }

@@ -69,7 +69,7 @@ Study::Study(const StudyDef& def)
       timing_(study_timing(def.quick)),
       on_step_(def.on_step) {
     check_chapters(def);
-    const HearSteps hear(on_step_);
+    const CancelScope hear(on_step_);
     if (def.quick) title_ += " (quick: not to quote from)";
     for (const ChapterKind& kind : kChapters) {
         if (!is_wanted(kind, def)) continue;
@@ -80,7 +80,7 @@ Study::Study(const StudyDef& def)
 
 void Study::run(const OnJob& on_job, const OnChapter& on_chapter, report::Report& report) {
     report = {title_, setting(timing_), {}};
-    const HearSteps hear(on_step_);
+    const CancelScope hear(on_step_);
     try {
         measure(on_job, on_chapter, report);
     } catch (const Error& error) {
@@ -101,7 +101,7 @@ void Study::measure(const OnJob& on_job, const OnChapter& on_chapter, report::Re
         for (const Job& job : work.jobs) {
             if (on_job) on_job(done++, total, job.what);
             job.run();
-            take_step();  // a job may have noted what the last one threw as its result
+            check_cancelled();  // a job may have noted what the last one threw as its result
         }
         report.chapters.push_back(work.finish());
         on_chapter(report.chapters.back());

@@ -28,8 +28,8 @@ SharedRecording record(const Problem& problem, const MethodDef& method) {
     constexpr std::size_t kNoBudget = std::numeric_limits<std::size_t>::max();
     auto frames = std::make_shared<sim::Recording>(run.system().particle_count(), timeline.size(), kNoBudget);
     while (frames->size() < timeline.size()) {
-        take_step();
-        if (frames->advance(run, timeline, {}, take_step) == Status::kDiverged) break;
+        check_cancelled();
+        if (frames->advance(run, timeline, {}, check_cancelled) == Status::kDiverged) break;
     }
     return frames;
 }
@@ -132,7 +132,7 @@ void find_truth(Subject& subject) {
 }
 
 double rattle_step_s(const Problem& problem, int order) {
-    take_step();
+    check_cancelled();
     const Simulation run(problem.system(), problem.world, RattleDef{order}, problem.fps.interval_s());
     double shortest_s = HUGE_VAL;
     for (const MethodDef& method : run.methods())
@@ -142,7 +142,7 @@ double rattle_step_s(const Problem& problem, int order) {
 
 std::string refusal(const Problem& problem, const MethodDef& method) {
     const auto refused =
-        sim::refusal(problem.system(), problem.world, method, problem.fps.interval_s(), take_step);
+        sim::refusal(problem.system(), problem.world, method, problem.fps.interval_s(), check_cancelled);
     return refused ? refused->what() : "";
 }
 

@@ -9,11 +9,11 @@
 #include <mutex>
 
 #include "corda/core/machine.hpp"
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 #include "corda/suite/cases.hpp"
-#include "corda/suite/crew.hpp"
 #include "corda/suite/provenance.hpp"
 #include "corda/suite/staging.hpp"
+#include "corda/suite/task_queue.hpp"
 #include "corda/suite/update_folder.hpp"
 
 namespace corda::suite {
@@ -91,8 +91,8 @@ class Runner {
         : def_(def), references_(references), staging_(def.folder), all_(all) {}
 
     void check(std::vector<Case>& cases) {
-        for (Case& one : cases) crew_.later([this, &one] { begin(one); });
-        crew_.run(threads_);
+        for (Case& one : cases) queue_.push_back([this, &one] { begin(one); });
+        queue_.run(threads_);
     }
 
     /// Writes what an update has drawn, and removes what is stale.
@@ -119,9 +119,8 @@ class Runner {
             may_split ? std::clamp<std::size_t>(count / kMinApart, 1, static_cast<std::size_t>(threads_))
                       : std::size_t{1};
         for (std::size_t i = 0; i < pieces; ++i)
-            crew_.next([this, job, first = count * i / pieces, end = count * (i + 1) / pieces, pieces] {
-                draw(*job, first, end, pieces > 1);
-            });
+            queue_.push_front([this, job, first = count * i / pieces, end = count * (i + 1) / pieces,
+                               pieces] { draw(*job, first, end, pieces > 1); });
     }
 
     /// The film with what is frozen, or without if that does not fit the scene any more.
@@ -172,26 +171,26 @@ class Runner {
         FilmDef def = def_.film;
         def.stills_s = one.scene.golden->at_s;
         job.film.emplace(load_scene(one.path, settings), def);
-        FilmPainter::keep(*job.film, def.stills_s);
+        FilmRenderer::keep(*job.film, def.stills_s);
         job.made.clear();
         for (const double time_s : def.stills_s) job.made.push_back(provenance_of(*job.film, time_s));
     }
 
     void draw(Job& job, std::size_t first, std::size_t end, bool apart) {
-        std::optional<FilmPainter> painter;
+        std::optional<FilmRenderer> renderer;
         {
-            const std::lock_guard lock(mutex_);  // painters of a film are made one at a time
+            const std::lock_guard lock(mutex_);  // renderers of a film are made one at a time
             if (apart)
-                painter.emplace(*job.film, FilmPainter::Apart{});
+                renderer.emplace(*job.film, FilmRenderer::OwnContext{});
             else
-                painter.emplace(*job.film);
+                renderer.emplace(*job.film);
         }
         for (std::size_t i = first; i < end; ++i) {
             Checked& picture = job.scene->pictures[i];
-            painter->draw(picture.time_s);
-            const Image& drawn = painter->image();
+            renderer->draw(picture.time_s);
+            const Image& drawn = renderer->image();
             judge({drawn, job.made[i], job.film->scene()}, variants_of(references_, picture.name), picture);
-            if (painter->shows_nothing() || has_one_color(drawn)) {
+            if (renderer->shows_nothing() || has_one_color(drawn)) {
                 picture.verdict = Verdict::kEmpty;
                 picture.cause = "nothing is in view";
             } else if (def_.update) {
@@ -200,7 +199,7 @@ class Runner {
             if (picture.failed()) keep(drawn, picture);
             count_one();
         }
-        painter.reset();
+        renderer.reset();
         const std::lock_guard lock(mutex_);
         job.left -= end - first;
         if (job.left > 0) return;
@@ -288,7 +287,7 @@ class Runner {
     std::mutex mutex_;
     std::int64_t done_ = 0;
     int drawn_ = 0;
-    Crew crew_;
+    TaskQueue queue_;
 };
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 
 namespace corda {
 namespace {
@@ -19,10 +19,10 @@ void count_frames(benchmark::State& bench) {
 /// Draws the first frames one after the other.
 template <class Use>
 void draw_frames(Film& film, const Use& use) {
-    FilmPainter painter(film);
+    FilmRenderer renderer(film);
     for (int k = 0; k < kFrames; ++k) {
-        const Damage damage = painter.draw(film.time_s(k));
-        use(painter.image(), damage);
+        const Damage damage = renderer.draw(film.time_s(k));
+        use(renderer.image(), damage);
     }
 }
 

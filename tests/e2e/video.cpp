@@ -11,7 +11,7 @@
 #include <set>
 
 #include "corda/media/defs.hpp"
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 #include "support/command.hpp"
 #include "support/decode_video.hpp"
 #include "support/image_matchers.hpp"
@@ -290,7 +290,7 @@ TEST_F(Video, StillsAreTheFramesBeforeEncodingByteForByte) {
     ASSERT_EQ(run_corda({"still", scene_, "--frame", "22", "-o", folder_.file("frame.png")}).exit_code, 0);
     // The video's frames, drawn one after the other as render does.
     Film film(load_scene(scene_));
-    FilmPainter painter(film);
+    FilmRenderer painter(film);
     const std::map<int, std::string> stills{
         {0, "0000_000000"}, {3, "0000_100000"}, {15, "0000_500000"}, {22, "0000_733333"}};
     for (int k = 0; k <= 22; ++k) {

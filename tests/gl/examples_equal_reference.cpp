@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "corda/pipeline/film.hpp"
-#include "corda/pipeline/stage.hpp"
+#include "corda/pipeline/scene_renderer.hpp"
 #include "corda/render/reference_renderer.hpp"
 #include "support/draw_list_of.hpp"
 #include "support/files.hpp"
@@ -32,14 +32,14 @@ TEST_P(Examples, EqualTheReferenceByteForByte) {
             std::vector<Setting> settings{std::string("video.size=") + size};
             if (*width != '\0') settings.push_back(std::string("style.rope_width_px=") + width);
             const Scene scene = load_scene(GetParam(), settings);
-            pipeline::Stage stage(scene, film.system(), "auto", false);
-            const pipeline::Stage::Use use(stage);
-            const CameraDef camera = stage.fit(motion);
+            pipeline::SceneRenderer renderer(scene, film.system(), "auto", false);
+            const pipeline::SceneRenderer::Use use(renderer);
+            const CameraDef camera = renderer.fit(motion);
             for (const State& state : states) {
-                stage.draw(state, stage.map_of(camera));
+                renderer.draw(state, renderer.map_of(camera));
                 const Image expected =
                     render::render_reference(test::draw_list_of(scene, film.system(), camera, state, motion));
-                EXPECT_TRUE(test::equal_images(stage.image(), expected))
+                EXPECT_TRUE(test::equal_images(renderer.image(), expected))
                     << size << ", rope width \"" << width << "\" at " << state.time_s << " s";
             }
         }

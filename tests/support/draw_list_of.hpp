@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "corda/pipeline/curves.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
+#include "corda/pipeline/live_plot_data.hpp"
 #include "corda/sim/bounds.hpp"
 #include "corda/sim/spread.hpp"
 #include "corda/view/camera.hpp"
@@ -25,7 +25,7 @@ inline void include(const State& state, std::vector<MotionBounds>& motion) {
 /// What the live plot of a film shows.
 inline std::optional<view::PlotData> plotted_of(const Film& film) {
     if (film.scene().overlay.plot == LivePlot::kNone) return std::nullopt;
-    const pipeline::Curves curves(film.scene(), film.system());
+    const pipeline::LivePlotData curves(film.scene(), film.system());
     std::vector<MethodDef> methods;
     for (const BodyPlan& body : film.plan().bodies) methods.push_back(body.method);
     return curves.read(methods, film.scene().world.duration_s,

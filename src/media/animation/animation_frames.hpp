@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "corda/core/in_order.hpp"
+#include "corda/core/ordered_workers.hpp"
 #include "corda/media/animation/animation.hpp"
 #include "corda/media/chunks/lossless_frames.hpp"
 
@@ -15,10 +15,11 @@ namespace corda::media {
 
 /// Makes something of the frames first <= k < end. If `all` is stopped, nobody takes it.
 template <class Section>
-using MakeSection = std::function<Section(std::int64_t first, std::int64_t end, const InOrder<Section>& all)>;
+using MakeSection =
+    std::function<Section(std::int64_t first, std::int64_t end, const OrderedWorkers<Section>& all)>;
 
 /// Makes something of sections of the frames on the threads of `def`, and takes it in order on this one.
-/// `new_maker` is called as InOrder does. Throws what they throw, and corda::Error (kInterrupted).
+/// `new_maker` is called as OrderedWorkers does. Throws what they throw, and corda::Error (kInterrupted).
 template <class Section>
 void for_each_section(const AnimationDef& def, const OnProgress& on_progress,
                       const std::function<MakeSection<Section>()>& new_maker,
@@ -26,8 +27,8 @@ void for_each_section(const AnimationDef& def, const OnProgress& on_progress,
     constexpr std::int64_t kFrames = 12;
     const std::int64_t sections = (def.frames + kFrames - 1) / kFrames;
     const auto threads = static_cast<int>(std::min<std::int64_t>(def.threads, sections));
-    InOrder<Section> all(0, sections, threads, [&] {
-        return [&def, make = new_maker()](std::int64_t section, const InOrder<Section>& every) {
+    OrderedWorkers<Section> all(0, sections, threads, [&] {
+        return [&def, make = new_maker()](std::int64_t section, const OrderedWorkers<Section>& every) {
             return make(section * kFrames, std::min(def.frames, (section + 1) * kFrames), every);
         };
     });
@@ -48,7 +49,7 @@ void for_each_frame(const AnimationDef& def, const OnProgress& on_progress,
     using Section = std::vector<Frame>;
     const auto new_maker = [&] {
         const auto pictures = std::make_shared<LosslessFrames>(def.part_path, def.bytes);
-        return [pictures, &make](std::int64_t first, std::int64_t end, const InOrder<Section>& all) {
+        return [pictures, &make](std::int64_t first, std::int64_t end, const OrderedWorkers<Section>& all) {
             Section section;
             for (std::int64_t k = first; k < end && !all.is_stopped(); ++k) {
                 pictures->go_to(k);

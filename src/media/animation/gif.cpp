@@ -65,7 +65,7 @@ class SectionEncoder {
           colors_(std::make_shared<Colors>(palette)) {}
 
     [[nodiscard]] std::vector<Packet> encode(std::int64_t first, std::int64_t end,
-                                             const InOrder<std::vector<Packet>>& all) {
+                                             const OrderedWorkers<std::vector<Packet>>& all) {
         std::vector<Packet> packets;
         std::unique_ptr<LibavEncoder> encoder;
         // A frame is encoded as what it changes of the one before.
@@ -96,7 +96,7 @@ Palette choose_palette(const AnimationDef& def, const OnProgress& on_progress) {
     PaletteMaker all;
     const auto new_maker = [&def] {
         return [pictures = std::make_shared<LosslessFrames>(def.part_path, def.bytes)](
-                   std::int64_t first, std::int64_t end, const InOrder<PaletteMaker>& every) {
+                   std::int64_t first, std::int64_t end, const OrderedWorkers<PaletteMaker>& every) {
             PaletteMaker colors;
             for (std::int64_t k = first; k < end && !every.is_stopped(); ++k) {
                 pictures->go_to(k);
@@ -131,7 +131,7 @@ void write_gif(const Ending& ending, const AnimationDef& def, const OnProgress& 
     using Packets = std::vector<Packet>;
     const auto new_maker = [&] {
         return [encoder = std::make_shared<SectionEncoder>(ending, def, palette)](
-                   std::int64_t first, std::int64_t end, const InOrder<Packets>& all) {
+                   std::int64_t first, std::int64_t end, const OrderedWorkers<Packets>& all) {
             return encoder->encode(first, end, all);
         };
     };

@@ -101,7 +101,7 @@ namespace {
 
 /// The rate that the comment tells.
 std::optional<Rational> told_rate_of(const PartInput& input) {
-    return told_rate(metadata_entry(*input.format, "comment"));
+    return comment_rate(metadata_entry(*input.format, "comment"));
 }
 
 /// Ticks per frame: the greatest common divisor of all distances between stamps. The duration of a packet is

@@ -94,9 +94,9 @@ void lengthen(std::string& file, const std::vector<Element>& elements, int by) {
 
 /// Writes the checksum that an element begins with.
 void set_checksum(std::string& file, const Element& element) {
-    constexpr std::size_t kCrcBytes = 6;
+    constexpr std::size_t kCrcElementBytes = 6;
     const auto crc = element_at(file, element.data, element.end);
-    if (!crc || crc->id != kCrc || crc->end - crc->begin != kCrcBytes) return;
+    if (!crc || crc->id != kCrc || crc->end - crc->begin != kCrcElementBytes) return;
     const std::uint32_t sum =
         ~av_crc(av_crc_get_table(AV_CRC_32_IEEE_LE), ~std::uint32_t{0},
                 reinterpret_cast<const std::uint8_t*>(file.data()) + crc->end, element.end - crc->end);

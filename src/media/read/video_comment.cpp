@@ -73,7 +73,7 @@ Json parse_untrusted_json(std::string_view text) {
     return json;
 }
 
-std::optional<Rational> told_rate(const std::string& comment) {
+std::optional<Rational> comment_rate(const std::string& comment) {
     const Json json = parse_comment(comment);
     const auto fps = json.contains("fps") && json["fps"].is_string()
                          ? Rational::parse(json["fps"].get<std::string>())
@@ -81,7 +81,7 @@ std::optional<Rational> told_rate(const std::string& comment) {
     return fps && fps->num > 0 ? fps : std::nullopt;
 }
 
-std::optional<std::int64_t> told_number(const std::string& comment, const char* key) {
+std::optional<std::int64_t> comment_number(const std::string& comment, const char* key) {
     const Json json = parse_comment(comment);
     return json.contains(key) ? whole_number(json[key]) : std::nullopt;
 }

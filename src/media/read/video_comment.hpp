@@ -34,9 +34,9 @@ inline constexpr int kDeepestJsonLevel = 16;
 // What the comment of a video tells, a JSON object of any origin.
 
 /// The rate; std::nullopt if there is none that libav can count with.
-[[nodiscard]] std::optional<Rational> told_rate(const std::string& comment);
+[[nodiscard]] std::optional<Rational> comment_rate(const std::string& comment);
 /// A whole number; std::nullopt if it is something else.
-[[nodiscard]] std::optional<std::int64_t> told_number(const std::string& comment, const char* key);
+[[nodiscard]] std::optional<std::int64_t> comment_number(const std::string& comment, const char* key);
 /// The colour patches of the first frame.
 [[nodiscard]] std::vector<ColorPatch> told_patches(const std::string& comment);
 /// What the comment of a part tells of what it was made from, by keys; empty if it does not.

@@ -114,7 +114,7 @@ class Decoding {
     /// Matroska counts milliseconds: then the rate that the file tells decides what is the nearest stamp.
     void find_rounded_rate() {
         if (file_.format->iformat != av_find_input_format("matroska")) return;
-        const auto told = told_rate(video_.comment);
+        const auto told = comment_rate(video_.comment);
         const AVRational average = file_.stream->avg_frame_rate;
         const Rational rate = told ? *told : Rational{average.num, average.den};
         if (rate.num <= 0 || rate.den <= 0) return;

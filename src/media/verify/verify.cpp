@@ -96,7 +96,7 @@ void check_stamps(const DecodedVideo& video, VerifyReport& report) {
 /// The largest error that a patch of a correct video may have. The rate factors of VP9 and AV1 go up to 63.
 double tolerance_of(const DecodedVideo& video) {
     if (video.codec == "gif") return kGifTolerance;
-    const auto told = std::clamp<std::int64_t>(told_number(video.comment, "crf").value_or(0), 0, 63);
+    const auto told = std::clamp<std::int64_t>(comment_number(video.comment, "crf").value_or(0), 0, 63);
     const bool is_x26x = video.codec == "h264" || video.codec == "hevc";
     const auto crf = static_cast<int>(is_x26x ? std::min<std::int64_t>(told, 51) : told * 51 / 63);
     return patch_tolerance(crf, is_x26x && video.pixel_format == "yuv444p");
@@ -132,8 +132,8 @@ void check_comment(const DecodedVideo& video, VerifyReport& report) {
                              "-metadata comment= "));
         return;
     }
-    const auto fps = told_rate(video.comment);
-    const auto frames = told_number(video.comment, "frames");
+    const auto fps = comment_rate(video.comment);
+    const auto frames = comment_number(video.comment, "frames");
     if (!fps && !frames) {
         report.notes.emplace_back(
             "the file does not say what corda rendered: frame count and colours cannot be compared with it");

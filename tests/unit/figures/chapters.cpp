@@ -16,7 +16,7 @@ TEST(Chapters, TellThePendulumInWords) {
     const ReadScene scene(pendulum_toml("duration = 2.0"));
     const auto write = [](const std::string&, double, const std::vector<double>&) {};
     const report::Chapter motion =
-        motion_chapter(scene.film, scene.reading, find_moments(scene.film, scene.reading, {}), write);
+        motion_chapter(scene.film, scene.reading, find_figure_times(scene.film, scene.reading, {}), write);
     EXPECT_THAT(motion.summary, AllOf(HasSubstr("2 particles, 1 bar (1 real); gravity of (0, -9.81) m/s2"),
                                       HasSubstr("Method: exact at tolerance 1e-09, because the scene asks "
                                                 "for exact. There is no bound of its error.")));

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "corda/figures/reading.hpp"
+#include "corda/figures/motion_summary.hpp"
 
 namespace corda::figures {
 
@@ -41,7 +41,7 @@ struct ReadScene {
     std::map<std::string, std::vector<std::string>> columns;
     std::map<std::string, std::vector<std::vector<double>>> rows;
     Film film;
-    Reading reading;
+    MotionSummary reading;
 };
 
 /// A pendulum of 2 kg on a link of 1 m, let go from 60 degrees.

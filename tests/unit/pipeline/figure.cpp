@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 #include "corda/render/reference_renderer.hpp"
 #include "corda/scene/scene.hpp"
 #include "support/command.hpp"
@@ -79,7 +79,7 @@ TEST(Strobe, EqualsTheReferenceByteForByte) {
         const Film film(scene_of(std::string("[style]\nbackground = \"") + ground + "\"\n"));
         const std::vector<double> times_s{0.0, 0.2, 0.4};
         EXPECT_TRUE(equal_images(draw_figure(film, {.times_s = times_s}),
-                                 render::render_reference(FilmPainter::poses(film, times_s))));
+                                 render::render_reference(FilmRenderer::poses(film, times_s))));
     }
 }
 

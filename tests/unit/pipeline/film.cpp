@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "corda/core/basics.hpp"
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 #include "support/failure.hpp"
 #include "support/image_matchers.hpp"
 
@@ -128,10 +128,10 @@ TEST(FilmFrames, AreTheSameInAnyOrderAndByThePainter) {
     Film film = film_by("method = \"exact\"");
     std::vector<Image> backwards(30);
     for (std::int64_t k = 29; k >= 0; --k) backwards[static_cast<std::size_t>(k)] = film.frame(k);
-    FilmPainter painter(film);
+    FilmRenderer renderer(film);
     for (std::int64_t k = 0; k < 30; ++k) {
-        painter.draw(film.time_s(k));
-        EXPECT_TRUE(equal_images(painter.image(), backwards[static_cast<std::size_t>(k)])) << k;
+        renderer.draw(film.time_s(k));
+        EXPECT_TRUE(equal_images(renderer.image(), backwards[static_cast<std::size_t>(k)])) << k;
     }
 }
 

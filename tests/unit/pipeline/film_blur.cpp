@@ -6,7 +6,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/pipeline/film.hpp"
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 #include "support/failure.hpp"
 #include "support/image_matchers.hpp"
 
@@ -69,10 +69,10 @@ TEST(FilmBlur, KeepsNothingOfAnExposureThatWasBrokenOff) {
 TEST(FilmBlur, GivesTheSameFramesInAnyOrderAndMemory) {
     const Film film = blurred_film(kBlur);
     const Film forgetful = blurred_film(kBlur, def_of(0));
-    FilmPainter painter(film);
+    FilmRenderer renderer(film);
     for (std::int64_t k = 0; k < 12; ++k) {
-        painter.draw(film.time_s(k));
-        EXPECT_TRUE(equal_images(painter.image(), forgetful.frame(k))) << k;
+        renderer.draw(film.time_s(k));
+        EXPECT_TRUE(equal_images(renderer.image(), forgetful.frame(k))) << k;
     }
     const Film other = blurred_film(kBlur);
     const Image seventh = other.frame(7);

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 #include "support/failure.hpp"
 #include "support/image_matchers.hpp"
 
@@ -26,7 +26,7 @@ TEST(FilmLook, IsThePictureOfASceneOfThatLookWithoutAnotherRun) {
     look.video.width_px = 96;
     look.video.height_px = 96;
     look.style.theme = Theme::kPaper;
-    const Film shown = FilmPainter::another_look(film, look);
+    const Film shown = FilmRenderer::another_look(film, look);
     EXPECT_TRUE(equal_images(shown.still(0.75), Film(look).still(0.75)));
     EXPECT_EQ(film.still(0.75).width(), 192);
     EXPECT_EQ(film.simulation_passes(), 1);
@@ -39,7 +39,7 @@ TEST(FilmLook, HasThePlanOfItsFilm) {
     Scene look = scene;
     look.video.width_px *= 2;
     look.video.height_px *= 2;
-    const Film shown = FilmPainter::another_look(film, look);
+    const Film shown = FilmRenderer::another_look(film, look);
     EXPECT_EQ(shown.plan().error_bound_m, film.plan().error_bound_m);
     EXPECT_NEAR(*shown.error_bound_px(), 2.0 * *film.error_bound_px(), 0.1 * *film.error_bound_px());
 }
@@ -48,7 +48,7 @@ TEST(FilmLook, CannotShowWhatTheMotionDoesNotHave) {
     const Film film(parse_scene(kSceneOfLooks, "a"));
     Scene look = film.scene();
     look.style.color_by = ColorBy::kTension;
-    EXPECT_EQ(test::code_of([&] { std::ignore = FilmPainter::another_look(film, look); }),
+    EXPECT_EQ(test::code_of([&] { std::ignore = FilmRenderer::another_look(film, look); }),
               ExitCode::kInternal);
 }
 
@@ -58,7 +58,7 @@ TEST(FilmLook, DrawsKeptStatesBeyondTheBudgetWithoutAnotherRun) {
     const Scene scene = parse_scene(kSceneOfLooks, "a", {"solver.method=\"exact\"", "style.trail_s=0"});
     const Film film(scene, def);
     static_cast<void>(film.camera());
-    FilmPainter::keep(film, std::vector<double>{0.2, 0.5, 0.8});
+    FilmRenderer::keep(film, std::vector<double>{0.2, 0.5, 0.8});
     const int passes = film.simulation_passes();
     for (const double time_s : {0.8, 0.2, 0.5})
         EXPECT_TRUE(equal_images(film.still(time_s), Film(scene).still(time_s)));

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
-#include "corda/pipeline/curves.hpp"
 #include "corda/pipeline/film.hpp"
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
+#include "corda/pipeline/live_plot_data.hpp"
 #include "support/draw_list_of.hpp"
 #include "support/failure.hpp"
 #include "support/image_matchers.hpp"
@@ -119,12 +119,12 @@ TEST(FilmPlot, IsTheSameInAnyOrderAndMemory) {
             forgetful.motion_budget_bytes = 0;
             const Film film(scene);
             const Film other(scene, forgetful);
-            FilmPainter painter(film);
+            FilmRenderer renderer(film);
             for (std::int64_t k = 0; k < 6; ++k) {
-                painter.draw(film.time_s(k));
-                EXPECT_TRUE(test::equal_images(painter.image(), other.frame(k))) << plot << " " << k;
+                renderer.draw(film.time_s(k));
+                EXPECT_TRUE(test::equal_images(renderer.image(), other.frame(k))) << plot << " " << k;
             }
-            const Image second = painter.image();
+            const Image second = renderer.image();
             EXPECT_TRUE(test::equal_images(film.frame(5), second));
             EXPECT_FALSE(film.frame(2) == second);
         }
@@ -136,7 +136,7 @@ TEST(FilmPlot, IsNothingOfTheSceneInView) {
     static_cast<void>(film.still(0.5));
     EXPECT_TRUE(film.shows_nothing());
     const double time_s = 0.5;
-    EXPECT_TRUE(FilmPainter::poses(film, {&time_s, 1}).shows_nothing());
+    EXPECT_TRUE(FilmRenderer::poses(film, {&time_s, 1}).shows_nothing());
 }
 
 TEST(FilmPlot, IsNotForPositionsAlone) {

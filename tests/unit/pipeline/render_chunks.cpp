@@ -9,7 +9,7 @@
 #include "corda/media/chunks/chunk.hpp"
 #include "corda/media/chunks/finish_part.hpp"
 #include "corda/media/verify/verify.hpp"
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"
 #include "support/image_matchers.hpp"
@@ -73,7 +73,7 @@ TEST_F(RenderChunks, HaveTheSameBytesHoweverManyAreMadeAtATime) {
 
 TEST_F(RenderChunks, HaveTheSameBytesIfTheyAreBlurred) {
     const std::vector<Setting> blur{"video.shutter=0.5", "video.subframes=4"};
-    EXPECT_TRUE(FilmPainter::can_draw_apart(Film(chunked_scene(1, blur)), 130));
+    EXPECT_TRUE(FilmRenderer::can_draw_in_any_order(Film(chunked_scene(1, blur)), 130));
     const std::string expected = bytes_of(chunked_scene(1, blur));
     EXPECT_TRUE(bytes_of(chunked_scene(3, blur)) == expected);
     EXPECT_TRUE(bytes_of(chunked_scene(3, blur), {}, 0) == expected);
@@ -175,9 +175,9 @@ TEST(ChunkLength, IsOneToTwoSeconds) {
 
 TEST(FilmPainters, DrawTheSameApart) {
     const Film film(chunked_scene(1));
-    ASSERT_TRUE(FilmPainter::can_draw_apart(film, film.frame_count()));
-    FilmPainter one(film);
-    FilmPainter other(film, FilmPainter::Apart{});
+    ASSERT_TRUE(FilmRenderer::can_draw_in_any_order(film, film.frame_count()));
+    FilmRenderer one(film);
+    FilmRenderer other(film, FilmRenderer::OwnContext{});
     for (const std::int64_t k : {70, 3, 71}) {
         other.draw(film.time_s(k));
         const Image image = other.image();

@@ -197,7 +197,7 @@ TEST(Simulation, TellsVelocitiesAndTensionsByEveryMethodThatKnowsThem) {
         Simulation run(build_system(two), WorldDef{}, method);
         ASSERT_EQ(run.advance_to(0.0), Status::kOk);
         EXPECT_TRUE(run.state().tension_n.empty());
-        run.tell({.velocities = true, .tensions = true});
+        run.set_outputs({.velocities = true, .tensions = true});
         const State& state = run.state();
         ASSERT_EQ(state.tension_n.size(), 6U);
         for (const std::size_t i : {0U, 4U}) EXPECT_NEAR(state.vx_m_s[i + 3], 1.5, 1e-9);
@@ -219,10 +219,10 @@ TEST(Simulation, LeavesOutTensionsThatAMethodDoesNotKnowIfItMay) {
     rope.points_m = {{0.0, 0.0}, {0.5, -0.5}, {1.0, -1.5}};
     const std::vector<MethodDef> methods{RelaxationDef{}, ExactDef{}};
     Simulation run(build_system(std::vector{rope, rope}), {}, methods);
-    Readings readings{.tensions = true};
-    EXPECT_THROW(run.tell(readings), Error);
+    StateFields readings{.tensions = true};
+    EXPECT_THROW(run.set_outputs(readings), Error);
     readings.unknown_tensions = true;
-    run.tell(readings);
+    run.set_outputs(readings);
     ASSERT_EQ(run.advance_to(0.1), Status::kOk);
     const std::vector<double>& tension_n = run.state().tension_n;
     ASSERT_EQ(tension_n.size(), 4U);
@@ -235,9 +235,9 @@ TEST(Simulation, LeavesOutTensionsThatAMethodDoesNotKnowIfItMay) {
 
 TEST(Simulation, RefusesTensionsThatItsMethodDoesNotKnow) {
     Simulation run = test::simulate(plumb_line(), WorldDef{}, RelaxationDef{});
-    run.tell({.velocities = true});
+    run.set_outputs({.velocities = true});
     EXPECT_NEAR(run.state().vx_m_s[3], 1.5, 1e-12);
-    EXPECT_THROW(run.tell({.tensions = true}), Error);
+    EXPECT_THROW(run.set_outputs({.tensions = true}), Error);
 }
 
 }  // namespace

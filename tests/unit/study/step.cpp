@@ -8,24 +8,24 @@ namespace corda::study {
 namespace {
 
 TEST(Steps, AreHeardByTheInnermostListener) {
-    take_step();
+    check_cancelled();
     int outer_steps = 0;
     int inner_steps = 0;
     const OnStep outer = [&] { ++outer_steps; };
     const OnStep inner = [&] { ++inner_steps; };
     const OnStep nobody;
     {
-        const HearSteps hear_outer(outer);
-        take_step();
+        const CancelScope hear_outer(outer);
+        check_cancelled();
         {
-            const HearSteps hear_inner(inner);
-            take_step();
-            const HearSteps hear_nothing(nobody);
-            take_step();
+            const CancelScope hear_inner(inner);
+            check_cancelled();
+            const CancelScope hear_nothing(nobody);
+            check_cancelled();
         }
-        take_step();
+        check_cancelled();
     }
-    take_step();
+    check_cancelled();
     EXPECT_EQ(outer_steps, 2);
     EXPECT_EQ(inner_steps, 1);
 }
@@ -33,10 +33,10 @@ TEST(Steps, AreHeardByTheInnermostListener) {
 TEST(Steps, EndTheWorkByWhatTheListenerThrows) {
     const OnStep stop = [] { throw std::runtime_error("enough"); };
     {
-        const HearSteps hear(stop);
-        EXPECT_THROW(take_step(), std::runtime_error);
+        const CancelScope hear(stop);
+        EXPECT_THROW(check_cancelled(), std::runtime_error);
     }
-    EXPECT_NO_THROW(take_step());
+    EXPECT_NO_THROW(check_cancelled());
 }
 
 }  // namespace

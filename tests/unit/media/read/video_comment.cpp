@@ -36,7 +36,7 @@ TEST(VideoComment, IsRefusedByItsDepth) {
         EXPECT_THAT(comment_problem(comment), HasSubstr("nested more than 16 levels"));
         EXPECT_EQ(failure_of([&] { static_cast<void>(parse_untrusted_json(comment)); }).code,
                   ExitCode::kMismatch);
-        EXPECT_EQ(told_number(comment, "frames"), std::nullopt);
+        EXPECT_EQ(comment_number(comment, "frames"), std::nullopt);
         EXPECT_TRUE(told_origin(comment).empty());
         EXPECT_EQ(finished_comment(comment, 3), comment);
     }
@@ -47,13 +47,13 @@ TEST(VideoComment, IsRefusedByItsDepth) {
 TEST(VideoComment, IsRefusedByItsSize) {
     const std::string comment = R"({"frames":1,"a":")" + std::string(kMaxJsonBytes, 'a') + "\"}";
     EXPECT_THAT(comment_problem(comment), HasSubstr("more than 65536"));
-    EXPECT_EQ(told_number(comment, "frames"), std::nullopt);
+    EXPECT_EQ(comment_number(comment, "frames"), std::nullopt);
 }
 
 TEST(VideoComment, NumbersBeyondTheRangeAreNone) {
-    EXPECT_EQ(told_number(R"({"frames":9223372036854775807})", "frames"), 9223372036854775807);
-    EXPECT_EQ(told_number(R"({"frames":9223372036854775808})", "frames"), std::nullopt);
-    EXPECT_EQ(told_number(R"({"frames":1e300})", "frames"), std::nullopt);
+    EXPECT_EQ(comment_number(R"({"frames":9223372036854775807})", "frames"), 9223372036854775807);
+    EXPECT_EQ(comment_number(R"({"frames":9223372036854775808})", "frames"), std::nullopt);
+    EXPECT_EQ(comment_number(R"({"frames":1e300})", "frames"), std::nullopt);
 }
 
 TEST_F(Video, WithANestedCommentIsNoSoundOne) {

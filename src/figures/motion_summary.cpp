@@ -1,4 +1,4 @@
-#include "corda/figures/reading.hpp"
+#include "corda/figures/motion_summary.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ class Reader {
           system_(film.system()),
           meter_(system_, film.scene().world, methods_of(film)),
           reading_(film.last_frame() + 1) {
-        for (const pipeline::Followed& followed : pipeline::list_followed(system_))
+        for (const pipeline::TrackedParticle& followed : pipeline::tracked_particles(system_))
             reading_.bodies.emplace_back(followed, film.last_frame() + 1);
         angles_.resize(reading_.bodies.size());
         rates_.resize(reading_.bodies.size());
@@ -50,7 +50,7 @@ class Reader {
         reading_.end_s = state.time_s;
     }
 
-    [[nodiscard]] Reading take() {
+    [[nodiscard]] MotionSummary take() {
         for (std::size_t b = 0; b < tells_tension_.size(); ++b)
             if (!tells_tension_[b] && system_.bodies[b].link_count > 0)
                 reading_.unknown_tensions.push_back(b);
@@ -203,7 +203,7 @@ class Reader {
     const Film& film_;
     const System& system_;
     sim::EnergyMeter meter_;
-    Reading reading_;
+    MotionSummary reading_;
     OnRow tip_;
     OnRow energy_;
     OnRow tension_;
@@ -228,11 +228,11 @@ void Extreme::include(const Extreme& other) {
     if (other.is_known) include(other.size, other.time_s, other.body, other.index);
 }
 
-Readings needed_readings() {
+StateFields needed_readings() {
     return {.velocities = true, .tensions = true, .unknown_tensions = true};
 }
 
-Reading read_motion(const Film& film, const OpenRows& open, const OnProgress& on_progress) {
+MotionSummary read_motion(const Film& film, const OpenRows& open, const OnProgress& on_progress) {
     const std::int64_t rows = film.last_frame() + 1;
     Reader reader(film, open);
     std::optional<Error> failure;
@@ -246,7 +246,7 @@ Reading read_motion(const Film& film, const OpenRows& open, const OnProgress& on
             break;
         }
     }
-    Reading reading = reader.take();
+    MotionSummary reading = reader.take();
     reading.failure = failure;
     return reading;
 }

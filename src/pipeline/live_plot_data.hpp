@@ -13,13 +13,13 @@
 namespace corda::pipeline {
 
 /// What the live plot of a scene shows of its motion.
-class Curves {
+class LivePlotData {
   public:
     /// The scene and its system must outlive it.
-    Curves(const Scene& scene, const System& system);
+    LivePlotData(const Scene& scene, const System& system);
 
     /// What states must have.
-    [[nodiscard]] Readings readings() const;
+    [[nodiscard]] StateFields readings() const;
     /// Times beside those of frames at which states are to be recorded, so that the curves do not depend on
     /// the frame rate. Empty without a plot.
     [[nodiscard]] std::vector<double> times_s() const;

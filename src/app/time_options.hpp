@@ -22,13 +22,13 @@ struct FrameRange {
 [[nodiscard]] std::optional<FrameRange> parse_frame_range(std::string_view text);
 
 /// A moment of the motion that is to be drawn.
-struct Shot {
+struct RequestedTime {
     double time_s = 0.0;
     std::optional<std::int64_t> frame;  ///< if it was asked for by its number
 };
 
 /// Which moments are drawn: `--at` or `--frame`.
-struct ShotOptions {
+struct TimeOptions {
     std::vector<double> times_s;
     std::vector<std::string> frames;
 
@@ -36,7 +36,7 @@ struct ShotOptions {
     /// Throws CLI::RequiredError if neither option was given.
     void require() const;
     /// In the order of time. Throws corda::Error (kUsage) for a moment that the scene does not have.
-    [[nodiscard]] std::vector<Shot> list(const Scene& scene) const;
+    [[nodiscard]] std::vector<RequestedTime> list(const Scene& scene) const;
 };
 
 }  // namespace corda::app

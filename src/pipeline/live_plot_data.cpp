@@ -1,4 +1,4 @@
-#include "corda/pipeline/curves.hpp"
+#include "corda/pipeline/live_plot_data.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "corda/core/timeline.hpp"
 #include "corda/pipeline/describe.hpp"
-#include "corda/pipeline/followed.hpp"
+#include "corda/pipeline/tracked_particle.hpp"
 #include "corda/sim/bounds.hpp"
 #include "corda/sim/distance.hpp"
 #include "corda/view/trail.hpp"
@@ -29,7 +29,7 @@ constexpr double kStill = 1e-3;
 std::size_t tip_of(const System& system) {
     const std::vector<std::size_t> ends = view::free_ends(system);
     if (!ends.empty()) return ends.front();
-    const std::vector<Followed> followed = list_followed(system);
+    const std::vector<TrackedParticle> followed = tracked_particles(system);
     return followed.empty() ? 0 : followed.front().particle;
 }
 
@@ -41,18 +41,18 @@ std::size_t body_of(const System& system, std::size_t particle) {
 
 }  // namespace
 
-Curves::Curves(const Scene& scene, const System& system)
+LivePlotData::LivePlotData(const Scene& scene, const System& system)
     : scene_(&scene),
       system_(&system),
       plot_(scene.overlay.plot),
       tip_(tip_of(system)),
       body_(body_of(system, tip_)) {}
 
-Readings Curves::readings() const {
+StateFields LivePlotData::readings() const {
     return {.velocities = plot_ == LivePlot::kEnergy || plot_ == LivePlot::kPhase};
 }
 
-std::vector<double> Curves::times_s() const {
+std::vector<double> LivePlotData::times_s() const {
     if (plot_ == LivePlot::kNone) return {};
     constexpr std::size_t kNumbersPerParticle = 4;
     const std::size_t state_bytes = kNumbersPerParticle * sizeof(double) * system_->particle_count();
@@ -63,7 +63,7 @@ std::vector<double> Curves::times_s() const {
     return times_s;
 }
 
-view::PlotData Curves::axes() const {
+view::PlotData LivePlotData::axes() const {
     using Curve = view::PlotData::Curve;
     MotionBounds start;
     for (std::size_t i = 0; i < system_->particle_count(); ++i)
@@ -96,8 +96,8 @@ view::PlotData Curves::axes() const {
     return {};
 }
 
-view::PlotData Curves::read(std::span<const MethodDef> methods, double end_s,
-                            const std::function<const State&(double time_s)>& state_at) const {
+view::PlotData LivePlotData::read(std::span<const MethodDef> methods, double end_s,
+                                  const std::function<const State&(double time_s)>& state_at) const {
     view::PlotData data = axes();
     std::optional<sim::EnergyMeter> meter;
     if (plot_ == LivePlot::kEnergy) meter.emplace(*system_, scene_->world, methods);
@@ -119,8 +119,8 @@ view::PlotData Curves::read(std::span<const MethodDef> methods, double end_s,
     return data;
 }
 
-void Curves::add(const State& state, const std::optional<sim::EnergyMeter>& meter,
-                 view::PlotData& data) const {
+void LivePlotData::add(const State& state, const std::optional<sim::EnergyMeter>& meter,
+                       view::PlotData& data) const {
     const double t = state.time_s;
     const double x_m = system_->origin_m.x + state.x_m[tip_];
     switch (plot_) {

@@ -1,4 +1,4 @@
-#include "corda/figures/reading.hpp"
+#include "corda/figures/motion_summary.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kWeightN = 2.0 * 9.81;
 
-TEST(Reading, HasTheEnergyAndTheTensionOfAPendulum) {
+TEST(MotionSummary, HasTheEnergyAndTheTensionOfAPendulum) {
     const ReadScene scene(pendulum_toml());
     ASSERT_EQ(scene.reading.rows, 201);
     const auto y = scene.column("tip.csv", "rope_0_y_m");
@@ -43,7 +43,7 @@ TEST(Reading, HasTheEnergyAndTheTensionOfAPendulum) {
     EXPECT_FALSE(scene.reading.failure);
 }
 
-TEST(Reading, CountsTheAngleFromStraightDown) {
+TEST(MotionSummary, CountsTheAngleFromStraightDown) {
     const ReadScene scene(pendulum_toml());
     const auto angle = scene.column("tip.csv", "rope_0_angle_rad");
     const auto rate = scene.column("tip.csv", "rope_0_angular_velocity_rad_s");
@@ -63,7 +63,7 @@ std::string looping_toml(const std::string& fps) {
            fps + "\n";
 }
 
-TEST(Reading, CountsTurnsOnHoweverFewRowsThereAre) {
+TEST(MotionSummary, CountsTurnsOnHoweverFewRowsThereAre) {
     const auto many = ReadScene(looping_toml("300")).column("tip.csv", "rope_0_angle_rad");
     const auto few = ReadScene(looping_toml("5")).column("tip.csv", "rope_0_angle_rad");
     EXPECT_TRUE(std::is_sorted(many.begin(), many.end()));
@@ -72,7 +72,7 @@ TEST(Reading, CountsTurnsOnHoweverFewRowsThereAre) {
     EXPECT_NEAR(few.back(), many.back(), 1e-6);
 }
 
-TEST(Reading, TellsTheEnergyOfASpring) {
+TEST(MotionSummary, TellsTheEnergyOfASpring) {
     // 1 kg on a spring of 100 N/m, let go at rest length: it falls by 2 m g / k, and is stretched by as much.
     const ReadScene scene(
         "[world]\nduration = 1.0\n[[rope]]\npoints = [[0.0, 0.0], [0.0, -1.0]]\ncompliance = "
@@ -87,7 +87,7 @@ TEST(Reading, TellsTheEnergyOfASpring) {
     EXPECT_NEAR(scene.reading.tension.size, 2.0 * 9.81, 1e-2);
 }
 
-TEST(Reading, LeavesOutTheTensionsThatAMethodDoesNotKnow) {
+TEST(MotionSummary, LeavesOutTheTensionsThatAMethodDoesNotKnow) {
     const ReadScene scene(
         "[world]\nduration = 0.1\n[[rope]]\nhang = { links = 3, length = 1.0, angle_deg = 9.0 "
         "}\n[[rope]]\nhang = { links = 3, length = 1.0, angle_deg = 9.0 }\n[[solver.bodies]]\nropes = "
@@ -101,7 +101,7 @@ TEST(Reading, LeavesOutTheTensionsThatAMethodDoesNotKnow) {
     EXPECT_EQ(scene.reading.tensions_n.size(), 3U);
 }
 
-TEST(Reading, EndsWhereTheMotionDiverges) {
+TEST(MotionSummary, EndsWhereTheMotionDiverges) {
     const ReadScene scene(
         "[world]\nduration = 1.0\ngravity = [1e14, 0.0]\n[[rope]]\npoints = [[0.0, 0.0], [1.0, 0.0]]\npinned "
         "= []\n[solver]\nmethod = \"relaxation\"\n[video]\nfps = 50\n");
@@ -113,7 +113,7 @@ TEST(Reading, EndsWhereTheMotionDiverges) {
     EXPECT_EQ(scene.rows.at("tip.csv").size(), 8U);
 }
 
-TEST(Reading, IsEndedByItsCallback) {
+TEST(MotionSummary, IsEndedByItsCallback) {
     const Film film(parse_scene("schema = 1\n" + pendulum_toml(), "a"), def_of());
     const auto open = [](const std::string&, const std::vector<std::string>&) -> OnRow {
         return [](std::span<const double>) {};

@@ -1,4 +1,4 @@
-#include "corda/pipeline/followed.hpp"
+#include "corda/pipeline/tracked_particle.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,12 +11,12 @@ System system_with(const std::string& bodies) {
     return system_of(parse_scene("schema = 1\n" + bodies, "scene.toml"));
 }
 
-TEST(Followed, IsTheFreeEndOfAnOpenRope) {
+TEST(TrackedParticle, IsTheFreeEndOfAnOpenRope) {
     const System system = system_with(
         "[[rope]]\nhang = { links = 4, length = 1.0 }\n"
         "[[rope]]\nhang = { links = 4, length = 1.0 }\npinned = [-1]\n"
         "[[rope]]\nhang = { links = 4, length = 1.0 }\npinned = []\n");
-    const auto followed = list_followed(system);
+    const auto followed = tracked_particles(system);
     ASSERT_EQ(followed.size(), 3U);
     EXPECT_EQ(followed[0].particle, 4U);
     EXPECT_EQ(followed[0].pin, 0U);
@@ -27,23 +27,23 @@ TEST(Followed, IsTheFreeEndOfAnOpenRope) {
     EXPECT_EQ(describe(system, followed), "the free ends of rope 0 to rope 2 (particles 4, 0, 4)");
 }
 
-TEST(Followed, IsInTheMiddleOfWhatHasNoFreeEnd) {
+TEST(TrackedParticle, IsInTheMiddleOfWhatHasNoFreeEnd) {
     const System system = system_with(
         "[[rope]]\npoints = [[0, 0], [1, -1], [2, -1.5], [3, -1], [4, 0]]\npinned = [0, -1]\n"
         "[[rope]]\npoints = [[0, 0], [1, 0], [1, -1], [0, -1]]\nclosed = true\n"
         "[[net]]\ngrid = { columns = 5, rows = 3, spacing = 0.1 }\npinned = [[0, 0], [4, 0]]\n");
-    const auto followed = list_followed(system);
+    const auto followed = tracked_particles(system);
     ASSERT_EQ(followed.size(), 3U);
     EXPECT_EQ(describe(system, followed[0]), "particle 2 of rope 0 (the middle one of its free ones)");
     EXPECT_EQ(followed[1].pin, 5U);
     EXPECT_EQ(describe(system, followed[2]), "particle 7 of net 0 (the most central of its free ones)");
 }
 
-TEST(Followed, AreFewAndMove) {
+TEST(TrackedParticle, AreFewAndMove) {
     std::string bodies = "[[rope]]\npoints = [[0, 0], [1, 0]]\npinned = [0, 1]\n";
     for (int i = 0; i < 9; ++i) bodies += "[[rope]]\nhang = { links = 2, length = 1.0 }\n";
     const System system = system_with(bodies);
-    const auto followed = list_followed(system);
+    const auto followed = tracked_particles(system);
     ASSERT_EQ(followed.size(), kMaxBodies);
     EXPECT_EQ(followed.front().body, 1U);
     EXPECT_EQ(moving_count(system), 9U);

@@ -1,4 +1,4 @@
-#include "corda/pipeline/stage.hpp"
+#include "corda/pipeline/scene_renderer.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "corda/pipeline/film.hpp"
-#include "corda/pipeline/painter.hpp"
+#include "corda/pipeline/film_renderer.hpp"
 #include "support/failure.hpp"
 #include "support/host_context.hpp"
 #include "support/image_matchers.hpp"
@@ -16,7 +16,7 @@
 namespace corda {
 namespace {
 
-using pipeline::Stage;
+using pipeline::SceneRenderer;
 using test::equal_images;
 
 /// A rope of two points, in a picture of that size.
@@ -31,19 +31,19 @@ Scene scene_of(int width_px, int height_px) {
     return scene;
 }
 
-/// A stage with all that it needs.
+/// A renderer with all that it needs.
 struct Show {
     explicit Show(Scene given) : scene(std::move(given)) {}
 
     Image draw() {
-        const Stage::Use use(stage);
-        stage.draw({0.0, system.x_m, system.y_m}, stage.map_of(scene.camera));
-        return stage.image();
+        const SceneRenderer::Use use(renderer);
+        renderer.draw({0.0, system.x_m, system.y_m}, renderer.map_of(scene.camera));
+        return renderer.image();
     }
 
     Scene scene;
     System system = system_of(scene);
-    Stage stage{scene, system, "auto", false};
+    SceneRenderer renderer{scene, system, "auto", false};
 };
 
 TEST(Stages, RefuseWhatCannotBeDrawn) {
@@ -59,7 +59,7 @@ TEST(Stages, RefuseWhatCannotBeDrawn) {
     EXPECT_EQ(test::failure_of([] {
                   const Scene scene = scene_of(16, 16);
                   const System system = system_of(scene);
-                  const Stage stage(scene, system, "metal", false);
+                  const SceneRenderer renderer(scene, system, "metal", false);
               }).code,
               ExitCode::kUsage);
 }
@@ -69,26 +69,26 @@ TEST(Stages, DrawTheSameWhenTheirUsesNest) {
     Show b(scene_of(40, 40));
     const Image a_alone = a.draw();
     const Image b_alone = b.draw();
-    const Stage::Use use_a(a.stage);
+    const SceneRenderer::Use use_a(a.renderer);
     for (int i = 0; i < 2; ++i) {
         EXPECT_TRUE(equal_images(b.draw(), b_alone));
         EXPECT_TRUE(equal_images(a.draw(), a_alone));
         Show(scene_of(20, 20)).draw();  // ends here
         const State state{0.0, a.system.x_m, a.system.y_m};
-        a.stage.draw(state, a.stage.map_of(a.scene.camera));
-        EXPECT_TRUE(equal_images(a.stage.image(), a_alone));
+        a.renderer.draw(state, a.renderer.map_of(a.scene.camera));
+        EXPECT_TRUE(equal_images(a.renderer.image(), a_alone));
     }
-    EXPECT_EQ(a.stage.pictures(), 5);
+    EXPECT_EQ(a.renderer.pictures(), 5);
 }
 
 TEST(Stages, DrawTheSameAfterACallbackThatLeftAnotherContext) {
     Show a(scene_of(64, 48));
     const Image alone = a.draw();
-    const Stage::Use use(a.stage);
+    const SceneRenderer::Use use(a.renderer);
     const test::HostContext host;
     const State state{0.0, a.system.x_m, a.system.y_m};
-    a.stage.draw(state, a.stage.map_of(a.scene.camera));
-    EXPECT_TRUE(equal_images(a.stage.image(), alone));
+    a.renderer.draw(state, a.renderer.map_of(a.scene.camera));
+    EXPECT_TRUE(equal_images(a.renderer.image(), alone));
 }
 
 TEST(Stages, LeaveTheContextOfTheHostCurrent) {
@@ -157,15 +157,15 @@ TEST(LargePictures, AreStoppedByTheirCallback) {
 TEST(LargePictures, AreWholeForAPainterWhoseCallbackDrawsOthers) {
     Film film(large_scene());
     const Image first = film.frame(0);
-    FilmPainter painter(film);
-    painter.draw(0.0);
-    EXPECT_EQ(painter.draw(0.1,
-                           [&](std::int64_t, std::int64_t) {
-                               static_cast<void>(film.frame(2));
-                               return true;
-                           }),
+    FilmRenderer renderer(film);
+    renderer.draw(0.0);
+    EXPECT_EQ(renderer.draw(0.1,
+                            [&](std::int64_t, std::int64_t) {
+                                static_cast<void>(film.frame(2));
+                                return true;
+                            }),
               Damage{first.rect()});
-    EXPECT_TRUE(equal_images(painter.image(), Film(large_scene()).still(0.1)));
+    EXPECT_TRUE(equal_images(renderer.image(), Film(large_scene()).still(0.1)));
 }
 
 TEST(Painters, InterleaveAndTellWhatOthersHaveDrawn) {
@@ -173,8 +173,8 @@ TEST(Painters, InterleaveAndTellWhatOthersHaveDrawn) {
     Film b(scene_of(40, 40));
     const Image a_first = a.frame(0);
     const Image b_first = b.frame(0);
-    FilmPainter paint_a(a);
-    FilmPainter paint_b(b);
+    FilmRenderer paint_a(a);
+    FilmRenderer paint_b(b);
     EXPECT_EQ(paint_a.draw(0.0), Damage{a_first.rect()});
     EXPECT_EQ(paint_b.draw(0.0), Damage{b_first.rect()});
     EXPECT_TRUE(equal_images(paint_a.image(), a_first));

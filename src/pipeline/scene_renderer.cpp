@@ -1,4 +1,4 @@
-#include "corda/pipeline/stage.hpp"
+#include "corda/pipeline/scene_renderer.hpp"
 
 #include <array>
 #include <utility>
@@ -34,7 +34,8 @@ const Scene& drawable(const Scene& scene) {
 
 }  // namespace
 
-Stage::Stage(const Scene& scene, const System& system, const std::string& backend, bool require_gpu)
+SceneRenderer::SceneRenderer(const Scene& scene, const System& system, const std::string& backend,
+                             bool require_gpu)
     : scene_(&drawable(scene)),
       system_(&system),
       gl_(gl::ContextDef::parse(backend)),
@@ -45,7 +46,7 @@ Stage::Stage(const Scene& scene, const System& system, const std::string& backen
     gl_.require_gpu = require_gpu;
 }
 
-Stage::~Stage() {
+SceneRenderer::~SceneRenderer() {
     if (!canvas_) return;
     const gl::SavedContext saved;
     const auto lock = canvas_->context.exclusive();
@@ -60,12 +61,12 @@ Stage::~Stage() {
     canvas_.reset();
 }
 
-bool Stage::needs_motion() const {
+bool SceneRenderer::needs_motion() const {
     return view::needs_motion(scene_->camera) || view_.needs_motion() ||
            scene_->overlay.plot != LivePlot::kNone;
 }
 
-CameraDef Stage::fit(std::span<const MotionBounds> motion, const sim::Spread& spread) {
+CameraDef SceneRenderer::fit(std::span<const MotionBounds> motion, const sim::Spread& spread) {
     view_.set_motion(motion);
     if (const auto quantity = quantity_of(scene_->style.color_by)) {
         const view::ColorScale scale = view::scale_of(*quantity, spread, scene_->style);
@@ -76,18 +77,18 @@ CameraDef Stage::fit(std::span<const MotionBounds> motion, const sim::Spread& sp
                             scene_->video.height_px, overlay_.insets());
 }
 
-double Stage::largest_pixels_per_metre(const MotionBounds& bounds) const {
+double SceneRenderer::largest_pixels_per_metre(const MotionBounds& bounds) const {
     const std::array<view::Drawn, 1> lines{{{.bounds = bounds}}};
     return map_of(view::fit_camera(scene_->camera, system_->origin_m, lines, scene_->video.width_px,
                                    scene_->video.height_px, overlay_.insets()))
         .pixels_per_metre();
 }
 
-view::Camera Stage::map_of(const CameraDef& camera) const {
+view::Camera SceneRenderer::map_of(const CameraDef& camera) const {
     return {camera, system_->origin_m, scene_->video.width_px, scene_->video.height_px};
 }
 
-void Stage::open(Needs needs) {
+void SceneRenderer::open(Needs needs) {
     // A forked child draws in a context of its own, and leaves its parent's alone.
     if (canvas_ && canvas_->context.is_inherited()) static_cast<void>(canvas_.release());
     if (canvas_) {
@@ -107,36 +108,36 @@ void Stage::open(Needs needs) {
     }
 }
 
-Damage Stage::draw(const State& state, const view::Camera& map, const view::Caption& caption,
-                   const Traces& traces, const OnProgress& on_progress) {
+Damage SceneRenderer::draw(const State& state, const view::Camera& map, const view::Caption& caption,
+                           const Traces& traces, const OnProgress& on_progress) {
     list(state, map, traces);
     annotate(caption, map, list_);
     return paint(on_progress);
 }
 
-void Stage::list(const State& state, const view::Camera& map, const Traces& traces) {
+void SceneRenderer::list(const State& state, const view::Camera& map, const Traces& traces) {
     view_.draw(state, map, list_, traces.trails);
     draw_curves(traces.plotted_s, list_);
 }
 
-bool Stage::would_show_nothing(const State& state, const view::Camera& map, const Traces& traces) {
+bool SceneRenderer::would_show_nothing(const State& state, const view::Camera& map, const Traces& traces) {
     list(state, map, traces);
     return list_.shows_nothing();
 }
 
-Damage Stage::draw(view::DrawList list, const OnProgress& on_progress) {
+Damage SceneRenderer::draw(view::DrawList list, const OnProgress& on_progress) {
     list_ = std::move(list);
     return paint(on_progress);
 }
 
-std::int64_t Stage::begin_exposure() {
+std::int64_t SceneRenderer::begin_exposure() {
     shows_nothing_ = true;
     canvas_->renderer->begin_exposure();
     return ++pictures_;
 }
 
-void Stage::expose(std::int64_t picture, const State& state, const view::Camera& map, const Traces& traces,
-                   const OnProgress& on_progress) {
+void SceneRenderer::expose(std::int64_t picture, const State& state, const view::Camera& map,
+                           const Traces& traces, const OnProgress& on_progress) {
     canvas_->context.make_current();
     if (picture != pictures_) throw Overdrawn();
     list(state, map, traces);
@@ -147,7 +148,7 @@ void Stage::expose(std::int64_t picture, const State& state, const view::Camera&
     canvas_->renderer->expose(list_, ask);
 }
 
-Damage Stage::develop(std::int64_t picture, const view::Caption& caption, const view::Camera& map) {
+Damage SceneRenderer::develop(std::int64_t picture, const view::Caption& caption, const view::Camera& map) {
     canvas_->context.make_current();
     if (picture != pictures_) throw Overdrawn();
     view_.start(list_);
@@ -155,7 +156,7 @@ Damage Stage::develop(std::int64_t picture, const view::Caption& caption, const 
     return canvas_->renderer->develop(list_);
 }
 
-Damage Stage::paint(const OnProgress& on_progress) {
+Damage SceneRenderer::paint(const OnProgress& on_progress) {
     canvas_->context.make_current();  // a callback since open() may have left another one
     ++pictures_;
     shows_nothing_ = list_.shows_nothing();
@@ -163,13 +164,13 @@ Damage Stage::paint(const OnProgress& on_progress) {
     return canvas_->renderer->render(list_, asking(on_progress));
 }
 
-void Stage::check_tints() {
+void SceneRenderer::check_tints() {
     if (canvas_->has_checked_tints || !list_.has_tints()) return;
     render::check_driver(canvas_->context, *canvas_->renderer, true);
     canvas_->has_checked_tints = true;
 }
 
-OnProgress Stage::asking(const OnProgress& on_progress) {
+OnProgress SceneRenderer::asking(const OnProgress& on_progress) {
     if (!on_progress) return {};
     return [this, &on_progress, picture = pictures_](std::int64_t done, std::int64_t total) {
         if (!on_progress(done, total)) return false;

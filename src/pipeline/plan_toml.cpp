@@ -1,4 +1,4 @@
-#include "corda/pipeline/freeze.hpp"
+#include "corda/pipeline/plan_toml.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,4 @@
-#include "shots.hpp"
+#include "time_options.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -12,7 +12,7 @@ namespace corda::app {
 namespace {
 
 /// So many pictures are a video.
-constexpr std::int64_t kMaxShots = 100'000;
+constexpr std::int64_t kMaxTimes = 100'000;
 
 /// Reads a whole number into `frame`; false for any other text.
 template <typename Frame>
@@ -56,7 +56,7 @@ std::optional<FrameRange> parse_frame_range(std::string_view text) {
     return is_range ? std::optional(range) : std::nullopt;
 }
 
-void ShotOptions::add_to(CLI::App& command) {
+void TimeOptions::add_to(CLI::App& command) {
     auto* at = command.add_option("--at", times_s, "times in seconds, e.g. 0,0.5,1.25")
                    ->delimiter(',')
                    ->type_name("T[,T...]");
@@ -67,12 +67,12 @@ void ShotOptions::add_to(CLI::App& command) {
     at->excludes(frame);
 }
 
-void ShotOptions::require() const {
+void TimeOptions::require() const {
     if (times_s.empty() && frames.empty()) throw CLI::RequiredError("--at or --frame");
 }
 
-std::vector<Shot> ShotOptions::list(const Scene& scene) const {
-    std::vector<Shot> shots;
+std::vector<RequestedTime> TimeOptions::list(const Scene& scene) const {
+    std::vector<RequestedTime> shots;
     for (const double time_s : times_s) {
         const auto within_s = time_within(time_s, scene.world.duration_s);
         if (!within_s) {
@@ -85,16 +85,16 @@ std::vector<Shot> ShotOptions::list(const Scene& scene) const {
     for (const std::string& word : frames) {
         const FrameRange range = frames_of(word, scene);
         const auto count = static_cast<std::int64_t>(shots.size()) + *range.end - range.first;
-        if (count > kMaxShots) {
+        if (count > kMaxTimes) {
             throw Error(ExitCode::kUsage, fmt::format("--frame {}: are {} pictures or more, over the limit "
                                                       "of {}; `corda render` makes a video of them",
-                                                      word, count, kMaxShots));
+                                                      word, count, kMaxTimes));
         }
         for (std::int64_t k = range.first; k < *range.end; ++k)
             shots.push_back({scene.video.fps.time_s(k), k});
     }
     std::stable_sort(shots.begin(), shots.end(),
-                     [](const Shot& a, const Shot& b) { return a.time_s < b.time_s; });
+                     [](const RequestedTime& a, const RequestedTime& b) { return a.time_s < b.time_s; });
     return shots;
 }
 

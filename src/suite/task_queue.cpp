@@ -1,4 +1,4 @@
-#include "corda/suite/crew.hpp"
+#include "corda/suite/task_queue.hpp"
 
 #include <utility>
 
@@ -6,19 +6,19 @@
 
 namespace corda::suite {
 
-void Crew::later(Work work) {
+void TaskQueue::push_back(Work work) {
     const std::lock_guard lock(mutex_);
     waiting_.push_back(std::move(work));
     changed_.notify_one();
 }
 
-void Crew::next(Work work) {
+void TaskQueue::push_front(Work work) {
     const std::lock_guard lock(mutex_);
     waiting_.push_front(std::move(work));
     changed_.notify_one();
 }
 
-void Crew::run(int threads) {
+void TaskQueue::run(int threads) {
     {
         const auto helpers = start_threads(threads, [this] { help(); });
         if (helpers.empty()) help();
@@ -26,7 +26,7 @@ void Crew::run(int threads) {
     if (error_) std::rethrow_exception(error_);
 }
 
-void Crew::help() {
+void TaskQueue::help() {
     std::unique_lock lock(mutex_);
     while (true) {
         changed_.wait(lock, [&] { return !waiting_.empty() || busy_ == 0; });

@@ -13,10 +13,10 @@ namespace corda::pipeline {
 
 /// Where some particles of a motion go, at its frame times: what trails are drawn from. A trail has the same
 /// points whatever was drawn before.
-class Tracks {
+class TrailRecorder {
   public:
     /// `trail_s`: of a trail. A long one has a point every few frames.
-    Tracks(std::vector<std::size_t> particles, double trail_s, FrameRate fps);
+    TrailRecorder(std::vector<std::size_t> particles, double trail_s, FrameRate fps);
 
     /// Reads the motion as far as trails at that time need it. Throws what Motion::at() throws.
     void read(Motion& motion, double time_s, const OnProgress& on_progress);

@@ -1,4 +1,4 @@
-#include "corda/pipeline/followed.hpp"
+#include "corda/pipeline/tracked_particle.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,9 +38,9 @@ std::size_t most_central(const System& system, const std::vector<std::size_t>& p
 
 }  // namespace
 
-std::vector<Followed> list_followed(const System& system) {
+std::vector<TrackedParticle> tracked_particles(const System& system) {
     const std::vector<std::size_t> ends = view::free_ends(system);
-    std::vector<Followed> all;
+    std::vector<TrackedParticle> all;
     for (std::size_t b = 0; b < system.bodies.size() && all.size() < kMaxBodies; ++b) {
         const Body& body = system.bodies[b];
         const std::vector<std::size_t> free = particles_of(system, body, false);
@@ -48,7 +48,7 @@ std::vector<Followed> list_followed(const System& system) {
         const auto end = std::find_if(ends.begin(), ends.end(), [&](std::size_t i) {
             return i >= body.first_particle && i < body.first_particle + body.particle_count;
         });
-        Followed& followed = all.emplace_back();
+        TrackedParticle& followed = all.emplace_back();
         followed.body = b;
         followed.is_free_end = end != ends.end();
         followed.particle = followed.is_free_end ? *end
@@ -66,7 +66,7 @@ std::size_t moving_count(const System& system) {
                       [&](const Body& body) { return !particles_of(system, body, false).empty(); }));
 }
 
-std::string describe(const System& system, const Followed& followed) {
+std::string describe(const System& system, const TrackedParticle& followed) {
     const std::string name = body_name(system, followed.body);
     const std::size_t number = followed.particle - system.bodies[followed.body].first_particle;
     return followed.is_free_end
@@ -75,11 +75,11 @@ std::string describe(const System& system, const Followed& followed) {
                              system.bodies[followed.body].is_net ? "most central" : "middle one");
 }
 
-std::string describe(const System& system, const std::vector<Followed>& followed) {
+std::string describe(const System& system, const std::vector<TrackedParticle>& followed) {
     std::vector<std::size_t> ends;
     std::vector<std::size_t> numbers;
     std::string others;
-    for (const Followed& one : followed) {
+    for (const TrackedParticle& one : followed) {
         if (one.is_free_end) {
             ends.push_back(one.body);
             numbers.push_back(one.particle - system.bodies[one.body].first_particle);

@@ -1,4 +1,4 @@
-#include "corda/core/in_order.hpp"
+#include "corda/core/ordered_workers.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace corda {
 namespace {
 
-using Numbers = InOrder<std::int64_t>;
+using Numbers = OrderedWorkers<std::int64_t>;
 
 /// Takes what is left.
 std::vector<std::int64_t> take(Numbers& all, std::size_t count) {
@@ -23,7 +23,7 @@ std::vector<std::int64_t> take(Numbers& all, std::size_t count) {
     return taken;
 }
 
-TEST(InOrder, GivesThingsInOrderThoughLaterOnesAreMadeFirst) {
+TEST(OrderedWorkers, GivesThingsInOrderThoughLaterOnesAreMadeFirst) {
     for (const int threads : {1, 2, 8}) {
         Numbers all(3, 40, threads, [] {
             return [](std::int64_t number, const Numbers&) {
@@ -38,7 +38,7 @@ TEST(InOrder, GivesThingsInOrderThoughLaterOnesAreMadeFirst) {
     }
 }
 
-TEST(InOrder, MakesNoMoreThanTwoPerThreadThatNobodyTakes) {
+TEST(OrderedWorkers, MakesNoMoreThanTwoPerThreadThatNobodyTakes) {
     std::atomic<int> made = 0;
     Numbers all(0, 100, 2, [&made] {
         return [&made](std::int64_t number, const Numbers&) {
@@ -53,7 +53,7 @@ TEST(InOrder, MakesNoMoreThanTwoPerThreadThatNobodyTakes) {
     while (made < 5) std::this_thread::yield();
 }
 
-TEST(InOrder, ThrowsWhatFailedWhenItsTurnHasCome) {
+TEST(OrderedWorkers, ThrowsWhatFailedWhenItsTurnHasCome) {
     Numbers all(0, 10, 2, [] {
         return [](std::int64_t number, const Numbers&) {
             if (number == 3) throw std::runtime_error("three");
@@ -68,7 +68,7 @@ TEST(InOrder, ThrowsWhatFailedWhenItsTurnHasCome) {
         std::runtime_error);
 }
 
-TEST(InOrder, ThrowsWhatAMakerThrowsAtItsFirstThing) {
+TEST(OrderedWorkers, ThrowsWhatAMakerThrowsAtItsFirstThing) {
     Numbers all(0, 4, 1, []() -> Numbers::Make { throw std::runtime_error("no maker"); });
     EXPECT_THROW(
         {
@@ -77,7 +77,7 @@ TEST(InOrder, ThrowsWhatAMakerThrowsAtItsFirstThing) {
         std::runtime_error);
 }
 
-TEST(InOrder, GivesWhatWasBegunAfterItIsStopped) {
+TEST(OrderedWorkers, GivesWhatWasBegunAfterItIsStopped) {
     std::atomic<int> begun = 0;
     Numbers all(0, 10, 2, [&begun] {
         return [&begun](std::int64_t number, const Numbers& numbers) {

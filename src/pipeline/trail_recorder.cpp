@@ -1,4 +1,4 @@
-#include "corda/pipeline/tracks.hpp"
+#include "corda/pipeline/trail_recorder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,14 +15,14 @@ constexpr double kTooClose = 1e-6;
 
 }  // namespace
 
-Tracks::Tracks(std::vector<std::size_t> particles, double trail_s, FrameRate fps)
+TrailRecorder::TrailRecorder(std::vector<std::size_t> particles, double trail_s, FrameRate fps)
     : particles_(std::move(particles)),
       trail_s_(trail_s),
       fps_(fps),
       stride_(std::max<std::int64_t>(1, std::llround(std::ceil(trail_s / fps.interval_s() / kMaxPoints)))),
       trails_(particles_.size()) {}
 
-void Tracks::read(Motion& motion, double end_s, const OnProgress& on_progress) {
+void TrailRecorder::read(Motion& motion, double end_s, const OnProgress& on_progress) {
     if (particles_.empty()) return;
     for (; time_s(points_) <= end_s; ++points_) {
         const State& state = motion.at(time_s(points_), on_progress);
@@ -30,7 +30,7 @@ void Tracks::read(Motion& motion, double end_s, const OnProgress& on_progress) {
     }
 }
 
-const std::vector<view::Trail>& Tracks::to(const State& state) {
+const std::vector<view::Trail>& TrailRecorder::to(const State& state) {
     std::size_t first = points_;
     while (first > 0 && time_s(first - 1) >= state.time_s - kTooClose * fps_.interval_s()) --first;
     const std::size_t end = first;

@@ -5,32 +5,32 @@
 #include <span>
 
 #include "corda/pipeline/film.hpp"
-#include "corda/pipeline/stage.hpp"
+#include "corda/pipeline/scene_renderer.hpp"
 
 namespace corda {
 namespace pipeline {
-struct Brush;
+struct DrawContext;
 }
 
 /// Draws a film's frames one after the other without copying them, for a caller that encodes them. A context
 /// is current on this thread for as long as it lives; afterwards, the one before is again.
-class FilmPainter {
+class FilmRenderer {
   public:
     /// Draws with the film's own context. Throws corda::Error (kNoGl).
-    explicit FilmPainter(const Film& film);
-    /// Draws with a context of its own: painters of a film may then work side by side, in the threads that
-    /// made them, one at a time being made. Throws corda::Error (kNoGl).
-    struct Apart {};
-    FilmPainter(const Film& film, Apart);
-    FilmPainter(const FilmPainter&) = delete;
-    FilmPainter& operator=(const FilmPainter&) = delete;
-    ~FilmPainter();
+    explicit FilmRenderer(const Film& film);
+    /// Draws with an OpenGL context of its own, so that several renderers of a film can draw side by side,
+    /// each in the thread that made it. Make them one at a time. Throws corda::Error (kNoGl).
+    struct OwnContext {};
+    FilmRenderer(const Film& film, OwnContext);
+    FilmRenderer(const FilmRenderer&) = delete;
+    FilmRenderer& operator=(const FilmRenderer&) = delete;
+    ~FilmRenderer();
 
-    /// Whether frames before `end` can be drawn in any order without being simulated again. Simulates what
+    /// True if frames before `end` can be drawn in any order without being simulated again. Simulates what
     /// has not been yet.
-    [[nodiscard]] static bool can_draw_apart(const Film& film, std::int64_t end);
+    [[nodiscard]] static bool can_draw_in_any_order(const Film& film, std::int64_t end);
 
-    /// Draws the picture at a time; returns what may differ from the last one that this painter drew: all,
+    /// Draws the picture at a time; returns what may differ from the last one that this renderer drew: all,
     /// if somebody else has drawn the film since. Asks `on_progress` as Film::still().
     Damage draw(double time_s, const OnProgress& on_progress = {});
     /// Draws a list of the film's size.
@@ -52,16 +52,16 @@ class FilmPainter {
     [[nodiscard]] static bool is_empty(const Film& film, double time_s);
     /// The last picture.
     [[nodiscard]] const Image& image() const;
-    /// Whether nothing is in view on it.
+    /// True if the last picture was empty.
     [[nodiscard]] bool shows_nothing() const;
 
   private:
     const Film* film_;
-    std::unique_ptr<pipeline::Brush> own_;
-    pipeline::Brush* brush_;
-    pipeline::Stage::Use use_;
+    std::unique_ptr<pipeline::DrawContext> own_;
+    pipeline::DrawContext* drawing_;
+    pipeline::SceneRenderer::Use use_;
     CameraDef camera_;
-    std::int64_t pictures_ = -1;  ///< the stage's count after the last draw
+    std::int64_t pictures_ = -1;  ///< the renderer's count after the last draw
 };
 
 }  // namespace corda

@@ -2,12 +2,12 @@
 
 #include <vector>
 
-#include "corda/figures/reading.hpp"
+#include "corda/figures/motion_summary.hpp"
 
 namespace corda::figures {
 
 /// The times of a report's drawings.
-struct Moments {
+struct FigureTimes {
     std::vector<double> strobe_s;
     std::vector<double> stills_s;
     bool are_chosen = false;  ///< asked for, not found
@@ -18,7 +18,7 @@ struct Moments {
 /// the start to where the first followed particle first turns back in x, having moved a quarter of the way
 /// that it does in all, or else to the end; and the stills are five from the start to the end. All of these
 /// are frame times.
-[[nodiscard]] Moments find_moments(const Film& film, const Reading& reading,
-                                   const std::vector<double>& asked_s);
+[[nodiscard]] FigureTimes find_figure_times(const Film& film, const MotionSummary& reading,
+                                            const std::vector<double>& asked_s);
 
 }  // namespace corda::figures

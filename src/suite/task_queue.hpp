@@ -9,14 +9,14 @@
 namespace corda::suite {
 
 /// Pieces of work that a few threads do, and that may add more of them.
-class Crew {
+class TaskQueue {
   public:
     using Work = std::function<void()>;
 
-    /// Work for when nothing of next() is left.
-    void later(Work work);
+    /// Work for when nothing of push_front() is left.
+    void push_back(Work work);
     /// Work that is done before all that waits.
-    void next(Work work);
+    void push_front(Work work);
     /// Does all of it on so many threads, or on the calling one if the system starts none. Throws what the
     /// first piece that failed threw; what was not begun by then is dropped.
     void run(int threads);

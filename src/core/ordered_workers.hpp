@@ -20,21 +20,21 @@ namespace corda {
 /// Numbered things that several threads make and one takes in order. Few wait to be taken at a time: a thread
 /// that is too far ahead waits.
 template <class Thing>
-class InOrder {
+class OrderedWorkers {
   public:
     /// Makes the thing of a number, on the thread that made the maker; `all` tells whether to stop.
-    using Make = std::function<Thing(std::int64_t number, const InOrder& all)>;
+    using Make = std::function<Thing(std::int64_t number, const OrderedWorkers& all)>;
 
     /// Begins to make things first <= i < end. A thread calls `new_maker` before the first thing that it
     /// makes, and again before the next one if `new_maker` threw. If the system starts no thread, none is
     /// made: see has_threads().
-    InOrder(std::int64_t first, std::int64_t end, int threads, std::function<Make()> new_maker)
+    OrderedWorkers(std::int64_t first, std::int64_t end, int threads, std::function<Make()> new_maker)
         : new_maker_(std::move(new_maker)), end_(end), ahead_(2 * threads), next_(first), taken_(first) {
         threads_ = start_threads(threads, [this] { work(); });
     }
-    InOrder(const InOrder&) = delete;
-    InOrder& operator=(const InOrder&) = delete;
-    ~InOrder() {
+    OrderedWorkers(const OrderedWorkers&) = delete;
+    OrderedWorkers& operator=(const OrderedWorkers&) = delete;
+    ~OrderedWorkers() {
         stop();
         threads_.clear();
     }

@@ -11,7 +11,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/figures/thinning.hpp"
 #include "corda/pipeline/film.hpp"
-#include "corda/pipeline/followed.hpp"
+#include "corda/pipeline/tracked_particle.hpp"
 
 namespace corda::figures {
 
@@ -30,7 +30,7 @@ struct Extreme {
 
 /// The curves of one body.
 struct BodyCurves {
-    BodyCurves(const pipeline::Followed& whom, std::int64_t rows)
+    BodyCurves(const pipeline::TrackedParticle& whom, std::int64_t rows)
         : followed(whom),
           path(rows, Thinner::Kind::kPath),
           phase(rows, Thinner::Kind::kPath),
@@ -38,7 +38,7 @@ struct BodyCurves {
           tension(rows),
           strain(rows) {}
 
-    pipeline::Followed followed;
+    pipeline::TrackedParticle followed;
     Thinner path;     ///< x and y in m, relative to the system's origin
     Thinner phase;    ///< x in m from the only pin, or else from the start, and vx in m/s
     Thinner turning;  ///< angle of the way from the only pin, in rad from straight down, turns counted on,
@@ -49,8 +49,8 @@ struct BodyCurves {
 };
 
 /// What a report needs of a motion, from one reading of its states at all frame times.
-struct Reading {
-    explicit Reading(std::int64_t most) : kinetic(most), weight(most), elastic(most), total(most) {}
+struct MotionSummary {
+    explicit MotionSummary(std::int64_t most) : kinetic(most), weight(most), elastic(most), total(most) {}
 
     std::int64_t rows = 0;
     double end_s = 0.0;  ///< of the last row
@@ -71,7 +71,7 @@ struct Reading {
 };
 
 /// What a film's states need for that: FilmDef::readings.
-[[nodiscard]] Readings needed_readings();
+[[nodiscard]] StateFields needed_readings();
 
 /// Where rows go: a file name and the keys of its columns give what takes its rows.
 using OnRow = std::function<void(std::span<const double> values)>;
@@ -80,6 +80,7 @@ using OpenRows = std::function<OnRow(const std::string& name, const std::vector<
 /// Reads the states at all frame times once, and hands all rows of tip.csv, energy.csv, tension.csv and
 /// strain.csv to `open`. A motion that diverges ends the reading early. Throws corda::Error: kInterrupted if
 /// `on_progress` asks to stop, kDiverged if there is not even a start, and what `open` throws.
-[[nodiscard]] Reading read_motion(const Film& film, const OpenRows& open, const OnProgress& on_progress);
+[[nodiscard]] MotionSummary read_motion(const Film& film, const OpenRows& open,
+                                        const OnProgress& on_progress);
 
 }  // namespace corda::figures

@@ -1,4 +1,4 @@
-#include "corda/pipeline/terms.hpp"
+#include "corda/pipeline/model_summary.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "corda/figures/moments.hpp"
+#include "corda/figures/figure_times.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,9 +10,9 @@ namespace {
 
 using testing::ElementsAre;
 
-TEST(Moments, AreThoseOfTheFirstSwing) {
+TEST(FigureTimes, AreThoseOfTheFirstSwing) {
     const ReadScene scene(pendulum_toml("duration = 3.0", "100"));
-    const Moments moments = find_moments(scene.film, scene.reading, {});
+    const FigureTimes moments = find_figure_times(scene.film, scene.reading, {});
     EXPECT_TRUE(moments.is_swing);
     ASSERT_EQ(moments.strobe_s.size(), 6U);
     EXPECT_EQ(moments.strobe_s.front(), 0.0);
@@ -23,18 +23,18 @@ TEST(Moments, AreThoseOfTheFirstSwing) {
     EXPECT_EQ(scene.film.simulation_passes(), 1);  // all of them are recorded
 }
 
-TEST(Moments, AreThoseOfTheWholeMotionIfNothingSwings) {
+TEST(FigureTimes, AreThoseOfTheWholeMotionIfNothingSwings) {
     const ReadScene scene(
         "[world]\nduration = 1.0\n[[rope]]\npoints = [[0.0, 0.0], [1.0, 0.0]]\npinned = []\n[video]\nfps = "
         "10\n");
-    const Moments moments = find_moments(scene.film, scene.reading, {});
+    const FigureTimes moments = find_figure_times(scene.film, scene.reading, {});
     EXPECT_FALSE(moments.is_swing);
     EXPECT_THAT(moments.strobe_s, ElementsAre(0.0, 0.2, 0.4, 0.6, 0.8, 1.0));
 }
 
-TEST(Moments, ThatWereAskedForAreTaken) {
+TEST(FigureTimes, ThatWereAskedForAreTaken) {
     const ReadScene scene(pendulum_toml(), {0.123, 0.456});
-    const Moments moments = find_moments(scene.film, scene.reading, {0.456, 0.123});
+    const FigureTimes moments = find_figure_times(scene.film, scene.reading, {0.456, 0.123});
     EXPECT_THAT(moments.strobe_s, ElementsAre(0.123, 0.456));
     EXPECT_THAT(moments.stills_s, ElementsAre(0.123, 0.456));
     EXPECT_EQ(scene.film.state_at(0.456).time_s, 0.456);

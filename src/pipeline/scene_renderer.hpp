@@ -17,21 +17,21 @@
 
 namespace corda::pipeline {
 
-/// What pictures show of the motion up to their state.
+/// The part of the motion up to a state that its picture shows.
 struct Traces {
     std::span<const view::Trail> trails;  ///< one per particle traced(), or none
     double plotted_s = 0.0;               ///< the time to which the curves of the live plot go
 };
 
-/// What draws a scene's bodies at any positions. OpenGL is opened by the first picture.
-class Stage {
+/// Draws a scene's bodies at any positions. The first picture opens OpenGL.
+class SceneRenderer {
   public:
-    /// `scene` and `system`, its own, must outlive the stage. Throws corda::Error: kUsage for an unknown
+    /// `scene` and `system`, its own, must outlive the renderer. Throws corda::Error: kUsage for an unknown
     /// backend, kInvalidScene for a size, style or camera that cannot be.
-    Stage(const Scene& scene, const System& system, const std::string& backend, bool require_gpu);
-    Stage(const Stage&) = delete;
-    Stage& operator=(const Stage&) = delete;
-    ~Stage();
+    SceneRenderer(const Scene& scene, const System& system, const std::string& backend, bool require_gpu);
+    SceneRenderer(const SceneRenderer&) = delete;
+    SceneRenderer& operator=(const SceneRenderer&) = delete;
+    ~SceneRenderer();
 
     /// Whether pictures depend on the whole motion: by the camera, by what pins hang from, or by a plot.
     [[nodiscard]] bool needs_motion() const;
@@ -50,13 +50,13 @@ class Stage {
     enum class Needs { kDrawing, kContext };
     class Use {
       public:
-        explicit Use(Stage& stage, Needs needs = Needs::kDrawing) { stage.open(needs); }
+        explicit Use(SceneRenderer& renderer, Needs needs = Needs::kDrawing) { renderer.open(needs); }
 
       private:
         gl::SavedContext saved_;
     };
 
-    /// What draw() throws if `on_progress` itself has drawn this stage: its picture is the last one now.
+    /// What draw() throws if `on_progress` itself has drawn this renderer: its picture is the last one now.
     struct Overdrawn : std::exception {};
 
     /// See view::SceneView::traced().
@@ -77,7 +77,7 @@ class Stage {
     /// Makes the exposure a picture, with what the overlay says of it; returns what may differ from the last
     /// one. Throws Overdrawn.
     Damage develop(std::int64_t picture, const view::Caption& caption, const view::Camera& map);
-    /// Draws a list of this stage's size, in the same way.
+    /// Draws a list of this renderer's size, in the same way.
     Damage draw(view::DrawList list, const OnProgress& on_progress = {});
     /// Adds what the overlay says to a list, without the curves of the plot.
     void annotate(const view::Caption& caption, const view::Camera& map, view::DrawList& list) {

@@ -1,4 +1,4 @@
-#include "corda/figures/moments.hpp"
+#include "corda/figures/figure_times.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -39,8 +39,9 @@ std::vector<double> spread(const Film& film, std::int64_t last, int count) {
 
 }  // namespace
 
-Moments find_moments(const Film& film, const Reading& reading, const std::vector<double>& asked_s) {
-    Moments moments;
+FigureTimes find_figure_times(const Film& film, const MotionSummary& reading,
+                              const std::vector<double>& asked_s) {
+    FigureTimes moments;
     if (!asked_s.empty()) {
         moments.are_chosen = true;
         const double end_s = reading.failure ? reading.end_s : film.scene().world.duration_s;
