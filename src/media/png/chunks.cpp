@@ -128,7 +128,7 @@ bool is_srgb_by_code_points(std::span<const unsigned char> bytes) {
 
 std::vector<std::string> color_chunks_beside_srgb(const std::string& path) {
     constexpr int kMaxChunks = 1000;  // before the pixels
-    constexpr std::size_t kMaxBytes = 80;
+    constexpr std::size_t kMaxShownBytes = 80;
     std::error_code none;
     if (!std::filesystem::is_regular_file(path, none) || !is_png(path)) return {};
     const ChunkFile file(path);
@@ -138,8 +138,8 @@ std::vector<std::string> color_chunks_beside_srgb(const std::string& path) {
     std::optional<bool> is_srgb_for_certain;
     ChunkHead head;
     for (int i = 0; i < kMaxChunks && file.read(head.bytes) && !head.is("IDAT"); ++i) {
-        std::array<unsigned char, kMaxBytes> block{};
-        const auto bytes = std::span(block).first(std::min(head.length(), kMaxBytes));
+        std::array<unsigned char, kMaxShownBytes> block{};
+        const auto bytes = std::span(block).first(std::min(head.length(), kMaxShownBytes));
         if (!file.read(bytes) || !file.skip(head.length() - bytes.size() + kCrcBytes)) break;
         std::string words;
         if (head.is("gAMA")) words = words_of_gamma(bytes);
