@@ -104,18 +104,19 @@ void add_pinned_velocity(const std::string& name, const std::vector<Vec2>& veloc
 
 /// Links of a string that are too short for the points that it is given.
 void add_pulled_in(const std::string& name, const RopeDef& rope, std::vector<std::string>& notes) {
-    const RopeDef start = pulled_in(rope);
+    const std::optional<RopeDef> start = pulled_in(rope);
+    if (!start) return;
     double farthest_m = 0.0;
     std::size_t farthest = 0;
     for (std::size_t i = 0; i < rope.points_m.size(); ++i) {
-        const Vec2 moved = start.points_m[i] - rope.points_m[i];
+        const Vec2 moved = start->points_m[i] - rope.points_m[i];
         const double distance_m = sim::length(moved.x, moved.y);
         if (distance_m <= farthest_m) continue;
         farthest_m = distance_m;
         farthest = i;
     }
     if (farthest_m == 0.0) return;
-    const Vec2 at = rope.origin_m + start.points_m[farthest];
+    const Vec2 at = rope.origin_m + start->points_m[farthest];
     const Vec2 given = rope.origin_m + rope.points_m[farthest];
     notes.push_back(
         fmt::format("{}: link_length is less than the distance of its points, so it starts pulled in, "

@@ -88,7 +88,8 @@ void append_bends(const RopeDef& rope, const Body& body, System& system) {
 }
 
 void append(const RopeDef& def, System& system) {
-    const RopeDef rope = pulled_in(def);
+    const std::optional<RopeDef> pulled = pulled_in(def);
+    const RopeDef& rope = pulled ? *pulled : def;
     Body body = append_particles(rope, system);
     append_bars(rope, body, system);
     append_bends(rope, body, system);
@@ -119,19 +120,22 @@ LinkRange links_between_pins(const RopeDef& rope) {
     return {*first, *last};
 }
 
-RopeDef pulled_in(RopeDef rope) {
-    if (rope.rest_m.empty() || !rope.material.is_string || rope.material.compliance_1_n > 0.0) return rope;
-    const LinkRange fixed = links_between_pins(rope);
-    const std::size_t links = rope.rest_m.size();
+std::optional<RopeDef> pulled_in(const RopeDef& given) {
+    if (given.rest_m.empty() || !given.material.is_string || given.material.compliance_1_n > 0.0)
+        return std::nullopt;
+    const LinkRange fixed = links_between_pins(given);
+    const std::size_t links = given.rest_m.size();
     std::vector<Vec2> lack_m(links);
     bool lacks = false;
     for (std::size_t k = 0; k < links; ++k) {
-        if (fixed.contains(k) || rope.rest_m[k] >= distance_m(rope, k, k + 1)) continue;
-        lack_m[k] =
-            (1.0 - rope.rest_m[k] / distance_m(rope, k, k + 1)) * (rope.points_m[k + 1] - rope.points_m[k]);
+        if (fixed.contains(k)) continue;
+        const double distance = distance_m(given, k, k + 1);
+        if (given.rest_m[k] >= distance) continue;
+        lack_m[k] = (1.0 - given.rest_m[k] / distance) * (given.points_m[k + 1] - given.points_m[k]);
         lacks = true;
     }
-    if (!lacks) return rope;
+    if (!lacks) return std::nullopt;
+    RopeDef rope = given;
     Vec2 shift_m;
     for (std::size_t k = fixed.begin; k < links; ++k) {
         shift_m = shift_m - lack_m[k];

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -75,10 +76,11 @@ struct LinkRange {
 /// The links between the outermost pinned particles of a rope; all links of a closed one.
 [[nodiscard]] LinkRange links_between_pins(const RopeDef& rope);
 
-/// The rope as it starts. A string without compliance cannot span more than its rest lengths: a link that is
-/// given a larger distance starts taut, in the same direction, and the particles beyond it, seen from the
-/// pins (from the first particle if there are none), move along. Distances between pins stay as they are.
-[[nodiscard]] RopeDef pulled_in(RopeDef rope);
+/// The rope as it starts if that is not as given; std::nullopt for most. A string without compliance cannot
+/// span more than its rest lengths: a link that is given a larger distance starts taut, in the same
+/// direction, and the particles beyond it, seen from the pins (from the first particle if there are none),
+/// move along. Distances between pins stay as they are.
+[[nodiscard]] std::optional<RopeDef> pulled_in(const RopeDef& given);
 
 /// Sum of the rest lengths of a body's links, in m.
 [[nodiscard]] double links_length_m(const System& system, const Body& body);
