@@ -1,4 +1,4 @@
-// The list of keys says what the reader does, and the README says what the list says.
+// The table of keys agrees with the reader, with the help text and with src/scene/README.md.
 #include "corda/scene/keys.hpp"
 
 #include <fmt/format.h>
@@ -204,9 +204,9 @@ std::string file_text(const std::string& path) {
     return all.str();
 }
 
-/// CORDA_UPDATE_README=1 in the environment writes the table into the README.
-TEST(SceneKeys, StandInTheReadme) {
-    const std::string path = CORDA_EXAMPLES "/../README.md";
+/// CORDA_UPDATE_README=1 in the environment writes the table into the page.
+TEST(SceneKeys, AreListedInTheReadme) {
+    const std::string path = CORDA_EXAMPLES "/../src/scene/README.md";
     const std::string begin = "<!-- begin of the scene keys -->\n";
     const std::string end = "<!-- end of the scene keys -->\n";
     std::string readme = file_text(path);
