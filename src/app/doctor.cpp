@@ -11,7 +11,7 @@
 #include "corda/gl/driver.hpp"
 #include "corda/media/encode/probe.hpp"
 #include "corda/media/format/format.hpp"
-#include "corda/render/driver_check.hpp"
+#include "corda/render/frame_renderer.hpp"
 
 namespace corda::app {
 namespace {

@@ -14,7 +14,7 @@
 namespace corda::gl {
 namespace {
 
-/// The definition that selects this platform and no other.
+/// The definition that selects only this platform.
 ContextDef def_of(const Platform& platform) {
     using Backend = ContextDef::Backend;
     switch (platform.kind) {
@@ -140,7 +140,7 @@ SavedContext::SavedContext() : process_(getpid()) {
 SavedContext::~SavedContext() {
     const auto lock = lock_driver();
     if (api_ == EGL_NONE || process_ != getpid()) return;
-    // A context that has been lost meanwhile cannot come back, and a destructor has nobody to tell.
+    // Errors are ignored: a context that has been lost since cannot be restored.
     if (eglGetCurrentContext() != context_) {
         EGLDisplay display = context_ == EGL_NO_CONTEXT ? eglGetCurrentDisplay() : display_;
         eglMakeCurrent(display, draw_surface_, read_surface_, context_);

@@ -21,13 +21,13 @@ struct ContextDef {
     enum class Backend { kAuto, kDevice, kSurfaceless, kDefault };
     Backend backend = Backend::kAuto;
     std::optional<int> device;  ///< for kDevice: index into EGL's device list; nullopt: the first that works
-    bool require_gpu = false;   ///< refuse renderers that run on the CPU
+    bool require_gpu = false;   ///< refuse renderers on the CPU
 
     /// Reads "auto", "device", "device:N", "surfaceless" or "default". Throws corda::Error (kUsage).
     static ContextDef parse(std::string_view text);
 };
 
-/// What EGL and OpenGL report about a context.
+/// Properties of a context that EGL and OpenGL report.
 struct ContextInfo {
     std::string egl_vendor;
     std::string egl_version;
@@ -35,17 +35,17 @@ struct ContextInfo {
     std::string gl_renderer;
     std::string gl_version;
     int max_texture_px = 0;
-    bool software = false;  ///< the renderer runs on the CPU: llvmpipe, softpipe or swrast
+    bool software = false;  ///< renders on the CPU: llvmpipe, softpipe or swrast
 };
 
-/// Stands for a platform in an Attempt if none can be tried.
+/// Attempt::platform if no platform can be tried.
 inline constexpr const char* kEveryPlatform = "every platform";
 
-/// One platform that was tried. If it failed, `failure` names the step and the reason.
+/// The outcome of trying one platform.
 struct Attempt {
     std::string platform;             ///< e.g. "EGL device 0 (/dev/dri/card0)"
     std::optional<ContextInfo> info;  ///< empty if there is no context
-    std::string failure;              ///< empty if the platform is usable
+    std::string failure;              ///< the step that failed and the reason; empty if usable
     ExitCode code = ExitCode::kOk;    ///< of the failure
 
     [[nodiscard]] bool is_usable() const { return failure.empty(); }
@@ -55,26 +55,24 @@ struct Attempt {
 class Context {
   public:
     /// Tries EGL devices (GPUs first), Mesa's surfaceless platform and the default display, in this order, or
-    /// only what `def` names. Renderers that run on the CPU are skipped if `def` requires a GPU. Throws
-    /// corda::Error: kNoGl with the reason of every failure if no platform is left, kTemporary if memory is
-    /// too little.
+    /// only the platforms that `def` names. Throws corda::Error: kNoGl with the reason of every failure if no
+    /// platform works, kTemporary if memory is too small.
     explicit Context(const ContextDef& def = {});
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
     ~Context();
 
-    /// Makes this context current on the calling thread. Throws corda::Error (kNoGl), for instance if it is
-    /// current on another thread, or in a forked child of the process that made it.
+    /// Makes this context current on the calling thread. Throws corda::Error (kNoGl), e.g. if it is current
+    /// on another thread, or in a forked child of the process that made it.
     void make_current() const;
 
-    /// True in a forked child of the process that made this context. It cannot be used there, nor can the
-    /// objects made in it be destroyed; a new context can be made.
+    /// True in a forked child of the process that made this context. The child can neither use it nor destroy
+    /// its objects, but can make a new context.
     [[nodiscard]] bool is_inherited() const;
 
-    /// Keeps other threads from OpenGL on the CPU while the lock lives; of a GPU's context it is no lock.
-    /// Whoever draws takes it. llvmpipe (Mesa 22.3) looks for a texture in what all contexts of the process
-    /// are drawing, without a lock of its own: one in some hundred videos that were drawn by several threads
-    /// crashed.
+    /// Excludes other threads from OpenGL on the CPU while the lock lives; empty for a context of a GPU. All
+    /// drawing code takes it: llvmpipe (Mesa 22.3) searches the scenes of all contexts of the process for a
+    /// texture without a lock, and about one in some hundred videos drawn by several threads crashed.
     [[nodiscard]] std::unique_lock<std::recursive_mutex> exclusive() const;
 
     [[nodiscard]] const ContextInfo& info() const;
@@ -90,9 +88,8 @@ class Context {
     std::unique_ptr<Impl> impl_;
 };
 
-/// Makes what is current on the calling thread at construction, be it a context of anyone or none, current
-/// again at the end: nested uses, and the host application's own, keep their context. Does nothing without
-/// EGL, and at the end in a forked child.
+/// Restores the current context of the calling thread, which may be the host application's or none, at the
+/// end of its life. Does nothing without EGL, and does not restore in a forked child.
 class SavedContext {
   public:
     SavedContext();
@@ -101,7 +98,7 @@ class SavedContext {
     ~SavedContext();
 
   private:
-    // EGL's handles; all are pointers without a type.
+    // EGL handles, which are untyped pointers.
     void* display_ = nullptr;
     void* context_ = nullptr;
     void* draw_surface_ = nullptr;
@@ -110,9 +107,9 @@ class SavedContext {
     pid_t process_;
 };
 
-/// Tries every platform and reports what each gives. `before` is called with what chooses a platform before
-/// its context is made, and `check` with the context while it is current; what they throw is the failure of
-/// the platform. The thread's current context stays current.
+/// Tries every platform. Calls `before` with the definition that selects a platform before its context is
+/// made, and `check` with the context while it is current; an exception from either is the platform's
+/// failure. The thread's current context stays current.
 [[nodiscard]] std::vector<Attempt> probe_contexts(const std::function<void(const Context&)>& check = {},
                                                   const std::function<void(const ContextDef&)>& before = {});
 

@@ -30,8 +30,8 @@ std::recursive_mutex& driver_mutex() {
     return mutex;
 }
 
-/// Makes fork() wait for the mutex. The child replaces it: the id of its thread differs from that of the
-/// thread that locked it, so it cannot unlock it.
+/// Makes fork() wait for the mutex. The child constructs a new one: it cannot unlock the old one, because its
+/// thread has another id than the thread that locked it.
 void guard_fork() {
     static const int registered =
         pthread_atfork([] { driver_mutex().lock(); }, [] { driver_mutex().unlock(); },
@@ -39,26 +39,28 @@ void guard_fork() {
     static_cast<void>(registered);
 }
 
-/// Address space that the first context takes: measured 200 MB on Mesa 22.3 with LLVM 15, of which most is
-/// the driver's code. Later LLVM is larger.
+/// Address space of the first context, mostly the driver's code: measured 200 MB on Mesa 22.3 with LLVM 15.
+/// Later versions of LLVM are larger.
 constexpr std::uint64_t kFirstContextBytes = 320U << 20U;
-/// The first context writes to this much of its address space.
+/// Memory that the first context writes to.
 constexpr std::uint64_t kFirstContextData = 96U << 20U;
-/// A further context, its programs and their compilation: measured below 10 MB.
+/// Each further context, including its programs and their compilation: measured below 10 MB.
 constexpr std::uint64_t kContextBytes = 48U << 20U;
 
-/// The first process that used a driver, and whether its children may. Kept over fork().
+/// The first process that used a driver, and whether its children may use it. Survives fork().
 struct DriverUse {
     pid_t process = 0;
     bool is_safe_after_fork = true;
 };
+
+std::atomic<bool> is_faulty{false};
 
 DriverUse& driver_use() {
     static DriverUse use;
     return use;
 }
 
-/// Opens a library as libepoxy does, for as long as the process lives; null if it cannot be loaded.
+/// Opens a library like libepoxy does, until the process ends; null if it cannot be loaded.
 void* library(const char* name) {
     return dlopen(name, RTLD_LAZY | RTLD_LOCAL);
 }
@@ -77,7 +79,7 @@ fs::path folder_of(const char* name) {
     return fs::path(map->l_name).parent_path();
 }
 
-/// True if a folder holds a file whose name begins with one of these.
+/// True if a folder has a file whose name starts with one of `beginnings`.
 bool holds_any(const fs::path& folder, std::initializer_list<std::string_view> beginnings) {
     std::error_code failed;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
@@ -88,7 +90,7 @@ bool holds_any(const fs::path& folder, std::initializer_list<std::string_view> b
     return false;
 }
 
-/// True if a variable that lists folders or files replaces libraries that a driver consists of.
+/// True if one of the folders in a variable contains libraries that belong to a driver.
 bool replaces_driver(std::string_view value) {
     for (std::size_t at = 0; at <= value.size();) {
         const std::size_t end = std::min(value.find_first_of(": ", at), value.size());
@@ -102,8 +104,8 @@ bool replaces_driver(std::string_view value) {
     return false;
 }
 
-/// Beginnings of the names of variables that the EGL of libglvnd, Mesa and NVIDIA read. Those in small
-/// letters are Mesa's options for single applications (force_glsl_version, allow_higher_compat_version).
+/// Prefixes of variables that libglvnd, Mesa and NVIDIA read. Lower-case names are Mesa's options for single
+/// applications (force_glsl_version, allow_higher_compat_version).
 constexpr auto kVariablesOfDrivers = std::to_array<std::string_view>({"EGL_",
                                                                       "__EGL_",
                                                                       "LIBGL_",
@@ -126,7 +128,7 @@ constexpr auto kVariablesOfDrivers = std::to_array<std::string_view>({"EGL_",
                                                                       "disable_glsl",
                                                                       "disable_arb_",
                                                                       "disable_blend_"});
-/// Those of them that only log or cache, or that prepare_driver() sets.
+/// Prefixes of variables that only affect logs and caches, or that prepare_driver() sets.
 constexpr auto kHarmlessVariables = std::to_array<std::string_view>(
     {"EGL_LOG_", "LIBGL_DEBUG", "MESA_DEBUG", "MESA_LOG", "MESA_SHADER_CACHE", "MESA_GLSL_CACHE",
      "MESA_DISK_CACHE", "__GL_SHADER_DISK_CACHE", "LP_NUM_THREADS", "LP_NATIVE_VECTOR_WIDTH"});
@@ -134,7 +136,7 @@ constexpr auto kUsualVariables =
     std::to_array<std::string_view>({"EGL_PLATFORM=surfaceless", "GALLIUM_DRIVER=llvmpipe",
                                      "LIBGL_ALWAYS_SOFTWARE=1", "LIBGL_ALWAYS_SOFTWARE=true"});
 
-/// See prepare_driver(). Returns the value that LP_NATIVE_VECTOR_WIDTH had if it is unset.
+/// See prepare_driver(). Returns the old value of LP_NATIVE_VECTOR_WIDTH if it unsets it.
 std::string set_llvmpipe_variables() {
     setenv("LP_NUM_THREADS", "0", 0);
     const char* const given = std::getenv("LP_NATIVE_VECTOR_WIDTH");
@@ -144,13 +146,13 @@ std::string set_llvmpipe_variables() {
     return bits;
 }
 
-/// The value of LP_NATIVE_VECTOR_WIDTH that prepare_driver() has dropped.
+/// The value of LP_NATIVE_VECTOR_WIDTH that prepare_driver() has removed.
 std::string& dropped_width() {
     static std::string bits;
     return bits;
 }
 
-/// The variables that are set and may change what a driver does, as "NAME=value", sorted.
+/// The variables that are set and may change a driver's behaviour, as "NAME=value", sorted.
 std::vector<std::string> variables_of_driver() {
     std::vector<std::string> set;
     for (char** variable = environ; variable != nullptr && *variable != nullptr; ++variable) {
@@ -168,7 +170,7 @@ std::vector<std::string> variables_of_driver() {
     return set;
 }
 
-/// Debian's packages whose files no driver can do without and that are missing.
+/// Missing Debian packages that every driver needs.
 std::vector<std::string> missing_packages() {
     const fs::path mesa = folder_of("libEGL_mesa.so.0");
     std::vector<std::string> packages;
@@ -179,7 +181,7 @@ std::vector<std::string> missing_packages() {
     return packages;
 }
 
-/// Why a library cannot be loaded, from dlerror(), and what helps.
+/// The reason why a library cannot be loaded, from dlerror(), with a remedy.
 std::string load_failure(const char* name, const char* packages) {
     const char* const given = dlerror();
     const std::string reason = given != nullptr ? given : "no reason given";
@@ -192,7 +194,7 @@ std::string load_failure(const char* name, const char* packages) {
     return fmt::format("{} cannot be loaded ({}); {}", name, reason, remedy);
 }
 
-/// Why EGL or OpenGL cannot be called, with a remedy; empty if they can.
+/// The reason why EGL or OpenGL cannot be called, with a remedy; empty if they can.
 std::string missing_library() {
     void* const egl = library("libEGL.so.1");
     if (egl == nullptr) return load_failure("libEGL.so.1", "libegl1 libegl-mesa0");
@@ -208,8 +210,8 @@ std::string missing_library() {
     return load_failure("libGL.so.1", "libopengl0");
 }
 
-/// Lets libGLX see a fork before a context is current. libglvnd resets what is current when libGLX is first
-/// called in a child, and libepoxy calls it to look up a function: the context would be lost in the middle.
+/// Calls libGLX once in each process before a context is current. On the first call in a forked child,
+/// libglvnd resets the current context; libepoxy would make that call later, when it looks up a function.
 void settle_glx() {
     static pid_t settled_in = 0;
     if (settled_in == getpid()) return;
@@ -238,7 +240,7 @@ void prepare_driver() {
     const bool is_first = driver_use().process == 0;
     require_address_space(is_first ? kFirstContextBytes : kContextBytes, "OpenGL",
                           is_first ? kFirstContextData : kContextBytes);
-    // Once: other threads may read the environment.
+    // Only once, because other threads may read the environment.
     static const bool is_set = (dropped_width() = set_llvmpipe_variables(), true);
     static_cast<void>(is_set);
     if (!has_libraries()) throw Error(ExitCode::kNoGl, "no usable OpenGL: " + missing_library());
@@ -250,12 +252,6 @@ void note_driver_use(bool is_safe_after_fork) {
     if (use.process == 0 || !is_safe_after_fork) use.process = getpid();
     use.is_safe_after_fork = use.is_safe_after_fork && is_safe_after_fork;
 }
-
-namespace {
-
-std::atomic<bool> is_faulty{false};
-
-}  // namespace
 
 void note_faulty_driver() {
     is_faulty = true;

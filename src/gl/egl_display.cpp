@@ -18,41 +18,36 @@ namespace {
 constexpr int kMajor = 4;
 constexpr int kMinor = 5;
 
+struct EglError {
+    EGLint code;
+    const char* text;
+};
+
+constexpr std::array<EglError, 11> kEglErrors{{{EGL_SUCCESS, "no reason given"},
+                                               {EGL_NOT_INITIALIZED, "EGL_NOT_INITIALIZED"},
+                                               {EGL_BAD_ACCESS, "EGL_BAD_ACCESS"},
+                                               {EGL_BAD_ALLOC, "EGL_BAD_ALLOC"},
+                                               {EGL_BAD_ATTRIBUTE, "EGL_BAD_ATTRIBUTE"},
+                                               {EGL_BAD_CONFIG, "EGL_BAD_CONFIG"},
+                                               {EGL_BAD_CONTEXT, "EGL_BAD_CONTEXT"},
+                                               {EGL_BAD_DISPLAY, "EGL_BAD_DISPLAY"},
+                                               {EGL_BAD_MATCH, "EGL_BAD_MATCH"},
+                                               {EGL_BAD_PARAMETER, "EGL_BAD_PARAMETER"},
+                                               {EGL_CONTEXT_LOST, "EGL_CONTEXT_LOST"}}};
+
 std::string egl_error_text() {
-    switch (const EGLint error = eglGetError()) {
-        case EGL_SUCCESS:
-            return "no reason given";
-        case EGL_NOT_INITIALIZED:
-            return "EGL_NOT_INITIALIZED";
-        case EGL_BAD_ACCESS:
-            return "EGL_BAD_ACCESS";
-        case EGL_BAD_ALLOC:
-            return "EGL_BAD_ALLOC";
-        case EGL_BAD_ATTRIBUTE:
-            return "EGL_BAD_ATTRIBUTE";
-        case EGL_BAD_CONFIG:
-            return "EGL_BAD_CONFIG";
-        case EGL_BAD_CONTEXT:
-            return "EGL_BAD_CONTEXT";
-        case EGL_BAD_DISPLAY:
-            return "EGL_BAD_DISPLAY";
-        case EGL_BAD_MATCH:
-            return "EGL_BAD_MATCH";
-        case EGL_BAD_PARAMETER:
-            return "EGL_BAD_PARAMETER";
-        case EGL_CONTEXT_LOST:
-            return "EGL_CONTEXT_LOST";
-        default:
-            return fmt::format("EGL error {:#x}", error);
-    }
+    const EGLint code = eglGetError();
+    for (const EglError& error : kEglErrors)
+        if (error.code == code) return error.text;
+    return fmt::format("EGL error {:#x}", code);
 }
 
 [[noreturn]] void fail(const std::string& step) {
     throw Error(ExitCode::kNoGl, fmt::format("{} failed: {}", step, egl_error_text()));
 }
 
-/// True if a display, or for EGL_NO_DISPLAY the client library, has an extension. epoxy_has_egl_extension()
-/// takes no null for an answer.
+/// True if a display, or the client library for EGL_NO_DISPLAY, has an extension. epoxy_has_egl_extension()
+/// crashes if EGL returns null.
 bool has_extension(EGLDisplay display, std::string_view name) {
     const char* const given = eglQueryString(display, EGL_EXTENSIONS);
     const std::string_view all(given != nullptr ? given : "");
@@ -67,7 +62,7 @@ bool has_client_extension(std::string_view name) {
     return has_extension(EGL_NO_DISPLAY, name);
 }
 
-/// True if EGL gives the address of a function of an extension; libepoxy would call null.
+/// True if EGL provides a function of an extension; libepoxy would call a null pointer otherwise.
 bool has_function(const char* name) {
     return eglGetProcAddress(name) != nullptr;
 }
@@ -89,7 +84,7 @@ std::string device_name(EGLDeviceEXT device, int index) {
 }
 
 std::vector<Platform> list_devices() {
-    // epoxy aborts the program if it is asked for a function that no library has.
+    // libepoxy aborts the process on a call of a function that no library has.
     const bool can_list =
         has_client_extension("EGL_EXT_device_base") ||
         (has_client_extension("EGL_EXT_device_enumeration") && has_client_extension("EGL_EXT_device_query"));
@@ -130,22 +125,22 @@ bool is_software_renderer(std::string renderer) {
                        [&](std::string_view name) { return renderer.find(name) != std::string::npos; });
 }
 
-/// EGL returns the same display to every caller that asks for the same platform, and terminating it ends all
-/// their contexts, those of the host application too. So displays stay initialised until the process ends:
-/// there are few, and each initialisation after a termination leaks 8 kB in Mesa.
+/// Displays that this library has initialised. EGL returns the same display to every caller for a platform,
+/// and terminating it would end the host application's contexts too. So the few displays stay initialised
+/// until the process ends; in Mesa, each initialisation after a termination also leaks 8 kB.
 std::vector<EGLDisplay>& own_displays() {
     static std::vector<EGLDisplay> displays;
     return displays;
 }
 
-/// True if the host application has initialised a display: only then it reports its version.
+/// True if the host application has initialised a display, which only then reports its version.
 bool is_of_host(EGLDisplay display) {
     const std::vector<EGLDisplay>& own = own_displays();
     return std::find(own.begin(), own.end(), display) == own.end() &&
            eglQueryString(display, EGL_VERSION) != nullptr;
 }
 
-/// True if llvmpipe draws without threads of its own, which fork() would lose.
+/// True if llvmpipe draws without threads, which a forked child would lack.
 bool has_no_driver_threads() {
     const char* const threads = std::getenv("LP_NUM_THREADS");
     return threads != nullptr && std::string_view(threads) == "0";
@@ -245,7 +240,7 @@ void EglSession::make_current() const {
             "a picture that the parent process had begun cannot be finished in a forked process; begin "
             "it there, or start processes by spawn");
     }
-    // Which API a thread means is a state of that thread.
+    // The bound API is a state of the thread.
     if (eglBindAPI(EGL_OPENGL_API) != EGL_TRUE) fail("binding desktop OpenGL");
     if (eglGetCurrentContext() == context_) return;
     if (eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE)

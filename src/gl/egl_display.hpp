@@ -20,24 +20,22 @@ struct Platform {
     EGLDeviceEXT device = nullptr;
 };
 
-/// The platforms that `def` allows, in the order in which they are to be tried. A listed platform need not
-/// work.
+/// The platforms that `def` allows, in the order in which to try them. A listed platform need not work.
 [[nodiscard]] std::vector<Platform> list_platforms(const ContextDef& def);
 
-/// An initialised EGL display and a surfaceless context that is current on this thread. All uses require
+/// An initialised EGL display and a surfaceless context, current on this thread. All uses require
 /// lock_driver().
 class EglSession {
   public:
-    /// Throws corda::Error (kNoGl) with the step that failed and EGL's reason.
+    /// Throws corda::Error (kNoGl) with the failed step and EGL's reason.
     explicit EglSession(const Platform& platform);
     EglSession(const EglSession&) = delete;
     EglSession& operator=(const EglSession&) = delete;
     ~EglSession();
 
-    /// Throws corda::Error (kNoGl), in a forked child of the process that made it too.
+    /// Throws corda::Error (kNoGl); always in a forked child of the process that made it.
     void make_current() const;
-    /// True in a forked child of the process that made it. There its objects must not be touched, not even to
-    /// destroy them.
+    /// True in a forked child of the process that made it, which must neither use nor destroy its objects.
     [[nodiscard]] bool is_inherited() const { return process_ != getpid(); }
 
     [[nodiscard]] const ContextInfo& info() const { return info_; }
@@ -51,7 +49,7 @@ class EglSession {
     EGLDisplay display_ = EGL_NO_DISPLAY;
     EGLContext context_ = EGL_NO_CONTEXT;
     ContextInfo info_;
-    bool is_shared_ = false;  ///< the host application uses the display too
+    bool is_shared_ = false;  ///< the host application has initialised the display
     pid_t process_ = getpid();
 };
 

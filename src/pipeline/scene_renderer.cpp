@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
-#include "corda/render/driver_check.hpp"
+#include "corda/render/frame_renderer.hpp"
 #include "corda/view/validate.hpp"
 
 namespace corda::pipeline {

@@ -10,14 +10,14 @@
 
 namespace corda::render {
 
-// The arithmetic of a pixel. shaders/capsule.frag and render/paint.cpp do the same steps, so change them
-// together. Allowed are +, - and * in single precision with one rounding each, comparisons and integers:
-// what IEEE 754 fixes to the last bit on every driver.
+// The arithmetic of a pixel. shaders/capsule.frag and render/paint.cpp repeat these steps: change them
+// together. Only single-precision +, - and * with one rounding each, comparisons and integers are allowed:
+// IEEE 754 defines these to the last bit, so every driver gives the same result.
 
 /// Distance of the pixel with centre (center_x, center_y) from a capsule's segment, in pixels.
 ///
 /// The distance to a cap needs a square root: three Newton steps for 1 / sqrt from the well-known integer
-/// first guess (relative error below 1e-6, far less than 1/255 of a pixel).
+/// estimate (relative error below 1e-6, far less than 1/255 of a pixel).
 [[nodiscard]] inline float segment_distance_px(const view::Capsule& capsule, float center_x, float center_y) {
     const float dx = center_x - capsule.ax;
     const float dy = center_y - capsule.ay;
@@ -33,10 +33,9 @@ namespace corda::render {
     return squared * inverse;
 }
 
-/// Coverage of a pixel by all that is within `radius` of a segment, 0 .. 255; `radius` 0 covers nothing.
-///
-/// It is the overlap of the capsule's width with a box one pixel wide across the edge, which is right for
-/// lines thinner than a pixel too.
+/// Coverage of a pixel by the points within `radius` of a segment, 0 .. 255; 0 for `radius` 0. It is the
+/// overlap of the capsule's width with a box filter one pixel wide, which also holds for lines thinner than a
+/// pixel.
 [[nodiscard]] inline std::uint32_t coverage_within(float radius, float distance_px) {
     const float inner = std::min(distance_px + 0.5F, radius);
     const float outer = std::max(distance_px - 0.5F, -radius);
@@ -50,9 +49,9 @@ namespace corda::render {
     return (t + (t >> 8U)) >> 8U;
 }
 
-/// How much a capsule of a tinted layer counts in the mean of a pixel that it covers by `coverage` / 255:
-/// mostly by the share of the pixel that is beside its segment. 0 if it does not cover it, else 1 .. 256
-/// times its own weight.
+/// Weight of a capsule of a tinted layer in the mean colour of a pixel that it covers by `coverage` / 255: 0
+/// without coverage, else 1 .. 256 times its own weight, depending on the share of the pixel that projects
+/// onto its segment.
 [[nodiscard]] inline std::uint32_t tint_weight(const view::Capsule& capsule, float center_x, float center_y,
                                                std::uint32_t coverage) {
     if (coverage == 0) return 0;
@@ -64,9 +63,8 @@ namespace corda::render {
     return capsule.tint.weight * (1 + over_255(coverage * beside));
 }
 
-/// Sums over the capsules of a tinted layer: the weights, and the channels times them. Whole numbers, so that
-/// single precision adds them without rounding in any order, up to 2^24: one pixel covered whole by 257
-/// links.
+/// Sums of weights, and of channels times weights, over the capsules of a tinted layer. They are integers, so
+/// that single precision adds them exactly in any order up to 2^24: a pixel fully covered by 257 links.
 struct TintSums {
     float r = 0.0F;
     float g = 0.0F;
@@ -82,23 +80,23 @@ struct TintSums {
     }
     /// The mean of a channel, rounded to the nearest integer.
     [[nodiscard]] std::uint32_t mean(float sum) const {
-        constexpr float kLargest = 2147483520.0F;  // that fits into 31 bits
+        constexpr float kLargest = 2147483520.0F;  // the largest float below 2^31
         const auto total = static_cast<std::uint32_t>(std::min(weight, kLargest));
         const auto part = static_cast<std::uint32_t>(std::min(sum, kLargest));
         return std::min((part + total / 2) / std::max(total, 1U), 255U);
     }
 };
 
-/// One channel of what a layer of that alpha paints over `below` where it covers `coverage` / 255 of the
-/// pixel. In gamma space: 8-bit sRGB times the pixel's alpha, and that alpha itself, the fourth channel, in
-/// the same way. A layer paints its halo as the ground is, with the layer's alpha, and then itself, opaque.
+/// Paints a channel of a layer over `below` where the layer covers `coverage` / 255 of the pixel. Blends in
+/// gamma space: premultiplied 8-bit sRGB, and alpha as the fourth channel in the same way. A layer first
+/// paints its halo in the colours of the ground, then its capsules.
 [[nodiscard]] inline std::uint32_t paint_over(std::uint32_t below, std::uint32_t channel,
                                               std::uint32_t layer_alpha, std::uint32_t coverage) {
     const std::uint32_t alpha = over_255(coverage * layer_alpha);
     return over_255(below * (255 - alpha) + channel * alpha);
 }
 
-/// Divides a pixel's colours by its alpha, which no painting does.
+/// Divides a pixel's colours by its alpha.
 inline void straighten(std::uint8_t* rgba) {
     const std::uint32_t alpha = rgba[3];
     if (alpha == 0 || alpha == 255) return;

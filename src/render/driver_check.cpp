@@ -1,4 +1,4 @@
-#include "corda/render/driver_check.hpp"
+#include "corda/render/frame_renderer.hpp"
 
 #include <unistd.h>
 
@@ -15,22 +15,21 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/child_process.hpp"
 #include "corda/gl/driver.hpp"
-#include "corda/render/frame_renderer.hpp"
 #include "corda/render/reference_renderer.hpp"
 #include "corda/view/draw_list.hpp"
 
 namespace corda::render {
 namespace {
 
-// Larger than a tile of llvmpipe (64 pixels), and no multiple of one.
+// Larger than a tile of llvmpipe (64 pixels), and not a multiple of it.
 constexpr int kWidth = 88;
 constexpr int kHeight = 72;
 
-/// A trial takes 0.1 s, and as much memory as it needs.
+/// A trial takes 0.1 s; its memory is not limited.
 constexpr ChildLimits kTrialLimits{std::uint64_t{1} << 46U, 10, 10.0};
 
-/// Lines and discs with and without halo, wide and thin, opaque and transparent, that overlap and leave the
-/// picture, on a gradient, and tinted ones among them if `with_tints`. `shift_px` moves them.
+/// A gradient with lines and discs, with and without halo, wide and thin, opaque and transparent, which
+/// overlap and extend beyond the edge; some are tinted if `with_tints`. `shift_px` moves them.
 view::DrawList test_picture(double shift_px, bool with_tints) {
     view::DrawList list;
     list.width = kWidth;
@@ -50,7 +49,7 @@ view::DrawList test_picture(double shift_px, bool with_tints) {
     return list;
 }
 
-/// The first pixel in which two pictures differ, in words; empty if they are equal.
+/// Describes the first pixel in which two images differ; std::nullopt if they are equal.
 std::optional<std::string> first_difference(const Image& drawn, const Image& wanted) {
     const auto text = [](const std::uint8_t* rgba) {
         return fmt::format("({}, {}, {}, {})", rgba[0], rgba[1], rgba[2], rgba[3]);
@@ -66,17 +65,17 @@ std::optional<std::string> first_difference(const Image& drawn, const Image& wan
     return std::nullopt;
 }
 
-/// How a child process ends that makes a context and draws in it: "crashed (Aborted)"; empty if it finishes,
-/// std::nullopt if that was not found out. A child of a process with other threads may wait for a lock that
-/// one of them held, so that its hanging says nothing of the driver.
+/// Makes a context and draws in a child process. Returns how the child ended, e.g. "crashed (Aborted)"; empty
+/// if it finished; std::nullopt if the outcome is unknown: a child of a process with other threads may wait
+/// for a lock that one of them held, so its hanging is no evidence against the driver.
 std::optional<std::string> fate_of_trial(const gl::ContextDef& def) {
     const auto draw = [&def]() -> std::string {
-        // This process hears what a terminal sends to both, and ends the child with itself.
+        // A terminal sends signals to both processes. The parent handles them and ends the child.
         for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, SIG_IGN);
         try {
             const gl::Context context(def);
             check_driver(context);
-        } catch (const Error&) {  // this process will throw it, too
+        } catch (const Error&) {  // the parent will throw it too
         }
         return "done";
     };
@@ -91,7 +90,7 @@ std::optional<std::string> fate_of_trial(const gl::ContextDef& def) {
 
 void try_driver(const gl::ContextDef& def) {
     using Key = std::tuple<gl::ContextDef::Backend, std::optional<int>, bool, std::string>;
-    static std::map<Key, std::string> fates;  // other variables are another trial
+    static std::map<Key, std::string> fates;  // one trial per set of variables
     const auto lock = gl::lock_driver();
     if (!gl::has_unusual_variables()) return;
     const Key key{def.backend, def.device, def.require_gpu, gl::driver_variables()};
@@ -118,7 +117,7 @@ void check_driver(const gl::Context& context, const FrameRenderer& renderer, boo
     const std::string key = fmt::format("{} {} {}", getpid(), with_tints, driver);
     if (checked.contains(key)) return;
     FrameRenderer small(renderer, kWidth, kHeight);
-    for (const double shift_px : {0.0, 5.5}) {  // the second picture is drawn over the first one
+    for (const double shift_px : {0.0, 5.5}) {  // the second frame redraws parts of the first
         const view::DrawList list = test_picture(shift_px, with_tints);
         small.render(list);
         const auto difference = first_difference(small.image(), render_reference(list));

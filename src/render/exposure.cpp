@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "corda/render/coverage.hpp"
-#include "corda/render/ground.hpp"
+#include "corda/render/paint.hpp"
 #include "corda/render/tiles.hpp"
 
 namespace corda::render {
@@ -16,8 +16,8 @@ constexpr std::ptrdiff_t kTileRow = std::ptrdiff_t{4} * kTilePx;  // sums
 constexpr std::size_t kSumsPerTile = std::size_t{4} * kTilePx * kTilePx;
 constexpr std::uint32_t kWhite = 65535;  // in linear light
 
-/// The transfer function of IEC 61966-2-1 there and back, as 16-bit integers. No value is so near to the
-/// middle of two integers that the C library decides.
+/// The transfer function of IEC 61966-2-1 and its inverse, with light in 16 bits. No value is so close to a
+/// rounding boundary that it depends on the C library.
 struct Tables {
     std::array<std::uint16_t, 256> linear{};
     std::vector<std::uint8_t> srgb;  ///< of every linear value
@@ -42,8 +42,8 @@ const Tables& tables() {
     return made;
 }
 
-/// Adds a row of pixels, colours times alpha. A sum is of light, at most 64 times 65535, and if the ground is
-/// see-through of light times alpha, which 32 bits hold, too.
+/// Adds a row of premultiplied pixels. Sums are of light, at most 64 * 65535; on a transparent ground, of
+/// light times alpha, which fits into 32 bits too.
 template <bool kIsOpaque>
 void add_row(const std::uint8_t* rgba, int count, std::uint32_t* sums) {
     const auto& linear = tables().linear;
@@ -59,8 +59,7 @@ void add_row(const std::uint8_t* rgba, int count, std::uint32_t* sums) {
     }
 }
 
-/// Writes a row of means and empties its sums. `bare`: the ground of 8 pixels, which some of the pictures
-/// show here.
+/// Writes rows of means. `bare`: 8 pixels of the ground, which `bare_pictures` of the images show here.
 class MeanRow {
   public:
     explicit MeanRow(std::uint32_t pictures)
@@ -91,7 +90,7 @@ class MeanRow {
     }
 
   private:
-    // Of sums below 2^23 it gives the whole part of the quotient.
+    // Multiplication by the reciprocal gives the exact quotient for sums below 2^23.
     static constexpr int kShift = 40;
     static std::uint8_t level(std::uint64_t light) { return tables().srgb[light]; }
 

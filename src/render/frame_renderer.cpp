@@ -15,16 +15,14 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/machine.hpp"
-#include "corda/gl/check.hpp"
-#include "corda/render/ground.hpp"
+#include "corda/gl/object.hpp"
 #include "corda/render/paint.hpp"
-#include "corda/render/stamps.hpp"
 #include "embedded_shaders.hpp"
 
 namespace corda::render {
 namespace {
 
-/// Whether two stamps look the same, each with the coverage of its own list.
+/// True if two stamps look the same. Each refers to the coverage of its own list.
 bool same_look(const view::Stamp& a, const std::vector<std::uint8_t>& a_coverage, const view::Stamp& b,
                const std::vector<std::uint8_t>& b_coverage) {
     const bool a_is_solid = a.first_coverage == view::Stamp::kSolid;
@@ -35,14 +33,14 @@ bool same_look(const view::Stamp& a, const std::vector<std::uint8_t>& a_coverage
                                     &b_coverage[b.first_coverage]);
 }
 
-/// Side of the tiles in which llvmpipe draws.
+/// Side of llvmpipe's tiles.
 constexpr int kLlvmpipeTilePx = 64;
 
-/// How many rows of the damage are drawn at once, a multiple of the side of llvmpipe's tiles, as one that is
-/// cut in two takes twice as long: as many as llvmpipe draws in a tenth of a second on one core, or in the
-/// time in which it passes over all capsules, as every band does.
+/// Number of rows of the damage that are drawn as one band: what llvmpipe draws in a tenth of a second on one
+/// core, or in the time of one pass over all capsules, which every band costs. A multiple of the side of
+/// llvmpipe's tiles, because a tile on the border of two bands is drawn twice.
 int band_rows(const PixelRect& damage, const view::DrawList& list, const Tiles& tiles) {
-    // In units of what a pixel of the ground takes to copy and to read, at most 12 ns.
+    // In units of copying and reading one pixel of the ground, at most 12 ns.
     constexpr std::size_t kTile = 2 * std::size_t{Tiles::kSidePx} * Tiles::kSidePx;
     constexpr std::size_t kCapsule = 40;
     constexpr std::size_t kBand = 8'000'000;
@@ -67,21 +65,21 @@ void check_size(int width, int height) {
                             width, height, widest, highest));
 }
 
-/// Per pixel: the picture, and the masks in a format that the driver chooses.
+/// Per pixel: the image, and the masks in a format that the driver chooses.
 constexpr std::uint64_t kFrameBytes = 4 + 4;
-/// Per pixel besides, for tinted layers.
+/// Per pixel, in addition, for tinted layers.
 constexpr std::uint64_t kTintBytes = 16;
 
-/// Drivers may crash when they have no memory.
+/// Checks memory first: drivers may crash without it.
 void require_memory(int width, int height, std::uint64_t bytes_per_pixel) {
-    constexpr std::uint64_t kReadBytes = 32U << 20U;  // the buffers that are read into
+    constexpr std::uint64_t kReadBytes = 32U << 20U;  // the pixel buffers
     require_address_space(bytes_per_pixel * static_cast<std::uint64_t>(width) * height + kReadBytes,
                           fmt::format("a frame of {}x{} pixels", width, height));
 }
 
-/// The same shader for tinted layers.
+/// The variant of a shader for tinted layers.
 std::string tinted(std::string source) {
-    const std::size_t second_line = source.find('\n') + 1;  // #version stays the first
+    const std::size_t second_line = source.find('\n') + 1;  // #version must be the first
     return source.insert(second_line, "#define TINTED\n");
 }
 
@@ -95,10 +93,10 @@ void make_texture(const gl::Texture& texture, GLenum format, const Image& image)
     glTexStorage2D(GL_TEXTURE_2D, 1, format, image.width(), image.height());
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
-    gl::check_errors(making_frame(image));  // or a framebuffer without memory would be called incomplete
+    gl::check_errors(making_frame(image));  // before an incomplete framebuffer is reported instead
 }
 
-/// A framebuffer of these textures, in the order of the shader's outputs.
+/// Attaches textures to a framebuffer, in the order of the shader's outputs.
 void make_target(const gl::Framebuffer& target, std::initializer_list<const gl::Texture*> textures,
                  const std::string& what) {
     glBindFramebuffer(GL_FRAMEBUFFER, target.id());
@@ -115,7 +113,9 @@ void make_target(const gl::Framebuffer& target, std::initializer_list<const gl::
 
 FrameRenderer::Programs::Programs()
     : capsule("capsule", shaders::kCapsuleVert, shaders::kCapsuleFrag),
-      clear("clear", shaders::kClearVert, shaders::kClearFrag) {}
+      clear("clear", shaders::kClearVert, shaders::kClearFrag) {
+    capsule.set("edge_margin", view::kEdgeMargin);
+}
 
 FrameRenderer::FrameRenderer(const gl::Context& context, int width, int height)
     : FrameRenderer(context, std::make_shared<Programs>(), width, height) {}
@@ -132,8 +132,8 @@ FrameRenderer::FrameRenderer(const gl::Context& context, std::shared_ptr<Program
       last_touched_(tile_count(width, height)) {
     make_texture(masks_, GL_RG8, image_);
     make_target(mask_target_, {&masks_}, making_frame(image_));
-    describe_capsules();
-    describe_runs();
+    set_capsule_layout();
+    set_run_layout();
     gl::check_errors("preparing the renderer");
 }
 
@@ -143,6 +143,7 @@ void FrameRenderer::make_tints() {
     if (!programs_->tinted_capsule) {
         programs_->tinted_capsule.emplace("tinted capsule", tinted(shaders::kCapsuleVert).c_str(),
                                           tinted(shaders::kCapsuleFrag).c_str());
+        programs_->tinted_capsule->set("edge_margin", view::kEdgeMargin);
     }
     auto tints = std::make_unique<Tints>();
     make_texture(tints->sums, GL_RGBA32F, image_);
@@ -150,10 +151,10 @@ void FrameRenderer::make_tints() {
     tints_ = std::move(tints);
 }
 
-void FrameRenderer::describe_capsules() {
+void FrameRenderer::set_capsule_layout() {
     static_assert(std::is_standard_layout_v<view::Capsule> && sizeof(view::Capsule) == 8 * sizeof(float));
     glBindVertexArray(capsule_array_.id());
-    // Binding a name for the first time creates the buffer.
+    // The first bind of a name creates the buffer.
     glBindBuffer(GL_ARRAY_BUFFER, capsule_buffer_.id());
     glBindVertexBuffer(0, capsule_buffer_.id(), 0, sizeof(view::Capsule));
     glVertexBindingDivisor(0, 1);
@@ -166,7 +167,7 @@ void FrameRenderer::describe_capsules() {
     glVertexAttribIFormat(2, 4, GL_UNSIGNED_BYTE, offsetof(view::Capsule, tint));
 }
 
-void FrameRenderer::describe_runs() {
+void FrameRenderer::set_run_layout() {
     static_assert(std::is_standard_layout_v<TileRun> && sizeof(PixelRect) == 4 * sizeof(GLint));
     glBindVertexArray(run_array_.id());
     glBindBuffer(GL_ARRAY_BUFFER, run_buffer_.id());
@@ -175,17 +176,6 @@ void FrameRenderer::describe_runs() {
     glEnableVertexAttribArray(0);
     glVertexAttribBinding(0, 0);
     glVertexAttribIFormat(0, 4, GL_INT, offsetof(TileRun, rect));
-}
-
-void FrameRenderer::use(const gl::Program& program) const {
-    program.use();
-    glUniform2f(program.uniform("frame_size"), static_cast<float>(image_.width()),
-                static_cast<float>(image_.height()));
-}
-
-void FrameRenderer::use_for_capsules(const gl::Program& program) const {
-    use(program);
-    glUniform1f(program.uniform("edge_margin"), view::kEdgeMargin);
 }
 
 Damage FrameRenderer::stale_parts(const view::DrawList& list) const {
@@ -272,7 +262,7 @@ void FrameRenderer::draw(const view::DrawList& list, const Damage& parts, const 
     PixelRect all;
     for (const PixelRect& part : parts) all = all.united(part);
     if (all.empty()) return;
-    const bool was_stale = std::exchange(everything_is_stale_, true);  // if it fails on the way
+    const bool was_stale = std::exchange(everything_is_stale_, true);  // in case drawing fails
     upload(list);
     const int rows = on_progress ? band_rows(all, list, tiles_) : kMaxSidePx;
     for (PixelRect band = all; band.y0 < all.y1; band.y0 = band.y1) {
@@ -289,7 +279,7 @@ void FrameRenderer::draw_band(const PixelRect& band, const Damage& parts) {
     if (!slices.empty()) read_masks(slices.front(), band, ring_.front());
     for (const PixelRect& part : parts) ground_->write(part.intersected(band), image_);
     for (std::size_t i = 0; i < slices.size(); ++i) {
-        // OpenGL works on the next one meanwhile.
+        // OpenGL draws the next slice while the CPU paints this one.
         if (i + 1 < slices.size()) read_masks(slices[i + 1], band, ring_[(i + 1) % ring_.size()]);
         paint(slices[i], band, ring_[i % ring_.size()]);
     }
@@ -305,11 +295,17 @@ void FrameRenderer::set_state(const PixelRect& band) const {
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glPixelStorei(GL_PACK_ROW_LENGTH, 0);
     glBlendEquation(GL_MAX);
+    const auto set_size = [this](const gl::Program& program) {
+        program.set("frame_size", static_cast<float>(image_.width()), static_cast<float>(image_.height()));
+    };
+    set_size(programs_->clear);
+    set_size(programs_->capsule);
+    if (programs_->tinted_capsule) set_size(*programs_->tinted_capsule);
 }
 
 void FrameRenderer::draw_masks(const Batch& batch) const {
     glDisable(GL_BLEND);
-    use(programs_->clear);
+    programs_->clear.use();
     glBindVertexArray(run_array_.id());
     glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.run_count),
                                       static_cast<GLuint>(batch.first_run));
@@ -318,7 +314,7 @@ void FrameRenderer::draw_masks(const Batch& batch) const {
         glBlendEquationi(1, GL_FUNC_ADD);
         glBlendFunci(1, GL_ONE, GL_ONE);
     }
-    use_for_capsules(batch.is_tinted ? *programs_->tinted_capsule : programs_->capsule);
+    (batch.is_tinted ? *programs_->tinted_capsule : programs_->capsule).use();
     glBindVertexArray(capsule_array_.id());
     glDrawArraysInstancedBaseInstance(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(batch.capsule_count),
                                       static_cast<GLuint>(batch.first_capsule));

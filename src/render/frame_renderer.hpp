@@ -12,46 +12,42 @@
 #include "corda/core/image.hpp"
 #include "corda/gl/context.hpp"
 #include "corda/gl/object.hpp"
-#include "corda/gl/pixel_buffer.hpp"
-#include "corda/gl/program.hpp"
 #include "corda/render/exposure.hpp"
-#include "corda/render/ground.hpp"
 #include "corda/render/paint.hpp"
-#include "corda/render/reads.hpp"
 #include "corda/render/tiles.hpp"
 #include "corda/view/draw_list.hpp"
 
 namespace corda::render {
 
-/// Draws draw lists with OpenGL into a picture in memory. Every frame equals that of render_reference() byte
-/// for byte.
+/// Draws draw lists with OpenGL into an image in memory. Every frame equals render_reference() byte for byte.
 ///
-/// Layer by layer, or many at once if no tile has two of them, OpenGL unites the capsules and halos of a
-/// layer in two masks, by GL_MAX of values that are exactly k/255, and for a tinted layer sums the colours
-/// beside them. Only tiles that the layers touch are emptied, drawn and read back; they are painted in
-/// integers (render/paint), as are the mean of the pictures of an exposure and the stamps.
+/// For each layer, or for several at once if no tile has two of them, OpenGL unites the capsules and halos in
+/// two masks, by GL_MAX of values that are exactly k/255, and sums the colours of a tinted layer. Only tiles
+/// that layers touch are cleared, drawn and read back. Painting them, averaging the images of an exposure and
+/// painting stamps are integer arithmetic on the CPU (render/paint, render/exposure).
 class FrameRenderer {
   public:
-    /// The context must be current whenever this draws, and outlive it. Of one that draws on the CPU, only
-    /// whoever holds exclusive() makes or destroys a renderer; one that draws takes it for as long as OpenGL
-    /// works. Throws corda::Error: kNoGl if the driver cannot draw a frame of that size, kTemporary if memory
-    /// is too little.
+    /// The context must be current whenever this draws, and must outlive it. If it draws on the CPU, the
+    /// caller holds exclusive() to make or destroy a renderer; drawing takes it as long as OpenGL works.
+    /// Throws corda::Error: kNoGl if the driver cannot draw a frame of that size, kTemporary if memory is too
+    /// small.
     FrameRenderer(const gl::Context& context, int width, int height);
-    /// In the context of another renderer, with its programs, which no driver then translates again.
+    /// Shares the context and the compiled programs of another renderer.
     FrameRenderer(const FrameRenderer& other, int width, int height);
 
-    /// Draws the next frame; `list` has this renderer's size. Returns what may differ from the last frame. A
-    /// large one is drawn in bands, and `on_progress` is asked between them. Throws corda::Error: kNoGl,
-    /// kInterrupted; then the next frame is drawn whole.
+    /// Draws the next frame; `list` has this renderer's size. Returns what may differ from the last frame.
+    /// Draws a large frame in bands and calls `on_progress` between them. Throws corda::Error: kNoGl,
+    /// kInterrupted; the next frame is then drawn whole.
     Damage render(const view::DrawList& list, const OnProgress& on_progress = {});
 
-    /// Forgets what was exposed and not developed.
+    /// Discards lists that were exposed but not developed.
     void begin_exposure() { exposure_.clear(); }
-    /// Adds the layers of a list to the frame that develop() will finish; all have the same ground. image()
-    /// is no frame until then. Asks and throws as render(); the exposure is lost then, as it is by render().
+    /// Adds the layers of a list to the frame that develop() will finish; all lists have the same ground.
+    /// image() is no frame until then. Calls `on_progress` and throws like render(), and then discards the
+    /// exposure, as render() does.
     void expose(const view::DrawList& list, const OnProgress& on_progress = {});
-    /// The next frame is the mean of what was exposed since the last one, at least one list, under the stamps
-    /// of `list`, whose own layers are left out. Returns what may differ from the last frame.
+    /// Makes the next frame: the mean of the lists exposed since the last one, at least one, below the stamps
+    /// of `list`, whose own layers are ignored. Returns what may differ from the last frame.
     Damage develop(const view::DrawList& list);
 
     /// The last frame.
@@ -65,7 +61,7 @@ class FrameRenderer {
         std::optional<gl::Program> tinted_capsule;  ///< made when the first tinted layer is drawn
     };
 
-    /// What tinted layers take besides; made when the first one is drawn.
+    /// Target of tinted layers; made when the first one is drawn.
     struct Tints {
         gl::Texture sums;
         gl::Framebuffer target;  ///< masks and sums
@@ -73,37 +69,34 @@ class FrameRenderer {
 
     FrameRenderer(const gl::Context& context, std::shared_ptr<Programs> programs, int width, int height);
     void make_tints();
-    void describe_capsules();
-    void describe_runs();
-    void use(const gl::Program& program) const;
-    void use_for_capsules(const gl::Program& program) const;
-    /// Sets the state that drawing depends on: another renderer may have drawn in this context meanwhile.
+    void set_capsule_layout();
+    void set_run_layout();
+    /// Sets the state that drawing depends on: another renderer may have drawn in this context since.
     void set_state(const PixelRect& band) const;
     /// Prepares for drawing on a ground.
     void begin(const view::DrawList& list);
-    /// Draws the layers on the ground of some rectangles, which hold all tiles that the layers touch.
+    /// Draws the layers on the ground of `parts`, which contain all tiles that the layers touch.
     void draw(const view::DrawList& list, const Damage& parts, const OnProgress& on_progress);
     /// Adds tiles to last_touched_.
     void touch(const std::vector<std::uint8_t>& tiles);
-    /// What is to be drawn anew under the stamps of `list`, in rectangles that do not overlap.
+    /// Rectangles, without overlap, that have to be redrawn below the stamps of `list`.
     [[nodiscard]] Damage stale_parts(const view::DrawList& list) const;
-    /// Adds the stamps to what was drawn anew; of that, the tiles `touched` are not the ground alone.
+    /// Paints the stamps on the redrawn parts. Outside of the tiles `touched` the frame is ground and stamps.
     void finish(const view::DrawList& list, const std::vector<std::uint8_t>& touched, const Damage& damage);
     void upload(const view::DrawList& list);
-    /// Draws some rows.
+    /// Draws the rows of `band`.
     void draw_band(const PixelRect& band, const Damage& parts);
     void draw_masks(const Batch& batch) const;
-    /// Lets OpenGL draw masks and read them into a buffer: first the sums of all reads, if there are tinted
-    /// layers, then the coverage of all. The masks of the first read's batch may already have been drawn, by
-    /// the call before.
+    /// Draws masks and reads them into a buffer: first the sums of all reads, if there are tinted layers,
+    /// then the coverage. The previous call may have drawn the masks of the first read's batch.
     void read_masks(std::span<const Read> reads, const PixelRect& band, gl::PixelBuffer& buffer);
     [[nodiscard]] std::size_t sums_bytes(std::span<const Read> reads) const;
     [[nodiscard]] const std::byte* wait(gl::PixelBuffer& buffer) const;
-    /// Paints the layers of some reads when they are in the buffer.
+    /// Waits for the buffer and paints the layers of its reads.
     void paint(std::span<const Read> reads, const PixelRect& band, gl::PixelBuffer& buffer);
 
     const gl::Context* context_;
-    Image image_;  ///< while a frame is drawn, colours times alpha
+    Image image_;  ///< premultiplied while a frame is drawn
     Tiles tiles_;
     Exposure exposure_;
     std::shared_ptr<Programs> programs_;
@@ -115,11 +108,27 @@ class FrameRenderer {
     gl::Framebuffer mask_target_;
     std::array<gl::PixelBuffer, 2> ring_;  ///< one is painted from while OpenGL reads into the other
     std::unique_ptr<Tints> tints_;
-    std::vector<std::uint8_t> last_touched_;  ///< per tile: 1 if it is not the ground and stamps alone
+    std::vector<std::uint8_t> last_touched_;  ///< per tile: 1 unless it is ground and stamps alone
     std::vector<view::Stamp> last_stamps_;
     std::vector<std::uint8_t> last_coverage_;
     std::optional<GroundRows> ground_;
     bool everything_is_stale_ = true;
 };
+
+/// If the environment has unusual variables (see gl::has_unusual_variables()), with some of which Mesa
+/// crashes, makes a context by `def` and draws in it in a child process, once per process, `def` and
+/// variables. Call it before a context is made. Throws corda::Error: kNoGl, with the variables to unset, if
+/// the child crashes or hangs; what gl::prepare_driver() and run_in_child() throw. It does not report drivers
+/// that give no context: gl::Context does.
+void try_driver(const gl::ContextDef& def);
+
+/// Draws a small picture with the programs of a renderer in the current context and compares it with
+/// render_reference(), to detect a driver that draws nothing or wrongly before it draws a frame.
+/// `with_tints`: checks the programs of tinted layers, which few films need. Runs once per process and
+/// driver. Throws corda::Error: kNoGl with the driver and the first pixel that differs, kTemporary.
+void check_driver(const gl::Context& context, const FrameRenderer& renderer, bool with_tints);
+
+/// Checks all programs, with a renderer of its own.
+void check_driver(const gl::Context& context);
 
 }  // namespace corda::render

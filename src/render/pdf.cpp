@@ -8,8 +8,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/text.hpp"
-#include "corda/render/ground.hpp"
-#include "corda/render/strokes.hpp"
+#include "corda/render/paint.hpp"
 #include "corda/render/vector.hpp"
 #include "corda/view/font.hpp"
 #include "corda/view/font_data.hpp"
@@ -33,7 +32,7 @@ cairo_status_t append_bytes(void* file, const unsigned char* bytes, unsigned cou
         static_cast<std::string*>(file)->append(reinterpret_cast<const char*>(bytes), count);
         return CAIRO_STATUS_SUCCESS;
     } catch (...) {
-        return CAIRO_STATUS_NO_MEMORY;  // an exception must not pass through cairo, which is C
+        return CAIRO_STATUS_NO_MEMORY;  // cairo is C: no exception may pass through it
     }
 }
 
@@ -62,7 +61,7 @@ Pattern pattern_of(const Ground& ground, int height) {
     return pattern;
 }
 
-/// cairo may keep the face longer than a page lives: the font's file dies with the face.
+/// The face owns the font file, because cairo may keep the face longer than the page lives.
 FontFace make_font_face() {
     static const cairo_user_data_key_t key{};
     auto file = std::make_unique<view::FontFile>();
@@ -83,7 +82,7 @@ class Pdf : public VectorPage {
         cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_TITLE,
                                        printable(def.title).c_str());
         cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_CREATOR, "corda");
-        // Otherwise it is the time of day, and no two files are the same.
+        // The default is the current time, which would make every file different.
         cairo_pdf_surface_set_metadata(surface_.get(), CAIRO_PDF_METADATA_CREATE_DATE,
                                        "2000-01-01T00:00:00Z");
         cairo_.reset(cairo_create(surface_.get()));
@@ -134,7 +133,7 @@ class Pdf : public VectorPage {
     }
 
   private:
-    /// Unites the strokes, then paints them; without a pattern each in its colour.
+    /// Paints the union of the strokes with a pattern; each in its own colour if `paint` is null.
     void stroke(const std::vector<Stroke>& strokes, cairo_pattern_t* paint, std::uint8_t alpha) {
         if (strokes.empty() || alpha == 0) return;
         cairo_t* const cairo = cairo_.get();
@@ -161,7 +160,7 @@ class Pdf : public VectorPage {
         cairo_fill(cairo_.get());
     }
 
-    /// Writes glyphs where Font::write() puts them, as text that can be searched and copied.
+    /// Places glyphs like Font::write(), as text that can be searched and copied.
     void write(const view::Text& text) {
         cairo_t* const cairo = cairo_.get();
         const std::string utf8 = printable(text.utf8);
@@ -188,8 +187,8 @@ class Pdf : public VectorPage {
         cairo_text_cluster_free(clusters);
     }
 
-    /// Removes what was drawn below the halos of a layer. PDF has no operator that erases, so all is drawn
-    /// again where no halo is; that of a transparent layer removes as much as that of an opaque one.
+    /// Erases the layers below the halos of a layer. PDF has no operator that erases, so everything is drawn
+    /// again outside of the halos. A transparent layer erases as much as an opaque one.
     void cut_out(const view::DrawList& list, const view::Layer& layer) {
         cairo_t* const cairo = cairo_.get();
         const Pattern below(cairo_pop_group(cairo));
@@ -218,7 +217,7 @@ class Pdf : public VectorPage {
     OnProgress on_progress_;
     view::Font font_;
     FontFace font_face_ = make_font_face();
-    // The surface writes into the bytes until it dies.
+    // The surface writes to bytes_ until it is destroyed.
     std::string bytes_;
     std::unique_ptr<cairo_surface_t, CairoDeleter> surface_;
     std::unique_ptr<cairo_t, CairoDeleter> cairo_;

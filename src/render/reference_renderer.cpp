@@ -4,15 +4,14 @@
 
 #include "corda/render/coverage.hpp"
 #include "corda/render/exposure.hpp"
-#include "corda/render/ground.hpp"
-#include "corda/render/stamps.hpp"
+#include "corda/render/paint.hpp"
 #include "corda/render/tiles.hpp"
 #include "corda/view/capsule.hpp"
 
 namespace corda::render {
 namespace {
 
-/// How much of every pixel a layer covers, 0 .. 255.
+/// Coverage of every pixel by a layer, 0 .. 255.
 struct Mask {
     std::vector<std::uint8_t> line;
     std::vector<std::uint8_t> halo;
@@ -38,7 +37,7 @@ void unite(const view::Capsule& capsule, bool is_tinted, const PixelRect& box, i
     }
 }
 
-/// Paints a layer, and empties its mask.
+/// Paints a layer and clears its mask.
 void paint(Color color, bool is_tinted, const PixelRect& box, const Image& ground, Mask& mask, Image& image) {
     for (int y = box.y0; y < box.y1; ++y) {
         for (int x = box.x0; x < box.x1; ++x) {
@@ -66,7 +65,7 @@ void paint(Color color, bool is_tinted, const PixelRect& box, const Image& groun
     }
 }
 
-/// The layers alone, colours times alpha.
+/// The layers on the ground, premultiplied.
 Image render_layers(const view::DrawList& list) {
     Image ground(list.width, list.height);
     GroundRows(list.ground, list.height).write(ground.rect(), ground);

@@ -7,12 +7,12 @@
 
 namespace corda::render {
 
-/// Draws a draw list in plain C++. Slow and simple: the oracle that every frame drawn with OpenGL must equal
-/// byte for byte.
+/// Draws a draw list in plain C++, slowly and simply. Every frame drawn with OpenGL must equal it byte for
+/// byte.
 [[nodiscard]] Image render_reference(const view::DrawList& list);
 
-/// The mean of the layers of several lists in linear light under the stamps of `list`, whose own layers are
-/// left out.
+/// Averages the layers of several lists in linear light below the stamps of `list`, whose own layers are
+/// ignored.
 [[nodiscard]] Image render_reference(std::span<const view::DrawList> exposed, const view::DrawList& list);
 
 }  // namespace corda::render

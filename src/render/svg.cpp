@@ -6,8 +6,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/text.hpp"
-#include "corda/render/ground.hpp"
-#include "corda/render/strokes.hpp"
+#include "corda/render/paint.hpp"
 #include "corda/render/vector.hpp"
 #include "corda/view/font.hpp"
 
@@ -28,7 +27,7 @@ std::string xml_text(std::string_view text) {
             escaped += "&amp;";
         else if (c == '<')
             escaped += "&lt;";
-        else if (c == '>')  // of "]]>"
+        else if (c == '>')  // "]]>" is not allowed in text
             escaped += "&gt;";
         else
             escaped += c;
@@ -36,7 +35,7 @@ std::string xml_text(std::string_view text) {
     return escaped;
 }
 
-/// To a hundredth of a pixel, without zeros that mean nothing.
+/// Rounds to a hundredth of a pixel, without trailing zeros.
 std::string number(double value) {
     std::string text = fmt::format("{:.2f}", value);
     text.erase(text.find_last_not_of('0') + 1);
@@ -49,12 +48,12 @@ std::string opaque_text(Color color) {
     return color.text();
 }
 
-/// ` NAME="SHARE"`; nothing for all.
+/// ` NAME="SHARE"`; empty if the colour is opaque.
 std::string opacity(std::string_view name, const Color& color) {
     return color.a == 255 ? "" : fmt::format(R"( {}="{:.4g}")", name, color.a / 255.0);
 }
 
-/// `is_tinted`: each in its own colour.
+/// `is_tinted`: gives each path its own colour.
 void append_paths(const std::vector<Stroke>& strokes, bool is_tinted, std::string& text) {
     for (const Stroke& stroke : strokes) {
         const std::string color = is_tinted ? fmt::format(R"( stroke="{}")", stroke.color.text()) : "";
@@ -80,7 +79,7 @@ class Svg : public VectorPage {
     }
 
     void draw(const view::DrawList& list, int x_px, int y_px) override {
-        // An svg element in another one cuts off what is outside of it.
+        // A nested svg element clips its contents.
         text_ += fmt::format(R"(<svg x="{}" y="{}" width="{}" height="{}">)", x_px, y_px, list.width,
                              list.height) +
                  "\n";
@@ -89,7 +88,7 @@ class Svg : public VectorPage {
         for (std::size_t l = 0; l < list.layers.size(); ++l) {
             report_progress(def_.on_progress, static_cast<std::int64_t>(l),
                             static_cast<std::int64_t>(list.layers.size()));
-            layers.push_back(describe(list, list.layers[l], ground));
+            layers.push_back(text_of(list, list.layers[l], ground));
         }
         append_layers(layers, list);
         append_stamps(list);
@@ -99,7 +98,7 @@ class Svg : public VectorPage {
     [[nodiscard]] std::string finish() override { return std::move(text_) + "</g>\n</svg>\n"; }
 
   private:
-    /// Returns the paint of the ground.
+    /// Returns the ground as a value of `stroke`.
     std::string draw_ground(const view::DrawList& list) {
         const auto [top, bottom] = straight_ends(list.ground);
         const bool is_gradient = top != bottom;
@@ -121,7 +120,7 @@ class Svg : public VectorPage {
         return paint;
     }
 
-    /// A group is united before its opacity counts.
+    /// A group: opacity applies to the union of its strokes.
     static void append_group(std::string_view paint, const Color& color, const std::vector<Stroke>& strokes,
                              bool is_tinted, std::string& layers) {
         layers += fmt::format(R"(<g stroke="{}"{}>)", paint, opacity("opacity", color)) + "\n";
@@ -131,10 +130,10 @@ class Svg : public VectorPage {
 
     struct LayerText {
         std::string lines;
-        std::string halo_id;  ///< of what it cuts out of the layers below; empty: nothing
+        std::string halo_id;  ///< id of the shape that it cuts out of the layers below; empty: none
     };
 
-    LayerText describe(const view::DrawList& list, const view::Layer& layer, const std::string& ground) {
+    LayerText text_of(const view::DrawList& list, const view::Layer& layer, const std::string& ground) {
         const LayerStrokes strokes = strokes_of(list, layer);
         LayerText text;
         if (!strokes.halos.empty() && list.ground.is_opaque()) {
@@ -150,9 +149,9 @@ class Svg : public VectorPage {
         return text;
     }
 
-    /// Draws layers, of which each cuts its halo out of all below it: the lower half through a mask of the
-    /// halos of the upper one, and so on in both halves. Groups nest as deep as there are halvings: viewers
-    /// fail at some hundreds.
+    /// Appends layers, each of which cuts its halo out of all layers below. The lower half is drawn through a
+    /// mask of the halos of the upper half, recursively in both, so groups nest only log2(n) deep: viewers
+    /// fail at some hundred levels.
     void append_layers(std::span<const LayerText> layers, const view::DrawList& list) {
         if (layers.empty()) return;
         if (layers.size() == 1) {
@@ -187,8 +186,8 @@ class Svg : public VectorPage {
             text_ += "\n";
         }
         for (const view::Text& text : list.texts) {
-            // Another font, if a reader does not have this one, takes as much room; one that does not know
-            // textLength errs to both sides alike.
+            // textLength gives a substitute font the same width. Without support for it, a centred text
+            // errs equally on both sides.
             const int width_px = font_.width_px(text.utf8, text.size_px);
             fmt::format_to(out,
                            R"(<text x="{}" y="{}" text-anchor="middle" textLength="{}" )"

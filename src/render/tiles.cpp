@@ -3,15 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include "corda/render/coverage.hpp"
 #include "corda/view/capsule.hpp"
 
 namespace corda::render {
 namespace {
 
-/// How many tiles are side by side, or one above the other.
+/// Number of tiles along a side of a frame.
 int tiles_along(int side_px) {
     return (side_px + Tiles::kSidePx - 1) / Tiles::kSidePx;
 }
+
+/// Overhead of a read in pixels of two bytes. On the CPU, no value up to this one made a measurable
+/// difference. A GPU's driver takes some microseconds per call, in which the bus carries about this number of
+/// pixels.
+constexpr std::size_t kReadPx = 1 << 14;
+/// The same for tinted layers, whose pixels also have sums.
+constexpr std::size_t kTintedReadPx = kReadPx * 2 / (2 + sizeof(TintSums));
 
 }  // namespace
 
@@ -22,7 +30,7 @@ void Tiles::for_each_tile(const view::Capsule& capsule, const view::DrawList& li
     if (box.empty()) return;
     const float extent = std::max(capsule.radius, capsule.halo_radius) + view::kEdgeMargin;
     for (int row = box.y0 / kSidePx; row <= (box.y1 - 1) / kSidePx; ++row) {
-        // The part of the segment that is not too far above or below this row.
+        // The part of the segment that is close enough to this row.
         float from = 0.0F;
         float to = capsule.length;
         if (capsule.uy != 0.0F) {
@@ -45,7 +53,7 @@ void Tiles::plan(const view::DrawList& list) {
     tiles_ = 0;
     runs_.clear();
     batches_.clear();
-    std::size_t first_layer = 0;  // of the batch
+    std::size_t first_layer = 0;  // of the current batch
     for (std::size_t l = 0; l < list.layers.size(); ++l) {
         const view::Layer& layer = list.layers[l];
         if (layer.capsule_count == 0) continue;
@@ -124,6 +132,54 @@ std::vector<PixelRect> rects_of(const std::vector<std::uint8_t>& tiles, int widt
         }
     }
     return rects;
+}
+
+std::size_t pixels_of(const PixelRect& rect) {
+    return rect.empty() ? 0 : static_cast<std::size_t>(rect.width()) * rect.height();
+}
+
+std::size_t pixels_of(std::span<const Read> reads) {
+    std::size_t pixels = 0;
+    for (const Read& read : reads) pixels += pixels_of(read.rect);
+    return pixels;
+}
+
+std::vector<std::span<const Read>> slices_of(std::span<const Read> reads) {
+    std::vector<std::span<const Read>> slices;
+    for (std::size_t first = 0, end = 0; first < reads.size(); first = end) {
+        std::size_t pixels = pixels_of(reads[end++].rect);
+        while (end < reads.size() && (pixels += pixels_of(reads[end].rect)) <= kMaxReadPx) ++end;
+        slices.push_back(reads.subspan(first, end - first));
+    }
+    return slices;
+}
+
+std::vector<Read> plan_reads(const Tiles& tiles, const PixelRect& band) {
+    std::vector<Read> reads;
+    for (const Batch& batch : tiles.batches()) {
+        const std::size_t cost_px = batch.is_tinted ? kTintedReadPx : kReadPx;
+        for (std::size_t run = batch.first_run; run < batch.first_run + batch.run_count; ++run) {
+            const PixelRect rect = tiles.runs()[run].rect.intersected(band);
+            if (rect.empty()) continue;
+            const bool is_first = reads.empty() || reads.back().batch != &batch;
+            if (!is_first) {
+                Read& last = reads.back();
+                const PixelRect both = last.rect.united(rect);
+                const std::size_t apart = pixels_of(last.rect) + pixels_of(rect) + cost_px;
+                if (pixels_of(both) <= std::min(apart, kMaxReadPx)) {
+                    last.rect = both;
+                    last.end_run = run + 1;
+                    continue;
+                }
+            }
+            reads.push_back({.rect = rect,
+                             .batch = &batch,
+                             .first_run = run,
+                             .end_run = run + 1,
+                             .is_first_of_batch = is_first});
+        }
+    }
+    return reads;
 }
 
 }  // namespace corda::render

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "corda/core/image.hpp"
@@ -9,38 +10,38 @@
 
 namespace corda::render {
 
-/// Tiles side by side in which one layer is painted.
+/// Adjacent tiles of one row in which one layer is painted.
 struct TileRun {
     PixelRect rect;
     Color color;
 };
 
-/// Layers, tinted ones or others, that can be painted at once, because no two of them have a tile in common.
+/// Layers that are drawn together because no two of them share a tile. All are tinted, or none is.
 struct Batch {
     std::size_t first_capsule = 0;
     std::size_t capsule_count = 0;
     std::size_t first_run = 0;
     std::size_t run_count = 0;
-    bool is_tinted = false;  ///< of its layers
+    bool is_tinted = false;
 };
 
-/// Where the layers of a draw list are painted, in what order: each in the tiles that its capsules may touch.
+/// The tiles that the capsules of each layer may touch, and the order in which layers are painted.
 class Tiles {
   public:
-    /// Side of a tile in pixels: that of a macroblock. Larger ones are fewer, but of a thin line mostly
-    /// ground.
+    /// Side of a tile in pixels: that of a macroblock. Larger tiles would be fewer, but a thin line would
+    /// leave most of them empty.
     static constexpr int kSidePx = 16;
 
-    /// Memory of the last call is reused.
+    /// Replaces the plan, reusing its memory.
     void plan(const view::DrawList& list);
 
-    /// Inside the frame; of a batch no two overlap.
+    /// Inside the frame. The runs of a batch do not overlap.
     [[nodiscard]] const std::vector<TileRun>& runs() const { return runs_; }
-    /// How many tiles the runs are.
+    /// Total number of tiles of the runs.
     [[nodiscard]] std::size_t tiles() const { return tiles_; }
-    /// Per tile of the frame, row by row: whether a layer is painted there, 0 or 1.
+    /// Per tile of the frame, row by row: 1 if a layer is painted there, else 0.
     [[nodiscard]] const std::vector<std::uint8_t>& touched() const { return touched_by_any_; }
-    /// In the order in which they are to be painted; contiguous in runs and capsules.
+    /// In painting order; contiguous in runs and capsules.
     [[nodiscard]] const std::vector<Batch>& batches() const { return batches_; }
 
   private:
@@ -52,23 +53,45 @@ class Tiles {
 
     int columns_ = 0;
     std::size_t tiles_ = 0;
-    std::vector<std::size_t> last_layer_;  ///< per tile, from 1 on; 0: none
-    std::vector<std::size_t> touched_;     ///< by a layer
+    std::vector<std::size_t> last_layer_;  ///< per tile, counted from 1; 0: none
+    std::vector<std::size_t> touched_;     ///< tiles of the current layer
     std::vector<std::uint8_t> touched_by_any_;
     std::vector<TileRun> runs_;
     std::vector<Batch> batches_;
 };
 
-/// The number of tiles of a frame.
+/// Number of tiles of a frame.
 [[nodiscard]] std::size_t tile_count(int width, int height);
 
 /// A tile of a frame by its index, row by row.
 [[nodiscard]] PixelRect tile_rect(std::size_t index, int width, int height);
 
-/// Marks the tiles of a frame that `box`, a part of it, touches by 1.
+/// Sets the tiles that `box`, a part of the frame, touches to 1.
 void mark_tiles(const PixelRect& box, int frame_width, std::vector<std::uint8_t>& tiles);
 
-/// Some tiles of a frame, marked by 1, as rectangles that do not overlap.
+/// The tiles that are 1 as rectangles that do not overlap.
 [[nodiscard]] std::vector<PixelRect> rects_of(const std::vector<std::uint8_t>& tiles, int width, int height);
+
+/// A rectangle of masks that is read back in one call.
+struct Read {
+    PixelRect rect;
+    const Batch* batch = nullptr;
+    std::size_t first_run = 0;  ///< the runs inside the rectangle
+    std::size_t end_run = 0;
+    bool is_first_of_batch = false;
+};
+
+/// Maximum number of pixels that are read before they are painted: a row of tiles of the widest frame.
+inline constexpr std::size_t kMaxReadPx = std::size_t{kMaxSidePx} * Tiles::kSidePx;
+
+/// The reads of all runs within the rows of `band`, in the order of the runs. Consecutive runs of a batch
+/// share a read of at most kMaxReadPx if the pixels between them cost less than a second read.
+[[nodiscard]] std::vector<Read> plan_reads(const Tiles& tiles, const PixelRect& band);
+
+/// Consecutive reads in slices of at most kMaxReadPx.
+[[nodiscard]] std::vector<std::span<const Read>> slices_of(std::span<const Read> reads);
+
+[[nodiscard]] std::size_t pixels_of(const PixelRect& rect);
+[[nodiscard]] std::size_t pixels_of(std::span<const Read> reads);
 
 }  // namespace corda::render

@@ -2,19 +2,44 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "corda/core/basics.hpp"
 #include "corda/view/draw_list.hpp"
 
 namespace corda::render {
 
-/// A page that draw lists are written to as lines, not as pixels.
+/// Lines of one width and colour, with round joins and round or blunt caps.
+struct Stroke {
+    double width_px = 0.0;
+    Color color = {};  ///< opaque: alpha belongs to the layer
+    bool is_blunt = false;
+    /// Each has at least two points: a dot has two equal ones, and a closed line ends where it begins.
+    std::vector<std::vector<view::PixelPoint>> lines = {};
+};
+
+/// The strokes of a layer.
+struct LayerStrokes {
+    std::vector<Stroke> halos;
+    std::vector<Stroke> lines;
+};
+
+/// Joins consecutive capsules of one width into lines; in a tinted layer, only those of one tint. A tinted
+/// layer has its lines first with round caps, which fill the outside of bends, then with blunt ones, so that
+/// collinear links meet at a sharp edge, and its dots last.
+[[nodiscard]] LayerStrokes strokes_of(const view::DrawList& list, const view::Layer& layer);
+
+/// The filled rectangles of a list. A rectangle with an opaque neighbour on its right extends one pixel below
+/// it, so that the ground does not show through where they meet within a device pixel.
+[[nodiscard]] std::vector<view::Stamp> boxes_of(const view::DrawList& list);
+
+/// A page of vector graphics.
 struct PageDef {
-    int width_px = 0;  ///< of the coordinates; 1 px is width_mm / width_px
+    int width_px = 0;
     int height_px = 0;
     double width_mm = 0.0;
-    std::string title = {};       ///< UTF-8; control characters are written as their numbers
-    OnProgress on_progress = {};  ///< asked at each layer
+    std::string title = {};       ///< UTF-8; control characters are escaped
+    OnProgress on_progress = {};  ///< called for each layer
 };
 
 /// A page of vector graphics. The same calls give the same bytes.
@@ -25,8 +50,8 @@ class VectorPage {
     VectorPage& operator=(const VectorPage&) = delete;
     virtual ~VectorPage() = default;
 
-    /// Draws a list, ground and all, with its top left corner at (x_px, y_px), and cuts off what is outside
-    /// of it. Throws corda::Error (kInterrupted) if asked to stop.
+    /// Draws a list with its ground, clipped to its size, with the top left corner at (x_px, y_px). Throws
+    /// corda::Error (kInterrupted) if on_progress asks to stop.
     virtual void draw(const view::DrawList& list, int x_px, int y_px) = 0;
     /// Ends the page; returns the bytes of the file.
     [[nodiscard]] virtual std::string finish() = 0;
@@ -34,7 +59,7 @@ class VectorPage {
 
 [[nodiscard]] std::unique_ptr<VectorPage> make_svg(const PageDef& def);
 
-/// Throws corda::Error (kInternal) like all that it does, if cairo refuses something.
+/// This and all functions of the page throw corda::Error (kInternal) if cairo fails.
 [[nodiscard]] std::unique_ptr<VectorPage> make_pdf(const PageDef& def);
 
 }  // namespace corda::render

@@ -29,7 +29,7 @@ TEST(ContextDefs, AreReadFromText) {
     EXPECT_EQ(ContextDef::parse("device:12").device, 12);
 }
 
-TEST(ContextDefs, OfAnyOtherTextAreErrors) {
+TEST(ContextDefs, RejectAnyOtherText) {
     for (const char* text : {"", "Auto", "auto ", "devices", "device:", "device:-1", "device:1x", "device: 1",
                              "device:99999999999", "surfaceless:0"}) {
         const test::Failure failure = failure_of([&] { static_cast<void>(ContextDef::parse(text)); });
@@ -38,20 +38,20 @@ TEST(ContextDefs, OfAnyOtherTextAreErrors) {
     }
 }
 
-TEST(Contexts, OfADeviceThatIsNotThereAreErrors) {
+TEST(Contexts, ReportAMissingDevice) {
     const test::Failure failure = failure_of([] { const Context context(ContextDef::parse("device:63")); });
     EXPECT_EQ(failure.code, ExitCode::kNoGl);
     EXPECT_THAT(failure.message, testing::HasSubstr("no such EGL device"));
 }
 
-TEST(Contexts, BelongToOneThreadAtATime) {
+TEST(Contexts, AreCurrentInOneThreadAtATime) {
     const Context context;
     ExitCode code = ExitCode::kOk;
     std::thread([&] { code = failure_of([&] { context.make_current(); }).code; }).join();
     EXPECT_EQ(code, ExitCode::kNoGl);
 }
 
-TEST(Contexts, ThatEndLeaveAnotherOneCurrent) {
+TEST(Contexts, KeepAnotherContextCurrentWhenDestroyed) {
     const test::HostContext host;
     auto context = std::make_unique<Context>();
     EXPECT_FALSE(host.is_current());
@@ -60,7 +60,7 @@ TEST(Contexts, ThatEndLeaveAnotherOneCurrent) {
     EXPECT_EQ(eglGetCurrentContext() != EGL_NO_CONTEXT, true);
 }
 
-TEST(SavedContexts, ComeBack) {
+TEST(SavedContexts, AreRestored) {
     const test::HostContext host;
     {
         const SavedContext saved_host;
@@ -78,7 +78,7 @@ TEST(SavedContexts, ComeBack) {
     EXPECT_TRUE(host.is_alive());
 }
 
-TEST(SavedContexts, OfNoneLeaveNoneCurrent) {
+TEST(SavedContexts, RestoreNoContext) {
     const Context context;
     std::thread([] {
         {
@@ -89,7 +89,7 @@ TEST(SavedContexts, OfNoneLeaveNoneCurrent) {
     }).join();
 }
 
-TEST(Contexts, OfAForkedChildAreItsOwn) {
+TEST(Contexts, OfTheParentCannotBeUsedAfterAFork) {
     const Context context;
     const SavedContext saved;
     const pid_t child = fork();
@@ -121,7 +121,7 @@ TEST(Forks, WaitForTheDriver) {
     drawing.join();
 }
 
-TEST(Probes, LeaveTheCurrentContextAlone) {
+TEST(Probes, KeepTheCurrentContext) {
     const test::HostContext host;
     EXPECT_FALSE(probe_contexts().empty());
     EXPECT_TRUE(host.is_current());

@@ -1,9 +1,8 @@
-#include "corda/render/driver_check.hpp"
+#include "corda/render/frame_renderer.hpp"
 
 #include <gmock/gmock.h>
 
 #include "corda/gl/context.hpp"
-#include "corda/render/frame_renderer.hpp"
 #include "corda/render/reference_renderer.hpp"
 #include "support/draw_lists.hpp"
 #include "support/failure.hpp"
@@ -23,7 +22,7 @@ TEST(DriverChecks, PassOnEveryUsablePlatform) {
     for (const gl::Attempt& attempt : attempts) EXPECT_EQ(attempt.is_usable(), attempt.info.has_value());
 }
 
-TEST(DriverChecks, LeaveTheRendererAsItWas) {
+TEST(DriverChecks, DoNotChangeTheRenderer) {
     const gl::Context context;
     render::FrameRenderer renderer(context, 64, 48);
     const view::DrawList list = test::random_draw_list(1, 64, 48, 4, 20, 6);
@@ -34,7 +33,7 @@ TEST(DriverChecks, LeaveTheRendererAsItWas) {
     }
 }
 
-TEST(DriverChecks, ThatFailAreTheFailureOfThePlatform) {
+TEST(DriverChecks, FailThePlatform) {
     const auto attempts = gl::probe_contexts(
         [](const gl::Context&) { throw Error(ExitCode::kNoGl, "the driver draws wrongly"); });
     for (const gl::Attempt& attempt : attempts) {

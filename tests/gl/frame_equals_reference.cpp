@@ -72,7 +72,7 @@ TEST(TintedLayers, EqualTheReferenceByteForByte) {
     }
 }
 
-TEST(TintedLayers, EqualTheReferenceIfManyCapsulesCoverAPixel) {
+TEST(TintedLayers, EqualTheReferenceWhereManyCapsulesOverlap) {
     // Beyond 257 the sums are rounded, in the order of the capsules.
     const gl::Context context;
     render::FrameRenderer renderer(context, 64, 48);
@@ -115,7 +115,7 @@ TEST(Bands, EqualTheReferenceByteForByte) {
     }
 }
 
-TEST(Bands, StopAndThenTheWholeFrameIsDrawn) {
+TEST(Bands, AreFollowedByAWholeFrameIfInterrupted) {
     constexpr int kWidth = 16384;
     constexpr int kHeight = 1000;
     const gl::Context context;
@@ -133,7 +133,7 @@ TEST(Bands, StopAndThenTheWholeFrameIsDrawn) {
     }
 }
 
-TEST(Bands, AreNotAskedForSmallFrames) {
+TEST(Bands, AreNotUsedForSmallFrames) {
     const gl::Context context;
     render::FrameRenderer renderer(context, 640, 360);
     int asked = 0;
@@ -160,7 +160,7 @@ TEST(DamagedRedraw, EqualsTheFullRedrawByteForByte) {
     }
 }
 
-TEST(DamagedRedraw, EqualsTheFullRedrawOfStampsThatChange) {
+TEST(DamagedRedraw, EqualsTheFullRedrawIfStampsChange) {
     constexpr int kWidth = 320;
     constexpr int kHeight = 200;
     const gl::Context context;
@@ -175,7 +175,7 @@ TEST(DamagedRedraw, EqualsTheFullRedrawOfStampsThatChange) {
     }
 }
 
-TEST(DamagedRedraw, IsOfTheTilesOfStampsThatDiffer) {
+TEST(DamagedRedraw, CoversTheTilesOfChangedStamps) {
     const gl::Context context;
     render::FrameRenderer renderer(context, 200, 100);
     view::Font font;
@@ -212,7 +212,7 @@ TEST(DamagedRedraw, IsOfTheTilesOfStampsThatDiffer) {
     EXPECT_TRUE(equal_images(renderer.image(), render::render_reference(last)));
 }
 
-TEST(DamagedRedraw, LeavesAnUnchangedFrameAlone) {
+TEST(DamagedRedraw, OfAnUnchangedFrameIsEmpty) {
     const gl::Context context;
     render::FrameRenderer renderer(context, 64, 64);
     view::DrawList list = test::random_draw_list(1, 64, 64, 1, 0);
@@ -222,7 +222,7 @@ TEST(DamagedRedraw, LeavesAnUnchangedFrameAlone) {
     EXPECT_EQ(renderer.render(list), (Damage{{0, 0, 64, 64}}));
 }
 
-TEST(DamagedRedraw, AfterAFailureDrawsTheWholeFrame) {
+TEST(DamagedRedraw, IsTheWholeFrameAfterAFailure) {
     const auto list_of = [](std::uint32_t seed, std::size_t layers, std::size_t capsules) {
         view::DrawList list = test::random_draw_list(seed, 64, 64, layers, capsules);
         list.ground = {{10, 20, 30}, {90, 20, 0}};
@@ -250,7 +250,7 @@ std::vector<view::DrawList> exposed_lists(std::uint32_t seed, std::size_t count,
     return lists;
 }
 
-TEST(Exposures, EqualTheReferenceWhateverWasDrawnBefore) {
+TEST(Exposures, EqualTheReferenceAfterAnyFrame) {
     const gl::Context context;
     render::FrameRenderer renderer(context, 320, 200);
     for (std::uint32_t seed = 1; seed <= 12; ++seed) {
@@ -269,7 +269,7 @@ TEST(Exposures, EqualTheReferenceWhateverWasDrawnBefore) {
     }
 }
 
-TEST(Exposures, DamageHoldsWhatDiffers) {
+TEST(Exposures, ReportAllChangesAsDamage) {
     const gl::Context context;
     render::FrameRenderer renderer(context, 320, 200);
     Image shown(320, 200);
@@ -284,7 +284,7 @@ TEST(Exposures, DamageHoldsWhatDiffers) {
     }
 }
 
-TEST(TwoRenderers, OfDifferentSizeShareAContext) {
+TEST(TwoRenderers, OfDifferentSizesShareAContext) {
     const gl::Context context;
     render::FrameRenderer small(context, 33, 17);
     render::FrameRenderer large(context, 640, 360);

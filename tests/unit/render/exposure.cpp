@@ -36,7 +36,7 @@ std::vector<int> mean_of(const std::vector<Color>& pixels, const Ground& ground 
     return {one.data(), one.data() + 4};
 }
 
-TEST(Exposure, OfEqualPicturesIsThatPicture) {
+TEST(Exposure, OfEqualImagesIsThatImage) {
     for (int level = 0; level < 256; ++level) {
         const auto v = static_cast<std::uint8_t>(level);
         for (const std::size_t count : {1U, 2U, 7U, 16U, 64U})
@@ -45,7 +45,7 @@ TEST(Exposure, OfEqualPicturesIsThatPicture) {
     }
 }
 
-TEST(Exposure, OfSeeThroughPicturesThatAreEqualIsThatPicture) {
+TEST(Exposure, OfEqualTransparentImagesIsThatImage) {
     for (int alpha = 0; alpha < 256; alpha += 5) {
         for (int level = 0; level <= alpha; ++level) {
             const auto v = static_cast<std::uint8_t>(level);
@@ -56,7 +56,7 @@ TEST(Exposure, OfSeeThroughPicturesThatAreEqualIsThatPicture) {
     }
 }
 
-TEST(Exposure, IsTheMeanInLinearLight) {
+TEST(Exposure, AveragesLinearLight) {
     EXPECT_EQ(mean_of({{0, 0, 0}, {255, 255, 255}})[0], 188);  // and not 128
     double worst = 0.0;
     for (int a = 0; a < 256; a += 3) {
@@ -71,13 +71,13 @@ TEST(Exposure, IsTheMeanInLinearLight) {
     EXPECT_LT(worst, 0.53);  // measured 0.51: the half of a level, and 16 bits of light
 }
 
-TEST(Exposure, OfAPictureThatIsClearHalfOfTheTimeKeepsItsColor) {
+TEST(Exposure, KeepsTheColourOfAPixelThatIsTransparentHalfOfTheTime) {
     // Orange over nothing for a half of the time: the same orange, and half of the alpha.
     const auto mean = mean_of({{200, 100, 0, 255}, {0, 0, 0, 0}}, {{0, 0, 0, 0}, {0, 0, 0, 0}});
     EXPECT_EQ(mean, (std::vector<int>{100, 50, 0, 128}));  // colours times alpha
 }
 
-TEST(Exposure, NoValueIsNearAMiddle) {
+TEST(Exposure, HasNoValueNearARoundingBoundary) {
     double nearest = 1.0;
     for (int level = 0; level < 256; ++level) {
         const double light = 65535.0 * light_of(level);
@@ -88,7 +88,7 @@ TEST(Exposure, NoValueIsNearAMiddle) {
     EXPECT_GT(nearest, 1e-6);  // measured 0.0003; libraries differ by 1e-11
 }
 
-TEST(Exposure, TilesThatShowTheGroundNeedNotBeAdded) {
+TEST(Exposure, AddsTheGroundOfTilesThatAreNotTouched) {
     constexpr int kWidth = 200;
     constexpr int kHeight = 150;
     for (const int alpha : {255, 100}) {

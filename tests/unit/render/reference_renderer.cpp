@@ -10,7 +10,7 @@
 namespace corda::render {
 namespace {
 
-/// What a viewer shows of a picture on a ground of that level.
+/// Composites an image onto a grey ground, like a viewer.
 std::uint8_t over(const std::uint8_t* rgba, int channel, int level) {
     return static_cast<std::uint8_t>((rgba[channel] * rgba[3] + level * (255 - rgba[3]) + 127) / 255);
 }
@@ -35,7 +35,7 @@ int largest_difference(view::DrawList list, int level) {
     return largest;
 }
 
-TEST(TransparentGround, LooksLikeAnOpaqueOneOnBlackAndOnWhite) {
+TEST(TransparentGround, CompositesToAnOpaqueGroundOnBlackAndWhite) {
     for (const Color& ground : {Color{0, 0, 0, 0}, {255, 255, 255, 0}, {200, 60, 10, 100}}) {
         for (std::uint32_t seed = 1; seed <= 8; ++seed) {
             // A halo and a line, each rounded once, and the alpha of the file.
@@ -50,7 +50,7 @@ TEST(TransparentGround, LooksLikeAnOpaqueOneOnBlackAndOnWhite) {
     }
 }
 
-TEST(TransparentGround, KeepsTheColourAndTheCoverageOfALine) {
+TEST(TransparentGround, KeepsColourAndCoverageOfALine) {
     view::DrawList list;
     list.width = 40;
     list.height = 20;
@@ -66,7 +66,7 @@ TEST(TransparentGround, KeepsTheColourAndTheCoverageOfALine) {
     EXPECT_EQ(image.pixel(20, 2)[3], 0);
 }
 
-TEST(TransparentGround, ShowsInAHalo) {
+TEST(TransparentGround, ShowsInHalos) {
     view::DrawList list;
     list.width = 40;
     list.height = 40;
@@ -82,7 +82,7 @@ TEST(TransparentGround, ShowsInAHalo) {
     EXPECT_EQ(image.pixel(20, 20)[2], 255);
 }
 
-TEST(TintedLayer, OfOneTintIsAPlainLayer) {
+TEST(TintedLayer, OfOneTintEqualsAPlainLayer) {
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
         view::DrawList list = test::random_draw_list(seed, 160, 120, 4, 30);
         view::DrawList tinted = list;
@@ -106,7 +106,7 @@ view::DrawList two_links(view::PixelPoint joint) {
     return list;
 }
 
-TEST(TintedLayer, LinksInLineMeetAtASharpEdge) {
+TEST(TintedLayer, HasSharpEdgesBetweenCollinearLinks) {
     const Image image = render_reference(two_links({30.25, 20.0}));
     for (const int y : {14, 20, 25}) {
         EXPECT_EQ(image.pixel(28, y)[0], 199);  // the next link's round end counts as one to 256
@@ -119,7 +119,7 @@ TEST(TintedLayer, LinksInLineMeetAtASharpEdge) {
     EXPECT_EQ(image.pixel(10, 20)[0], 200);
 }
 
-TEST(TintedLayer, ACornerIsCoveredAsThatOfOneColour) {
+TEST(TintedLayer, CoversCornersLikeAPlainLayer) {
     view::DrawList list = two_links({30.0, 8.0});
     const Image tinted = render_reference(list);
     list.layers.front().is_tinted = false;
@@ -131,7 +131,7 @@ TEST(TintedLayer, ACornerIsCoveredAsThatOfOneColour) {
     EXPECT_NEAR(tinted.pixel(30, 2)[2], 100, 3);
 }
 
-TEST(TintedLayer, AHeavierCapsuleHidesOthers) {
+TEST(TintedLayer, ShowsTheHeaviestCapsule) {
     view::DrawList list = two_links({30.0, 20.0});
     list.add_capsule({30.0, 20.0}, {30.0, 20.0}, 12.0, 0.0, {0, 250, 0, 64});
     const Image image = render_reference(list);

@@ -52,7 +52,7 @@ TEST(Svg, CutsHalosOutOverATransparentGround) {
     EXPECT_THAT(svg, HasSubstr("<use href=\"#halo0\"/>"));
 }
 
-TEST(Svg, NestsMasksOfManyHalosAsDeepAsTheyCanBeHalved) {
+TEST(Svg, NestsMasksOnlyLogarithmicallyDeep) {
     view::DrawList list = crossing({{0, 0, 0, 0}, {0, 0, 0, 0}});
     for (int i = 0; i < 1000; ++i) {
         list.add_layer({0, 0, 0});
@@ -70,7 +70,7 @@ TEST(Svg, NestsMasksOfManyHalosAsDeepAsTheyCanBeHalved) {
     EXPECT_LT(svg.size(), 1.2e6);  // measured 0.6 MB
 }
 
-TEST(Svg, WritesNoControlCharacterOfATitle) {
+TEST(Svg, EscapesControlCharactersOfATitle) {
     const std::string svg = svg_of(crossing({{255, 255, 255}, {255, 255, 255}}), "a\x01\x1b");
     EXPECT_THAT(svg, HasSubstr("<title>a\\x01\\x1b</title>"));
 }
@@ -104,7 +104,7 @@ TEST(Svg, WritesTextOverTheLayers) {
     EXPECT_LT(svg.find("<path"), svg.find("<text"));
 }
 
-TEST(Svg, DoesNotDarkenAGroundThatFadesAway) {
+TEST(Svg, DoesNotDarkenAGroundThatFadesOut) {
     const std::string svg = svg_of(crossing({{255, 255, 255}, {0, 0, 0, 0}}));
     EXPECT_THAT(
         svg,

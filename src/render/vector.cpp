@@ -1,4 +1,4 @@
-#include "corda/render/strokes.hpp"
+#include "corda/render/vector.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,14 +6,14 @@
 namespace corda::render {
 namespace {
 
-/// Ends of neighbours are that close: they were one point, rounded to 1/1024 px, and a float's direction.
+/// Distance within which two ends are one point: points are rounded to 1/1024 px, directions to a float.
 constexpr double kSamePointPx = 0.005;
 
 bool is_same(const view::PixelPoint& a, const view::PixelPoint& b) {
     return std::abs(a.x - b.x) < kSamePointPx && std::abs(a.y - b.y) < kSamePointPx;
 }
 
-/// Appends the segment of a capsule to the stroke of that look.
+/// Appends the segment of a capsule to the stroke with the same width, colour and caps as `look`.
 void append(std::vector<Stroke>& strokes, const view::Capsule& capsule, const Stroke& look) {
     if (look.width_px <= 0.0) return;
     const view::PixelPoint from{capsule.ax, capsule.ay};
@@ -25,8 +25,8 @@ void append(std::vector<Stroke>& strokes, const view::Capsule& capsule, const St
     });
     if (stroke == strokes.end()) stroke = strokes.insert(stroke, look);
     const bool is_dot = capsule.length == 0.0F;
-    const bool goes_on = !stroke->lines.empty() && is_same(stroke->lines.back().back(), from) && !is_dot;
-    if (goes_on)
+    const bool continues = !stroke->lines.empty() && is_same(stroke->lines.back().back(), from) && !is_dot;
+    if (continues)
         stroke->lines.back().push_back(to);
     else
         stroke->lines.push_back({from, to});

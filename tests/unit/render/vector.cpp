@@ -1,4 +1,4 @@
-#include "corda/render/strokes.hpp"
+#include "corda/render/vector.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ view::DrawList list_of_one_layer() {
     return list;
 }
 
-TEST(Strokes, JoinNeighboursOfOneWidth) {
+TEST(Strokes, JoinConsecutiveCapsulesOfOneWidth) {
     view::DrawList list = list_of_one_layer();
     list.add_capsule({10.1, 10.2}, {20.3, 40.4}, 2.0, 1.0);
     list.add_capsule({20.3, 40.4}, {60.5, 45.6}, 2.0, 1.0);
@@ -47,7 +47,7 @@ TEST(Strokes, KeepDots) {
     EXPECT_EQ(strokes.lines[1].lines[0].size(), 2U);
 }
 
-TEST(Strokes, OfARingAreOneLine) {
+TEST(Strokes, MakeARingOneLine) {
     view::DrawList list = list_of_one_layer();
     list.add_ring({50.0, 50.0}, 20.0, 1.0);
     const LayerStrokes strokes = strokes_of(list, list.layers.front());
@@ -56,7 +56,7 @@ TEST(Strokes, OfARingAreOneLine) {
     EXPECT_EQ(strokes.lines[0].lines[0].size(), 65U);
 }
 
-TEST(Strokes, OfATintedLayerAreByColourAndEndBluntlyOnTop) {
+TEST(Strokes, OfATintedLayerHaveBluntEndsOnTop) {
     view::DrawList list = list_of_one_layer();
     list.layers.front().is_tinted = true;
     list.add_capsule({10.0, 10.0}, {20.0, 10.0}, 2.0, 1.0, {1, 0, 0});
@@ -75,7 +75,7 @@ TEST(Strokes, OfATintedLayerAreByColourAndEndBluntlyOnTop) {
     EXPECT_EQ(strokes.halos.size(), 2U);  // of two widths, in one colour
 }
 
-TEST(Boxes, GoOnBelowTheNextOne) {
+TEST(Boxes, ExtendBelowTheirOpaqueNeighbour) {
     view::DrawList list = list_of_one_layer();
     list.add_box({10, 10, 12, 20}, {1, 2, 3});
     list.add_box({12, 10, 14, 20}, {4, 5, 6});

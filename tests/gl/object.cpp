@@ -1,4 +1,4 @@
-#include "corda/gl/pixel_buffer.hpp"
+#include "corda/gl/object.hpp"
 
 #include <gmock/gmock.h>
 
@@ -37,7 +37,7 @@ int byte_at(const std::byte* bytes, std::size_t offset) {
     return std::to_integer<int>(bytes[offset]);
 }
 
-TEST(PixelBuffers, HoldWhatIsReadAtItsOffset) {
+TEST(PixelBuffers, StoreEachReadAtItsOffset) {
     const Context context;
     const OnePixel pixel;
     std::array<PixelBuffer, 2> ring;
@@ -62,7 +62,7 @@ TEST(PixelBuffers, HoldWhatIsReadAtItsOffset) {
     EXPECT_EQ(glGetError(), static_cast<GLenum>(GL_NO_ERROR));
 }
 
-TEST(PixelBuffers, ThatHaveNoRoomLeaveNothingBehind) {
+TEST(PixelBuffers, CanBeUsedAfterAnAllocationFails) {
     const Context context;
     const OnePixel pixel;
     PixelBuffer buffer;
