@@ -1,16 +1,19 @@
 #!/usr/bin/env bash
-# Draws the pictures of examples/README.md into examples/pictures, one per scene, and writes nothing else. The program is
-# that of examples/swing.sh, or the one given.
+# Draws the pictures of examples/README.md into examples/pictures, one per scene, and the animation of README.md. The
+# program is the argument, or the one that examples/swing.sh builds.
 # Usage: examples/gallery.sh [CORDA]
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 corda=$(realpath "${1:-$root/build/release/corda}")
 cd "$root/examples"
 
-# Name, command and times of each. A plain ground keeps the files small.
+# A plain background keeps the files small. The rate is one that GIF can hold.
+look=(--size 640x360 -q --force --set 'style.background="#121828"')
+"$corda" render start.toml --fps 100/3 --duration 3.4 "${look[@]}" -o pictures/start.gif
+
+# Name, command and times of each picture.
 while read -r name command times; do
-    "$corda" "$command" "$name.toml" --at "$times" --size 640x360 -q --force -o "pictures/$name.png" \
-        --set 'style.background="#121828"' --set overlay.time=false
+    "$corda" "$command" "$name.toml" --at "$times" "${look[@]}" --set overlay.time=false -o "pictures/$name.png"
 done <<'END'
 bars            still  2.0
 bridge          still  0.6

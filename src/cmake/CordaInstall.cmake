@@ -21,8 +21,12 @@ install(TARGETS corda_library EXPORT corda_targets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
 install(TARGETS corda RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}
-    COMPONENT program)
+# The README and the pages for users that it links to, at the same relative places.
+foreach(page LICENSE README.md src/CHANGELOG.md src/cmake/LICENSES.md src/study/speed.png
+        src/app/README.md src/golden/README.md src/media/README.md src/python/README.md src/scene/README.md src/study/README.md)
+    cmake_path(GET page PARENT_PATH folder)
+    install(FILES ${PROJECT_SOURCE_DIR}/${page} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT program)
+endforeach()
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/corda)
 install(EXPORT corda_targets NAMESPACE corda:: DESTINATION ${package_dir} COMPONENT development)

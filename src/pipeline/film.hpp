@@ -151,7 +151,7 @@ struct RenderDef {
     bool resume = false;
     std::int64_t first = 0;
     std::optional<std::int64_t> end;  ///< one past the last frame; default Film::frame_count()
-    /// Decode every frame of the finished video, also of H.264, ProRes and FFV1 (see the README).
+    /// Decode every frame of the finished video, also of H.264, ProRes and FFV1.
     bool verify_all = false;
     /// Called after each frame, and again and again while a large one is drawn and while the finished video
     /// is copied and verified, then with all frames done; returning false stops. Frames of a .gif, .apng or

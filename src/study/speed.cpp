@@ -18,7 +18,7 @@ namespace {
 
 /// The accuracies that are compared, and what the fastest of MuJoCo 3.12, Simbody 3.7, Box2D 2.4 and Bullet
 /// 3.24 takes for each on the source report's swing, in ms per simulated second on one core of the machine
-/// that the README names.
+/// that src/study/README.md names.
 struct Accuracy {
     double error;
     double peer_ms;
