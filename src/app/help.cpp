@@ -5,7 +5,7 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
-#include "corda/scene/keys.hpp"
+#include "corda/scene/schema.hpp"
 #include "manual.hpp"
 
 namespace corda::app {

@@ -9,7 +9,7 @@
 #include "corda/core/nearest.hpp"
 #include "corda/core/version.hpp"
 #include "corda/scene/check_limits.hpp"
-#include "corda/scene/keys.hpp"
+#include "corda/scene/schema.hpp"
 #include "corda/scene/read_file.hpp"
 #include "interrupt.hpp"
 

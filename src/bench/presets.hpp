@@ -8,7 +8,7 @@
 
 #include "corda/pipeline/film.hpp"
 #include "corda/scene/scene.hpp"
-#include "corda/scene/settings.hpp"
+#include "corda/scene/scene.hpp"
 
 namespace corda::bench {
 

@@ -28,7 +28,7 @@ struct EncoderDef {
     /// libav's name of the encoder or a short one ("h264"), see `corda doctor`; empty: by the ending.
     std::string codec;
     std::string preset;      ///< a word or a number of the encoder; empty: its default
-    std::optional<int> crf;  ///< the encoder's constant rate factor, 0 .. kMaxCrf; empty: its default
+    std::optional<int> crf;  ///< the encoder's constant rate factor, 1 .. kMaxCrf; empty: its default
     PixelChoice pix = PixelChoice::kAuto;
     /// Threads of each encoder, 1 .. kMaxThreads. Fixed, never "as many as there are cores": x264's bytes
     /// depend on it.

@@ -10,7 +10,7 @@
 
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
-#include "corda/pipeline/plan_toml.hpp"
+#include "corda/scene/write_scene.hpp"
 #include "corda/view/number_text.hpp"
 
 namespace corda {
@@ -101,7 +101,7 @@ std::vector<MethodGroup> groups_of(const Plan& plan) {
     for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
         const BodyPlan& body = plan.bodies[i];
         const auto [entry, is_new] =
-            group_of.try_emplace({solver_toml(body.method), body.reason}, groups.size());
+            group_of.try_emplace({method_toml(body.method), body.reason}, groups.size());
         if (is_new) groups.push_back({body.method, {}});
         groups[entry->second].bodies.push_back(i);
     }

@@ -114,9 +114,13 @@ class Film {
     std::unique_ptr<Impl> impl_;
 };
 
-/// The blocks `[solver]` and `[camera]` of a film, in TOML: pasted into its scene they freeze what was
-/// chosen, and the same frames come out, byte for byte. Throws corda::Error: kUsage if method `relaxation`
-/// moves ropes that differ in reach (only code can make such), and what camera() throws.
+/// The scene of a film with the methods and the camera that were chosen: it gives the same frames, byte for
+/// byte. Throws what camera() throws.
+[[nodiscard]] Scene frozen_scene(const Film& film);
+
+/// The tables [solver], [[solver.bodies]] and [camera] of frozen_scene(), for pasting into a scene file.
+/// Throws corda::Error (kUsage) if method `relaxation` moves ropes that differ in reach (only code can make
+/// such).
 [[nodiscard]] std::string frozen_toml(const Film& film);
 
 /// Draws positions that come from anywhere: one's own simulation, or measured ones.

@@ -27,7 +27,7 @@
 #include "corda/pipeline/provenance.hpp"
 #include "corda/pipeline/render_chunks.hpp"
 #include "corda/pipeline/validate.hpp"
-#include "corda/scene/digest.hpp"
+#include "corda/scene/write_scene.hpp"
 #include "corda/view/look.hpp"
 
 namespace corda {
@@ -71,8 +71,8 @@ void check_part(const std::string& path, const std::map<std::string, std::string
     }
     const std::map<std::string, std::string> its = media::told_origin(*comment.text);
     if (its.empty()) fail("does not tell what it was rendered from");
-    if (const std::string difference = first_difference(origin, its); !difference.empty())
-        fail("is of another render: " + difference);
+    if (const auto changes = differences(origin, its); !changes.empty())
+        fail("is of another render: " + differences_text(changes));
 }
 
 /// What the file says of itself beside its pictures.

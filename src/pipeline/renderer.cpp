@@ -13,7 +13,9 @@ namespace corda {
 
 struct Renderer::Impl {
     Impl(const Scene& given, const std::string& backend)
-        : scene(given), system(system_of(scene)), renderer(scene, system, backend, false) {
+        : scene((check_definitions(given), given)),
+          system(system_of(scene)),
+          renderer(scene, system, backend, false) {
         if (quantity_of(scene.style.color_by)) {
             throw Error(ExitCode::kInvalidScene,
                         "style: color_by is a quantity of a motion, and a Renderer draws positions alone; "

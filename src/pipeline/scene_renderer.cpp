@@ -3,40 +3,14 @@
 #include <array>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "corda/core/basics.hpp"
 #include "corda/render/frame_renderer.hpp"
-#include "corda/view/validate.hpp"
 
 namespace corda::pipeline {
-namespace {
-
-/// The scene, if its pictures can be drawn. A scene file has been checked for that; one filled in code has
-/// not.
-const Scene& drawable(const Scene& scene) {
-    view::validate(scene.camera);
-    view::validate(scene.overlay);
-    const VideoDef& video = scene.video;
-    if (!(video.shutter >= 0.0 && video.shutter <= 1.0)) {
-        throw Error(ExitCode::kInvalidScene,
-                    fmt::format("video.shutter: {} is not within 0 .. 1", video.shutter));
-    }
-    if (video.subframes < 2 || video.subframes > VideoDef::kMaxSubframes) {
-        throw Error(ExitCode::kInvalidScene, fmt::format("video.subframes: {} is not within 2 .. {}",
-                                                         video.subframes, VideoDef::kMaxSubframes));
-    }
-    if (is_picture_size(video.width_px, video.height_px)) return scene;
-    throw Error(ExitCode::kInvalidScene,
-                fmt::format("video.size: {}x{} is not within 1 .. {} pixels per side and {} in all",
-                            video.width_px, video.height_px, kMaxSidePx, kMaxPicturePx));
-}
-
-}  // namespace
 
 SceneRenderer::SceneRenderer(const Scene& scene, const System& system, const std::string& backend,
                              bool require_gpu)
-    : scene_(&drawable(scene)),
+    : scene_(&scene),
       system_(&system),
       gl_(gl::ContextDef::parse(backend)),
       view_(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, scene.video.width_px,

@@ -1,33 +1,32 @@
 #include "corda/pipeline/validate.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/timeline.hpp"
-#include "corda/scene/limits.hpp"
-#include "corda/sim/validate.hpp"
+#include "corda/scene/schema.hpp"
 
 namespace corda::pipeline {
 namespace {
 
+void validate_frame_rate(const Scene& scene) {
+    const Rational fps = scene.video.fps.rational();
+    if (fps.is_rate()) return;
+    throw Error(ExitCode::kInvalidScene,
+                fmt::format("video.fps: {}/{} is not a fraction of integers within 1 .. {}", fps.num, fps.den,
+                            Rational::kMaxPart));
+}
+
 void validate_frames(const Scene& scene) {
     const Rational fps = scene.video.fps.rational();
-    if (!fps.is_rate()) {
-        throw Error(ExitCode::kInvalidScene,
-                    fmt::format("video: fps {}/{} is not a fraction of integers within 1 .. {}", fps.num,
-                                fps.den, Rational::kMaxPart));
-    }
     const double frames = scene.world.duration_s * scene.video.fps.per_second();
     constexpr auto kMost = static_cast<double>(scene::Limits::kFrames);
     if (frames <= kMost && scene.video.fps.frame_count(scene.world.duration_s) >= 1) return;
-    throw Error(
-        ExitCode::kInvalidScene,
-        fmt::format("world: duration_s of {:g} s at {} frames per second are {:g} frames; 1 .. {} are "
-                    "possible",
-                    scene.world.duration_s, fps.text(), frames, scene::Limits::kFrames));
+    throw Error(ExitCode::kInvalidScene,
+                fmt::format("world.duration: {:g} s at {} frames per second are {:g} frames; give 1 .. {}",
+                            scene.world.duration_s, fps.text(), frames, scene::Limits::kFrames));
 }
 
 }  // namespace
@@ -42,13 +41,10 @@ std::optional<double> motion_time_s(const Scene& scene, double time_s) {
 }
 
 void validate(const Scene& scene, std::span<const double> stills_s) {
-    sim::validate(scene.world);
+    validate_frame_rate(scene);
+    check_definitions(scene);
     validate_frames(scene);
-    const auto* automatic = std::get_if<AutoDef>(&scene.solver);
-    if (automatic != nullptr && !(automatic->tolerance_px > 0.0 && std::isfinite(automatic->tolerance_px)))
-        throw Error(ExitCode::kInvalidScene, "solver: tolerance_px is not > 0 and finite");
     static_cast<void>(solvers_of(scene));
-    for (const BodySolverDef& group : scene.body_solvers) sim::validate(group.method);
     for (const double time_s : stills_s) {
         if (motion_time_s(scene, time_s)) continue;
         throw Error(ExitCode::kUsage,

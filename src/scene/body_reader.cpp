@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "corda/scene/field.hpp"
 #include "corda/scene/readers.hpp"
 
 namespace corda::scene {
@@ -40,10 +41,22 @@ std::vector<Vec2> read_velocity(const TableReader& body, std::int64_t particles)
     return read_all<Vec2>(*velocity, velocity->at(0).is_list(), particles);
 }
 
-MaterialDef read_material(const TableReader& body) {
-    MaterialDef def;
-    body.read("compliance", def.compliance_1_n);
-    body.read("string", def.is_string);
+BodyStyleDef read_body_style(const TableReader& body, bool takes_link_colors) {
+    BodyStyleDef def;
+    read_fields(body, def);
+    if (const auto color = body.find("color"); color && color->is_list()) {
+        def.link_colors = color->as<std::vector<Color>>();
+        for (std::size_t i = 0; i < def.link_colors.size(); ++i) {
+            if (def.link_colors[i].a != def.link_colors.front().a)
+                color->at(i).add_problem(
+                    "another alpha than that of the first link; give all links the same");
+        }
+        if (!takes_link_colors)
+            color->add_problem(
+                "a list of colours is for links in turn; set style.color_by = \"link\", or give one colour");
+    } else if (color) {
+        def.color = color->as<Color>();
+    }
     return def;
 }
 

@@ -13,7 +13,7 @@
 namespace corda::scene {
 namespace {
 
-/// A whole number in words that can be read: in scientific notation from a million on.
+/// A whole number; in scientific notation from a million on.
 std::string about(double value) {
     constexpr double kMaxInFull = 1e6;
     return value < kMaxInFull ? fmt::format("{:.0f}", value) : fmt::format("{:.1e}", value);
@@ -50,7 +50,7 @@ bool check_frames(const Sections& sections, const Scene& scene) {
     return problem.empty();
 }
 
-/// Steps that the solver asks for by name; a frame takes one otherwise.
+/// Number of steps that the solver's key `step` gives; one per frame without it.
 double step_count(const SolverDef& solver, const Scene& scene) {
     std::optional<double> step_s;
     if (const auto* rattle = std::get_if<RattleDef>(&solver)) step_s = rattle->step_s;
@@ -74,7 +74,7 @@ bool check_steps(const Sections& sections, const SolverGroup& group, const Scene
     return false;
 }
 
-/// Adds a group of that many bars to the bar updates of all. Returns whether they are few enough.
+/// Adds the bar updates of a group to those of all groups. Returns true if they are within the limit.
 bool check_bar_updates(const Sections& sections, const SolverGroup& group, const Scene& scene,
                        std::int64_t bars, double& all_updates) {
     if (!group.table.is_sound("sweeps")) return false;
@@ -95,15 +95,16 @@ bool check_bar_updates(const Sections& sections, const SolverGroup& group, const
     return false;
 }
 
-/// What all bodies so far ask for together.
+/// Total size of the bodies counted so far.
 struct Demand {
     std::int64_t particles = 0;
     std::int64_t bars = 0;
     double bytes = 0.0;
 };
 
-/// About the most memory in bytes that simulating a body takes: measured with 20 000 ropes of two particles,
-/// chains of 1e5, relaxation at reach 20, and by rattle, whose factors fill in, nets of 40 x 40 to 320 x 320.
+/// Estimated upper bound of the memory, in bytes, for simulating a body: measured with 20 000 ropes of two
+/// particles, chains of 1e5, relaxation at reach 20, and by rattle, whose factors fill in, nets of 40 x 40 to
+/// 320 x 320.
 double expected_bytes(const BodySize& size, const SolverDef& solver, bool is_net) {
     constexpr double kPerBody = 9e3;
     constexpr double kPerParticle = 1.7e3;
@@ -115,8 +116,8 @@ double expected_bytes(const BodySize& size, const SolverDef& solver, bool is_net
            kPerBar * static_cast<double>(size.bars);
 }
 
-/// About the most memory that the trail of a rope takes: a point per frame, at most 400 in a trail, and in a
-/// picture half of 12 layers of 4 capsules per point.
+/// Estimated upper bound of the memory, in bytes, for the trail of a rope: a point per frame, at most 400 in
+/// a trail, and in a picture half of 12 layers of 4 capsules per point.
 double trail_bytes(const Scene& scene) {
     if (scene.style.trail_s == 0.0) return 0.0;
     constexpr double kPerPoint = 2.0 * sizeof(Vec2);  // a vector that grows has as much again
@@ -131,7 +132,7 @@ double trail_bytes(const Scene& scene) {
     return kPerPoint * points + kPerPointInPicture * std::min({in_trail, points, kMaxPoints});
 }
 
-/// Adds one body to what all ask for together. Returns whether that is within the limits.
+/// Adds one body to the total size. Returns true if that is within the limits.
 bool add_size(const TableReader& body, const BodySize& size, double bytes, bool has_trail,
               std::string_view fewer_bars, Demand& all) {
     all.particles += size.particles;
@@ -168,7 +169,7 @@ void fail_in_body(const Sections& sections, std::size_t i, const std::vector<con
     body.add_problem(problem);
 }
 
-/// A reason for which a body's motion takes short steps.
+/// A reason for short steps in the motion of a body.
 struct Pace {
     double frequency_1_s = 0.0;  ///< angular, of the motion to be followed
     std::string_view what;       ///< of the body, before "so fast that"
@@ -177,7 +178,7 @@ struct Pace {
     const char* key_of_world = nullptr;
 };
 
-/// Of a body, in the order in which they are told.
+/// The reasons of a body, in the order in which messages name them.
 std::vector<Pace> paces_of(const Scene& scene, const System& system, const Body& body,
                            const SolverDef& solver, bool is_moved_by_rounding = false) {
     // The steps of rattle on a chain follow from the weights alone.

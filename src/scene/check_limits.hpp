@@ -8,14 +8,15 @@
 
 namespace corda::scene {
 
-/// What the bodies of a scene ask for.
+/// Size of the bodies of a scene.
 struct SceneSize {
     std::vector<std::optional<BodySize>> bodies;  ///< ropes, then nets; empty if not known
     bool has_bars = false;                        ///< whether the bars of all bodies are known
     bool fits = true;                             ///< whether there is memory for them
 };
 
-/// Counts without making anything. Too many particles or bars of all bodies together are a problem.
+/// Counts particles and bars without making any. Too many particles or bars of all bodies together are a
+/// problem.
 [[nodiscard]] SceneSize count_bodies(const Sections& sections, const SolverSection& solver,
                                      const Scene& scene);
 

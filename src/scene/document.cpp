@@ -34,8 +34,8 @@ std::size_t skip_string(std::string_view text, std::size_t begin) {
     return text.size();
 }
 
-/// A text for the parser, which tells `on_progress` at every block of it. The parser makes any exception its
-/// own error, so a request to stop ends the text, and is thrown by check().
+/// Text for the parser that calls `on_progress` at every block. The parser turns any exception into an error
+/// of its own, so a request to stop ends the text, and check() throws it.
 class AskingBuffer : public std::streambuf {
   public:
     AskingBuffer(std::string_view text, const OnProgress& on_progress)
@@ -125,7 +125,7 @@ toml::table parse_document(std::string_view text, const std::string& source_name
         const std::size_t line_end = text.substr(0, deep).rfind('\n');
         const std::size_t column = line_end == std::string_view::npos ? deep + 1 : deep - line_end;
         throw Error(ExitCode::kInvalidScene,
-                    fmt::format("{}:{}:{}: a key of more than {} parts; no key of a scene has that many",
+                    fmt::format("{}:{}:{}: a key of more than {} parts; give a key of the scene format",
                                 source_name, line, column, kKeyParts));
     }
     AskingBuffer buffer(text, on_progress);

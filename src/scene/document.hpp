@@ -6,6 +6,9 @@
 #include <string_view>
 
 #include "corda/core/basics.hpp"
+#include "corda/scene/problems.hpp"
+#include "corda/scene/scene.hpp"
+#include "corda/scene/schema.hpp"
 
 namespace corda::scene {
 
@@ -20,5 +23,17 @@ inline constexpr int kKeyParts = 32;
 
 /// A dotted key of too many parts, as an offset into the TOML text; npos if there is none.
 [[nodiscard]] std::size_t find_deep_key(std::string_view text);
+
+/// Puts `setting` into the document, making missing tables on its way. What it puts there has the setting
+/// itself as its source, so that messages about it name the setting. One that does not fit the document is a
+/// problem. Throws corda::Error (kUsage) if it is not key=value.
+void apply_setting(toml::table& document, const Setting& setting, Problems& problems);
+
+/// Checks a document against the schema: unknown and missing keys, types, ranges and keys of other methods.
+/// Bad values are taken out of the document, so that their defaults stand in for them.
+void check_document(toml::table& document, Problems& problems);
+
+/// Checks one value of a key, as TOML, against the schema.
+void check_value(const Key& key, const std::string& toml, const std::string& path, Problems& problems);
 
 }  // namespace corda::scene

@@ -5,49 +5,36 @@
 #include <optional>
 #include <utility>
 
+#include "corda/scene/field.hpp"
 #include "corda/scene/readers.hpp"
 #include "corda/sim/distance.hpp"
 
 namespace corda::scene {
 namespace {
 
-/// A net of particles in rows, particle row * columns + column; row 0 on top.
-struct Grid {
-    std::int64_t columns = 0;
-    std::int64_t rows = 0;
-    bool has_diagonals = kDefaultDiagonals;
-
-    [[nodiscard]] std::int64_t particles() const { return columns * rows; }
-    [[nodiscard]] std::int64_t bars() const {
-        const std::int64_t sides = (columns - 1) * rows + columns * (rows - 1);
-        return sides + (has_diagonals ? 2 * (columns - 1) * (rows - 1) : 0);
-    }
-};
-
-/// Empty if its size is not known.
-std::optional<Grid> read_grid(const TableReader& table) {
-    Grid grid;
-    table.read("columns", grid.columns);
-    table.read("rows", grid.rows);
-    table.read("diagonals", grid.has_diagonals);
-    if (grid.particles() == 1) table.add_problem("1 particle is no net; give more columns or rows");
-    return grid.particles() < 2 ? std::nullopt : std::optional(grid);
+std::int64_t grid_particles(const GridDef& grid) {
+    return std::int64_t{grid.columns} * grid.rows;
 }
 
-void add_grid_points(const TableReader& table, const Grid& grid, NetDef& def) {
-    const auto value = table.find("spacing");
-    if (!value) return;
-    const auto spacing =
-        value->is_list() ? value->as<Vec2>() : Vec2{value->as<double>(), value->as<double>()};
-    table.read("from", def.origin_m);
-    def.points_m.reserve(static_cast<std::size_t>(grid.particles()));
-    for (std::int64_t row = 0; row < grid.rows; ++row) {
-        for (std::int64_t column = 0; column < grid.columns; ++column) {
-            // 0 - and not -: no zero has a sign.
-            def.points_m.push_back(
-                {static_cast<double>(column) * spacing.x, 0.0 - static_cast<double>(row) * spacing.y});
-        }
-    }
+std::int64_t grid_bars(const GridDef& grid) {
+    const std::int64_t columns = grid.columns;
+    const std::int64_t rows = grid.rows;
+    const std::int64_t sides = (columns - 1) * rows + columns * (rows - 1);
+    return sides + (grid.has_diagonals ? 2 * (columns - 1) * (rows - 1) : 0);
+}
+
+/// Empty if its size is not known.
+std::optional<GridDef> read_grid(const TableReader& table) {
+    GridDef grid;
+    read_fields(table, grid);
+    if (grid_particles(grid) == 1) table.add_problem("1 particle is no net; give more columns or rows");
+    return grid_particles(grid) < 2 ? std::nullopt : std::optional(grid);
+}
+
+void read_grid_points(const TableReader& table, const GridDef& grid, NetDef& def, ShapeDef& shape) {
+    if (!table.has("spacing")) return;
+    place(grid, def);
+    shape = grid;
     const Vec2 last = def.origin_m + def.points_m.back();
     if (std::max(std::abs(last.x), std::abs(last.y)) > Limits::kCoordinateMetres) {
         table.add_problem(
@@ -56,27 +43,8 @@ void add_grid_points(const TableReader& table, const Grid& grid, NetDef& def) {
     }
 }
 
-/// Bars along the rows, then along the columns, then both diagonals of each cell.
-void add_grid_bars(const Grid& grid, std::vector<NetBar>& bars) {
-    const auto columns = static_cast<std::uint32_t>(grid.columns);
-    const auto rows = static_cast<std::uint32_t>(grid.rows);
-    const auto add = [&](std::uint32_t last_row, std::uint32_t last_column, auto&& add_at) {
-        for (std::uint32_t row = 0; row < last_row; ++row) {
-            for (std::uint32_t column = 0; column < last_column; ++column) add_at(row * columns + column);
-        }
-    };
-    bars.reserve(static_cast<std::size_t>(grid.bars()));
-    add(rows, columns - 1, [&](std::uint32_t i) { bars.push_back({i, i + 1}); });
-    add(rows - 1, columns, [&](std::uint32_t i) { bars.push_back({i, i + columns}); });
-    if (!grid.has_diagonals) return;
-    add(rows - 1, columns - 1, [&](std::uint32_t i) {
-        bars.push_back({i, i + columns + 1, false});
-        bars.push_back({i + 1, i + columns, false});
-    });
-}
-
-std::optional<std::uint32_t> read_grid_pin(const Value& entry, const Grid& grid) {
-    if (!entry.is_list()) return read_index(entry, grid.particles(), "the net has particles");
+std::optional<std::uint32_t> read_grid_pin(const Value& entry, const GridDef& grid) {
+    if (!entry.is_list()) return read_index(entry, grid_particles(grid), "the net has particles");
     const auto column = read_index(entry.at(0), grid.columns, "the grid has columns");
     const auto row = read_index(entry.at(1), grid.rows, "the grid has rows");
     if (!column || !row) return std::nullopt;
@@ -90,11 +58,11 @@ std::optional<std::uint32_t> read_point_pin(const Value& entry, std::int64_t par
 }
 
 /// By default the two upper corners.
-void read_grid_pins(const TableReader& net, const Grid& grid, std::vector<std::uint32_t>& pinned) {
+void read_grid_pins(const TableReader& net, const GridDef& grid, std::vector<std::uint32_t>& pinned) {
     pinned = {0};
     if (grid.columns > 1) pinned.push_back(static_cast<std::uint32_t>(grid.columns - 1));
     if (const auto value = net.find("pinned"))
-        pinned = read_pinned(*value, grid.particles(),
+        pinned = read_pinned(*value, grid_particles(grid),
                              [&](const Value& entry) { return read_grid_pin(entry, grid); });
 }
 
@@ -168,12 +136,12 @@ std::optional<BodySize> read_net_size(const TableReader& net) {
     if (points && bars)
         return BodySize{static_cast<std::int64_t>(points->size()), static_cast<std::int64_t>(bars->size())};
     const auto grid = read_grid(net.table("grid"));
-    return grid ? std::optional(BodySize{grid->particles(), grid->bars()}) : std::nullopt;
+    return grid ? std::optional(BodySize{grid_particles(*grid), grid_bars(*grid)}) : std::nullopt;
 }
 
-NetDef read_net(const TableReader& net, const std::optional<BodySize>& size) {
+NetDef read_net(const TableReader& net, const std::optional<BodySize>& size, ShapeDef& shape) {
     NetDef def;
-    def.material = read_material(net);
+    read_fields(net, def);
     if (def.material.is_string && def.material.compliance_1_n == 0.0 && net.is_sound("compliance")) {
         net.find("string")->add_problem(
             "a net can only hang slack if it stretches; give a compliance, or remove string");
@@ -185,8 +153,7 @@ NetDef read_net(const TableReader& net, const std::optional<BodySize>& size) {
     if (net.has("grid")) {
         const TableReader table = net.table("grid");
         const auto grid = read_grid(table);
-        add_grid_points(table, *grid, def);
-        add_grid_bars(*grid, def.bars);
+        read_grid_points(table, *grid, def, shape);
         read_grid_pins(net, *grid, def.pinned);
     } else {
         read_points(net, def.origin_m, def.points_m);
@@ -197,3 +164,37 @@ NetDef read_net(const TableReader& net, const std::optional<BodySize>& size) {
 }
 
 }  // namespace corda::scene
+
+namespace corda {
+
+void place(const GridDef& grid, NetDef& net) {
+    net.origin_m = grid.from_m;
+    net.points_m.clear();
+    net.points_m.reserve(static_cast<std::size_t>(scene::grid_particles(grid)));
+    for (int row = 0; row < grid.rows; ++row) {
+        for (int column = 0; column < grid.columns; ++column) {
+            // 0 - and not -: no zero has a sign.
+            net.points_m.push_back({static_cast<double>(column) * grid.spacing_m.x,
+                                    0.0 - static_cast<double>(row) * grid.spacing_m.y});
+        }
+    }
+    net.bars.clear();
+    net.bars.reserve(static_cast<std::size_t>(scene::grid_bars(grid)));
+    const auto columns = static_cast<std::uint32_t>(grid.columns);
+    const auto rows = static_cast<std::uint32_t>(grid.rows);
+    const auto add = [&](std::uint32_t last_row, std::uint32_t last_column, auto&& add_at) {
+        for (std::uint32_t row = 0; row < last_row; ++row) {
+            for (std::uint32_t column = 0; column < last_column; ++column) add_at(row * columns + column);
+        }
+    };
+    // Bars along the rows, then along the columns, then both diagonals of each cell.
+    add(rows, columns - 1, [&](std::uint32_t i) { net.bars.push_back({i, i + 1}); });
+    add(rows - 1, columns, [&](std::uint32_t i) { net.bars.push_back({i, i + columns}); });
+    if (!grid.has_diagonals) return;
+    add(rows - 1, columns - 1, [&](std::uint32_t i) {
+        net.bars.push_back({i, i + columns + 1, false});
+        net.bars.push_back({i + 1, i + columns, false});
+    });
+}
+
+}  // namespace corda

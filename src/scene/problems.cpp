@@ -61,10 +61,10 @@ void Problems::add(const toml::source_region& region, std::string_view key, std:
     }
     const bool is_setting = region.path && region.path != document_path_;
     const toml::source_position begin = region.begin ? region.begin : toml::source_position{1, 1};
-    const std::string place =
-        is_setting ? *region.path : fmt::format("{}:{}:{}", source_name_, begin.line, begin.column);
-    problems_.push_back(
-        {is_setting, begin.line, begin.column, fmt::format("{}: {}: {}", place, key, problem)});
+    std::string place = is_setting ? *region.path : source_name_;
+    if (!is_setting && has_places_) place += fmt::format(":{}:{}", begin.line, begin.column);
+    if (!place.empty()) place += ": ";
+    problems_.push_back({is_setting, begin.line, begin.column, fmt::format("{}{}: {}", place, key, problem)});
 }
 
 void Problems::add(const std::string& message) {

@@ -14,15 +14,17 @@ namespace corda::scene {
 /// bytes.
 [[nodiscard]] std::string excerpt(std::string_view text, std::size_t longest = 60);
 
-/// What a node is, with its value if that is short: `"abc" is a string`, `this is a table`.
+/// Description of a node, with its value if that is short: `"abc" is a string`, `this is a table`.
 [[nodiscard]] std::string described(const toml::node& node);
 
 /// The value of an integer or a number, rounded to the nearest double. Requires one of them.
 [[nodiscard]] double number_of(const toml::node& node);
 
-/// What is wrong with a scene, collected over the whole file.
+/// The problems of a scene, collected over the whole file.
 class Problems {
   public:
+    /// For definitions, which have no place in a file: messages begin with `source_name`, if there is one.
+    explicit Problems(std::string source_name) : source_name_(std::move(source_name)), has_places_(false) {}
     /// `document` is what `toml::parse` returned for the text named `source_name`.
     Problems(std::string source_name, const toml::table& document)
         : source_name_(std::move(source_name)), document_path_(document.source().path) {}
@@ -34,11 +36,11 @@ class Problems {
     /// Adds a problem whose message is complete.
     void add(const std::string& message);
 
-    /// A key that was meant by a misspelt one, about which there is a problem already.
+    /// Marks the key that a misspelt one stands for; the misspelt one has a problem already.
     void add_misspelt(std::string_view key) { unsound_.emplace(key); }
 
-    /// Whether neither `key` nor anything in it has a problem. What contradicts an unsound value only repeats
-    /// its problem.
+    /// True if neither `key` nor anything in it has a problem. A contradiction with an unsound value would
+    /// only repeat its problem.
     [[nodiscard]] bool is_sound(std::string_view key) const { return !unsound_.contains(key); }
 
     [[nodiscard]] bool empty() const { return problems_.empty(); }
@@ -58,6 +60,7 @@ class Problems {
     };
 
     std::string source_name_;
+    bool has_places_ = true;
     toml::source_path_ptr document_path_;
     std::vector<Problem> problems_;
     std::size_t not_kept_ = 0;

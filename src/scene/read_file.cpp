@@ -10,7 +10,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
-#include "corda/scene/limits.hpp"
+#include "corda/scene/schema.hpp"
 
 namespace corda::scene {
 namespace {

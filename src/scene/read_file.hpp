@@ -9,10 +9,10 @@ namespace corda::scene {
 /// reason, kInvalidScene if they are over Limits::kFileBytes.
 [[nodiscard]] std::string read_file(const std::string& path);
 
-/// What messages call a file that is read from `path`.
+/// Name of the file at `path` in messages.
 [[nodiscard]] std::string source_name(const std::string& path);
 
-/// Throws corda::Error (kInvalidScene) if a scene of so many bytes is over Limits::kFileBytes.
+/// Throws corda::Error (kInvalidScene) if `bytes` is more than Limits::kFileBytes.
 void check_file_bytes(const std::string& source_name, std::size_t bytes);
 
 }  // namespace corda::scene

@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
-#include "corda/scene/limits.hpp"
 #include "corda/scene/scene.hpp"
 #include "corda/scene/table_reader.hpp"
 
@@ -20,11 +20,18 @@ inline constexpr double kMinBarMetres = 1e-12;
 // Defaults that no Def holds.
 inline constexpr double kDefaultMassKg = 1.0;
 inline constexpr int kDefaultReach = 7;  ///< the source report's
-inline constexpr bool kDefaultDiagonals = true;
 
 /// The names of the alternatives of SolverDef, in its order.
 inline constexpr std::array<std::string_view, std::variant_size_v<SolverDef>> kMethodNames{
     AutoDef::kName, ExactDef::kName, RattleDef::kName, RelaxationDef::kName};
+
+/// The keys of [solver], or of a table of [[solver.bodies]], in addition to those of its method.
+struct SolverTable {
+    std::string method{AutoDef::kName};
+    std::vector<int> reach;  ///< of its ropes: one value if all are the same; empty: not given
+    std::vector<std::uint32_t> ropes;
+    std::vector<std::uint32_t> nets;
+};
 
 /// The tables of a scene file.
 struct Sections {
@@ -39,7 +46,7 @@ struct Sections {
     std::vector<TableReader> nets;
 };
 
-/// A method, and the bodies that it moves: the table [solver], or one of [[solver.bodies]].
+/// A method and the bodies that it moves: the table [solver], or one of [[solver.bodies]].
 struct SolverGroup {
     TableReader table;
     SolverDef def;
@@ -54,23 +61,25 @@ struct SolverSection {
     [[nodiscard]] const SolverGroup& group_of(std::size_t body) const { return groups[group_of_body[body]]; }
 };
 
-/// The solver that runs a named method.
-[[nodiscard]] SolverDef solver_of(const MethodDef& method);
-
-[[nodiscard]] WorldDef read_world(const TableReader& world);
 /// Sets `scene.solver` and `scene.body_solvers` too.
 [[nodiscard]] SolverSection read_solver(const Sections& sections, Scene& scene);
-[[nodiscard]] VideoDef read_video(const TableReader& video);
-[[nodiscard]] StyleDef read_style(const TableReader& style);
-[[nodiscard]] OverlayDef read_overlay(const TableReader& overlay);
-[[nodiscard]] CameraDef read_camera(const TableReader& camera);
-/// Refuses times after world.duration, and such as do not increase.
-[[nodiscard]] GoldenDef read_golden(const Sections& sections);
 [[nodiscard]] BodyStyleDef read_body_style(const TableReader& body, bool takes_link_colors);
-/// Adds a problem if colours tell what a named method does not know.
+/// Adds a problem if colours show a quantity that a named method does not compute.
 void check_color_by(const Sections& sections, const SolverSection& solver, const StyleDef& style);
 
-/// How many particles and bars a body asks for.
+/// A problem of several values together.
+struct DefProblem {
+    std::string_view key;
+    std::optional<std::size_t> entry;  ///< of the key's list
+    std::string problem;
+};
+
+[[nodiscard]] std::vector<DefProblem> problems_of(const VideoDef& video);
+[[nodiscard]] std::vector<DefProblem> problems_of(const OverlayDef& overlay);
+/// Golden times that do not increase, and pictures that are too large.
+[[nodiscard]] std::vector<DefProblem> problems_of(const GoldenDef& golden);
+
+/// The number of particles and bars of a body.
 struct BodySize {
     std::int64_t particles = 0;
     std::int64_t bars = 0;
@@ -80,24 +89,21 @@ struct BodySize {
 /// as a rope of two shapes, leaves it unknown.
 [[nodiscard]] std::optional<BodySize> read_rope_size(const TableReader& rope, int reach);
 
-/// A rope whose size `read_rope_size` has found. If the size is not known, the particles are left out.
-[[nodiscard]] RopeDef read_rope(const TableReader& rope, const std::optional<BodySize>& size, int reach);
-
-/// The positions of a rope's particles, into `origin_m` and `points_m`; `closed` and `reach` are set. Returns
-/// whether it has them.
-bool read_rope_shape(const TableReader& rope, std::int64_t particles, RopeDef& def);
+/// A rope whose size `read_rope_size` has found, and its shape. If the size is not known, the particles are
+/// left out.
+[[nodiscard]] RopeDef read_rope(const TableReader& rope, const std::optional<BodySize>& size, int reach,
+                                ShapeDef& shape);
 
 /// The size of a net, as `read_rope_size`.
 [[nodiscard]] std::optional<BodySize> read_net_size(const TableReader& net);
 
 /// A net, as `read_rope`: no bar has the length 0, none is there twice.
-[[nodiscard]] NetDef read_net(const TableReader& net, const std::optional<BodySize>& size);
+[[nodiscard]] NetDef read_net(const TableReader& net, const std::optional<BodySize>& size, ShapeDef& shape);
 
 // What ropes and nets have in common.
 
 [[nodiscard]] std::vector<double> read_mass(const TableReader& body, std::int64_t particles);
 [[nodiscard]] std::vector<Vec2> read_velocity(const TableReader& body, std::int64_t particles);
-[[nodiscard]] MaterialDef read_material(const TableReader& body);
 /// The points of a body that has them, relative to `origin_m`: the key `origin`, or the first point. Adds a
 /// problem if one is beyond the limit.
 void read_points(const TableReader& body, Vec2& origin_m, std::vector<Vec2>& points_m);

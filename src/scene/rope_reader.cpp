@@ -1,13 +1,133 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
+#include "corda/core/direction.hpp"
+#include "corda/scene/field.hpp"
 #include "corda/scene/readers.hpp"
 #include "corda/sim/distance.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::scene {
 namespace {
+
+constexpr std::array<std::string_view, 3> kShapes{"line", "hang", "points"};
+
+double distance_m(Vec2 a, Vec2 b) {
+    return sim::length(b.x - a.x, b.y - a.y);
+}
+
+/// A straight rope lies inside the limits if both of its ends do.
+bool check_last_point(const TableReader& shape, const RopeDef& def) {
+    const Vec2 last = def.origin_m + def.points_m.back();
+    if (std::max(std::abs(last.x), std::abs(last.y)) <= Limits::kCoordinateMetres) return true;
+    shape.add_problem(
+        fmt::format("the last particle is at [{}, {}], beyond the limit of {:g} m; make the rope shorter",
+                    last.x, last.y, Limits::kCoordinateMetres));
+    return false;
+}
+
+bool read_line(const TableReader& table, RopeDef& def, ShapeDef& shape) {
+    LineDef line;
+    read_fields(table, line);
+    const auto step = table.find("step");
+    if (!step) return false;
+    if (distance_m({}, line.step_m) < kMinBarMetres) {
+        step->add_problem(fmt::format("[{}, {}] is no distance; give a step of at least {} m", line.step_m.x,
+                                      line.step_m.y, number_text(kMinBarMetres)));
+        return false;
+    }
+    place(line, def);
+    shape = line;
+    return check_last_point(table, def);
+}
+
+bool read_hang(const TableReader& table, RopeDef& def, ShapeDef& shape) {
+    HangDef hang;
+    read_fields(table, hang);
+    const auto length = table.find("length");
+    if (!length) return false;
+    if (hang.length_m / hang.links < kMinBarMetres) {
+        length->add_problem(fmt::format("{} m are less than {} m per link; make the rope longer",
+                                        hang.length_m, number_text(kMinBarMetres)));
+        return false;
+    }
+    place(hang, def);
+    shape = hang;
+    return check_last_point(table, def);
+}
+
+/// Message for a bar without length between points `first` < `last`, `stride` links apart.
+std::string short_bar_problem(std::size_t first, std::size_t last, std::size_t stride, bool closes,
+                              int reach) {
+    const std::string coincide = fmt::format("points {} and {} coincide", first, last);
+    if (stride > 1) {
+        return fmt::format(
+            "{}, and the solver's reach = {} ties them by a bar, which has no direction; move one, or give "
+            "a reach below {}",
+            coincide, reach, stride);
+    }
+    return coincide + (closes ? "; leave this one out, because closed = true ties the last point to the first"
+                              : ", and a link without length has no direction; move one");
+}
+
+/// Returns true if no bar has the length 0; otherwise the first of them is a problem. A link that hangs slack
+/// may have its ends at one place (`has_rest_lengths`).
+bool check_short_bars(const Value& points, const RopeDef& def, bool has_rest_lengths) {
+    const std::size_t count = def.points_m.size();
+    const std::size_t longest =
+        std::min(static_cast<std::size_t>(def.reach), def.closed ? count / 2 : count - 1);
+    for (std::size_t k = has_rest_lengths && def.material.is_string ? 2 : 1; k <= longest; ++k) {
+        for (std::size_t a = 0; a < (def.closed ? count : count - k); ++a) {
+            const std::size_t b = (a + k) % count;
+            if (distance_m(def.points_m[a], def.points_m[b]) >= kMinBarMetres) continue;
+            const auto [first, last] = std::minmax(a, b);
+            points.at(last).add_problem(short_bar_problem(first, last, k, b < a, def.reach));
+            return false;
+        }
+    }
+    return true;
+}
+
+bool has_one_shape(const TableReader& rope) {
+    std::vector<std::string_view> given;
+    std::copy_if(kShapes.begin(), kShapes.end(), std::back_inserter(given),
+                 [&](std::string_view shape) { return rope.is_given(shape); });
+    if (given.empty())
+        rope.add_problem(fmt::format("the rope has no shape; give one of: {}", fmt::join(kShapes, ", ")));
+    const auto here =
+        std::count_if(given.begin(), given.end(), [&](std::string_view shape) { return rope.has(shape); });
+    if (here > 1)  // a misspelt key has a problem already
+        rope.add_problem(fmt::format("the rope has {} shapes ({}); keep one of them", given.size(),
+                                     fmt::join(given, ", ")));
+    return given.size() == 1;
+}
+
+/// The number of particles; 0 if it is unknown.
+std::int64_t read_particle_count(const TableReader& rope) {
+    std::int64_t particles = 0;
+    rope.table("line").read("particles", particles);
+    if (particles > 0) return particles;
+    std::int64_t links = 0;
+    rope.table("hang").read("links", links);
+    if (links > 0) return links + 1;
+    const auto points = rope.find("points");
+    return points ? static_cast<std::int64_t>(points->size()) : 0;
+}
+
+bool read_closed(const TableReader& rope, std::int64_t particles) {
+    bool closed = false;
+    rope.read("closed", closed);
+    if (!closed) return false;
+    const auto fail = [&](std::string_view problem) { rope.find("closed")->add_problem(problem); };
+    if (!rope.has("points"))
+        fail("the closing link of a straight rope would lie on its others; give points, or remove it");
+    if (particles < 3) fail("2 points close to no ring; give at least 3, or remove it");
+    return particles >= 3;
+}
 
 /// A string's link may be shorter than the distance that it spans by this share of it: lengths are written
 /// with fewer digits than distances have.
@@ -65,15 +185,30 @@ void read_link_lengths(const TableReader& rope, RopeDef& def) {
     }
 }
 
+/// The positions of a rope's particles; `closed` and `reach` are set. Returns whether it has them.
+bool read_rope_shape(const TableReader& rope, RopeDef& def, ShapeDef& shape) {
+    refuse_origin(rope);
+    if (rope.has("line")) return read_line(rope.table("line"), def, shape);
+    if (rope.has("hang")) return read_hang(rope.table("hang"), def, shape);
+    read_points(rope, def.origin_m, def.points_m);
+    return check_short_bars(*rope.find("points"), def, rope.is_given("link_length"));
+}
+
 }  // namespace
 
-RopeDef read_rope(const TableReader& rope, const std::optional<BodySize>& size, int reach) {
+std::optional<BodySize> read_rope_size(const TableReader& rope, int reach) {
+    const std::int64_t particles = has_one_shape(rope) ? read_particle_count(rope) : 0;
+    if (particles == 0) return std::nullopt;
+    const bool closed = read_closed(rope, particles);
+    const std::uint64_t bars =
+        bar_count(static_cast<std::uint64_t>(particles), static_cast<std::uint64_t>(reach), closed);
+    return BodySize{particles, static_cast<std::int64_t>(bars)};
+}
+
+RopeDef read_rope(const TableReader& rope, const std::optional<BodySize>& size, int reach, ShapeDef& shape) {
     RopeDef def;
     def.reach = reach;
-    if (rope.is_sound("closed")) rope.read("closed", def.closed);
-    rope.read("payload", def.payload_kg);
-    rope.read("bending", def.bending_n_m2);
-    def.material = read_material(rope);
+    read_fields(rope, def);
     refuse_contradictions(rope, def);
     if (!size) return def;
     def.mass_kg = read_mass(rope, size->particles);
@@ -83,8 +218,32 @@ RopeDef read_rope(const TableReader& rope, const std::optional<BodySize>& size, 
             return read_index(entry, size->particles, "the rope has particles");
         });
     }
-    if (read_rope_shape(rope, size->particles, def)) read_link_lengths(rope, def);
+    if (read_rope_shape(rope, def, shape)) read_link_lengths(rope, def);
     return def;
 }
 
 }  // namespace corda::scene
+
+namespace corda {
+
+void place(const LineDef& line, RopeDef& rope) {
+    rope.origin_m = line.from_m;
+    rope.points_m.clear();
+    rope.points_m.reserve(static_cast<std::size_t>(line.particles));
+    for (int i = 0; i < line.particles; ++i)
+        rope.points_m.push_back(Vec2{} + static_cast<double>(i) * line.step_m);  // 0 + turns -0 into 0
+}
+
+void place(const HangDef& hang, RopeDef& rope) {
+    const Direction direction = direction_of(hang.angle_deg);
+    rope.origin_m = hang.from_m;
+    rope.points_m.clear();
+    rope.points_m.reserve(static_cast<std::size_t>(hang.links) + 1);
+    for (int i = 0; i <= hang.links; ++i) {
+        const double along_m = static_cast<double>(i) * hang.length_m / static_cast<double>(hang.links);
+        // 0 + and 0 - give the zeros of a straight rope one sign.
+        rope.points_m.push_back({0.0 + along_m * direction.sine, 0.0 - along_m * direction.cosine});
+    }
+}
+
+}  // namespace corda

@@ -6,11 +6,10 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/scene/check_limits.hpp"
-#include "corda/scene/checker.hpp"
 #include "corda/scene/document.hpp"
+#include "corda/scene/field.hpp"
 #include "corda/scene/read_file.hpp"
 #include "corda/scene/readers.hpp"
-#include "corda/scene/settings.hpp"
 
 namespace corda {
 
@@ -25,18 +24,35 @@ Sections sections_of(const toml::table& document, Problems& problems) {
             root.table("golden"), root.tables("rope"),   root.tables("net")};
 }
 
+/// Reads a table whose keys are all that there is to its definition.
+template <class Def>
+void read_section(const TableReader& table, Def& def) {
+    read_fields(table, def);
+    for (const DefProblem& problem : problems_of(def)) {
+        const auto value = table.find(problem.key);
+        if (!value) continue;
+        if (problem.entry)
+            value->at(*problem.entry).add_problem(problem.problem);
+        else
+            value->add_problem(problem.problem);
+    }
+}
+
 /// Ropes and nets, with their styles.
 void read_bodies(const Sections& sections, const SceneSize& size, const SolverSection& solver, Scene& scene) {
     // One problem with style.color_by is enough.
     const bool takes_link_colors =
         scene.style.color_by == ColorBy::kLink || !sections.style.is_sound("color_by");
+    scene.shapes.resize(sections.ropes.size() + sections.nets.size());
     for (const TableReader& rope : sections.ropes) {
         const std::size_t body = scene.ropes.size();
-        scene.ropes.push_back(read_rope(rope, size.bodies[body], solver.group_of(body).reach));
+        scene.ropes.push_back(
+            read_rope(rope, size.bodies[body], solver.group_of(body).reach, scene.shapes[body]));
         scene.body_styles.push_back(read_body_style(rope, takes_link_colors));
     }
     for (const TableReader& net : sections.nets) {
-        scene.nets.push_back(read_net(net, size.bodies[scene.body_styles.size()]));
+        const std::size_t body = scene.body_styles.size();
+        scene.nets.push_back(read_net(net, size.bodies[body], scene.shapes[body]));
         scene.body_styles.push_back(read_body_style(net, takes_link_colors));
     }
 }
@@ -61,13 +77,13 @@ Scene parse_scene(std::string_view toml, const std::string& source_name, const s
     Scene scene;
     scene.name = std::filesystem::path(source_name).stem().string();
     scene.source = source_name;
-    scene.world = read_world(sections.world);
+    read_fields(sections.world, scene.world);
     const SolverSection solver = read_solver(sections, scene);
-    scene.video = read_video(sections.video);
-    scene.style = read_style(sections.style);
-    scene.overlay = read_overlay(sections.overlay);
-    scene.camera = read_camera(sections.camera);
-    if (document.contains("golden")) scene.golden = read_golden(sections);
+    read_section(sections.video, scene.video);
+    read_fields(sections.style, scene.style);
+    read_section(sections.overlay, scene.overlay);
+    read_fields(sections.camera, scene.camera);
+    if (document.contains("golden")) read_section(sections.golden, scene.golden.emplace());
     const SceneSize size = count_bodies(sections, solver, scene);
     check_work(sections, solver, size, scene);
     check_color_by(sections, solver, scene.style);
@@ -82,6 +98,10 @@ Scene parse_scene(std::string_view toml, const std::string& source_name, const s
 
 std::string_view solver_name(const SolverDef& solver) {
     return kMethodNames[solver.index()];
+}
+
+SolverDef solver_of(const MethodDef& method) {
+    return std::visit([](const auto& def) { return SolverDef(def); }, method);
 }
 
 System system_of(const Scene& scene) {

@@ -22,10 +22,10 @@ struct AutoDef {
     double tolerance_px = 0.1;  ///< bound of the displayed position error in pixels; > 0
 };
 
-/// How a scene is solved: by a method, or by the one that `auto` finds.
+/// The solver of a scene: a method, or `auto`, which chooses one.
 using SolverDef = std::variant<AutoDef, ExactDef, RattleDef, RelaxationDef>;
 
-/// Bodies that a method of their own moves.
+/// Bodies with a method of their own.
 struct BodySolverDef {
     std::vector<std::uint32_t> ropes;  ///< indices of Scene::ropes; every body at most once in a scene
     std::vector<std::uint32_t> nets;   ///< indices of Scene::nets; at least one rope or net
@@ -35,7 +35,10 @@ struct BodySolverDef {
 /// The name a scene file uses for it.
 [[nodiscard]] std::string_view solver_name(const SolverDef& solver);
 
-/// What makes a scene a golden test: which pictures are kept, and how far new ones may be from them.
+/// The solver that runs a method.
+[[nodiscard]] SolverDef solver_of(const MethodDef& method);
+
+/// The golden pictures of a scene and the tolerances of the comparison.
 struct GoldenDef {
     std::vector<double> at_s;  ///< times in seconds, increasing, at least one; 0 .. world.duration_s
     int width_px = 320;        ///< see is_picture_size()
@@ -45,14 +48,58 @@ struct GoldenDef {
     std::optional<double> share;  ///< share of the pixels that differ at all, 0 .. 1
 };
 
-/// A whole scene file, validated: the Defs of the modules that it speaks to.
+// Shapes of bodies in a scene file. Written scenes and reported changes use them instead of points.
+
+/// A straight rope: key `line`.
+struct LineDef {
+    int particles = 0;  ///< at least 2
+    Vec2 from_m;        ///< the first particle
+    Vec2 step_m;        ///< from one particle to the next
+
+    friend bool operator==(const LineDef&, const LineDef&) = default;
+};
+
+/// A straight rope at an angle: key `hang`.
+struct HangDef {
+    int links = 0;  ///< at least 1
+    double length_m = 0.0;
+    double angle_deg = 0.0;  ///< from straight down, positive to +x
+    Vec2 from_m;             ///< the first particle
+
+    friend bool operator==(const HangDef&, const HangDef&) = default;
+};
+
+/// A net of rows, particle row * columns + column with row 0 on top: key `grid`.
+struct GridDef {
+    int columns = 0;
+    int rows = 0;  ///< columns * rows is at least 2
+    Vec2 from_m;   ///< the upper left particle
+    Vec2 spacing_m;
+    bool has_diagonals = true;  ///< imaginary bars, two per cell
+
+    friend bool operator==(const GridDef&, const GridDef&) = default;
+};
+
+using ShapeDef = std::variant<std::monostate, LineDef, HangDef, GridDef>;
+
+/// The particles of a straight rope, into `rope.origin_m` and `rope.points_m`. Requires a shape in its
+/// ranges.
+void place(const LineDef& line, RopeDef& rope);
+void place(const HangDef& hang, RopeDef& rope);
+/// The particles and the bars of a grid, into `net.origin_m`, `net.points_m` and `net.bars`.
+void place(const GridDef& grid, NetDef& net);
+
+/// A validated scene file, as definitions of the other modules.
 struct Scene {
     std::string name;    ///< the file's name without folder and ending
     std::string source;  ///< the file's path, as messages name it
     WorldDef world;
     std::vector<RopeDef> ropes;
     std::vector<NetDef> nets;
-    std::vector<BodyStyleDef> body_styles;    ///< one per body: ropes, then nets; may be shorter
+    std::vector<BodyStyleDef> body_styles;  ///< one per body: ropes, then nets; may be shorter
+    /// The shapes that the file gives, one per body as `body_styles`; may be shorter. Only for writing and
+    /// comparing scenes, and ignored if place() does not give the body's points.
+    std::vector<ShapeDef> shapes;
     SolverDef solver;                         ///< of the bodies that `body_solvers` does not name
     std::vector<BodySolverDef> body_solvers;  ///< empty: `solver` moves all
     StyleDef style;
@@ -84,6 +131,10 @@ using Setting = std::string;
 
 /// The particles and bars of a scene at t = 0: its ropes, then its nets.
 [[nodiscard]] System system_of(const Scene& scene);
+
+/// Checks definitions filled in by code against the types, ranges and words of the keys of a scene file.
+/// build_system() checks ropes and nets. Throws corda::Error (kInvalidScene), which names each bad key.
+void check_definitions(const Scene& scene);
 
 /// The solver of every body of a scene, in the order of System::bodies: ropes, then nets. Throws corda::Error
 /// (kInvalidScene) for `body_solvers` that are not what their declaration says.

@@ -1,157 +1,245 @@
 #include "corda/scene/schema.hpp"
 
-#include <nlohmann/json.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <cmath>
-#include <cstdint>
-#include <cstdlib>
-#include <string_view>
-#include <vector>
+#include <algorithm>
 
-#include "corda/scene/keys.hpp"
+#include "corda/scene/rows.hpp"
 
 namespace corda::scene {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-/// Of these keys a table has exactly one.
-struct Alternatives {
-    std::string_view section;
-    std::vector<std::string_view> keys;
-};
-std::vector<Alternatives> alternatives() {
-    return {{"rope", {"line", "hang", "points"}}, {"net", {"grid", "points"}}};
+std::vector<Key> root_keys() {
+    const Type table = of(Kind::kTable);
+    const Type tables = of(Kind::kTables);
+    return {
+        {"", "schema", one_of({"1"}, Kind::kInteger), "", required(), "the version of this list of keys"},
+        {"", "world", table, "", none(), "what acts on every body, and for how long"},
+        {"", "rope", tables, "", none(), "a chain of particles", "a scene has at least one rope or net"},
+        {"", "net", tables, "", none(), "particles and bars in any graph"},
+        {"", "solver", table, "", none(), "how the motion is computed"},
+        {"", "video", table, "", none(), "picture size, frame rate and encoder"},
+        {"", "style", table, "", none(), "how it looks"},
+        {"", "overlay", table, "", none(), "words, a scale bar and a plot beside the picture"},
+        {"", "camera", table, "", none(), "where the camera looks"},
+        {"", "golden", table, "", none(), "which pictures `corda golden` keeps and compares"},
+    };
 }
 
-Json number_json(double value) {
-    constexpr double kExact = 1e15;
-    if (value == std::floor(value) && std::abs(value) < kExact) return static_cast<std::int64_t>(value);
-    return value;
+/// The method that a definition belongs to; empty for others.
+std::string_view method_of(std::type_index def) {
+    if (def == typeid(AutoDef)) return AutoDef::kName;
+    if (def == typeid(ExactDef)) return ExactDef::kName;
+    if (def == typeid(RattleDef)) return RattleDef::kName;
+    return def == typeid(RelaxationDef) ? RelaxationDef::kName : "";
 }
 
-void add_range(const Range& range, Json& json) {
-    if (range.low != Range{}.low)
-        json[range.low_open ? "exclusiveMinimum" : "minimum"] = number_json(range.low);
-    if (range.high != Range{}.high)
-        json[range.high_open ? "exclusiveMaximum" : "maximum"] = number_json(range.high);
-}
-
-Json words_json(const Type& type) {
-    Json words = Json::array();
-    for (const std::string_view word : type.choices) {
-        if (type.kind == Kind::kInteger)
-            words.push_back(std::atoi(std::string(word).c_str()));
-        else
-            words.push_back(word);
+/// Derives the default and the methods from the fields.
+void complete(Key& key) {
+    Default& initial = key.binding.initial;
+    for (const Field& one : key.binding.fields) {
+        if (initial.toml.empty() && initial.words.empty() && !initial.required)
+            initial.toml = one.initial(key);
+        if (const std::string_view method = method_of(one.def); !method.empty())
+            key.methods.push_back(method);
     }
-    return words;
 }
 
-/// One value.
-Json value_json(const Type& type) {
-    Json json;
-    switch (type.kind) {
+constexpr std::string_view kColorWords =
+    R"(such as "tomato", "#e8c07d", "#e8c07d80" (with alpha) or "transparent")";
+
+std::string kind_text(Kind kind) {
+    switch (kind) {
         case Kind::kTable:
+            return "table";
         case Kind::kTables:
-            return json;
+            return "list of tables";
         case Kind::kBoolean:
-            return {{"type", "boolean"}};
+            return "true or false";
         case Kind::kInteger:
+            return "integer";
         case Kind::kNumber:
-            json["type"] = type.kind == Kind::kInteger ? "integer" : "number";
-            add_range(type.range, json);
-            break;
+            return "number";
         case Kind::kChoice:
-        case Kind::kText:
-            json["type"] = "string";
-            break;
+            return "text";
         case Kind::kColor:
-            return {{"type", "string"}, {"pattern", "^(#[0-9A-Fa-f]{6}([0-9A-Fa-f]{2})?|[A-Za-z]+)$"}};
-        case Kind::kFrameRate: {
-            Json number{{"type", "number"}};
-            add_range(type.range, number);
-            return {{"anyOf", {number, {{"type", "string"}, {"pattern", "^[0-9]+([./][0-9]+)?$"}}}}};
-        }
+            return "colour";
+        case Kind::kText:
+            return "text";
+        case Kind::kFrameRate:
+            return "number or fraction as text";
     }
-    if (!type.choices.empty()) json["enum"] = words_json(type);
-    return json;
+    return "";
 }
 
-/// One of the forms that a key takes.
-Json form_json(const Type& type, Form form) {
-    Json value = value_json(type);
-    Json pair{{"type", "array"}, {"items", value}, {"minItems", 2}, {"maxItems", 2}};
-    if (form == kOne) return value;
-    if (form == kPair) return pair;
-    return {{"type", "array"}, {"items", form == kList ? value : pair}, {"minItems", type.least_entries}};
+std::string entries_text(const Key& key) {
+    return key.type.min_entries == 0 ? "" : fmt::format("at least {}", key.type.min_entries);
 }
 
-std::string description(const Key& key) {
-    std::string text(key.meaning);
-    if (!key.unit.empty()) text += ", in " + std::string(key.unit);
-    if (!key.note.empty()) text += "; " + std::string(key.note);
-    if (!key.initial.words.empty()) text += "; default: " + std::string(key.initial.words);
-    for (std::size_t i = 0; i < key.methods.size(); ++i)
-        text += (i == 0 ? "; method " : " or ") + std::string(key.methods[i]);
-    return text;
+std::string numbers_text(const Range& range) {
+    const std::string low = fmt::format("{} {}", range.low_open ? ">" : ">=", number_text(range.low));
+    const std::string high = fmt::format("{} {}", range.high_open ? "<" : "<=", number_text(range.high));
+    const bool has_low = range.low != Range{}.low;
+    const bool has_high = range.high != Range{}.high;
+    if (has_low && has_high) {
+        const bool closed = !range.low_open && !range.high_open;
+        return closed ? fmt::format("{} .. {}", number_text(range.low), number_text(range.high))
+                      : fmt::format("{} and {}", low, high);
+    }
+    return has_low ? low : has_high ? high : "";
 }
 
-Json table_json(std::string_view section);
-
-Json key_json(const Key& key) {
-    const Json about{{"description", description(key)}};
-    Json json = about;
-    if (key.type.kind == Kind::kTable || key.type.kind == Kind::kTables) {
-        const Json table = table_json(dotted(key.section, key.name));
-        if (key.type.kind == Kind::kTable)
-            json.update(table);
-        else
-            json.update({{"type", "array"}, {"items", table}});
-        return json;
-    }
-    std::vector<Json> forms;
-    for (const Form form : {kOne, kPair, kList, kPairs})
-        if ((key.type.forms & form) != 0) forms.push_back(form_json(key.type, form));
-    if (forms.size() == 1)
-        json.update(forms.front());
-    else
-        json["anyOf"] = forms;
-    if (!key.initial.toml.empty()) {
-        // Values in TOML are values in JSON, but for rates and the like.
-        const Json initial = Json::parse(key.initial.toml, nullptr, false);
-        if (!initial.is_discarded()) json["default"] = initial;
-    }
-    return json;
+std::string number_remedy(const Key& key) {
+    std::string text = fmt::format("give {}", key.meaning);
+    if (!key.unit.empty()) text += fmt::format(" in {}", key.unit);
+    const std::string range = numbers_text(key.type.range);
+    if (!range.empty()) text += ", " + range;
+    std::vector<std::string> forms;
+    if ((key.type.forms & kPair) != 0) forms.emplace_back(key.type.pair);
+    if (!key.type.list.empty()) forms.emplace_back(key.type.list);
+    if (key.type.forms == kPairs) forms.push_back(fmt::format("a list of {}", key.type.pair));
+    if (!forms.empty())
+        text += fmt::format(", {} {}", (key.type.forms & kOne) != 0 ? "or" : "as", fmt::join(forms, " or "));
+    return key.type.min_entries == 0 ? text : fmt::format("{}, {}", text, entries_text(key));
 }
 
-Json table_json(std::string_view section) {
-    Json properties = Json::object();
-    Json required = Json::array();
-    for (const Key& key : all_keys()) {
-        if (key.section != section) continue;
-        properties[std::string(key.name)] = key_json(key);
-        if (key.initial.required) required.push_back(key.name);
-    }
-    Json json{{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
-    if (!required.empty()) json["required"] = required;
-    for (const Alternatives& one : alternatives()) {
-        if (one.section != section) continue;
-        for (const std::string_view key : one.keys) json["oneOf"].push_back({{"required", {key}}});
-    }
-    return json;
+std::string initial_text(const Key& key) {
+    if (key.binding.initial.required) return "required";
+    return key.binding.initial.toml.empty() ? std::string(key.binding.initial.words)
+                                            : key.binding.initial.toml;
+}
+
+std::string meaning_text(const Key& key) {
+    const std::string methods = key.methods.empty() ? "" : fmt::format("{}: ", fmt::join(key.methods, ", "));
+    return methods + std::string(key.meaning) + (key.note.empty() ? "" : fmt::format("; {}", key.note));
+}
+
+/// "[world]", "[[rope]]", "rope.line": a section as a file writes it.
+std::string heading(std::string_view section) {
+    const Key* const table = key_of_section(section);
+    if (table == nullptr) return "Top level";
+    if (table->type.kind == Kind::kTables) return fmt::format("[[{}]]", section);
+    return table->section.empty() ? fmt::format("[{}]", section) : std::string(section);
+}
+
+std::string text_row(const Key& key) {
+    constexpr int kNameWidth = 21;
+    std::string facts = type_text(key);
+    if (!key.unit.empty()) facts += fmt::format(" in {}", key.unit);
+    if (const std::string range = range_text(key); !range.empty()) facts += ", " + range;
+    const std::string initial = initial_text(key);
+    if (!initial.empty()) facts += (key.binding.initial.required ? ", " : ", default ") + initial;
+    return fmt::format("  {:<{}}{}\n  {:<{}}{}\n", key.name, kNameWidth, facts, "", kNameWidth,
+                       meaning_text(key));
 }
 
 }  // namespace
 
-std::string json_schema() {
-    Json json{{"$schema", "http://json-schema.org/draft-07/schema#"},
-              {"title", "Corda scene"},
-              {"description", "A scene file of Corda: see corda help scene"}};
-    json.update(table_json(""));
-    json["anyOf"] = {{{"required", {"rope"}}}, {{"required", {"net"}}}};
-    constexpr int kIndent = 2;
-    return json.dump(kIndent);
+const std::vector<Key>& all_keys() {
+    static const std::vector<Key> keys = [] {
+        std::vector<Key> all = root_keys();
+        for (const std::vector<Key>& rows : {model_rows(), picture_rows()})
+            all.insert(all.end(), rows.begin(), rows.end());
+        for (Key& key : all) complete(key);
+        return all;
+    }();
+    return keys;
+}
+
+const Key* find_key(std::string_view section, std::string_view name) {
+    const auto& keys = all_keys();
+    const auto found = std::find_if(
+        keys.begin(), keys.end(), [&](const Key& key) { return key.section == section && key.name == name; });
+    return found == keys.end() ? nullptr : &*found;
+}
+
+const Key* key_of_section(std::string_view section) {
+    const std::size_t dot = section.rfind('.');
+    if (dot == std::string_view::npos) return find_key("", section);
+    return find_key(section.substr(0, dot), section.substr(dot + 1));
+}
+
+std::vector<std::string_view> keys_of(std::string_view section) {
+    std::vector<std::string_view> names;
+    for (const Key& key : all_keys()) {
+        if (key.section == section) names.push_back(key.name);
+    }
+    return names;
+}
+
+std::string dotted(std::string_view front, std::string_view name) {
+    return front.empty() ? std::string(name) : fmt::format("{}.{}", front, name);
+}
+
+std::string path_of(const Key& key) {
+    const Key* const table = key_of_section(key.section);
+    if (table == nullptr) return std::string(key.name);
+    return fmt::format("{}{}.{}", path_of(*table), table->type.kind == Kind::kTables ? "[]" : "", key.name);
+}
+
+std::string type_text(const Key& key) {
+    if (!key.type.choices.empty()) return fmt::format("{}", fmt::join(key.type.choices, ", "));
+    const std::string one = kind_text(key.type.kind);
+    std::vector<std::string> forms;
+    if ((key.type.forms & kOne) != 0) forms.push_back(one);
+    if ((key.type.forms & kPair) != 0) forms.emplace_back(key.type.pair);
+    if ((key.type.forms & kList) != 0) forms.push_back(fmt::format("list of {}s", one));
+    if ((key.type.forms & kPairs) != 0) forms.push_back(fmt::format("list of {}", key.type.pair));
+    return fmt::format("{}", fmt::join(forms, " or "));
+}
+
+std::string range_text(const Key& key) {
+    const std::string numbers = numbers_text(key.type.range);
+    const std::string entries = entries_text(key);
+    return numbers + (numbers.empty() || entries.empty() ? "" : "; ") + entries;
+}
+
+std::string remedy(const Key& key) {
+    const auto& choices = key.type.choices;
+    const std::string_view quote = key.type.kind == Kind::kChoice ? "\"" : "";
+    if (choices.size() == 1) return fmt::format("give {} = {}{}{}", key.name, quote, choices.front(), quote);
+    if (!choices.empty()) return fmt::format("give one of: {}", fmt::join(choices, ", "));
+    switch (key.type.kind) {
+        case Kind::kTable:
+            return key.section.empty() ? fmt::format("write [{}]", key.name)
+                                       : fmt::format("give {}", key.meaning);
+        case Kind::kTables:
+            return fmt::format("give one or more [[{}]]", path_of(key));
+        case Kind::kBoolean:
+            return "give true or false";
+        case Kind::kColor:
+            return fmt::format("give a {} {}", (key.type.forms & kOne) != 0 ? "colour" : "list of colours",
+                               kColorWords);
+        case Kind::kText:
+            return fmt::format("give {} as one line of text in quotes", key.meaning);
+        case Kind::kFrameRate:
+            return fmt::format(
+                R"(give {}, {}, as a number of up to three decimals or as a fraction in quotes such as "30000/1001")",
+                key.meaning, range_text(key));
+        default:
+            return number_remedy(key);
+    }
+}
+
+std::string keys_text() {
+    std::string text = "Keys of a scene file (TOML)\n";
+    std::string_view section = "none";
+    for (const Key& key : all_keys()) {
+        if (key.section != section) text += fmt::format("\n{}\n", heading(key.section));
+        section = key.section;
+        text += text_row(key);
+    }
+    return text;
+}
+
+std::string keys_markdown() {
+    std::string text = "| key | value | unit | range | default | meaning |\n|---|---|---|---|---|---|\n";
+    for (const Key& key : all_keys()) {
+        text += fmt::format("| `{}` | {} | {} | {} | {} | {} |\n", path_of(key), type_text(key), key.unit,
+                            range_text(key), initial_text(key), meaning_text(key));
+    }
+    return text;
 }
 
 }  // namespace corda::scene

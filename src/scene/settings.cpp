@@ -1,5 +1,3 @@
-#include "corda/scene/settings.hpp"
-
 #include <fmt/format.h>
 
 #include <charconv>
@@ -11,7 +9,6 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/scene/document.hpp"
-#include "corda/scene/problems.hpp"
 
 namespace corda::scene {
 namespace {

@@ -3,45 +3,39 @@
 #include <algorithm>
 #include <utility>
 
+#include "corda/scene/field.hpp"
 #include "corda/scene/readers.hpp"
 
 namespace corda::scene {
 namespace {
 
-/// The method that the table names, with the reach of its ropes; empty if it names none.
-std::optional<MethodDef> read_method(const TableReader& table, int& reach) {
-    std::string_view method;
-    table.read("method", method);
-    if (method == ExactDef::kName) {
-        ExactDef def;
-        table.read("tolerance", def.tolerance);
-        return def;
-    }
-    if (method == RattleDef::kName) {
-        RattleDef def;
-        table.read("order", def.order);
-        table.read("step", def.step_s);
-        return def;
-    }
-    if (method == RelaxationDef::kName) {
-        RelaxationDef def;
-        reach = kDefaultReach;
-        table.read("step", def.step_s);
-        table.read("reach", reach);
-        table.read("sweeps", def.sweeps);
-        table.read("delta", def.delta);
-        table.read("force", def.force_n);
-        return def;
-    }
-    return std::nullopt;
+/// An empty definition of a method.
+SolverDef solver_named(std::string_view method) {
+    if (method == ExactDef::kName) return ExactDef{};
+    if (method == RattleDef::kName) return RattleDef{};
+    if (method == RelaxationDef::kName) return RelaxationDef{};
+    return AutoDef{};
 }
 
-SolverGroup read_common_solver(const TableReader& solver) {
-    int reach = 1;
-    if (const auto method = read_method(solver, reach)) return {solver, solver_of(*method), reach};
-    AutoDef def;
-    solver.read("tolerance_px", def.tolerance_px);
-    return {solver, def};
+SolverGroup read_group(const TableReader& table) {
+    SolverTable keys;
+    read_fields(table, keys);
+    SolverDef def = solver_named(keys.method);
+    std::visit([&](auto& method) { read_fields(table, method); }, def);
+    if (!std::holds_alternative<RelaxationDef>(def)) return {table, def, 1};
+    return {table, def, keys.reach.empty() ? kDefaultReach : keys.reach.front()};
+}
+
+/// `auto` stands for a method that is missing, which is a problem already.
+MethodDef method_in(const SolverDef& solver) {
+    return std::visit(
+        [](const auto& def) -> MethodDef {
+            if constexpr (std::is_same_v<std::decay_t<decltype(def)>, AutoDef>)
+                return MethodDef{};
+            else
+                return def;
+        },
+        solver);
 }
 
 /// Puts the bodies of one list of a table of [[solver.bodies]] into the last group. The list is of `count`
@@ -70,9 +64,7 @@ std::vector<std::uint32_t> read_members(const TableReader& table, std::string_vi
 }
 
 BodySolverDef read_body_solver(const TableReader& table, const Sections& sections, SolverSection& section) {
-    int reach = 1;
-    const MethodDef method = read_method(table, reach).value_or(MethodDef{});
-    section.groups.push_back({table, solver_of(method), reach});
+    section.groups.push_back(read_group(table));
     const auto is_empty = [&](std::string_view key) {
         const auto list = table.find(key);
         return table.is_sound(key) && (!list || list->size() == 0);
@@ -86,18 +78,14 @@ BodySolverDef read_body_solver(const TableReader& table, const Sections& section
     BodySolverDef def;
     if (problems.is_sound("rope")) def.ropes = read_members(table, "ropes", ropes, 0, section);
     if (problems.is_sound("net")) def.nets = read_members(table, "nets", nets, ropes, section);
-    def.method = method;
+    def.method = method_in(section.groups.back().def);
     return def;
 }
 
 }  // namespace
 
-SolverDef solver_of(const MethodDef& method) {
-    return std::visit([](const auto& def) { return SolverDef(def); }, method);
-}
-
 SolverSection read_solver(const Sections& sections, Scene& scene) {
-    SolverSection section{{read_common_solver(sections.solver)},
+    SolverSection section{{read_group(sections.solver)},
                           std::vector<std::size_t>(sections.ropes.size() + sections.nets.size())};
     scene.solver = section.groups.front().def;
     for (const TableReader& table : sections.solver.tables("bodies"))

@@ -2,18 +2,31 @@
 
 #include <toml++/toml.h>
 
-#include <algorithm>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "corda/core/image.hpp"
-#include "corda/scene/keys.hpp"
+#include "corda/core/rational.hpp"
 #include "corda/scene/problems.hpp"
-#include "corda/sim/defs.hpp"
+#include "corda/scene/schema.hpp"
+#include "corda/view/defs.hpp"
 
 namespace corda::scene {
+
+/// Frames per second from a number of up to three decimals, which is exact, or a fraction as text; otherwise
+/// the problem with it. Numbers that round a broadcast rate or a third, such as 29.97 and 16.667, are
+/// refused. The node is a number or text.
+[[nodiscard]] std::variant<Rational, std::string> read_rate(const toml::node& node);
+
+template <class T>
+inline constexpr bool kIsVector = false;
+template <class T>
+inline constexpr bool kIsVector<std::vector<T>> = true;
 
 /// One value of a document that `check_document` has checked. The document and the problems must outlive it.
 class Value {
@@ -39,6 +52,15 @@ class Value {
             return {at(0).as<double>(), at(1).as<double>()};
         } else if constexpr (std::is_same_v<T, Color>) {
             return *Color::parse(as<std::string_view>());
+        } else if constexpr (std::is_same_v<T, Ground>) {
+            return is_list() ? Ground{at(0).as<Color>(), at(1).as<Color>()}
+                             : Ground{as<Color>(), as<Color>()};
+        } else if constexpr (std::is_same_v<T, FrameRate>) {
+            return FrameRate(std::get<Rational>(read_rate(*node_)));
+        } else if constexpr (kIsVector<T>) {
+            T values;
+            for (std::size_t i = 0; i < size(); ++i) values.push_back(at(i).as<typename T::value_type>());
+            return values;
         } else if constexpr (std::is_same_v<T, double>) {
             return number_of(*node_);
         } else {
@@ -62,6 +84,8 @@ class TableReader {
     TableReader(Problems& problems, const toml::table& table, std::string section, std::string path)
         : problems_(&problems), table_(&table), section_(std::move(section)), path_(std::move(path)) {}
 
+    [[nodiscard]] const std::string& section() const { return section_; }
+
     /// The value of a key; empty if the file has no good one.
     [[nodiscard]] std::optional<Value> find(std::string_view key) const;
     [[nodiscard]] bool has(std::string_view key) const { return table_->contains(key); }
@@ -78,23 +102,10 @@ class TableReader {
     /// The tables of a list.
     [[nodiscard]] std::vector<TableReader> tables(std::string_view key) const;
 
-    /// Puts the value of a key into `target`, if the file has a good one. `T` is as the key's kind; for a
-    /// choice text or an enum in the order of the choices.
+    /// Stores the value of a key in `target`, if the file has a good one. `T` is that of the key's kind.
     template <class T>
     void read(std::string_view key, T& target) const {
-        const auto value = find(key);
-        if (!value) return;
-        if constexpr (std::is_enum_v<T>) {
-            const auto& choices = find_key(section_, key)->type.choices;
-            const auto found = std::find(choices.begin(), choices.end(), value->as<std::string_view>());
-            target = static_cast<T>(found - choices.begin());
-        } else {
-            target = value->as<T>();
-        }
-    }
-    template <class T>
-    void read(std::string_view key, std::optional<T>& target) const {
-        if (find(key)) read(key, target.emplace());
+        if (const auto value = find(key)) target = value->as<T>();
     }
 
     [[nodiscard]] Problems& problems() const { return *problems_; }

@@ -4,363 +4,363 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <string_view>
-#include <type_traits>
-#include <variant>
-#include <vector>
+#include <typeindex>
+#include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "corda/core/basics.hpp"
-#include "corda/scene/digest.hpp"
-#include "corda/scene/keys.hpp"
+#include "corda/scene/document.hpp"
+#include "corda/scene/field.hpp"
 #include "corda/scene/readers.hpp"
 
 namespace corda {
+
+using namespace scene;  // the schema
+
 namespace {
 
-[[noreturn]] void fail_unsayable(const std::string& what) {
-    throw Error(ExitCode::kUsage, fmt::format("a scene file cannot say this scene: {}", what));
-}
+constexpr std::string_view kHashed = "hash ";
 
-std::string value_text(bool value) {
-    return value ? "true" : "false";
-}
-
-template <class T>
-requires std::is_integral_v<T> std::string value_text(T value) {
-    return fmt::format("{}", value);
-}
-
-/// As few digits as give the same bits again.
-std::string value_text(double value) {
-    return value == 0.0 && std::signbit(value) ? "-0.0" : fmt::format("{}", value);
-}
-
-std::string value_text(const std::string& value) {
-    std::string text = "\"";
-    for (const char c : value) {
-        if (c == '"' || c == '\\') text += '\\';
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-            text += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
-        else
-            text += c;
+/// FNV-1a, by Fowler, Noll and Vo.
+std::string hashed(std::string_view text) {
+    std::uint64_t hash = 14695981039346656037U;
+    for (const char c : text) {
+        hash ^= static_cast<unsigned char>(c);
+        hash *= 1099511628211U;
     }
-    return text + '"';
+    return fmt::format("{}{:016x}", kHashed, hash);
 }
 
-std::string value_text(Vec2 value) {
-    return fmt::format("[{}, {}]", value_text(value.x), value_text(value.y));
+[[noreturn]] void fail_unwritable(const std::string& problem) {
+    throw Error(ExitCode::kUsage, fmt::format("a scene file cannot give this scene: {}", problem));
 }
 
-std::string value_text(Color value) {
-    return value_text(value.text());
-}
-
-template <class T>
-std::string value_text(const std::vector<T>& values) {
-    std::string text = "[";
-    for (const T& value : values) text += (text.size() == 1 ? "" : ", ") + value_text(value);
-    return text + "]";
-}
-
-/// Writes the keys of one table.
-class TableWriter {
-  public:
-    /// `heading` as it stands in the file; `section` as the list of keys has it.
-    TableWriter(std::string& toml, std::string_view heading, std::string_view section)
-        : toml_(&toml), section_(section) {
-        *toml_ += fmt::format("\n{}\n", heading);
-    }
-
-    template <class T>
-    void add(const char* key, const T& value) {
-        if constexpr (std::is_enum_v<T>)
-            add(key, std::string(
-                         scene::find_key(section_, key)->type.choices.at(static_cast<std::size_t>(value))));
-        else
-            add_text(key, value_text(value));
-    }
-
-    template <class T>
-    void add(const char* key, const std::optional<T>& value) {
-        if (value) add(key, *value);
-    }
-
-    /// A word that is empty if it is left open.
-    void add_word(const char* key, const std::string& word) {
-        if (!word.empty()) add(key, word);
-    }
-
-    void add_text(const char* key, const std::string& text) { *toml_ += fmt::format("{} = {}\n", key, text); }
-
-  private:
-    std::string* toml_;
-    std::string section_;
+/// A definition that fills a part of a table.
+struct Part {
+    std::type_index type;
+    const void* def;
 };
 
-void write_method(const AutoDef& def, TableWriter& table) {
-    table.add("tolerance_px", def.tolerance_px);
+template <class Def>
+Part part(const Def& def) {
+    return {typeid(Def), &def};
 }
 
-void write_method(const ExactDef& def, TableWriter& table) {
-    table.add("tolerance", def.tolerance);
-}
-
-void write_method(const RattleDef& def, TableWriter& table) {
-    if (def.guard != RattleDef{}.guard) fail_unsayable("the guard of method rattle has no key");
-    table.add("order", def.order);
-    table.add("step", def.step_s);
-}
-
-void write_method(const RelaxationDef& def, TableWriter& table) {
-    table.add("step", def.step_s);
-    table.add("sweeps", def.sweeps);
-    table.add("delta", def.delta);
-    table.add("force", def.force_n);
-}
-
-/// The reach that ropes share.
-class Reach {
-  public:
-    void take(const RopeDef& rope) {
-        if (reach_ && *reach_ != rope.reach) fail_unsayable("ropes of one method differ in reach");
-        reach_ = rope.reach;
-    }
-
-    void write(std::string_view method, TableWriter& table) const {
-        if (!reach_) return;
-        if (method == RelaxationDef::kName)
-            table.add("reach", *reach_);
-        else if (*reach_ != 1)
-            fail_unsayable("only method relaxation has a reach");
-    }
-
-  private:
-    std::optional<int> reach_;
+/// One table of a scene file.
+struct Table {
+    std::string section;  ///< as in the schema, "rope"
+    std::string path;     ///< as in messages, "rope[0]"
+    std::vector<Table> inlined;
+    std::vector<std::pair<std::string, std::string>> values;  ///< keys and their TOML
 };
 
-void write_solver(const Scene& scene, std::string& toml) {
-    const auto check_index = [&](std::uint32_t rope) -> const RopeDef& {
-        if (rope >= scene.ropes.size()) fail_unsayable("body_solvers names a rope that is not there");
-        return scene.ropes[rope];
-    };
-    std::vector<bool> is_named(scene.ropes.size());
-    for (const BodySolverDef& bodies : scene.body_solvers) {
-        for (const std::uint32_t rope : bodies.ropes) {
-            static_cast<void>(check_index(rope));
-            is_named[rope] = true;
+/// The keys of a section that are bound to one of `parts`, except `skipped`.
+Table table_of(std::string section, std::string path, std::initializer_list<Part> parts,
+               std::initializer_list<std::string_view> skipped = {}) {
+    Table table{std::move(section), std::move(path), {}, {}};
+    for (const Key& key : all_keys()) {
+        if (key.section != table.section) continue;
+        if (std::find(skipped.begin(), skipped.end(), key.name) != skipped.end()) continue;
+        for (const Field& field : key.binding.fields) {
+            const auto part = std::find_if(parts.begin(), parts.end(),
+                                           [&](const Part& one) { return one.type == field.def; });
+            if (part == parts.end()) continue;
+            if (std::string toml = field.toml(key, part->def); !toml.empty())
+                table.values.emplace_back(key.name, std::move(toml));
         }
     }
-    Reach common;
-    for (std::size_t i = 0; i < scene.ropes.size(); ++i)
-        if (!is_named[i]) common.take(scene.ropes[i]);
-    TableWriter table(toml, "[solver]", "solver");
-    const std::string method(solver_name(scene.solver));
-    table.add("method", method);
-    std::visit([&](const auto& def) { write_method(def, table); }, scene.solver);
-    common.write(method, table);
-    for (const BodySolverDef& bodies : scene.body_solvers) {
-        Reach reach;
-        for (const std::uint32_t rope : bodies.ropes) reach.take(check_index(rope));
-        TableWriter part(toml, "[[solver.bodies]]", "solver.bodies");
-        const std::string its_method(method_name(bodies.method));
-        part.add("ropes", bodies.ropes);
-        part.add("nets", bodies.nets);
-        part.add("method", its_method);
-        std::visit([&](const auto& def) { write_method(def, part); }, bodies.method);
-        reach.write(its_method, part);
-    }
-}
-
-void write_style(const StyleDef& style, std::string& toml) {
-    TableWriter table(toml, "[style]", "style");
-    table.add("theme", style.theme);
-    if (style.background)
-        table.add("background", std::vector<Color>{style.background->top, style.background->bottom});
-    if (!style.palette.empty()) table.add("palette", style.palette);
-    table.add("color_by", style.color_by);
-    table.add("rope_width_px", style.rope_width_px);
-    table.add("net_width_px", style.net_width_px);
-    table.add("payload", style.payload);
-    table.add("supports", style.supports);
-    table.add("halo", style.halo);
-    table.add("trail_s", style.trail_s);
-    table.add("markers", style.markers);
-    table.add("marker_radius_px", style.marker_radius_px);
-    table.add("pinned_color", style.pinned_color);
-    table.add("free_color", style.free_color);
-    table.add("bars", style.bars);
-    table.add("bar_width_px", style.bar_width_px);
-    table.add("real_bar_color", style.real_bar_color);
-    table.add("imaginary_bar_color", style.imaginary_bar_color);
-}
-
-void write_picture(const Scene& scene, std::string& toml) {
-    const VideoDef& video = scene.video;
-    TableWriter table(toml, "[video]", "video");
-    table.add("size", std::vector<int>{video.width_px, video.height_px});
-    table.add("fps", video.fps.rational().text());
-    table.add("shutter", video.shutter);
-    table.add("subframes", video.subframes);
-    table.add_word("codec", video.encoder.codec);
-    table.add_word("preset", video.encoder.preset);
-    table.add("crf", video.encoder.crf);
-    table.add("pix", video.encoder.pix);
-    table.add("threads", video.encoder.threads);
-    write_style(scene.style, toml);
-    TableWriter overlay(toml, "[overlay]", "overlay");
-    overlay.add("time", scene.overlay.time);
-    overlay.add("scale_bar", scene.overlay.scale_bar);
-    overlay.add("legend", scene.overlay.legend);
-    overlay.add("title", scene.overlay.title);
-    overlay.add("energy", scene.overlay.energy);
-    overlay.add("method", scene.overlay.method);
-    overlay.add("plot", scene.overlay.plot);
-    overlay.add("text_px", scene.overlay.text_px);
-    TableWriter camera(toml, "[camera]", "camera");
-    camera.add("center", scene.camera.center_m);
-    camera.add("height", scene.camera.height_m);
-    camera.add("margin", scene.camera.margin);
-}
-
-/// One value if all are the same.
-template <class T>
-void write_all(const char* key, const std::vector<T>& values, const T& initial, TableWriter& table) {
-    for (const T& value : values) {
-        if (value_text(value) == value_text(values.front())) continue;
-        table.add(key, values);
-        return;
-    }
-    if (!values.empty() && value_text(values.front()) != value_text(initial)) table.add(key, values.front());
-}
-
-template <class Body>
-void write_body(const Body& body, const BodyStyleDef& style, TableWriter& table) {
-    write_all("mass", body.mass_kg, scene::kDefaultMassKg, table);
-    write_all("velocity", body.velocity_m_s, Vec2{}, table);
-    table.add("pinned", body.pinned);
-    table.add("compliance", body.material.compliance_1_n);
-    table.add("string", body.material.is_string);
-    table.add("color", style.color);
-    if (!style.link_colors.empty()) table.add("color", style.link_colors);
-    table.add("width_px", style.width_px);
+    return table;
 }
 
 bool are_same(Vec2 a, Vec2 b) {
     return a == b && std::signbit(a.x) == std::signbit(b.x) && std::signbit(a.y) == std::signbit(b.y);
 }
 
-/// Whether the particles stand as those of the key `line` do.
-bool is_line(const RopeDef& rope) {
-    if (rope.closed || rope.points_m.size() < 2) return false;
-    for (std::size_t i = 0; i < rope.points_m.size(); ++i)
-        if (!are_same(rope.points_m[i], Vec2{} + static_cast<double>(i) * rope.points_m[1])) return false;
-    return true;
-}
-
-template <class Body>
-void write_points(const Body& body, TableWriter& table) {
-    table.add("origin", body.origin_m);
-    table.add("points", body.points_m);
-}
-
-void write_rope(const RopeDef& rope, const BodyStyleDef& style, std::string& toml) {
-    TableWriter table(toml, "[[rope]]", "rope");
-    if (is_line(rope))
-        table.add_text("line", fmt::format("{{ particles = {}, from = {}, step = {} }}", rope.points_m.size(),
-                                           value_text(rope.origin_m), value_text(rope.points_m[1])));
-    else
-        write_points(rope, table);
-    table.add("closed", rope.closed);
-    write_body(rope, style, table);
-    table.add("payload", rope.payload_kg);
-    table.add("bending", rope.bending_n_m2);
-    if (!rope.rest_m.empty()) write_all("link_length", rope.rest_m, 0.0, table);
-}
-
-/// The key `grid` of a net with so many columns, and of so many rows as it takes.
-std::string grid_text(const NetDef& net, std::size_t columns, bool has_diagonals) {
-    const std::size_t rows = net.points_m.size() / columns;
-    const double dx = columns > 1 ? net.points_m[1].x : 1.0;
-    const double dy = rows > 1 ? 0.0 - net.points_m[columns].y : 1.0;
-    return fmt::format("{{ columns = {}, rows = {}, from = {}, spacing = {}, diagonals = {} }}", columns,
-                       rows, value_text(net.origin_m), value_text(Vec2{dx, dy}), has_diagonals);
-}
-
-/// Whether `grid` stands for the particles and the bars of `net`.
-bool is_grid(const NetDef& net, const std::string& grid) {
+/// True if `shape` gives the particles, and the bars, of `body`.
+template <class Shape, class Body>
+bool gives(const Shape& shape, const Body& body) {
+    Body made;
+    place(shape, made);
     const auto is_same_bar = [](const NetBar& a, const NetBar& b) {
         return a.a == b.a && a.b == b.b && a.is_real == b.is_real;
     };
-    try {
-        const Scene made = parse_scene("schema = 1\n[[net]]\ngrid = " + grid + "\n", "grid");
-        const NetDef& its = made.nets.front();
-        return are_same(net.origin_m, its.origin_m) &&
-               std::ranges::equal(net.points_m, its.points_m, are_same) &&
-               std::ranges::equal(net.bars, its.bars, is_same_bar);
-    } catch (const Error&) {
-        return false;
+    if constexpr (std::is_same_v<Body, NetDef>) {
+        if (!std::ranges::equal(made.bars, body.bars, is_same_bar)) return false;
     }
+    return are_same(made.origin_m, body.origin_m) &&
+           std::ranges::equal(made.points_m, body.points_m, are_same);
 }
 
-void write_net(const NetDef& net, const BodyStyleDef& style, std::string& toml) {
-    TableWriter table(toml, "[[net]]", "net");
-    // The first row of a grid ends where y changes.
+/// The line on which the particles of a rope may lie.
+std::optional<LineDef> line_of(const RopeDef& rope) {
+    if (rope.points_m.size() < 2) return std::nullopt;
+    return LineDef{static_cast<int>(rope.points_m.size()), rope.origin_m, rope.points_m[1]};
+}
+
+/// The grid that a net may be. Its first row ends where y changes.
+std::optional<GridDef> grid_of(const NetDef& net) {
+    const std::size_t count = net.points_m.size();
     std::size_t columns = 0;
-    while (columns < net.points_m.size() && net.points_m[columns].y == net.points_m.front().y) ++columns;
-    std::string grid;
-    if (columns > 0 && net.points_m.size() % columns == 0)
-        grid = grid_text(net, columns, !net.bars.empty() && !net.bars.back().is_real);
-    if (!grid.empty() && is_grid(net, grid)) {
-        table.add_text("grid", grid);
-    } else {
-        write_points(net, table);
-        std::string bars = "[";
-        for (const NetBar& bar : net.bars) {
-            if (!bar.is_real) fail_unsayable("only a grid has imaginary bars");
-            bars += fmt::format("{}[{}, {}]", bars.size() == 1 ? "" : ", ", bar.a, bar.b);
-        }
-        table.add_text("bars", bars + "]");
-    }
-    write_body(net, style, table);
+    while (columns < count && net.points_m[columns].y == net.points_m.front().y) ++columns;
+    if (columns == 0 || count % columns != 0 || count < 2) return std::nullopt;
+    const std::size_t rows = count / columns;
+    const Vec2 spacing_m{columns > 1 ? net.points_m[1].x : 1.0,
+                         rows > 1 ? 0.0 - net.points_m[columns].y : 1.0};
+    return GridDef{static_cast<int>(columns), static_cast<int>(rows), net.origin_m, spacing_m,
+                   !net.bars.empty() && !net.bars.back().is_real};
 }
 
-/// With the defaults that a reader fills in.
-Scene filled(Scene scene) {
-    const auto fill = [](auto& body) {
-        if (body.mass_kg.empty()) body.mass_kg.assign(body.points_m.size(), scene::kDefaultMassKg);
-        if (body.velocity_m_s.empty()) body.velocity_m_s.resize(body.points_m.size());
+Table rope_table(const RopeDef& rope, const BodyStyleDef& style, const ShapeDef& shape, std::size_t i) {
+    const std::string path = fmt::format("rope[{}]", i);
+    const auto with = [&](const char* name, const auto& def) {
+        Table table = table_of("rope", path, {part(rope), part(style)}, {"points", "origin"});
+        table.inlined.push_back(
+            table_of(fmt::format("rope.{}", name), fmt::format("{}.{}", path, name), {part(def)}));
+        return table;
     };
-    for (RopeDef& rope : scene.ropes) fill(rope);
-    for (NetDef& net : scene.nets) fill(net);
-    scene.body_styles.resize(scene.ropes.size() + scene.nets.size());
-    return scene;
+    if (!rope.closed) {
+        if (const auto* hang = std::get_if<HangDef>(&shape); hang != nullptr && gives(*hang, rope))
+            return with("hang", *hang);
+        if (const auto line = line_of(rope); line && gives(*line, rope)) return with("line", *line);
+    }
+    return table_of("rope", path, {part(rope), part(style)});
+}
+
+Table net_table(const NetDef& net, const BodyStyleDef& style, const ShapeDef& shape, std::size_t i) {
+    const std::string path = fmt::format("net[{}]", i);
+    const auto* given = std::get_if<GridDef>(&shape);
+    const std::optional<GridDef> grid =
+        given != nullptr && gives(*given, net) ? std::optional(*given) : grid_of(net);
+    if (!grid || !gives(*grid, net)) return table_of("net", path, {part(net), part(style)});
+    Table table = table_of("net", path, {part(net), part(style)}, {"points", "origin", "bars"});
+    table.inlined.push_back(table_of("net.grid", path + ".grid", {part(*grid)}));
+    return table;
+}
+
+/// A table of [solver] or [[solver.bodies]].
+Table solver_table(std::string section, std::string path, const SolverDef& solver, SolverTable keys) {
+    const bool relaxes = std::holds_alternative<RelaxationDef>(solver);
+    const auto is_default = [](int reach) { return reach == 1; };
+    if (!relaxes && std::ranges::all_of(keys.reach, is_default)) keys.reach.clear();
+    keys.method = solver_name(solver);
+    Table table = std::visit(
+        [&](const auto& def) {
+            return table_of(std::move(section), std::move(path), {part(keys), part(def)});
+        },
+        solver);
+    // A part of the motion that no key gives.
+    if (const auto* rattle = std::get_if<RattleDef>(&solver);
+        rattle != nullptr && rattle->guard != RattleDef{}.guard)
+        table.values.emplace_back("guard", toml_text(rattle->guard));
+    return table;
+}
+
+std::vector<Table> solver_tables(const Scene& scene) {
+    std::vector<bool> is_named(scene.ropes.size());
+    std::vector<Table> bodies;
+    for (const BodySolverDef& group : scene.body_solvers) {
+        SolverTable keys{{}, {}, group.ropes, group.nets};
+        for (const std::uint32_t rope : group.ropes) {
+            if (rope >= scene.ropes.size()) continue;  // parse_scene() refuses it
+            is_named[rope] = true;
+            keys.reach.push_back(scene.ropes[rope].reach);
+        }
+        bodies.push_back(solver_table("solver.bodies", fmt::format("solver.bodies[{}]", bodies.size()),
+                                      solver_of(group.method), std::move(keys)));
+    }
+    SolverTable keys;
+    for (std::size_t i = 0; i < scene.ropes.size(); ++i)
+        if (!is_named[i]) keys.reach.push_back(scene.ropes[i].reach);
+    bodies.insert(bodies.begin(), solver_table("solver", "solver", scene.solver, std::move(keys)));
+    return bodies;
+}
+
+/// The tables of one definition each. A scene's name and its jobs change no byte of a video.
+std::vector<Table> plain_tables(const Scene& scene) {
+    return {table_of("world", "world", {part(scene.world)}),
+            table_of("video", "video", {part(scene.video)}, {"jobs"}),
+            table_of("style", "style", {part(scene.style)}),
+            table_of("overlay", "overlay", {part(scene.overlay)}),
+            table_of("camera", "camera", {part(scene.camera)})};
+}
+
+std::vector<Table> body_tables(const Scene& scene) {
+    const auto at = [](const auto& list, std::size_t i) {
+        return i < list.size() ? list[i] : typename std::decay_t<decltype(list)>::value_type{};
+    };
+    std::vector<Table> tables;
+    for (const RopeDef& rope : scene.ropes) {
+        const std::size_t i = tables.size();
+        tables.push_back(rope_table(rope, at(scene.body_styles, i), at(scene.shapes, i), i));
+    }
+    for (const NetDef& net : scene.nets) {
+        const std::size_t i = tables.size();
+        tables.push_back(
+            net_table(net, at(scene.body_styles, i), at(scene.shapes, i), i - scene.ropes.size()));
+    }
+    return tables;
+}
+
+std::vector<Table> all_tables(const Scene& scene) {
+    std::vector<Table> tables = solver_tables(scene);
+    for (std::vector<Table>& more : std::vector{plain_tables(scene), body_tables(scene)})
+        tables.insert(tables.end(), std::move_iterator(more.begin()), std::move_iterator(more.end()));
+    return tables;
+}
+
+/// "{ links = 30, length = 1 }".
+std::string inline_text(const Table& table) {
+    std::vector<std::string> values;
+    for (const auto& [key, toml] : table.values) values.push_back(fmt::format("{} = {}", key, toml));
+    return fmt::format("{{ {} }}", fmt::join(values, ", "));
+}
+
+std::string last_name(const std::string& section) {
+    return section.substr(section.rfind('.') + 1);
+}
+
+std::string lines_of(const Table& table) {
+    std::string lines;
+    for (const Table& inner : table.inlined)
+        lines += fmt::format("{} = {}\n", last_name(inner.section), inline_text(inner));
+    for (const auto& [key, toml] : table.values) {
+        if (find_key(table.section, key) == nullptr)
+            fail_unwritable(fmt::format("there is no key {}.{}", table.path, key));
+        if (key == "reach" && toml.starts_with('['))
+            fail_unwritable("the ropes of one method differ in reach; give all of them one");
+        lines += fmt::format("{} = {}\n", key, toml);
+    }
+    return lines;
+}
+
+std::string text_of(const Table& table) {
+    const bool is_list = key_of_section(table.section)->type.kind == Kind::kTables;
+    return (is_list ? fmt::format("\n[[{}]]\n", table.section) : fmt::format("\n[{}]\n", table.section)) +
+           lines_of(table);
+}
+
+void add_to(std::map<std::string, std::string>& digest, const Table& table) {
+    constexpr std::size_t kMaxText = 64;
+    for (const Table& inner : table.inlined) add_to(digest, inner);
+    for (const auto& [key, toml] : table.values)
+        digest.emplace(dotted(table.path, key), toml.size() > kMaxText ? hashed(toml) : toml);
 }
 
 }  // namespace
 
-std::string write_scene(const Scene& given) {
-    const Scene scene = filled(given);
+std::string write_scene(const Scene& scene) {
     std::string toml = "schema = 1\n";
-    TableWriter world(toml, "[world]", "world");
-    world.add("gravity", scene.world.gravity_m_s2);
-    world.add("duration", scene.world.duration_s);
-    world.add("drag", scene.world.drag_1_s);
-    write_solver(scene, toml);
-    write_picture(scene, toml);
-    for (std::size_t i = 0; i < scene.ropes.size(); ++i)
-        write_rope(scene.ropes[i], scene.body_styles[i], toml);
-    for (std::size_t i = 0; i < scene.nets.size(); ++i)
-        write_net(scene.nets[i], scene.body_styles[scene.ropes.size() + i], toml);
-    std::string difference;
+    for (const Table& table : all_tables(scene)) toml += text_of(table);
+    std::vector<std::string> changes;
     try {
-        difference = first_difference(digest(scene), digest(parse_scene(toml, "scene")));
+        changes = differences(digest(scene), digest(parse_scene(toml, "scene")));
     } catch (const Error& error) {
-        difference = error.what();
+        fail_unwritable(error.what());
     }
-    if (!difference.empty()) fail_unsayable(difference);
+    if (!changes.empty()) fail_unwritable(differences_text(changes));
     return toml;
+}
+
+std::string write_sections(const Scene& scene, std::span<const std::string_view> sections) {
+    std::string toml;
+    for (const Table& table : all_tables(scene))
+        if (std::find(sections.begin(), sections.end(), table.section) != sections.end())
+            toml += text_of(table);
+    return toml.substr(std::min<std::size_t>(1, toml.size()));
+}
+
+Setting solver_setting(const Scene& scene) {
+    const std::vector<Table> tables = solver_tables(scene);
+    std::string text = inline_text(tables.front());
+    std::vector<std::string> bodies;
+    for (std::size_t i = 1; i < tables.size(); ++i) bodies.push_back(inline_text(tables[i]));
+    if (!bodies.empty())
+        text.replace(text.size() - 2, 2, fmt::format(", bodies = [{}] }}", fmt::join(bodies, ", ")));
+    return "solver=" + text;
+}
+
+std::string method_toml(const MethodDef& method) {
+    return lines_of(solver_table("solver", "solver", solver_of(method), {}));
+}
+
+std::map<std::string, std::string> digest(const Scene& scene) {
+    constexpr std::size_t kMaxBodies = 100;
+    std::map<std::string, std::string> digest;
+    for (const Table& table : plain_tables(scene)) add_to(digest, table);
+    for (const Table& table : solver_tables(scene)) add_to(digest, table);
+    std::map<std::string, std::string> bodies;
+    for (const Table& table : body_tables(scene)) add_to(bodies, table);
+    if (scene.ropes.size() + scene.nets.size() <= kMaxBodies) {
+        digest.merge(bodies);
+        return digest;
+    }
+    std::string all;
+    for (const auto& [key, value] : bodies) all += fmt::format("{} = {}\n", key, value);
+    digest.emplace("scene.bodies", hashed(all));
+    return digest;
+}
+
+std::vector<std::string> differences(const std::map<std::string, std::string>& now,
+                                     const std::map<std::string, std::string>& before) {
+    std::vector<std::string> changes;
+    const auto value_in = [](const std::map<std::string, std::string>& values, const std::string& key) {
+        const auto found = values.find(key);
+        return found == values.end() ? std::string("not given") : found->second;
+    };
+    const auto compare = [&](const std::string& key) {
+        const std::string value = value_in(now, key);
+        const std::string old = value_in(before, key);
+        if (value == old) return;
+        const bool is_long = value.starts_with(kHashed) || old.starts_with(kHashed);
+        changes.push_back(is_long ? key + " has other values"
+                                  : fmt::format("{} is {} and was {}", key, value, old));
+    };
+    for (const auto& [key, value] : now) compare(key);
+    for (const auto& [key, value] : before)
+        if (!now.contains(key)) compare(key);
+    return changes;
+}
+
+std::string differences_text(const std::vector<std::string>& differences) {
+    constexpr std::size_t kMaxShown = 20;
+    const std::size_t shown = std::min(differences.size(), kMaxShown);
+    std::string text = fmt::format(
+        "{}", fmt::join(differences.begin(), differences.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
+    if (shown < differences.size()) text += fmt::format(", and {} more", differences.size() - shown);
+    return text;
+}
+
+void check_definitions(const Scene& scene) {
+    Problems problems(scene.source);
+    const auto check = [&](const Table& table) {
+        for (const auto& [name, toml] : table.values) {
+            const Key* const key = find_key(table.section, name);
+            // The reach is one of the ropes, which may differ here.
+            if (key != nullptr && name != "reach")
+                check_value(*key, toml, dotted(table.path, name), problems);
+        }
+    };
+    for (const Table& table : plain_tables(scene)) check(table);
+    for (const Table& table : solver_tables(scene)) check(table);
+    for (std::size_t i = 0; i < scene.body_styles.size(); ++i) {
+        const bool is_rope = i < scene.ropes.size();
+        check(table_of("rope",
+                       is_rope ? fmt::format("rope[{}]", i) : fmt::format("net[{}]", i - scene.ropes.size()),
+                       {part(scene.body_styles[i])}));
+    }
+    const auto check_all = [&](std::string_view section, const auto& def) {
+        for (const DefProblem& one : problems_of(def))
+            problems.add({}, dotted(section, one.key), one.problem);
+    };
+    check_all("video", scene.video);
+    check_all("overlay", scene.overlay);
+    if (scene.golden) {
+        check(table_of("golden", "golden", {part(*scene.golden)}));
+        check_all("golden", *scene.golden);
+    }
+    problems.throw_if_any();
 }
 
 }  // namespace corda

@@ -1,15 +1,41 @@
 #pragma once
 
+#include <map>
+#include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "corda/scene/scene.hpp"
 
 namespace corda {
 
-/// A scene file in TOML that says exactly this scene: parse_scene() of it has the same bits, but for what
-/// changes no picture (the name, the source, video.jobs). Numbers have as many digits as it takes; straight
-/// ropes and grids are written as such, other bodies point by point. Throws corda::Error (kUsage) for a scene
-/// that a file cannot say: only code can fill in such a one.
+/// A scene file in TOML that gives exactly this scene: parse_scene() of it has the same bits. The parts that
+/// change no picture are left out: the name, the source, video.jobs and [golden]. Numbers have as many digits
+/// as it takes. Bodies have their shapes (Scene::shapes); a straight rope and a grid that code has filled in
+/// are recognised, other bodies are written point by point. Throws corda::Error (kUsage) for a scene that no
+/// file can give.
 [[nodiscard]] std::string write_scene(const Scene& scene);
+
+/// The tables of some sections alone, such as "solver" and "solver.bodies".
+[[nodiscard]] std::string write_sections(const Scene& scene, std::span<const std::string_view> sections);
+
+/// The table [solver] with its [[solver.bodies]] as a setting: "solver={method = "exact", tolerance = 1e-9}".
+[[nodiscard]] Setting solver_setting(const Scene& scene);
+
+/// The keys of a method, one per line.
+[[nodiscard]] std::string method_toml(const MethodDef& method);
+
+/// The values of a written scene by their keys ("video.crf", "rope[0].hang.links"), long ones as a hash.
+/// Scenes of equal digests have equal frames, whatever they were read from. A scene of more than a hundred
+/// bodies has one hash for all of them.
+[[nodiscard]] std::map<std::string, std::string> digest(const Scene& scene);
+
+/// All differences between two digests: "video.crf is 18 and was 20". Empty if they are equal.
+[[nodiscard]] std::vector<std::string> differences(const std::map<std::string, std::string>& now,
+                                                   const std::map<std::string, std::string>& before);
+
+/// The first differences as one text, and the number of the others: "... and 3 more".
+[[nodiscard]] std::string differences_text(const std::vector<std::string>& differences);
 
 }  // namespace corda

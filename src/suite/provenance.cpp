@@ -12,35 +12,12 @@
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
 #include "corda/pipeline/provenance.hpp"
-#include "corda/scene/digest.hpp"
+#include "corda/scene/write_scene.hpp"
 
 namespace corda::suite {
 namespace {
 
 constexpr std::size_t kDigits = 16;  // of a double's bits
-
-/// The lines of a TOML table as one inline table.
-std::string inlined(std::string_view lines) {
-    std::string table = "{";
-    std::string bodies;
-    bool in_bodies = false;
-    while (!lines.empty()) {
-        const std::size_t end = std::min(lines.find('\n'), lines.size());
-        const std::string_view line = lines.substr(0, end);
-        lines.remove_prefix(std::min(end + 1, lines.size()));
-        if (line.empty() || line == "[solver]") continue;
-        if (line == "[[solver.bodies]]") {
-            bodies += bodies.empty() ? "{" : "}, {";
-            in_bodies = true;
-            continue;
-        }
-        std::string& target = in_bodies ? bodies : table;
-        if (target.back() != '{') target += ", ";
-        target += line;
-    }
-    if (in_bodies) table += fmt::format(", bodies = [{}}}]", bodies);
-    return table + "}";
-}
 
 std::string hash_of(const std::vector<double>& values) {
     std::uint64_t hash = 0xcbf29ce484222325U;
@@ -74,12 +51,11 @@ std::vector<double> from_hex(std::string_view text) {
 }  // namespace
 
 Provenance provenance_of(const Film& film, double time_s) {
-    const std::string toml = frozen_toml(film);
     const CameraDef& camera = film.camera();
     Provenance made{.version = std::string(version()),
                     .scene = printable(film.scene().name),
                     .renderer = film.gl().renderer,
-                    .solver = "solver=" + inlined(std::string_view(toml).substr(0, toml.find("\n[camera]"))),
+                    .solver = solver_setting(frozen_scene(film)),
                     .center = fmt::format("camera.center=[{}, {}]", camera.center_m->x, camera.center_m->y),
                     .height = fmt::format("camera.height={}", *camera.height_m),
                     .margin = fmt::format("{}", camera.margin),
@@ -170,7 +146,8 @@ std::string scene_change(const std::string& reference, const Scene& now) {
         return all;
     };
     try {
-        return first_difference(of_pixels(now), of_pixels(scene_of(read_provenance(reference), reference)));
+        return differences_text(
+            differences(of_pixels(now), of_pixels(scene_of(read_provenance(reference), reference))));
     } catch (const Error&) {  // of another Corda, whose scenes this one does not read
         return "";
     }

@@ -48,8 +48,9 @@ struct Provenance {
 /// open: a method or a camera that the scene names is what a golden test checks.
 [[nodiscard]] std::vector<Setting> freezing(const Scene& scene, const Provenance& made);
 
-/// What a picture's scene says that the one of a kept picture did not, as "world.drag is 0.2 and was 0": the
-/// first of what may change pixels. Empty if there is nothing, or the kept picture does not tell its scene.
+/// The changes of a scene since its picture was kept, of the keys that may change pixels: "world.drag is 0.2
+/// and was 0, rope[0].hang.links is 31 and was 30". Empty if there are none, or the kept picture does not
+/// carry its scene.
 [[nodiscard]] std::string scene_change(const std::string& reference, const Scene& now);
 
 /// Why two pictures may differ, in words: from what is most likely the cause.

@@ -106,8 +106,8 @@ struct OverlayDef {
 
 /// Where the camera looks. What is not given is fitted to the whole motion.
 struct CameraDef {
-    std::optional<Vec2> center_m;    ///< middle of the picture, in world coordinates; finite
-    std::optional<double> height_m;  ///< height of the picture in metres, > 0 and finite
+    std::optional<Vec2> center_m;    ///< middle of the picture, in world coordinates; -1e9 .. 1e9
+    std::optional<double> height_m;  ///< height of the picture in metres, 1e-9 .. 4e9
     double margin = 0.08;            ///< free border at each edge, as a share of the shorter side; 0 .. 0.45
 };
 

@@ -149,4 +149,12 @@ void Font::write(const Text& text, DrawList& list) {
     list.texts.push_back(text);
 }
 
+std::string missing_glyph(const std::string& text) {
+    const std::string missing = text.empty() ? "" : Font().missing(text);
+    const bool is_one = missing.find(',') == std::string::npos;
+    return missing.empty() ? ""
+                           : "the font, DejaVu Sans, has no " + missing + "; leave " +
+                                 (is_one ? "that character" : "these characters") + " out";
+}
+
 }  // namespace corda::view

@@ -38,4 +38,8 @@ class Font {
     std::unique_ptr<Impl> impl_;
 };
 
+/// Why a text cannot be drawn: "the font, DejaVu Sans, has no U+1F9F6; leave that character out". Empty if it
+/// can.
+[[nodiscard]] std::string missing_glyph(const std::string& text);
+
 }  // namespace corda::view

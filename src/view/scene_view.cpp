@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "corda/view/slack.hpp"
-#include "corda/view/validate.hpp"
 
 namespace corda::view {
 namespace {
@@ -59,7 +58,7 @@ SceneView::SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& st
                      const std::vector<BodyStyleDef>& body_styles, int width, int height)
     : system_(&system),
       gravity_m_s2_(gravity_m_s2),
-      style_((validate(style, body_styles), style)),
+      style_(style),
       look_(look_of(style)),
       width_(width),
       height_(height),

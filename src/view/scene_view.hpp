@@ -26,7 +26,7 @@ namespace corda::view {
 class SceneView {
   public:
     /// `body_styles` has an entry per body of `system`; one that is missing overrides nothing. `system` must
-    /// outlive this. Throws corda::Error (kInvalidScene) for a style that validate() refuses.
+    /// outlive this.
     SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& style,
               const std::vector<BodyStyleDef>& body_styles, int width, int height);
 

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "corda/scene/keys.hpp"
+#include "corda/scene/schema.hpp"
 #include "support/command.hpp"
 
 namespace corda {

@@ -153,7 +153,7 @@ TEST_F(Resume, RefusesAPartOfAnotherRenderNamingTheDifference) {
                 HasSubstr("video.crf is 30 and was not given"));
     EXPECT_THAT(refused({}), HasSubstr("frames is 0:600 and was 0:36000"));
     EXPECT_THAT(refused({"--duration", "600", "--set", "rope[0].mass=2"}),
-                HasSubstr("rope[0].mass has other values"));
+                HasSubstr("rope[0].mass is 2 and was 1"));
     EXPECT_THAT(refused({"--duration", "600", "--frames", "0:300"}),
                 HasSubstr("frames is 0:300 and was 0:36000"));
     EXPECT_THAT(run_corda(render("a.mp4")).err, HasSubstr("resume it (--resume)"));

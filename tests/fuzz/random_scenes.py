@@ -194,7 +194,7 @@ def limit_memory():
 
 
 def run(command):
-    """Returns the exit status and what was written to stderr; the status is "hangs" if SIGTERM is not answered."""
+    """Returns the exit status and the text on stderr; the status is "hangs" if SIGTERM is not answered."""
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, preexec_fn=limit_memory)
     try:
         return process.wait(TIME_S), process.stderr.read()

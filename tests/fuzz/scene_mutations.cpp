@@ -6,9 +6,11 @@
 #include <random>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "corda/core/basics.hpp"
 #include "corda/scene/scene.hpp"
+#include "corda/scene/schema.hpp"
 
 namespace corda::scene {
 namespace {
@@ -268,6 +270,44 @@ TEST(SceneMutations, OfSettingsGiveASceneOrAnError) {
             FAIL() << "seed " << seed << ": " << error.what() << "\n" << setting;
         }
     }
+}
+
+/// Values at the limits of a key, beyond them, and of other types.
+std::vector<std::string> values_of(const Key& key) {
+    const Range& range = key.type.range;
+    std::vector<std::string> values(kTokens.begin(), kTokens.begin() + 13);
+    for (const double bound : {range.low, range.high, range.low - 1.0, 2.0 * range.high}) {
+        const std::string number = number_text(bound);
+        values.insert(values.end(), {number, "[" + number + "]", "[" + number + ", " + number + "]",
+                                     "[[" + number + ", 1], [0, " + number + "]]"});
+    }
+    for (const std::string_view word : key.type.choices) values.emplace_back(word);
+    if (!key.binding.initial.toml.empty()) values.push_back(key.binding.initial.toml);
+    values.insert(values.end(),
+                  {"true", "\"red\"", "[\"red\", \"#00000000\"]", "\"\"", "[]", "{}", "1e-5", "3"});
+    return values;
+}
+
+TEST(SceneMutations, OfEveryKeyGiveASceneOrAnError) {
+    int scenes = 0;
+    for (const Key& key : all_keys()) {
+        std::string path = path_of(key);
+        while (path.find("[]") != std::string::npos) path.replace(path.find("[]"), 2, "[0]");
+        for (const std::string& value : values_of(key)) {
+            const Setting setting = path + "=" + value;
+            for (const std::string_view scene : kScenes) {
+                try {
+                    static_cast<void>(parse_scene(scene, "mutation.toml", {setting}));
+                    ++scenes;
+                } catch (const Error& error) {
+                    ASSERT_EQ(error.code(), ExitCode::kInvalidScene) << setting;
+                } catch (const std::exception& error) {
+                    FAIL() << error.what() << "\n" << setting;
+                }
+            }
+        }
+    }
+    EXPECT_GT(scenes, 1000);
 }
 
 }  // namespace

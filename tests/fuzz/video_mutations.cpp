@@ -91,7 +91,7 @@ class VideoMutations : public testing::Test {
         return test::read_file(path);
     }
 
-    /// Verifies that many damaged copies; returns how many of them `verify` calls sound, and counts crashes.
+    /// Verifies damaged copies; returns the number that `verify` accepts, and counts crashes.
     int sound_copies(const std::string& video, std::uint32_t runs) {
         int sound = 0;
         for (std::uint32_t seed = 0; seed < runs; ++seed) {

@@ -159,8 +159,8 @@ TEST_F(RenderVideo, ChecksTheOutputBeforeItSimulates) {
 }
 
 TEST_F(RenderVideo, ChecksTheVideoBeforeItSimulates) {
-    for (const auto& spoil : std::vector<void (*)(VideoDef&)>{[](VideoDef& v) { v.encoder.codec = "gif"; },
-                                                              [](VideoDef& v) { v.encoder.crf = 0; },
+    for (const auto& spoil : std::vector<void (*)(VideoDef&)>{[](VideoDef& v) { v.encoder.codec = "ffv1"; },
+                                                              [](VideoDef& v) { v.encoder.crf = 52; },
                                                               [](VideoDef& v) { v.width_px = 97; }}) {
         Scene scene = parse_scene(kVideoRope, "film.toml");
         spoil(scene.video);

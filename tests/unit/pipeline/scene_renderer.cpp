@@ -50,7 +50,7 @@ TEST(Stages, RefuseWhatCannotBeDrawn) {
     const auto code_of = [](void (*spoil)(Scene&)) {
         Scene scene = scene_of(16, 16);
         spoil(scene);
-        return test::failure_of([&] { const Show show(scene); }).code;
+        return test::failure_of([&] { const Renderer renderer(scene); }).code;
     };
     EXPECT_EQ(code_of([](Scene&) {}), ExitCode::kOk);
     EXPECT_EQ(code_of([](Scene& s) { s.video.height_px = 0; }), ExitCode::kInvalidScene);

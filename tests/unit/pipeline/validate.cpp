@@ -20,10 +20,12 @@ TEST(ValidScenes, HaveFromOneFrameToTheLimit) {
         return failure_of([&] { validate(scene, {}); }).code;
     };
     EXPECT_EQ(code_of(10.0, {60, 1}), ExitCode::kOk);
-    EXPECT_EQ(code_of(1e-9, {1, 1'000'000'000}), ExitCode::kInvalidScene);
-    EXPECT_EQ(code_of(1e16, {1, 1'000'000'000}), ExitCode::kOk);
-    EXPECT_EQ(code_of(1.0, {10'000'000, 1}), ExitCode::kOk);
-    EXPECT_EQ(code_of(1.0, {10'000'001, 1}), ExitCode::kInvalidScene);
+    EXPECT_EQ(code_of(1e-9, {1, 1000}), ExitCode::kInvalidScene);
+    EXPECT_EQ(code_of(1e10, {1, 1000}), ExitCode::kOk);
+    EXPECT_EQ(code_of(1.001e10, {1, 1000}), ExitCode::kInvalidScene);
+    EXPECT_EQ(code_of(100.0, {100'000, 1}), ExitCode::kOk);
+    EXPECT_EQ(code_of(101.0, {100'000, 1}), ExitCode::kInvalidScene);
+    EXPECT_EQ(code_of(1.0, {100'001, 1}), ExitCode::kInvalidScene);
     EXPECT_EQ(code_of(1.0, {1'000'000'001, 1000}), ExitCode::kInvalidScene);
     EXPECT_EQ(code_of(1.0, {1, -1}), ExitCode::kInvalidScene);
 }

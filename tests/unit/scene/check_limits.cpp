@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "corda/scene/check_limits.hpp"
-#include "corda/scene/limits.hpp"
+#include "corda/scene/schema.hpp"
 #include "unit/scene/support.hpp"
 
 namespace corda::scene {

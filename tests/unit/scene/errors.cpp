@@ -346,8 +346,6 @@ TEST(SceneErrors, Solver) {
     expect_errors({
         {solver("method = \"relaxatoin\""),
          "swing.toml:4:10: solver.method: ", "\"relaxatoin\" is unknown; did you mean \"relaxation\"?"},
-        {solver("method = \"rope\""),
-         "swing.toml:4:10: solver.method: ", "\"rope\" is called rattle now; write \"rattle\""},
         {solver("method = \"magic\""), "swing.toml:4:10: solver.method: ",
          "\"magic\" is unknown; give one of: auto, exact, rattle, relaxation"},
         {method("rattle", "step = 0"),

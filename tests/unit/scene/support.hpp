@@ -11,7 +11,7 @@
 
 namespace corda::scene {
 
-/// What `parse_scene` throws for a text under the name "swing.toml".
+/// The error of `parse_scene` for a text named "swing.toml".
 struct SceneError {
     ExitCode code = ExitCode::kOk;
     std::string message = "no error";

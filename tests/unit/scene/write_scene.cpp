@@ -5,7 +5,6 @@
 
 #include <filesystem>
 
-#include "corda/scene/digest.hpp"
 #include "support.hpp"
 
 namespace corda {
@@ -15,7 +14,7 @@ namespace {
 std::string expect_round_trip(const Scene& scene) {
     const std::string toml = write_scene(scene);
     const Scene again = parse_scene(toml, "again.toml");
-    EXPECT_EQ(first_difference(digest(scene), digest(again)), "");
+    EXPECT_THAT(differences(digest(scene), digest(again)), testing::IsEmpty());
     EXPECT_EQ(write_scene(again), toml);
     return toml;
 }
@@ -78,6 +77,21 @@ TEST(WriteScene, StraightRopesAndGridsStayShort) {
     const std::string toml = expect_round_trip(grid);
     EXPECT_THAT(toml, testing::HasSubstr("grid = { columns = 200, rows = 100, from = [3, 0.1]"));
     EXPECT_LT(toml.size(), 1500U);  // measured: 760
+}
+
+TEST(WriteScene, KeepsTheShapesOfTheFile) {
+    const Scene scene = parse_scene(
+        "schema = 1\n[world]\ngravity = 1.62\n"
+        "[[rope]]\nhang = { links = 20, length = 1.5, angle_deg = 45 }\nmass = 0.1\n"
+        "[[net]]\ngrid = { columns = 3, rows = 1, spacing = 0.25, diagonals = false }\n",
+        "scene.toml");
+    const std::string toml = expect_round_trip(scene);
+    EXPECT_THAT(toml, testing::HasSubstr("\ngravity = 1.62\n"));
+    EXPECT_THAT(toml,
+                testing::HasSubstr("\nhang = { links = 20, length = 1.5, angle_deg = 45, from = [0, 0] }\n"));
+    EXPECT_THAT(toml, testing::HasSubstr("\nmass = 0.1\n"));
+    EXPECT_THAT(toml, testing::HasSubstr("\ngrid = { columns = 3, rows = 1, from = [0, 0], spacing = 0.25, "
+                                         "diagonals = false }\n"));
 }
 
 TEST(WriteScene, SceneFilledInCodeComesBack) {

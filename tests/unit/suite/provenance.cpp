@@ -40,6 +40,8 @@ TEST(SuiteProvenance, NamesTheKeyOfTheSceneThatChanged) {
     write_png(kept, Image(2, 2), to_png_info(provenance_of(film, 0.25), film, 0.25));
     EXPECT_EQ(scene_change(kept, swing().scene()), "");
     EXPECT_EQ(scene_change(kept, swing(5, {"world.drag=0.5"}).scene()), "world.drag is 0.5 and was 0");
+    EXPECT_EQ(scene_change(kept, swing(5, {"rope[0].hang.links=6", "world.drag=0.5"}).scene()),
+              "rope[0].hang.links is 6 and was 5, world.drag is 0.5 and was 0");
     EXPECT_EQ(scene_change(kept, swing(5, {"video.crf=30"}).scene()), "");  // of videos alone
     EXPECT_EQ(scene_change(kept, swing(5, {"video.shutter=0.5"}).scene()), "video.shutter is 0.5 and was 0");
     write_png(folder.file("plain.png"), Image(2, 2));

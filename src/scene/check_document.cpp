@@ -1,4 +1,4 @@
-#include "corda/scene/checker.hpp"
+#include "corda/scene/document.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -10,9 +10,8 @@
 #include "corda/core/image.hpp"
 #include "corda/core/nearest.hpp"
 #include "corda/core/text.hpp"
-#include "corda/scene/keys.hpp"
-#include "corda/scene/rate.hpp"
-#include "corda/scene/readers.hpp"
+#include "corda/scene/schema.hpp"
+#include "corda/scene/table_reader.hpp"
 
 namespace corda::scene {
 namespace {
@@ -53,7 +52,7 @@ class ValueChecker {
     [[nodiscard]] bool takes(unsigned forms) const { return (key_->type.forms & forms) != 0; }
 
     bool check_list(const toml::array& list, const std::string& path) const {
-        if (list.size() < key_->type.least_entries)
+        if (list.size() < key_->type.min_entries)
             return fail(list, path, list.empty() ? "the list is empty" : described(list));
         bool good = true;
         for (std::size_t i = 0; i < list.size(); ++i) {
@@ -118,17 +117,9 @@ class ValueChecker {
     }
 
     bool check_choice(const std::string& text, const toml::node& node, const std::string& path) const {
-        constexpr std::string_view kOldName = "rope";
-        constexpr std::string_view kNewName = RattleDef::kName;
         const auto& words = key_->type.choices;
         if (std::find(words.begin(), words.end(), text) != words.end()) return true;
         if (node.is_number()) return fail(node, path, fmt::format("{} is not allowed", text));
-        if (text == kOldName && std::find(words.begin(), words.end(), kNewName) != words.end()) {
-            problems_->add(
-                node.source(), path,
-                fmt::format("\"{}\" is called {} now; write \"{}\"", kOldName, kNewName, kNewName));
-            return false;
-        }
         const auto meant = nearest(text, words);
         if (!meant) return fail(node, path, fmt::format("\"{}\" is unknown", excerpt(text)));
         problems_->add(node.source(), path,
@@ -196,7 +187,7 @@ class TableChecker {
             toml::node* const node = table.get(key.name);
             if (node != nullptr && !check_value(key, *node, dotted(section, key.name), key_path)) {
                 table.erase(key.name);
-            } else if (node == nullptr && key.initial.required && problems_->is_sound(key_path)) {
+            } else if (node == nullptr && key.binding.initial.required && problems_->is_sound(key_path)) {
                 problems_->add(table.source(), key_path, fmt::format("missing; {}", remedy(key)));
             }
         }
@@ -222,7 +213,7 @@ class TableChecker {
         const auto has = [](const std::vector<std::string_view>& words, std::string_view word) {
             return std::find(words.begin(), words.end(), word) != words.end();
         };
-        const bool is_default = !solver.contains("method") && !method_key.initial.required;
+        const bool is_default = !solver.contains("method") && !method_key.binding.initial.required;
         const std::string method =
             is_default ? std::string(solver_name(SolverDef{})) : solver["method"].value_or(std::string());
         if (!has(method_key.type.choices, method) || !problems_->is_sound(dotted(path, "method"))) return;
@@ -293,6 +284,11 @@ void check_document(toml::table& document, Problems& problems) {
     const bool has_bodies = document.contains("rope") || document.contains("net");
     if (!has_bodies && problems.is_sound("rope") && problems.is_sound("net"))
         problems.add(document.source(), "rope", "missing; give one or more [[rope]] or [[net]]");
+}
+
+void check_value(const Key& key, const std::string& toml, const std::string& path, Problems& problems) {
+    const toml::table table = toml::parse("value = " + toml);
+    static_cast<void>(ValueChecker(key, problems).check(*table.get("value"), path));
 }
 
 }  // namespace corda::scene

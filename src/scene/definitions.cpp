@@ -1,0 +1,39 @@
+// Checks of definitions as a whole: the schema checks each value.
+#include <fmt/format.h>
+
+#include "corda/core/image.hpp"
+#include "corda/scene/readers.hpp"
+#include "corda/view/font.hpp"
+
+namespace corda::scene {
+
+std::vector<DefProblem> problems_of(const VideoDef& video) {
+    const std::int64_t pixels = std::int64_t{video.width_px} * video.height_px;
+    if (pixels <= kMaxPicturePx) return {};
+    return {{"size",
+             {},
+             fmt::format("{} x {} are {} pixels, over the limit of {}; give a smaller size", video.width_px,
+                         video.height_px, pixels, kMaxPicturePx)}};
+}
+
+std::vector<DefProblem> problems_of(const OverlayDef& overlay) {
+    const std::string missing = view::missing_glyph(overlay.title);
+    if (missing.empty()) return {};
+    return {{"title", {}, missing}};
+}
+
+std::vector<DefProblem> problems_of(const GoldenDef& golden) {
+    std::vector<DefProblem> problems;
+    for (std::size_t i = 1; i < golden.at_s.size(); ++i) {
+        if (golden.at_s[i] > golden.at_s[i - 1]) continue;
+        problems.push_back(
+            {"at", i,
+             fmt::format("{} s after {} s; give times that increase", golden.at_s[i], golden.at_s[i - 1])});
+    }
+    if (!is_picture_size(golden.width_px, golden.height_px))
+        problems.push_back(
+            {"size", {}, fmt::format("over the limit of {} pixels; give a smaller size", kMaxPicturePx)});
+    return problems;
+}
+
+}  // namespace corda::scene

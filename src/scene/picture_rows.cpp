@@ -1,0 +1,177 @@
+#include <fmt/format.h>
+
+#include "corda/core/image.hpp"
+#include "corda/media/format/format.hpp"
+#include "corda/scene/rows.hpp"
+
+namespace corda::scene {
+namespace {
+
+/// A picture size, in two members.
+template <class Def>
+Binding size_field() {
+    return custom_field<Def>(
+        [](const Value& value, Def& def) {
+            def.width_px = value.at(0).as<int>();
+            def.height_px = value.at(1).as<int>();
+        },
+        [](const Def& def) {
+            return toml_text(std::vector<int>{def.width_px, def.height_px});
+        });
+}
+
+Type picture_size() {
+    Type size = pair("[width, height]", {.low = 1, .high = kMaxSidePx});
+    size.kind = Kind::kInteger;
+    return size;
+}
+
+template <class T>
+Binding encoder(T EncoderDef::*member) {
+    return field_at<VideoDef>([member](auto& def) -> auto& { return def.encoder.*member; });
+}
+
+std::vector<Key> video_keys() {
+    const std::vector<std::string_view> presets = media::preset_names();
+    static const std::string size_note =
+        fmt::format("even for a video in 4:2:0; {} pixels in all at most", kMaxPicturePx);
+    return {
+        {"video", "size", picture_size(), "px", size_field<VideoDef>(), "the size of the picture", size_note},
+        {"video", "fps", of(Kind::kFrameRate, {.low = 1e-3, .high = 1e5}), "1/s", field(&VideoDef::fps),
+         "the frames per second", "up to three decimals; 29.97 is \"30000/1001\""},
+        {"video", "shutter", number({.low = 0.0, .high = 1.0}), "", field(&VideoDef::shutter),
+         "how long a frame is exposed, as a share of the time from frame to frame",
+         "for motion blur in videos; the exposure is centred on the frame's time"},
+        {"video", "subframes", integer(2, VideoDef::kMaxSubframes), "", field(&VideoDef::subframes),
+         "the number of pictures that a blurred frame is the mean of"},
+        {"video", "codec", one_of(media::codec_names()), "",
+         otherwise("the ending's", encoder(&EncoderDef::codec)), "the encoder",
+         "h264, h265, av1, vp9 and so on stand for libav's names"},
+        {"video", "preset", one_of({presets.begin(), presets.end()}), "",
+         otherwise("the encoder's", encoder(&EncoderDef::preset)),
+         "how long the encoder searches for a smaller file",
+         "words of H.264 and H.265; AV1 and VP9 count from 0, the slowest; the others have none"},
+        {"video", "crf", integer(1, EncoderDef::kMaxCrf), "",
+         otherwise("the encoder's", encoder(&EncoderDef::crf)), "the constant rate factor",
+         "1 is the best; up to 51 of H.264 and H.265"},
+        {"video", "pix", one_of({"auto", "420", "444", "rgba"}), "", encoder(&EncoderDef::pix),
+         "how pixels are stored", "444 sharpens coloured edges; browsers and QuickTime refuse H.264 so"},
+        {"video", "threads", integer(1, EncoderDef::kMaxThreads), "", encoder(&EncoderDef::threads),
+         "the number of threads of each encoder", "the bytes depend on it"},
+        {"video", "jobs", integer(0, EncoderDef::kMaxThreads), "", encoder(&EncoderDef::jobs),
+         "how many chunks of the video are made at a time", "0: one per core; the bytes do not depend on it"},
+    };
+}
+
+std::vector<Key> style_keys() {
+    const Type boolean = of(Kind::kBoolean);
+    const Type color = of(Kind::kColor);
+    const auto of_theme = [](const Binding& binding) { return otherwise("the theme's", binding); };
+    return {
+        {"style", "theme", one_of({"dark", "paper"}), "",
+         with_default(toml_text("dark"), field(&StyleDef::theme)), "the colours",
+         "every one below overrides it"},
+        {"style", "background", or_pair(of(Kind::kColor), "[top, bottom]"), "",
+         of_theme(field(&StyleDef::background)), "the background",
+         "with alpha for .png, .svg, .pdf and videos with alpha"},
+        {"style", "palette", list(Kind::kColor, 1), "", of_theme(field(&StyleDef::palette)),
+         "the colours that ropes, then nets take in turn"},
+        {"style", "color_by", one_of({"body", "tension", "speed", "strain", "link"}), "",
+         field(&StyleDef::color_by), "what colours tell",
+         "tension, speed and strain of each link by one scale for the whole film; link: the list in color"},
+        {"style", "rope_width_px", number(kWidthPx), "px",
+         otherwise("shorter side / 120, at least 2", field(&StyleDef::rope_width_px)), "the width of ropes"},
+        {"style", "net_width_px", number(kWidthPx), "px",
+         otherwise("half of ropes, at least 2", field(&StyleDef::net_width_px)),
+         "the width of the threads of nets"},
+        {"style", "payload", boolean, "", field(&StyleDef::payload), "payloads are balls",
+         "and so is every mass of ropes of up to 3 links"},
+        {"style", "supports", boolean, "", field(&StyleDef::supports), "pinned particles hang from plates",
+         "from rings if something rises above them"},
+        {"style", "halo", boolean, "", field(&StyleDef::halo), "a gap parts crossing bodies"},
+        {"style", "trail_s", number({.low = 0.0, .high = 3600.0}), "s", field(&StyleDef::trail_s),
+         "the time for which the path of the free end of a rope stays", "it fades; 0: not at all"},
+        {"style", "markers", one_of({"none", "pinned", "all"}), "", field(&StyleDef::markers),
+         "the particles with a marker"},
+        {"style", "marker_radius_px", number(kWidthPx), "px",
+         otherwise("grows with the width of the rope", field(&StyleDef::marker_radius_px)),
+         "the radius of markers"},
+        {"style", "pinned_color", color, "", of_theme(field(&StyleDef::pinned_color)),
+         "the markers of pinned particles"},
+        {"style", "free_color", color, "", of_theme(field(&StyleDef::free_color)),
+         "the markers of free particles"},
+        {"style", "bars", one_of({"none", "real", "all"}), "", field(&StyleDef::bars),
+         "the bars that are drawn apart"},
+        {"style", "bar_width_px", number(kWidthPx), "px",
+         otherwise("a quarter of the width of ropes", field(&StyleDef::bar_width_px)), "the width of bars"},
+        {"style", "real_bar_color", color, "", of_theme(field(&StyleDef::real_bar_color)),
+         "the bars between neighbours"},
+        {"style", "imaginary_bar_color", color, "", of_theme(field(&StyleDef::imaginary_bar_color)),
+         "the longer bars"},
+    };
+}
+
+std::vector<Key> overlay_keys() {
+    const Type boolean = of(Kind::kBoolean);
+    const auto if_large = [](std::optional<bool> OverlayDef::*member) {
+        return otherwise("true on an opaque background, from a shorter side of 160 px on", field(member));
+    };
+    return {
+        {"overlay", "time", boolean, "", if_large(&OverlayDef::time), "the time, at the lower left"},
+        {"overlay", "scale_bar", boolean, "", if_large(&OverlayDef::scale_bar),
+         "a scale bar, at the lower right"},
+        {"overlay", "legend", boolean, "", if_large(&OverlayDef::legend),
+         "the scale of style.color_by, at the upper right"},
+        {"overlay", "title", of(Kind::kText), "", field(&OverlayDef::title), "the title, at the upper left",
+         "shortened if it is too long"},
+        {"overlay", "energy", boolean, "", field(&OverlayDef::energy),
+         "the error of the energy, beside the time", "left out if there is no room"},
+        {"overlay", "method", boolean, "", field(&OverlayDef::method),
+         "the method and the bound of the displayed error, below the title"},
+        {"overlay", "plot", one_of({"none", "energy", "tip", "phase"}), "", field(&OverlayDef::plot),
+         "a live plot beside the picture",
+         "kinetic, potential and total energy; x and y of the first free end; its vx against x"},
+        {"overlay", "text_px", number({.low = 4.0, .high = 400.0}), "px",
+         otherwise("shorter side / 40, at least readable", field(&OverlayDef::text_px)),
+         "the size of the words at the edges"},
+    };
+}
+
+std::vector<Key> camera_keys() {
+    const auto fitted = [](const Binding& binding) { return otherwise("fits the whole motion", binding); };
+    return {
+        {"camera", "center", pair("[x, y]", kCoordinate), "m", fitted(field(&CameraDef::center_m)),
+         "the position in the middle of the picture"},
+        {"camera", "height", number({.low = 1e-9, .high = 4 * Limits::kCoordinateMetres}), "m",
+         fitted(field(&CameraDef::height_m)), "the height of the picture"},
+        {"camera", "margin", number({.low = 0.0, .high = 0.45}), "", field(&CameraDef::margin),
+         "the share of the shorter side left free at each edge"},
+    };
+}
+
+std::vector<Key> golden_keys() {
+    Type times = list(Kind::kNumber, 1);
+    times.range = kFrom0;
+    const auto exact = [](const Binding& binding) { return otherwise("only equal pictures pass", binding); };
+    return {
+        {"golden", "at", times, "s", required(field(&GoldenDef::at_s)), "the times of the pictures",
+         "increasing, none after world.duration"},
+        {"golden", "size", picture_size(), "px", size_field<GoldenDef>(), "the size of the pictures"},
+        {"golden", "max", number({.low = 0.0, .high = 255.0}), "", exact(field(&GoldenDef::max)),
+         "the largest difference of a channel that passes"},
+        {"golden", "share", number({.low = 0.0, .high = 1.0}), "", exact(field(&GoldenDef::share)),
+         "the share of differing pixels that passes", "given without golden.max it bounds the share alone"},
+    };
+}
+
+}  // namespace
+
+std::vector<Key> picture_rows() {
+    std::vector<Key> rows;
+    for (const std::vector<Key>& part :
+         {video_keys(), style_keys(), overlay_keys(), camera_keys(), golden_keys()})
+        rows.insert(rows.end(), part.begin(), part.end());
+    return rows;
+}
+
+}  // namespace corda::scene
