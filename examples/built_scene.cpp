@@ -1,4 +1,4 @@
-// A scene built in code: a rope of ten links with a heavy bob, stepped by the simulation alone, then drawn.
+// A scene built in code: a rope of ten links with a heavy bob, simulated without drawing, then drawn.
 // Usage: example_built_scene OUT.png
 
 #include <corda/corda.hpp>

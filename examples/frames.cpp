@@ -1,6 +1,5 @@
-// Frames in a loop, as an encoder or a viewer of one's own would take them: which share of the picture does
-// the rope cover?
-// Usage: example_frames SCENE.toml
+// Frames in a loop, for your own encoder or viewer. This program computes the share of the picture that the
+// rope covers. Usage: example_frames SCENE.toml
 
 #include <algorithm>
 #include <corda/corda.hpp>

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Draws the pictures of examples/README.md into examples/pictures, one per scene, and the animation of README.md. The
-# program is the argument, or the one that examples/swing.sh builds.
+# program is the argument; by default that of examples/swing.sh.
 # Usage: examples/gallery.sh [CORDA]
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)

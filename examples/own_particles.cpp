@@ -1,4 +1,4 @@
-// One's own particles drawn by Corda's renderer: a standing wave on a ring, from a formula.
+// Your own particles drawn by Corda's renderer: a standing wave on a ring, from a formula.
 // Usage: example_own_particles OUT.png
 
 #include <cmath>

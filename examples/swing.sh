@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds Corda and renders the main example to swing.mp4 in the current folder.
+# Installs missing packages, builds Corda and renders the main example to swing.mp4 in the current folder.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
@@ -9,7 +9,7 @@ preset=$root/build/release
 cmake --build "$preset"
 
 corda=$preset/corda
-# An existing video of these very inputs is kept: a second call does no needless work.
+# Keep a video that is newer than the program and the scene.
 if [[ -f swing.mp4 && swing.mp4 -nt "$corda" && swing.mp4 -nt "$root/examples/swing.toml" ]]; then
     echo "swing.mp4 is up to date"
     exit 0
