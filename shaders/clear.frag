@@ -1,5 +1,5 @@
 #version 450 core
-// Empties the masks, and the sums of a tinted layer.
+// Clears the masks, and the sums of a tinted layer.
 
 layout(location = 0) out vec2 mask;
 layout(location = 1) out vec4 sums;

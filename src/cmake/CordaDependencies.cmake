@@ -1,5 +1,5 @@
-# Every library Corda uses is a package of Debian 12 and 13; a missing one stops the configuration with its apt name.
-# src/cmake/setup.sh installs them all and gives a line of reason for each.
+# Every library is a package of Debian 12 and 13. A missing one stops the configuration with its apt name.
+# src/cmake/setup.sh installs them all and gives a reason for each.
 
 macro(corda_find_package name apt_package)
     find_package(${name} ${ARGN} QUIET)

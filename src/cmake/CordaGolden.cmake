@@ -1,7 +1,7 @@
 # corda_add_golden_tests(DIR <scenes> GOLDEN <references> [NAME <name>] [LABELS <labels>] [OPTIONS <arguments of corda golden>]):
-# a test that the scenes of a folder with a table [golden] are the pictures that are kept of them, and a target
-# update_<name> that writes the pictures anew. Both folders are relative to the source folder. What failed is shown by
-# <name>.html and <name>.xml (JUnit) in the binary folder. NAME is by default the name of the folder of references.
+# adds a test that compares the scenes of a folder that have a table [golden] with their kept pictures, and a target
+# update_<name> that rewrites the pictures. Both folders are relative to the source folder. Failures are shown in
+# <name>.html and <name>.xml (JUnit) in the binary folder. NAME defaults to the name of the folder of references.
 function(corda_add_golden_tests)
     cmake_parse_arguments(PARSE_ARGV 0 ARG "" "DIR;GOLDEN;NAME" "LABELS;OPTIONS")
     if(NOT ARG_DIR OR NOT ARG_GOLDEN OR ARG_UNPARSED_ARGUMENTS)

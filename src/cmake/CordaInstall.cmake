@@ -1,4 +1,4 @@
-# The public library, install rules, and what find_package(corda) and pkg-config read.
+# The public library, install rules, and the files for find_package(corda) and pkg-config.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -21,7 +21,7 @@ install(TARGETS corda_library EXPORT corda_targets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
 install(TARGETS corda RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
-# The README and the pages for users that it links to, at the same relative places.
+# The README and its pages for users, at the same relative places.
 foreach(page LICENSE README.md src/CHANGELOG.md src/cmake/LICENSES.md src/study/speed.png
         src/app/README.md src/golden/README.md src/media/README.md src/python/README.md src/scene/README.md src/study/README.md)
     cmake_path(GET page PARENT_PATH folder)
@@ -36,13 +36,13 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/corda-config.cmake.in
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/corda-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_SOURCE_DIR}/src/cmake/CordaGolden.cmake ${PROJECT_BINARY_DIR}/corda-config.cmake ${PROJECT_BINARY_DIR}/corda-config-version.cmake
     DESTINATION ${package_dir} COMPONENT development)
-# Users of a static libcorda link what it needs; a shared one carries its own.
+# Users of a static libcorda link its dependencies; a shared libcorda is linked with them.
 if(BUILD_SHARED_LIBS)
     set(CORDA_PC_REQUIRES Requires.private)
 else()
     set(CORDA_PC_REQUIRES Requires)
 endif()
-# From the folder of corda.pc, so that the installed tree can be moved.
+# Relative to the folder of corda.pc, so that the installed tree can be moved.
 set(pc_dir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig)
 cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX BASE_DIRECTORY ${pc_dir} OUTPUT_VARIABLE CORDA_PC_TO_PREFIX)
 configure_file(${CMAKE_CURRENT_LIST_DIR}/corda.pc.in ${PROJECT_BINARY_DIR}/corda.pc @ONLY)

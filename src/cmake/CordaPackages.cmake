@@ -1,6 +1,6 @@
-# What the program tells of itself, and Debian packages: `cpack --config build/release/CPackConfig.cmake`.
+# Generated documentation of the program, and Debian packages: `cpack --config build/release/CPackConfig.cmake`.
 
-# corda_install_output(<name> <destination> <arguments of corda>): installs what the program prints.
+# corda_install_output(<name> <destination> <arguments of corda>): installs the output of the program.
 function(corda_install_output name destination)
     set(file ${PROJECT_BINARY_DIR}/generated/share/${name})
     list(JOIN ARGN " " arguments)
@@ -36,7 +36,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME corda)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-# Loaded at run time, so dpkg-shlibdeps does not see it: OpenGL on the CPU.
+# OpenGL on the CPU, which is loaded at run time, so dpkg-shlibdeps does not see it.
 set(opengl "libegl1, libegl-mesa0, libopengl0, libgl1-mesa-dri")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${opengl}")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS gnuplot-nox)
@@ -45,7 +45,7 @@ with OpenGL on a machine without a screen, the same bytes on every run, and enco
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libcorda-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-# What a program needs to link the static library.
+# The dependencies of a program that links the static library.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libavcodec-dev, libavformat-dev, libavutil-dev, libswscale-dev, libx264-dev, libcairo2-dev, libegl-dev, \
 libwebp-dev, libegl-mesa0, libgl1-mesa-dri, libeigen3-dev, libepoxy-dev, libfmt-dev, libfreetype-dev, libpng-dev, libtomlplusplus-dev, \
 nlohmann-json3-dev, pkg-config")

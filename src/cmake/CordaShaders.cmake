@@ -1,5 +1,5 @@
 # corda_embed_shaders(<target> <files>): turns each shader file into a string constant of one generated source,
-# corda::render::shaders::k<Name><Stage>, so that the program needs no file beside it at run time.
+# corda::render::shaders::k<Name><Stage>, so that the program needs no other file at run time.
 set(CORDA_EMBED_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/embed_shaders.cmake)
 
 function(corda_embed_shaders target)

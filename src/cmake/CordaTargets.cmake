@@ -1,15 +1,15 @@
-# One library per folder of src. Its headers are reached as "corda/<folder>/<name>.hpp" through a link in the build tree
-# that belongs to that library alone, so a folder can include only what it links: the link line is the rule about who may
-# see whom.
+# One library per folder of src. Its headers are included as "corda/<folder>/<name>.hpp" through a link in the build tree
+# that belongs to this library only, so a folder can include only the libraries that it links: the link line defines the
+# allowed includes.
 
 add_library(corda_options INTERFACE)
 add_library(corda::options ALIAS corda_options)
 target_compile_options(corda_options INTERFACE
     -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor -Wold-style-cast
-    # GCC 12 sees overlapping copies in ordinary joining of strings (PR 105651), and GCC 12 to 14 an unset member in
+    # GCC 12 reports overlapping copies in ordinary string concatenation (PR 105651), and GCC 12 to 14 an unset member in
     # std::optional (PR 80635).
     $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict;-Wno-maybe-uninitialized>
-    # The same scene must give the same bytes on every CPU and by every compiler: no fused multiply-add.
+    # No fused multiply-add: the same scene must give the same bytes on every CPU and with every compiler.
     -ffp-contract=off)
 if(CORDA_WARNINGS_AS_ERRORS)
     target_compile_options(corda_options INTERFACE -Werror)
@@ -21,14 +21,14 @@ if(CORDA_SANITIZE)
     target_compile_definitions(corda_options INTERFACE CORDA_SANITIZE)
 endif()
 
-# corda_optimise(<folder>): for what runs long under CORDA_SANITIZE. The rest takes longer to optimise than to run.
+# corda_optimise(<folder>): optimises a folder under CORDA_SANITIZE. Others take longer to optimise than to run.
 function(corda_optimise folder)
     if(CORDA_SANITIZE)
         target_compile_options(corda_${folder}_objects PRIVATE -O1)
     endif()
 endfunction()
 
-# corda_link_sanitizer(<executable>): what an executable needs for readable reports under CORDA_SANITIZE.
+# corda_link_sanitizer(<executable>): makes the reports of an executable readable under CORDA_SANITIZE.
 function(corda_link_sanitizer target)
     if(NOT CORDA_SANITIZE)
         return()
@@ -40,9 +40,9 @@ function(corda_link_sanitizer target)
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:corda_keep_modules>)
 endfunction()
 
-# corda_add_library(<folder> [PUBLIC <targets>] [PRIVATE <targets>] [EXCEPT <file>]): all .cpp files of the folder and
-# those below it.
-# Compiled once, as objects, which the public library (corda_add_public_library) takes too.
+# corda_add_library(<folder> [PUBLIC <targets>] [PRIVATE <targets>] [EXCEPT <file>]): a library of all .cpp files in and
+# below the folder.
+# Compiled once, as objects that the public library (corda_add_public_library) uses, too.
 function(corda_add_library folder)
     cmake_parse_arguments(ARG "" "EXCEPT" "PUBLIC;PRIVATE" ${ARGN})
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
@@ -54,7 +54,7 @@ function(corda_add_library folder)
     add_library(corda_${folder} STATIC $<TARGET_OBJECTS:corda_${folder}_objects>)
     add_library(corda::${folder} ALIAS corda_${folder})
     foreach(target corda_${folder}_objects corda_${folder})
-        # A shared library exports what the public headers declare between visibility pragmas.
+        # A shared library exports the declarations between visibility pragmas in the public headers.
         set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON
             CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
         target_include_directories(${target} PUBLIC ${include_dir})
@@ -63,7 +63,7 @@ function(corda_add_library folder)
 endfunction()
 
 # corda_add_public_library(FOLDERS <folders> HEADERS <headers> PRIVATE <targets>): corda::corda, the one library that is
-# installed, from the objects of these folders; users see only these headers.
+# installed, from the objects of these folders. Users see only these headers.
 function(corda_add_public_library)
     cmake_parse_arguments(ARG "" "" "FOLDERS;HEADERS;PRIVATE" ${ARGN})
     add_library(corda_library)  # static, or shared with BUILD_SHARED_LIBS
@@ -75,7 +75,7 @@ function(corda_add_public_library)
     foreach(folder IN LISTS ARG_FOLDERS)
         target_sources(corda_library PRIVATE $<TARGET_OBJECTS:corda_${folder}_objects>)
     endforeach()
-    # In the build tree too, users of the library see the public headers alone.
+    # In the build tree, too, users of the library see only the public headers.
     set(include_dir ${PROJECT_BINARY_DIR}/include/public)
     file(REMOVE_RECURSE ${include_dir})
     foreach(header IN LISTS ARG_HEADERS)

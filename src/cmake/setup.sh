@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
-# Installs the packages that Corda needs of Debian 12 or 13; does nothing when all are there.
+# Installs the Debian 12 or 13 packages that Corda needs; does nothing if all are installed.
 # Usage: setup.sh [build|test|platforms|list]
-#   test        adds what only the tests use
-#   platforms   adds what builds and runs AArch64 programs here
-#   list        prints the packages of build, one a line, and installs nothing
+#   test        adds the packages of the tests
+#   platforms   adds the packages that build and run AArch64 programs here
+#   list        prints the packages of build, one per line, and installs nothing
 set -euo pipefail
 
 packages=(
     build-essential         # g++ 12 or 14: the compiler
     cmake                   # the build
     ninja-build             # runs the build on all cores
-    file                    # what cpack looks into programs with
+    file                    # used by cpack to examine programs
     pkg-config              # finds the libraries that ship no CMake package
     libepoxy-dev            # loads EGL and OpenGL functions on any driver
     libegl-dev              # the EGL headers that epoxy includes
@@ -19,8 +19,8 @@ packages=(
     libavcodec-dev          # the encoders and the decoders that check their output
     libavformat-dev         # muxers and demuxers of MP4, WebM, Matroska, GIF, APNG
     libavutil-dev           # frames and error texts of the two above
-    libswscale-dev          # decoded pictures as a player shows them, for their comparison
-    libx264-dev             # H.264, told which macroblocks did not change, which libavcodec cannot tell it
+    libswscale-dev          # converts decoded pictures like a player, for their comparison
+    libx264-dev             # H.264 with hints on unchanged macroblocks, which libavcodec cannot pass on
     libwebp-dev             # animated WebP, which libavcodec does not decode
     libeigen3-dev           # sparse factorisation for nets of bars
     libcairo2-dev           # stills as PDF
@@ -51,17 +51,17 @@ if [[ "${1:-build}" != build ]]; then
         libclang-rt-dev     # its sanitizers
         clang-tidy          # the static checks
         ffmpeg              # a second opinion on the videos: ffprobe
-        libxml2-utils       # whether pages and SVG are well formed: xmllint
+        libxml2-utils       # checks that pages and SVG are well formed: xmllint
         librsvg2-bin        # a second opinion on SVG: rsvg-convert
         poppler-utils       # a second opinion on PDF: pdftoppm
         python3-pytest      # the tests of the Python module
-        python3-pytest-xdist  # tests of users in several processes, each of which draws
+        python3-pytest-xdist  # user tests in several processes that draw
         jupyter-nbconvert   # runs the example notebook
-        python3-ipykernel   # in which it runs
+        python3-ipykernel   # the kernel of the notebook
         python3-jsonschema  # a second opinion on the JSON Schema of scenes
         chromium            # plays videos, and shows pages with scripts
-        mandoc              # whether the manual page is one
-        zsh                 # whether its completion parses
+        mandoc              # checks the manual page
+        zsh                 # checks its completion
         fish                # the same
         mmdebstrap          # new Debian systems to build and install in
     )
@@ -69,7 +69,7 @@ fi
 if [[ "${1:-build}" == platforms ]]; then
     packages+=(
         crossbuild-essential-arm64  # the compiler for AArch64
-        qemu-user-static    # runs what it makes
+        qemu-user-static    # runs its programs
     )
 fi
 
