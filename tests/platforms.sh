@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds Corda for other platforms, and fails unless what it makes there has the same bytes as what it makes here: golden
-# pictures, positions, stills and lossless videos. Videos whose encoders differ between releases must be sound to this
-# machine's program. Run as root, which makes new systems in TMPDIR.
+# Builds Corda for other platforms, and fails unless golden pictures, positions, stills and lossless videos have the same
+# bytes there as here. Videos whose encoders differ between releases must pass `verify` of this machine's program. Run as
+# root, which makes new systems in TMPDIR.
 # Usage: tests/platforms.sh [debian13|arm64]   (both without an argument)
 #   debian13   in a new Debian 13; with CORDA_TEST_LONG=1 with every test that runs there, by tests/run.sh
 #   arm64      for AArch64, cross-built with this machine's release, and run by qemu-user
@@ -19,8 +19,8 @@ cd "$root"
 # say TEXT: reports a finished step with the time so far.
 say() { printf 'platforms: %s (%d s)\n' "$1" "$SECONDS"; }
 
-# make_outputs FOLDER COMMAND...: writes what the program that the command runs makes: `same` must have the same bytes on
-# every platform; `sound` must be valid, and `frames` show the same.
+# make_outputs FOLDER COMMAND...: writes outputs of the program that the command runs. `same` must have the same bytes on
+# every platform, `sound` must be valid, and `frames` must show the same.
 make_outputs() {
     local to=$1 scene method
     shift
@@ -47,7 +47,7 @@ make_outputs() {
     "$@" render "${film[@]}" -o "$to/sound/swing.mov"
 }
 
-# check_outputs FOLDER NAME: fails unless they are as this machine's.
+# check_outputs FOLDER NAME: fails unless they agree with those of this machine.
 check_outputs() {
     local file
     diff -rq "$work/here/same" "$1/same" || { echo "platforms: $2 makes other bytes" >&2; return 1; }

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds Corda with warnings as errors and runs every test with ctest.
+# Installs missing packages, builds Corda with warnings as errors and runs every test with ctest.
 # Usage: tests/run.sh [--preset ci|asan|debug] [--long | --units] [-- CTEST ARGUMENTS]
 #   --long   the long form of the slow suites, and tests/platforms.sh
-#   --units  the tests of unit and fuzz alone
+#   --units  only the tests of unit and fuzz
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 preset=ci

@@ -34,7 +34,7 @@ trail_s = 0.0
 size = [480, 270]
 """
 SIZE = [480, 270]
-# Of a rate, the name and what is told to render.
+# Per frame rate: its name and the value for `render`.
 VIDEOS = {"h264.mp4": ["--fps", "60"], "ntsc.mp4": ["--fps", "30000/1001"], "av1.mp4": ["--fps", "30", "--codec", "av1"],
           "vp9.webm": ["--fps", "60"], "film.webm": ["--fps", "24000/1001"],
           # Chromium rounds the delays of an APNG to milliseconds.
@@ -43,7 +43,7 @@ SEEKS = 16
 
 
 def make_case(corda, scene, folder, name, options):
-    """Renders a video and its exact pictures; returns what the page needs to know of them."""
+    """Renders a video and its exact frames; returns their description for the page."""
     run = functools.partial(subprocess.run, check=True, stdout=subprocess.DEVNULL)
     pictures = name.replace(".", "_") + "/%04d.png"
     run([corda, "render", scene, "-q", "-o", os.path.join(folder, name), *options])
@@ -57,12 +57,12 @@ def make_case(corda, scene, folder, name, options):
 
 
 def played(folder):
-    """What the page posts after Chromium has played all."""
+    """The data that the page posts after Chromium has played everything."""
     posted = {}
     done = threading.Event()
 
     class Handler(http.server.SimpleHTTPRequestHandler):
-        """Serves the folder, with byte ranges, without which Chromium does not seek."""
+        """Serves the folder with byte ranges, which Chromium needs to seek."""
 
         def do_POST(self):
             posted["results"] = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
@@ -110,7 +110,7 @@ def played(folder):
 
 
 def faults_of(case, result):
-    """What is wrong with a video, as lines."""
+    """The problems of a video, as lines."""
     if "error" in result:
         return [result["error"]]
     faults = []

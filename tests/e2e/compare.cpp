@@ -25,7 +25,7 @@ class CompareFiles : public testing::Test {
   protected:
     std::string file(const std::string& name) { return folder_.file(name); }
 
-    /// A rectangle on a grey ground, 40x30.
+    /// A rectangle on a grey background, 40x30.
     static Image drawn(int left = 10, int level = 100, int width = 40) {
         Image image(width, 30);
         for (int y = 0; y < 30; ++y) {
@@ -57,7 +57,7 @@ class CompareFiles : public testing::Test {
         return nlohmann::json::parse(result.out, nullptr, false);
     }
 
-    /// A video by ffmpeg's own generator.
+    /// A video of ffmpeg's test source.
     std::string video(const std::string& name, const std::string& options) {
         const auto made = run_shell("ffmpeg -v error -f lavfi -i " + options + " " + file(name));
         EXPECT_EQ(made.exit_code, 0) << made.err;
@@ -111,7 +111,7 @@ TEST_F(CompareFiles, SixteenBitsGreyAndAlpha) {
     }
 }
 
-TEST_F(CompareFiles, OfSixteenBitsDifferByTheirLowerEight) {
+TEST_F(CompareFiles, SixteenBitFilesDifferInTheirLowerEightBits) {
     const std::string grey = "ffmpeg -v error -y -f rawvideo -pix_fmt rgb48be -s 12x12 -i ";
     for (const char* const name : {"a", "b"}) {
         std::string pixels(12 * 12 * 6, 'd');
@@ -128,18 +128,18 @@ TEST_F(CompareFiles, OfSixteenBitsDifferByTheirLowerEight) {
     EXPECT_NE(read_png(file("d.png")).pixel(1, 0)[0], read_png(file("d.png")).pixel(2, 0)[0]);
     EXPECT_EQ(code({a, b, "--max", "0.01"}), 0);
     EXPECT_DOUBLE_EQ(report({a, b})["max"].get<double>(), 1.0 / 257.0);
-    EXPECT_EQ(report({a, b})["ssim"], 1.0);  // of eight bits, of which all are equal
-    // And of 8 bits beside 16.
+    EXPECT_EQ(report({a, b})["ssim"], 1.0);  // computed from 8 bits, which are equal
+    // 8 bits against 16.
     ASSERT_EQ(run_shell("ffmpeg -v error -y -i " + a + " -pix_fmt rgb24 " + file("c.png")).exit_code, 0);
     EXPECT_EQ(report({a, file("c.png")})["max"], 0);
     EXPECT_EQ(code({b, file("c.png")}), 7);
 }
 
-TEST_F(CompareFiles, ColourSpacesThatAreIgnoredAreNamed) {
+TEST_F(CompareFiles, IgnoredColourSpacesAreNamed) {
     const std::string a = put("a.png", drawn());
     EXPECT_EQ(report({a, a})["notes"], nlohmann::json::array());
     const std::string png = test::read_file(a);
-    // Chunks that stand before the pixels, in place of sRGB and the gAMA and cHRM that belong to it.
+    // Chunks before the pixels that replace sRGB and its gAMA and cHRM.
     const std::string plain = test::without_chunks(png, {"sRGB", "gAMA", "cHRM"});
     const std::vector<std::array<std::string, 3>> chunks{
         {"gAMA", std::string("\0\1\x86\xa0", 4), "gAMA (1)"},
@@ -157,7 +157,7 @@ TEST_F(CompareFiles, ColourSpacesThatAreIgnoredAreNamed) {
     EXPECT_EQ(report({a, file("b.png")})["notes"].size(), 0U) << "sRGB overrides it";
 }
 
-TEST_F(CompareFiles, CorruptPicturesAreNoMismatch) {
+TEST_F(CompareFiles, CorruptPicturesAreErrorsNotMismatches) {
     const std::string a = put("a.png", drawn());
     std::string bytes = test::read_file(a);
     bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x55);
@@ -180,7 +180,7 @@ TEST_F(CompareFiles, SsimNeedsElevenPixels) {
     EXPECT_EQ(report({a, b})["ssim"], nullptr);
 }
 
-TEST_F(CompareFiles, NamesThatNoFileCanHaveAreNoInternalError) {
+TEST_F(CompareFiles, ImpossibleFileNamesAreNotInternalErrors) {
     const std::string a = put("a.png", drawn());
     EXPECT_EQ(code({a, file(std::string(300, 'n'))}), 6);
     EXPECT_EQ(run_corda({"golden", file(std::string(300, 'n')), "--dir", file("ref")}).exit_code, 6);
@@ -214,11 +214,11 @@ TEST_F(CompareFiles, VariantsInFolders) {
     ASSERT_EQ(json["files"].size(), 2U);
     EXPECT_EQ(json["files"][0]["variant"], "old-mesa");
     EXPECT_EQ(json["files"][1]["variant"], nullptr);
-    put("b/three.nvidia.png", drawn());  // a variant of nothing
+    put("b/three.nvidia.png", drawn());  // a variant without a picture
     EXPECT_EQ(code({file("a"), file("b")}), 7);
 }
 
-TEST_F(CompareFiles, FoldersInFolders) {
+TEST_F(CompareFiles, NestedFolders) {
     for (const std::string folder : {"a/deep/in", "b/deep/in"})
         std::filesystem::create_directories(file(folder));
     for (const std::string name : {"a/one.png", "b/one.png", "a/deep/in/two.PNG", "b/deep/in/two.PNG"})
@@ -226,7 +226,7 @@ TEST_F(CompareFiles, FoldersInFolders) {
     EXPECT_EQ(report({file("a"), file("b")})["files"].size(), 2U);
     std::filesystem::remove(file("b/deep/in/two.PNG"));
     put("b/deep/in/two.PNG", drawn(11));
-    // The second time the first one's differences are not compared.
+    // The second run does not compare the difference pictures of the first one.
     for (int i = 0; i < 2; ++i)
         EXPECT_EQ(code({file("a"), file("b"), "--diff", file("a/diff"), "--force"}), 7);
     EXPECT_TRUE(std::filesystem::exists(file("a/diff/deep/in/two.PNG")));
@@ -268,7 +268,7 @@ TEST_F(CompareFiles, VideosFrameByFrame) {
     EXPECT_EQ(report({a, b, "--variant", video("ref.other.mkv", source + lossless)})["variant"], "other");
 }
 
-TEST_F(CompareFiles, TheWorstFrameOfAVideoIsBeyondTheLimitsIfAnyIs) {
+TEST_F(CompareFiles, WorstFrameExceedsTheLimitsIfAnyFrameDoes) {
     const std::string black = "color=c=black:size=64x48:rate=25:duration=0.4,format=rgb24";
     const std::string lossless = " -c:v ffv1 -pix_fmt bgr0";
     const std::string a = video("a.mkv", black + lossless);
@@ -283,14 +283,14 @@ TEST_F(CompareFiles, TheWorstFrameOfAVideoIsBeyondTheLimitsIfAnyIs) {
     EXPECT_EQ(limited["failed_frames"], 1);
     EXPECT_EQ(limited["max"], 255);
     EXPECT_NEAR(limited["share"].get<double>(), 1600.0 / (64.0 * 48.0), 1e-12);
-    for (const char* const limit : {"max", "mean", "share"}) {  // as told, they are enough
+    for (const char* const limit : {"max", "mean", "share"}) {  // the reported values suffice as limits
         const auto told = report({a, b})[limit].get<double>();
         EXPECT_EQ(code({a, b, std::string("--") + limit, std::to_string(std::min(told + 1e-6, 255.0))}), 0)
             << limit;
     }
 }
 
-TEST_F(CompareFiles, VideosOfOtherCountsSizesRatesAndFormats) {
+TEST_F(CompareFiles, VideosWithOtherCountsSizesRatesAndFormats) {
     const std::string a = video("a.mp4", "testsrc=size=64x48:rate=25:duration=0.4 -pix_fmt yuv420p");
     const auto words = [&](const std::string& name, const std::string& options) {
         const auto result = run_corda({"compare", a, video(name, options), "--max", "255"});
@@ -308,7 +308,7 @@ TEST_F(CompareFiles, VideosOfOtherCountsSizesRatesAndFormats) {
     EXPECT_EQ(code({a, exact, "--mean", "10"}), 0);
 }
 
-TEST_F(CompareFiles, AnimationsOfThreeKindsAreEqualToTheExactVideo) {
+TEST_F(CompareFiles, AnimationsEqualTheLosslessVideo) {
     const auto render = [&](const std::string& name, const std::string& angle) {
         const auto made =
             run_corda({"render", CORDA_EXAMPLES "/first.toml", "-o", file(name), "--size", "160x96", "--fps",
@@ -324,7 +324,7 @@ TEST_F(CompareFiles, AnimationsOfThreeKindsAreEqualToTheExactVideo) {
         EXPECT_THAT(result.out, HasSubstr("equal: 9 frames"));
         EXPECT_EQ(code({same, render(std::string("b.") + ending, "31")}), 7);
     }
-    // Its colours are not exact; its rate is told by its times alone.
+    // Its colours are inexact; its rate follows from its times only.
     const auto gif = run_corda({"render", CORDA_EXAMPLES "/first.toml", "-o", file("a.gif"), "--size",
                                 "160x96", "--fps", "50", "--frames", "0:9"});
     EXPECT_EQ(gif.exit_code, 0) << gif.err;
@@ -339,8 +339,8 @@ TEST_F(CompareFiles, AnimationsOfThreeKindsAreEqualToTheExactVideo) {
     }
 }
 
-TEST_F(CompareFiles, TheTimesOfAnApngAreThoseOfItsExactDelays) {
-    // libav rounds 1/240 s to 417 of 100 000: by 480 frames that was 1.6 ms.
+TEST_F(CompareFiles, ApngTimesFollowFromExactDelays) {
+    // libav rounds 1/240 s to 417 of 100 000, an error of 1.6 ms after 480 frames.
     for (const char* const name : {"a.apng", "a.mkv"}) {
         const auto made = run_corda({"render", CORDA_EXAMPLES "/first.toml", "-o", file(name), "--size",
                                      "32x32", "--fps", "240", "--frames", "0:480"});
@@ -350,7 +350,7 @@ TEST_F(CompareFiles, TheTimesOfAnApngAreThoseOfItsExactDelays) {
     EXPECT_EQ(result.exit_code, 0) << result.out;
 }
 
-TEST_F(CompareFiles, SizesThatChangeAmidAVideo) {
+TEST_F(CompareFiles, SizeChangesWithinAVideo) {
     const auto made =
         run_shell("cd " + test::quoted(file("")) +
                   " && for size in 64x48 32x48; do ffmpeg -v error -f lavfi -i "
@@ -363,7 +363,7 @@ TEST_F(CompareFiles, SizesThatChangeAmidAVideo) {
     EXPECT_THAT(result.out, HasSubstr("different sizes: 32x48 and 64x48"));
 }
 
-TEST_F(CompareFiles, DamagedVideosEndInOrder) {
+TEST_F(CompareFiles, DamagedVideosAreReported) {
     const std::string a = video("a.mp4", "testsrc=size=64x48:rate=25:duration=0.4 -c:v mpeg4 -bf 2");
     std::string bytes = test::read_file(a);
     const std::size_t data = bytes.find("mdat");

@@ -30,7 +30,7 @@ class Drivers : public testing::Test {
     std::string scene_ = folder_.write("scene.toml", kSceneOfDrivers);
 };
 
-TEST_F(Drivers, ThatDrawNothingAreFound) {
+TEST_F(Drivers, ThatDrawNothingAreDetected) {
     const auto result = still("GALLIUM_NOOP=1");
     EXPECT_EQ(result.exit_code, 4);
     EXPECT_THAT(result.err, AllOf(HasSubstr("the driver draws wrongly: pixel ("), HasSubstr("Driver: NOOP"),
@@ -48,13 +48,13 @@ TEST_F(Drivers, AreCertifiedByDoctor) {
     EXPECT_THAT(run_corda({"doctor", "--json"}).out, HasSubstr("\"equals_reference\":"));
 }
 
-TEST_F(Drivers, ThatVariablesBreakAreRepairedByUnsettingThose) {
+TEST_F(Drivers, BrokenByVariablesWorkOnceTheseAreUnset) {
     for (const char* const variable :
          {"__EGL_VENDOR_LIBRARY_DIRS=/nonexistent", "__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent",
           "LIBGL_DRIVERS_PATH=/nonexistent", "GALLIUM_DRIVER=bogus", "GALLIUM_DRIVER=softpipe",
           "MESA_GL_VERSION_OVERRIDE=3.3", "MESA_GLSL_VERSION_OVERRIDE=330"}) {
         const auto result = still(variable);
-        // Mesa 25 has its drivers in one library, and does not look there.
+        // Mesa 25 has its drivers in one library and ignores this folder.
         if (std::string_view(variable).starts_with("LIBGL_DRIVERS_PATH") && result.exit_code == 0) continue;
         EXPECT_EQ(result.exit_code, 4) << variable;
         EXPECT_THAT(result.err,
@@ -65,7 +65,7 @@ TEST_F(Drivers, ThatVariablesBreakAreRepairedByUnsettingThose) {
 }
 
 // Mesa does not check the values of its variables: each of these crashed it (Mesa 22.3).
-TEST_F(Drivers, ThatVariablesCrashAreTriedInAChild) {
+TEST_F(Drivers, CrashedByVariablesAreProbedInAChild) {
     for (const char* const variable : {"MESA_EXTENSION_OVERRIDE=-GL_ARB_texture_float",
                                        "MESA_EXTENSION_OVERRIDE=-GL_ARB_framebuffer_object"}) {
         for (const auto& [command, words] :
@@ -82,8 +82,8 @@ TEST_F(Drivers, ThatVariablesCrashAreTriedInAChild) {
     }
 }
 
-// Without a cache of compiled shaders, as llvmpipe (Mesa 22.3) takes those of another width from it.
-TEST_F(Drivers, DrawWhateverTheWidthOfTheirVectors) {
+// Without a shader cache, because llvmpipe (Mesa 22.3) would take shaders of another width from it.
+TEST_F(Drivers, DrawWithAnyVectorWidth) {
     ASSERT_EQ(still("").exit_code, 0);
     const std::string picture = test::read_file(folder_.file("a.png"));
     for (const char* const width : {"0", "1", "3", "64", "128", "256", "512", "1024", "wide"}) {
@@ -93,7 +93,7 @@ TEST_F(Drivers, DrawWhateverTheWidthOfTheirVectors) {
     }
 }
 
-TEST_F(Drivers, WhoseLibrariesAreMissingAreNamedWithTheirPackage) {
+TEST_F(Drivers, WithMissingLibrariesAreNamedWithTheirPackage) {
     const auto hiding = [](const std::string& libraries) {
         return "LD_PRELOAD=" HIDDEN_LIBRARIES " CORDA_TEST_HIDES='" + libraries + "'";
     };
@@ -110,7 +110,7 @@ TEST_F(Drivers, WhoseLibrariesAreMissingAreNamedWithTheirPackage) {
     EXPECT_THAT(doctor.out, AllOf(HasSubstr("apt-get install libegl1"), HasSubstr("yes  .mkv: ffv1")));
 }
 
-TEST_F(Drivers, ThatAreNoneAreNamedByTheirFile) {
+TEST_F(Drivers, ThatAreInvalidAreNamedByTheirFile) {
     const auto result = still("LD_LIBRARY_PATH=" EMPTY_EGL_FOLDER);
     EXPECT_EQ(result.exit_code, 4);
     EXPECT_THAT(result.err, HasSubstr(EMPTY_EGL_FOLDER "/libEGL.so.1 has no function eglBindAPI"));

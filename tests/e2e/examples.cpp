@@ -1,4 +1,4 @@
-// The gallery: the program carries the examples, and each has its picture and its entry.
+// The gallery: the program contains the examples, and each has a picture and an entry.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 const std::string kFolder = CORDA_EXAMPLES "/";
 
-/// "init" with the scratch folder as the current one.
+/// Runs "init" in the scratch folder.
 test::CommandResult init_in(const test::ScratchFolder& folder, const std::string& arguments) {
     return test::run_shell("cd " + test::quoted(folder.path()) + " && " + test::quoted(CORDA_PROGRAM) +
                            " init " + arguments);

@@ -1,4 +1,4 @@
-// Every exit code of the program, from a real run.
+// Every exit code, from a real run of the program.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ TEST_F(ExitCodes, ZeroForSuccess) {
     EXPECT_EQ(run_corda({"render", "--help"}).exit_code, 0);
 }
 
-TEST_F(ExitCodes, ZeroForAnOptionTwiceOfWhichTheLastCounts) {
+TEST_F(ExitCodes, ZeroForARepeatedOptionWhoseLastValueCounts) {
     const auto result = run_corda({"render", scene_, "-o", video_, "--size", "64by64", "--frames", "0:9",
                                    "--size", "32x16", "--frames", "0:1"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -69,7 +69,7 @@ TEST_F(ExitCodes, TwoForUsage) {
     EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--set", "nonsense"}).exit_code, 2);
 }
 
-TEST_F(ExitCodes, SevenForEmptyPicturesIfTheyAreFailures) {
+TEST_F(ExitCodes, SevenForEmptyPicturesWithFailEmpty) {
     const std::vector<std::string> away{"--set", "camera.center=[100, 0]", "--set", "camera.height=2"};
     const auto run = [&](std::vector<std::string> arguments, const std::vector<std::string>& more) {
         arguments.insert(arguments.end(), more.begin(), more.end());
@@ -94,7 +94,7 @@ TEST_F(ExitCodes, SevenForEmptyPicturesIfTheyAreFailures) {
     EXPECT_THAT(run(render, away).err, HasSubstr("pictures are empty, the first at 0 s"));
 }
 
-TEST_F(ExitCodes, TwoForANumberThatIsNone) {
+TEST_F(ExitCodes, TwoForAnInvalidNumber) {
     struct Option {
         std::vector<std::string> arguments;
         const char* name;
@@ -130,7 +130,7 @@ TEST_F(ExitCodes, TwoForANumberThatIsNone) {
     EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});
 }
 
-TEST_F(ExitCodes, TwoForAWrongValueOfAnyOptionAndThreeForOneOfTheScene) {
+TEST_F(ExitCodes, TwoForAnInvalidOptionValueAndThreeForAnInvalidSceneValue) {
     const std::vector<std::pair<const char*, const char*>> options{
         {"--duration", "abc"}, {"--duration", "nan"}, {"--duration", "0"},    {"--duration", "1e99"},
         {"--crf", "0"},        {"--crf", "52"},       {"--crf", "x"},         {"--size", "0x10"},
@@ -144,7 +144,7 @@ TEST_F(ExitCodes, TwoForAWrongValueOfAnyOptionAndThreeForOneOfTheScene) {
     for (const char* const setting :
          {"video.crf=0", "world.duration=abc", "video.preset=fastest", "video.no=1"})
         EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--dry-run", "--set", setting}).exit_code, 3);
-    // A scene that is wrong without the option, too, is an invalid scene; one may come from a pipe.
+    // A scene that is invalid even without the option is an invalid scene; it may come from a pipe.
     EXPECT_EQ(run_corda({"simulate", scene_, "--duration", "0", "--set", "world.drag=-1"}).exit_code, 3);
     const std::string from_pipe = "cat " + scene_ + " | " + test::quoted(CORDA_PROGRAM) + " simulate - ";
     EXPECT_EQ(run_shell(from_pipe + "--duration abc").exit_code, 2);
@@ -186,7 +186,7 @@ TEST_F(ExitCodes, TwoForAnEmptyValue) {
     EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--dry-run"}, "CORDA_BACKEND=").exit_code, 0);
 }
 
-TEST_F(ExitCodes, TwoForAnEndingThatCannotBeWritten) {
+TEST_F(ExitCodes, TwoForAnUnsupportedExtension) {
     for (const char* const name : {"x.eps", "x.jpg", "-"}) {
         const std::string output = *name == '-' ? name : folder_.file(name);
         const auto result = run_corda({"still", scene_, "--at", "0", "-o", output});
@@ -197,12 +197,12 @@ TEST_F(ExitCodes, TwoForAnEndingThatCannotBeWritten) {
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_THAT(result.err, HasSubstr(".csv"));
     EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});
-    // What the messages advise works.
+    // The advice in the messages works.
     EXPECT_EQ(run_corda({"still", scene_, "--at", "0", "-o", folder_.file("dotted.v2/")}).exit_code, 0);
     EXPECT_EQ(run_corda({"simulate", scene_, "-o", "/dev/null"}).exit_code, 0);
 }
 
-TEST_F(ExitCodes, TwoForAFrameThatTheVideoDoesNotHave) {
+TEST_F(ExitCodes, TwoForAFrameBeyondTheVideo) {
     // 0.2 s at 30 per second: frames 0 .. 5; the motion ends at frame time 6.
     EXPECT_EQ(run_corda({"still", scene_, "--frame", "5", "-o", folder_.file("a.png")}).exit_code, 0);
     const auto result = run_corda({"still", scene_, "--frame", "6", "-o", folder_.file("b.png")});
@@ -215,7 +215,7 @@ TEST_F(ExitCodes, TwoForAFrameThatTheVideoDoesNotHave) {
     }
 }
 
-TEST_F(ExitCodes, TwoForMorePicturesThanAFolderIsFor) {
+TEST_F(ExitCodes, TwoForTooManyPicturesInOneFolder) {
     const auto result = run_corda({"still", scene_, "--duration", "10000", "--frame", ":100001", "-o",
                                    folder_.file("many"), "--dry-run"});
     EXPECT_EQ(result.exit_code, 2);
@@ -302,7 +302,7 @@ TEST_F(ExitCodes, SixForInputAndOutput) {
 }
 
 TEST_F(ExitCodes, SixWhenNoMoreCanBeWritten) {
-    // A file may grow to so many KiB: what a full disk looks like to a program.
+    // Limits the size of a file in KiB, which a program sees as a full disk.
     const auto render = [&](int kib) {
         return run_shell("trap '' XFSZ; ulimit -f " + std::to_string(kib) + "; " +
                          test::quoted(CORDA_PROGRAM) + " render " + scene_ + " -o " + video_ +
@@ -313,11 +313,11 @@ TEST_F(ExitCodes, SixWhenNoMoreCanBeWritten) {
     EXPECT_THAT(none.err, testing::Not(HasSubstr("which plays")));
     EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});
 
-    const auto some = render(400);  // of some 700
+    const auto some = render(400);  // of about 700
     EXPECT_EQ(some.exit_code, 6) << some.err;
     EXPECT_THAT(some.err, HasSubstr("the frames before are in '" + video_ + ".part', which plays; --resume"));
     EXPECT_THAT(folder_.files(), testing::Not(testing::Contains("out.mp4")));
-    // With room again, its advice works.
+    // Once space is available, the advice works.
     const auto resumed = run_shell(test::quoted(CORDA_PROGRAM) + " render " + scene_ + " -o " + video_ +
                                    " --size 640x360 --crf 1 --duration 8 --resume");
     EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
@@ -328,7 +328,7 @@ TEST_F(ExitCodes, SixWhenNoMoreCanBeWritten) {
     EXPECT_EQ(csv.exit_code, 6) << csv.err;
 }
 
-TEST_F(ExitCodes, SixForAFullDeviceAndAFolderThatNothingCanBeWrittenTo) {
+TEST_F(ExitCodes, SixForAFullDeviceAndAnUnwritableFolder) {
     EXPECT_EQ(run_shell(test::quoted(CORDA_PROGRAM) + " render " + scene_ + " -o - > /dev/full").exit_code,
               6);
     EXPECT_EQ(run_corda({"render", scene_, "-o", "/proc/out.mp4"}).exit_code, 6);
@@ -406,14 +406,14 @@ TEST_F(ExitCodes, SevenForADifferenceOrAProblem) {
     EXPECT_EQ(run_corda({"verify", a}).exit_code, 7);
 }
 
-/// Frames of a part file, counted by another program.
+/// Number of frames of a part file, counted by another program.
 int count_frames(const std::string& part) {
     const auto frames = run_shell(
         "ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 -f mp4 " + part);
     return std::atoi(frames.out.c_str());
 }
 
-TEST_F(ExitCodes, EightForADivergedSimulationKeepingWhatWasGood) {
+TEST_F(ExitCodes, EightForADivergedSimulationKeepingItsGoodFrames) {
     const std::vector<std::string> wild{"--set", "solver.method=relaxation", "--set",
                                         "solver.force=[1e300, 0.0]"};
     auto arguments = std::vector<std::string>{"render", scene_, "-o", video_};
@@ -421,7 +421,7 @@ TEST_F(ExitCodes, EightForADivergedSimulationKeepingWhatWasGood) {
     const auto result = run_corda(arguments);
     EXPECT_EQ(result.exit_code, 8) << result.err;
     EXPECT_THAT(result.err, HasSubstr("out.mp4.part"));
-    // The start and the first step, which is Euler's and does not know the force yet.
+    // The start and the first step, an Euler step without the force.
     EXPECT_EQ(count_frames(video_ + ".part"), 2);
     arguments[0] = "simulate";
     arguments[3] = folder_.file("out.csv");
@@ -442,7 +442,7 @@ TEST_F(ExitCodes, SeventyFiveWithoutMemory) {
 }
 #endif
 
-/// Starts a long render, sends `signal` once it draws, and returns its end.
+/// Starts a long render, sends `signal` once it draws, and returns its result.
 test::CommandResult interrupted_render(const std::string& signal, const std::string& scene,
                                        const std::string& video) {
     return run_shell(test::quoted(CORDA_PROGRAM) + " render " + scene + " -o " + video +
@@ -463,7 +463,7 @@ TEST_F(ExitCodes, OneHundredFortyThreeWhenTerminated) {
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.mp4.part", "scene.toml"}));
 }
 
-TEST_F(ExitCodes, OneHundredThirtyOfStillsSayingHowManyAreWritten) {
+TEST_F(ExitCodes, OneHundredThirtyForStillsWithTheNumberWritten) {
     std::string frames = "0";
     for (int k = 1; k < 300; ++k) frames += "," + std::to_string(k);
     const std::string stills = folder_.file("stills");

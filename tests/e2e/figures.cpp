@@ -54,7 +54,7 @@ Image on_white(Image image) {
     return image;
 }
 
-/// Averages of kFiner x kFiner pixels: other programs draw edges and lines of less than a pixel roughly.
+/// Averages of kFiner x kFiner pixels, because other programs draw edges and lines below one pixel coarsely.
 constexpr int kFiner = 4;
 Image averaged(const Image& fine) {
     Image image(fine.width() / kFiner, fine.height() / kFiner);
@@ -72,8 +72,8 @@ Image averaged(const Image& fine) {
     return image;
 }
 
-/// How far, in levels, a pixel of `other` is at most outside of what the same pixel of `image` and its eight
-/// neighbours range over.
+/// Maximum distance, in levels, of a pixel of `other` from the range of the same pixel of `image` and its
+/// eight neighbours.
 int largest_excess(const Image& image, const Image& other) {
     int largest = 0;
     for (int y = 0; y < image.height(); ++y) {
@@ -97,8 +97,8 @@ int largest_excess(const Image& image, const Image& other) {
 
 class Figures : public testing::Test {
   protected:
-    /// Runs `command` for a .png, a .svg and a .pdf, and expects that they show the same but for an edge's
-    /// pixel and that many levels.
+    /// Runs `command` for a .png, a .svg and a .pdf, and expects the same picture to within a pixel at edges
+    /// and the given number of levels.
     void expect_same_pictures(const std::vector<std::string>& command, int excess) const {
         for (const char* const name : {"a.png", "a.svg", "a.pdf"}) {
             auto words = command;
@@ -133,22 +133,22 @@ class Figures : public testing::Test {
     std::string scene_ = folder_.write("scene.toml", kSceneOfFigures);
 };
 
-TEST_F(Figures, AreTheSameAsPixelsAndAsLines) {
+TEST_F(Figures, LookTheSameAsPixelsAndAsVectors) {
     // Measured 8 levels as SVG and 11 as PDF.
     const std::string no_text = "overlay={time=false,scale_bar=false}";
     expect_same_pictures({"still", "--at", "0.4", "--set", no_text}, 14);
     expect_same_pictures({"strobe", "--at", "0,0.1,0.2,0.3", "--set", "style.theme=paper", "--set",
                           "style.background=#ffeedd", "--set", no_text},
                          14);
-    // Measured 47: other programs place and smooth glyphs in their own way.
+    // Measured 47: other programs place and smooth glyphs differently.
     expect_same_pictures({"still", "--at", "0.4"}, 60);
-    // Measured 51 and 33: rsvg-convert does not know textLength, and the hatch of small supports has
+    // Measured 51 and 33: rsvg-convert does not support textLength, and the hatch of small supports has
     // overlapping edges, whose coverages Corda does not add.
     expect_same_pictures({"sheet", "--at", "0,0.1,0.2,0.3", "--columns", "3"}, 70);
 }
 
-TEST_F(Figures, AreTheSameOnTransparentGrounds) {
-    // A halo in a PDF removes all that is below it, even that of a see-through rope.
+TEST_F(Figures, LookTheSameOnTransparentGrounds) {
+    // A halo in a PDF removes everything below it, even the halo of a translucent rope.
     const std::vector<std::string> clear{"--set", "style.background=transparent", "--set",
                                          "rope[1].color=#e08000"};
     std::vector<std::string> command{"still", "--at", "0.4"};
@@ -156,7 +156,7 @@ TEST_F(Figures, AreTheSameOnTransparentGrounds) {
     expect_same_pictures(command, 14);
 }
 
-TEST_F(Figures, AreTheSameInColoursOfLinks) {
+TEST_F(Figures, LookTheSameInLinkColours) {
     const std::string no_text = "overlay={time=false,scale_bar=false,legend=false}";
     // Measured 10 levels as SVG and 12 as PDF.
     const std::string two = "rope[0].color=[\"#e69f00\",\"#56b4e9\"]";
@@ -209,7 +209,7 @@ TEST_F(Figures, HaveTheSameBytesOnEveryRun) {
     }
 }
 
-TEST_F(Figures, NeedNoOpenGlAsLines) {
+TEST_F(Figures, NeedNoOpenGlAsVectors) {
     const std::string none = "CORDA_BACKEND=device:63";
     EXPECT_EQ(run_corda({"still", scene_, "--at", "0", "-o", folder_.file("a.png")}, none).exit_code, 4);
     for (const char* const name : {"a.svg", "a.pdf"}) {
@@ -250,7 +250,7 @@ TEST_F(Figures, HaveTheirSizeInPrint) {
     EXPECT_THAT(huge.err, HasSubstr("choose another width or --ppi"));
 }
 
-TEST_F(Figures, ReportAsStillsDo) {
+TEST_F(Figures, PrintTheSameReportAsStills) {
     const auto result =
         run_corda({"strobe", scene_, "--frame", "0:10,20", "-o", folder_.file("a.svg"), "--json"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
@@ -267,13 +267,13 @@ TEST_F(Figures, ReportAsStillsDo) {
     EXPECT_EQ(test::read_file(folder_.file("c.svg")), "");
 }
 
-TEST_F(Figures, OfOnePoseAreStills) {
+TEST_F(Figures, WithOnePoseEqualStills) {
     for (const char* const ending : {"svg", "pdf", "png"}) {
         const std::string still = folder_.file("a.") + ending;
         const std::string strobe = folder_.file("b.") + ending;
         ASSERT_EQ(run_corda({"still", scene_, "--at", "0.5", "-o", still}).exit_code, 0);
         ASSERT_EQ(run_corda({"strobe", scene_, "--at", "0.5", "-o", strobe}).exit_code, 0);
-        if (std::string_view(ending) == "png") {  // it says by what it was made
+        if (std::string_view(ending) == "png") {  // its text records the command
             EXPECT_TRUE(read_png(still) == read_png(strobe));
         } else {
             EXPECT_TRUE(test::read_file(still) == test::read_file(strobe)) << ending;

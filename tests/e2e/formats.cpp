@@ -27,7 +27,7 @@ fps = 25
 
 class FormatsOfRender : public testing::Test {
   protected:
-    /// Runs `corda render` with these words behind the scene; PROGRAM and DIR stand for what they say.
+    /// Runs `corda render` with these arguments after the scene; PROGRAM and DIR are replaced.
     [[nodiscard]] corda::test::CommandResult render(const std::string& output,
                                                     std::vector<std::string> more = {}) const {
         std::vector<std::string> words{"render", scene_, "-o", output};
@@ -43,7 +43,7 @@ class FormatsOfRender : public testing::Test {
 };
 
 TEST_F(FormatsOfRender, HaveTheSameBytesForAnyNumberOfJobs) {
-    // 38 frames are more than one chunk of every codec: 25 at most at this rate.
+    // 38 frames are more than one chunk for every codec: a chunk has at most 25 at this rate.
     for (const auto& [ending, codec] :
          std::vector<std::pair<std::string, std::string>>{{"mp4", "libx264"},
                                                           {"mp4", "libx265"},
@@ -92,7 +92,7 @@ TEST_F(FormatsOfRender, PicturesEqualStillsByteForByte) {
     EXPECT_TRUE(std::filesystem::exists(folder_.file("frames/f014.png")));
 }
 
-TEST_F(FormatsOfRender, PicturesOfALongerFilmAreWarnedOf) {
+TEST_F(FormatsOfRender, WarnsAboutPicturesOfALongerFilm) {
     const std::string pictures = folder_.file("f/%02d.png");
     EXPECT_EQ(render(pictures, {"--duration", "0.4"}).exit_code, 0);
     const auto shorter = render(pictures, {"--duration", "0.2", "--force"});
@@ -103,10 +103,10 @@ TEST_F(FormatsOfRender, PicturesOfALongerFilmAreWarnedOf) {
                     testing::Not(testing::HasSubstr("not part of this render")));
 }
 
-TEST_F(FormatsOfRender, StandardOutputTakesThePicturesAndNothingElse) {
+TEST_F(FormatsOfRender, StandardOutputContainsOnlyThePictures) {
     const std::string mkv = folder_.file("a.mkv");
     ASSERT_EQ(render(mkv).exit_code, 0);
-    // What ffmpeg reads from the pipe are the 38 frames, in the file's order and at its times.
+    // ffmpeg reads the 38 frames from the pipe, in the file's order and at its times.
     const auto piped =
         run_shell(command("-o - --pix rgba --jobs 2 | ffmpeg -v error -f rawvideo -pix_fmt rgba -s 96x64 "
                           "-r 25 -i - -f framemd5 -"));
@@ -127,7 +127,7 @@ TEST_F(FormatsOfRender, StandardOutputTakesThePicturesAndNothingElse) {
     EXPECT_EQ(json::parse(verified.out)["frames"], 38) << verified.out;
 }
 
-TEST_F(FormatsOfRender, AReaderThatHasEnoughEndsTheRunQuietly) {
+TEST_F(FormatsOfRender, AClosedPipeEndsRenderQuietly) {
     for (const char* const jobs : {"1", "2"}) {
         const auto result = run_shell("set -o pipefail; " + command("-o - -q --duration 60 --jobs ") + jobs +
                                       " | head -c 1000 | wc -c");
@@ -137,7 +137,7 @@ TEST_F(FormatsOfRender, AReaderThatHasEnoughEndsTheRunQuietly) {
     }
 }
 
-TEST_F(FormatsOfRender, AReaderOfStatesThatHasEnoughDoesSoToo) {
+TEST_F(FormatsOfRender, AClosedPipeEndsSimulateQuietly) {
     const auto result = run_shell("set -o pipefail; " + corda::test::quoted(CORDA_PROGRAM) + " simulate " +
                                   scene_ + " -o - -q --duration 600 | head -c 1000 | wc -c");
     EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -145,7 +145,7 @@ TEST_F(FormatsOfRender, AReaderOfStatesThatHasEnoughDoesSoToo) {
     EXPECT_EQ(result.err, "");
 }
 
-TEST_F(FormatsOfRender, OddSidesAreMadeEvenIfThatIsAsked) {
+TEST_F(FormatsOfRender, PadMakesOddSidesEven) {
     const auto refused = render(folder_.file("odd.mp4"), {"--size", "97x63"});
     EXPECT_EQ(refused.exit_code, 2);
     EXPECT_THAT(refused.err, HasSubstr("use a width of 96 or 98 and a height of 62 or 64 (render --pad"));
@@ -184,7 +184,7 @@ TEST_F(FormatsOfRender, WithoutX264AnotherEncoderIsUsedAndNamed) {
     EXPECT_THAT(doctor.out, HasSubstr("without libx264: this Corda was built without libx264"));
 }
 
-TEST_F(FormatsOfRender, AnEncoderOfHardwareThatDoesNotOpenIsRefusedBeforeTheWork) {
+TEST_F(FormatsOfRender, AnUnavailableHardwareEncoderIsRefusedBeforeDrawing) {
     const auto result = render(folder_.file("a.mp4"), {"--codec", "nvenc", "--size", "320x192", "--dry-run"});
     const bool has_chip = result.exit_code == 0;
     EXPECT_EQ(result.exit_code, has_chip ? 0 : 5);

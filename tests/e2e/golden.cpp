@@ -1,4 +1,4 @@
-// `corda golden`: suites that pass, fail for each cause, miss pictures and go stale.
+// `corda golden`: suites that pass, fail for each cause, lack pictures or have stale ones.
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -34,7 +34,7 @@ at = [0.0, 0.5, 1.0]
 
 constexpr const char* kMiddle = "swing_t0000_500000.png";
 
-/// A suite of one scene whose pictures are kept.
+/// A suite of one scene with kept pictures.
 class GoldenSuite : public testing::Test {
   protected:
     GoldenSuite() {
@@ -49,7 +49,7 @@ class GoldenSuite : public testing::Test {
         return test::run_corda(arguments);
     }
 
-    /// Writes a reference anew with other pixels or texts.
+    /// Rewrites a reference with other pixels or texts.
     template <typename Change>
     void change_reference(const std::string& name, Change change) const {
         Image image = read_png(reference(name));
@@ -63,14 +63,14 @@ class GoldenSuite : public testing::Test {
     test::ScratchFolder folder_;
 };
 
-TEST_F(GoldenSuite, PassesWithWhatItHasKept) {
+TEST_F(GoldenSuite, PassesWithItsOwnPictures) {
     const auto result = run({"--json"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_THAT(result.out, AllOf(HasSubstr("\"passed\": 3"), HasSubstr("\"failed\": 0"),
                                   HasSubstr("\"missing\": 0"), HasSubstr("\"stale\": 0")));
 }
 
-TEST_F(GoldenSuite, MissesEveryPictureOfAFolderThatIsNotThere) {
+TEST_F(GoldenSuite, ReportsAllPicturesOfAMissingFolder) {
     std::filesystem::remove_all(folder_.file("ref"));
     const auto result = run();
     EXPECT_EQ(result.exit_code, 7);
@@ -79,7 +79,7 @@ TEST_F(GoldenSuite, MissesEveryPictureOfAFolderThatIsNotThere) {
     EXPECT_FALSE(std::filesystem::exists(folder_.file("ref")));
 }
 
-TEST_F(GoldenSuite, PassesThoughThePictureSaysByWhichMethodItIs) {
+TEST_F(GoldenSuite, PassesWithTheMethodOverlay) {
     EXPECT_EQ(run({"--update", "--replan", "--set", "overlay.method=true"}).exit_code, 0);
     EXPECT_EQ(run({"--set", "overlay.method=true"}).exit_code, 0);
 }
@@ -88,7 +88,7 @@ TEST_F(GoldenSuite, PassesIfOnlyTheDurationGrows) {
     EXPECT_EQ(run({"--set", "world.duration=5"}).exit_code, 0);
 }
 
-TEST_F(GoldenSuite, TellsOtherPositionsFromAnotherCamera) {
+TEST_F(GoldenSuite, DistinguishesOtherPositionsFromAnotherCamera) {
     const auto drag = run({"--set", "world.drag=0.001"});
     EXPECT_EQ(drag.exit_code, 7);
     EXPECT_THAT(drag.out, AllOf(HasSubstr("1 picture passed"), HasSubstr("positions differ by 0.000"),
@@ -102,7 +102,7 @@ TEST_F(GoldenSuite, TellsOtherPositionsFromAnotherCamera) {
                                      "style.rope_width_px is 9 and was not given"));
 }
 
-TEST_F(GoldenSuite, TellsSinceWhenPositionsDifferThoughNoPixelDoes) {
+TEST_F(GoldenSuite, ReportsWhenPositionsBeginToDiffer) {
     const auto result = run({"--set", "world.drag=1e-6", "--set", "golden.max=1"});
     EXPECT_EQ(result.exit_code, 0);
     const auto more = run({"--set", "world.drag=3e-4", "--set", "golden.max=2"});
@@ -110,14 +110,14 @@ TEST_F(GoldenSuite, TellsSinceWhenPositionsDifferThoughNoPixelDoes) {
     EXPECT_THAT(more.out, AllOf(Not(HasSubstr("_500000.png")), HasSubstr("from t = 0.5 s on")));
 }
 
-TEST_F(GoldenSuite, TakesNoPositionsFromAReferenceThatTellsNone) {
+TEST_F(GoldenSuite, AcceptsAReferenceWithoutPositions) {
     change_reference("swing_t0000_000000.png", [](Image&, PngInfo& info) { info.text.clear(); });
     const auto result = run({"--set", "world.drag=0.3"});  // which the first picture does not show
     EXPECT_EQ(result.exit_code, 7);
     EXPECT_THAT(result.out, AllOf(HasSubstr("from t = 0.5 s on"), Not(HasSubstr("from t = 0 s on"))));
 }
 
-TEST_F(GoldenSuite, TellsAnotherVersionAndAnotherOpenGl) {
+TEST_F(GoldenSuite, ReportsAnotherVersionAndAnotherOpenGl) {
     const auto recolor = [](Image& image) { image.pixel(5, 5)[0] ^= 1U; };
     change_reference(kMiddle, [&](Image& image, PngInfo& info) {
         recolor(image);
@@ -134,7 +134,7 @@ TEST_F(GoldenSuite, TellsAnotherVersionAndAnotherOpenGl) {
     EXPECT_THAT(run().out, HasSubstr("drawn by another OpenGL: Voodoo, now"));
 }
 
-TEST_F(GoldenSuite, TellsAnotherSizeAndWhatCannotBeRead) {
+TEST_F(GoldenSuite, ReportsAnotherSizeAndUnreadableFiles) {
     const auto size = run({"--set", "golden.size=[64,36]"});
     EXPECT_EQ(size.exit_code, 7);
     EXPECT_THAT(size.out, HasSubstr("different; 320x180 pixels, now 64x36"));
@@ -159,11 +159,11 @@ TEST_F(GoldenSuite, SurvivesAnyTextInAReference) {
         }
     });
     const auto result = run({"-v"});
-    EXPECT_EQ(result.exit_code, 0) << result.err;  // planned anew, as when they were made
+    EXPECT_EQ(result.exit_code, 0) << result.err;  // planned again, with the same result
     EXPECT_THAT(result.err, HasSubstr("does not fit the scene any more"));
 }
 
-TEST_F(GoldenSuite, UpdatesOnlyWhatDiffersWithWhatIsFrozen) {
+TEST_F(GoldenSuite, UpdatesOnlyDifferingPicturesWithTheFrozenPlan) {
     const std::string first = test::read_file(reference("swing_t0000_000000.png"));
     const auto shown = run({"--update", "--dry-run", "--set", "world.drag=0.001"});
     EXPECT_EQ(shown.exit_code, 0);
@@ -181,7 +181,7 @@ TEST_F(GoldenSuite, UpdatesOnlyWhatDiffersWithWhatIsFrozen) {
     EXPECT_EQ(run({"--set", "world.drag=0.3"}).exit_code, 0);
 }
 
-TEST_F(GoldenSuite, AnUpdateFitsTheCameraAnewIfTheMotionLeavesTheFrame) {
+TEST_F(GoldenSuite, UpdateRefitsTheCameraIfTheMotionLeavesTheFrame) {
     const std::vector<std::string> higher{"--set", "rope[0].hang.angle_deg=170"};
     const auto with = [&](std::vector<std::string> more) {
         more.insert(more.end(), higher.begin(), higher.end());
@@ -192,13 +192,13 @@ TEST_F(GoldenSuite, AnUpdateFitsTheCameraAnewIfTheMotionLeavesTheFrame) {
     EXPECT_THAT(told.out, HasSubstr("it leaves the frozen frame, and --update fits another"));
     EXPECT_EQ(with({"--update"}).exit_code, 0);
     EXPECT_EQ(with({}).exit_code, 0);
-    // As if it had been fitted from the beginning.
+    // As if the camera had been fitted from the beginning.
     const Image kept = read_png(reference(kMiddle));
     EXPECT_EQ(with({"--update", "--replan"}).exit_code, 0);
     EXPECT_EQ(read_png(reference(kMiddle)), kept);
 }
 
-TEST_F(GoldenSuite, ChecksTheOthersBesideAnInvalidScene) {
+TEST_F(GoldenSuite, ChecksTheOtherScenesDespiteAnInvalidOne) {
     test::write_file(folder_.file("scenes/typo.toml"), "schema = 1\n[[rop]]\n");
     test::write_file(folder_.file("scenes/typo2.toml"), "schema = 1\n[worl]\n");
     const auto result = run({"--junit", folder_.file("j.xml"), "--set", "style.rope_width_px=9"});
@@ -210,13 +210,13 @@ TEST_F(GoldenSuite, ChecksTheOthersBesideAnInvalidScene) {
     EXPECT_EQ(run({"--update"}).exit_code, 3);
 }
 
-TEST_F(GoldenSuite, FindsScenesInFoldersInFolders) {
+TEST_F(GoldenSuite, FindsScenesInNestedFolders) {
     std::filesystem::create_directories(folder_.file("scenes/deep/in"));
     test::write_file(folder_.file("scenes/deep/in/other.toml"), std::string(kGoldenScene));
     EXPECT_THAT(run().out, HasSubstr("other_t0000_500000.png: missing"));
 }
 
-TEST_F(GoldenSuite, AFrozenCameraIsNotThatOfAnotherMargin) {
+TEST_F(GoldenSuite, IgnoresTheFrozenCameraIfTheMarginChanges) {
     EXPECT_THAT(run({"--set", "camera.margin=0.3"}).out, HasSubstr("same positions, other camera"));
 }
 
@@ -229,7 +229,7 @@ TEST_F(GoldenSuite, ChangesNothingIfAnUpdateFails) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.file("ref")), {}), 3);
 }
 
-TEST_F(GoldenSuite, RemovesWhatAKilledUpdateHasStagedAndNoFolderOfTheUser) {
+TEST_F(GoldenSuite, RemovesStagedFilesOfAKilledUpdateButNoUserFolder) {
     std::filesystem::create_directories(reference(".corda-golden-update/new"));
     test::write_file(reference(".corda-golden-update/corda-golden-update"), "");
     test::write_file(reference(".corda-golden-update/new/swing_t0009_000000.png"), "half a picture");
@@ -240,7 +240,7 @@ TEST_F(GoldenSuite, RemovesWhatAKilledUpdateHasStagedAndNoFolderOfTheUser) {
     EXPECT_EQ(test::read_file(reference(".update/mine")), "mine");
 }
 
-TEST_F(GoldenSuite, TheNextCheckCompletesAnUpdateThatWasKilled) {
+TEST_F(GoldenSuite, NextCheckCompletesAKilledUpdate) {
     const std::string kept = test::read_file(reference(kMiddle));
     std::filesystem::create_directories(reference(".corda-golden-update/new"));
     std::filesystem::create_directories(reference(".corda-golden-update/old"));
@@ -256,7 +256,7 @@ TEST_F(GoldenSuite, TheNextCheckCompletesAnUpdateThatWasKilled) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.file("ref")), {}), 3);
 }
 
-TEST_F(GoldenSuite, LetsOneUpdateWriteAtATime) {
+TEST_F(GoldenSuite, AllowsOneUpdateAtATime) {
     const std::string kept = test::read_file(reference(kMiddle));
     std::filesystem::create_directory(reference(".corda-golden-update"));
     const Descriptor other(
@@ -269,14 +269,14 @@ TEST_F(GoldenSuite, LetsOneUpdateWriteAtATime) {
     EXPECT_EQ(run().exit_code, 0);
 }
 
-TEST_F(GoldenSuite, LeavesPicturesOfOthersAlone) {
+TEST_F(GoldenSuite, KeepsPicturesThatItDidNotMake) {
     write_png(reference("swing_at_9.png"), Image(4, 4));
     EXPECT_EQ(run().exit_code, 0);
     EXPECT_EQ(run({"--update"}).exit_code, 0);
     EXPECT_TRUE(std::filesystem::exists(reference("swing_at_9.png")));
 }
 
-TEST_F(GoldenSuite, SaysWhichPicturesLostTheirRecord) {
+TEST_F(GoldenSuite, NamesPicturesThatLostTheirRecord) {
     std::filesystem::copy(reference(kMiddle), reference("gone_t0000_500000.png"));
     for (const char* const name : {kMiddle, "gone_t0000_500000.png"})
         change_reference(name, [](Image&, PngInfo& info) { info.text.clear(); });
@@ -293,7 +293,7 @@ TEST_F(GoldenSuite, SaysWhichPicturesLostTheirRecord) {
     EXPECT_THAT(again.err, Not(HasSubstr("no record")));
 }
 
-TEST_F(GoldenSuite, PassesOverTomlFilesOfOtherPrograms) {
+TEST_F(GoldenSuite, SkipsTomlFilesOfOtherPrograms) {
     test::write_file(folder_.file("scenes/pyproject.toml"), "[project]\nname = \"x\"\n");
     test::write_file(folder_.file("scenes/address.toml"), "schema = \"https://example.org/a.json\"\n");
     test::write_file(folder_.file("scenes/nested.toml"), "[tool.a]\nschema = 1\n");
@@ -308,16 +308,16 @@ TEST_F(GoldenSuite, PassesOverTomlFilesOfOtherPrograms) {
               3);
 }
 
-TEST_F(GoldenSuite, NamesALinkToNothingAndChecksTheOthers) {
+TEST_F(GoldenSuite, NamesADanglingLinkAndChecksTheOthers) {
     std::filesystem::create_symlink("nothing", folder_.file("scenes/link.toml"));
     const auto result = run({"--json"});
     EXPECT_EQ(result.exit_code, 3);
     EXPECT_THAT(result.out, HasSubstr("link.toml: a link to nothing"));
     EXPECT_GT(nlohmann::json::parse(result.out)["passed"], 0);
-    EXPECT_EQ(run({"--update"}).exit_code, 3);  // or the pictures of that scene would be removed
+    EXPECT_EQ(run({"--update"}).exit_code, 3);  // otherwise the pictures of that scene would be removed
 }
 
-TEST_F(GoldenSuite, NamesAFolderThatIsWhereAPictureIsToBe) {
+TEST_F(GoldenSuite, NamesAFolderInPlaceOfAPicture) {
     std::filesystem::remove(reference(kMiddle));
     std::filesystem::create_directory(reference(kMiddle));
     for (const auto& options : {std::vector<std::string>{}, {"--update"}}) {
@@ -327,13 +327,13 @@ TEST_F(GoldenSuite, NamesAFolderThatIsWhereAPictureIsToBe) {
                     AllOf(HasSubstr(kMiddle), HasSubstr("is a folder"), HasSubstr("move it away")));
     }
     std::filesystem::remove(reference(kMiddle));
-    ASSERT_EQ(mkfifo(reference(kMiddle).c_str(), 0600), 0);  // reading it would wait for ever
+    ASSERT_EQ(mkfifo(reference(kMiddle).c_str(), 0600), 0);  // reading it would block
     EXPECT_EQ(run().exit_code, 6);
     std::filesystem::remove(reference(kMiddle));
     EXPECT_EQ(run({"--update"}).exit_code, 0);
 }
 
-TEST_F(GoldenSuite, DrawsTheTimesOfOneSceneBySeveralThreads) {
+TEST_F(GoldenSuite, DrawsOneSceneOnSeveralThreads) {
     std::string times = "golden.at=[0";
     for (int i = 1; i < 40; ++i) times += "," + std::to_string(i / 20.0);
     EXPECT_EQ(run({"--update", "--set", times + "]"}).exit_code, 0);
@@ -373,7 +373,7 @@ TEST_F(GoldenSuite, AcceptsAVariantNamedByItsCause) {
     EXPECT_EQ(run().exit_code, 0);
 }
 
-TEST_F(GoldenSuite, RefusesWhatIsNoSuite) {
+TEST_F(GoldenSuite, RefusesInvalidSuites) {
     const std::string plain =
         folder_.write("plain.toml", "schema = 1\n[[rope]]\nhang = { links = 2, length = 1 }\n");
     const auto result = test::run_corda({"golden", plain, "--dir", folder_.file("ref")});
@@ -385,7 +385,7 @@ TEST_F(GoldenSuite, RefusesWhatIsNoSuite) {
     EXPECT_THAT(late.err, HasSubstr("after the end of the motion"));
 }
 
-/// What a reader does with the page, and what is to be seen then; the result is the page's title.
+/// A script that uses the page like a reader and checks the visible parts; the page's title is the result.
 constexpr const char* kVisitor = R"html(<script>
 const pixels = (section, kind) => {
   const image = section.querySelector("." + kind + " img");

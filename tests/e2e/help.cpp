@@ -1,4 +1,4 @@
-// `corda help`: the same words as --help, and the keys of a scene file.
+// `corda help`: the text of --help, and the keys of a scene file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 using test::run_corda;
 using testing::HasSubstr;
 
-TEST(Help, IsThatOfTheOption) {
+TEST(Help, EqualsTheHelpOption) {
     const auto general = run_corda({"help"});
     EXPECT_EQ(general.exit_code, 0);
     EXPECT_EQ(general.out, run_corda({"--help"}).out);
@@ -43,7 +43,7 @@ TEST(Help, WritesAManualPageOfAllCommands) {
         EXPECT_THAT(text, HasSubstr(words));
 }
 
-TEST(Help, OfAnUnknownTopicNamesTheNearest) {
+TEST(Help, SuggestsTheNearestTopic) {
     const auto near = run_corda({"help", "scen"});
     EXPECT_EQ(near.exit_code, 2);
     EXPECT_THAT(near.err, HasSubstr("there is no help on \"scen\"; did you mean scene?"));

@@ -1,4 +1,4 @@
-// Names of files and other texts of the user that are not UTF-8, or that a terminal would obey.
+// File names and other texts of the user that are not UTF-8 or that a terminal would interpret.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -49,12 +49,12 @@ TEST_F(Names, AreBytesAsFilesAndEscapedElsewhere) {
 
     const auto still = run_corda({"still", scene, "--at", "0", "-o", folder_.path()});
     const std::string picture = folder_.file("caf\xe9\x1b[31m_t0000_000000.png");
-    EXPECT_EQ(still.out, picture + "\n");  // a script wants the name as it is
+    EXPECT_EQ(still.out, picture + "\n");  // a script needs the unchanged name
     EXPECT_EQ(read_png_info(picture).text[1],
               std::pair(std::string("Title"), std::string("caf\\xe9\\x1b[31m")));
 }
 
-TEST_F(Names, OfAStudyCanBeAnything) {
+TEST_F(Names, OfStudiesMayHaveAnyCharacters) {
     const std::string scene = folder_.write("'x ]]> & <b> \"q\" `id` \xe9\x1b[31m.toml", kSceneOfNames);
     const std::string out = folder_.file("report'");
     const auto result = run_corda({"study", scene, "-o", out, "--quick", "--chapter", "speed"});
@@ -70,7 +70,7 @@ TEST_F(Names, OfAStudyCanBeAnything) {
     EXPECT_EQ(title.exit_code, 0) << title.err;
 }
 
-TEST_F(Names, AsLongAsAFileCanHaveAreCutInThoseOfTables) {
+TEST_F(Names, OfMaximumLengthAreShortenedForTables) {
     const std::string scene = folder_.write(std::string(250, 'a') + ".toml", kSceneOfNames);
     const auto result =
         run_corda({"study", scene, "-o", folder_.file("report"), "--quick", "--chapter", "speed"});

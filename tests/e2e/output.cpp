@@ -1,4 +1,4 @@
-// What the program says, where, and in which form.
+// The content, stream and form of the output.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -75,7 +75,7 @@ TEST_F(Output, SimulateWritesToDevicesAndPipes) {
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"pipe", "scene.toml"}));
 }
 
-TEST_F(Output, SimulateJsonCarriesTheFigures) {
+TEST_F(Output, SimulateJsonDescribesTheRun) {
     const auto result = run_corda({"simulate", scene_, "--json", "-q"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.err, "");
@@ -98,7 +98,7 @@ TEST_F(Output, SimulateAddsDiagnosticsToEveryRow) {
     std::vector<std::string> arguments{"simulate", scene_, "-o", "-", "--diagnostics"};
     const auto relaxed = run_corda(arguments);
     EXPECT_THAT(relaxed.out, HasSubstr(",x39,y39,energy_error,strain,pin_force_n,largest_tension_n\n"));
-    EXPECT_THAT(relaxed.out, testing::EndsWith(",,\n"));  // relaxation does not know its loads
+    EXPECT_THAT(relaxed.out, testing::EndsWith(",,\n"));  // relaxation has no loads
     arguments.insert(arguments.end(), exact.begin(), exact.end());
     const std::string rows = run_corda(arguments).out;
     const std::string last = rows.substr(rows.rfind("\n1,"));
@@ -129,16 +129,16 @@ TEST_F(Output, SimulateAddsVelocitiesTensionsAndEnergy) {
     for (; std::getline(lines, line); ++rows) {
         const std::vector<double> cells = numbers_of(line);
         ASSERT_EQ(cells.size(), 11U);
-        // v^2 = 2 g (h0 - h) and T = m (g cos + v^2 / L), whose errors are 1e-10 and less.
+        // v^2 = 2 g (h0 - h) and T = m (g cos + v^2 / L), with errors of at most 1e-10.
         const double height_m = cells[4];
         const double speed_square = cells[7] * cells[7] + cells[8] * cells[8];
         EXPECT_NEAR(speed_square, 2.0 * 9.81 * (-1.0 - height_m), 1e-9);
         EXPECT_NEAR(cells[9], 3.0 * (9.81 * -height_m + speed_square) / 2.0, 1e-8);
         EXPECT_NEAR(cells[10], 0.0, 1e-9);
-        EXPECT_EQ(cells[5], 0.0);  // of the pin
+        EXPECT_EQ(cells[5], 0.0);  // that of the pin
     }
     EXPECT_EQ(rows, 61);
-    // Drag takes what the column shows.
+    // Drag dissipates the energy that the column shows.
     const std::string dragged =
         run_corda({"simulate", pendulum, "-o", "-", "--energy", "--set", "world.drag=1.0"}).out;
     EXPECT_LT(numbers_of(dragged.substr(dragged.rfind('\n', dragged.size() - 2) + 1)).back(), -1.0);
@@ -213,7 +213,7 @@ TEST_F(Output, ErrorsAreJsonWithJson) {
     EXPECT_THAT(failure({"plan", "--json"}, 2), HasSubstr("SCENE"));
 }
 
-TEST_F(Output, WarnsOfANetThatItsBarsKeepFromMovingUntilItsAdviceIsTaken) {
+TEST_F(Output, WarnsAboutAnImmobileNetUntilTheAdviceIsFollowed) {
     const std::string plate = folder_.write(
         "plate.toml",
         "schema = 1\n[[net]]\ngrid = { columns = 5, rows = 4, spacing = 0.1 }\n[world]\nduration = 0.2\n");
@@ -223,7 +223,7 @@ TEST_F(Output, WarnsOfANetThatItsBarsKeepFromMovingUntilItsAdviceIsTaken) {
         EXPECT_EQ(result.exit_code, 0) << result.err;
         EXPECT_THAT(result.err, Not(HasSubstr("stands still"))) << advice;
     }
-    // Beside a string, which relaxation does not move.
+    // With a string, which relaxation cannot move.
     const std::string scene =
         test::read_file(plate) + "[[rope]]\nhang = { links = 2, length = 1.0 }\nstring = true\n";
     const std::string both = folder_.write("both.toml", scene);
@@ -244,7 +244,7 @@ TEST_F(Output, PlanDoesNotPromiseThatRelaxationKeepsEnergy) {
     EXPECT_THAT(damped.out, HasSubstr("modelled: damping: a share of 0.01 of the velocity is lost per step"));
 }
 
-TEST_F(Output, PlanSaysWhatBodiesAreMadeOf) {
+TEST_F(Output, PlanDescribesMaterials) {
     const std::string scene = folder_.write("bodies.toml", R"(schema = 1
 [[rope]]
 points = [[0, 0], [1, 0], [1, 1]]
@@ -283,7 +283,7 @@ TEST_F(Output, SimulateNeedsNoOpenGl) {
         0);
 }
 
-TEST_F(Output, RenderJsonCarriesTheFigures) {
+TEST_F(Output, RenderJsonDescribesTheRender) {
     const auto result = run_corda({"render", scene_, "-o", video_, "--json"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const json figures = json::parse(result.out);
@@ -322,7 +322,7 @@ TEST_F(Output, NoColorIsObeyed) {
     EXPECT_THAT(test::run_shell("export NO_COLOR=1; " + script).out, Not(HasSubstr("\x1b[31m")));
 }
 
-TEST_F(Output, QuietSaysNothingButErrors) {
+TEST_F(Output, QuietPrintsOnlyErrors) {
     const auto result = run_corda({"render", scene_, "-o", video_, "-q"});
     EXPECT_EQ(result.err, "");
     EXPECT_EQ(result.out, video_ + "\n");
@@ -344,7 +344,7 @@ TEST_F(Output, DryRunWritesNothingAndNeedsNoOpenGl) {
     EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});
 }
 
-TEST_F(Output, CompareSaysHowFarApart) {
+TEST_F(Output, ComparePrintsTheDifference) {
     ASSERT_EQ(run_corda({"still", scene_, "--at", "0", "-o", folder_.file("a.png")}).exit_code, 0);
     ASSERT_EQ(run_corda({"still", scene_, "--at", "0", "-o", folder_.file("b.png"), "--set",
                          "style.rope_width_px=9"})
@@ -367,7 +367,7 @@ TEST_F(Output, CompareSaysHowFarApart) {
     EXPECT_FALSE(test::read_file(folder_.file("d.png")).empty());
 }
 
-TEST_F(Output, CompareTakesFoldersAndAMask) {
+TEST_F(Output, CompareAcceptsFoldersAndAMask) {
     const std::string scene = CORDA_EXAMPLES "/first.toml";
     const auto draw = [&](const std::string& name, const std::string& folder, const std::string& times) {
         std::filesystem::create_directories(folder_.file(folder));
@@ -408,7 +408,7 @@ TEST_F(Output, CompareTakesFoldersAndAMask) {
         6);
 }
 
-TEST_F(Output, DoctorTellsWhatThisMachineCanDo) {
+TEST_F(Output, DoctorReportsCapabilities) {
     const auto result = run_corda({"doctor", "--json"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const json report = json::parse(result.out);
@@ -420,7 +420,7 @@ TEST_F(Output, DoctorTellsWhatThisMachineCanDo) {
         const char* key = context["usable"] == true ? "gl_renderer" : "reason";
         EXPECT_FALSE(context[key].get<std::string>().empty()) << context;
     }
-    ASSERT_EQ(report["encoders"].size(), 15U);  // those that Corda can use
+    ASSERT_EQ(report["encoders"].size(), 15U);  // those that Corda supports
     for (const json& encoder : report["encoders"]) {
         EXPECT_EQ(encoder["usable"] == true, encoder["reason"].get<std::string>().empty()) << encoder;
     }

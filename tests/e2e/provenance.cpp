@@ -1,4 +1,4 @@
-// Pictures and videos carry what they were made from, and `--from` makes them again.
+// Pictures and videos contain their scene, and `--from` reproduces them.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ class ProvenanceOfFiles : public testing::Test {
     }
 };
 
-TEST_F(ProvenanceOfFiles, StillsComeBackByteForByte) {
+TEST_F(ProvenanceOfFiles, StillsAreReproducedByteForByte) {
     std::filesystem::create_directory(folder().file("new"));
     run({"still", scene_, "--at", "0.1,0.123456789,0.5", "--set", "style.theme=paper", "--size", "80x60",
          "-o", folder().file("old")});
@@ -53,7 +53,7 @@ TEST_F(ProvenanceOfFiles, StillsComeBackByteForByte) {
     EXPECT_EQ(count, 3);
 }
 
-TEST_F(ProvenanceOfFiles, FiguresComeBackByteForByte) {
+TEST_F(ProvenanceOfFiles, FiguresAreReproducedByteForByte) {
     run({"still", scene_, "--frame", "7", "--shutter", "0.5", "--ppi", "150", "-o", folder().file("a.png")});
     run({"still", "--from", folder().file("a.png"), "-o", folder().file("b.png")});
     expect_same("a.png", "b.png");
@@ -68,7 +68,7 @@ TEST_F(ProvenanceOfFiles, FiguresComeBackByteForByte) {
     EXPECT_THAT(other.err, HasSubstr("was made by `corda sheet`"));
 }
 
-TEST_F(ProvenanceOfFiles, VideosComeBackByteForByte) {
+TEST_F(ProvenanceOfFiles, VideosAreReproducedByteForByte) {
     for (const std::string ending : {".mp4", ".mov", ".mkv", ".webm"}) {
         SCOPED_TRACE(ending);
         run({"render", scene_, "--frames", "2:11", "--jobs", "2", "-o", folder().file("a" + ending)});
@@ -78,7 +78,7 @@ TEST_F(ProvenanceOfFiles, VideosComeBackByteForByte) {
     }
 }
 
-TEST_F(ProvenanceOfFiles, FramesComeBackAllTogetherOrOne) {
+TEST_F(ProvenanceOfFiles, FramesAreReproducedTogetherOrAlone) {
     run({"render", scene_, "--frames", "3:6", "--set", "video.shutter=0.5", "-o",
          folder().file("old/%03d.png")});
     run({"render", "--from", folder().file("old/004.png"), "-o", folder().file("new/%03d.png")});
@@ -88,7 +88,7 @@ TEST_F(ProvenanceOfFiles, FramesComeBackAllTogetherOrOne) {
     run({"compare", folder().file("old/004.png"), folder().file("one.png")});
 }
 
-TEST_F(ProvenanceOfFiles, TakesWhatTheCommandLineSaysInItsPlace) {
+TEST_F(ProvenanceOfFiles, CommandLineOverridesTheStoredScene) {
     run({"render", scene_, "--frames", "2:11", "-o", folder().file("a.mp4")});
     run({"still", "--from", folder().file("a.mp4"), "--frame", "5", "--size", "96x32", "-o",
          folder().file("a.png")});
@@ -98,7 +98,7 @@ TEST_F(ProvenanceOfFiles, TakesWhatTheCommandLineSaysInItsPlace) {
     EXPECT_THAT(made.out, HasSubstr("\"frames\": 3,"));
 }
 
-TEST_F(ProvenanceOfFiles, TellsNoFolder) {
+TEST_F(ProvenanceOfFiles, ContainsNoFolder) {
     run({"still", scene_, "--frame", "1", "-o", folder().file("a.png")});
     run({"render", scene_, "--frames", "0:2", "-o", folder().file("a.mp4")});
     const std::string path = std::filesystem::path(scene_).parent_path().string();
@@ -107,7 +107,7 @@ TEST_F(ProvenanceOfFiles, TellsNoFolder) {
         EXPECT_EQ(text.find(path), std::string::npos) << keyword;
 }
 
-TEST_F(ProvenanceOfFiles, WhatCarriesNothingIsRefused) {
+TEST_F(ProvenanceOfFiles, FilesWithoutItAreRefused) {
     write_png(folder().file("plain.png"), Image(8, 8));
     for (const std::string file : {"plain.png", "scene.toml", "none.mp4"}) {
         SCOPED_TRACE(file);
@@ -136,7 +136,7 @@ TEST_F(ProvenanceOfFiles, AnimationsHaveNone) {
     }
 }
 
-TEST_F(ProvenanceOfFiles, DamagedOnesAreRefused) {
+TEST_F(ProvenanceOfFiles, DamagedProvenanceIsRefused) {
     const std::string sound =
         R"({"corda":"0.1.0","name":"a","scene":"schema = 1\n[[rope]]\nline = { particles = 3, step = [0, -1] }\n","picture":{"command":"still","times":[0]}})";
     const auto code_of = [&](const std::string& text) {
@@ -169,7 +169,7 @@ TEST_F(ProvenanceOfFiles, DamagedOnesAreRefused) {
     EXPECT_EQ(code_of(scene), 3);
 }
 
-TEST_F(ProvenanceOfFiles, SaysWhyALargeSceneIsLeftOut) {
+TEST_F(ProvenanceOfFiles, ExplainsWhyALargeSceneIsNotStored) {
     std::string points;
     for (int i = 0; i < 3000; ++i) points += "[" + std::to_string(0.1 * i * i / 7.0) + ", -1.5], ";
     const std::string large = folder().write(

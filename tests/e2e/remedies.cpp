@@ -1,4 +1,4 @@
-// Every message that advises something, provoked, and its advice followed to the letter: it has to work.
+// Provokes every message that advises something, and follows the advice literally: it has to work.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ const std::string kPicture = CORDA_GOLDENS "/stills/plain_t0000_700000.png";
 
 const std::string kStringRope = "[[rope]]\n" + kHang + "string = true\n";
 
-// What a method cannot run.
+// Systems that a method cannot run.
 INSTANTIATE_TEST_SUITE_P(
     OfMethods, Remedies,
     testing::Values(
@@ -134,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(
                {{{"force = [1e300, 0]", "force = [1, 0]"}}}}),
     test::kNameOfCase);
 
-// How much a scene may ask for.
+// Limits of a scene.
 INSTANTIATE_TEST_SUITE_P(
     OfLimits, Remedies,
     testing::Values(
@@ -388,7 +388,7 @@ INSTANTIATE_TEST_SUITE_P(
                {{{"c.jpg", "c.png"}}}}),
     test::kNameOfCase);
 
-/// A scene from code, which the reader of files does not check: what it is refused with.
+/// The message with which a scene from code, which no file reader has checked, is refused.
 void expect_refused(const Scene& scene, const std::string& advice) {
     try {
         const Film film(scene);
@@ -444,7 +444,7 @@ TEST(RemediesInCode, RigidStrings) {
         return stretching;
     };
     rope.closed = true;
-    scene.solver = ExactDef{};  // auto refuses it for rattle, and advises exact
+    scene.solver = ExactDef{};  // auto would choose rattle, and the message would advise exact
     expect_refused(scene, "open it, or let it stretch by a compliance");
     expect_to_run(stretched());
     rope.closed = false;
@@ -454,7 +454,7 @@ TEST(RemediesInCode, RigidStrings) {
     expect_to_run(stretched());
     rope.bending_n_m2 = 0.0;
     rope.rest_m = {0.4, 0.4};
-    expect_to_run(scene);  // pulled in
+    expect_to_run(scene);  // it starts pulled in
     rope.pinned = {0, 2};
     expect_refused(scene, "give a larger link_length, or a compliance");
     expect_to_run(stretched());

@@ -1,4 +1,4 @@
-// The same as remedies.cpp, of messages about shapes, materials and keys of a scene.
+// Like remedies.cpp, for messages about shapes, materials and keys of a scene.
 
 #include <gtest/gtest.h>
 

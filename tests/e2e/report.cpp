@@ -1,4 +1,4 @@
-// corda report on the command line: what it writes, that others can read it, and how it ends early.
+// `corda report`: its files, their validity for other programs, and early ends.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ class SceneReport : public testing::Test {
     std::string out_ = folder_.file("report");
 };
 
-/// Names of a folder's files, each with its bytes.
+/// The files of a folder: name and bytes.
 std::map<std::string, std::string> bytes_of(const std::string& folder) {
     std::map<std::string, std::string> all;
     for (const auto& entry : fs::directory_iterator(folder))
@@ -50,7 +50,7 @@ std::map<std::string, std::string> bytes_of(const std::string& folder) {
     return all;
 }
 
-TEST_F(SceneReport, HasItsFiguresInAllFormatsAndTheSameBytesAgain) {
+TEST_F(SceneReport, WritesAllFormatsWithReproducibleBytes) {
     const auto result = run_corda({"report", scene_, "-o", out_, "--at", "0,0.4", "--json"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const json answer = json::parse(result.out);
@@ -94,7 +94,8 @@ TEST_F(SceneReport, CanBePrintedAtItsWidth) {
         ASSERT_EQ(drawn.exit_code, 0) << drawn.err;
         for (const std::string& png : {stem + ".png", out("svg.png"), out("pdf.png")}) {
             const Image image = read_png(png);
-            EXPECT_NEAR(image.width(), 1004, 5) << png;  // a PDF's page is whole points wide
+            EXPECT_NEAR(image.width(), 1004, 5)
+                << png;  // the width of a PDF page is a whole number of points
             const auto darkest = [&] {
                 int least = 255;
                 for (int y = 0; y < image.height(); ++y)
@@ -108,7 +109,7 @@ TEST_F(SceneReport, CanBePrintedAtItsWidth) {
     }
 }
 
-TEST_F(SceneReport, OfANetByRelaxationSaysThatTensionsAreNotKnown) {
+TEST_F(SceneReport, SaysThatTensionsAreUnknownForRelaxation) {
     const std::string net =
         folder_.write("net.toml",
                       "schema = 1\n[world]\nduration = 0.2\n[[net]]\ngrid = { columns = 5, rows = 4, spacing "
@@ -121,7 +122,7 @@ TEST_F(SceneReport, OfANetByRelaxationSaysThatTensionsAreNotKnown) {
     EXPECT_THAT(read("tension.csv"), HasSubstr("\n0,,\n"));
 }
 
-TEST_F(SceneReport, OfAMotionThatDivergesIsOfWhatComesBefore) {
+TEST_F(SceneReport, CoversADivergingMotionUntilItDiverges) {
     const std::string wild = folder_.write(
         "wild.toml",
         "schema = 1\n[world]\nduration = 1.0\ngravity = [1e14, 0.0]\n[[rope]]\npoints = [[0.0, 0.0], [1.0, "
@@ -163,15 +164,15 @@ TEST_F(SceneReport, RefusesBeforeItSimulates) {
     EXPECT_THAT(missing.err, HasSubstr("apt-get install gnuplot-nox"));
 }
 
-TEST_F(SceneReport, OfADryRunIsNotWritten) {
+TEST_F(SceneReport, DryRunWritesNothing) {
     const auto result = run_corda({"report", scene_, "-o", out_, "--dry-run", "--json"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(json::parse(result.out)["method"], "exact");
     EXPECT_FALSE(fs::exists(out_));
 }
 
-TEST_F(SceneReport, EndsAtASignalWithAPageOfWhatWasDrawn) {
-    // The first figure is there, while the others are drawn.
+TEST_F(SceneReport, KeepsAPageOfDrawnFiguresAtASignal) {
+    // The first figure exists while the others are being drawn.
     const auto result = run_shell(test::quoted(CORDA_PROGRAM) + " report " + scene_ + " -o " + out_ +
                                   " & pid=$!; for i in $(seq 1000); do [ -e " + out("strobe_85mm.pdf") +
                                   " ] && break; sleep 0.01; done; kill -TERM $pid; wait $pid");

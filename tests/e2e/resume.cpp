@@ -1,4 +1,4 @@
-// `corda render --resume`: what was killed at any moment becomes what it would have been.
+// `corda render --resume`: a render that was killed at any moment gives the bytes of an uninterrupted one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -32,10 +32,10 @@ class Resume : public testing::Test {
         return all;
     }
 
-    /// From when the time to a signal counts.
+    /// Start of the delay before a signal.
     enum class From { kStart, kFirstChunk, kSecondChunk };
 
-    /// Begins a render, and sends it a signal after a while.
+    /// Starts a render, and sends it a signal after a delay.
     void interrupt(const std::string& name, const std::string& signal, double after_s, From from,
                    const std::vector<std::string>& more = {}) const {
         std::string command = CORDA_PROGRAM;
@@ -46,7 +46,7 @@ class Resume : public testing::Test {
             command += "until [ $(grep -aos 'corda checksum' " + part + " | wc -l) -ge " +
                        (from == From::kFirstChunk ? "1" : "2") + " ] || ! kill -0 $p; do sleep 0.01; done; ";
         command += "sleep " + std::to_string(after_s) + "; kill -s " + signal + " $p; wait $p; ";
-        // Until whoever held the part is gone.
+        // Waits until no process has the part locked.
         command += "[ ! -e " + part + " ] || flock -w 60 " + part + " true";
         static_cast<void>(test::run_shell(command));
     }
@@ -60,9 +60,9 @@ class Resume : public testing::Test {
     test::ScratchFolder folder_;
 };
 
-/// Short, or of a hundred kills with CORDA_TEST_LONG.
-TEST_F(Resume, MakesTheSameVideoOfWhatWasKilledAtAnyMoment) {
-    // So long that most moments are before its end.
+/// A few kills, or a hundred with CORDA_TEST_LONG.
+TEST_F(Resume, MakesTheSameVideoAfterAKillAtAnyMoment) {
+    // Long enough that most kills come before its end.
     const std::vector<std::string> slowly{"--preset", "medium", "--duration", "15"};
     const std::string whole = bytes_of_a_whole("whole.mp4", slowly);
     const int kills = std::getenv("CORDA_TEST_LONG") != nullptr ? 100 : 4;
@@ -72,7 +72,7 @@ TEST_F(Resume, MakesTheSameVideoOfWhatWasKilledAtAnyMoment) {
     for (int i = 0; i < kills; ++i) {
         const double after_s = moment_s(random);
         interrupt("a.mp4", "KILL", after_s, i % 2 == 0 ? From::kStart : From::kFirstChunk, slowly);
-        // The final name is whole, or not there; between its naming and the removal of the part both are.
+        // The final file is complete or absent; between its renaming and the removal of the part, both exist.
         const bool is_finished = std::filesystem::exists(file("a.mp4"));
         if (is_finished) {
             EXPECT_TRUE(read_file(file("a.mp4")) == whole) << after_s;
@@ -159,19 +159,19 @@ TEST_F(Resume, RefusesAPartOfAnotherRenderNamingTheDifference) {
     EXPECT_THAT(run_corda(render("a.mp4")).err, HasSubstr("resume it (--resume)"));
 }
 
-TEST_F(Resume, BeginsAnewIfThereIsNothingToGoOnWith) {
+TEST_F(Resume, StartsOverIfNoChunkIsUsable) {
     const std::vector<std::string> more{"--duration", "0.5", "--resume", "--json"};
     const auto anew = run_corda(render("a.mp4", more));
     EXPECT_EQ(anew.exit_code, 0);
     EXPECT_EQ(nlohmann::json::parse(anew.out).at("resumed_frames"), 0);
-    EXPECT_EQ(run_corda(render("a.mp4", more)).exit_code, 6);  // it is there
+    EXPECT_EQ(run_corda(render("a.mp4", more)).exit_code, 6);  // the output exists
     test::write_file(file("b.mp4.part"), "");
     EXPECT_EQ(run_corda(render("b.mp4", more)).exit_code, 0);
     test::write_file(file("c.mp4.part"), "this is no video");
     const auto broken = run_corda(render("c.mp4", more));
     EXPECT_NE(broken.exit_code, 0);
     EXPECT_EQ(read_file(file("c.mp4.part")), "this is no video");
-    test::write_file(file("d.mp4.part"), read_file(file("a.mp4")));  // a video that is no part
+    test::write_file(file("d.mp4.part"), read_file(file("a.mp4")));  // a video that is not a part
     const auto foreign = run_corda(render("d.mp4", more));
     EXPECT_EQ(foreign.exit_code, 2);
     EXPECT_THAT(foreign.err, HasSubstr("holds no whole chunk of this render"));
@@ -181,7 +181,7 @@ TEST_F(Resume, BeginsAnewIfThereIsNothingToGoOnWith) {
     EXPECT_THAT(pictures.err, HasSubstr("--frames FIRST:END"));
 }
 
-TEST_F(Resume, WhatWasRecoveredTellsTheFramesThatItHas) {
+TEST_F(Resume, RecoveredVideoRecordsItsFrames) {
     const std::vector<std::string> more{"--duration", "20", "--set", "solver.method=exact"};
     interrupt("a.mp4", "INT", 0.0, From::kFirstChunk, more);
     const auto recovered = run_corda({"recover", file("a.mp4.part"), "--json"});
@@ -217,7 +217,7 @@ TEST_F(Resume, RefusesAPartThatIsDamagedInItsFirstChunk) {
     EXPECT_TRUE(read_file(file("a.mp4.part")) == part);
 }
 
-TEST_F(Resume, SaysThatAPartIsDamagedAndRendersTheRestAgain) {
+TEST_F(Resume, ReportsADamagedPartAndRendersTheRestAgain) {
     const std::vector<std::string> more{"--duration", "20", "--set", "solver.method=exact"};
     const std::string whole = bytes_of_a_whole("whole.mp4", more);
     interrupt("a.mp4", "INT", 0.0, From::kSecondChunk, more);
@@ -235,7 +235,7 @@ TEST_F(Resume, SaysThatAPartIsDamagedAndRendersTheRestAgain) {
     EXPECT_TRUE(read_file(file("a.mp4")) == whole);
 }
 
-TEST_F(Resume, RemovesTheCopyThatAKillLeftAndNoOtherFile) {
+TEST_F(Resume, RemovesOnlyTheCopyThatAKillLeft) {
     const std::vector<std::string> more{"--duration", "20", "--set", "solver.method=exact"};
     interrupt("a.mp4", "INT", 0.0, From::kFirstChunk, more);
     const std::string part = read_file(file("a.mp4.part"));

@@ -1,4 +1,4 @@
-// What the program does on a full host, and with encoders that do not return.
+// A host without free resources, and encoders that do not return.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-#ifndef CORDA_SANITIZE  // whose run time wants to be loaded first, and takes terabytes of address space
+#ifndef CORDA_SANITIZE  // whose run time must be loaded first and takes terabytes of address space
 
 const char* const kSceneOfScarcity = R"(schema = 1
 [world]
@@ -37,7 +37,7 @@ class Scarcity : public testing::Test {
     std::string video_ = folder_.file("a.mp4");
 };
 
-TEST_F(Scarcity, FoldersAreComparedWithoutFurtherThreads) {
+TEST_F(Scarcity, FoldersAreComparedWithoutMoreThreads) {
     ASSERT_EQ(run_corda({"still", scene_, "--at", "0,0.1,0.2", "-o", folder_.file("a")}).exit_code, 0);
     const auto result =
         run_corda({"compare", folder_.file("a"), folder_.file("a")}, kFaults + "THREADS_TO_START=0");
@@ -70,7 +70,7 @@ TEST_F(Scarcity, AnEncoderWithoutItsThreadsIsATemporaryFailure) {
             run_corda({"render", scene_, "-o", video_, "--codec", codec}, kFaults + "THREADS_TO_START=0");
         EXPECT_EQ(result.exit_code, 75) << codec << result.err;
         EXPECT_THAT(result.err, HasSubstr("ulimit -u")) << codec;
-        EXPECT_THAT(result.err, Not(HasSubstr("did not end"))) << codec;  // it is not begun
+        EXPECT_THAT(result.err, Not(HasSubstr("did not end"))) << codec;  // it is not started
     }
 }
 
@@ -87,26 +87,26 @@ TEST_F(Scarcity, AnEncoderWithoutMemoryIsATemporaryFailure) {
     }
 }
 
-TEST_F(Scarcity, OfMemoryForAVideoIsNotTakenForItsDamage) {
+TEST_F(Scarcity, LackOfMemoryIsNotReportedAsADamagedVideo) {
     ASSERT_EQ(
         run_corda({"render", scene_, "-o", video_, "--size", "1920x1080", "--duration", "0.2"}).exit_code, 0);
     std::string codes;
     for (int mib = 140; mib < 320; mib += 10) {
         const auto result = run_shell("ulimit -v " + std::to_string(mib * 1000) + "; exec " +
                                       test::quoted(CORDA_PROGRAM) + " verify " + video_);
-        // Less than the libraries themselves take is found by the loader, or ends one of them (Debian 13's
-        // libvpl).
+        // With less memory than the libraries need, the loader fails, or one of them ends the process (libvpl
+        // on Debian 13).
         if (result.exit_code == 127 || (codes.empty() && result.exit_code == 134)) continue;
         codes += std::to_string(result.exit_code) + " ";
     }
-    // Measured on Debian 12: 210 MiB are enough; above them a thread of the decoder gets none in one run of
-    // ten.
+    // Measured on Debian 12: 210 MiB suffice; above that, a thread of the decoder fails to get memory in one
+    // run of ten.
     EXPECT_THAT(codes, testing::MatchesRegex("75 (75 |0 )+"));
     EXPECT_THAT(codes, HasSubstr(" 0 "));
     EXPECT_EQ(run_corda({"verify", video_}).exit_code, 0);
 }
 
-TEST_F(Scarcity, AProgramThatTheSystemDoesNotStartIsNotTakenForMissing) {
+TEST_F(Scarcity, AProgramThatFailsToStartIsNotReportedAsMissing) {
     const auto result =
         run_corda({"report", scene_, "-o", folder_.file("report")}, kFaults + "PROCESSES_TO_START=0");
     EXPECT_EQ(result.exit_code, 75) << result.err;
@@ -136,7 +136,7 @@ TEST_F(Scarcity, ASignalEndsAProgramThatHangsAndCordaWithIt) {
                   test::quoted(CORDA_PROGRAM) + " report " + scene_ + " -o " + folder_.file("report") +
                   " & pid=$!; for i in $(seq 1500); do test -s " + pid +
                   " && break; sleep 0.01; done; kill -TERM $pid; wait $pid; code=$?; sleep 0.5; "
-                  // A container's init may leave it as a zombie.
+                  // The init process of a container may leave it as a zombie.
                   "grep -sq '^State:.[^Z]' /proc/$(cat " +
                   pid + ")/status && echo orphan; exit $code");
     EXPECT_EQ(result.exit_code, 143) << result.err;

@@ -1,4 +1,4 @@
-// `corda schema`, judged by another implementation of JSON Schema, and `corda completion`, by the shells.
+// `corda schema` against another implementation of JSON Schema, and `corda completion` in the shells.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,8 +15,7 @@ namespace {
 using test::run_corda;
 using testing::HasSubstr;
 
-/// Whether the schema accepts each of these scenes, in the words of python3-jsonschema: "ok", or what is
-/// wrong.
+/// The verdict of python3-jsonschema on each of these scenes: "ok", or the problem.
 std::vector<std::string> judge(const test::ScratchFolder& folder, const std::vector<std::string>& scenes) {
     test::write_file(folder.file("schema.json"), run_corda({"schema"}).out);
     test::write_file(folder.file("judge.py"), R"(import json, sys, tomllib
@@ -56,7 +55,7 @@ TEST(Schema, AcceptsEveryExampleAndGolden) {
     for (std::size_t i = 0; i < scenes.size(); ++i) EXPECT_EQ(verdicts[i], "ok") << scenes[i];
 }
 
-TEST(Schema, RefusesWhatCordaRefuses) {
+TEST(Schema, RejectsTheScenesThatCordaRejects) {
     const test::ScratchFolder folder;
     const std::string head = "schema = 1\n";
     const std::string rope = "[[rope]]\npoints = [[0, 0], [1, 0]]\n";
@@ -64,22 +63,22 @@ TEST(Schema, RefusesWhatCordaRefuses) {
         rope,                                                        // no schema
         "schema = 2\n" + rope,                                       // another schema
         head,                                                        // no body
-        head + "[world]\ngravty = 9.81\n" + rope,                    // a key that is none
+        head + "[world]\ngravty = 9.81\n" + rope,                    // an unknown key
         head + "[world]\nduration = 0\n" + rope,                     // out of range
-        head + "[world]\nduration = \"long\"\n" + rope,              // no number
+        head + "[world]\nduration = \"long\"\n" + rope,              // not a number
         head + "[[rope]]\nmass = 1.0\n",                             // no shape
         head + rope + "hang = { links = 3, length = 1.0 }\n",        // two shapes
         head + "[[rope]]\nhang = { links = 3 }\n",                   // no length
         head + "[[rope]]\npoints = [[0, 0]]\n",                      // one particle
-        head + rope + "color = \"#12345\"\n",                        // no colour
+        head + rope + "color = \"#12345\"\n",                        // not a colour
         head + "[[net]]\ngrid = { columns = 3, rows = 2 }\n",        // no spacing
         head + rope + "[solver]\nmethod = \"euler\"\n",              // no method
         head + rope + "[solver]\nmethod = \"rattle\"\norder = 5\n",  // no order
         head + rope + "[video]\nsize = [640]\n",                     // one side
-        head + rope + "[video]\nfps = \"fast\"\n",                   // no rate
+        head + rope + "[video]\nfps = \"fast\"\n",                   // not a rate
         head + rope + "[video]\nsubframes = 1\n",                    // out of range
-        head + rope + "[style]\ntheme = \"light\"\n",                // no theme
-        head + rope + "[overlay]\ntime = 1\n",                       // no boolean
+        head + rope + "[style]\ntheme = \"light\"\n",                // not a theme
+        head + rope + "[overlay]\ntime = 1\n",                       // not a boolean
         head + rope + "[camera]\ncenter = [0, 0, 0]\n",              // three coordinates
         head + rope + "[[solver.bodies]]\nropes = [0]\n",            // no method
     };
@@ -92,7 +91,7 @@ TEST(Schema, RefusesWhatCordaRefuses) {
     for (std::size_t i = 0; i < broken.size(); ++i) EXPECT_NE(verdicts[i], "ok") << broken[i];
 }
 
-TEST(Completion, IsReadByItsShells) {
+TEST(Completion, ParsesInItsShells) {
     const test::ScratchFolder folder;
     for (const std::string shell : {"bash", "zsh", "fish"}) {
         const auto completion = run_corda({"completion", shell});

@@ -1,4 +1,4 @@
-// The first signal ends every command within a second, whatever it is doing.
+// The first signal ends every command within a second, whatever the command is doing.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -33,13 +33,13 @@ fps = 30
 preset = "ultrafast"
 )";
 
-/// When the program has a handler for SIGINT, signal 2: its bit is the second in the last digit of the mask.
+/// Succeeds once the program has a handler for SIGINT (2), the second bit in the last digit of the mask.
 const char* const kIsListening = "grep -q '^SigCgt:.*[2367abef]$' /proc/$pid/status 2>/dev/null";
 
-/// A second on a quiet machine, where all take less than half of it; a busy one runs others meanwhile.
+/// Commands take less than 500 ms on a quiet machine; the rest is for other processes on a busy one.
 constexpr int kMaxMs = 5000;
 
-/// How a command ended, and how long after the signal.
+/// The result of a command, and its delay after the signal.
 struct Interrupted {
     test::CommandResult result;
     int ms = -1;
@@ -77,14 +77,14 @@ TEST_F(Signals, EndTheWaitForAPipe) {
         for (const auto& [signal, exit_code] : {std::pair{"INT", 130}, {"TERM", 143}, {"HUP", 129}}) {
             const Interrupted end = interrupt(arguments, signal, kIsListening);
             EXPECT_EQ(end.result.exit_code, exit_code) << arguments << end.result.err;
-            // Measured 4 .. 18, and up to 100 more if the wait begins after the signal.
+            // Measured 4 .. 18, and up to 100 more if the wait starts after the signal.
             EXPECT_LT(end.ms, kMaxMs) << arguments;
         }
     }
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"pipe", "scene.toml"}));
 }
 
-TEST_F(Signals, ThatAreIgnoredFromTheStartDoNotEnd) {
+TEST_F(Signals, StayIgnoredIfIgnoredAtTheStart) {
     const std::string video = folder_.file("a.mp4");
     const Interrupted end = interrupt("render " + scene_ + " -o " + video + " -q", "HUP", kIsListening);
     EXPECT_EQ(end.result.exit_code, 129) << end.result.err;
@@ -120,14 +120,14 @@ TEST_F(Signals, EndTheWaitForTheReaderOfAPipe) {
     EXPECT_EQ(alone.result.exit_code, 130) << alone.result.err;
 }
 
-TEST_F(Signals, OfAStreamThatWaitsForItsReaderNothingGoesBehindAFrameThatBreaksOff) {
+TEST_F(Signals, WriteNothingAfterATruncatedFrame) {
     const std::string pipe = folder_.file("pipe");
     ASSERT_EQ(run_shell("mkfifo " + pipe).exit_code, 0);
     std::string scene = kSceneOfSignals;
-    scene.erase(scene.find("preset"));  // which raw frames do not have
+    scene.erase(scene.find("preset"));  // raw frames have no preset
     scene = folder_.write("raw.toml", scene);
     for (const char* const jobs : {"1", "2"}) {
-        // Four frames of 345606 bytes and a part of the next one; the signal comes when no more fits.
+        // Four frames of 345606 bytes and a part of the next one fit; the signal comes when the pipe is full.
         const std::string out = folder_.file("out");
         const auto end =
             run_shell("{ head -c 1500000; sleep 2; kill -INT $(cat " + pipe + ".pid); sleep 0.2; cat; } < " +
@@ -143,11 +143,11 @@ TEST_F(Signals, OfAStreamThatWaitsForItsReaderNothingGoesBehindAFrameThatBreaksO
             EXPECT_EQ(bytes.substr(at, 6), std::string("FRAME\n").substr(0, bytes.size() - at))
                 << jobs << " " << frames;
         EXPECT_GE(frames, 4U);
-        EXPECT_LT(frames, 60U);  // nothing of the chunks behind it
+        EXPECT_LT(frames, 60U);  // nothing of the chunks after it
     }
 }
 
-TEST_F(Signals, EndTheReadingOfAMotionForAReport) {
+TEST_F(Signals, EndAReportWhileItReadsTheMotion) {
     const std::string out = folder_.file("report");
     const Interrupted end = interrupt("report " + scene_ + " -o " + out + " --duration 2000", "TERM",
                                       "ls -A " + out + " 2>/dev/null | grep -q tip.csv");
@@ -158,7 +158,7 @@ TEST_F(Signals, EndTheReadingOfAMotionForAReport) {
 }
 
 TEST_F(Signals, EndAComparison) {
-    // Reading these takes a second or more.
+    // Reading these takes at least a second.
     write_png(folder_.file("a.png"), Image(8192, 4096));
     const std::string pictures = folder_.file("a.png") + " " + folder_.file("a.png");
     const Interrupted end =
@@ -169,9 +169,9 @@ TEST_F(Signals, EndAComparison) {
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"a.png", "scene.toml"}));
 }
 
-TEST_F(Signals, EndTheLastCopyOfAVideoKeepingItsFrames) {
+TEST_F(Signals, EndTheFinalCopyKeepingTheFrames) {
     const std::string video = folder_.file("a.mp4");
-    // The file of temporary name is the copy. Verifying it takes a second or more.
+    // The temporary file is the copy. Verifying it takes at least a second.
     const Interrupted end = interrupt("render --verify full " + scene_ + " -o " + video, "TERM",
                                       "ls " + video + ".*.tmp >/dev/null 2>&1");
     EXPECT_EQ(end.result.exit_code, 143) << end.result.err;
@@ -183,7 +183,7 @@ TEST_F(Signals, EndTheLastCopyOfAVideoKeepingItsFrames) {
 }
 
 TEST_F(Signals, EndAStill) {
-    // Simulating until then takes a second or more.
+    // Simulating until then takes at least a second.
     const Interrupted end = interrupt(
         "still " + scene_ + " --at 0,3e5 --duration 3e5 -o " + folder_.file("stills"), "INT", kIsListening);
     EXPECT_EQ(end.result.exit_code, 130) << end.result.err;
@@ -193,7 +193,7 @@ TEST_F(Signals, EndAStill) {
 
 #ifndef CORDA_SANITIZE  // which draws many times slower, and takes more memory
 TEST_F(Signals, EndTheDrawingOfALargeStill) {
-    // This much memory is taken when the masks are there; drawing then takes two seconds or more.
+    // The process has this much memory once the masks exist; drawing then takes at least two seconds.
     const Interrupted end =
         interrupt("still " + scene_ + " --at 0 --size 8192x8192 -o " + folder_.file("a.png"), "TERM",
                   "awk '/^VmRSS/ { exit $2 < 598000 }' /proc/$pid/status");
@@ -204,7 +204,7 @@ TEST_F(Signals, EndTheDrawingOfALargeStill) {
 }
 #endif
 
-#ifndef CORDA_SANITIZE  // whose run time wants to be loaded first
+#ifndef CORDA_SANITIZE  // whose run time must be loaded first
 const std::string kHangs = "LD_PRELOAD=" FOREIGN_FAULTS " X264_HANGS_FROM_PX=640";
 
 TEST_F(Signals, EndAnEncoderThatDoesNotReturn) {
@@ -223,11 +223,11 @@ TEST_F(Signals, EndAnEncoderThatDoesNotReturn) {
             EXPECT_LT(end.ms, kMaxMs);  // measured 840 .. 880
         }
     }
-    // What is left of it holds nothing, and is in nobody's way.
+    // The remaining part is empty and blocks no other render.
     EXPECT_EQ(run_corda({"render", scene_, "-o", video, "-q", "--duration", "1"}).exit_code, 0);
 }
 
-TEST_F(Signals, LetASlowDiskTakeWhatIsKept) {
+TEST_F(Signals, WaitForASlowDiskToStoreKeptFrames) {
     const std::string table = folder_.file("a.csv");
     const Interrupted end = interrupt("simulate " + scene_ + " --duration 3000 -o " + table, "TERM",
                                       "ls " + folder_.path() + "/a.csv.*.tmp",
@@ -249,14 +249,14 @@ TEST_F(Signals, TheSecondEndsAtOnceEvenInsideAnEncoder) {
 #endif
 
 TEST_F(Signals, EndAStudy) {
-    // While it measures with the first methods.
+    // While it measures the first methods.
     const Interrupted end = interrupt("study -q -o " + folder_.file("report"), "INT", kIsListening);
     EXPECT_EQ(end.result.exit_code, 130) << end.result.err;
     EXPECT_THAT(end.result.err, HasSubstr("interrupted; nothing was written"));
     EXPECT_LT(end.ms, kMaxMs);  // measured 60 .. 230
 }
 
-/// A scene of which one frame takes minutes, or whose plan does.
+/// A scene whose frames, or whose plan, take minutes.
 struct HeavyScene {
     const char* name;
     const char* toml;

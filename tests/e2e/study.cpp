@@ -1,4 +1,4 @@
-// corda study on the command line: what it writes, what it refuses, and how it is stopped.
+// `corda study`: its files, refusals and early ends.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ void expect_files_of(const json& report, const std::string& folder) {
     EXPECT_EQ(static_cast<std::size_t>(std::distance(begin, fs::directory_iterator{})), expected);
 }
 
-TEST_F(Study, QuickOneWritesAWholeReport) {
+TEST_F(Study, QuickRunWritesAWholeReport) {
     const auto result = run_corda({"study", "-o", out_, "--quick", "--json"});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     const json answer = json::parse(result.out);
@@ -85,7 +85,7 @@ TEST_F(Study, PicturesHaveTheirErrorsAndTimes) {
     const json& presets = chapter["tables"][1]["rows"];
     ASSERT_EQ(presets.size(), 6U);
     for (const json& row : presets) {
-        // The codec smooths the dithered ground.
+        // The codec smooths the dithered background.
         EXPECT_GT(row["psnr_db"], 50.0) << row;         // measured 58.0 .. 61.5
         EXPECT_LT(row["one_minus_ssim"], 2e-3) << row;  // measured 4.1e-4 .. 5.8e-4
     }
@@ -110,7 +110,7 @@ closed = true
     }
 }
 
-TEST_F(Study, TakesAScene) {
+TEST_F(Study, AcceptsAScene) {
     const std::string scene = folder_.write("My rope-1.toml", R"(schema = 1
 [world]
 duration = 0.2
@@ -177,12 +177,12 @@ TEST_F(Study, StopsAtASignalAndWritesNoFile) {
     // timeout(1) signals its child twice: directly, and with its process group.
     const auto result =
         run_shell("timeout -s INT 1 " + test::quoted(CORDA_PROGRAM) + " study -o " + test::quoted(out_));
-    EXPECT_EQ(result.exit_code, 124) << result.err;  // that of timeout: the signal was sent
+    EXPECT_EQ(result.exit_code, 124) << result.err;  // the exit code of timeout: the signal was sent
     EXPECT_THAT(result.err, HasSubstr("interrupted; nothing was written"));
     EXPECT_TRUE(fs::is_empty(out_));
 }
 
-/// A study of two chapters, of a scene that no chapter takes long for.
+/// A study of two chapters, with a scene for which each chapter is short.
 std::string study_of(const std::string& scene, const std::string& folder) {
     return test::quoted(CORDA_PROGRAM) + " study " + scene + " -o " + folder +
            " --quick --chapter speed,picture";
@@ -193,7 +193,7 @@ const char* const kSmallScene =
 
 TEST_F(Study, EndsItsReportAtASignal) {
     const std::string scene = folder_.write("scene.toml", kSmallScene);
-    // The last file of the first chapter is there, while the others are measured.
+    // The last file of the first chapter exists while the others are measured.
     const auto result =
         run_shell(study_of(scene, out_) + " & pid=$!; for i in $(seq 1000); do [ -e " + out_ +
                   "/speed_scene.pdf ] && break; sleep 0.05; done; kill -TERM $pid; wait $pid");
@@ -208,8 +208,8 @@ TEST_F(Study, EndsItsReportAtASignal) {
 
 TEST_F(Study, KeepsItsTablesOnAFullDisk) {
     const std::string scene = folder_.write("scene.toml", kSmallScene);
-    // Files may have 24 KiB, which tables have (16 at most) and plots exceed (44 at least): what a full disk
-    // looks like to a program.
+    // Files may have 24 KiB: more than any table (at most 16) and less than any plot (at least 44). A program
+    // sees this as a full disk.
     const auto result = run_shell("trap '' XFSZ; ulimit -f 24; " + study_of(scene, out_));
     EXPECT_EQ(result.exit_code, 6) << result.err;
     EXPECT_THAT(result.err, HasSubstr("files are written, the last of them is " + out_));

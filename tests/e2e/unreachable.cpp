@@ -1,5 +1,5 @@
-// Places that even root cannot look at, as a folder without permissions is for others: a failure of input or
-// output, never an internal error.
+// Paths that not even root can examine, like a folder without permissions for other users: an input/output
+// error, never an internal one.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Files from anywhere: whatever they hold, the program ends in order.
+// Files of unknown origin: whatever they contain, the program ends with a defined exit code.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ class Untrusted : public testing::Test {
     test::ScratchFolder folder_;
 };
 
-/// How many processes have `word` in their command line.
+/// Number of processes with `word` in their command line.
 int processes_with(const std::string& word) {
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator("/proc"))
@@ -42,7 +42,7 @@ TEST_F(Untrusted, VideoOnWhichLibavAbortsIsDamaged) {
     const auto told = run_corda({"verify", path});
     EXPECT_EQ(told.exit_code, 7) << told.err;
     EXPECT_EQ(told.err, "");
-    EXPECT_THAT(told.out, HasSubstr("the file is damaged"));  // of libav 5.1: decoding crashed (Aborted)
+    EXPECT_THAT(told.out, HasSubstr("the file is damaged"));  // with libav 5.1: decoding crashed (Aborted)
     const auto reported = run_corda({"verify", path, "--json"});
     EXPECT_EQ(reported.exit_code, 7);
     const json report = json::parse(reported.out);
@@ -50,7 +50,7 @@ TEST_F(Untrusted, VideoOnWhichLibavAbortsIsDamaged) {
     EXPECT_THAT(report["problems"].dump(), HasSubstr("the file is damaged"));
 }
 
-TEST_F(Untrusted, VideoThatDoesNotEndIsLeftAtASignal) {
+TEST_F(Untrusted, DecodingAnEndlessVideoStopsAtASignal) {
     const std::string pipe = folder_.file("pipe.mp4");
     ASSERT_EQ(run_shell("mkfifo " + pipe).exit_code, 0);
     for (const auto& [signal, code] : {std::pair{"INT", 130}, {"TERM", 143}}) {
@@ -66,7 +66,7 @@ TEST_F(Untrusted, VideoThatDoesNotEndIsLeftAtASignal) {
     }
 }
 
-TEST_F(Untrusted, SceneOfAFileMayNotAskForMuchMemory) {
+TEST_F(Untrusted, StoredSceneMayNotRequestMuchMemory) {
     const std::string scene = folder_.write("scene.toml",
                                             "schema = 1\nworld = { duration = 0.1 }\n[[rope]]\n"
                                             "hang = { links = 6, length = 1.0, angle_deg = 30.0 }\n"
@@ -90,7 +90,7 @@ TEST_F(Untrusted, SceneOfAFileMayNotAskForMuchMemory) {
               0);
 }
 
-TEST_F(Untrusted, VerifySaysWhatItDoesNotSee) {
+TEST_F(Untrusted, VerifyStatesItsLimits) {
     const std::string scene = folder_.write("scene.toml",
                                             "schema = 1\nworld = { duration = 0.2 }\n[[rope]]\n"
                                             "hang = { links = 6, length = 1.0, angle_deg = 30.0 }\n"

@@ -1,4 +1,4 @@
-// Videos and stills of the program, opened again.
+// Videos and stills of the program, read back.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ size = [320, 180]
 fps = 30
 )";
 
-/// Wide bars of one colour each, all pinned, on grey: patches whose decoded colour is known.
+/// Wide bars of one colour each, all pinned, on grey: patches with known decoded colours.
 const char* const kPatches = R"(schema = 1
 [world]
 duration = 0.5
@@ -68,8 +68,8 @@ size = [640, 360]
 fps = 30
 )";
 
-/// llvmpipe with so many threads. Its threads and LeakSanitizer's own do not agree at exit (it crashes now
-/// and then), so leaks are looked for in the other tests.
+/// Environments with several numbers of llvmpipe threads. These occasionally crash LeakSanitizer at exit, so
+/// only the other tests look for leaks.
 std::vector<std::string> thread_counts() {
     return {"", "ASAN_OPTIONS=detect_leaks=0 LP_NUM_THREADS=0",
             "ASAN_OPTIONS=detect_leaks=0 LP_NUM_THREADS=1", "ASAN_OPTIONS=detect_leaks=0 LP_NUM_THREADS=2"};
@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Rates, VideoTimes,
                              return fmt::format("{}_{}", std::get<2>(rate.param), std::get<3>(rate.param));
                          });
 
-TEST_F(Video, IsMendedByTheRemedyThatVerifyGives) {
+TEST_F(Video, IsRepairedByTheRemedyOfVerify) {
     const std::vector<std::array<const char*, 4>> copies{
         {"libx264", "30000/1001", "-movflags frag_keyframe+empty_moov ", "fragments.mp4"},
         {"libx264", "60", "", "other.mkv"},
@@ -149,7 +149,7 @@ TEST_F(Video, IsMendedByTheRemedyThatVerifyGives) {
     }
 }
 
-TEST_F(Video, OfALevelThatFewDecodeIsPlayedByFew) {
+TEST_F(Video, WithARareLevelHasFewPlayers) {
     const std::vector<std::array<const char*, 4>> videos{
         {"640x360", "20000", "beyond every level of H.264", "PowerPoint and phones refuse it"},
         {"8192x4320", "1", "takes level 6.0", "PowerPoint and phones refuse it"},
@@ -166,7 +166,7 @@ TEST_F(Video, OfALevelThatFewDecodeIsPlayedByFew) {
     }
 }
 
-TEST_F(Video, OfAProfileThatFewDecodeIsNotSaidToPlay) {
+TEST_F(Video, WithARareProfileHasFewPlayers) {
     ASSERT_EQ(
         test::run_shell("ffmpeg -v error -f lavfi -i testsrc=s=160x90:r=25 -frames:v 5 -c:v libx264 -qp 0 "
                         "-pix_fmt yuv420p " +
@@ -179,8 +179,8 @@ TEST_F(Video, OfAProfileThatFewDecodeIsNotSaidToPlay) {
                                testing::Not(HasSubstr("PowerPoint play it"))));
 }
 
-TEST_F(Video, IsRecoveredFromWhatAKilledRenderLeaves) {
-    // Killed as soon as a chunk is whole, long before the last one.
+TEST_F(Video, IsRecoveredFromAKilledRender) {
+    // Killed as soon as one chunk is complete, long before the last one.
     const std::string part = video_ + ".part";
     const auto killed =
         test::run_shell(test::quoted(CORDA_PROGRAM) + " render " + scene_ + " --duration 300 -q -o " +
@@ -188,7 +188,7 @@ TEST_F(Video, IsRecoveredFromWhatAKilledRenderLeaves) {
                         " || ! kill -0 $pid; do sleep 0.01; done; kill -9 $pid; wait $pid");
     EXPECT_EQ(killed.exit_code, 137) << killed.err;
     EXPECT_EQ(run_corda({"recover", scene_}).exit_code, 2);
-    const auto none = run_corda({"recover", scene_ + ".part"});  // the scene is there, and not in the way
+    const auto none = run_corda({"recover", scene_ + ".part"});  // the scene exists and is not touched
     EXPECT_EQ(none.exit_code, 6);
     EXPECT_THAT(none.err, HasSubstr("there is no '" + scene_ + ".part'"));
     const auto recovered = run_corda({"recover", part, "--json"});
@@ -232,7 +232,8 @@ TEST_F(Video, KeepsPureColoursAndTheFirstFrame) {
         int y;
         std::array<double, 3> rgb;
     };
-    // The ropes' middles: 72 px a metre; grey between the picture's edge and the first one.
+    // The middles of the ropes, at 72 px per metre, and the grey between the picture's edge and the first
+    // one.
     for (const Patch& patch : {Patch{108, {255, 0, 0}}, Patch{180, {0, 255, 0}}, Patch{252, {0, 0, 255}},
                                Patch{40, {128, 128, 128}}}) {
         const std::array<double, 3> rgb = test::rgb_at(decoded.pictures[0], 320, patch.y);
@@ -242,14 +243,14 @@ TEST_F(Video, KeepsPureColoursAndTheFirstFrame) {
     EXPECT_GE(test::luma_psnr_db(decoded.pictures[0], read_png(folder_.file("first.png"))), 40.0);
 }
 
-TEST_F(Video, OfAMovingRopeKeepsItsFirstFrame) {
+TEST_F(Video, KeepsTheFirstFrameOfAMovingRope) {
     ASSERT_EQ(run_corda({"render", scene_, "-o", video_}).exit_code, 0);
     ASSERT_EQ(run_corda({"still", scene_, "--frame", "0", "-o", folder_.file("first.png")}).exit_code, 0);
     const test::DecodedFrames decoded = test::decode_video(video_);
     EXPECT_GE(test::luma_psnr_db(decoded.pictures[0], read_png(folder_.file("first.png"))), 40.0);
 }
 
-TEST_F(Video, IsTheSameBytesOnEveryRunAndThreadCount) {
+TEST_F(Video, HasTheSameBytesOnEveryRunAndThreadCount) {
     std::vector<std::string> videos;
     for (const std::string& threads : thread_counts()) {
         ASSERT_EQ(run_corda({"render", scene_, "-o", video_, "--force"}, threads).exit_code, 0);
@@ -258,8 +259,8 @@ TEST_F(Video, IsTheSameBytesOnEveryRunAndThreadCount) {
     }
 }
 
-TEST_F(Video, DoesNotDependOnWhatIsInMemoryThatNobodyWrote) {
-    // 30 macroblocks in a row, 40 and 45. glibc fills what it gives out with the complement of the number.
+TEST_F(Video, DoesNotDependOnUninitialisedMemory) {
+    // Rows of 30, 40 and 45 macroblocks. glibc fills allocated memory with the complement of the number.
     for (const char* const size : {"480x270", "640x360", "720x400"}) {
         std::set<std::string> kinds;
         for (const char* const memory :
@@ -274,7 +275,7 @@ TEST_F(Video, DoesNotDependOnWhatIsInMemoryThatNobodyWrote) {
     }
 }
 
-TEST_F(Video, FramesTakeAPartOfIt) {
+TEST_F(Video, FramesOptionSelectsARange) {
     ASSERT_EQ(run_corda({"render", scene_, "-o", video_, "--frames", "10:15"}).exit_code, 0);
     const auto still = run_corda({"still", scene_, "--frame", "10", "-o", folder_.file("tenth.png")});
     ASSERT_EQ(still.exit_code, 0) << still.err;
@@ -288,7 +289,7 @@ TEST_F(Video, StillsAreTheFramesBeforeEncodingByteForByte) {
                   .exit_code,
               0);
     ASSERT_EQ(run_corda({"still", scene_, "--frame", "22", "-o", folder_.file("frame.png")}).exit_code, 0);
-    // The video's frames, drawn one after the other as render does.
+    // The frames of the video, drawn in order as by `render`.
     Film film(load_scene(scene_));
     FilmRenderer painter(film);
     const std::map<int, std::string> stills{
@@ -302,7 +303,7 @@ TEST_F(Video, StillsAreTheFramesBeforeEncodingByteForByte) {
     EXPECT_TRUE(test::equal_images(read_png(folder_.file("frame.png")), painter.image()));
 }
 
-TEST_F(Video, StillsTakeRangesOfFrames) {
+TEST_F(Video, StillsAcceptFrameRanges) {
     const std::string stills = folder_.file("v1.2");  // a folder whose name has a dot
     const auto result =
         run_corda({"still", scene_, "--frame", ":2,9,20:", "-o", stills + "/", "--size", "32x32", "--json"});
@@ -325,7 +326,7 @@ TEST_F(Video, StillsHaveNamesWithOneDot) {
     EXPECT_EQ(result.out, folder_.file("my_scene_v2_t0000_250000.png") + "\n");
 }
 
-TEST_F(Video, StillsSayWhatTheyShow) {
+TEST_F(Video, StillsRecordTitleTimeAndResolution) {
     ASSERT_EQ(run_corda({"still", scene_, "--at", "0.3", "-o", folder_.file("a.png"), "--ppi", "300",
                          "--size", "65x33"})
                   .exit_code,
@@ -340,7 +341,7 @@ TEST_F(Video, StillsSayWhatTheyShow) {
     EXPECT_NE(bytes.find("pHYs"), std::string::npos);
 }
 
-TEST_F(Video, StillsAreTheSameBytesOnEveryRunAndThreadCount) {
+TEST_F(Video, StillsHaveTheSameBytesOnEveryRunAndThreadCount) {
     std::vector<std::string> stills;
     for (const std::string& threads : thread_counts()) {
         ASSERT_EQ(run_corda({"still", scene_, "--at", "0.5", "-o", folder_.file("a.png"), "--force"}, threads)

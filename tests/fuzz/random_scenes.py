@@ -25,9 +25,9 @@ MEMORY_BYTES = 2 << 30
 TIME_S = 10.0 if os.environ.get("CORDA_TEST_LONG") else 1.5
 ANSWER_S = 5.0
 ALLOWED = {0: "ok", 2: "usage", 3: "invalid scene", 5: "encoder", 8: "diverged", 75: "temporary", 143: "stopped by SIGTERM",
-           -signal.SIGTERM: "stopped before main()"}  # on a busy machine the libraries load for longer than TIME_S
+           -signal.SIGTERM: "stopped before main()"}  # on a busy machine, loading the libraries takes longer than TIME_S
 MAX_PARTICLES = 60
-# Which keys of [solver] a method uses; the schema does not say. One scene in ten ignores this.
+# The keys of [solver] that a method uses, which the schema does not contain. One scene in ten ignores this.
 METHOD_KEYS = {"auto": {"tolerance_px"}, "exact": {"tolerance"}, "rattle": {"order", "step"},
                "relaxation": {"step", "reach", "sweeps", "delta", "force"}}
 
@@ -59,7 +59,7 @@ class Generator:
         return table
 
     def fit_keys(self, table):
-        """Leaves out what other keys of the scene exclude."""
+        """Removes keys that other keys of the scene exclude."""
         solver = table.get("solver", {})
         used = METHOD_KEYS[solver.get("method", "auto")] | {"method"}
         table["solver"] = {key: value for key, value in solver.items() if key in used}
@@ -75,7 +75,7 @@ class Generator:
                     body.pop("string", None)
 
     def limit_work(self, table):
-        """Bounds what the random values would make of time and disk: their extremes are for the estimate to refuse."""
+        """Limits the time and disk space of random values. Extreme ones remain, for the estimate to refuse."""
         if self.random.random() < 0.9:
             table.setdefault("world", {})["duration"] = self.random.choice((0.02, 0.1, 0.5))
         video = table.setdefault("video", {})
@@ -105,7 +105,7 @@ class Generator:
         return {k: self.value(v) for k, v in node["properties"].items() if k in required or self.random.random() < 0.3}
 
     def number(self, node, whole):
-        """Ordinary values mostly, at times those at or near a limit of the schema, and large and tiny ones."""
+        """Mostly ordinary values, sometimes values at or near a limit of the schema, large or tiny ones."""
         least = node.get("minimum", node.get("exclusiveMinimum", -1e9))
         most = node.get("maximum", node.get("exclusiveMaximum", 1e9))
         choice = self.random.random()
@@ -159,7 +159,7 @@ class Generator:
         return [self.random.uniform(-size, size), self.random.uniform(-size, size)]
 
     def fit_lists(self, body, particles, links):
-        """Gives lists the length that the body asks for, and indices its range."""
+        """Adapts the lengths of lists and the range of indices to the body."""
         for key, count in (("mass", particles), ("velocity", particles), ("link_length", links), ("color", links)):
             value = body.get(key)
             is_pair = key == "velocity" and value and not isinstance(value[0], list)
@@ -176,7 +176,7 @@ def to_toml(value):
         return "{ " + ", ".join(f"{key} = {to_toml(item)}" for key, item in value.items()) + " }"
     if isinstance(value, list):
         return "[" + ", ".join(to_toml(item) for item in value) + "]"
-    return json.dumps(value)  # of numbers, texts and booleans JSON's form is also TOML's
+    return json.dumps(value)  # JSON and TOML write numbers, texts and booleans alike
 
 
 def command_of(index, corda, scene, folder):
@@ -246,7 +246,7 @@ def main():
             if failure:
                 failures.append(failure)
     print(", ".join(f"{ALLOWED.get(status, status)}: {count}" for status, count in sorted(counts.items(), key=str)))
-    # Scenes that nearly all end as invalid would test nothing but the reader.
+    # If nearly all scenes were invalid, only the reader would be tested.
     if counts.get(0, 0) < 0.2 * arguments.count:
         failures.append(f"only {counts.get(0, 0)} of {arguments.count} scenes ran to their end")
     print("\n".join(failures))

@@ -1,5 +1,4 @@
-// libFuzzer entry: clang++ -fsanitize=fuzzer,address,undefined. Whatever the bytes, a scene or a
-// corda::Error.
+// libFuzzer entry: clang++ -fsanitize=fuzzer,address,undefined. Any bytes give a scene or a corda::Error.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>

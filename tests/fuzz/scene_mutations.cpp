@@ -1,4 +1,4 @@
-// Thousands of broken scenes, the same ones on every run: each gives a scene or a corda::Error, nothing else.
+// Thousands of broken scenes, the same on every run: each gives a scene or a corda::Error.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -174,7 +174,7 @@ constexpr std::array<std::string_view, 39> kTokens{"9223372036854775807",
                                                    "\xff\xfe",
                                                    "\xf0\x9f\x98\x80"};
 
-/// std::mt19937's numbers are the same everywhere, those of the standard distributions are not.
+/// std::mt19937 is the same everywhere; the standard distributions are not.
 class Mutator {
   public:
     explicit Mutator(std::uint32_t seed) : random_(seed) {}
@@ -214,7 +214,7 @@ class Mutator {
         }
     }
 
-    /// The next number after `at` becomes one that is hard to hold.
+    /// Replaces the next number after `at` by an extreme one.
     void replace_number(std::string& text, std::size_t at) {
         constexpr std::size_t kNumbers = 13;  // the first of kTokens
         const std::size_t begin = text.find_first_of("0123456789", at);
@@ -243,12 +243,12 @@ TEST(SceneMutations, GiveASceneOrAnError) {
             FAIL() << "seed " << seed << ": " << error.what() << "\n" << text;
         }
     }
-    // Some mutations change only a comment or a number: were there none, the scenes themselves would be
+    // Some mutations change only a comment or a number. If all were errors, the scenes themselves would be
     // broken.
     EXPECT_GT(scenes, 100);
 }
 
-TEST(SceneMutations, OfSettingsGiveASceneOrAnError) {
+TEST(SceneMutations, SettingsGiveASceneOrAnError) {
     constexpr std::uint32_t kRuns = 3000;
     constexpr std::array<std::string_view, 13> kKeys{
         "rope[0].mass",          "world",          "video.size[1]",       "rope[1].line",

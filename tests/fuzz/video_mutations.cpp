@@ -1,5 +1,4 @@
-// Hundreds of damaged videos, the same ones on every run: each gives a report within a limited time, nothing
-// else.
+// Hundreds of damaged videos, the same on every run: each gives a report within a limited time.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +14,7 @@
 namespace corda::media {
 namespace {
 
-/// std::mt19937's numbers are the same everywhere, those of the standard distributions are not.
+/// std::mt19937 is the same everywhere; the standard distributions are not.
 class Mutator {
   public:
     explicit Mutator(std::uint32_t seed) : random_(seed) {}
@@ -53,7 +52,7 @@ class Mutator {
         }
     }
 
-    /// A number as the boxes have them becomes one that is hard to hold.
+    /// Replaces a big-endian number, as in MP4 boxes, by an extreme one.
     void put_number(std::string& bytes, std::size_t at) {
         constexpr std::array<std::uint32_t, 6> kHard{0, 1, 0x7fffffff, 0x80000000, 0xffffffff, 0x4000};
         const std::uint32_t number = kHard[below(kHard.size())];
@@ -66,7 +65,7 @@ class Mutator {
 
 class VideoMutations : public testing::Test {
   protected:
-    /// A square on its way, and nothing but the beginning of its video if `is_part`.
+    /// A video of a moving square; only its beginning if `is_part`.
     std::string corda_video(bool is_part) {
         VideoDef def;
         def.width_px = 64;
@@ -109,7 +108,8 @@ class VideoMutations : public testing::Test {
 };
 
 TEST_F(VideoMutations, GiveAReport) {
-    // Sound: damage in what no player reads, such as the name of the encoder or the last bits of a picture.
+    // Accepted: damage in data that no player reads, such as the name of the encoder or the last bits of a
+    // picture.
     EXPECT_LT(sound_copies(corda_video(false), 200), 60);  // measured: 29
     EXPECT_EQ(sound_copies(corda_video(true), 100), 0);
     EXPECT_EQ(crashes_, 0);

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Fails unless golden pictures and positions are the same on older CPUs and with other vectors of the driver: the C
-# library without AVX and FMA, llvmpipe on other instructions and of other widths, and any driver replaced by llvmpipe.
+# Fails unless golden pictures and positions are the same on older CPUs and with other vector widths of the driver: the C
+# library without AVX and FMA, llvmpipe with other instructions and widths, and any driver replaced by llvmpipe.
 # Usage: cpus.sh PROGRAM
-# PROGRAM is corda. Each variable is shown to work first, or a misspelt one would check nothing. Vectors of 512 bits are
-# not: llvmpipe crashes with them, and Corda unsets that variable.
+# PROGRAM is corda. First, each variable is shown to have an effect, because a misspelt one would check nothing. Vectors of
+# 512 bits are not tested: llvmpipe crashes with them, and Corda unsets that variable.
 set -euo pipefail
 corda=${1:?usage: cpus.sh PROGRAM}
 cd "$(dirname "${BASH_SOURCE[0]}")"
@@ -11,18 +11,18 @@ work=$(mktemp -d)
 trap 'rm -r "$work"' EXIT
 loader=(/lib64/ld-linux-x86-64.so.2 --list-diagnostics)  # an AArch64 has none of these CPUs
 
-# The C library rounds the sine of this angle by whether the CPU has FMA.
+# The rounding of the sine of this angle depends on whether the CPU has FMA.
 printf 'schema = 1\n[[rope]]\nhang = { links = 5, length = 1.0, angle_deg = 44.1276 }\n' >"$work/angle.toml"
 
-# positions COMMAND...: prints positions that the program computes, run by the command.
+# positions COMMAND...: prints positions that the program computes when run by the command.
 positions() {
     for scene in "$work/angle.toml" scenes/{bars,ring,pendulums,slack,two_pins}.toml; do
         "$@" "$corda" simulate "$scene" --set world.duration=0.5 -o - -q
     done
 }
 
-# check SETTING...: with these variables, goldens and positions are as ever. llvmpipe (Mesa 22.3) would take shaders that
-# were compiled with others from its cache.
+# check SETTING...: fails unless goldens and positions are unchanged with these variables. Without the shader cache, from
+# which llvmpipe (Mesa 22.3) would take shaders that were compiled with other variables.
 check() {
     env MESA_SHADER_CACHE_DISABLE=1 "$@" "$corda" golden scenes --dir stills --set world.duration=1.0 -q >"$work/goldens" || { echo "with $*:"; cat "$work/goldens"; exit 1; }
     positions env "$@" | cmp - "$work/positions" || { echo "with $*: other positions"; exit 1; }

@@ -1,7 +1,7 @@
-// Golden stills, beside the test that `corda golden` makes of the same scenes and pictures
-// (tests/CMakeLists.txt): Film and the reference renderer draw the pictures of golden/stills, and at
-// 1920x1080 each has the hash in golden/stills_1080p. The target update_golden_stills writes the pictures
-// anew, CORDA_UPDATE_GOLDENS=1 the hashes; look at the pictures before committing.
+// Golden stills: Film and the reference renderer draw the pictures of golden/stills, and at 1920x1080 each
+// has the hash in golden/stills_1080p. A second test runs `corda golden` on the same scenes
+// (tests/CMakeLists.txt). The target update_golden_stills rewrites the pictures, CORDA_UPDATE_GOLDENS=1 the
+// hashes; look at the pictures before committing.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ namespace {
 
 constexpr double kTimeSeconds = 0.7;
 
-/// What the reference renderer makes of a film.
+/// A frame of a film by the reference renderer.
 Image reference_of(const Film& film) {
     const view::DrawList sharp = test::draw_list_of(film, kTimeSeconds);
     const VideoDef& video = film.scene().video;

@@ -1,5 +1,5 @@
 # Reads all paths of the repository, then the headings of its pages, then the text of all files, and prints each citation
-# that does not resolve. See citations.sh.
+# that does not resolve; see citations.sh.
 
 # The anchor that GitHub gives a heading.
 function slug(heading) {
@@ -14,7 +14,7 @@ function complain(citation, why) {
     failures++
 }
 
-# Whether a path is in the repository: from its root, or from src or tests, or the end of a path. "*" matches anything.
+# True if a path is in the repository: from its root, or, unless `exact`, as the end of a path. "*" matches anything.
 function is_there(path, exact,    k) {
     sub(/^corda\//, "", path)
     sub(/\/$/, "", path)
@@ -33,7 +33,7 @@ function check_reference(citation) {
 }
 
 # "section 5 of src/sim/README.md", "sections 1 and 4 of ...", or "section 5" within a page. Sections of something else
-# ("RFC 4180 section 2", "section 2 of the book") are taken for a publication's.
+# ("RFC 4180 section 2", "section 2 of the book") are taken for sections of a publication.
 function check_section(citation,    page, numbers, count, k) {
     if (citation ~ /^[^ ]*[0-9][^ ]* /) return
     sub(/^.*[Ss]ections? /, "", citation)
@@ -165,7 +165,7 @@ FILENAME ~ /\.(hpp|cpp|frag|vert)$/ {
 }
 
 {
-    sub(/^[ \t]*(\/\/\/?<?|#+|\*)[ \t]*/, "")  # a sentence may go on in the next line's comment
+    sub(/^[ \t]*(\/\/\/?<?|#+|\*)[ \t]*/, "")  # a sentence may continue in the comment of the next line
     text = text " " $0
 }
 

@@ -8,7 +8,7 @@ mkdir -p "$root"/{src/sim,tests,examples,shaders}
 printf '# Corda\n\nSee [R1](src/sim/README.md#r1-pendulum) and src/sim/a.hpp.\n' >"$root/README.md"
 printf '## 5. Hard cases\n\nIn section 5, R1, [up](../../README.md).\n\n### R1 Pendulum\n' >"$root/src/sim/README.md"
 
-# expect RESULT TEXT: what the lint says of a source with this text.
+# expect RESULT TEXT: fails unless the lint has this result for a source with this text.
 expect() {
     printf '%b\n' "$2" >"$root/src/sim/a.hpp"
     local said=accepted

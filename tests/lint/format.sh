@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Fails if a source is not as .clang-format has it (fix with: clang-format -i $(git ls-files '*.cpp' '*.hpp')), or has
-# scraps of a string literal on lines of their own, which clang-format leaves behind when a text changes.
-# Versions of clang-format differ in details, so that of Debian 12 decides; with another, only scraps are looked for and the
-# test is skipped (exit 77).
+# Fails if a source does not follow .clang-format (fix with: clang-format -i $(git ls-files '*.cpp' '*.hpp')), or has short
+# pieces of a string literal on lines of their own, which clang-format leaves behind when a text changes.
+# Versions of clang-format differ in details, so that of Debian 12 decides; with another version, only such pieces are
+# looked for and the test is skipped (exit 77).
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 status=0

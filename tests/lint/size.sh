@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fails if a source file has over 500 lines: it asks to be split.
+# Fails if a source file has more than 500 lines: split it.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 find src shaders examples tests \( -name '*.cpp' -o -name '*.hpp' -o -name '*.vert' -o -name '*.frag' \) -exec wc -l {} + |

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds the Debian packages and uses what is in them: the program draws an example, the manual and the completions are
-# there, and Python imports the module and draws the same frame.
+# Builds the Debian packages and uses their contents: the program draws an example, the manual and the completions exist,
+# and Python imports the module and draws the same frame.
 # Usage: debian.sh BUILD_FOLDER EXAMPLES_FOLDER
 # With CORDA_TEST_LONG=1 (as root) they are installed, used and removed in a new system of this machine's release, where an
 # outside project builds against the library, too.
@@ -14,7 +14,7 @@ trap 'rm -rf --one-file-system "$work"' EXIT
 cpack --config "$build/CPackConfig.cmake" -B "$work/packages" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 ls "$work/packages"/corda_*.deb "$work/packages"/libcorda-dev_*.deb >/dev/null
 
-use() {  # use COMMAND...: what a user of the program does, in the system that the command enters
+use() {  # use COMMAND...: uses the program in the system that the command enters
     "$@" corda render /usr/share/doc/corda/examples/first.toml --duration 0.2 --size 320x180 -o /tmp/first.mp4 -q
     "$@" corda still /usr/share/doc/corda/examples/first.toml --size 320x180 --frame 3 -o /tmp/still.png -q
     "$@" corda verify /tmp/first.mp4 -q

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the build to an empty prefix, and uses its golden tests from an outside project: corda_add_golden_tests and the
-# matcher of GoogleTest, from no picture to pictures that match, and to a failure of each.
+# Installs the build to an empty prefix and uses its golden tests from an outside project: corda_add_golden_tests and the
+# matcher of GoogleTest, without pictures, with matching pictures, and with a failure of each.
 # Usage: golden.sh BUILD_FOLDER
 set -euo pipefail
 build=$1

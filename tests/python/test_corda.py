@@ -211,7 +211,7 @@ def test_an_interrupted_video_is_gone_on_with(tmp_path):
         film.save(tmp_path / "a.mp4")
     heard = []
     assert film.save(tmp_path / "a.mp4", resume=True, on_progress=lambda done, total: heard.append(done)) == 300
-    assert min(done for done in heard if done > 0) > 60  # what was there is not drawn again
+    assert min(done for done in heard if done > 0) > 60  # existing frames are not drawn again
     assert (tmp_path / "a.mp4").read_bytes() == (tmp_path / "whole.mp4").read_bytes()
     assert not (tmp_path / "a.mp4.part").exists()
 
@@ -327,7 +327,7 @@ def test_forked_workers_draw_after_their_parent_has_drawn(tmp_path):
         def own(k):
             return corda.Film(sys.argv[1], **SMALL).frame(k).tobytes() == drawn
 
-        def tinted(k):  # by functions of OpenGL that the parent has not called
+        def tinted(k):  # with OpenGL functions that the parent has not called
             film = corda.Film(sys.argv[1], settings={"style.color_by": "speed"}, **SMALL)
             return len(set(film.frame(k).tobytes())) > 9
 
@@ -355,7 +355,7 @@ def test_forked_workers_draw_after_their_parent_has_drawn(tmp_path):
 
 
 def test_the_example_notebook_runs(tmp_path):
-    notebook = tmp_path / "notebook.ipynb"  # what it writes goes beside it
+    notebook = tmp_path / "notebook.ipynb"  # its outputs go into the same folder
     notebook.write_bytes((EXAMPLES / "notebook.ipynb").read_bytes())
     subprocess.run([sys.executable, "-m", "nbconvert", "--to", "notebook", "--execute", "--inplace", str(notebook)],
                    check=True, capture_output=True)

@@ -30,7 +30,7 @@ def total_of_frame(k):
 
 
 def run(program, **options):
-    """Runs a program of Python with SCENE defined; returns what subprocess.run does."""
+    """Runs a Python program with SCENE defined; returns the result of subprocess.run."""
     text = f"import corda, os, threading, time\nSCENE = {SCENE!r}\n" + textwrap.dedent(program)
     return subprocess.run([sys.executable, "-c", text], capture_output=True, text=True, timeout=60, **options)
 

@@ -1,4 +1,4 @@
-"""Values as Python, numpy and the file system give them: each is taken as what it is, or refused by its keyword."""
+"""Values from Python, numpy and the file system: each is accepted for what it is, or refused with its keyword."""
 
 import decimal
 import fractions

@@ -18,7 +18,7 @@ BoundCase many_links(Random& random) {
     return one_rope(random, crooked_rope(random, pick(random, 10, 30), any_angle(random), 0.3), 3.0);
 }
 
-/// Long enough to meet a horizon.
+/// Long enough to reach a horizon.
 BoundCase chaos_few(Random& random) {
     return one_rope(random, crooked_rope(random, pick(random, 2, 8), 2.0 + pick_real(random, -0.5, 0.5), 0.5),
                     12.0);
@@ -90,7 +90,7 @@ BoundCase elastic(Random& random) {
     return one_rope(random, rope, 3.0);
 }
 
-/// At rest in the shape of the rope's own, with vibrations of all sizes.
+/// At rest in the rope's own shape, with vibrations of all sizes.
 BoundCase elastic_straight(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 1, 6), pick_real(random, -1.6, 1.6), 0.0);
     rope.material.compliance_1_n = pick_log(random, 1e-7, 1e-4);
@@ -104,7 +104,7 @@ BoundCase beam(Random& random) {
     return one_rope(random, rope, 1.5);
 }
 
-/// Straight and stiff: vibrations are quick and small.
+/// Straight and stiff: fast, small vibrations.
 BoundCase beam_straight(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 2, 4), pick_real(random, -0.3, 0.3), 0.0);
     const double length_m = pick_log(random, 0.1, 3.0);

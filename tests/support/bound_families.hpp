@@ -18,9 +18,9 @@ struct BoundFamily {
     [[nodiscard]] BoundCase scene(unsigned n) const;
 };
 
-/// Families of scenes on which claims of method auto are held against the truth: single ropes of all kinds.
+/// Families of scenes for which claims of method auto are compared with the truth: single ropes of all kinds.
 [[nodiscard]] std::span<const BoundFamily> rope_families();
-/// The same: strings, closed ropes, nets, several bodies, and scales, pictures and places that are unusual.
+/// More families: strings, closed ropes, nets, several bodies, and unusual scales, pictures and places.
 [[nodiscard]] std::span<const BoundFamily> other_families();
 
 /// A rope of 1 m from (0, 0) in directions around `angle` from straight down, in radians.
@@ -30,10 +30,10 @@ struct BoundFamily {
 [[nodiscard]] double pick_log(Random& random, double least, double most);
 /// A scene of that rope with a random size of picture, rate, tolerance and drag.
 [[nodiscard]] BoundCase one_rope(Random& random, RopeDef rope, double duration_s);
-/// Size, rate, tolerance and drag: from stamps to 4K, from slow to quick.
+/// Sets size (16 to 4K pixels), frame rate, tolerance and drag at random.
 void add_video(Random& random, Scene& scene);
 
-/// A straight rope as a scene file gives it: its points are rounded.
+/// A straight rope with rounded points, as in a scene file.
 [[nodiscard]] BoundCase straight_rope(int links, double length_m, double angle_deg,
                                       const std::string& more = "");
 

@@ -28,7 +28,7 @@ std::string why_no_bound(const Plan& plan) {
     return "none claimed";
 }
 
-/// The largest error of a particle's position as it is printed, in m.
+/// The largest error of a printed position, in m.
 double error_m(const State& state, Vec2 origin_m, const ExtendedMotion& truth) {
     double largest_m = 0.0;
     for (std::size_t i = 0; i < state.x_m.size(); ++i) {
@@ -40,7 +40,7 @@ double error_m(const State& state, Vec2 origin_m, const ExtendedMotion& truth) {
     return largest_m;
 }
 
-/// Whether the truth by other steps, and so with other rounding, is far nearer to the truth than the error.
+/// True if the truth with other steps, and so with other rounding, differs far less than the error.
 bool is_sure(const Film& film, const BoundCase& given, const Verdict& verdict) {
     ExtendedMotion truth(film.system(), given.scene.world, given.start);
     ExtendedMotion other(film.system(), given.scene.world, given.start);

@@ -16,21 +16,21 @@ struct BoundCase {
     std::vector<ExtendedMotion::Real> start = {};
 };
 
-/// What became of a claim of method auto.
+/// The verdict on a claim of method auto.
 struct Verdict {
     std::optional<double>
         ratio;                   ///< the largest of error / bound; std::nullopt if there is none, or no truth
     std::string why_no_bound;    ///< empty if there is a bound
-    std::string why_not_judged;  ///< empty if the truth got to the end of the claim
+    std::string why_not_judged;  ///< empty if the truth reached the end of the claim
     std::optional<double> horizon_s;
     double bound_m = 0.0;
     double worst_s = 0.0;  ///< when the ratio is largest
-    double plan_s = 0.0;   ///< what planning took
-    double truth_s = 0.0;  ///< what the truth took
+    double plan_s = 0.0;   ///< duration of planning
+    double truth_s = 0.0;  ///< duration of computing the truth
 };
 
-/// Holds the bound that method auto claims against ExtendedMotion, in world coordinates at all frame times up
-/// to the horizon. If the truth breaks off, what it reached counts.
+/// Compares the bound that method auto claims with ExtendedMotion, in world coordinates at all frame times up
+/// to the horizon. If the truth ends early, the times before its end count.
 [[nodiscard]] Verdict judge_bound(const BoundCase& given);
 
 }  // namespace corda::test

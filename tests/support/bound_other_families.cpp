@@ -13,7 +13,7 @@ void add_velocities(Random& random, RopeDef& rope, double most_m_s) {
             {pick_real(random, -most_m_s, most_m_s), pick_real(random, -most_m_s, most_m_s)});
 }
 
-/// Rest lengths: some as the links lie, the others longer.
+/// Rest lengths: some equal to the links' lengths, the others longer.
 void add_slack(Random& random, RopeDef& rope, double most) {
     for (std::size_t k = 0; k + 1 < rope.points_m.size(); ++k) {
         const Vec2 link = rope.points_m[k + 1] - rope.points_m[k];
@@ -44,7 +44,7 @@ BoundCase string_many(Random& random) {
     return one_rope(random, rope, 2.0);
 }
 
-/// Taut at the start, as a rope of the same shape, and high enough to go slack.
+/// Taut at the start, like a rope of the same shape, and high enough to go slack.
 BoundCase string_swing(Random& random) {
     const double angle = (pick(random, 0, 1) == 0 ? 1.0 : -1.0) * pick_real(random, 1.2, 2.6);
     RopeDef rope = crooked_rope(random, pick(random, 1, 4), angle, 0.3);
@@ -96,7 +96,7 @@ BoundCase elastic_ring(Random& random) {
     return one_rope(random, rope, 1.0);
 }
 
-/// A closed polygon with bars from some particle to others, which leave it movable, rigid, or more than that.
+/// A closed polygon with bars from one particle to others, which make it movable, rigid, or overdetermined.
 BoundCase braced(Random& random) {
     const RopeDef rope = ring_rope(random);
     const auto count = static_cast<std::uint32_t>(rope.points_m.size());
@@ -152,7 +152,7 @@ BoundCase elastic_net(Random& random) {
     return made;
 }
 
-/// Some of: a rope, one that stretches, a string, a bungee; and sometimes a ring in place of the string.
+/// Some of: a rope, a stretching rope, a string or a ring, a bungee.
 BoundCase several(Random& random) {
     BoundCase made = one_rope(random, crooked_rope(random, pick(random, 2, 8), any_angle(random), 1.0), 1.0);
     std::vector<RopeDef>& ropes = made.scene.ropes;
@@ -169,7 +169,7 @@ BoundCase several(Random& random) {
     return made;
 }
 
-/// From micrometres to kilometres, by any gravity, with any masses.
+/// From micrometres to kilometres, with any gravity and any masses.
 BoundCase units(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 2, 8), any_angle(random), 1.0);
     const double scale = pick_log(random, 1e-6, 1e4);
@@ -212,7 +212,7 @@ BoundCase much_drag(Random& random) {
     return made;
 }
 
-/// Points as a file gives them, far from (0, 0).
+/// Rounded points, as in a file, far from (0, 0).
 BoundCase far_away(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 2, 6), any_angle(random), 1.5);
     rope.origin_m = {pick_log(random, 10.0, 1e8), -pick_log(random, 10.0, 1e8)};

@@ -1,5 +1,5 @@
-// Stands in for libx264 in one test: an encoder library that is there and refuses to work. It has every name
-// that libavcodec is bound to when it is loaded; the first call that can fail does.
+// Replaces libx264 in one test: an encoder library that loads but fails. It has every symbol that libavcodec
+// needs at load time; the first call that can fail does.
 
 extern "C" {
 

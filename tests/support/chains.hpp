@@ -28,7 +28,7 @@ inline RopeDef chain_rope() {
     return rope;
 }
 
-/// Which ends of it are pinned.
+/// Its pinned ends.
 enum class Pins { kNone, kStart, kEnd, kBoth };
 
 inline System chain(Pins pins, double bending_n_m2 = 0.0) {

@@ -5,9 +5,9 @@
 
 namespace corda::test {
 
-/// How a command ended, and what it printed.
+/// Exit code and output of a command.
 struct CommandResult {
-    int exit_code = -1;  ///< 128 + the signal that ended it
+    int exit_code = -1;  ///< 128 + the signal if a signal ended it
     std::string out;
     std::string err;
 };
@@ -15,7 +15,7 @@ struct CommandResult {
 /// Runs a command with bash and waits for it.
 [[nodiscard]] CommandResult run_shell(const std::string& command);
 
-/// `text` as one word of a shell command.
+/// `text` quoted as one word of a shell command.
 [[nodiscard]] std::string quoted(const std::string& text);
 
 /// Runs the corda program that was built with the tests; `environment` is put before it, e.g.

@@ -10,7 +10,7 @@
 #include "corda/sim/rattle/constraint_solver.hpp"
 #include "support/unstopped.hpp"
 
-// What every ConstraintSolver has to do, checked with dense matrices.
+// Checks of every ConstraintSolver, with dense matrices.
 namespace corda::test {
 
 /// G: a row per link, which gives d . (v_b - v_a) for the velocities of all particles, x before y.
@@ -38,7 +38,7 @@ inline Eigen::MatrixXd inverse_masses(const System& system) {
     return both.asDiagonal();
 }
 
-/// How far a solution is from that of a dense matrix, in parts of the largest.
+/// Difference from the solution with a dense matrix, relative to the largest value.
 inline double error_of_solution(sim::ConstraintSolver& constraints, const System& system) {
     const std::size_t count = constraints.links().size();
     std::mt19937 random(5);
@@ -57,7 +57,7 @@ inline double error_of_solution(sim::ConstraintSolver& constraints, const System
     return largest_error;
 }
 
-/// Takes a stage from rest, which has to end with all bars at their lengths by v = push - W G' p: a positive
+/// Solves a stage from rest. All bars must have their lengths at its end, by v = push - W G' p: a positive
 /// impulse p pulls both ends together.
 inline void expect_impulses_along_the_bars(sim::ConstraintSolver& constraints, const System& system) {
     const std::size_t count = constraints.links().size();
@@ -83,7 +83,7 @@ inline void expect_impulses_along_the_bars(sim::ConstraintSolver& constraints, c
     }
 }
 
-/// Takes a stage so long that a bar would have to turn too far: no impulses can end it.
+/// Solves a stage that is too long: a bar would have to turn too far, and no impulses can do that.
 inline void expect_to_give_up(sim::ConstraintSolver& constraints, const System& system) {
     sim::Motion motion = sim::Motion::start_of(system);
     std::vector<double> impulse(constraints.links().size(), 0.0);

@@ -14,8 +14,8 @@ struct DecodedFrames {
     std::vector<media::Yuv420Image> pictures;
     int tick_num = 0;
     int tick_den = 0;
-    std::int64_t stream_duration = 0;        ///< ticks, as the container says
-    std::int64_t container_duration_us = 0;  ///< as the container says
+    std::int64_t stream_duration = 0;        ///< in ticks, from the container
+    std::int64_t container_duration_us = 0;  ///< from the container
     int range = 0, matrix = 0, primaries = 0, transfer = 0, chroma_location = 0;  ///< libav's numbers
 };
 
@@ -25,8 +25,7 @@ struct DecodedFrames {
 /// Which colour tags copy_video replaces by BT.601 and BT.709 transfer.
 enum class Retag { kNone, kContainer, kStream };
 
-/// Stream-copies `from` to an MP4 with libav's default layout (index behind the pictures, clocks of its
-/// choice).
+/// Stream-copies `from` to an MP4 with libav's default layout (index after the frames, default time bases).
 void copy_video(const std::string& from, const std::string& to, Retag retag);
 
 }  // namespace corda::test

@@ -6,8 +6,8 @@
 
 namespace corda::test {
 
-/// While one lives, an x86 CPU that has to work on a number below 2.2e-308, which takes it a hundred times as
-/// long, raises SIGFPE and so ends the test program. Other CPUs do not slow down there.
+/// During its lifetime, an x86 CPU that computes with a number below 2.2e-308, which takes a hundred times as
+/// long, raises SIGFPE, which ends the test program. Other CPUs do not slow down there.
 class DenormalTrap {
   public:
     DenormalTrap(const DenormalTrap&) = delete;

@@ -16,13 +16,13 @@
 
 namespace corda::test {
 
-/// Puts a state into the bounds of each particle.
+/// Adds a state to the bounds of each particle.
 inline void include(const State& state, std::vector<MotionBounds>& motion) {
     motion.resize(state.x_m.size());
     for (std::size_t i = 0; i < motion.size(); ++i) motion[i].include(state.x_m[i], state.y_m[i]);
 }
 
-/// What the live plot of a film shows.
+/// The live plot of a film.
 inline std::optional<view::PlotData> plotted_of(const Film& film) {
     if (film.scene().overlay.plot == LivePlot::kNone) return std::nullopt;
     const pipeline::LivePlotData curves(film.scene(), film.system());
@@ -32,7 +32,7 @@ inline std::optional<view::PlotData> plotted_of(const Film& film) {
                        [&](double time_s) -> const State& { return film.state_at(time_s); });
 }
 
-/// What a scene draws at a state, made apart from Film: what the reference renderer is to draw too.
+/// The draw list of a scene at a state, made without Film, for the reference renderer.
 inline view::DrawList draw_list_of(const Scene& scene, const System& system, const CameraDef& camera,
                                    const State& state, const std::vector<MotionBounds>& motion,
                                    const view::Caption& caption = {},
@@ -71,7 +71,7 @@ inline void add_points(const Film& film, const State& state, double age_s, std::
         trails[i].push_back({age_s, {state.x_m[ends[i]], state.y_m[ends[i]]}});
 }
 
-/// Adds what the colours of a film tell of a state.
+/// Adds the quantity that a film's colours show to a state.
 inline void add_values(const Film& film, const State& state, sim::Spread& spread) {
     const auto quantity = quantity_of(film.scene().style.color_by);
     if (!quantity) return;
@@ -81,7 +81,7 @@ inline void add_values(const Film& film, const State& state, sim::Spread& spread
     }
 }
 
-/// What a film draws at a time.
+/// The draw list of a film at a time.
 inline view::DrawList draw_list_of(const Film& film, double time_s) {
     std::vector<MotionBounds> motion;
     sim::Spread spread;

@@ -1,4 +1,4 @@
-// Stands in for libEGL.so.1 in one test: a library that can be loaded and has none of EGL's functions.
+// Replaces libEGL.so.1 in one test: a library that loads and has none of EGL's functions.
 extern "C" int corda_test_of_no_use() {
     return 0;
 }

@@ -10,11 +10,11 @@ namespace {
 using Real = ExtendedMotion::Real;
 
 constexpr int kColumns = 7;
-constexpr Real kShare = 3e-18L;  // of the size of the system: the error of a step
-/// What counts of the share of the largest speed by which a step's velocities err: near moments at which
-/// light particles whip, steps are so short that positions alone do not show it.
+constexpr Real kShare = 3e-18L;  // error of a step relative to the size of the system
+/// Weight of a step's velocity error relative to the largest speed. When light particles whip, steps are so
+/// short that positions alone do not show the error.
 constexpr Real kVelocityShare = 1e-3L;
-/// Steps after which a scene is given up: some minutes.
+/// Maximum number of steps for a scene, some minutes.
 constexpr long kMaxSteps = 300000;
 
 }  // namespace
@@ -94,7 +94,7 @@ ExtendedMotion::Pair ExtendedMotion::apart(const Vector& y, const Link& link, Ei
     return {y[first + j] - y[first + i], y[first + count_ + j] - y[first + count_ + i]};
 }
 
-/// Adds what a force does to the acceleration of a particle, or an impulse to its velocity.
+/// Adds the effect of a force on a particle's acceleration, or of an impulse on its velocity.
 void ExtendedMotion::push(Vector& slope, std::size_t i, const Pair& force) const {
     const auto k = static_cast<Eigen::Index>(i);
     slope[2 * count_ + k] += inverse_mass_[i] * force[0];
@@ -117,7 +117,7 @@ void ExtendedMotion::add_bends(const Vector& y, Vector& slope) const {
     }
 }
 
-/// How strongly two rigid bars pull at each other's ends.
+/// Coupling of two rigid bars through a common particle.
 Real ExtendedMotion::coupling(const Vector& y, const Link& link, const Link& other) const {
     const Real weight =
         (link.a == other.a ? inverse_mass_[link.a] : 0) + (link.b == other.b ? inverse_mass_[link.b] : 0) -
@@ -146,7 +146,7 @@ ExtendedMotion::Vector ExtendedMotion::solve(const Vector& y, Vector right) {
     return right;
 }
 
-/// Forces or impulses of the rigid bars at `y`: each bar's multiplier times what leads from `a` to `b`, on
+/// Forces or impulses of the rigid bars at `y`: each bar's multiplier times the vector from `a` to `b`, on
 /// `b`.
 void ExtendedMotion::push_along_bars(Vector& slope, const Vector& y, const Vector& multiplier) const {
     for (Eigen::Index k = 0; k < multiplier.size(); ++k) {
@@ -182,9 +182,9 @@ void ExtendedMotion::derivative(const Vector& y, Vector& slope) {
     push_along_bars(slope, y, multiplier_);
 }
 
-/// One step; returns the estimate of the positions' largest error in parts of the size, or of how far away
-/// the system is. Ends early if few columns do, as in the short steps that strings need. What is extrapolated
-/// is the change: extrapolation magnifies rounding by some tens.
+/// One step; returns an estimate of the largest position error, relative to the size of the system or to its
+/// distance from the origin. Stops early if few columns suffice, as in the short steps that strings need. The
+/// change is extrapolated, not the state, because extrapolation magnifies rounding by several tens.
 Real ExtendedMotion::extrapolate(Real step, Vector& change) {
     std::array<Vector, kColumns> row;
     Vector slope(4 * count_);
@@ -223,15 +223,15 @@ Real ExtendedMotion::extrapolate(Real step, Vector& change) {
     return error;
 }
 
-/// Adds a change to the state, and keeps what rounding takes off.
+/// Adds a change to the state, with compensation of the rounding error.
 void ExtendedMotion::add(const Vector& change) {
     const Vector before = y_;
     y_ += change;
     rest_ = change - (y_ - before);
 }
 
-/// Puts the rigid bars that pull back to their lengths, from which errors let them drift. Not after each step
-/// of what has no strings: rounding of the lengths shakes light particles that hang in line above a heavy
+/// Restores the lengths of the rigid bars that pull, which drift by errors. Without strings this is not done
+/// after each step, because rounding of the lengths shakes light particles that hang in line above a heavy
 /// one.
 void ExtendedMotion::project() {
     Vector multiplier(static_cast<Eigen::Index>(rigid_.size()));
@@ -243,7 +243,7 @@ void ExtendedMotion::project() {
     remove_stretching(y_, multiplier);
 }
 
-/// Takes the speeds at which the rigid bars that pull would stretch from the velocities.
+/// Removes the speeds at which pulling rigid bars would stretch from the velocities.
 void ExtendedMotion::remove_stretching(Vector& y, Vector& multiplier) {
     multiplier.resize(static_cast<Eigen::Index>(rigid_.size()));
     for (Eigen::Index k = 0; k < multiplier.size(); ++k)

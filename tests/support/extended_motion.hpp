@@ -19,28 +19,28 @@ namespace corda::test {
 /// energies, and Gragg's extrapolation in time (E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
 /// Differential Equations I, II.9).
 ///
-/// Links of strings pull or are absent from one event to the next. A step ends where the first of them gets
-/// to its rest length or stops pulling. Which rigid ones pull from then on is two complementarity problems,
-/// one of the impulses of a plastic snap and one of the tensions, solved by Murty's rule. Nothing of it is
-/// shared with Corda's solvers.
+/// Between events, links of strings either pull or are absent. A step ends where the first of them reaches
+/// its rest length or stops pulling. Two complementarity problems decide which rigid links pull from then on,
+/// one for the impulses of a plastic snap and one for the tensions; both are solved by Murty's rule. No code
+/// is shared with Corda's solvers.
 class ExtendedMotion {
   public:
     using Real = long double;
     using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
     using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 
-    /// Rigid bars keep the exact distance of their ends at the start. `start`: x, then y in m; empty: that of
-    /// the system.
+    /// Rigid bars keep the exact distance of their ends at the start. `start`: x, then y in m; empty: the
+    /// start of the system.
     ExtendedMotion(const System& system, const WorldDef& world, const std::vector<Real>& start = {});
 
-    /// Goes on to `time_s`; false if that fails.
+    /// Advances to `time_s`; false if that fails.
     [[nodiscard]] bool advance_to(double time_s);
-    /// Why it failed; empty if it has not.
+    /// The reason of a failure; empty without one.
     [[nodiscard]] const std::string& failure() const { return failure_; }
 
     [[nodiscard]] Real x_m(std::size_t i) const { return y_[static_cast<Eigen::Index>(i)]; }
     [[nodiscard]] Real y_m(std::size_t i) const { return y_[count_ + static_cast<Eigen::Index>(i)]; }
-    /// Number of times at which a link of a string began or ceased to pull.
+    /// Number of times at which a link of a string started or stopped pulling.
     [[nodiscard]] int events() const { return events_; }
 
   private:
@@ -53,9 +53,9 @@ class ExtendedMotion {
         bool is_string;
         bool pulls = true;
         Real square = 0;  ///< of its length, if it is rigid and pulls; else 0
-        Real least = 0;   ///< its margin counts from here
+        Real least = 0;   ///< the zero of its margin
     };
-    /// What pulls a link's ends together, and how fast they part, in whatever units.
+    /// Tension of a link and the rate at which its ends part, in any units.
     struct Answer {
         Vector pull;
         Vector away;
@@ -75,7 +75,7 @@ class ExtendedMotion {
     void remove_stretching(Vector& y, Vector& multiplier);
     [[nodiscard]] bool fail(const char* reason);
 
-    // Of strings.
+    // For strings.
     [[nodiscard]] const Link& bar(Eigen::Index k) const {
         return links_[rigid_[static_cast<std::size_t>(k)]];
     }
@@ -97,13 +97,13 @@ class ExtendedMotion {
     std::vector<Real> inverse_mass_;
     std::vector<Link> links_;
     std::vector<std::size_t> rigid_;   ///< the rigid ones that pull
-    std::vector<Eigen::Index> first_;  ///< per entry of rigid_: the first one that it is coupled with
+    std::vector<Eigen::Index> first_;  ///< per entry of rigid_: the first entry that it is coupled with
     bool has_strings_ = false;
     Real size_ = 1;
     Real shortest_ = 1;
     Real mass_ = 0;
     Vector y_;
-    Vector rest_;  ///< of y_: what rounding took off
+    Vector rest_;  ///< rounding error of y_
     Real time_ = 0;
     Real step_ = 1e-3L;
     Real begun_ = 0;               ///< the time of the last event

@@ -1,4 +1,4 @@
-// What ExtendedMotion does about strings.
+// The strings of ExtendedMotion.
 
 #include <algorithm>
 #include <cmath>
@@ -10,14 +10,15 @@ namespace {
 
 using Real = ExtendedMotion::Real;
 
-/// Links this close to their rest length at the start, relative to it, are there: scenes are rounded.
+/// Links this close to their rest length at the start, relative to it, count as taut, because scenes are
+/// rounded.
 constexpr Real kThere = 1e-14L;
-/// A link that comes back before it has shortened by this share of its length goes on pulling.
+/// A link that returns before it has shortened by this share of its length continues to pull.
 constexpr Real kNoBounce = 1e-16L;
-/// Of speeds, lengths and tensions, relative to those of the system.
+/// Tolerance of speeds, lengths and tensions, relative to those of the system.
 constexpr Real kRounding = 1e-17L;
-/// A tension this far below 0, relative to the system's, ends a link's pull: far more than its rounding, and
-/// too little to matter, since links go slack with all derivatives below the third being 0.
+/// A tension this far below 0, relative to the system's, ends a link's pull: far more than its rounding
+/// error, and too little to matter, because all derivatives below the third are 0 when a link goes slack.
 constexpr Real kSlackens = 1e-14L;
 
 }  // namespace
@@ -40,8 +41,8 @@ void ExtendedMotion::use_links_that_pull() {
     matrix_.resize(n, n);
 }
 
-/// Begins anew at a state: takes what would stretch rigid bars from the velocities, and finds the links of
-/// strings that pull from now on. False if there is no solution.
+/// Restarts at a state: removes velocities that would stretch rigid bars, and finds the links of strings that
+/// pull from now on. False if there is no solution.
 bool ExtendedMotion::begin() {
     std::vector<bool> present(links_.size());
     for (std::size_t k = 0; k < links_.size(); ++k) {
@@ -78,7 +79,7 @@ bool ExtendedMotion::begin() {
     }
     const Answer error{Vector::Constant(n, kRounding * mass_ * pull), Vector::Constant(n, kRounding * pull)};
     if (!complement(present, error, [&] { return accelerated(); })) return false;
-    // Of links that would be back at once: pushing now and pulling for that long is as much as the snap.
+    // For links that would return at once: pushing now and pulling for that long equals the snap.
     Vector impulses;
     remove_stretching(y_, impulses);
     for (Link& link : links_) {
@@ -96,8 +97,8 @@ bool ExtendedMotion::begin() {
     return true;
 }
 
-/// Finds which of the rigid links of strings that are present pull: those that must to keep their ends from
-/// parting. Murty's rule: the last one of a wrong sign changes sides.
+/// Finds which of the taut rigid links of strings pull: those that must do so to keep their ends from
+/// parting. Murty's rule: the last link with a wrong sign changes sides.
 bool ExtendedMotion::complement(const std::vector<bool>& present, const Answer& error,
                                 const std::function<Answer()>& answer) {
     for (std::size_t k = 0; k < links_.size(); ++k) {
@@ -139,8 +140,8 @@ ExtendedMotion::Answer ExtendedMotion::snapped(Vector& after) {
     return answer;
 }
 
-/// The tensions of the links that pull, and the accelerations with which the others' ends part if they do
-/// not move yet.
+/// The tensions of the links that pull, and the accelerations with which the ends of the other links part if
+/// they are not moving yet.
 ExtendedMotion::Answer ExtendedMotion::accelerated() {
     Vector slope(4 * count_);
     derivative(y_, slope);
@@ -159,8 +160,8 @@ ExtendedMotion::Answer ExtendedMotion::accelerated() {
     return answer;
 }
 
-/// Per link of a string what is negative until its event: minus the tension of a rigid one that pulls, else
-/// by how much it is too short, or too long, for its event. Of other links -1.
+/// Per link of a string, a margin that is negative until its event: minus the tension of a pulling rigid
+/// link, otherwise its distance in length from the event. -1 for other links.
 ExtendedMotion::Vector ExtendedMotion::raw_margins(const Vector& y) {
     const auto n = static_cast<Eigen::Index>(links_.size());
     Vector margin = Vector::Constant(n, Real{-1});
@@ -197,7 +198,7 @@ std::optional<Real> ExtendedMotion::event_within(Real step) {
     if (end.maxCoeff() >= 0) late = step;
     if (half.maxCoeff() >= 0) late = step / 2;
     for (Eigen::Index k = 0; k < start.size(); ++k) {
-        // The parabola through the three: a top near 0 is looked at.
+        // The parabola through the three margins; a maximum near 0 is examined.
         const Real slope = (4 * half[k] - 3 * start[k] - end[k]) / step;
         const Real curve = 2 * (start[k] - 2 * half[k] + end[k]) / (step * step);
         const Real top = -slope / (2 * curve);
@@ -210,12 +211,13 @@ std::optional<Real> ExtendedMotion::event_within(Real step) {
     return event_before(0, *late);
 }
 
-/// Where the largest margin gets to 0, by the Illinois method; on the side where it is not negative.
+/// The time at which the largest margin reaches 0, by the Illinois method, on the side where it is not
+/// negative.
 Real ExtendedMotion::event_before(Real low, Real high) {
     Real below = margins(low).maxCoeff();
     Real above = margins(high).maxCoeff();
     for (int round = 0; round < 200 && high - low > Real{1e-18L} * (time_ + high); ++round) {
-        // Every third time the middle, so that no side stays for long.
+        // Every third time the middle, so that no side stays unchanged for long.
         const Real share = round % 3 == 2 ? Real{0.5L} : -below / (above - below);
         const Real time = low + (high - low) * std::clamp(share, Real{1e-3L}, Real{0.999L});
         if (time <= low || time >= high) break;
@@ -226,8 +228,8 @@ Real ExtendedMotion::event_before(Real low, Real high) {
     return high;
 }
 
-/// So short that margins have one top in a step: after an event shorter than any link can need to come back,
-/// then doubled.
+/// The length of a step, so short that margins have one maximum in it: after an event shorter than any link
+/// needs to return, then doubled.
 Real ExtendedMotion::longest_step() {
     if (!has_strings_) return HUGE_VALL;
     Vector slope(4 * count_);

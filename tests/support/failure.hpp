@@ -7,7 +7,7 @@
 
 namespace corda::test {
 
-/// How a piece of work ended: with kOk, or with the corda::Error it threw.
+/// The result of some work: kOk, or the corda::Error that it threw.
 struct Failure {
     ExitCode code = ExitCode::kOk;
     std::string message;

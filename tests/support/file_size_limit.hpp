@@ -7,8 +7,8 @@
 
 namespace corda::test {
 
-/// No file grows beyond so many bytes while it lives: writing more fails (EFBIG), in the middle of a write as
-/// on a full disk.
+/// During its lifetime, files cannot grow beyond the given number of bytes: writing more fails (EFBIG), in
+/// the middle of a write, as on a full disk.
 class FileSizeLimit {
   public:
     explicit FileSizeLimit(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {

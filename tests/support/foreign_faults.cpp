@@ -1,11 +1,10 @@
-// For LD_PRELOAD: what other libraries and a full host do to the program, chosen by variables of the
-// environment.
-//   THREADS_TO_START=N      the system starts N more threads, and then none
-//   PROCESSES_TO_START=N    the same of processes
-//   FSYNC_TAKES_MS=N        flushing a file to disk takes N ms, whatever signals come
-//   DEMUXER_CRASHES=1       libavformat ends the process that reads a packet
+// For LD_PRELOAD: faults of other libraries and of a full host, chosen by environment variables.
+//   THREADS_TO_START=N      the system starts N more threads, then none
+//   PROCESSES_TO_START=N    the same for processes
+//   FSYNC_TAKES_MS=N        flushing a file to disk takes N ms, despite signals
+//   DEMUXER_CRASHES=1       libavformat aborts the process that reads a packet
 //   X264_HANGS_FROM_PX=N    x264 never returns from opening an encoder for pictures of N columns or more
-//   X264_HANG_MARKER=FILE   the file that is made when it begins to hang
+//   X264_HANG_MARKER=FILE   the file that is created when it begins to hang
 
 #include <dlfcn.h>
 #include <fcntl.h>

@@ -2,7 +2,7 @@
 
 namespace corda::test {
 
-/// m/s^2, as every scene without [world].gravity has it.
+/// In m/s^2, the gravity of every scene without [world].gravity.
 inline constexpr double kGravity = 9.81;
 
 }  // namespace corda::test

@@ -1,5 +1,5 @@
-// Preloaded by a test: hides the libraries that CORDA_TEST_HIDES names, separated by spaces, from dlopen(),
-// as on a system that has not installed them.
+// For LD_PRELOAD: hides the libraries that CORDA_TEST_HIDES lists, separated by spaces, from dlopen(), as on
+// a system without them.
 #include <dlfcn.h>
 
 #include <cstdlib>
@@ -12,6 +12,6 @@ extern "C" void* dlopen(const char* file, int mode) {
     const bool is_hidden =
         file != nullptr && hidden != nullptr &&
         (" " + std::string(hidden) + " ").find(" " + std::string(file) + " ") != std::string::npos;
-    // The reason that dlerror() then gives is that of a file that is missing.
+    // dlerror() then gives the reason of a missing file.
     return real(is_hidden ? "libcorda-hidden.so.0" : file, mode);
 }

@@ -7,8 +7,7 @@
 
 namespace corda::test {
 
-/// What an application that uses Corda may have for itself: a context of OpenGL ES with a surface, on a
-/// display that Corda uses too.
+/// The OpenGL ES context of an application that uses Corda, with a surface, on a display that Corda uses too.
 class HostContext {
   public:
     HostContext() : display_(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr)) {
@@ -37,14 +36,14 @@ class HostContext {
         EXPECT_EQ(eglMakeCurrent(display_, surface_, surface_, context_), EGLBoolean{EGL_TRUE});
     }
 
-    /// Whether the context is the thread's, with its surface and its interface.
+    /// True if the context is current in this thread, with its surface and its API.
     [[nodiscard]] bool is_current() const {
         return eglGetCurrentContext() == context_ && eglGetCurrentDisplay() == display_ &&
                eglGetCurrentSurface(EGL_DRAW) == surface_ && eglGetCurrentSurface(EGL_READ) == surface_ &&
                eglQueryAPI() == EGL_OPENGL_ES_API;
     }
 
-    /// Whether EGL still takes it: nobody has ended its display.
+    /// True if EGL still accepts it: its display has not been terminated.
     [[nodiscard]] bool is_alive() const {
         return eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT) == EGL_TRUE &&
                eglMakeCurrent(display_, surface_, surface_, context_) == EGL_TRUE;

@@ -6,8 +6,8 @@
 
 namespace corda::test {
 
-/// Whether two pictures have the same bytes; the failure names the sizes, the count and the first pixel that
-/// differs.
+/// Matches if two pictures have the same bytes. The failure gives the sizes, the number of differing pixels
+/// and the first of them.
 [[nodiscard]] testing::AssertionResult equal_images(const Image& actual, const Image& expected);
 
 }  // namespace corda::test

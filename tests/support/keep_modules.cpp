@@ -1,5 +1,5 @@
-// Under LeakSanitizer only: drivers that EGL would unload stay loaded, so that a leak of theirs is reported
-// with their name and tests/support/lsan.supp can tell it from one of ours.
+// For LeakSanitizer only: drivers that EGL would unload stay loaded, so that their leaks are reported with
+// their names, and tests/support/lsan.supp can suppress these.
 
 extern "C" int dlclose(void*) {
     return 0;

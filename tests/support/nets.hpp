@@ -10,8 +10,8 @@
 
 namespace corda::test {
 
-/// A closed rope of `particles` unit masses on a circle of radius 1 m whose top is at the origin, at rest;
-/// the top one pinned.
+/// A closed rope of `particles` unit masses at rest on a circle of radius 1 m; the top one is pinned at the
+/// origin.
 inline RopeDef ring(int particles) {
     std::vector<Vec2> points_m;
     for (int i = 0; i < particles; ++i) {

@@ -9,14 +9,14 @@ debian_mirror() {
     echo "${mirror% }"
 }
 
-# quietly LOG COMMAND...: shows what a command prints only if it fails.
+# quietly LOG COMMAND...: shows the output of a command only if it fails.
 quietly() {
     local log=$1
     shift
     "$@" >"$log" 2>&1 || { tail -n 40 "$log" >&2; return 1; }
 }
 
-# new_system RELEASE FOLDER [OPTIONS OF MMDEBSTRAP]: makes a system with apt and little else in a folder.
+# new_system RELEASE FOLDER [OPTIONS OF MMDEBSTRAP]: makes a minimal system with apt in a folder.
 new_system() {
     local release=$1 folder=$2 mirror
     shift 2
@@ -25,8 +25,8 @@ new_system() {
     cp /etc/apt/apt.conf.d/* "$folder/etc/apt/apt.conf.d/" 2>/dev/null || true
 }
 
-# enter FOLDER COMMAND...: runs a command in a system, with this machine's /proc, /sys and /dev where it lets us mount
-# them. The mounts end with the command.
+# enter FOLDER COMMAND...: runs a command in a system, with this machine's /proc, /sys and /dev where mounting them is
+# allowed. The mounts end with the command.
 enter() {
     local folder=$1
     shift

@@ -4,7 +4,7 @@
 
 namespace corda::test {
 
-/// The plan of `auto` for a system whose positions have to be within `tolerance_m` up to a frame.
+/// The plan of `auto` for a system, with positions accurate to `tolerance_m` up to a frame.
 inline BodyPlan plan_of(const System& system, const WorldDef& world, double tolerance_m, FrameRate frames,
                         std::int64_t last_frame) {
     sim::Recording recording(system.particle_count(), 1, 0);

@@ -6,7 +6,7 @@
 
 namespace corda::test {
 
-/// A PNG with one chunk more, before the first one of type `before`.
+/// A PNG with one more chunk, before the first one of type `before`.
 [[nodiscard]] std::string with_chunk(const std::string& png, std::string_view type, std::string_view data,
                                      std::string_view before = "IEND");
 

@@ -7,7 +7,7 @@
 
 namespace corda::test {
 
-/// A closed rope of 8 links that stretches and bends, its particles moved about at random, one pinned.
+/// A stretching and bending closed rope of 8 links with randomly displaced particles, one of them pinned.
 inline System random_ring(double largest_move_m, unsigned seed) {
     RopeDef rope;
     for (int i = 0; i < 8; ++i) rope.points_m.push_back({std::cos(0.8 * i), std::sin(0.8 * i)});

@@ -10,7 +10,7 @@
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/system.hpp"
 
-// Bodies of any kind that method relaxation can run, for tests that compare two ways of doing the same.
+// Bodies of every kind that method relaxation can run, for tests that compare two implementations.
 namespace corda::test {
 
 using Random = std::mt19937;
@@ -34,8 +34,8 @@ inline std::vector<std::uint32_t> random_pins(Random& random, std::size_t partic
     return pinned;
 }
 
-/// What bars see of a particle: somewhere near, on the particle before or on the one before that, at x = -0,
-/// or at an x so small that the moves along x are subnormal numbers.
+/// A rope with special positions, too: some particles on one of the two previous ones, some at x = -0, and
+/// sometimes all x so small that moves along x are subnormal numbers.
 inline RopeDef random_rope(Random& random, int particles) {
     RopeDef rope;
     const int coincident_percent = pick(random, 0, 1) * pick(random, 1, 60);

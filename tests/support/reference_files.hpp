@@ -12,8 +12,8 @@
 
 namespace corda::test {
 
-/// R1 (src/sim/README.md): where the bob of the IFToMM benchmark problem A01 (simple pendulum) is at
-/// t = 0.5, 1, ..., 2000 s, in metres, to more digits than a double holds.
+/// R1 (src/sim/README.md): positions in metres of the bob of the IFToMM benchmark problem A01 (a pendulum)
+/// at t = 0.5, 1, ..., 2000 s, with more digits than a double holds.
 inline std::vector<Vec2> read_a01() {
     std::ifstream file(CORDA_TEST_DATA "/a01_pendulum.txt");
     std::vector<Vec2> points_m;
@@ -22,7 +22,7 @@ inline std::vector<Vec2> read_a01() {
     return points_m;
 }
 
-/// Where all particles of the source report's start are at a time.
+/// Positions of all particles of the source report's start at a time.
 struct ReportFrame {
     double time_s = 0.0;
     std::vector<Vec2> points_m;

@@ -20,7 +20,7 @@ CommandResult run(const std::string& scene, const std::string& command) {
     std::istringstream words(command);
     std::vector<std::string> arguments;
     for (std::string word; words >> word;) {
-        // In this order: the name of a scratch folder is random and may have "DIR" in it.
+        // In this order, because the random name of a scratch folder may contain "DIR".
         replace_all(word, "SCENE", "DIR/scene.toml");
         replace_all(word, "DIR", folder.path());
         arguments.push_back(word == "EMPTY" ? "" : word);
@@ -28,7 +28,7 @@ CommandResult run(const std::string& scene, const std::string& command) {
     return run_corda(arguments);
 }
 
-/// Whether there was something to change.
+/// True if there was something to change.
 bool apply(const Edit& edit, std::string& text) {
     const std::size_t at = text.find(edit.was);
     if (at == std::string::npos) return false;

@@ -6,37 +6,37 @@
 
 namespace corda::test {
 
-/// What a message advises, done literally: `was` becomes `is` in the scene or, if it is not there, in the
-/// command. Both may be empty: then the command is run once more.
+/// The advice of a message, followed literally: `was` becomes `is` in the scene or, if the scene does not
+/// contain it, in the command. If both are empty, the command is run once more.
 struct Edit {
     std::string was;
     std::string is;
 };
 
-/// A message that advises something, and what becomes of those who do it.
+/// A message with advice, and the result of following it.
 struct Remedy {
-    const char* name;     ///< of the test
+    const char* name;     ///< name of the test
     std::string scene;    ///< the scene file that provokes the message
-    std::string command;  ///< words of the command line: SCENE stands for the file, DIR for its folder
+    std::string command;  ///< the command line; SCENE stands for the file, DIR for its folder
     std::string says;     ///< the advice, as the message words it
-    /// Each of them alone has to work.
+    /// Each of them must work on its own.
     std::vector<std::vector<Edit>> remedies;
-    std::string then = {};  ///< what a command that still fails for another reason may say
+    std::string then = {};  ///< an allowed message of a command that still fails for another reason
 };
 
 inline void PrintTo(const Remedy& remedy, std::ostream* out) {
     *out << remedy.name;
 }
 
-/// Of a test of such a parameter.
+/// The name of a test with such a parameter.
 inline const auto kNameOfCase = [](const auto& param) { return std::string(param.param.name); };
 
-/// Provokes the message, and expects that every remedy that it names works.
+/// Provokes the message, and expects every remedy to work.
 void expect_to_work(const Remedy& remedy);
 
-// Pieces of scenes.
+// Parts of scenes.
 
-/// A short scene of small pictures with this body, and what else it gives.
+/// A short scene with small pictures, this body, and more text.
 inline std::string scene_of(const std::string& body, const std::string& rest = "") {
     return "schema = 1\n" + body + "\n" + rest +
            "\n[world]\nduration = 0.1\n[video]\nsize = [64, 64]\nfps = 30\n";

@@ -5,7 +5,7 @@
 
 namespace corda::test {
 
-/// The time between `low` and `high` at which a function changes its sign, by the Illinois form of regula
+/// The argument between `low` and `high` at which a function changes sign, by the Illinois form of regula
 /// falsi.
 inline double root(const std::function<double(double)>& f, double low, double high) {
     double f_low = f(low);

@@ -9,7 +9,7 @@
 
 namespace corda::test {
 
-/// The exponent of study::fit_slope, which has to take every point.
+/// The exponent of study::fit_slope, which must use every point.
 inline double slope(std::span<const std::pair<double, double>> points) {
     const study::Slope fit = study::fit_slope(points).value();
     EXPECT_EQ(fit.points, points.size());

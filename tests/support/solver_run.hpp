@@ -17,8 +17,8 @@
 
 namespace corda::test {
 
-/// Any bodies driven without a Simulation, and what is watched of them. `S` is the class of the solver, by
-/// default whichever the definition names.
+/// Bodies driven without a Simulation, with their observed maxima. `S` is the class of the solver; the
+/// default is chosen by the definition.
 template <class S = sim::Solver>
 class SolverRun {
   public:
@@ -35,7 +35,7 @@ class SolverRun {
     SolverRun& operator=(const SolverRun&) = delete;
     ~SolverRun() = default;
 
-    /// Goes on to a time and looks at what is there; false where the solver gives up.
+    /// Advances to a time and observes the state; false if the solver gives up.
     [[nodiscard]] bool go(double time_s) {
         if (solver_->advance_to(time_s, state_, unstopped) != Status::kOk) return false;
         keep_largest(largest_change_j_, solver_->energy_j() - start_energy_j_);
@@ -47,7 +47,7 @@ class SolverRun {
         }
         return true;
     }
-    /// The same with `looks` times on the way, at equal distances.
+    /// The same with `looks` observations at equal intervals.
     [[nodiscard]] bool go(double time_s, int looks) {
         const double start_s = state_.time_s;
         for (int k = 1; k <= looks; ++k) {
@@ -61,16 +61,16 @@ class SolverRun {
     [[nodiscard]] double tip_error_m(Vec2 expected_m) const {
         return sim::length(tip_x() - expected_m.x, tip_y() - expected_m.y);
     }
-    /// Largest distance of a particle from where it is in another state.
+    /// Largest distance of a particle from its position in another state.
     [[nodiscard]] double distance_m(const State& other) const {
         return largest_distance_m(other.x_m, other.y_m);
     }
-    /// Largest distance of a particle from its start at any look.
+    /// Largest observed distance of a particle from its start.
     [[nodiscard]] double moved_m() const { return largest_move_m_; }
-    /// Largest | length / rest length - 1 | of a bar at any look.
+    /// Largest observed | length / rest length - 1 | of a bar.
     [[nodiscard]] double strain() const { return largest_strain_; }
-    /// Largest change of the energy at any look, over weight times length, or over what it was without a
-    /// force.
+    /// Largest observed change of the energy, relative to weight times length or, without a force, to the
+    /// initial energy.
     [[nodiscard]] double energy_error() const {
         const double scale_j = solver_->energy_scale_j();
         return largest_change_j_ / (scale_j > 0.0 ? scale_j : std::abs(start_energy_j_));
@@ -91,7 +91,7 @@ class SolverRun {
             return std::make_unique<S>(system, world, std::get<RattleDef>(def), kFrameSeconds);
         }
     }
-    /// Written so that a number that is none stays.
+    /// Written so that NaN is kept.
     static void keep_largest(double& largest, double change) {
         if (!(std::abs(change) <= largest)) largest = std::abs(change);
     }
@@ -113,7 +113,7 @@ class SolverRun {
 };
 
 /// Largest distance of a particle between two runs of the same bodies at `looks` times, a tenth of a second
-/// apart; not a number where one of them gives up.
+/// apart; NaN if one of them gives up.
 template <class A, class B>
 double largest_distance_m(SolverRun<A>& one, SolverRun<B>& other, int looks) {
     double largest_m = 0.0;
@@ -125,7 +125,7 @@ double largest_distance_m(SolverRun<A>& one, SolverRun<B>& other, int looks) {
     return largest_m;
 }
 
-/// One rope by the method `rattle`.
+/// One rope with method `rattle`.
 class RattleRun : public SolverRun<sim::Rattle> {
   public:
     RattleRun(const RopeDef& rope, const WorldDef& world, int order,
@@ -133,7 +133,7 @@ class RattleRun : public SolverRun<sim::Rattle> {
         : SolverRun(rope, world, RattleDef{order, step_s}) {}
 };
 
-/// One rope by the method `exact`.
+/// One rope with method `exact`.
 class ExactRun : public SolverRun<sim::Exact> {
   public:
     explicit ExactRun(const RopeDef& rope, double tolerance = 1e-9, const WorldDef& world = {})

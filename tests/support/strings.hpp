@@ -7,7 +7,8 @@
 
 namespace corda::test {
 
-/// A rope of unit masses whose links, of `rest_m` at rest (none: as long as they are), pull and never push.
+/// A rope of unit masses whose links pull and never push, with rest lengths `rest_m` (default: their
+/// lengths).
 inline RopeDef string_of(std::vector<Vec2> points_m, std::vector<double> rest_m) {
     RopeDef rope = reference::rope_through(std::move(points_m));
     rope.rest_m = std::move(rest_m);

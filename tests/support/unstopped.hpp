@@ -4,7 +4,7 @@
 
 namespace corda::test {
 
-/// For solvers that are to go on whatever happens.
+/// For solvers that must never be stopped.
 inline StopCheck unstopped;
 
 }  // namespace corda::test

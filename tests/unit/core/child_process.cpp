@@ -26,7 +26,7 @@ bool has_child() {
     return waitpid(-1, nullptr, WNOHANG) != -1 || errno != ECHILD;
 }
 
-/// What ended the work.
+/// The error that ended the work.
 std::string end_of(const std::function<std::string()>& work, const ChildLimits& limits = kLimits) {
     const auto end = run_in_child(work, limits);
     EXPECT_TRUE(end && !end->finished);
@@ -34,7 +34,7 @@ std::string end_of(const std::function<std::string()>& work, const ChildLimits& 
     return end ? end->text : "";
 }
 
-TEST(ChildProcess, GivesWhatTheWorkReturns) {
+TEST(ChildProcess, ReturnsTheResultOfTheWork) {
     const std::string much(1 << 20, '\0');  // more than a pipe holds
     const auto end = run_in_child([&] { return much; }, kLimits);
     ASSERT_TRUE(end);
@@ -43,19 +43,19 @@ TEST(ChildProcess, GivesWhatTheWorkReturns) {
     EXPECT_FALSE(has_child());
 }
 
-TEST(ChildProcess, SaysHowTheWorkCrashed) {
+TEST(ChildProcess, ReportsHowTheWorkCrashed) {
     EXPECT_EQ(end_of([]() -> std::string { std::abort(); }), "crashed (Aborted)");
     EXPECT_EQ(end_of([]() -> std::string { throw 1; }), "crashed (status 1)");
     EXPECT_EQ(end_of([] { return std::string(); }), "crashed (status 0)");
 }
 
-TEST(ChildProcess, HasLittleMemory) {
+TEST(ChildProcess, IsLimitedInMemory) {
     const auto take = [] { return std::to_string(std::vector<char>(std::size_t{1} << 28, 'x').back()); };
     EXPECT_TRUE(run_in_child(take, kLimits)->finished);
     EXPECT_THAT(end_of(take, {std::uint64_t{1} << 26, 20, 20.0}), HasSubstr("crashed"));
 }
 
-TEST(ChildProcess, HasLittleTime) {
+TEST(ChildProcess, IsLimitedInTime) {
     const auto spin = [] {
         while (now_s() >= 0.0) {
         }
@@ -68,7 +68,7 @@ TEST(ChildProcess, HasLittleTime) {
     EXPECT_LT(now_s() - start_s, 10.0);
 }
 
-TEST(ChildProcess, EndsWithWhoWaits) {
+TEST(ChildProcess, IsKilledIfTheWaitIsStopped) {
     const double start_s = now_s();
     const auto sleep = [] { return std::to_string(::sleep(60)); };
     const auto stop = [&] {
@@ -79,7 +79,7 @@ TEST(ChildProcess, EndsWithWhoWaits) {
     EXPECT_LT(now_s() - start_s, 10.0);
 }
 
-TEST(ChildProcess, EndedFromOutsideIsNoFindingOfItsOwn) {
+TEST(ChildProcess, KilledFromOutsideIsNotACrash) {
     for (const int signal : {SIGKILL, SIGTERM}) {
         const test::Failure failure = test::failure_of([signal] {
             (void)run_in_child([signal] { return std::to_string(std::raise(signal)); }, kLimits);

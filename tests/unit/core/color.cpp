@@ -28,7 +28,7 @@ TEST(Color, ReadsTheNamesOfCssInAnyCase) {
                                [](const CssColor& a, const CssColor& b) { return a.name < b.name; }));
 }
 
-TEST(Color, RefusesEverythingElse) {
+TEST(Color, RejectsOtherText) {
     for (const char* text :
          {"", "redd", "red ", "#red", "#123", "123456", "#12345g", "#1234567", "#-12345", "#12345678 "}) {
         EXPECT_FALSE(Color::parse(text).has_value()) << text;

@@ -9,14 +9,14 @@
 namespace corda {
 namespace {
 
-/// Read each time, so that the CPU computes and not the compiler.
+/// Volatile, so that the CPU computes and not the compiler.
 volatile double least_normal = std::numeric_limits<double>::min();
 
-/// True if a result below the least normal number is 0.
+/// True if a result below the smallest normal number is 0.
 bool flushes_results() {
     return least_normal / 2.0 == 0.0;
 }
-/// True if an operand below the least normal number counts as 0, in a product above it.
+/// True if an operand below the smallest normal number counts as 0, in a product above it.
 bool flushes_operands() {
     const volatile double denormal = std::numeric_limits<double>::denorm_min();
     return denormal * 0x1p+100 == 0.0;
@@ -28,7 +28,7 @@ TEST(FlushDenormals, TakesDenormalResultsAndOperandsAsZero) {
     EXPECT_TRUE(flushes_operands());
 }
 
-TEST(FlushDenormals, KeepsTheLeastNormalNumber) {
+TEST(FlushDenormals, KeepsTheSmallestNormalNumber) {
     const FlushDenormals flush;
     EXPECT_GT(least_normal * 1.0, 0.0);
     EXPECT_EQ(least_normal * 1.0 * 0x1p+1022, 1.0);
@@ -44,7 +44,7 @@ TEST(FlushDenormals, EndsWithItsScopeAndMayBeNested) {
     EXPECT_FALSE(flushes_operands());
 }
 
-TEST(FlushDenormals, LeavesThreadsThatRunAlone) {
+TEST(FlushDenormals, DoesNotAffectRunningThreads) {
     std::promise<void> flushing;
     bool other_flushes = true;
     std::thread other([&, flushes = flushing.get_future()]() mutable {

@@ -20,7 +20,7 @@ void PrintTo(const Rounded& rounded, std::ostream* out) {
 }
 
 /// Computed from fractions, and rounded once. The C library of Debian 12 rounds 11.9 and 43.7 the other way,
-/// and 44.1276 so or so by whether the CPU has FMA.
+/// and the rounding of 44.1276 depends on whether the CPU has FMA.
 constexpr Rounded kRounded[] = {
     {1e-09, 0x1.330aa445be654p-36, 0x1.0000000000000p+0},
     {0.1, 0x1.c98701025eb1fp-10, 0x1.ffffcce4c8e64p-1},

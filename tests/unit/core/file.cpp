@@ -33,7 +33,7 @@ TEST(Files, AreOpenedForReading) {
     EXPECT_EQ(flags & FD_CLOEXEC, FD_CLOEXEC);
 }
 
-TEST(Files, ThatCannotBeReadAreErrors) {
+TEST(Files, UnreadableOnesAreErrors) {
     const test::ScratchFolder folder;
     for (const std::string& path : {folder.file("missing"), folder.path(), folder.path() + "/no/such"}) {
         const test::Failure failure = failure_of([&] { static_cast<void>(open_for_reading(path)); });
@@ -57,7 +57,7 @@ TEST(Files, HaveNamesWithoutNul) {
     EXPECT_TRUE(folder.files().empty());
 }
 
-TEST(Files, TellTheirSizes) {
+TEST(Files, HaveTheirSizes) {
     const test::ScratchFolder folder;
     EXPECT_EQ(file_size(folder.write("a", "text")), 4U);
     const test::Failure failure = failure_of([&] { static_cast<void>(file_size(folder.file("missing"))); });
@@ -65,7 +65,7 @@ TEST(Files, TellTheirSizes) {
     EXPECT_THAT(failure.message, HasSubstr("cannot read '" + folder.file("missing") + "'"));
 }
 
-TEST(NewFiles, AreMadeOnlyWhereNothingStands) {
+TEST(NewFiles, AreCreatedOnlyUnderFreeNames) {
     const test::ScratchFolder folder;
     const mode_t old_mask = ::umask(022);
     const Descriptor file = create_new(folder.file("a"), 0666);
@@ -122,7 +122,7 @@ TEST(FileErrors, HaveAReasonAndARemedy) {
               "cannot write 'a.mp4': Broken pipe");
 }
 
-TEST(FileErrors, AdviseWhatFitsTheAction) {
+TEST(FileErrors, GiveARemedyThatFitsTheAction) {
     EXPECT_EQ(failure_of([] { fail_file("write", "a.mp4", EACCES); }).message,
               "cannot write 'a.mp4': Permission denied; choose a place you may write to, or change the "
               "permissions");

@@ -18,12 +18,12 @@ class Leftovers : public testing::Test {
     test::ScratchFolder folder_;
 };
 
-TEST_F(Leftovers, OfKilledProcessesAreRemovedAndNoOthers) {
+TEST_F(Leftovers, OfKilledProcessesAloneAreRemoved) {
     const auto leave_one = [this] {
         if (::fork() == 0) {
             OutputFile output(file("a"));
             output.write(std::string(100'000, 'x'));
-            ::_exit(0);  // as SIGKILL would: nothing is destroyed
+            ::_exit(0);  // no destructor runs, as after SIGKILL
         }
         int status = 0;
         ::wait(&status);

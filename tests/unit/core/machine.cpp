@@ -13,7 +13,7 @@
 namespace corda {
 namespace {
 
-/// A system whose files are written by hand.
+/// A fake system whose files in /proc and /sys the test writes.
 class Machine : public testing::Test {
   protected:
     void write(const std::string& name, const std::string& text) const {
@@ -28,13 +28,13 @@ class Machine : public testing::Test {
     test::ScratchFolder folder_;
 };
 
-TEST_F(Machine, HasTheMemoryThatLinuxTells) {
+TEST_F(Machine, HasTheFreeMemoryOfLinux) {
     EXPECT_EQ(available(), std::nullopt);
     write("proc/meminfo", "MemTotal:  9000 kB\nMemFree: 100 kB\nMemAvailable:    2000 kB\nBuffers: 5 kB\n");
     EXPECT_EQ(available(), 2000U * 1024U);
 }
 
-TEST_F(Machine, HasTheMemoryThatTheGroupsLeave) {
+TEST_F(Machine, RespectsTheMemoryLimitsOfControlGroups) {
     write("proc/meminfo", "MemAvailable:    2000 kB\n");
     write("proc/self/cgroup", "9:name=systemd:/x\n0::/user.slice/inner\n");
     write("sys/fs/cgroup/user.slice/memory.max", "1000000\n");
@@ -42,13 +42,13 @@ TEST_F(Machine, HasTheMemoryThatTheGroupsLeave) {
     write("sys/fs/cgroup/user.slice/memory.stat", "anon 500000\nfile 90000\ninactive_file 50000\n");
     write("sys/fs/cgroup/user.slice/inner/memory.max", "max\n");
     write("sys/fs/cgroup/user.slice/inner/memory.current", "600000\n");
-    EXPECT_EQ(available(), 450'000U);               // the cache gives way
+    EXPECT_EQ(available(), 450'000U);               // the cache is reclaimable
     write("sys/fs/cgroup/memory.max", "300000\n");  // a container sees its own group as the root
     write("sys/fs/cgroup/memory.current", "400000\n");
     EXPECT_EQ(available(), 0U);
 }
 
-TEST_F(Machine, HasTheMemoryThatTheLimitOfTheAddressSpaceLeaves) {
+TEST_F(Machine, RespectsTheLimitOfTheAddressSpace) {
     write("proc/self/status", "VmPeak:  5000 kB\nVmSize:  1000000 kB\n");
     rlimit old{};
     ASSERT_EQ(::getrlimit(RLIMIT_AS, &old), 0);
@@ -61,7 +61,7 @@ TEST_F(Machine, HasTheMemoryThatTheLimitOfTheAddressSpaceLeaves) {
     EXPECT_EQ(available(), std::nullopt);
 }
 
-TEST_F(Machine, HasTheCoresThatThisProcessMayRunOn) {
+TEST_F(Machine, HasTheCoresOfTheAffinityMask) {
     cpu_set_t old;
     ASSERT_EQ(::sched_getaffinity(0, sizeof old, &old), 0);
     EXPECT_EQ(usable_cores(root()), CPU_COUNT(&old));
@@ -74,7 +74,7 @@ TEST_F(Machine, HasTheCoresThatThisProcessMayRunOn) {
     ASSERT_EQ(::sched_setaffinity(0, sizeof old, &old), 0);
 }
 
-TEST_F(Machine, HasTheCoresThatTheGroupsLeave) {
+TEST_F(Machine, RespectsTheCpuLimitsOfControlGroups) {
     const int all = usable_cores(root());
     if (all < 2) GTEST_SKIP() << "one core has no part that could be told";
     write("proc/self/cgroup", "0::/user.slice/inner\n");
@@ -91,7 +91,7 @@ TEST_F(Machine, HasTheCoresThatTheGroupsLeave) {
     EXPECT_EQ(usable_cores(root()), 1);
 }
 
-TEST_F(Machine, TellsItsMemory) {
+TEST_F(Machine, ReportsItsMemory) {
     const auto here = available_memory_bytes();
     ASSERT_TRUE(here);
     EXPECT_GT(*here, std::uint64_t{1} << 20U);

@@ -23,7 +23,7 @@ TEST(EditDistance, CountsSingleEdits) {
     EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);
 }
 
-TEST(Nearest, FindsTheWordThatWasMeant) {
+TEST(Nearest, FindsTheNearestWord) {
     EXPECT_EQ(nearest("masss", kWords), "mass");
     EXPECT_EQ(nearest("Mass", kWords), "mass");
     EXPECT_EQ(nearest("point", kWords), "points");

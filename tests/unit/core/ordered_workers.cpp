@@ -15,7 +15,7 @@ namespace {
 
 using Numbers = OrderedWorkers<std::int64_t>;
 
-/// Takes what is left.
+/// Takes the remaining items.
 std::vector<std::int64_t> take(Numbers& all, std::size_t count) {
     std::vector<std::int64_t> taken;
     while (taken.size() < count)
@@ -23,7 +23,7 @@ std::vector<std::int64_t> take(Numbers& all, std::size_t count) {
     return taken;
 }
 
-TEST(OrderedWorkers, GivesThingsInOrderThoughLaterOnesAreMadeFirst) {
+TEST(OrderedWorkers, ReturnsItemsInOrderIfLaterOnesFinishFirst) {
     for (const int threads : {1, 2, 8}) {
         Numbers all(3, 40, threads, [] {
             return [](std::int64_t number, const Numbers&) {
@@ -38,7 +38,7 @@ TEST(OrderedWorkers, GivesThingsInOrderThoughLaterOnesAreMadeFirst) {
     }
 }
 
-TEST(OrderedWorkers, MakesNoMoreThanTwoPerThreadThatNobodyTakes) {
+TEST(OrderedWorkers, MakesAtMostTwoUntakenItemsPerThread) {
     std::atomic<int> made = 0;
     Numbers all(0, 100, 2, [&made] {
         return [&made](std::int64_t number, const Numbers&) {
@@ -53,7 +53,7 @@ TEST(OrderedWorkers, MakesNoMoreThanTwoPerThreadThatNobodyTakes) {
     while (made < 5) std::this_thread::yield();
 }
 
-TEST(OrderedWorkers, ThrowsWhatFailedWhenItsTurnHasCome) {
+TEST(OrderedWorkers, ThrowsAFailureInItsTurn) {
     Numbers all(0, 10, 2, [] {
         return [](std::int64_t number, const Numbers&) {
             if (number == 3) throw std::runtime_error("three");
@@ -68,7 +68,7 @@ TEST(OrderedWorkers, ThrowsWhatFailedWhenItsTurnHasCome) {
         std::runtime_error);
 }
 
-TEST(OrderedWorkers, ThrowsWhatAMakerThrowsAtItsFirstThing) {
+TEST(OrderedWorkers, ThrowsTheErrorOfCreatingAMaker) {
     Numbers all(0, 4, 1, []() -> Numbers::Make { throw std::runtime_error("no maker"); });
     EXPECT_THROW(
         {
@@ -77,7 +77,7 @@ TEST(OrderedWorkers, ThrowsWhatAMakerThrowsAtItsFirstThing) {
         std::runtime_error);
 }
 
-TEST(OrderedWorkers, GivesWhatWasBegunAfterItIsStopped) {
+TEST(OrderedWorkers, ReturnsStartedItemsAfterAStop) {
     std::atomic<int> begun = 0;
     Numbers all(0, 10, 2, [&begun] {
         return [&begun](std::int64_t number, const Numbers& numbers) {

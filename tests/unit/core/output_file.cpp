@@ -24,20 +24,20 @@
 
 namespace {
 
-// What the two calls below answer in place of doing their work; 0: they work.
+// The error numbers that the two calls below return; 0: they do their work.
 int renameat2_errno = 0;
 int link_errno = 0;
 
-// The next lock is that of a file which another process has locked to remove it; it does once it is waited
-// for, or else later.
+// If set, another process holds the next file's lock and is about to remove the file. It does so once a
+// caller waits for the lock, or else later.
 bool is_locked_to_be_removed = false;
 
-// Whether what was renamed last was locked then.
+// True if the last renamed file was locked at that time.
 bool was_held_at_rename = false;
 
 }  // namespace
 
-// These stand before the C library's, so that a test can play a file system that knows neither call.
+// These replace the C library's functions, so that a test can imitate a file system without these calls.
 extern "C" int renameat2(int from_folder, const char* from, int to_folder, const char* to,
                          unsigned flags) noexcept {
     const corda::Descriptor file(::open(from, O_RDWR | O_CLOEXEC));
@@ -82,7 +82,7 @@ class OutputFiles : public testing::Test {
     test::ScratchFolder folder_;
 };
 
-/// Writes `text` to a new or, with `force`, to any file.
+/// Writes `text` to a new file or, with `force`, to any file.
 void save(const std::string& path, const std::string& text, bool force = false) {
     OutputFile file(path, {.force = force});
     file.write(text);
@@ -144,20 +144,20 @@ TEST_F(OutputFiles, NamesOfAnyLengthWork) {
     EXPECT_THAT(folder_.files(), ElementsAre(name));
 }
 
-TEST_F(OutputFiles, OutliveARemovalThatBeganBeforeTheyWereLocked) {
+TEST_F(OutputFiles, SurviveARemovalThatBeganBeforeTheyWereLocked) {
     is_locked_to_be_removed = true;
     OutputFile output(file("a"));
     EXPECT_FALSE(is_locked_to_be_removed);
     EXPECT_THAT(folder_.files(), testing::SizeIs(1));
     const Descriptor other(::open(output.temporary_path().c_str(), O_RDWR | O_CLOEXEC));
     ASSERT_TRUE(other);
-    EXPECT_NE(::flock(other.get(), LOCK_EX | LOCK_NB), 0);  // held, so it is not removed now
+    EXPECT_NE(::flock(other.get(), LOCK_EX | LOCK_NB), 0);  // locked, so it is not removed now
     output.write("text");
     output.commit();
     EXPECT_EQ(test::read_file(file("a")), "text");
 }
 
-TEST_F(OutputFiles, AreHeldUntilTheyHaveTheirNames) {
+TEST_F(OutputFiles, AreLockedUntilTheyHaveTheirNames) {
     OutputFile output(file("a"));
     output.write("text");
     was_held_at_rename = false;
@@ -180,7 +180,7 @@ TEST_F(OutputFiles, AnExistingFileIsNotReplacedWithoutForce) {
     EXPECT_THAT(folder_.files(), ElementsAre("a"));
 }
 
-/// The ways to rename without replacing: by the errno values of renameat2 and link.
+/// Error numbers of renameat2 and link, the two ways to rename without replacing.
 class Renames : public OutputFiles, public testing::WithParamInterface<std::pair<int, int>> {
   protected:
     Renames() {
@@ -298,7 +298,7 @@ TEST_F(OutputFiles, ForceKeepsTheOwnerIfThatIsPossible) {
     EXPECT_EQ(status.st_gid, 23'456U);
 }
 
-/// Runs `work` as a user without rights, if the test has the rights to do so.
+/// Runs `work` as an unprivileged user, if the test is privileged.
 void as_nobody(const std::string& folder, const std::function<void()>& work) {
     constexpr uid_t kNobody = 65'534;
     const bool is_root = ::geteuid() == 0;
@@ -352,7 +352,7 @@ TEST_F(OutputFiles, ALinkToItselfIsAnError) {
 }
 
 TEST_F(OutputFiles, AFullDiskIsReported) {
-    // /dev/full takes no byte.
+    // /dev/full accepts no byte.
     expect_io_error([&] { save("/dev/full", "text"); }, "free some space");
     expect_io_error([&] { save("/dev/full", std::string(1'000'000, 'x')); }, "No space left");
     // A limit on the size of files stops a write to an ordinary one.

@@ -54,7 +54,7 @@ TEST_F(PartFiles, AnOldOneIsReplacedOnlyWithForce) {
     EXPECT_EQ(test::read_file(path_), "");
 }
 
-TEST_F(PartFiles, AnEmptyOneThatNobodyHoldsIsReplaced) {
+TEST_F(PartFiles, AnEmptyUnlockedOneIsReplaced) {
     test::write_file(path_, "");
     PartFile::check(path_, {});
     const PartFile part = PartFile::create(path_, {});
@@ -62,7 +62,7 @@ TEST_F(PartFiles, AnEmptyOneThatNobodyHoldsIsReplaced) {
     EXPECT_TRUE(part.is_named());
 }
 
-TEST_F(PartFiles, AreHeldByOneAtATime) {
+TEST_F(PartFiles, AreLockedByOneAtATime) {
     std::optional<PartFile> part(PartFile::create(path_, {}));
     for (const auto& work : std::vector<std::function<void()>>{
              [&] { PartFile::check(path_, {}); }, [&] { PartFile::check(path_, {.force = true}); },
@@ -77,7 +77,7 @@ TEST_F(PartFiles, AreHeldByOneAtATime) {
     EXPECT_EQ(failure_of([&] { static_cast<void>(PartFile::open(path_)); }).code, ExitCode::kOk);
 }
 
-TEST_F(PartFiles, WhoseNameIsTooLongAreNotThere) {
+TEST_F(PartFiles, WithTooLongNamesDoNotExist) {
     const std::string path = part_path(path_ + std::string(250, 'a'));
     for (const bool force : {false, true}) {
         const test::Failure failure = failure_of([&] { PartFile::check(path, {.force = force}); });
@@ -86,7 +86,7 @@ TEST_F(PartFiles, WhoseNameIsTooLongAreNotThere) {
     }
 }
 
-TEST_F(PartFiles, AreHeldByOneOfManyThatStartAtOnce) {
+TEST_F(PartFiles, AreLockedByOneOfManyThatStartAtOnce) {
     std::atomic<int> holders{0};
     std::atomic<int> most{0};
     std::atomic<int> started{0};
@@ -98,7 +98,7 @@ TEST_F(PartFiles, AreHeldByOneOfManyThatStartAtOnce) {
                 ++started;
                 struct stat held {};
                 struct stat named {};
-                // The name leads to the file that is held.
+                // The name refers to the locked file.
                 EXPECT_EQ(::fstat(part.descriptor(), &held), 0);
                 EXPECT_EQ(::stat(path_.c_str(), &named), 0);
                 EXPECT_EQ(held.st_ino, named.st_ino);

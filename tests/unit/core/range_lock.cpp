@@ -23,7 +23,7 @@ class RangeLocks : public testing::Test {
     test::ScratchFolder folder_;
 };
 
-TEST_F(RangeLocks, KeepOthersFromTheSameNumbersAlone) {
+TEST_F(RangeLocks, ExcludeOnlyTheSameNumbers) {
     std::optional<RangeLock> first(std::in_place, path(), 10, 20, "frames");
     const auto error = test::failure_of([&] { const RangeLock second(path(), 19, 30, "frames"); });
     EXPECT_EQ(error.code, ExitCode::kIo);
@@ -32,19 +32,19 @@ TEST_F(RangeLocks, KeepOthersFromTheSameNumbersAlone) {
         const RangeLock before(path(), 0, 10, "frames");
         const RangeLock after(path(), 20, 30, "frames");
     }
-    EXPECT_TRUE(is_there());  // of the first one
+    EXPECT_TRUE(is_there());  // that of the first lock
     first.reset();
     EXPECT_FALSE(is_there());
     const RangeLock again(path(), 19, 30, "frames");
 }
 
-TEST_F(RangeLocks, TakeAFileThatAKilledRenderLeft) {
+TEST_F(RangeLocks, ReuseTheFileOfAKilledRender) {
     test::write_file(path(), "");
     { const RangeLock lock(path(), 0, 10, "frames"); }
     EXPECT_FALSE(is_there());
 }
 
-TEST_F(RangeLocks, OfOtherNumbersNeverMeet) {
+TEST_F(RangeLocks, OfOtherNumbersAreIndependent) {
     // While one thread removes the file, others open it.
     std::atomic<int> failures = 0;
     std::vector<std::jthread> threads;
@@ -65,7 +65,7 @@ TEST_F(RangeLocks, OfOtherNumbersNeverMeet) {
     EXPECT_FALSE(is_there());
 }
 
-TEST_F(RangeLocks, OfTheSameNumbersAreOneAtATime) {
+TEST_F(RangeLocks, OfTheSameNumbersAreExclusive) {
     std::atomic<int> holders = 0;
     std::atomic<int> met = 0;
     std::atomic<int> held = 0;

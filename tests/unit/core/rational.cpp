@@ -22,7 +22,7 @@ TEST(Rational, ReadsIntegersAndFractionsInLowestTerms) {
     EXPECT_EQ(Rational::parse("120/2")->text(), "60");
 }
 
-TEST(Rational, RefusesEverythingElse) {
+TEST(Rational, RejectsOtherText) {
     for (const char* text :
          {"", "/", "60/", "/2", "60/0", "-60", "6e1", "60.0", " 60", "60/1/1", "99999999999", "0x10"}) {
         EXPECT_FALSE(Rational::parse(text).has_value()) << text;
@@ -41,7 +41,7 @@ TEST(FrameRate, CountsTheFramesThatStartBeforeTheEnd) {
     EXPECT_EQ(sixty.frame_count(10.0), 600);
     EXPECT_EQ(sixty.frame_count(1.0 / 60.0), 1);
     EXPECT_EQ(sixty.frame_count(0.001), 1);
-    // 0.1 * 30 is 3.0000000000000004 in binary; three frames are meant.
+    // 0.1 * 30 is 3.0000000000000004 in binary; three frames are intended.
     EXPECT_EQ(FrameRate(Rational{30, 1}).frame_count(0.1), 3);
     EXPECT_EQ(FrameRate(Rational{30000, 1001}).frame_count(1.0), 30);
     EXPECT_EQ(FrameRate(Rational{24000, 1001}).frame_count(2.0), 48);

@@ -7,7 +7,7 @@
 namespace corda {
 namespace {
 
-TEST(StopCheck, AsksAsOftenAsWorkIsSpent) {
+TEST(StopCheck, CallsBackInProportionToTheWork) {
     int asked = 0;
     const GoesOn goes_on = [&asked] {
         ++asked;
@@ -24,7 +24,7 @@ TEST(StopCheck, AsksAsOftenAsWorkIsSpent) {
     EXPECT_EQ(asked, 12);
 }
 
-TEST(StopCheck, EndsTheWorkByAnErrorOrByWhatTheCallbackThrows) {
+TEST(StopCheck, EndsTheWorkByAnErrorOrTheExceptionOfTheCallback) {
     const GoesOn no = [] { return false; };
     StopCheck refused(no);
     try {
@@ -38,7 +38,7 @@ TEST(StopCheck, EndsTheWorkByAnErrorOrByWhatTheCallbackThrows) {
     EXPECT_THROW(failing.spend(StopCheck::kUpdates), std::runtime_error);
 }
 
-TEST(StopCheck, AsksNobodyWithoutACallback) {
+TEST(StopCheck, DoesNothingWithoutACallback) {
     const GoesOn empty;
     StopCheck of_empty(empty);
     StopCheck of_none;

@@ -33,7 +33,7 @@ class TemporaryFolders : public testing::Test {
     std::string old_;
 };
 
-TEST_F(TemporaryFolders, GoWithWhatIsInThem) {
+TEST_F(TemporaryFolders, AreRemovedWithTheirContents) {
     setenv("TMPDIR", scratch_.path().c_str(), 1);
     {
         const TemporaryFolder a;
@@ -45,7 +45,7 @@ TEST_F(TemporaryFolders, GoWithWhatIsInThem) {
     EXPECT_TRUE(scratch_.files().empty());
 }
 
-TEST_F(TemporaryFolders, ThatCannotBeMadeAreErrorsWithARemedy) {
+TEST_F(TemporaryFolders, FailWithARemedyIfTheyCannotBeMade) {
     for (const std::string& place :
          {scratch_.file("missing"), scratch_.write("file", ""), std::string("/proc")}) {
         setenv("TMPDIR", place.c_str(), 1);

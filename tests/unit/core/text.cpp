@@ -5,7 +5,7 @@
 namespace corda {
 namespace {
 
-TEST(Text, OfUtf8StaysAsItIs) {
+TEST(Text, OfUtf8IsUnchanged) {
     for (const char* text :
          {"", "swing", "caf\xc3\xa9 \xe2\x88\x9e \xf0\x9f\xaa\xa2", "\xc2\xa0 \xed\x9f\xbf \xee\x80\x80",
           "\xef\xbf\xbd \xf0\x90\x80\x80 \xf4\x8f\xbf\xbf", "back\\slash \\x1b"}) {
@@ -22,10 +22,10 @@ TEST(Text, CountsInWords) {
 
 TEST(Text, OfOtherBytesIsEscaped) {
     EXPECT_EQ(utf8("caf\xe9.toml"), "caf\\xe9.toml");  // Latin-1
-    EXPECT_EQ(utf8("\xc3"), "\\xc3");                  // broken off
+    EXPECT_EQ(utf8("\xc3"), "\\xc3");                  // truncated
     EXPECT_EQ(utf8("\xe2\x88"), "\\xe2\\x88");
     EXPECT_EQ(utf8("\xc3\xa9\xa9"), "\xc3\xa9\\xa9");        // no lead byte
-    EXPECT_EQ(utf8("\xc0\xaf\xe0\x80\xaf\xf0\x80\x80\xaf"),  // longer than need be
+    EXPECT_EQ(utf8("\xc0\xaf\xe0\x80\xaf\xf0\x80\x80\xaf"),  // overlong
               "\\xc0\\xaf\\xe0\\x80\\xaf\\xf0\\x80\\x80\\xaf");
     EXPECT_EQ(utf8("\xed\xa0\x80"), "\\xed\\xa0\\x80");  // a surrogate
     EXPECT_EQ(utf8("\xf4\x90\x80\x80\xff"), "\\xf4\\x90\\x80\\x80\\xff");

@@ -10,7 +10,7 @@ namespace {
 
 const FrameRate kNtsc(Rational{30000, 1001});
 
-TEST(Timeline, OfFramesAloneHasTheirTimes) {
+TEST(Timeline, WithFramesOnlyHasTheirTimes) {
     const Timeline timeline(kNtsc, 100);
     ASSERT_EQ(timeline.size(), 101U);
     for (std::int64_t k = 0; k <= 100; ++k) {
@@ -24,7 +24,7 @@ TEST(Timeline, OfFramesAloneHasTheirTimes) {
 }
 
 TEST(Timeline, MergesOtherTimesInOrderAndDropsThoseOfFrames) {
-    // 10 frames per second; 0.2 is a frame's time, and 0.25 comes twice.
+    // 10 frames per second; 0.2 is a frame's time, and 0.25 is given twice.
     const Timeline timeline(FrameRate(Rational{10, 1}), 3, {0.9, 0.25, 0.2, 0.05, 0.25});
     const std::vector<double> expected{0.0, 0.05, 0.1, 0.2, 0.25, 0.3, 0.9};
     ASSERT_EQ(timeline.size(), expected.size());
@@ -47,7 +47,7 @@ TEST(Timeline, IncreasesForEveryRate) {
     }
 }
 
-TEST(TimeWithin, TakesATimeBeyondTheEndByRoundingForTheEnd) {
+TEST(TimeWithin, TreatsARoundingErrorBeyondTheEndAsTheEnd) {
     EXPECT_EQ(time_within(0.1 + 0.1 + 0.1, 0.3), 0.3);  // 0.30000000000000004
     EXPECT_EQ(time_within(0.3 - 0.1 - 0.2, 0.3), 0.0);  // -2.8e-17
     EXPECT_FALSE(std::signbit(time_within(-0.0, 0.3).value()));

@@ -12,7 +12,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-TEST(Chapters, TellThePendulumInWords) {
+TEST(Chapters, DescribeThePendulum) {
     const ReadScene scene(pendulum_toml("duration = 2.0"));
     const auto write = [](const std::string&, double, const std::vector<double>&) {};
     const report::Chapter motion =
@@ -41,22 +41,22 @@ TEST(Chapters, HaveUnitsAndTheCurvesOfTheMotion) {
     const report::Plot path = path_chapter(scene.film, scene.reading).plots.at(0);
     EXPECT_EQ(path.x_title, "x (m)");
     EXPECT_TRUE(path.has_equal_scales);
-    EXPECT_NEAR(path.series.at(0).points[0].first, 3.0 + std::sqrt(0.75), 1e-12);  // in the world
+    EXPECT_NEAR(path.series.at(0).points[0].first, 3.0 + std::sqrt(0.75), 1e-12);  // in world coordinates
     const report::Plot energy = energy_chapter(scene.film, scene.reading).plots.at(0);
     EXPECT_EQ(energy.y_title, "energy (J)");
     ASSERT_EQ(energy.series.size(), 3U);
     EXPECT_EQ(tension_chapter(scene.film, scene.reading).plots.at(0).y_title, "largest tension (N)");
 }
 
-TEST(Chapters, TakeXAndVxWhereAnAngleSaysNothing) {
-    // A double pendulum whose end passes by its pin.
+TEST(Chapters, UseXAndVxWhereAnAngleSaysNothing) {
+    // A double pendulum whose end passes near its pin.
     const ReadScene scene(
         "[world]\nduration = 0.1\n[[rope]]\npoints = [[0.0, 0.0], [1.0, 0.0], [0.05, 0.0]]\n");
     const report::Plot phase = phase_chapter(scene.film, scene.reading).plots.at(0);
     EXPECT_EQ(phase.x_title, "x (mm)");
     EXPECT_EQ(phase.y_title, "vx (mm/s)");
     EXPECT_THAT(phase.caption, HasSubstr("horizontal position of the free end of rope 0 (particle 2)"));
-    EXPECT_NEAR(phase.series.at(0).points[0].first, 50.0, 1e-9);  // from the pin
+    EXPECT_NEAR(phase.series.at(0).points[0].first, 50.0, 1e-9);  // relative to the pin
 }
 
 TEST(Chapters, SayWhyTensionsAreNotKnown) {
@@ -79,7 +79,7 @@ TEST(Chapters, ShowSixBodiesAndCountTheOthers) {
     EXPECT_EQ(plot.series.at(5).name, "rope 5");
     EXPECT_EQ(plot.y_title, "largest tension (kN)");
     EXPECT_THAT(plot.caption, HasSubstr("2 more bodies are not shown."));
-    // Let go from a straight line, of which the top link bears most.
+    // Released from a straight line; the top link has the largest tension.
     const report::Plot& along = tension.plots.at(1);
     ASSERT_EQ(along.series.at(0).points.size(), 3U);
     EXPECT_NEAR(along.series.at(0).points[1].first, 1.0, 1e-12);

@@ -24,7 +24,7 @@ TEST(Drawings, HaveTheShapeOfTheSceneAtThreeHundredPixelsPerInch) {
     EXPECT_EQ(look_in_print(scene, 85.0).video.height_px, 1406);  // fits a page
 }
 
-TEST(Drawings, SimulateNothingAgain) {
+TEST(Drawings, ReuseTheMotion) {
     const ReadScene scene(pendulum_toml());
     const test::ScratchFolder folder;
     Drawings drawings(scene.film);

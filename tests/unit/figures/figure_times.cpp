@@ -32,7 +32,7 @@ TEST(FigureTimes, AreThoseOfTheWholeMotionIfNothingSwings) {
     EXPECT_THAT(moments.strobe_s, ElementsAre(0.0, 0.2, 0.4, 0.6, 0.8, 1.0));
 }
 
-TEST(FigureTimes, ThatWereAskedForAreTaken) {
+TEST(FigureTimes, AreTheRequestedOnes) {
     const ReadScene scene(pendulum_toml(), {0.123, 0.456});
     const FigureTimes moments = find_figure_times(scene.film, scene.reading, {0.456, 0.123});
     EXPECT_THAT(moments.strobe_s, ElementsAre(0.123, 0.456));

@@ -31,8 +31,8 @@ TEST(MotionSummary, HasTheEnergyAndTheTensionOfAPendulum) {
         EXPECT_NEAR(total[k], 0.0, 1e-6);
         EXPECT_NEAR(tension[k], kWeightN * cosine + 2.0 * square_speed, 1e-5);  // m g cos + m v^2 / L
     }
-    // At the lowest point, to which a row is as near as half a step of 5 ms at 3.13 m/s:
-    // T = m g + m v^2 / L = 2 m g.
+    // At the lowest point T = m g + m v^2 / L = 2 m g. The nearest row is at most half a step of 5 ms away,
+    // at 3.13 m/s.
     EXPECT_NEAR(scene.reading.tension.size, 2.0 * kWeightN, 3e-3);
     EXPECT_EQ(scene.reading.tension.index, 0U);
     EXPECT_NEAR(scene.reading.speed.size, std::sqrt(9.81), 1e-4);
@@ -56,24 +56,25 @@ TEST(MotionSummary, CountsTheAngleFromStraightDown) {
     }
 }
 
-/// Thrown fast enough to go round: v^2 = 100 > 5 g L.
+/// Fast enough to loop: v^2 = 100 > 5 g L.
 std::string looping_toml(const std::string& fps) {
     return "[world]\nduration = 3.0\n[[rope]]\npoints = [[0.0, 0.0], [0.0, -1.0]]\nvelocity = [10.0, "
            "0.0]\n[solver]\nmethod = \"exact\"\n[video]\nfps = " +
            fps + "\n";
 }
 
-TEST(MotionSummary, CountsTurnsOnHoweverFewRowsThereAre) {
+TEST(MotionSummary, CountsTurnsFromAnyNumberOfRows) {
     const auto many = ReadScene(looping_toml("300")).column("tip.csv", "rope_0_angle_rad");
     const auto few = ReadScene(looping_toml("5")).column("tip.csv", "rope_0_angle_rad");
     EXPECT_TRUE(std::is_sorted(many.begin(), many.end()));
     EXPECT_GT(many.back(), 6.0 * std::numbers::pi);  // measured 8.1 half turns
-    ASSERT_EQ(few.size(), 16U);                      // a row per 0.2 s, in which it turns by up to 2 rad
+    ASSERT_EQ(few.size(), 16U);  // one row per 0.2 s, during which it turns by up to 2 rad
     EXPECT_NEAR(few.back(), many.back(), 1e-6);
 }
 
-TEST(MotionSummary, TellsTheEnergyOfASpring) {
-    // 1 kg on a spring of 100 N/m, let go at rest length: it falls by 2 m g / k, and is stretched by as much.
+TEST(MotionSummary, IncludesTheEnergyOfASpring) {
+    // 1 kg on a spring of 100 N/m, released at rest length: it falls by 2 m g / k and stretches by the same
+    // length.
     const ReadScene scene(
         "[world]\nduration = 1.0\n[[rope]]\npoints = [[0.0, 0.0], [0.0, -1.0]]\ncompliance = "
         "0.01\n[video]\nfps = 500\n");
@@ -87,7 +88,7 @@ TEST(MotionSummary, TellsTheEnergyOfASpring) {
     EXPECT_NEAR(scene.reading.tension.size, 2.0 * 9.81, 1e-2);
 }
 
-TEST(MotionSummary, LeavesOutTheTensionsThatAMethodDoesNotKnow) {
+TEST(MotionSummary, OmitsUnknownTensions) {
     const ReadScene scene(
         "[world]\nduration = 0.1\n[[rope]]\nhang = { links = 3, length = 1.0, angle_deg = 9.0 "
         "}\n[[rope]]\nhang = { links = 3, length = 1.0, angle_deg = 9.0 }\n[[solver.bodies]]\nropes = "
@@ -107,13 +108,13 @@ TEST(MotionSummary, EndsWhereTheMotionDiverges) {
         "= []\n[solver]\nmethod = \"relaxation\"\n[video]\nfps = 50\n");
     ASSERT_TRUE(scene.reading.failure);
     EXPECT_EQ(scene.reading.failure->code(), ExitCode::kDiverged);
-    // 1e12 m, beyond which nothing is meant to go, after sqrt(2e-2) s = 0.141 s.
+    // The motion exceeds the limit of 1e12 m after sqrt(2e-2) s = 0.141 s.
     EXPECT_EQ(scene.reading.end_s, 0.14);
     EXPECT_EQ(scene.reading.rows, 8);
     EXPECT_EQ(scene.rows.at("tip.csv").size(), 8U);
 }
 
-TEST(MotionSummary, IsEndedByItsCallback) {
+TEST(MotionSummary, StopsAtItsCallback) {
     const Film film(parse_scene("schema = 1\n" + pendulum_toml(), "a"), def_of());
     const auto open = [](const std::string&, const std::vector<std::string>&) -> OnRow {
         return [](std::span<const double>) {};

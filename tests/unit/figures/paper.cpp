@@ -27,7 +27,7 @@ TEST(Paper, IsTheThemeUnlessTheSceneSaysOtherwise) {
     EXPECT_EQ(theme_on_paper(styled("", "color = \"white\"\n")), std::nullopt);
 }
 
-TEST(Paper, ShowsWhatHasContrast) {
+TEST(Paper, DetectsContrast) {
     EXPECT_TRUE(shows_on_white({0, 0, 0}));
     EXPECT_TRUE(shows_on_white({0x56, 0xb4, 0xe9}));   // 2.3
     EXPECT_FALSE(shows_on_white({0xfd, 0xb8, 0x40}));  // 1.7

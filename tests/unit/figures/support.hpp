@@ -15,7 +15,7 @@ inline FilmDef def_of(std::vector<double> stills_s = {}) {
     return def;
 }
 
-/// A motion and the rows that reading it gave.
+/// A motion and its rows.
 struct ReadScene {
     explicit ReadScene(const std::string& toml, std::vector<double> stills_s = {})
         : film(parse_scene("schema = 1\n" + toml, "scene.toml"), def_of(std::move(stills_s))),
@@ -44,7 +44,7 @@ struct ReadScene {
     MotionSummary reading;
 };
 
-/// A pendulum of 2 kg on a link of 1 m, let go from 60 degrees.
+/// A pendulum of 2 kg on a link of 1 m, released from 60 degrees.
 inline std::string pendulum_toml(const std::string& world = "duration = 1.0",
                                  const std::string& fps = "200") {
     return "[world]\n" + world +

@@ -19,7 +19,7 @@ TEST(Thinner, KeepsShortCurvesAsTheyAre) {
     EXPECT_TRUE(thinner.is_joined());
 }
 
-/// A spiral that turns once in 700 rows, with a spike of one row each way.
+/// A spiral that turns once in 700 rows, with a spike of one row in each direction.
 std::vector<CurvePoint> thin_spiral(Thinner thinner, int rows) {
     for (int k = 0; k < rows; ++k) {
         const double angle = k / 111.0;
@@ -38,7 +38,7 @@ TEST(Thinner, LosesNoExtreme) {
         EXPECT_EQ(thinner.is_joined(), kind == Thinner::Kind::kOverTime);
         const auto points = thin_spiral(thinner, kRows);
         EXPECT_LE(points.size(), 2000U);
-        EXPECT_GT(points.size(), 1200U);  // measured 1238, as ends are extremes, and 1966
+        EXPECT_GT(points.size(), 1200U);  // measured 1238 (both ends are extremes) and 1966
         const auto has = [&](double x, double y) {
             return std::any_of(points.begin(), points.end(),
                                [&](const CurvePoint& p) { return p.x == x || p.y == y; });
@@ -61,7 +61,7 @@ TEST(Thinner, SpreadsTheDotsOfAPathEvenly) {
     EXPECT_TRUE(Thinner(7'000, Thinner::Kind::kPath).is_joined());
 }
 
-TEST(Thinner, BreaksACurveWhereNothingIsKnown) {
+TEST(Thinner, BreaksACurveAtUnknownValues) {
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
     Thinner thinner(60'000);  // blocks of 181
     for (int k = 0; k < 60'000; ++k) thinner.add({1.0 * k, 1.0 * k, k < 30'000 ? kNone : 1.0});

@@ -1,4 +1,4 @@
-// The comparer itself: a golden test is worth what its comparison is.
+// The comparison of pictures, on which every golden test depends.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -51,7 +51,7 @@ TEST(Compare, CountsSixteenBits) {
     EXPECT_EQ(pixel(difference_image(deep_grey(25700), deep_grey(25701)), 1, 1)[0], 161);
 }
 
-TEST(Compare, LeavesOutWhatIsBlackInTheMask) {
+TEST(Compare, IgnoresBlackPixelsOfTheMask) {
     Image b = grey(5, 4);
     b.pixel(4, 3)[0] = 250;
     b.pixel(1, 1)[1] = 103;
@@ -70,7 +70,7 @@ TEST(Compare, LeavesOutWhatIsBlackInTheMask) {
     EXPECT_EQ(test::code_of([&] { static_cast<void>(compare(b, b, {}, &nothing)); }), ExitCode::kUsage);
 }
 
-TEST(Compare, ShowsWhatOnlyOnePictureHas) {
+TEST(Compare, ShowsPixelsOfOnlyOnePicture) {
     const Image shown = difference_image(grey(5, 2), grey(3, 4));
     EXPECT_EQ(shown.width(), 5);
     EXPECT_EQ(shown.height(), 4);
@@ -79,7 +79,7 @@ TEST(Compare, ShowsWhatOnlyOnePictureHas) {
         for (int x = 0; x < 5; ++x) EXPECT_EQ(pixel(shown, x, y) == blue, x >= 3 || y >= 2) << x << " " << y;
 }
 
-TEST(Compare, StopsIfItIsAsked) {
+TEST(Compare, StopsOnRequest) {
     const Image a = grey(5, 4);
     for (const std::int64_t last : {0, 3}) {
         const OnProgress stop = [last](std::int64_t row, std::int64_t) { return row < last; };
@@ -90,7 +90,7 @@ TEST(Compare, StopsIfItIsAsked) {
 }
 
 TEST(Compare, OneChannelOffByOne) {
-    for (int channel = 0; channel < 4; ++channel) {  // alpha counts as the others do
+    for (int channel = 0; channel < 4; ++channel) {  // alpha counts like the others
         for (const int change : {-1, 1}) {
             Image b = grey(5, 4);
             b.pixel(4, 3)[channel] = static_cast<std::uint8_t>(100 + change);

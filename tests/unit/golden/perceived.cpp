@@ -1,4 +1,4 @@
-// FLIP and SSIM against figures from outside.
+// FLIP and SSIM against values of other implementations.
 #include "corda/golden/perceived.hpp"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ Image filled(int width, int height, int r, int g, int b, int a = 255) {
     return image;
 }
 
-/// Colours without order, moved by `shift` to the left.
+/// Random colours, moved by `shift` to the left.
 Image pattern(int shift, int width = 60, int height = 40) {
     Image image = filled(width, height, 0, 0, 0);
     for (int y = 0; y < height; ++y) {
@@ -51,14 +51,15 @@ Image box(int left) {
     return image;
 }
 
-// The figures of the next two tests are those of the authors' program (NVIDIA's flip.py of 2021, numpy 1.24,
-// OpenCV 4.6), in single precision. flip() is 7.4e-6 away from them for grey, 3.6e-6 for black and white, and
-// below 1e-7 for pictures with edges.
+// The expected values of the next two tests are from the authors' program (NVIDIA's flip.py of 2021,
+// numpy 1.24, OpenCV 4.6), in single precision. flip() differs by 7.4e-6 for grey, 3.6e-6 for black and
+// white, and less than 1e-7 for pictures with edges.
 
-TEST(Flip, OfEvenPicturesIsThatOfTheirColors) {
+TEST(Flip, OfUniformPicturesIsThatOfTheirColors) {
     const Image black = filled(8, 8, 0, 0, 0);
     EXPECT_NEAR(flip(black, filled(8, 8, 255, 255, 255)), 0.96738285, 5e-6);
-    EXPECT_NEAR(flip(filled(8, 8, 0, 255, 0), filled(8, 8, 0, 0, 255)), 1.0, 1e-6);  // the paper's largest
+    EXPECT_NEAR(flip(filled(8, 8, 0, 255, 0), filled(8, 8, 0, 0, 255)), 1.0,
+                1e-6);  // the maximum in the paper
     EXPECT_NEAR(flip(filled(8, 8, 255, 0, 0), filled(8, 8, 0, 255, 0)), 0.98666322, 5e-6);
     EXPECT_NEAR(flip(filled(8, 8, 100, 100, 100), filled(8, 8, 101, 101, 101)), 0.03078431, 1e-5);
 }
@@ -69,7 +70,7 @@ TEST(Flip, OfPicturesWithEdgesIsThatOfTheAuthorsProgram) {
     EXPECT_NEAR(flip(box(20), box(21), {}, 1, 30.0), 0.02736959, 1e-6);
 }
 
-TEST(Flip, IsZeroForEqualPicturesAloneAndHasNoOrder) {
+TEST(Flip, IsSymmetricAndZeroOnlyForEqualPictures) {
     EXPECT_EQ(flip(pattern(0), pattern(0)), 0.0);
     Image other = pattern(0);
     other.pixel(59, 39)[1] ^= 1;
@@ -86,7 +87,7 @@ TEST(Flip, DoesNotDependOnThreads) {
 }
 
 TEST(Flip, SeesWhatIsBehindTransparentPictures) {
-    // What is fully transparent has no colour; a black veil shows on white alone.
+    // Fully transparent pixels have no colour; a black veil is visible on white only.
     EXPECT_EQ(flip(filled(9, 9, 255, 0, 0, 0), filled(9, 9, 0, 0, 255, 0)), 0.0);
     EXPECT_NEAR(flip(filled(9, 9, 0, 0, 0, 0), filled(9, 9, 0, 0, 0, 255)), 0.96738285, 1e-5);
 }
@@ -105,7 +106,7 @@ TEST(Ssim, IsThatOfScikitImage) {
     EXPECT_NEAR(ssim(box(20), box(21)), 0.9213370506401926, 1e-9);
 }
 
-TEST(Ssim, OfEvenPicturesIsThatOfTheirMeans) {
+TEST(Ssim, OfUniformPicturesIsThatOfTheirMeans) {
     // (2 * 100 * 150 + c1) / (100^2 + 150^2 + c1), c1 = 2.55^2
     EXPECT_NEAR(ssim(filled(11, 11, 100, 100, 100), filled(11, 11, 150, 150, 150)), 30006.5025 / 32506.5025,
                 1e-9);

@@ -1,4 +1,4 @@
-// Which names are those of variants.
+// Names of variants.
 #include "corda/golden/variant.hpp"
 
 #include <gtest/gtest.h>

@@ -13,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(Child, GetsItsInputAndGivesWhatItWrites) {
+TEST(Child, ReadsItsInputAndReturnsItsOutput) {
     const std::string much(1 << 20, 'x');  // more than a pipe holds
     const ChildResult result = run_child({"cat"}, much, "");
     EXPECT_EQ(result.exit_code, 0);
@@ -21,7 +21,7 @@ TEST(Child, GetsItsInputAndGivesWhatItWrites) {
     EXPECT_EQ(result.err, "");
 }
 
-TEST(Child, WordsAreNotReadByAShell) {
+TEST(Child, ArgumentsAreNotParsedByAShell) {
     EXPECT_EQ(run_child({"printf", "%s", "$(echo a) * 'b'"}, "", "").out, "$(echo a) * 'b'");
 }
 
@@ -40,7 +40,7 @@ TEST(Child, IsNotEndedBySignalsForThisProcessGroup) {
     EXPECT_EQ(group, process);
 }
 
-TEST(Child, EndsAtABrokenPipeEvenIfThisProgramIgnoresThem) {
+TEST(Child, EndsAtABrokenPipeEvenIfThisProgramIgnoresIt) {
     const auto before = std::signal(SIGPIPE, SIG_IGN);
     const ChildResult result = run_child({"sh", "-c", "kill -PIPE $$; echo ignored"}, "", "");
     std::signal(SIGPIPE, before);

@@ -19,7 +19,7 @@ std::string big_endian(std::uint32_t value, int bytes) {
     return text;
 }
 
-/// A stream of zlib with one block that is stored as it is.
+/// A zlib stream with one stored (uncompressed) block.
 std::string stored(std::string_view text) {
     const auto size = static_cast<std::uint32_t>(text.size());
     std::uint32_t a = 1;
@@ -35,7 +35,8 @@ std::string stored(std::string_view text) {
            big_endian(b << 16 | a, 4);
 }
 
-/// As cairo 1.18 writes it: object 1 plain, 2 and 3 in the stream 4, of the length 5, and 6 the table of all.
+/// The layout of cairo 1.18: object 1 is plain, 2 and 3 are in stream 4, 5 is its length, 6 the
+/// cross-reference table.
 std::string packed_pdf(std::string_view date) {
     const std::string info = fmt::format("<< /Producer (cairo)\n   /CreationDate (D:{})\n>>\n", date);
     const std::string objects =

@@ -19,7 +19,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-/// The paths of a report that is written at once.
+/// Writes a report at once and returns its paths.
 std::vector<std::string> write(const Report& report, const std::string& path, OutputOptions options = {}) {
     ReportFolder folder(path, std::move(options));
     for (const Chapter& chapter : report.chapters) folder.add(chapter);
@@ -67,7 +67,7 @@ TEST(ReportFolder, HasAChapterAsSoonAsItIsAdded) {
 TEST(ReportFolder, IsFinishedWithThePicturesThatWereDrawn) {
     const test::ScratchFolder folder;
     const Report whole = small_report();
-    // Asked once per picture, of which the first chapter has three.
+    // Called once per picture; the first chapter has three.
     const auto asks = [asked = 0](std::int64_t, std::int64_t) mutable { return ++asked < 4; };
     ReportFolder report(folder.path(), {.on_progress = asks});
     report.add(whole.chapters[0]);
@@ -81,7 +81,7 @@ TEST(ReportFolder, IsFinishedWithThePicturesThatWereDrawn) {
     }
 }
 
-/// A report with pictures that say in which order they were written.
+/// A report whose pictures record the order in which they were written.
 Report drawn_report() {
     const auto write = [](const std::string& path, double width_mm) {
         test::write_file(
@@ -112,7 +112,7 @@ TEST(ReportFolder, GetsPicturesOfEachWidth) {
     EXPECT_THAT(page, HasSubstr("<b>Figure 1.</b> All &lt;of&gt; it.<span class=\"files\">85 mm: <a "
                                 "href=\"whole_85mm.svg\">SVG</a> <a href=\"whole_85mm.pdf\">PDF</a>"));
     EXPECT_THAT(page, HasSubstr("<div class=\"small\">\n<figure id=\"picture-part\">"));
-    EXPECT_THAT(page, HasSubstr("<use href=\"#part_halo1\"/>85.0"));  // small ones are the narrow ones
+    EXPECT_THAT(page, HasSubstr("<use href=\"#part_halo1\"/>85.0"));  // narrow pictures are small
     EXPECT_THAT(page, HasSubstr("<b>Figure 3.</b> Another."));
     EXPECT_THAT(test::read_file(scratch.file("report.md")), HasSubstr("](whole_170mm.svg)\n\nAll"));
     EXPECT_THAT(test::read_file(scratch.file("report.json")), HasSubstr("\"caption\": \"A part.\""));
@@ -124,7 +124,7 @@ TEST(ReportFolder, WithoutWidthsRefusesPictures) {
     EXPECT_EQ(code_of([&] { folder.add(drawn_report().chapters[0]); }), ExitCode::kInternal);
 }
 
-TEST(ReportFolder, IsFinishedAsFarAsItCanBe) {
+TEST(ReportFolder, IsFinishedAsFarAsPossible) {
     const test::ScratchFolder folder;
     const std::string taken = folder.write("report.md", "mine");
     ReportFolder report(folder.path());

@@ -12,7 +12,7 @@ namespace corda::report {
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Everything that one of the formats could take for something else.
+/// Text with every character that one of the formats could misinterpret.
 inline const std::string nasty = "a_b, \"q\" <b>&amp; | *x* 'y' `touch pwned` $(touch pwned) @m \\";
 
 inline Table small_table() {

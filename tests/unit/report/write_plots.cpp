@@ -20,7 +20,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Sets an environment variable for as long as it lives.
+/// Sets an environment variable during its lifetime.
 class Environment {
   public:
     Environment(const char* name, const std::string& value) : name_(name) {
@@ -49,7 +49,7 @@ TEST(Plots, ScriptsQuoteEveryText) {
                 AllOf(HasSubstr("0.10000000000000001 0\nEND"), Not(HasSubstr("logscale"))));
 }
 
-TEST(Plots, ArePicturesOfTheRightSize) {
+TEST(Plots, HaveTheRightSize) {
     const test::ScratchFolder folder;
     Plot empty = small_plot();
     empty.id = "empty";
@@ -86,7 +86,7 @@ TEST(Plots, HaveLettersOfEightPointsAtAnyWidthInPrint) {
         EXPECT_NEAR(read_png(png).width(), width_mm / 25.4 * 300.0, 1.0);
         EXPECT_NEAR(read_png_info(png).pixels_per_inch, 300.0, 0.1);
         const std::string pdf = folder.write("a.pdf", draw_plot(plot, PlotFormat::kPdf, width_mm));
-        // Words are as high as the font's box, 1.163 of the size of its letters.
+        // The height of a word is that of the font's box, 1.163 times the font size.
         const auto words = run_shell("pdftotext -bbox " + pdf + " - | grep 'Step'");
         double top = 0.0;
         double bottom = 0.0;
@@ -171,7 +171,7 @@ TEST(Plots, MissingGnuplotNamesItsPackage) {
     }
 }
 
-TEST(Plots, PicturesThatBreakOffAreRefused) {
+TEST(Plots, TruncatedPicturesAreRefused) {
     const test::ScratchFolder folder;
     const std::string end = " | head -c -20\n";
     const std::string fake = folder.write("gnuplot", "#!/bin/sh\nPATH=/usr/bin:/bin\ngnuplot \"$@\"" + end);

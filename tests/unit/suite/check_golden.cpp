@@ -77,7 +77,7 @@ TEST_F(CheckGolden, MatchesAnyVariant) {
     EXPECT_THAT(check_golden(with_dot(91), "dot.png").message, HasSubstr("ref/dot.png': max 109"));
 }
 
-TEST_F(CheckGolden, SaysWhatIsMissingAndWhereTheNewPictureIs) {
+TEST_F(CheckGolden, NamesTheMissingPictureAndTheNewOne) {
     EXPECT_THAT(check_golden(with_dot(1), "no/such.png").message,
                 AllOf(HasSubstr("there is no golden picture"), HasSubstr("CORDA_UPDATE_GOLDENS=1 writes it"),
                       HasSubstr("set CORDA_GOLDEN_ARTIFACTS")));
@@ -92,16 +92,17 @@ TEST_F(CheckGolden, SaysWhatIsMissingAndWhereTheNewPictureIs) {
 
 TEST_F(CheckGolden, RefusesArtifactsAmongGoldenPictures) {
     setenv("CORDA_GOLDEN_ARTIFACTS", folder_.file("ref/../ref").c_str(), 1);
-    for (int run = 0; run < 2; ++run)  // what the first one kept would be a variant for the second
+    for (int run = 0; run < 2; ++run)  // an artifact of the first run would be a variant for the second
         EXPECT_EQ(test::code_of([] { (void)check_golden(with_dot(7), "dot.png"); }), ExitCode::kUsage);
     setenv("CORDA_GOLDEN_ARTIFACTS", folder_.file("out").c_str(), 1);
-    const std::string name = folder_.file("ref/dot.png");  // which is no reason to write beside it
+    const std::string name =
+        folder_.file("ref/dot.png");  // an absolute path; nothing may be written next to it
     EXPECT_FALSE(check_golden(with_dot(7), name).matches);
     EXPECT_EQ(read_png(folder_.file("out" + folder_.file("ref/dot.new.png"))), with_dot(7));
     EXPECT_FALSE(check_golden(with_dot(7), name).matches);
 }
 
-TEST_F(CheckGolden, UpdatesWhatItMade) {
+TEST_F(CheckGolden, UpdatesItsOwnPictures) {
     setenv("CORDA_UPDATE_GOLDENS", "0", 1);
     EXPECT_FALSE(check_golden(with_dot(7), "dot.png").matches);
     setenv("CORDA_UPDATE_GOLDENS", "1", 1);
@@ -113,7 +114,7 @@ TEST_F(CheckGolden, UpdatesWhatItMade) {
     EXPECT_EQ(read_png(folder_.file("ref/new/dot.png")), with_dot(7));
 }
 
-TEST_F(CheckGolden, LeavesPicturesOfTheCommandToIt) {
+TEST_F(CheckGolden, LeavesPicturesOfTheCommandAlone) {
     PngInfo info;
     info.text = {{"Corda-State", "0123"}};
     write_png(folder_.file("ref/dot.png"), with_dot(200), info, {.force = true});
@@ -124,7 +125,7 @@ TEST_F(CheckGolden, LeavesPicturesOfTheCommandToIt) {
     EXPECT_EQ(read_png(folder_.file("ref/dot.png")), with_dot(200));
 }
 
-TEST_F(CheckGolden, RefusesAnotherEnding) {
+TEST_F(CheckGolden, RefusesOtherExtensions) {
     EXPECT_EQ(test::code_of([] { (void)check_golden(with_dot(7), "dot.jpg"); }), ExitCode::kUsage);
 }
 
@@ -134,7 +135,7 @@ TEST_F(CheckGolden, ADamagedPictureDoesNotMatchAndIsUpdated) {
     EXPECT_FALSE(damaged.matches);
     EXPECT_THAT(damaged.message, HasSubstr("cannot read PNG"));
     write_png(folder_.file("ref/dot.older.png"), with_dot(7));
-    EXPECT_TRUE(check_golden(with_dot(7), "dot.png").matches);  // a variant does
+    EXPECT_TRUE(check_golden(with_dot(7), "dot.png").matches);  // the variant matches
     std::filesystem::remove(folder_.file("ref/dot.older.png"));
     setenv("CORDA_UPDATE_GOLDENS", "1", 1);
     const auto kept = check_golden(with_dot(7), "dot.png");

@@ -1,4 +1,4 @@
-// What a golden picture says of how it was made, and what follows from it.
+// The record in a golden picture of how it was made, and the causes and frozen values that follow from it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ Film swing(int links = 5, const std::vector<Setting>& settings = {}) {
     return Film(parse_scene(text, "swing.toml", settings));
 }
 
-TEST(SuiteProvenance, IsReadBackAsItWasWritten) {
+TEST(SuiteProvenance, SurvivesARoundTrip) {
     const Film film = swing();
     const Provenance made = provenance_of(film, 0.25);
     const Provenance read = from_png_info(to_png_info(made, film, 0.25));
@@ -42,7 +42,7 @@ TEST(SuiteProvenance, NamesTheKeyOfTheSceneThatChanged) {
     EXPECT_EQ(scene_change(kept, swing(5, {"world.drag=0.5"}).scene()), "world.drag is 0.5 and was 0");
     EXPECT_EQ(scene_change(kept, swing(5, {"rope[0].hang.links=6", "world.drag=0.5"}).scene()),
               "rope[0].hang.links is 6 and was 5, world.drag is 0.5 and was 0");
-    EXPECT_EQ(scene_change(kept, swing(5, {"video.crf=30"}).scene()), "");  // of videos alone
+    EXPECT_EQ(scene_change(kept, swing(5, {"video.crf=30"}).scene()), "");  // affects videos only
     EXPECT_EQ(scene_change(kept, swing(5, {"video.shutter=0.5"}).scene()), "video.shutter is 0.5 and was 0");
     write_png(folder.file("plain.png"), Image(2, 2));
     EXPECT_EQ(scene_change(folder.file("plain.png"), film.scene()), "");
@@ -57,7 +57,7 @@ TEST(SuiteProvenance, KeepsSomeParticlesOfALongRope) {
     EXPECT_EQ(long_one.positions_m[2], film.state_at(0.0).x_m[3]);
 }
 
-TEST(SuiteProvenance, FreezesWhatTheSceneLeavesOpen) {
+TEST(SuiteProvenance, FreezesTheOpenChoicesOfTheScene) {
     const Provenance made = provenance_of(swing(), 0.0);
     EXPECT_THAT(freezing(swing().scene(), made), SizeIs(3));
     EXPECT_THAT(freezing(swing(5, {"camera.height=3"}).scene(), made), SizeIs(2));
@@ -68,7 +68,7 @@ TEST(SuiteProvenance, FreezesWhatTheSceneLeavesOpen) {
     EXPECT_EQ(again.state, made.state);
 }
 
-TEST(SuiteProvenance, TellsWhatDiffersFirst) {
+TEST(SuiteProvenance, ReportsTheFirstDifference) {
     const Provenance made = provenance_of(swing(), 0.25);
     Provenance other = made;
     other.renderer = "Voodoo";
@@ -88,7 +88,7 @@ TEST(SuiteProvenance, TellsWhatDiffersFirst) {
     EXPECT_THAT(cause_of({}, made), HasSubstr("does not say how it was made"));
 }
 
-TEST(SuiteProvenance, TakesOnlyNumbersForPositions) {
+TEST(SuiteProvenance, AcceptsOnlyNumbersAsPositions) {
     PngInfo info;
     for (const char* const text : {"zz", "7ff00000000000003ff0000000000000", "3ff000000000000g", ""}) {
         info.text = {{"Corda-Positions", text}};

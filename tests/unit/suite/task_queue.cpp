@@ -1,4 +1,4 @@
-// Pieces of work on several threads.
+// Tasks on several threads.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -10,7 +10,7 @@
 namespace corda::suite {
 namespace {
 
-TEST(TaskQueue, DoesAllThatIsAddedMeanwhile) {
+TEST(TaskQueue, RunsTasksThatTasksAdd) {
     for (const unsigned threads : {1U, 4U}) {
         TaskQueue queue;
         std::atomic<int> done = 0;
@@ -23,7 +23,7 @@ TEST(TaskQueue, DoesAllThatIsAddedMeanwhile) {
     }
 }
 
-TEST(TaskQueue, DoesWhatIsNextBeforeWhatWaits) {
+TEST(TaskQueue, RunsFrontTasksBeforeWaitingOnes) {
     TaskQueue queue;
     std::vector<int> order;
     queue.push_back([&] {

@@ -1,4 +1,5 @@
-// Updates of golden pictures are all or nothing, killed at any moment or stopped by a picture that stays.
+// Updates of golden pictures are all or nothing, whether killed at any moment or stopped by a picture that
+// cannot be replaced.
 #include "corda/suite/update_folder.hpp"
 
 #include <sys/stat.h>
@@ -39,7 +40,7 @@ class UpdateFolderTest : public ::testing::Test {
         for (int i = 0; i < kCount; ++i) names_.push_back(name(i));
     }
 
-    /// Pictures that are all old: those to replace, and one to remove.
+    /// Old pictures: those to replace, and one to remove.
     void make_old() const {
         fs::remove_all(pictures());
         fs::create_directory(pictures());
@@ -70,7 +71,7 @@ class UpdateFolderTest : public ::testing::Test {
     std::vector<std::string> names_;
 };
 
-TEST_F(UpdateFolderTest, PublishesAllAndLeavesNothing) {
+TEST_F(UpdateFolderTest, PublishesAllFilesAndLeavesNoOthers) {
     make_old();
     update();
     EXPECT_EQ(state(), "new");
@@ -81,7 +82,7 @@ TEST_F(UpdateFolderTest, PublishesAllAndLeavesNothing) {
 TEST_F(UpdateFolderTest, IsAllOrNothingAfterAKillAtAnyMoment) {
     const int kills = std::getenv("CORDA_TEST_LONG") != nullptr ? 300 : 8;
     std::mt19937 random(20261125);  // NOLINT(cert-msc51-cpp): the same kills on every run
-    std::uniform_int_distribution<useconds_t> moment_us(0, 3000);  // most fall into the renames
+    std::uniform_int_distribution<useconds_t> moment_us(0, 3000);  // most kills happen during the renames
     [[maybe_unused]] int mixed = 0;
     for (int i = 0; i < kills || (mixed == 0 && i < 100); ++i) {
         make_old();
@@ -102,12 +103,12 @@ TEST_F(UpdateFolderTest, IsAllOrNothingAfterAKillAtAnyMoment) {
             EXPECT_THAT(told, HasSubstr("completed an interrupted update"));
         }
     }
-#ifndef CORDA_SANITIZE    // whose updates take other times
-    EXPECT_GT(mixed, 0);  // kills that came while pictures were being replaced
+#ifndef CORDA_SANITIZE    // updates take longer there
+    EXPECT_GT(mixed, 0);  // kills during the replacement of pictures
 #endif
 }
 
-TEST_F(UpdateFolderTest, TakesBackEverythingIfOnePictureCannotBeReplaced) {
+TEST_F(UpdateFolderTest, RevertsEverythingIfOnePictureCannotBeReplaced) {
     make_old();
     fs::remove(pictures() + "/" + name(150));
     fs::create_directory(pictures() + "/" + name(150));
@@ -122,10 +123,10 @@ TEST_F(UpdateFolderTest, TakesBackEverythingIfOnePictureCannotBeReplaced) {
     EXPECT_EQ(state(), "new");
 }
 
-TEST_F(UpdateFolderTest, ContinuesToTakeBackWhatAKillInterrupted) {
+TEST_F(UpdateFolderTest, ContinuesAnInterruptedRevert) {
     make_old();
     static_cast<void>(UpdateFolder::create(pictures()));
-    // The first is back, the second and the added one are not.
+    // The first picture is reverted; the second and the added one are not.
     test::write_file(inside() + "/undo",
                      "w" + name(1) + '\0' + "w" + name(2) + '\0' + "a" + name(0) + '\0' + kEnd);
     fs::rename(pictures() + "/" + name(2), inside() + "/old/" + name(2));
@@ -136,7 +137,7 @@ TEST_F(UpdateFolderTest, ContinuesToTakeBackWhatAKillInterrupted) {
     EXPECT_FALSE(fs::exists(inside()));
 }
 
-TEST_F(UpdateFolderTest, DoesNotCompleteWhatTheUserHasTakenBack) {
+TEST_F(UpdateFolderTest, DoesNotCompleteAnUpdateThatTheUserReverted) {
     make_old();
     static_cast<void>(UpdateFolder::create(pictures()));
     // The first picture was replaced before the kill, and the user has restored it since.
@@ -147,7 +148,7 @@ TEST_F(UpdateFolderTest, DoesNotCompleteWhatTheUserHasTakenBack) {
     EXPECT_EQ(state(), "old");
 }
 
-TEST_F(UpdateFolderTest, TakesBackAKilledUpdateThatCannotBeCompleted) {
+TEST_F(UpdateFolderTest, RevertsAKilledUpdateThatCannotBeCompleted) {
     make_old();
     static_cast<void>(UpdateFolder::create(pictures()));  // not removed, as by a kill
     std::string journal;
@@ -179,7 +180,7 @@ TEST_F(UpdateFolderTest, LeavesFoldersThatItDidNotMake) {
     EXPECT_EQ(test::read_file(pictures() + "/.update/mine"), "mine");
 }
 
-TEST_F(UpdateFolderTest, FollowsNoJournalOutOfItsFolder) {
+TEST_F(UpdateFolderTest, IgnoresJournalEntriesOutsideItsFolder) {
     make_old();
     static_cast<void>(UpdateFolder::create(pictures()));
     const std::string outside = folder_.write("outside.png", "outside");
@@ -190,7 +191,7 @@ TEST_F(UpdateFolderTest, FollowsNoJournalOutOfItsFolder) {
     EXPECT_EQ(test::read_file(outside), "outside");
 }
 
-TEST_F(UpdateFolderTest, CompletesNoJournalThatBreaksOff) {
+TEST_F(UpdateFolderTest, IgnoresATruncatedJournal) {
     make_old();
     static_cast<void>(UpdateFolder::create(pictures()));
     for (const std::string& text :
