@@ -7,8 +7,8 @@
 ///
 ///     EXPECT_THAT(film.frame(120), corda::testing::MatchesGolden("swing_0120.png"));
 ///
-/// Needs gmock, which corda::corda does not bring: link GTest::gmock_main too. What the environment says is
-/// told at check_golden().
+/// Needs gmock, which corda::corda does not link: link GTest::gmock_main, too. check_golden() describes the
+/// environment variables.
 
 #include <gmock/gmock.h>
 
@@ -22,7 +22,7 @@
 
 namespace corda {
 
-/// How GoogleTest prints a picture.
+/// Prints a picture for GoogleTest.
 inline void PrintTo(const Image& image, std::ostream* out) {
     *out << "a picture of " << image.width() << "x" << image.height() << " pixels";
 }
@@ -53,8 +53,8 @@ class GoldenMatcher {
     GoldenOptions options_;
 };
 
-/// Matches a picture that is the golden one of this name, "swing_0120.png", or within the limits of
-/// `options`; see check_golden().
+/// Matches a picture that equals the golden picture of this name, for example "swing_0120.png", or is within
+/// the limits of `options`; see check_golden().
 inline ::testing::Matcher<const Image&> MatchesGolden(std::string name, GoldenOptions options = {}) {
     return GoldenMatcher(std::move(name), std::move(options));
 }

@@ -6,7 +6,7 @@
     film.positions            # float64 (frames, particles, 2), metres, y up
     film.save("swing.mp4")
 
-Coordinates are in metres, y up; times in seconds. What fails raises corda.Error, whose `code` is the exit code of
+Coordinates are in metres, y up; times in seconds. Failures raise corda.Error, whose `code` is the exit code of
 the program (`corda --help` lists them). Pictures are arrays of RGBA bytes, sRGB, with straight alpha.
 """
 
@@ -30,7 +30,7 @@ from . import _corda
 
 __all__ = ["Difference", "Error", "Film", "__version__", "compare", "read_png", "write_png"]
 
-Error.__doc__ = "What Corda refuses or cannot do, in words. `code`: the exit code of the program (int)."
+Error.__doc__ = "A failure of Corda, with a message. `code`: the exit code of the program (int)."
 
 # Daemon threads may be drawing when the interpreter ends.
 _atexit.register(_corda.begin_end)
@@ -47,7 +47,7 @@ def _error(message, code=2):
 
 
 def _path(path, name="path"):
-    """The bytes of a file's name; os.fsencode takes what os.listdir gives, in any encoding."""
+    """The bytes of a file name; os.fsencode accepts the names of os.listdir in any encoding."""
     try:
         name_bytes = _os.fsencode(path)
     except TypeError:
@@ -60,7 +60,7 @@ def _path(path, name="path"):
 
 
 def _text(text, name):
-    """A str that UTF-8 can hold."""
+    """The text, if it is a str that UTF-8 can hold."""
     if not isinstance(text, str):
         raise TypeError(f"{name}: takes a str, not {type(text).__name__}")
     try:
@@ -72,19 +72,19 @@ def _text(text, name):
 
 
 def _quoted(text, name):
-    """A string of TOML, which takes no control characters, as JSON takes the one of 0x7f."""
+    """The text as a TOML string. TOML allows no control characters; JSON allows 0x7f."""
     return _json.dumps(_text(text, name), ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def _float(value, name):
-    """The float that is nearest to any kind of number."""
+    """The float nearest to a number of any kind."""
     if isinstance(value, (str, bytes, bytearray)) or value is _np.ma.masked:
         raise TypeError(f"{name}: takes a number, not {value!r}")
     try:
         number = float(value)
     except TypeError:
         raise TypeError(f"{name}: takes a number, not {value!r}") from None
-    except (OverflowError, ValueError):  # of an int, and of a signalling NaN
+    except (OverflowError, ValueError):  # from an int, or from a signalling NaN
         raise _error(f"{name}: takes a number that a float can hold, not {value!r:.40}") from None
     if _math.isinf(number) and value != number:
         raise _error(f"{name}: takes a number that a float can hold, not {value!r:.40}")
@@ -96,7 +96,7 @@ def _limit(value, name):
 
 
 def _toml(value, name):
-    """A value of Python or numpy as a value of TOML. `name` is the keyword that it was given by."""
+    """A Python or numpy value as a TOML value. `name` is its keyword."""
     try:
         return _toml_of(value, name)
     except RecursionError:
@@ -117,7 +117,7 @@ def _toml_of(value, name):
     if isinstance(value, str):
         return _quoted(value, name)
     if isinstance(value, _numbers.Integral):
-        if name in ("preset", "video.preset", "video__preset"):  # those of libaom and SVT-AV1 are numbers
+        if name in ("preset", "video.preset", "video__preset"):  # presets of libaom and SVT-AV1 are numbers
             return f'"{int(value)}"'
         if not -2**63 <= value < 2**63:
             raise _error(f"{name}: takes no number as large as {value!r:.40}")
@@ -126,7 +126,7 @@ def _toml_of(value, name):
         return f'"{value.numerator}/{value.denominator}"'
     if isinstance(value, (_numbers.Real, _decimal.Decimal)):
         number = _float(value, name)
-        # A rate is whole, or exact in a few decimals.
+        # A rate is an integer, or exact with a few decimals.
         return str(int(number)) if number.is_integer() and abs(number) < 2**53 else repr(number)
     if isinstance(value, _np.ndarray):
         value = value.tolist()
@@ -139,7 +139,7 @@ def _toml_of(value, name):
 
 
 def _settings(settings, keys):
-    """Lines key=value as --set takes them, with the name that the caller used for each. None leaves a key as it is."""
+    """Lines key=value for --set, with the caller's name of each. None leaves a key unchanged."""
     if not isinstance(settings, (_abc.Mapping, type(None))):
         raise TypeError(f"settings: takes a dictionary of keys and values, not {settings!r}")
     named = {key: (key, value) for key, value in (settings or {}).items()}
@@ -159,7 +159,7 @@ def _settings(settings, keys):
 
 
 def _in_words_of_the_caller(error, settings):
-    """The error of a setting, with the keyword in place of the option of the command line."""
+    """The error of a setting, with its keyword in place of the command line option."""
     message = str(error)
     for key, name in settings.values():
         message = message.replace(f"--set {key}=", f"{name}=")
@@ -174,7 +174,7 @@ def _index(value, name):
 
 
 def _answering(on_progress):
-    """Wraps a callback: only False, Python's or numpy's, stops the work. None and every other answer continues it."""
+    """Wraps a callback: only False (of Python or numpy) stops the work; None and other results continue it."""
     if on_progress is None:
         return None
     if not callable(on_progress):
@@ -190,14 +190,14 @@ def _answering(on_progress):
 class Film:
     """A scene as pictures: planned and simulated once, then drawn in any order.
 
-    path: a scene file; or `text`, the scene itself as TOML. Other keywords set keys of the scene as --set of the program does:
-    size=(width, height), fps, duration, crf, preset, codec and jobs by these names, any other by its own name with two
+    path: a scene file; or `text`, the scene itself as TOML. Other keywords set keys of the scene, like --set of the program:
+    size=(width, height), fps, duration, crf, preset, codec and jobs by these names, other keys by their own name with two
     underscores for the dot (world__drag=0.1), or in `settings`, a dictionary ({"rope[0].mass": 2}). Values are numbers of any
-    kind, text, and lists, arrays and dictionaries of these; None leaves a key as it is. `backend` and `require_gpu`: how to
-    reach OpenGL, as --backend and --require-gpu.
+    kind, text, and lists, arrays and dictionaries of these; None leaves a key unchanged. `backend` and `require_gpu` choose
+    OpenGL like --backend and --require-gpu.
 
-    Raises Error for a scene that cannot be read or simulated; warns before it simulates one for many seconds. Ctrl-C ends every call. Threads may share a film; it serves
-    one at a time, without holding the interpreter's lock.
+    Raises Error for a scene that cannot be read or simulated; warns before a simulation of many seconds. Ctrl-C ends every
+    call. Threads may share a film; it serves one at a time, without holding the interpreter's lock.
     """
 
     #: Largest video in bytes that a notebook embeds.
@@ -237,30 +237,30 @@ class Film:
         return numerator / denominator
 
     def frame(self, k):
-        """Frame `k`, 0 <= k < len(film) or the one at the end, as numpy uint8 of shape (height, width, 4)."""
+        """Frame `k`, 0 <= k < len(film), or the frame at the end of the motion, as numpy uint8 of shape (height, width, 4)."""
         k = _index(k, "k")
         if not -2**63 <= k < 2**63:
             raise _error(f"frame {k} is not within 0 .. {len(self)}")
         return self._film.frame(k)
 
     def still(self, time, shutter=0.0):
-        """The picture at a time in seconds, 0 .. duration, as frame(); `shutter`, 0 .. 1, blurs it as video.shutter does."""
+        """The picture at a time in seconds, 0 .. duration, like frame(); `shutter`, 0 .. 1, blurs it like video.shutter."""
         return self._film.still(_float(time, "time"), _float(shutter, "shutter"))
 
     @property
     def positions(self):
-        """Of all particles in all frames, in metres: float64 of shape (frames, particles, 2), ropes before nets."""
+        """Positions of all particles in all frames, in metres: float64 of shape (frames, particles, 2), ropes before nets."""
         return self._film.positions()
 
     @property
     def times(self):
-        """Of all frames, in seconds: float64 of shape (frames,)."""
+        """Times of all frames, in seconds: float64 of shape (frames,)."""
         return self._film.times()
 
     @property
     def plan(self):
-        """What moves the bodies and how far it holds: a dictionary of methods (one per body), error_bound_m, error_bound_px
-        and horizon_s; None for what is not known."""
+        """The plan of the film: a dictionary of methods (one per body), error_bound_m, error_bound_px and horizon_s; unknown
+        values are None."""
         return self._film.plan()
 
     @property
@@ -269,17 +269,17 @@ class Film:
         return self._film.camera()
 
     def save(self, path, *, force=False, resume=False, on_progress=None):
-        """Renders the video; the ending of `path` chooses the format. Returns the number of frames.
+        """Renders the video; the extension of `path` chooses the format. Returns the number of frames.
 
-        force: replace an existing file. resume: resume what an interrupted render of the same film has left beside
-        `path`, to the bytes of a whole one; without such a part it begins anew. on_progress: called with the frames done and
-        all, at most every 50 ms and at the end; returning False stops, which raises Error (code 130) and keeps what is done
-        beside `path`.
+        force: replace an existing file. resume: continue an interrupted render of the same film from its part file, with the
+        bytes of an uninterrupted render; without a part, start from the beginning. on_progress: called with the number of
+        finished frames and of all frames, at most every 50 ms and at the end; returning False stops, which raises Error (code
+        130) and keeps the finished frames in the part file.
         """
         return self._film.save(_path(path), bool(force), bool(resume), _answering(on_progress))
 
     def _repr_html_(self):
-        """The film as a video in a notebook: MP4, or WebM if its ground is transparent. Odd sides get a pixel more."""
+        """The film as a video in a notebook: MP4, or WebM if its background is transparent. Odd sides get one more pixel."""
         ending, fitted = self._film.for_browser(*self._gl)
         film = fitted or self._film
         with _tempfile.TemporaryDirectory() as folder:
@@ -296,7 +296,7 @@ class Film:
 
 
 class Difference(_NamedTuple):
-    """How far two pictures differ. If not same_size, the figures mean nothing."""
+    """The difference of two pictures. If not same_size, the numbers are meaningless."""
 
     same_size: bool
     equal: bool  #: all bytes are the same

@@ -1,4 +1,4 @@
-"""Golden pictures in pytest, and in any other tests:
+"""Golden pictures in pytest and other tests:
 
     import corda
     import corda.testing
@@ -18,11 +18,11 @@ __all__ = ["assert_matches_golden"]
 def assert_matches_golden(picture, name, *, folder=None, max=None, mean=None, share=None, flip=None, ssim=None):
     """Raises AssertionError unless a picture equals the golden one NAME.png, or one of its variants NAME.CAUSE.png.
 
-    picture: an array, or the path of a PNG file. folder: where golden pictures are; without it the environment's
-    CORDA_GOLDEN_DIR, or else the current folder. max, mean, share, flip, ssim: limits as of `corda compare`; with one or
-    more of them pictures within all of these match, too. A picture of one colour never matches.
+    picture: an array, or the path of a PNG file. folder: the folder of golden pictures; the default is CORDA_GOLDEN_DIR of
+    the environment, or the current folder. max, mean, share, flip, ssim: limits, as in `corda compare`; with limits, pictures
+    within all of them match, too. A picture of one colour never matches.
 
-    CORDA_UPDATE_GOLDENS=1 in the environment writes pictures that are missing or differ, CORDA_GOLDEN_ARTIFACTS names a
+    CORDA_UPDATE_GOLDENS=1 in the environment writes pictures that are missing or differ; CORDA_GOLDEN_ARTIFACTS names a
     folder for NAME.new.png and NAME.difference.png. Raises corda.Error for a picture that cannot be read or written.
     """
     __tracebackhide__ = True  # pytest shows the line of the test
