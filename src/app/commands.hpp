@@ -37,7 +37,6 @@ void add_report(CLI::App& app, Action& action);
 void add_study(CLI::App& app, Action& action);
 void add_init(CLI::App& app, Action& action);
 void add_examples(CLI::App& app, Action& action);
-void add_bench(CLI::App& app, Action& action);
 void add_schema(CLI::App& app, Action& action);
 void add_completion(CLI::App& app, Action& action);
 void add_help(CLI::App& app, Action& action);

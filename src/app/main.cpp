@@ -148,7 +148,6 @@ int run(int argc, char** argv) {
     add_plan(app, action);
     add_report(app, action);
     add_study(app, action);
-    add_bench(app, action);
     add_init(app, action);
     add_examples(app, action);
     add_schema(app, action);

@@ -1,7 +1,6 @@
 #include "corda/study/pictures.hpp"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <system_error>
@@ -11,12 +10,8 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
-#include "corda/core/file.hpp"
 #include "corda/core/temporary_folder.hpp"
 #include "corda/media/chunks/video_writer.hpp"
-#include "corda/media/format/format.hpp"
-#include "corda/media/picture_quality.hpp"
-#include "corda/media/read/video_reader.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "corda/study/problems.hpp"
@@ -32,7 +27,6 @@ line = { particles = 40, step = [0.1, -1.0] }
 [solver]
 method = "exact"
 )";
-constexpr std::array<const char*, 6> kPresets{"ultrafast", "superfast", "veryfast", "fast", "medium", "slow"};
 
 /// A way to solve the scene.
 struct SolverSetting {
@@ -106,7 +100,6 @@ struct Pictures {
     std::string gl_renderer;
     TemporaryFolder folder;  ///< of trial videos
     report::Table solvers;
-    report::Table presets;
     report::Plot plot;
     std::vector<double> simulating;  ///< its share of the whole render, by each solver
 };
@@ -183,44 +176,7 @@ void add_solver(const SolverSetting& setting, Pictures& pictures) {
                       {time.whole_ms.least(), time.whole_ms.largest()});
 }
 
-/// Adds luma PSNR and SSIM of a video against the frames that it was made of, drawn again.
-void add_quality(Film& film, const std::string& path, std::vector<report::Cell>& row) {
-    FilmRenderer renderer(film);
-    media::VideoReader reader(path);
-    const VideoDef& video = film.scene().video;
-    media::Yuv420Image drawn(video.width_px, video.height_px);
-    media::Yuv420Image decoded;
-    double squares = 0.0;
-    double ssim = 0.0;
-    const std::int64_t frames = film.frame_count();
-    for (std::int64_t k = 0; k < frames; ++k) {
-        check_cancelled();
-        renderer.draw(film.time_s(k));
-        media::convert_to_yuv420(renderer.image(), renderer.image().rect(), drawn);
-        if (!reader.read(decoded))
-            throw Error(ExitCode::kMismatch, fmt::format("the trial video ends before frame {}", k));
-        squares += media::luma_mean_square(drawn, decoded) / static_cast<double>(frames);
-        ssim += media::luma_ssim(drawn, decoded) / static_cast<double>(frames);
-    }
-    row.insert(row.end(), {media::psnr_db(squares), 1.0 - ssim});
-}
-
-void add_preset(const char* preset, Pictures& pictures) {
-    Film film(pictures.scene_with(AutoDef{}, 1), pictures.film_def);
-    VideoDef video = film.scene().video;
-    video.encoder.preset = preset;
-    const std::string path = pictures.folder.file("trial.mp4");
-    RenderTime time;
-    for (int repeat = 0; repeat < pictures.repeats; ++repeat) time_film(film, video, 0.0, path, time);
-    std::vector<report::Cell> row{preset};
-    add_quality(film, path, row);
-    row.insert(row.end(), {static_cast<double>(file_size(path)),
-                           1e3 * static_cast<double>(film.frame_count()) / time.encode_ms.median(),
-                           time.encode_ms.median(), time.encode_ms.least(), time.encode_ms.largest()});
-    pictures.presets.add(std::move(row));
-}
-
-void describe_tables(Pictures& pictures) {
+void describe_table(Pictures& pictures) {
     report::Table& solvers = pictures.solvers;
     solvers.id = "picture_solvers";
     solvers.title = "The whole render by solver";
@@ -239,24 +195,6 @@ void describe_tables(Pictures& pictures) {
         "Times are medians of {} renders, column by column. Simulating includes the plan of auto, and "
         "encoding the check of the finished file. Starting OpenGL is in none of them.",
         pictures.repeats);
-    report::Table& presets = pictures.presets;
-    presets.id = "picture_presets";
-    presets.title = "x264 presets on the same frames";
-    presets.columns = {{"preset", "preset"},
-                       {"psnr_db", "luma PSNR [dB]"},
-                       {"one_minus_ssim", "1 - luma SSIM"},
-                       {"bytes", "bytes"},
-                       {"frames_per_s", "frames per second"},
-                       {"encode_ms", "encoding [ms]"},
-                       {"encode_ms_least", "least"},
-                       {"encode_ms_largest", "largest"}};
-    const EncoderDef& encoder = pictures.scene.video.encoder;
-    presets.note = fmt::format(
-        "CRF {}, {} threads. Speed is that of encoding (the median of {} times) up to the checked file, "
-        "without simulating and "
-        "drawing. PSNR is of the mean square over all frames; SSIM (Wang and others 2004, windows of 8x8) is "
-        "the mean over the frames.",
-        media::find_format("a.mp4", pictures.scene.video).crf_of(encoder), encoder.threads, pictures.repeats);
     pictures.plot = {"picture_error",
                      "Time of the whole render against displayed error",
                      "largest displayed error [px]",
@@ -289,7 +227,7 @@ std::string share_paragraph(const std::vector<double>& simulating) {
 
 ChapterWork pictures_work(const StudyDef& def) {
     const auto pictures = std::make_shared<Pictures>(def);
-    describe_tables(*pictures);
+    describe_table(*pictures);
     // Whether OpenGL works does not depend on the scene; this one costs no simulation.
     pictures->gl_renderer = Film(parse_scene(kSwing, "the swing"), def.film).gl().renderer;
     ChapterWork work;
@@ -297,14 +235,10 @@ ChapterWork pictures_work(const StudyDef& def) {
     for (const SolverSetting& setting : list_settings(pictures->scene.video.fps.interval_s())) {
         work.jobs.push_back({"pictures: " + setting.series, [=] { add_solver(setting, *pictures); }});
     }
-    for (const char* preset : kPresets) {
-        work.jobs.push_back(
-            {fmt::format("pictures: preset {}", preset), [=] { add_preset(preset, *pictures); }});
-    }
     work.finish = [pictures] {
         return report::Chapter{"Pictures: from a scene to a video",
                                {setting_paragraph(*pictures), share_paragraph(pictures->simulating)},
-                               {pictures->solvers, pictures->presets},
+                               {pictures->solvers},
                                {pictures->plot},
                                share_paragraph(pictures->simulating)};
     };

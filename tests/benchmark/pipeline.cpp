@@ -1,4 +1,4 @@
-// Drawing the frames of examples/swing.toml, of several looks. Whole renders, and x264 alone: corda bench.
+// Drawing frames of examples/swing.toml in several styles. Whole renders beside x264 alone: run.sh video.
 
 #include <benchmark/benchmark.h>
 

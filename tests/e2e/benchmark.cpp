@@ -1,4 +1,4 @@
-// `corda bench`: renders beside x264 alone.
+// tests/benchmark/run.sh video: renders beside x264 alone.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,14 +12,21 @@
 namespace corda {
 namespace {
 
-using test::run_corda;
 using testing::HasSubstr;
 
-TEST(Bench, MeasuresEachSizeAndPresetBesideTheEncoderAlone) {
+/// Runs the benchmark; `environment` is put before it.
+test::CommandResult run_benchmark(const std::vector<std::string>& arguments,
+                                  const std::string& environment = "") {
+    std::string command = environment + " " CORDA_BENCHMARK_VIDEO;
+    for (const std::string& argument : arguments) command += " '" + argument + "'";
+    return test::run_shell(command);
+}
+
+TEST(VideoBenchmark, MeasuresEachSizeAndPresetBesideTheEncoderAlone) {
     const test::ScratchFolder folder;
-    const auto bench = run_corda({"bench", "--size", "320x180,256x144", "--preset", "ultrafast,veryfast",
-                                  "--frames", "70", "--repeats", "2", "--jobs", "2", "--json"},
-                                 "TMPDIR=" + folder.path());
+    const auto bench = run_benchmark({"--size", "320x180,256x144", "--preset", "ultrafast,veryfast",
+                                      "--frames", "70", "--repeats", "2", "--set", "video.jobs=2", "--json"},
+                                     "TMPDIR=" + folder.path());
     ASSERT_EQ(bench.exit_code, 0) << bench.err;
     const auto json = nlohmann::json::parse(bench.out);
     ASSERT_EQ(json.at("cases").size(), 4U);
@@ -43,31 +50,31 @@ TEST(Bench, MeasuresEachSizeAndPresetBesideTheEncoderAlone) {
     EXPECT_TRUE(folder.files().empty());  // the videos are removed
 }
 
-TEST(Bench, TellsInWordsAndTakesAScene) {
+TEST(VideoBenchmark, TellsInWordsAndTakesAScene) {
     const test::ScratchFolder folder;
     const std::string scene = folder.write("a.toml", "schema = 1\n[[rope]]\npoints = [[0, 0], [1, 0]]\n");
-    const auto bench = run_corda({"bench", scene, "--set", "world.duration=0.2", "--size", "128x128",
-                                  "--preset", "medium", "--repeats", "1"});
+    const auto bench = run_benchmark(
+        {scene, "--set", "world.duration=0.2", "--size", "128x128", "--preset", "medium", "--repeats", "1"});
     EXPECT_EQ(bench.exit_code, 0) << bench.err;
     EXPECT_THAT(bench.out, HasSubstr("128x128 medium: "));
     EXPECT_THAT(bench.out, HasSubstr("x264 alone"));
 }
 
-TEST(Bench, CountsTheChunksThatWereMadeAtATimeAndNotThoseThatWereAskedFor) {
-    const std::vector<std::string> few{"bench", "--size", "128x128", "--preset",  "ultrafast", "--frames",
-                                       "12",    "--jobs", "4",       "--repeats", "1"};  // one chunk
-    const auto words = run_corda(few);
+TEST(VideoBenchmark, CountsTheChunksThatWereMadeAtATimeAndNotThoseThatWereAskedFor) {
+    const std::vector<std::string> few{"--size", "128x128", "--preset",     "ultrafast", "--frames",
+                                       "12",     "--set",   "video.jobs=4", "--repeats", "1"};  // one chunk
+    const auto words = run_benchmark(few);
     EXPECT_THAT(words.out, HasSubstr("with 1 chunk at a time"));
     EXPECT_THAT(words.out, testing::Not(HasSubstr("a further chunk")));
     auto as_json = few;
     as_json.emplace_back("--json");
-    const auto json = nlohmann::json::parse(run_corda(as_json).out);
+    const auto json = nlohmann::json::parse(run_benchmark(as_json).out);
     EXPECT_EQ(json.at("cases").at(0).at("jobs"), 1);
     EXPECT_TRUE(json["cases"][0].at("rss_per_job_mib").is_null());
 }
 
-TEST(Bench, ComparesPresetsAndCodecs) {
-    const auto bench = run_corda({"bench", "--presets", "--size", "320x180", "--frames", "12", "--json"});
+TEST(VideoBenchmark, ComparesPresetsAndCodecs) {
+    const auto bench = run_benchmark({"--encodings", "--size", "320x180", "--frames", "12", "--json"});
     ASSERT_EQ(bench.exit_code, 0) << bench.err;
     const auto json = nlohmann::json::parse(bench.out);
     double default_db = 0.0;
@@ -86,21 +93,21 @@ TEST(Bench, ComparesPresetsAndCodecs) {
     EXPECT_GT(full_color_db, default_db + 5.0);  // 32.7
 }
 
-TEST(Bench, RefusesBeforeItMeasures) {
-    EXPECT_EQ(run_corda({"bench", "--size", "320x181"}).exit_code, 2);
-    EXPECT_EQ(run_corda({"bench", "--size", "large"}).exit_code, 2);
-    EXPECT_EQ(run_corda({"bench", "--preset", "quick"}).exit_code, 2);
-    EXPECT_EQ(run_corda({"bench", "--frames", "0"}).exit_code, 2);
-    const auto other_codec = run_corda({"bench", "--set", "video.codec=h265"});
+TEST(VideoBenchmark, RefusesBeforeItMeasures) {
+    EXPECT_EQ(run_benchmark({"--size", "320x181"}).exit_code, 2);
+    EXPECT_EQ(run_benchmark({"--size", "large"}).exit_code, 2);
+    EXPECT_EQ(run_benchmark({"--preset", "quick"}).exit_code, 3);
+    EXPECT_NE(run_benchmark({"--frames", "0"}).exit_code, 0);
+    const auto other_codec = run_benchmark({"--set", "video.codec=h265"});
     EXPECT_EQ(other_codec.exit_code, 2);
     EXPECT_THAT(other_codec.err, HasSubstr("--set video.codec=h264"));
 }
 
-TEST(Bench, EndsAtASignalAndKeepsNothing) {
+TEST(VideoBenchmark, EndsAtASignalAndKeepsNothing) {
     const test::ScratchFolder folder;
     const auto kept =
         test::run_shell("TMPDIR=" + folder.path() +
-                        " timeout --preserve-status -s INT 2 " CORDA_PROGRAM " bench --size 1920x1080");
+                        " timeout --preserve-status -s INT 2 " CORDA_BENCHMARK_VIDEO " --size 1920x1080");
     EXPECT_EQ(kept.exit_code, 130) << kept.err;
     EXPECT_THAT(kept.err, HasSubstr("interrupted"));
     EXPECT_TRUE(folder.files().empty());

@@ -1,11 +1,11 @@
-#include "corda/bench/presets.hpp"
+#include "benchmark/video/encodings.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
-#include "corda/bench/child.hpp"
+#include "benchmark/video/measure.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
 #include "corda/core/file.hpp"
@@ -15,25 +15,25 @@
 #include "corda/media/read/video_reader.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 
-namespace corda::bench {
+namespace corda::benchmark {
 namespace {
 
 using nlohmann::json;
 
-/// Of frames that are compared, the distance.
+/// Every tenth frame is compared.
 constexpr std::int64_t kCompared = 10;
 
 /// The quality of the video at `path`.
 json quality_of(const Film& film, std::int64_t frames, const std::string& path) {
-    FilmRenderer painter(film);
+    FilmRenderer renderer(film);
     media::VideoReader reader(path);
     media::EdgeQuality edges;
     Image shown;
     for (std::int64_t k = 0; k < frames; ++k) {
         if (!reader.read_shown(shown)) throw Error(ExitCode::kEncoder, "the video has too few frames");
         if (k % kCompared != 0) continue;
-        static_cast<void>(painter.draw(film.time_s(k)));
-        edges.add(painter.image(), shown);
+        static_cast<void>(renderer.draw(film.time_s(k)));
+        edges.add(renderer.image(), shown);
     }
     return {{"edge_psnr_db", media::psnr_db(edges.mean_square())}, {"edge_ssim", edges.ssim()}};
 }
@@ -89,4 +89,4 @@ MeasuredEncoding measure_encoding(const EncodingDef& def) {
     return measured;
 }
 
-}  // namespace corda::bench
+}  // namespace corda::benchmark

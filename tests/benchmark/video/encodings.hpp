@@ -8,9 +8,8 @@
 
 #include "corda/pipeline/film.hpp"
 #include "corda/scene/scene.hpp"
-#include "corda/scene/scene.hpp"
 
-namespace corda::bench {
+namespace corda::benchmark {
 
 /// One way to encode: the ending of the file, and settings of the scene.
 struct Encoding {
@@ -48,4 +47,4 @@ struct MeasuredEncoding {
 /// process must have no other thread, and no OpenGL. Throws corda::Error as measure().
 [[nodiscard]] MeasuredEncoding measure_encoding(const EncodingDef& def);
 
-}  // namespace corda::bench
+}  // namespace corda::benchmark

@@ -1,4 +1,4 @@
-#include "corda/bench/bench.hpp"
+#include "benchmark/video/measure.hpp"
 
 #include <malloc.h>
 #include <sys/resource.h>
@@ -10,8 +10,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "corda/bench/child.hpp"
 #include "corda/core/basics.hpp"
+#include "corda/core/child_process.hpp"
 #include "corda/core/clock.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/temporary_folder.hpp"
@@ -22,13 +22,13 @@
 #include "corda/media/format/format.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 
-namespace corda::bench {
+namespace corda::benchmark {
 namespace {
 
 using nlohmann::json;
 
 constexpr double kMib = 1024.0 * 1024.0;
-/// Of the pictures that an encoder is fed from memory.
+/// Pictures in memory that the encoder alone is fed from.
 constexpr double kMaxPictureBytes = 1024.0 * kMib;
 
 double cpu_s() {
@@ -58,7 +58,7 @@ void reset_peak_memory() {
     std::ofstream("/proc/self/clear_refs") << "5";
 }
 
-/// How many frames are made of the scene.
+/// Number of frames of each video.
 std::int64_t frames_of(const BenchDef& def) {
     return std::min(def.frames, def.scene.video.fps.frame_count(def.scene.world.duration_s));
 }
@@ -78,15 +78,15 @@ json render(const BenchDef& def, int jobs, const std::string& path) {
 /// Draws the frames one after the other.
 template <class Use>
 void draw_frames(const Film& film, std::int64_t frames, const Use& use) {
-    FilmRenderer painter(film);
+    FilmRenderer renderer(film);
     for (std::int64_t k = 0; k < frames; ++k) {
-        const Damage damage = painter.draw(film.time_s(k));
-        use(painter.image(), damage);
+        const Damage damage = renderer.draw(film.time_s(k));
+        use(renderer.image(), damage);
     }
 }
 
-/// How many pictures are kept in memory.
-std::int64_t most_pictures(const VideoDef& video) {
+/// Largest number of pictures in memory.
+std::int64_t max_pictures(const VideoDef& video) {
     constexpr double kBytesPerPixel = 1.5;
     const double bytes = kBytesPerPixel * video.width_px * video.height_px;
     return std::max<std::int64_t>(2, static_cast<std::int64_t>(kMaxPictureBytes / bytes));
@@ -97,7 +97,7 @@ json encode_alone(const BenchDef& def) {
     media::BaselineEncoder encoder(video);
     {
         const Film film(def.scene, def.film);
-        draw_frames(film, std::min(frames_of(def), most_pictures(video)),
+        draw_frames(film, std::min(frames_of(def), max_pictures(video)),
                     [&](const Image& picture, const Damage&) { encoder.add(picture); });
     }
     // What was freed must not serve the encoder, or its own memory would not show.
@@ -167,12 +167,31 @@ json measure_stages(const BenchDef& def, const std::string& path) {
 
 }  // namespace
 
+json in_child(const std::function<void()>& on_wait, const std::function<json()>& work) {
+    const auto answer = [&work] {
+        try {
+            return work().dump();
+        } catch (const Error& error) {
+            return json{{"code", static_cast<int>(error.code())}, {"error", error.what()}}.dump();
+        }
+    };
+    constexpr double kMaxS = 86'400.0;
+    const ChildLimits limits{std::uint64_t{1} << 46U, static_cast<std::int64_t>(kMaxS), kMaxS};
+    const auto end = run_in_child(answer, limits, on_wait);
+    if (!end) throw Error(ExitCode::kTemporary, "the system starts no further process; try again");
+    if (!end->finished) throw Error(ExitCode::kTemporary, "the process that measures " + end->text);
+    json result = json::parse(end->text);
+    if (result.contains("error"))
+        throw Error(static_cast<ExitCode>(result["code"].get<int>()), result["error"].get<std::string>());
+    return result;
+}
+
 Measured measure(const BenchDef& def) {
     const TemporaryFolder folder;
     const std::string path = folder.file("video.mp4");
     Measured measured;
     measured.frames = frames_of(def);
-    measured.pictures = std::min(measured.frames, most_pictures(def.scene.video));
+    measured.pictures = std::min(measured.frames, max_pictures(def.scene.video));
     for (int i = 0; i < def.repeats; ++i) {
         const json rendered =
             in_child(def.on_wait, [&] { return render(def, def.scene.video.encoder.jobs, path); });
@@ -201,4 +220,4 @@ Measured measure(const BenchDef& def) {
     return measured;
 }
 
-}  // namespace corda::bench
+}  // namespace corda::benchmark

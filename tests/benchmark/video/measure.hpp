@@ -6,11 +6,13 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "corda/pipeline/film.hpp"
 #include "corda/report/times.hpp"
 #include "corda/scene/scene.hpp"
 
-namespace corda::bench {
+namespace corda::benchmark {
 
 /// What is measured, and how.
 struct BenchDef {
@@ -51,4 +53,10 @@ struct Measured {
 /// a child cannot be started or is ended from outside.
 [[nodiscard]] Measured measure(const BenchDef& def);
 
-}  // namespace corda::bench
+/// The result of `work` from a child process, which has a peak of memory of its own. `on_wait` is called at
+/// least ten times a second; an exception of it ends the child. Throws corda::Error: what `work` throws;
+/// kTemporary if the child cannot be started or is ended from outside.
+[[nodiscard]] nlohmann::json in_child(const std::function<void()>& on_wait,
+                                      const std::function<nlohmann::json()>& work);
+
+}  // namespace corda::benchmark

@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Builds and runs a benchmark. Results vary by about 10 % between runs: compare ratios of one run.
+# Usage: tests/benchmark/run.sh video [--json] [SCENE] [--size WxH,...] [--preset NAME,...] [--encodings] ...
+#        tests/benchmark/run.sh sim [--json] [GOOGLE BENCHMARK OPTIONS]
+#        tests/benchmark/run.sh draw [--json] [GOOGLE BENCHMARK OPTIONS]
+#   video  renders beside x264 alone: time, stages and memory; with --encodings, presets and codecs
+#   sim    the cost of each method against the number of particles
+#   draw   frames of examples/swing.toml in several styles
+# BUILD_DIR is a build folder of the preset ci or release with tests; build/ci by default.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+build=${BUILD_DIR:-$root/build/ci}
+kind=${1:-}
+shift || true
+case "$kind" in
+    video) programs=(video) ;;
+    sim) programs=(relaxation rattle exact) ;;
+    draw) programs=(pipeline) ;;
+    *) sed -n '2,9s/^# \?//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+esac
+cd "$root"
+[[ -f "$build/build.ninja" ]] || cmake --preset ci >/dev/null
+cmake --build "$build" --target "${programs[@]/#/benchmark_}" >&2
+
+if [[ "$kind" == video ]]; then exec "$build/tests/benchmark_video" "$@"; fi
+json=()
+options=()
+for option in "$@"; do
+    if [[ "$option" == --json ]]; then json=(--benchmark_format=json); else options+=("$option"); fi
+done
+for program in "${programs[@]}"; do
+    "$build/tests/benchmark_$program" "${json[@]}" "${options[@]}"
+done | if [[ ${#json[@]} -gt 0 ]]; then
+    # The documents of the programs as one.
+    python3 -c '
+import json, sys
+text, decoder, rows = sys.stdin.read(), json.JSONDecoder(), []
+while text.strip():
+    document, end = decoder.raw_decode(text.lstrip())
+    text = text.lstrip()[end:]
+    rows += document["benchmarks"]
+json.dump({"schema": 1, "benchmarks": rows}, sys.stdout, indent=1)
+print()'
+else
+    cat
+fi
