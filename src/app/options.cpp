@@ -9,8 +9,8 @@
 #include "corda/core/nearest.hpp"
 #include "corda/core/version.hpp"
 #include "corda/scene/check_limits.hpp"
-#include "corda/scene/schema.hpp"
 #include "corda/scene/read_file.hpp"
+#include "corda/scene/schema.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
