@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "corda/scene/schema.hpp"
 #include "support/command.hpp"
@@ -31,6 +32,27 @@ TEST(Help, ListsTheKeysOfAScene) {
     EXPECT_EQ(scene.out, scene::keys_text());
     const auto help = nlohmann::json::parse(run_corda({"help", "scene", "--json"}).out);
     EXPECT_EQ(help.at("help"), scene::keys_text());
+}
+
+TEST(Help, HasTheCommandsAndOptionsOfTheReadme) {
+    std::istringstream readme(test::read_file(CORDA_EXAMPLES "/../README.md"));
+    int commands = 0;
+    for (std::string line; std::getline(readme, line);) {
+        if (!line.starts_with("corda ")) continue;
+        std::istringstream words(line.substr(0, line.find(" #")));
+        std::string program;
+        std::string command;
+        words >> program >> command;
+        const std::string help = run_corda({"help", command}).out;
+        EXPECT_THAT(help, HasSubstr("Usage:")) << line;
+        for (std::string word; words >> word;) {
+            if (word.starts_with("--")) {
+                EXPECT_THAT(help, HasSubstr(word)) << line;
+            }
+        }
+        ++commands;
+    }
+    EXPECT_GT(commands, 15);
 }
 
 TEST(Help, WritesAManualPageOfAllCommands) {
