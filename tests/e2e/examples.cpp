@@ -55,6 +55,14 @@ TEST(Gallery, EveryExampleHasItsPictureAndItsEntry) {
     EXPECT_EQ(test::list_files(kFolder + "pictures", ".png").size(), count);
 }
 
+TEST(Gallery, AnimationOfTheReadmeIsSmallAndRepeats) {
+    EXPECT_THAT(test::read_file(kFolder + "../README.md"), HasSubstr("(examples/pictures/start.gif)"));
+    EXPECT_THAT(test::read_file(kFolder + "gallery.sh"), HasSubstr("-o pictures/start.gif"));
+    const std::string animation = test::read_file(kFolder + "pictures/start.gif");
+    EXPECT_THAT(animation.substr(0, 1000), HasSubstr("NETSCAPE2.0"));  // without a number of repetitions
+    EXPECT_LT(animation.size(), 1'000'000U);                           // 647'991 measured
+}
+
 TEST(Init, WritesASceneThatDrawsSomething) {
     const test::ScratchFolder folder;
     EXPECT_EQ(init_in(folder, "").out, "scene.toml\n");
