@@ -9,7 +9,7 @@
 #include "commands.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/model_summary.hpp"
-#include "corda/sim/auto/planner.hpp"
+#include "corda/sim/solver.hpp"
 
 namespace corda::app {
 namespace {
@@ -34,10 +34,8 @@ std::optional<Cost> cost_of(const Film& film) {
         double steps = 0.0;
         if (body.error_bound_m)
             steps = static_cast<double>(body.trials.back().steps);
-        else if (const auto* rattle = std::get_if<RattleDef>(&body.method))
-            steps = duration_s / rattle->step_s.value();
-        else if (const auto* relaxation = std::get_if<RelaxationDef>(&body.method))
-            steps = duration_s / relaxation->step_s.value();
+        else if (const std::optional<double> step_s = sim::fixed_step_s(body.method))
+            steps = duration_s / *step_s;
         else
             return std::nullopt;
         cost.steps += steps;

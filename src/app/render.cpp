@@ -20,7 +20,7 @@
 #include "corda/media/format/picture_names.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
-#include "corda/view/look.hpp"
+#include "corda/view/colors.hpp"
 #include "interrupt.hpp"
 #include "time_options.hpp"
 

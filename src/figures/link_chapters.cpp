@@ -7,6 +7,7 @@
 #include "corda/figures/chart.hpp"
 #include "corda/figures/quantity_text.hpp"
 #include "corda/pipeline/describe.hpp"
+#include "corda/sim/solver.hpp"
 
 namespace corda::figures {
 namespace {
@@ -22,9 +23,7 @@ std::string link_text(const System& system, const Extreme& extreme) {
 
 /// Why the tensions of some bodies are not known.
 std::string unknown_text(const Film& film, const MotionSummary& reading) {
-    const auto relaxes = [&](std::size_t b) {
-        return std::holds_alternative<RelaxationDef>(film.plan().bodies[b].method);
-    };
+    const auto relaxes = [&](std::size_t b) { return !sim::knows_tensions(film.plan().bodies[b].method); };
     const auto& bodies = reading.unknown_tensions;
     const std::string names = corda::describe(film.system(), bodies);
     if (std::all_of(bodies.begin(), bodies.end(), relaxes)) {

@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "corda/sim/energy.hpp"
-#include "corda/sim/spread.hpp"
+#include "corda/sim/forces/elastic_forces.hpp"
+#include "corda/sim/recording.hpp"
 
 namespace corda::figures {
 namespace {

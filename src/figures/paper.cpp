@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "corda/view/look.hpp"
+#include "corda/view/colors.hpp"
 
 namespace corda::figures {
 namespace {

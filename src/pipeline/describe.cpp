@@ -11,24 +11,11 @@
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
 #include "corda/scene/write_scene.hpp"
+#include "corda/sim/solver.hpp"
 #include "corda/view/number_text.hpp"
 
 namespace corda {
 namespace {
-
-struct InWords {
-    std::string operator()(const ExactDef& def) const {
-        return fmt::format("exact at tolerance {:.3g}", def.tolerance);
-    }
-    std::string operator()(const RattleDef& def) const {
-        const std::string step = def.step_s ? fmt::format(", step {:.6g} s", *def.step_s) : "";
-        return fmt::format("rattle of order {}", def.order) + step;
-    }
-    std::string operator()(const RelaxationDef& def) const {
-        const std::string step = def.step_s ? fmt::format(", step {:.6g} s", *def.step_s) : "";
-        return fmt::format("relaxation with {} sweep{}", def.sweeps, def.sweeps == 1 ? "" : "s") + step;
-    }
-};
 
 std::string_view remedy(Refusal::Reason reason) {
     using Reason = Refusal::Reason;
@@ -77,7 +64,7 @@ std::string describe(const System& system) {
 }
 
 std::string describe(const MethodDef& method) {
-    return std::visit(InWords{}, method);
+    return sim::method_text(method);
 }
 
 std::string describe(const BodyPlan& plan) {

@@ -7,9 +7,9 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/media/defs.hpp"
-#include "corda/sim/refusal.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/sim/system.hpp"
+#include "corda/sim/validate.hpp"
 
 namespace corda {
 

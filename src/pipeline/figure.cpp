@@ -12,8 +12,8 @@
 #include "corda/pipeline/film_renderer.hpp"
 #include "corda/render/reference_renderer.hpp"
 #include "corda/render/vector.hpp"
+#include "corda/view/colors.hpp"
 #include "corda/view/font.hpp"
-#include "corda/view/look.hpp"
 #include "corda/view/overlay.hpp"
 
 namespace corda {

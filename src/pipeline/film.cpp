@@ -16,7 +16,7 @@
 #include "corda/pipeline/notes.hpp"
 #include "corda/pipeline/validate.hpp"
 #include "corda/sim/auto/planner.hpp"
-#include "corda/sim/bounds.hpp"
+#include "corda/sim/system.hpp"
 #include "corda/view/camera.hpp"
 
 namespace corda {

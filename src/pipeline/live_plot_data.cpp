@@ -9,9 +9,9 @@
 #include "corda/core/timeline.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/tracked_particle.hpp"
-#include "corda/sim/bounds.hpp"
-#include "corda/sim/distance.hpp"
-#include "corda/view/trail.hpp"
+#include "corda/sim/defs.hpp"
+#include "corda/sim/system.hpp"
+#include "corda/view/scene_view.hpp"
 
 namespace corda::pipeline {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "corda/scene/scene.hpp"
-#include "corda/sim/energy.hpp"
+#include "corda/sim/forces/elastic_forces.hpp"
 #include "corda/view/plot_panel.hpp"
 
 namespace corda::pipeline {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "corda/pipeline/describe.hpp"
+#include "corda/sim/forces/forces.hpp"
 #include "corda/view/number_text.hpp"
 
 namespace corda {
@@ -55,25 +56,31 @@ Materials list_materials(const Scene& scene) {
     return result;
 }
 
-std::string force_term(const Scene& scene, const RelaxationDef* relaxation) {
-    if (relaxation != nullptr && relaxation->force_n) {
-        return fmt::format("a force of ({}, {}) N per particle, in place of gravity", relaxation->force_n->x,
-                           relaxation->force_n->y);
+/// The forces, and where energy is lost if not by drag.
+std::vector<std::string> force_terms(const Scene& scene, const Materials& materials,
+                                     const RelaxationDef* relaxation) {
+    std::vector<std::string> terms;
+    const bool is_replaced = relaxation != nullptr && relaxation->force_n;
+    if (is_replaced) {
+        terms.push_back(fmt::format("a force of ({}, {}) N per particle, in place of gravity",
+                                    relaxation->force_n->x, relaxation->force_n->y));
     }
-    const Vec2 gravity_m_s2 = scene.world.gravity_m_s2;
-    if (gravity_m_s2 == Vec2{}) return "no gravity";
-    return fmt::format("gravity of ({}, {}) m/s2", gravity_m_s2.x, gravity_m_s2.y);
-}
-
-std::string drag_term(const Scene& scene, const Materials& materials, const RelaxationDef* relaxation) {
-    if (scene.world.drag_1_s != 0.0) return fmt::format("linear drag of {} 1/s, exact", scene.world.drag_1_s);
-    if (relaxation != nullptr) {
-        return relaxation->delta > 0.0
-                   ? fmt::format("damping: a share of {} of the velocity is lost per step", relaxation->delta)
-                   : "no drag; the passes lose energy, and print how much";
+    for (const sim::ForceKind& kind : sim::force_kinds()) {
+        const bool has_drag = kind.term(scene.world).drag_1_s != 0.0;
+        const std::string text = is_replaced && !has_drag ? "" : kind.text(scene.world);
+        if (!text.empty()) terms.push_back(text);
     }
-    return materials.plastic ? "no drag: energy is lost only when a string comes taut"
-                             : "no drag: energy is kept";
+    if (sim::Forces(scene.world).drag_1_s() != 0.0) return terms;
+    if (relaxation != nullptr && relaxation->delta > 0.0)
+        terms.push_back(
+            fmt::format("damping: a share of {} of the velocity is lost per step", relaxation->delta));
+    else if (relaxation != nullptr)
+        terms.emplace_back("no drag; the passes lose energy, and print how much");
+    else if (materials.plastic)
+        terms.emplace_back("no drag: energy is lost only when a string comes taut");
+    else
+        terms.emplace_back("no drag: energy is kept");
+    return terms;
 }
 
 std::string nets_term(const Scene& scene) {
@@ -98,7 +105,7 @@ std::vector<std::string> modelled_terms(const Scene& scene, const Plan& plan) {
         if (def != nullptr) relaxation = def;
     }
     const Materials materials = list_materials(scene);
-    std::vector<std::string> terms{force_term(scene, relaxation), drag_term(scene, materials, relaxation)};
+    std::vector<std::string> terms = force_terms(scene, materials, relaxation);
     if (relaxation != nullptr) terms.emplace_back("bars that stretch by what the passes of relaxation leave");
     if (!relaxes_all && materials.rigid) terms.emplace_back("links that do not stretch");
     if (!materials.compliance_1_n.empty()) {

@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
-#include "corda/sim/distance.hpp"
-#include "corda/sim/refusal.hpp"
+#include "corda/sim/defs.hpp"
 #include "corda/sim/solver.hpp"
-#include "corda/sim/split.hpp"
+#include "corda/sim/system.hpp"
+#include "corda/sim/validate.hpp"
 
 namespace corda::pipeline {
 namespace {

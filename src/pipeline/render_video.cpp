@@ -28,7 +28,7 @@
 #include "corda/pipeline/render_chunks.hpp"
 #include "corda/pipeline/validate.hpp"
 #include "corda/scene/write_scene.hpp"
-#include "corda/view/look.hpp"
+#include "corda/view/colors.hpp"
 
 namespace corda {
 namespace {

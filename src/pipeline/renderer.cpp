@@ -7,7 +7,7 @@
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/scene_renderer.hpp"
-#include "corda/sim/bounds.hpp"
+#include "corda/sim/system.hpp"
 
 namespace corda {
 

@@ -7,7 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "corda/pipeline/describe.hpp"
-#include "corda/view/trail.hpp"
+#include "corda/view/scene_view.hpp"
 
 namespace corda::pipeline {
 namespace {

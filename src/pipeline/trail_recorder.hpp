@@ -7,7 +7,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/rational.hpp"
 #include "corda/pipeline/motion.hpp"
-#include "corda/view/trail.hpp"
+#include "corda/view/scene_view.hpp"
 
 namespace corda::pipeline {
 

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-#include "corda/sim/distance.hpp"
+#include "corda/sim/defs.hpp"
 
 namespace corda::reference {
 

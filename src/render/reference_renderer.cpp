@@ -6,7 +6,7 @@
 #include "corda/render/exposure.hpp"
 #include "corda/render/paint.hpp"
 #include "corda/render/tiles.hpp"
-#include "corda/view/capsule.hpp"
+#include "corda/view/draw_list.hpp"
 
 namespace corda::render {
 namespace {

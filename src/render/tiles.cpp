@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "corda/render/coverage.hpp"
-#include "corda/view/capsule.hpp"
+#include "corda/view/draw_list.hpp"
 
 namespace corda::render {
 namespace {

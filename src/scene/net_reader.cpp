@@ -7,7 +7,7 @@
 
 #include "corda/scene/field.hpp"
 #include "corda/scene/readers.hpp"
-#include "corda/sim/distance.hpp"
+#include "corda/sim/defs.hpp"
 
 namespace corda::scene {
 namespace {

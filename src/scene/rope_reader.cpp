@@ -8,7 +8,7 @@
 #include "corda/core/direction.hpp"
 #include "corda/scene/field.hpp"
 #include "corda/scene/readers.hpp"
-#include "corda/sim/distance.hpp"
+#include "corda/sim/defs.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::scene {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -36,28 +37,28 @@ inline Vec2 left_of(Vec2 a) {
     return {-a.y, a.x};
 }
 
-/// What acts on all bodies of a scene, and for how long.
+/// The forces on all bodies of a scene, and its duration.
 struct WorldDef {
     Vec2 gravity_m_s2{0.0, -9.81};  ///< acceleration of every free particle; finite
     double duration_s = 10.0;       ///< > 0
     double drag_1_s = 0.0;          ///< linear drag: velocities decay by exp(-drag t); >= 0
 };
 
-/// What a body's bars are made of. By default they are rigid.
+/// Material of a body's bars. Rigid by default.
 struct MaterialDef {
     /// Strain of a bar per newton of tension, 1 / (E A), in 1/N: the bars stretch by Hooke's law; 0: rigid
     /// bars.
     double compliance_1_n = 0.0;
-    /// Bars pull and never push. A rigid one that comes taut does so plastically: momentum is kept, and the
-    /// relative velocity along the bar vanishes (a string). One with compliance exerts no force while it is
+    /// Bars pull and never push. When a rigid bar comes taut, the snap is plastic: momentum is kept, and the
+    /// relative velocity along the bar vanishes (a string). A bar with compliance exerts no force while it is
     /// shorter than its rest length (a bungee).
     bool is_string = false;
 };
 
 /// A chain of particles, each joined to the next by a bar.
 struct RopeDef {
-    /// The point, in metres, that `points_m` are relative to. Kept apart so that a rope far from (0, 0) has
-    /// the same bits as one there.
+    /// Origin of `points_m`, in metres. Kept separate so that a rope far from (0, 0) has the same bits as one
+    /// at (0, 0).
     Vec2 origin_m;
     std::vector<Vec2> points_m;   ///< initial positions relative to `origin_m`; at least 2, neighbours apart
     std::vector<double> mass_kg;  ///< one per particle, > 0 (pinned ones too); empty: 1 kg each
@@ -69,8 +70,8 @@ struct RopeDef {
     /// Longer ones are imaginary: they stiffen the rope, and only method `relaxation` can move them.
     int reach = 1;
     bool closed = false;  ///< the last particle is joined to the first one too; needs at least 3
-    /// Rest lengths, one per link (the closing one last), > 0; empty: the initial distances. Others are for
-    /// materials that stretch, and for strings: see pulled_in().
+    /// Rest lengths, one per link (the closing link last), > 0; empty: the initial distances. Other lengths
+    /// suit materials that stretch, and strings: see pulled_in().
     std::vector<double> rest_m;
     MaterialDef material;
     /// Bending stiffness E I in N m^2, >= 0: every inner particle has the energy E I / a (1 - cos(angle)),
@@ -117,16 +118,16 @@ struct RattleDef {
 
     int order = 4;                      ///< one of kOrders
     std::optional<double> step_s = {};  ///< > 0; default: a stable step that divides the frame interval
-    /// Largest frequency times step over what is stable, 0 < guard <= 1: steps are divided to stay below it.
-    /// Stability ends at 1, but energy changes long before when a free end whips: N=50 from the horizontal,
-    /// 60 s, order 8, energy error over m g L 7e-2 at 0.9, 2e-3 at 0.5, 6e-5 at 0.3, 3e-6 at 0.2, 1e-8 at
-    /// 0.1.
+    /// Limit of the largest frequency times the step, as a share of the stability limit; 0 < guard <= 1.
+    /// Steps are divided to stay below it. Energy drifts long before 1 when a free end whips: 50 links from
+    /// the horizontal, 60 s, order 8 give an energy error over m g L of 7e-2 at 0.9, 2e-3 at 0.5, 6e-5 at
+    /// 0.3, 3e-6 at 0.2, 1e-8 at 0.1.
     double guard = 0.2;
 
     friend bool operator==(const RattleDef&, const RattleDef&) = default;
 };
 
-/// Method `relaxation`, that of the source report.
+/// Method `relaxation` of the source report.
 struct RelaxationDef {
     static constexpr std::string_view kName = "relaxation";
 
@@ -138,7 +139,7 @@ struct RelaxationDef {
     friend bool operator==(const RelaxationDef&, const RelaxationDef&) = default;
 };
 
-/// The method that moves a system, with its parameters.
+/// A method with its parameters.
 using MethodDef = std::variant<ExactDef, RattleDef, RelaxationDef>;
 
 /// The name a scene file uses for a method.
@@ -148,3 +149,13 @@ using MethodDef = std::variant<ExactDef, RattleDef, RelaxationDef>;
 
 }  // namespace corda
 #pragma GCC visibility pop
+
+namespace corda::sim {
+
+/// The length of (dx, dy). One definition for rest lengths and for distances on the way, so that a bar of
+/// unchanged ends has no strain to the last bit. Not std::hypot, whose rounding differs between C libraries.
+[[nodiscard]] inline double length(double dx, double dy) {
+    return std::sqrt(dx * dx + dy * dy);
+}
+
+}  // namespace corda::sim

@@ -2,28 +2,56 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
 #include "corda/core/timeline.hpp"
-#include "corda/sim/bounds.hpp"
 #include "corda/sim/simulation.hpp"
-#include "corda/sim/spread.hpp"
+#include "corda/sim/system.hpp"
 
 namespace corda::sim {
 
-/// The states of one run at the times of a timeline, in order, up to a memory budget. Of states beyond the
-/// budget only the bounds and the largest figures are kept.
+/// The fields of a state from which a quantity is computed.
+[[nodiscard]] StateFields readings_for(Quantity quantity);
+
+/// Value of a quantity for bar `k` of a body; NaN if unknown. The state must have readings_for(quantity).
+[[nodiscard]] double value_of(Quantity quantity, const System& system, const Body& body, std::size_t k,
+                              const State& state);
+
+/// Distribution of values: minimum, maximum and a histogram of their sizes. Ignores NaN.
+class Spread {
+  public:
+    void add(double value);
+    void add(const Spread& other);
+
+    [[nodiscard]] bool empty() const { return count_ == 0; }
+    [[nodiscard]] double least() const { return least_; }
+    [[nodiscard]] double largest() const { return largest_; }
+    /// The smallest bound exceeded by at most this share of the absolute values, to within 1/16.
+    [[nodiscard]] double size_exceeded_by(double share) const;
+
+  private:
+    std::uint64_t count_ = 0;
+    double least_ = std::numeric_limits<double>::infinity();
+    double largest_ = -std::numeric_limits<double>::infinity();
+    /// Counts by the first 16 bits of the absolute value: the exponent and four bits of the mantissa.
+    std::vector<std::uint64_t> counts_;
+};
+
+/// Recorded states of one run at the times of a timeline, in order, up to a memory budget. Beyond the budget
+/// only the bounds and the largest figures are kept.
 class Recording {
   public:
-    /// `state_count`: of the timeline. `budget_bytes`: the most memory that states may take. `quantity`: one
-    /// whose spread is wanted; states then have readings_for() it beside `readings`.
+    /// `state_count`: number of times of the timeline. `budget_bytes`: memory limit for states. `quantity`:
+    /// collect its distribution; states then also have the fields that it needs.
     Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes,
               std::size_t bar_count = 0, std::optional<Quantity> quantity = {},
               const StateFields& readings = {});
 
-    /// An empty recording of some of the particles and bars that keeps as many states.
+    /// An empty recording of some of the particles and bars with room for as many states.
     [[nodiscard]] Recording for_part(std::size_t particle_count, std::size_t bar_count = 0) const;
 
     /// Forgets all states.
@@ -32,38 +60,39 @@ class Recording {
     /// not empty, measures the stepping. `goes_on`: see Simulation::advance_to.
     Status advance(Simulation& run, const Timeline& timeline, const std::function<double()>& clock_s,
                    const GoesOn& goes_on = {});
-    /// Adds the recording of a body whose particles begin at `first_particle` and its bars at `first_bar`,
-    /// made by for_part(). The states are then those that all bodies added so far have.
+    /// Adds the recording of a body, made by for_part(), whose particles start at `first_particle` and bars
+    /// at `first_bar`. Keeps the states that all bodies added so far have.
     void add_body(const Recording& body, std::size_t first_particle, std::size_t first_bar = 0);
 
     /// Number of states added.
     [[nodiscard]] std::size_t size() const { return energy_change_j_.size(); }
     /// Whether state `i` was added and is kept.
     [[nodiscard]] bool holds(std::size_t i) const { return i < figures_.size(); }
-    /// Writes state `i`, which it holds, to `state`.
+    /// Writes state `i`, which must be held, to `state`.
     void read(std::size_t i, State& state) const;
-    /// Of state `i`, which it holds.
+    /// Figures of state `i`, which must be held.
     [[nodiscard]] const Figures& figures(std::size_t i) const { return figures_[i]; }
 
-    /// Of all states added at frame times: stills between frames do not move the camera.
+    /// Bounds of all states added at frame times: stills between frames do not move the camera.
     [[nodiscard]] const MotionBounds& bounds() const { return bounds_; }
     /// The same for each particle; all empty before the first state.
     [[nodiscard]] const std::vector<MotionBounds>& particle_bounds() const { return particle_bounds_; }
-    /// Of the quantity, of all links in all states added at frame times; empty without one.
+    /// Distribution of the quantity over all links and all states added at frame times; empty without a
+    /// quantity.
     [[nodiscard]] const Spread& spread() const { return spread_; }
-    /// What its states have.
+    /// The fields of its states.
     [[nodiscard]] const StateFields& readings() const { return readings_; }
-    /// Of the run up to the last state added.
+    /// Diagnostics of the run up to the last state added.
     [[nodiscard]] const Diagnostics& diagnostics() const { return diagnostics_; }
 
-    /// Seconds of stepping of that run; 0 without a clock.
+    /// Time spent stepping, in s; 0 without a clock.
     [[nodiscard]] double wall_s() const { return wall_s_; }
 
   private:
     void add_figures(const Recording& body);
     void add_spread(const System& system, const State& state);
 
-    /// What a recorded state has of an array.
+    /// One array of a recorded state.
     struct Part {
         std::vector<double> State::*array;
         std::size_t count;

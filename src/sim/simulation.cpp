@@ -8,21 +8,13 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/cpu.hpp"
-#include "corda/sim/body_solvers.hpp"
-#include "corda/sim/distance.hpp"
-#include "corda/sim/exact/exact.hpp"
-#include "corda/sim/figures.hpp"
-#include "corda/sim/rattle/rattle.hpp"
-#include "corda/sim/refusal.hpp"
-#include "corda/sim/relaxation/relaxation.hpp"
 #include "corda/sim/solver.hpp"
-#include "corda/sim/split.hpp"
 #include "corda/sim/validate.hpp"
 
 namespace corda {
 namespace {
 
-/// Farther out than this nothing is meant to go: the run has diverged.
+/// A run with a coordinate beyond this has diverged.
 constexpr double kFarthestMetres = 1e12;
 
 bool is_sound(const State& state) {
@@ -46,77 +38,6 @@ double max_strain(const System& system, const State& state) {
 }
 
 }  // namespace
-
-namespace sim {
-namespace {
-
-/// A bar without length has no direction; `relaxation` alone leaves such bars be.
-void refuse_bars_without_length(const System& system) {
-    for (const Bar& bar : system.bars) {
-        if (bar.rest_m > 0.0) continue;
-        throw Refusal(Refusal::Reason::kBarWithoutLength, "particles " + std::to_string(bar.a) + " and " +
-                                                              std::to_string(bar.b) +
-                                                              ", which a bar joins, coincide");
-    }
-}
-
-/// A solver takes as long to make as some updates of a StopCheck.
-constexpr std::uint64_t kUpdatesPerBody = 20;
-
-/// Of a system that one solver moves.
-std::unique_ptr<Solver> make_one(const System& system, const Forces& forces, const MethodDef& method,
-                                 double frame_interval_s, const GoesOn& goes_on) {
-    if (!std::holds_alternative<RelaxationDef>(method)) refuse_bars_without_length(system);
-    struct Maker {
-        const System& system;
-        const Forces& forces;
-        double frame_interval_s;
-        const GoesOn& goes_on;
-        std::unique_ptr<Solver> operator()(const ExactDef& def) const {
-            return std::make_unique<Exact>(system, forces, def, goes_on);
-        }
-        std::unique_ptr<Solver> operator()(const RattleDef& def) const {
-            return std::make_unique<Rattle>(system, forces, def, frame_interval_s, goes_on);
-        }
-        std::unique_ptr<Solver> operator()(const RelaxationDef& def) const {
-            return std::make_unique<Relaxation>(system, forces, def, frame_interval_s);
-        }
-    };
-    return std::visit(Maker{system, forces, frame_interval_s, goes_on}, method);
-}
-
-}  // namespace
-
-std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces,
-                                    std::span<const MethodDef> methods, double frame_interval_s,
-                                    const GoesOn& goes_on) {
-    const std::size_t count = system.bodies.size();
-    if (methods.size() != 1 && methods.size() != count) {
-        throw Error(ExitCode::kUsage, std::to_string(methods.size()) + " methods for the " +
-                                          std::to_string(count) +
-                                          " bodies of the system; give one each, or one for all");
-    }
-    // `relaxation` fills the lanes of a processor with several small bodies.
-    const bool relaxes_all = std::all_of(methods.begin(), methods.end(), [&](const MethodDef& method) {
-        return std::holds_alternative<RelaxationDef>(method) && method == methods.front();
-    });
-    if (count == 1 || relaxes_all)
-        return make_one(system, forces, methods.front(), frame_interval_s, goes_on);
-    StopCheck stop(goes_on);
-    std::vector<BodySolvers::Part> parts;
-    for_each_body(system, [&](const System& body, std::size_t i) {
-        stop.spend(kUpdatesPerBody + body.particle_count());
-        const MethodDef& method = methods.size() == 1 ? methods.front() : methods[i];
-        parts.push_back({system.bodies[i].first_particle,
-                         system.bodies[i].first_bar,
-                         make_one(body, forces, method, frame_interval_s, goes_on),
-                         {0.0, body.x_m, body.y_m}});
-        parts.back().state.tension_n.resize(body.bars.size());
-    });
-    return std::make_unique<BodySolvers>(std::move(parts));
-}
-
-}  // namespace sim
 
 Simulation::Simulation(System system, const WorldDef& world, const MethodDef& method, double frame_interval_s,
                        const GoesOn& goes_on)

@@ -16,7 +16,7 @@ class Solver;
 #pragma GCC visibility push(default)
 namespace corda {
 
-/// What a state shows of its own quality.
+/// Quality figures of one state.
 struct Figures {
     /// Largest | length / rest length - 1 | of a real bar; a slack link of a string counts as 0.
     double strain = 0.0;
@@ -31,18 +31,18 @@ struct Figures {
 struct Diagnostics {
     std::uint64_t steps = 0;
     Figures largest;
-    /// The first time at which the run had passed a point from which the motion could go on in several ways,
-    /// rigid bars of a net that lay in line: from there it is one of them. std::nullopt if there was none.
+    /// The first time after a branching point, where rigid bars of a net lie in line and the equations allow
+    /// several motions; the run follows one of them. std::nullopt if there was none.
     std::optional<double> branched_s;
 };
 
-/// A scene in motion: particles and bars, what moves them, and figures of every state that it reaches. Bodies
-/// do not act on each other: each has a solver of its own.
+/// A running simulation: the system, its solvers, the current state and its figures. Bodies do not interact,
+/// so each has its own solver.
 class Simulation {
   public:
-    /// `frame_interval_s`: what a method without a step of its own derives its step from. Throws
-    /// corda::Error (kInvalidScene) if the method cannot run the system, or for a field that is not what its
-    /// declaration says. `goes_on` is asked, as by advance_to(), while a large system is prepared.
+    /// `frame_interval_s`: default from which a method with a fixed step derives its step. Throws
+    /// corda::Error (kInvalidScene) if the method cannot run the system, or for a field outside the range of
+    /// its declaration. `goes_on` is called, as by advance_to(), while a large system is prepared.
     Simulation(System system, const WorldDef& world, const MethodDef& method,
                double frame_interval_s = 1.0 / 60.0, const GoesOn& goes_on = {});
     /// `methods`: one per body, or one for all. Throws corda::Error (kUsage) for another number of them.
@@ -53,21 +53,22 @@ class Simulation {
     Simulation& operator=(Simulation&&) noexcept;
     ~Simulation();
 
-    /// Goes on to `time_s` seconds. The state is then that of exactly this time, with the same bits whatever
-    /// times were asked for on the way. If the run diverges, the last good state stays for good. `goes_on` is
-    /// asked about every millisecond; if it ends the run, the last state stays, and this simulation must not
-    /// be used further. Throws corda::Error: kUsage if `time_s` is before the state's time or not finite, or
-    /// after an interruption; kInterrupted if `goes_on` returned false; and what `goes_on` throws.
+    /// Advances to exactly `time_s` seconds; the state has the same bits whatever times were requested on the
+    /// way. A run that diverges keeps its last good state. `goes_on` is called about every millisecond; if it
+    /// ends the run, the last state stays and this simulation cannot be advanced further. Throws
+    /// corda::Error: kUsage if `time_s` is before the state's time or not finite, or after an interruption;
+    /// kInterrupted if `goes_on` returned false; and whatever `goes_on` throws.
     Status advance_to(double time_s, const GoesOn& goes_on = {});
 
-    /// From now on, states have these too. Throws corda::Error (kInvalidScene) if a method does not know the
-    /// tensions, unless unknown ones are allowed: `relaxation`, or `rattle` if bars depend on each other.
+    /// Sets the fields of all states from now on. Throws corda::Error (kInvalidScene) if tensions are
+    /// requested that a method does not know (`relaxation`, or `rattle` if bars depend on each other), unless
+    /// unknown tensions are allowed.
     void set_outputs(const StateFields& readings);
 
     /// Positions relative to `system().origin_m`, at the last time that was reached.
     [[nodiscard]] const State& state() const { return state_; }
     [[nodiscard]] const System& system() const { return system_; }
-    /// Of the state alone.
+    /// Figures of the current state.
     [[nodiscard]] const Figures& figures() const { return figures_; }
     [[nodiscard]] Diagnostics diagnostics() const;
     /// The method of each body with every default filled in: given again, they run with the same bits.
@@ -75,7 +76,7 @@ class Simulation {
 
     /// E(t) - E(0) of the state, in J; NaN if damping takes energy on purpose.
     [[nodiscard]] double energy_change_j() const;
-    /// What Figures::energy_error compares it with, in J.
+    /// Denominator of Figures::energy_error, in J.
     [[nodiscard]] double energy_scale_j() const { return energy_scale_j_; }
 
   private:
@@ -97,7 +98,7 @@ class Simulation {
     std::optional<double> branched_s_;
 };
 
-/// A method that was tried, and how far its positions differ from those of a tighter run.
+/// One trial of a method: its run compared with tighter runs.
 struct Trial {
     MethodDef method;
     MethodDef check;  ///< of the tighter runs
@@ -111,7 +112,7 @@ struct Trial {
     bool diverged = false;              ///< the run or a check diverged or branched after `reached_s`
 };
 
-/// Why a body is moved by its method.
+/// Reason for the method of a body.
 enum class PlanReason {
     kNamed,      ///< the scene names the method
     kExact,      ///< `exact` can move it
@@ -132,7 +133,7 @@ struct BodyPlan {
     bool diverges = false;      ///< the run ends before the scene does
     bool stands_still = false;  ///< a net that its bars make a plate, which its pins hold
     std::vector<Trial> trials;  ///< all that were run, the chosen one last
-    int passes = 0;             ///< how often the motion was integrated, checks and failed trials included
+    int passes = 0;             ///< number of integrations of the motion, including checks and failed trials
 };
 
 /// The methods that run a scene.
@@ -141,11 +142,11 @@ struct Plan {
     /// The largest bound of a body; std::nullopt if one has none.
     std::optional<double> error_bound_m;
     std::optional<double> horizon_s;  ///< the earliest of a body
-    /// How often the motion of the whole scene was integrated: that of each body counts by its particles, and
-    /// the sum is rounded up.
+    /// Number of integrations of the whole scene: each body is weighted by its particles, and the sum is
+    /// rounded up.
     int simulation_passes = 0;
-    /// A sentence for everything that the scene gives and the motion does not use as it is given, such as
-    /// velocity along bars of fixed length. Filled in by Film.
+    /// One sentence for each part of the scene that the motion changes or ignores, such as a velocity along
+    /// bars of fixed length. Filled in by Film.
     std::vector<std::string> notes;
 };
 

@@ -1,19 +1,40 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "corda/core/stop_check.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/forces/forces.hpp"
-#include "corda/sim/system.hpp"
+#include "corda/sim/simulation.hpp"
 
 namespace corda::sim {
+
+/// Position of a time on the grid of whole multiples of a fixed step.
+struct GridTime {
+    std::uint64_t step = 0;  ///< number of whole steps up to the time
+    bool is_on_grid = true;  ///< the time is that of `step`
+    double fraction = 0.0;   ///< of the next step, if not
+};
+
+/// Locates a time on the grid. A time within 1e-9 of n steps counts as n steps, because times from fractions
+/// or decimal text are rounded.
+inline GridTime locate(double time_s, double step_s) {
+    constexpr double kTolerance = 1e-9;
+    const double steps = std::min(time_s / step_s, 0x1p+62);  // what an integer holds
+    const double nearest = std::round(steps);
+    if (std::abs(steps - nearest) <= kTolerance * std::max(1.0, nearest))
+        return {static_cast<std::uint64_t>(nearest), true, 0.0};
+    const double whole = std::floor(steps);
+    return {static_cast<std::uint64_t>(whole), false, steps - whole};
+}
 
 /// A method that moves a System through time.
 class Solver {
@@ -22,32 +43,32 @@ class Solver {
     Solver& operator=(const Solver&) = delete;
     virtual ~Solver() = default;
 
-    /// Writes the positions at exactly `time_s` to `state`, which has room for all particles. Times never go
-    /// back. If the method fails (no convergence, a step too small, numbers that are not finite) it returns
-    /// kDiverged; `state` is then undefined and the solver must not be used further. The same holds if
-    /// `stop`, which hears of all steps, throws.
+    /// Writes the positions at exactly `time_s` to `state`, which has room for all particles. Times must not
+    /// decrease. Returns kDiverged if the method fails (no convergence, a step too small, numbers that are
+    /// not finite); `state` is then undefined, and the solver must not be used further. The same holds if
+    /// `stop`, which counts all steps, throws.
     virtual Status advance_to(double time_s, State& state, StopCheck& stop) = 0;
 
     /// Kinetic plus potential energy in joules at the solver's own time nearest to the last `advance_to`.
     [[nodiscard]] virtual double energy_j() const = 0;
 
-    /// Whether the run has passed a point from which the motion could go on in several ways: see Diagnostics.
+    /// True if the run has passed a branching point: see Diagnostics.
     [[nodiscard]] virtual bool has_branched() const { return false; }
 
-    /// What an energy error is compared with, in joules; see the function of that name in forces.hpp.
+    /// Denominator of the energy error, in joules; see the function of that name in forces.hpp.
     [[nodiscard]] double energy_scale_j() const { return energy_scale_j_; }
 
     /// False if damping takes energy on purpose.
     [[nodiscard]] bool conserves_energy() const { return conserves_energy_; }
 
-    /// What the links carry at the last `advance_to`; std::nullopt if the method does not know.
+    /// Loads after the last `advance_to`; std::nullopt if the method does not know them.
     [[nodiscard]] virtual std::optional<Loads> loads() const { return std::nullopt; }
 
     /// Writes the velocities of the free particles at the last `advance_to`, in m/s, to arrays of all.
     virtual void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) = 0;
 
-    /// Writes the tensions of the bars that move at the last `advance_to`, in N, to an array of all bars;
-    /// false if the method of a body does not know them: those are NaN.
+    /// Writes the tensions of moving bars after the last `advance_to`, in N, to an array of all bars. Returns
+    /// false if the method of a body does not know them; they are then NaN.
     [[nodiscard]] virtual bool tensions(std::vector<double>& tension_n) {
         std::fill(tension_n.begin(), tension_n.end(), std::numeric_limits<double>::quiet_NaN());
         return false;
@@ -69,11 +90,39 @@ class Solver {
     bool conserves_energy_;
 };
 
-/// What moves a system by one method per body, or by one for all of them. `frame_interval_s` is what a method
-/// derives its step from if it names none. Throws corda::Refusal if a method cannot run its body, and as a
-/// StopCheck if `goes_on` ends it: a large net takes seconds.
+/// Makes the solver of a system: `methods` has one method per body, or one for all. A method without a step
+/// derives it from `frame_interval_s`. Throws corda::Refusal if a method cannot run its body, and as
+/// StopCheck does if `goes_on` ends it: preparing a large net takes seconds.
 [[nodiscard]] std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces,
                                                   std::span<const MethodDef> methods, double frame_interval_s,
                                                   const GoesOn& goes_on = {});
+
+// Facts about methods. Each follows from the static members of the method's solver: see solver.cpp.
+
+/// Throws corda::Refusal for a parameter outside the range of its declaration.
+void validate(const MethodDef& method);
+
+/// The method in words: "rattle of order 4, step 0.01 s".
+[[nodiscard]] std::string method_text(const MethodDef& method);
+
+/// The time that a step takes for a body, in nanoseconds, on the machine on which the constants were
+/// measured: good for a rough forecast.
+[[nodiscard]] double step_cost_ns(const Body& body, const MethodDef& method);
+
+/// The step that the method is given, in s; std::nullopt if it is given none or chooses each step by itself.
+[[nodiscard]] std::optional<double> fixed_step_s(const MethodDef& method);
+
+/// False if the method never knows the tensions of bars.
+[[nodiscard]] bool knows_tensions(const MethodDef& method);
+
+/// The larger of each figure; the known one if only one is known.
+[[nodiscard]] Figures larger_figures(const Figures& a, const Figures& b);
+
+/// The larger loads of two bodies; std::nullopt unless both are known.
+[[nodiscard]] std::optional<Loads> loads_of_both(const std::optional<Loads>& a,
+                                                 const std::optional<Loads>& b);
+
+/// Figures::energy_error; std::nullopt if the change is unknown (NaN) or the scale is 0.
+[[nodiscard]] std::optional<double> energy_error(double change_j, double scale_j);
 
 }  // namespace corda::sim

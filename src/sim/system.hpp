@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -65,7 +67,7 @@ struct System {
     [[nodiscard]] bool is_pinned(std::size_t particle) const { return inverse_mass_1_kg[particle] == 0.0; }
 };
 
-/// Some consecutive links of a rope.
+/// A range of consecutive links of a rope.
 struct LinkRange {
     std::size_t begin = 0;
     std::size_t end = 0;
@@ -76,10 +78,10 @@ struct LinkRange {
 /// The links between the outermost pinned particles of a rope; all links of a closed one.
 [[nodiscard]] LinkRange links_between_pins(const RopeDef& rope);
 
-/// The rope as it starts if that is not as given; std::nullopt for most. A string without compliance cannot
-/// span more than its rest lengths: a link that is given a larger distance starts taut, in the same
-/// direction, and the particles beyond it, seen from the pins (from the first particle if there are none),
-/// move along. Distances between pins stay as they are.
+/// The rope's actual start if it differs from the given points; std::nullopt for most ropes. A string without
+/// compliance cannot span more than its rest lengths: a link longer than its rest length starts taut in the
+/// same direction, and the particles beyond it, seen from the pins (from the first particle without pins),
+/// are shifted along. Distances between pins stay.
 [[nodiscard]] std::optional<RopeDef> pulled_in(const RopeDef& given);
 
 /// Sum of the rest lengths of a body's links, in m.
@@ -88,10 +90,10 @@ struct LinkRange {
 /// The largest of these sums.
 [[nodiscard]] double largest_length_m(const System& system);
 
-/// How many of its bodies are ropes: they come before the nets.
+/// Number of ropes among the bodies; ropes come before nets.
 [[nodiscard]] std::size_t rope_count(const System& system);
 
-/// "rope 2" or "net 0": what a body of the system is called, its number among its kind.
+/// Name of a body: "rope 2" or "net 0", counted within its kind.
 [[nodiscard]] std::string body_name(const System& system, std::size_t body);
 
 /// The bars of bodies without compliance, in the system's order.
@@ -102,8 +104,8 @@ struct LinkRange {
 /// opposite particles.
 [[nodiscard]] std::uint64_t bar_count(std::uint64_t particles, std::uint64_t reach, bool closed = false);
 
-/// Puts ropes and nets, at least one of them, into one System. Throws corda::Error (kInvalidScene) for a
-/// field that is not what its declaration says.
+/// Builds the System of some ropes and nets, at least one body. Throws corda::Error (kInvalidScene) for a
+/// field outside the range of its declaration.
 [[nodiscard]] System build_system(std::span<const RopeDef> ropes, std::span<const NetDef> nets = {});
 
 /// Positions of all particles at one time, relative to the system's origin.
@@ -111,7 +113,7 @@ struct State {
     double time_s = 0.0;
     std::vector<double> x_m;
     std::vector<double> y_m;
-    // Empty unless they are asked for: see Readings.
+    // Empty unless requested: see StateFields.
     std::vector<double> vx_m_s = {};  ///< 0 for a pinned particle
     std::vector<double> vy_m_s = {};
     /// One per bar of the system: positive ones pull. 0 between two pins; NaN if it is not determined.
@@ -122,14 +124,14 @@ struct State {
 /// rest length - 1, which for a slack link of a string is 0.
 enum class Quantity { kTension, kSpeed, kStrain };
 
-/// What states have besides positions.
+/// The data in a state besides positions.
 struct StateFields {
     bool velocities = false;
     bool tensions = false;
     /// Tensions that a method does not know are NaN; otherwise asking for them is an error.
     bool unknown_tensions = false;
 
-    /// What either has.
+    /// The union of both.
     [[nodiscard]] StateFields with(const StateFields& other) const {
         const bool are_needed =
             (tensions && !unknown_tensions) || (other.tensions && !other.unknown_tensions);
@@ -139,15 +141,59 @@ struct StateFields {
     friend bool operator==(const StateFields&, const StateFields&) = default;
 };
 
-/// Whether a run can go on. A run that diverged keeps the last good state.
+/// Outcome of a run so far. A diverged run keeps its last good state.
 enum class [[nodiscard]] Status{kOk, kDiverged};
 
-/// What the links carry at one time.
+/// Loads on pins and links at one time.
 struct Loads {
-    double pin_force_n = 0.0;  ///< largest force that links exert on a pinned particle
-    /// Largest tension of a link. A link that pushes counts by the size of its tension.
+    double pin_force_n = 0.0;  ///< largest force of the links on a pinned particle
+    /// Largest absolute tension of a link.
     double largest_tension_n = 0.0;
 };
 
 }  // namespace corda
 #pragma GCC visibility pop
+
+namespace corda {
+
+/// The smallest upright box that contains all positions of a motion, in metres relative to the system's
+/// origin. Empty at first.
+class MotionBounds {
+  public:
+    void include(double x_m, double y_m) {
+        min_ = {std::min(min_.x, x_m), std::min(min_.y, y_m)};
+        max_ = {std::max(max_.x, x_m), std::max(max_.y, y_m)};
+    }
+    void include(const State& state) {
+        for (std::size_t i = 0; i < state.x_m.size(); ++i) include(state.x_m[i], state.y_m[i]);
+    }
+    void include(const MotionBounds& other) {
+        min_ = {std::min(min_.x, other.min_.x), std::min(min_.y, other.min_.y)};
+        max_ = {std::max(max_.x, other.max_.x), std::max(max_.y, other.max_.y)};
+    }
+    [[nodiscard]] bool empty() const { return max_.x < min_.x; }
+    [[nodiscard]] Vec2 min_m() const { return min_; }
+    [[nodiscard]] Vec2 max_m() const { return max_; }
+
+  private:
+    Vec2 min_{1e300, 1e300};
+    Vec2 max_{-1e300, -1e300};
+};
+
+/// Bounds of each particle at the start.
+[[nodiscard]] inline std::vector<MotionBounds> bounds_of_start(const System& system) {
+    std::vector<MotionBounds> bounds(system.particle_count());
+    for (std::size_t i = 0; i < bounds.size(); ++i) bounds[i].include(system.x_m[i], system.y_m[i]);
+    return bounds;
+}
+
+}  // namespace corda
+
+namespace corda::sim {
+
+/// Calls `use` for each body in order, with a System of that body alone and the body's index. This System
+/// keeps the origin, counts particles and bars from 0 and lives only for the call. If there are several
+/// bodies, the message of a corda::Refusal from `use` is prefixed with the body's name.
+void for_each_body(const System& system, const std::function<void(const System&, std::size_t)>& use);
+
+}  // namespace corda::sim

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "corda/sim/refusal.hpp"
+#include "corda/sim/forces/forces.hpp"
 
 namespace corda::sim {
 namespace {
@@ -25,7 +25,7 @@ bool is_positive(double value) {
     return value > 0.0 && std::isfinite(value);
 }
 
-/// What ropes and nets have in common.
+/// Checks the fields common to ropes and nets.
 template <class BodyDef>
 void validate_body(const BodyDef& def, const std::string& what) {
     const std::size_t count = def.points_m.size();
@@ -84,28 +84,9 @@ void validate(std::span<const RopeDef> ropes, std::span<const NetDef> nets) {
 }
 
 void validate(const WorldDef& world) {
-    require(is_finite(world.gravity_m_s2), "world", "gravity_m_s2 is not finite");
     require(is_positive(world.duration_s), "world", "duration_s is not > 0");
-    require(world.drag_1_s >= 0.0 && std::isfinite(world.drag_1_s), "world", "drag_1_s is not >= 0");
-}
-
-void validate(const MethodDef& method) {
-    const std::string what(method_name(method));
-    const auto is_step = [](const std::optional<double>& step_s) { return !step_s || is_positive(*step_s); };
-    if (const auto* exact = std::get_if<ExactDef>(&method)) {
-        require(exact->tolerance >= ExactDef::kMinTolerance && exact->tolerance <= ExactDef::kMaxTolerance,
-                what, "tolerance is not within its range");
-    } else if (const auto* rattle = std::get_if<RattleDef>(&method)) {
-        const auto& orders = RattleDef::kOrders;
-        require(std::find(orders.begin(), orders.end(), rattle->order) != orders.end(), what,
-                "order is none that there is");
-        require(is_step(rattle->step_s), what, "step_s is not > 0");
-        require(rattle->guard > 0.0 && rattle->guard <= 1.0, what, "guard is not within 0 .. 1");
-    } else if (const auto* relaxation = std::get_if<RelaxationDef>(&method)) {
-        require(is_step(relaxation->step_s), what, "step_s is not > 0");
-        require(relaxation->sweeps >= 1, what, "sweeps is not >= 1");
-        require(relaxation->delta >= 0.0 && relaxation->delta < 1.0, what, "delta is not within 0 .. 1");
-        require(!relaxation->force_n || is_finite(*relaxation->force_n), what, "force_n is not finite");
+    for (const ForceKind& kind : force_kinds()) {
+        if (const char* const problem = kind.problem(world)) fail("world", problem);
     }
 }
 

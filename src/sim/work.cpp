@@ -6,9 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "corda/sim/distance.hpp"
-#include "corda/sim/elastic_forces.hpp"
-#include "corda/sim/rattle/composition.hpp"
+#include "corda/sim/defs.hpp"
+#include "corda/sim/forces/elastic_forces.hpp"
 #include "corda/sim/rattle/rattle.hpp"
 
 namespace corda::sim {

@@ -5,11 +5,10 @@
 
 namespace corda::sim {
 
-// Estimates of the work that a scene takes, from its start alone. They are rough: good enough to tell a scene
-// that takes minutes from one that takes days.
+// Rough estimates of the work for a scene, from its start alone: good enough to tell minutes from days.
 
-/// Bound on the angular frequency in 1/s of the vibrations of a body whose bars stretch or that resists
-/// bending; 0 for any other body.
+/// Bound on the angular frequency in 1/s of vibrations of a body that stretches or resists bending; 0 for any
+/// other body.
 [[nodiscard]] double vibration_frequency_1_s(const System& system, const Body& body);
 
 /// Largest angular velocity of a bar of the body at t = 0, in 1/s.

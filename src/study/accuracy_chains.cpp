@@ -10,7 +10,7 @@
 
 #include "corda/reference/numbers.hpp"
 #include "corda/reference/ropes.hpp"
-#include "corda/sim/distance.hpp"
+#include "corda/sim/defs.hpp"
 #include "corda/study/accuracy.hpp"
 #include "corda/study/problems.hpp"
 

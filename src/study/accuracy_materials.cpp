@@ -8,7 +8,7 @@
 #include "corda/reference/numbers.hpp"
 #include "corda/reference/pendulum.hpp"
 #include "corda/reference/ropes.hpp"
-#include "corda/sim/distance.hpp"
+#include "corda/sim/defs.hpp"
 #include "corda/study/accuracy.hpp"
 
 namespace corda::study {

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "corda/sim/auto/planner.hpp"
+#include "corda/sim/solver.hpp"
 #include "corda/study/truth.hpp"
 
 namespace corda::study {

@@ -7,7 +7,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/reference/pendulum.hpp"
 #include "corda/reference/ropes.hpp"
-#include "corda/sim/distance.hpp"
+#include "corda/sim/defs.hpp"
 #include "corda/study/probe.hpp"
 
 namespace corda::study {

@@ -2,23 +2,23 @@
 
 #include <span>
 
-#include "corda/sim/bounds.hpp"
+#include "corda/sim/system.hpp"
 #include "corda/view/defs.hpp"
 
 namespace corda::view {
 
-/// Something that is drawn around a point, or around several, and where these go during the motion.
+/// Extent of one drawn item: the bounds of its points during the motion, and its size around each point.
 struct Drawn {
     MotionBounds bounds;
-    // How far it extends around each point.
+    // Extent around each point.
     double left_px = 0.0;
     double right_px = 0.0;
     double up_px = 0.0;
     double down_px = 0.0;
 };
 
-/// What is to stay free at the upper and the lower edge, at least; and what panels take from the frame, at
-/// whose edges is a border, too.
+/// Minimum free space at the upper and lower edges, and the space that panels take from the frame. Panels
+/// have the camera's margin too.
 struct Insets {
     double top_px = 0.0;
     double bottom_px = 0.0;
@@ -26,19 +26,19 @@ struct Insets {
     double bottom_panel_px = 0.0;
 };
 
-/// Whether `def` leaves the centre or the height open, so that they follow from the motion.
+/// True if the centre or the height is not given, so that it follows from the motion.
 [[nodiscard]] bool needs_motion(const CameraDef& def);
 
-/// Returns `def` with centre and height filled in, such that all that is drawn is in a picture of this size,
-/// and in the middle of what `insets` leave of it. What `def` gives is kept. `origin_m` is that of the
-/// system. If needs_motion(def), something must be drawn.
+/// Returns `def` with centre and height filled in so that everything drawn fits into a picture of this size,
+/// in the middle of the space that `insets` leave. Keeps the fields that `def` gives. `origin_m` is the
+/// system's. If needs_motion(def), `drawn` must not be empty.
 [[nodiscard]] CameraDef fit_camera(const CameraDef& def, Vec2 origin_m, std::span<const Drawn> drawn,
                                    int width_px, int height_px, const Insets& insets = {});
 
 /// The map from metres (relative to the system's origin, y up) to pixels (y down).
 class Camera {
   public:
-    /// `def` must give centre and height. `origin_m` is that of the system.
+    /// `def` must give centre and height. `origin_m` is the system's.
     Camera(const CameraDef& def, Vec2 origin_m, int width_px, int height_px);
 
     [[nodiscard]] double x_px(double x_m) const {

@@ -14,12 +14,12 @@ namespace corda {
 /// The colours that a scene has by default: on a dark ground for screens, or on white paper.
 enum class Theme { kDark, kPaper };
 
-/// What is behind everything: a colour, or one that changes evenly from the top of the picture to the bottom.
+/// Background: one colour, or an even gradient from the top of the picture to the bottom.
 struct Ground {
     Color top;
     Color bottom;
 
-    /// Whether nothing behind the picture shows through.
+    /// True if nothing behind the picture shows through.
     [[nodiscard]] bool is_opaque() const { return top.a == 255 && bottom.a == 255; }
 
     friend bool operator==(const Ground&, const Ground&) = default;
@@ -28,14 +28,14 @@ struct Ground {
 /// Which particles get a marker.
 enum class Markers { kNone, kPinned, kAll };
 
-/// Which bars are drawn as lines of their own: real ones over the ropes and nets, imaginary ones behind them.
+/// Bars drawn as separate lines: real ones over the ropes and nets, imaginary ones behind them.
 enum class Bars { kNone, kReal, kAll };
 
-/// What the colours of ropes and nets tell: which body it is; a quantity of each link, by a scale of the
-/// whole motion; or the colours that a body gives to its links (BodyStyleDef::link_colors).
+/// Meaning of the colours of ropes and nets: the body; a quantity of each link, on a scale for the whole
+/// motion; or the colours that a body gives to its links (BodyStyleDef::link_colors).
 enum class ColorBy { kBody, kTension, kSpeed, kStrain, kLink };
 
-/// The quantity; std::nullopt if it is none.
+/// The quantity shown; std::nullopt if none.
 [[nodiscard]] constexpr std::optional<Quantity> quantity_of(ColorBy by) {
     switch (by) {
         case ColorBy::kTension:
@@ -51,8 +51,8 @@ enum class ColorBy { kBody, kTension, kSpeed, kStrain, kLink };
     return std::nullopt;
 }
 
-/// How a scene looks. Widths are in pixels of the output; the defaults grow with its shorter side. What is
-/// not given is the theme's.
+/// Style of a scene. Widths are in output pixels; their defaults grow with the shorter side. Fields that are
+/// not given come from the theme.
 struct StyleDef {
     std::optional<Theme> theme;  ///< default: kDark
     std::optional<Ground> background;
@@ -78,19 +78,19 @@ struct StyleDef {
     std::optional<Color> imaginary_bar_color;
 };
 
-/// What one rope or net overrides in the style.
+/// Style overrides of one rope or net.
 struct BodyStyleDef {
     std::optional<Color> color;
-    /// Of its links in turn, for ColorBy::kLink, with the alpha of the first; empty: all as `color`.
+    /// Colours of its links in turn, for ColorBy::kLink, with the alpha of the first; empty: `color`.
     std::vector<Color> link_colors;
     std::optional<double> width_px;  ///< 0.1 .. 1000; default: rope_width_px, or net_width_px for a net
 };
 
-/// What a live plot shows against the time: the energy; the position of a tip; or, in the plane of both, its
+/// Content of a live plot: the energy or the position of a tip over time, or the phase plane of the tip's
 /// horizontal position and velocity.
 enum class LivePlot { kNone, kEnergy, kTip, kPhase };
 
-/// What stands in words at the edges of a picture, or beside it.
+/// Texts and plots at the edges of a picture.
 struct OverlayDef {
     /// The time; default: on an opaque ground, if the shorter side has at least 160 px.
     std::optional<bool> time;
@@ -104,7 +104,7 @@ struct OverlayDef {
     std::optional<double> text_px;
 };
 
-/// Where the camera looks. What is not given is fitted to the whole motion.
+/// Camera position. Fields that are not given are fitted to the whole motion.
 struct CameraDef {
     std::optional<Vec2> center_m;    ///< middle of the picture, in world coordinates; -1e9 .. 1e9
     std::optional<double> height_m;  ///< height of the picture in metres, 1e-9 .. 4e9

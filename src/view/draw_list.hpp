@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,7 +54,7 @@ struct Layer {
     /// Each capsule has its tint, with the alpha of `color`. Where several cover a pixel it gets their mean,
     /// in which one counts little beyond the ends of its segment: links in line meet at a sharp edge.
     bool is_tinted = false;
-    bool is_note = false;  ///< says something of the scene and is nothing of it
+    bool is_note = false;  ///< an annotation, not part of the scene
 };
 
 /// A line of text. Font::write() adds it to a draw list.
@@ -65,13 +67,13 @@ struct Text {
     std::string utf8;
 };
 
-/// What is painted over the layers: a filled rectangle, or the glyphs of a text.
+/// A filled rectangle or the glyphs of a text, painted over the layers.
 struct Stamp {
     static constexpr std::size_t kSolid = static_cast<std::size_t>(-1);
 
     PixelRect box;  ///< within the frame, not empty
     Color color;
-    /// Where DrawList::coverage has the coverage of the box, row by row; kSolid: all of it is covered.
+    /// Index in DrawList::coverage of the box's coverage, row by row; kSolid: fully covered.
     std::size_t first_coverage = kSolid;
 };
 
@@ -83,10 +85,10 @@ struct DrawList {
     std::vector<Capsule> capsules;
     std::vector<Layer> layers;  ///< contiguous and in the order of `capsules`
     std::vector<Stamp> stamps;
-    std::vector<std::uint8_t> coverage;  ///< of the stamps, 0 .. 255
-    std::vector<Text> texts;             ///< what the stamps that are not solid say
+    std::vector<std::uint8_t> coverage;  ///< coverage of the stamps, 0 .. 255
+    std::vector<Text> texts;             ///< texts of the stamps that are not solid
 
-    /// Whether all capsules of layers that are no notes are outside of the frame, or there are none.
+    /// True if no capsule is inside the frame, apart from annotations.
     [[nodiscard]] bool shows_nothing() const;
     [[nodiscard]] bool has_tints() const;
     /// Removes layers and stamps, but keeps their memory.
@@ -102,8 +104,40 @@ struct DrawList {
     void add_box(const PixelRect& box, Color color);
 };
 
-/// How far beyond its radii a capsule can still touch a pixel, in pixels: half a pixel of smooth edge, and
-/// slack for rounding.
+/// Distance in pixels beyond its radii at which a capsule can still touch a pixel: half a pixel of smooth
+/// edge, and slack for rounding.
 inline constexpr float kEdgeMargin = 1.0F;
+
+/// The capsule of `radius_px`, with a halo of `halo_px` more, around the segment from `a` to `b`;
+/// std::nullopt if it cannot touch a frame of `width` x `height` pixels, or if a coordinate is not a number.
+/// A segment that leaves the frame is cut beyond the visible part, so that every coordinate fits into a
+/// float; points farther than 1e30 pixels away count as that far.
+[[nodiscard]] std::optional<Capsule> make_capsule(PixelPoint a, PixelPoint b, double radius_px, int width,
+                                                  int height, double halo_px = 0.0);
+
+/// Bounding box, in pixels, of the points within `extent` of a capsule's segment.
+struct Surroundings {
+    float x0;
+    float y0;
+    float x1;
+    float y1;
+};
+[[nodiscard]] Surroundings surroundings(const Capsule& capsule, float extent);
+
+/// The part of the frame that a capsule may touch.
+[[nodiscard]] PixelRect capsule_bounds(const Capsule& capsule, int width, int height);
+
+/// Points of a curve.
+struct Arc {
+    static constexpr std::size_t kMaxPoints = 49;
+    std::array<PixelPoint, kMaxPoints> points;
+    std::size_t count = 0;
+};
+
+/// The shape of a slack line of `length_px` between two points that are closer than that: an arc that hangs
+/// towards `down`, a unit vector. The parabola a + t (b - a) + 4 t (1 - t) s down, 0 <= t <= 1, as equal
+/// steps in t, with the sag s that gives these steps the length. It is symmetric, and it moves steadily if
+/// the ends do: for ends one above the other it is folded. The points include `a` and `b`.
+[[nodiscard]] Arc hang_slack(PixelPoint a, PixelPoint b, double length_px, PixelPoint down);
 
 }  // namespace corda::view

@@ -1,6 +1,7 @@
 #include "corda/view/font.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -11,6 +12,25 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/view/font_data.hpp"
+
+// DejaVu Sans as Debian ships it; its licence (of Bitstream Vera) allows copies as part of programs. The
+// assembler reads the file: as an array it would take the compiler half a minute.
+__asm__(
+    ".pushsection .rodata\n"
+    ".hidden corda_font_begin\n"
+    ".hidden corda_font_end\n"
+    ".global corda_font_begin\n"
+    ".global corda_font_end\n"
+    "corda_font_begin:\n"
+    ".incbin \"" CORDA_FONT
+    "\"\n"
+    "corda_font_end:\n"
+    ".popsection\n");
+
+extern "C" {
+extern const unsigned char corda_font_begin[] __attribute__((visibility("hidden")));
+extern const unsigned char corda_font_end[] __attribute__((visibility("hidden")));
+}
 
 namespace corda::view {
 namespace {
@@ -41,6 +61,22 @@ void check_font(FT_Error error) {
 }
 
 }  // namespace
+
+FontFile::FontFile() {
+    FT_Error error = FT_Init_FreeType(&library_);
+    if (error == 0) {
+        error = FT_New_Memory_Face(library_, corda_font_begin,
+                                   static_cast<FT_Long>(corda_font_end - corda_font_begin), 0, &face_);
+        if (error != 0) FT_Done_FreeType(library_);
+    }
+    if (error != 0)
+        throw Error(ExitCode::kInternal, "FreeType: the font cannot be read: error " + std::to_string(error));
+}
+
+FontFile::~FontFile() {
+    FT_Done_Face(face_);
+    FT_Done_FreeType(library_);
+}
 
 struct Font::Impl {
     /// One character at one size, as FreeType renders it.
@@ -101,6 +137,14 @@ Font::Font(Font&&) noexcept = default;
 Font& Font::operator=(Font&&) noexcept = default;
 Font::~Font() = default;
 
+std::string missing_glyph(const std::string& text) {
+    const std::string missing = text.empty() ? "" : Font().missing(text);
+    if (missing.empty()) return "";
+    const bool is_one = missing.find(',') == std::string::npos;
+    return "the font, DejaVu Sans, has no " + missing + "; leave " +
+           (is_one ? "that character" : "these characters") + " out";
+}
+
 std::string Font::missing(std::string_view utf8) const {
     std::vector<char32_t> missing;
     while (!utf8.empty()) {
@@ -149,12 +193,22 @@ void Font::write(const Text& text, DrawList& list) {
     list.texts.push_back(text);
 }
 
-std::string missing_glyph(const std::string& text) {
-    const std::string missing = text.empty() ? "" : Font().missing(text);
-    const bool is_one = missing.find(',') == std::string::npos;
-    return missing.empty() ? ""
-                           : "the font, DejaVu Sans, has no " + missing + "; leave " +
-                                 (is_one ? "that character" : "these characters") + " out";
+int rounded(double px) {
+    return static_cast<int>(std::lround(px));
+}
+
+int em_of(int side_px) {
+    constexpr double kEm = 1.0 / 40.0;
+    constexpr double kSmallEm = 1.0 / 16.0;  // of frames in which kEm is too small to read
+    constexpr double kReadablePx = 12.0;
+    constexpr double kMinPx = 7.0;
+    return rounded(std::max({kEm * side_px, std::min(kReadablePx, kSmallEm * side_px), kMinPx}));
+}
+
+int edge_of(int side_px, int em_px) {
+    constexpr double kEdge = 0.03;
+    constexpr double kEdgePerEm = 0.45;
+    return rounded(std::max(kEdge * side_px, kEdgePerEm * em_px));
 }
 
 }  // namespace corda::view

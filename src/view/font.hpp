@@ -25,12 +25,12 @@ class Font {
     /// The characters of a text that the font does not have, each once and in order, as "U+1F9F6, U+6F22";
     /// empty if it has all.
     [[nodiscard]] std::string missing(std::string_view utf8) const;
-    /// From the left end of a text to where the next one would begin, in pixels.
+    /// Advance width of a text, in pixels.
     [[nodiscard]] int width_px(std::string_view utf8, int size_px);
-    /// The smallest rectangle around what write() paints of a text, wherever the frame ends; empty if that is
-    /// nothing.
+    /// Bounding box of the pixels that write() paints of a text, not cut off by a frame; empty if there are
+    /// none.
     [[nodiscard]] PixelRect ink(const Text& text);
-    /// Adds a text on top of the other stamps. What is outside of the frame is cut off.
+    /// Adds a text on top of the other stamps, cut off at the edges of the frame.
     void write(const Text& text, DrawList& list);
 
   private:
@@ -38,8 +38,20 @@ class Font {
     std::unique_ptr<Impl> impl_;
 };
 
-/// Why a text cannot be drawn: "the font, DejaVu Sans, has no U+1F9F6; leave that character out". Empty if it
-/// can.
+/// The reason a text cannot be shown: "the font, DejaVu Sans, has no U+1F9F6; leave that character out".
+/// Empty if it can.
 [[nodiscard]] std::string missing_glyph(const std::string& text);
+
+// Sizes of texts, as shares of the em.
+inline constexpr double kAscent = 0.76;   ///< of DejaVu's capitals
+inline constexpr double kDescent = 0.24;  ///< below the baseline
+inline constexpr double kLine = 1.5;      ///< from a baseline to the next
+inline constexpr double kGap = 0.4;       ///< between a text and what else is drawn
+
+[[nodiscard]] int rounded(double px);
+/// The em in a frame whose shorter side is `side_px`.
+[[nodiscard]] int em_of(int side_px);
+/// From the edges of that frame to its texts, of that em.
+[[nodiscard]] int edge_of(int side_px, int em_px);
 
 }  // namespace corda::view

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "corda/view/color_scale.hpp"
+#include "corda/view/colors.hpp"
 
 namespace corda::view {
 
@@ -20,7 +20,7 @@ struct RoundNumber {
     int digit = 1;
     int exponent = 0;
 
-    /// So many of it, rounded once as far as that goes: 0.3 is 3 tenths.
+    /// `count` times the number, rounded once if possible: 0.3 is 3 tenths.
     [[nodiscard]] double times(double count) const {
         const double power = power_of_10(exponent < 0 ? -exponent : exponent);
         return exponent < 0 ? count * digit / power : count * digit * power;
@@ -28,7 +28,7 @@ struct RoundNumber {
     [[nodiscard]] double value() const { return times(1.0); }
 };
 
-/// The largest one that is not above a value, the least that is not below it. The value is normal and
+/// The largest round number not above a value, and the smallest not below it. The value must be normal and
 /// positive.
 [[nodiscard]] RoundNumber round_number_below(double value);
 [[nodiscard]] RoundNumber round_number_above(double value);
@@ -36,16 +36,16 @@ struct RoundNumber {
 /// "20 cm": `digit` times 10 to the power of `exponent` metres.
 [[nodiscard]] std::string length_text(int digit, int exponent);
 
-/// "−0.25": at most so many digits, and a minus sign that is as wide as a plus.
+/// "−0.25": at most `digits` digits, and a minus sign as wide as a plus.
 [[nodiscard]] std::string number_text(double value, int digits = 6);
 
-/// What stands beside numbers: "tension (kN)", and what values are divided by for that unit.
+/// Title of numbers, such as "tension (kN)", and the divisor of their values for this unit.
 struct NumberTitle {
     std::string text;
     double unit = 1.0;
 };
 
-/// For values of this size. `unit` is one that takes a prefix, or empty for bare numbers.
+/// The title for values up to `largest`. `unit` takes a prefix, or is empty for bare numbers.
 [[nodiscard]] NumberTitle title_of(const std::string& name, const std::string& unit, double largest);
 [[nodiscard]] NumberTitle title_of(const ColorScale& scale);
 

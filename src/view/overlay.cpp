@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "corda/view/lettering.hpp"
-#include "corda/view/look.hpp"
+#include "corda/view/colors.hpp"
+#include "corda/view/font.hpp"
 #include "corda/view/number_text.hpp"
 
 namespace corda::view {

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "corda/view/camera.hpp"
-#include "corda/view/color_scale.hpp"
+#include "corda/view/colors.hpp"
 #include "corda/view/defs.hpp"
 #include "corda/view/draw_list.hpp"
 #include "corda/view/font.hpp"
@@ -14,34 +14,34 @@
 
 namespace corda::view {
 
-/// What an overlay says of one picture.
+/// Texts of an overlay for one picture.
 struct Caption {
     std::optional<double> time_s;  ///< std::nullopt: no time is shown
     std::optional<double> energy_error;
     std::string method;
 };
 
-/// The words and the scale bar at the edges of a picture, and the plot beside it. Time and energy stand at
-/// the lower left, the scale bar at the lower right, title and method at the upper left, the legend at the
-/// upper right. A title or a method that is too long is shortened; what else has no room is left out.
+/// Texts and scale bar at the edges of a picture, and the plot beside it. Time and energy are at the lower
+/// left, the scale bar at the lower right, title and method at the upper left, the legend at the upper right.
+/// A long title or method is shortened; other items without room are left out.
 class Overlay {
   public:
-    /// `interval_s`: between frames; so many decimals has the time. `end_s`: of the scene; the time always
-    /// has the width of that of the last frame before it.
+    /// `interval_s`: frame interval, which sets the number of decimals of the time. `end_s`: end of the
+    /// scene; every time is as wide as that of the last frame.
     Overlay(const OverlayDef& def, const StyleDef& style, int width, int height, double interval_s,
             double end_s);
 
-    /// What the camera is to keep clear of what it fits.
+    /// Space that the camera must leave free.
     [[nodiscard]] Insets insets() const;
-    /// The scale of the legend; without one there is none.
+    /// Sets the scale of the legend; without a scale there is no legend.
     void set_scale(const ColorScale& scale) { scale_ = scale; }
-    /// What the plot shows; without it there is none.
+    /// Sets the data of the plot; without data there is no plot.
     void set_plot(const PlotData& data, std::span<const Color> body_colors) {
         plot_.set_data(data, body_colors, font_);
     }
     /// Adds the curves of the plot up to a time.
     void draw_curves(double time_s, DrawList& list) const { plot_.draw_curves(time_s, list); }
-    /// Adds the stamps of a picture of that scale.
+    /// Adds the stamps of a picture with this camera scale.
     void draw(const Caption& caption, double pixels_per_metre, DrawList& list);
 
   private:
@@ -50,9 +50,9 @@ class Overlay {
     /// The baselines from the upper edge.
     [[nodiscard]] int title_baseline_px() const;
     [[nodiscard]] int method_baseline_px() const;
-    /// That of the numbers of the legend.
+    /// Baseline of the legend's numbers.
     [[nodiscard]] int legend_baseline_px() const;
-    /// With blanks, so that it has the width of that of the last frame.
+    /// Padded to the width of the last frame's time.
     [[nodiscard]] std::string wide_time_text(double time_s) const;
     /// Writes a text at the left end of the lower baseline if it ends before `end_px`; returns where the next
     /// may begin.
@@ -73,8 +73,8 @@ class Overlay {
     bool legend_;
     std::optional<ColorScale> scale_;
     Color color_;
-    Insets panel_;  ///< what the plot takes
-    int width_;     ///< of what it leaves
+    Insets panel_;  ///< space taken by the plot
+    int width_;     ///< width left by the plot
     int height_;
     int side_px_;  ///< the shorter one of the frame
     int em_px_;

@@ -13,20 +13,20 @@
 
 namespace corda::view {
 
-/// Where a curve is at a time.
+/// A point of a curve at one time.
 struct CurvePoint {
     double time_s = 0.0;
     double x = 0.0;
     double y = 0.0;
 };
 
-/// What a live plot shows.
+/// Data of a live plot.
 struct PlotData {
     struct Curve {
         std::string name;                     ///< empty: it needs none
         std::vector<CurvePoint> points = {};  ///< in order of time, at least one; of the same times for all
     };
-    /// What stands at an axis, the unit of its values, which takes a prefix, and how far it extends at least.
+    /// Title of an axis, the unit of its values, which takes a prefix, and the minimum extent.
     struct AxisName {
         std::string text;
         std::string unit;
@@ -35,10 +35,10 @@ struct PlotData {
 
     AxisName x;
     AxisName y;
-    /// x is the time, from 0 to this; 0: it is something else.
+    /// End of the x axis if x is the time; 0 otherwise.
     double end_s = 0.0;
     std::vector<Curve> curves;  ///< 1 .. 3, the first in front
-    /// Which body they are of; std::nullopt: all.
+    /// The body of the curves; std::nullopt: all bodies.
     std::optional<std::size_t> body = {};
 };
 
@@ -55,12 +55,12 @@ class PlotPanel {
   public:
     PlotPanel(const StyleDef& style, int width_px, int height_px);
 
-    /// Fits the axes to what is plotted. Before, nothing is drawn. Of a body, the first curve has the colour;
-    /// other curves have colours that no body has.
+    /// Sets the data and fits the axes to them. Nothing is drawn before the first call. If the data belong to
+    /// a body, the first curve has its colour; other curves have colours of no body.
     void set_data(const PlotData& data, std::span<const Color> body_colors, Font& font);
     /// Adds the curves up to a time, between points by straight lines.
     void draw_curves(double time_s, DrawList& list) const;
-    /// Adds what does not change.
+    /// Adds the parts that do not change.
     void draw_axes(DrawList& list, Font& font) const;
 
   private:

@@ -5,21 +5,41 @@
 #include <span>
 #include <vector>
 
-#include "corda/sim/bounds.hpp"
-#include "corda/sim/distance.hpp"
+#include "corda/core/image.hpp"
+#include "corda/sim/defs.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/camera.hpp"
-#include "corda/view/color_scale.hpp"
+#include "corda/view/colors.hpp"
 #include "corda/view/defs.hpp"
 #include "corda/view/draw_list.hpp"
-#include "corda/view/look.hpp"
 #include "corda/view/supports.hpp"
-#include "corda/view/trail.hpp"
 
 namespace corda::view {
 
-/// Turns states into draw lists. Construction decides what is drawn and in which layer; each frame decides
-/// where.
+/// A former position of a particle.
+struct TrailPoint {
+    double age_s = 0.0;
+    Vec2 at_m;  ///< relative to the system's origin
+};
+
+/// The path of a particle in order of time, up to its place in the picture.
+using Trail = std::vector<TrailPoint>;
+
+/// A point of a trail in pixels, with its remaining strength: 1 now, 0 at the end of the trail.
+struct FadingPoint {
+    PixelPoint at;
+    double left = 0.0;
+};
+
+/// The free ends of open ropes, one each: the last particle before the first.
+[[nodiscard]] std::vector<std::size_t> free_ends(const System& system);
+
+/// Adds a smooth curve through the points of a path, no two of which may have the same age. It fades in alpha
+/// and width. Each of its layers holds the part younger than that of the layer below, so that the layers add
+/// up without a seam where pieces meet or cross. `radius_px` is the radius at the young end.
+void add_trail(std::span<const FadingPoint> points, double radius_px, Color color, DrawList& list);
+
+/// Turns states into draw lists. The content and its layers are chosen at construction, positions per frame.
 ///
 /// From back to front: trails; imaginary bars; each body, its links and then its balls; real bars, markers of
 /// free particles, supports, markers of pinned particles.
@@ -30,16 +50,16 @@ class SceneView {
     SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& style,
               const std::vector<BodyStyleDef>& body_styles, int width, int height);
 
-    /// Whether pictures depend on what happens during the whole motion, whatever the camera.
+    /// True if pictures depend on the whole motion, whatever the camera.
     [[nodiscard]] bool needs_motion() const;
-    /// Colours links by a quantity: those of the states have what it needs. Before, they have one colour.
+    /// Colours links by a quantity, whose fields the states must have. Links have one colour before the call.
     void set_scale(const ColorScale& scale) { scale_ = scale; }
-    /// Chooses the supports by the bounds of each particle. Before, there are none.
+    /// Chooses the supports by the bounds of each particle. There are none before the call.
     void set_motion(std::span<const MotionBounds> motion);
-    /// All that is drawn of particles that stay within `motion`.
+    /// Extents of everything drawn for particles that stay within `motion`.
     [[nodiscard]] std::vector<Drawn> drawn(std::span<const MotionBounds> motion) const;
 
-    /// One per body; of links that differ, that of the first.
+    /// The colour of each body; of its first link if links differ.
     [[nodiscard]] std::vector<Color> body_colors() const;
 
     /// The particles whose paths are drawn: the free ends of open ropes, the last before the first. Empty
@@ -51,11 +71,11 @@ class SceneView {
     void draw(const State& state, const Camera& camera, DrawList& list,
               std::span<const Trail> trails = {}) const;
 
-    // The steps of draw(), for several poses in one picture: once, once, for each pose, once.
+    // The steps of draw(), for several poses in one picture: draw_pose() once per pose, the others once.
     void start(DrawList& list) const;
     void draw_trails(std::span<const Trail> trails, const Camera& camera, DrawList& list) const;
     void draw_pose(const State& state, const Camera& camera, DrawList& list) const;
-    /// What never moves; `state` is any.
+    /// Draws the supports, which never move; any `state` will do.
     void draw_supports(const State& state, const Camera& camera, DrawList& list) const;
 
   private:

@@ -4,16 +4,15 @@
 #include <span>
 #include <vector>
 
-#include "corda/sim/bounds.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/camera.hpp"
 #include "corda/view/draw_list.hpp"
 
 namespace corda::view {
 
-/// What pinned particles hang from: a hatched plate if nothing of the body ever rises above the pin, else a
-/// ring. "Above" is the direction along an axis that is closest to that against gravity; without gravity all
-/// are rings. Plates that touch are one.
+/// Supports of pinned particles: a hatched plate if no part of the body ever rises above the pin, otherwise a
+/// ring. "Above" is the axis direction closest to the one against gravity; without gravity all supports are
+/// rings. Touching plates are merged.
 class Supports {
   public:
     /// None.
@@ -23,7 +22,7 @@ class Supports {
     Supports(const System& system, Vec2 gravity_m_s2, std::span<const MotionBounds> motion, double side_px,
              std::span<const double> line_px);
 
-    /// Adds where they are.
+    /// Adds the extents of the supports.
     void list(std::vector<Drawn>& drawn) const;
     /// Draws into the last layer of `list`.
     void draw(const Camera& camera, DrawList& list) const;

@@ -9,7 +9,7 @@
 
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/exact/chain_dynamics.hpp"
-#include "corda/sim/exact/chain_part.hpp"
+#include "corda/sim/exact/chain_series.hpp"
 #include "corda/sim/exact/exact.hpp"
 #include "support/unstopped.hpp"
 

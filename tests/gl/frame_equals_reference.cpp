@@ -10,7 +10,7 @@
 #include "corda/gl/context.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/render/reference_renderer.hpp"
-#include "corda/view/capsule.hpp"
+#include "corda/view/draw_list.hpp"
 #include "corda/view/font.hpp"
 #include "support/draw_lists.hpp"
 #include "support/failure.hpp"

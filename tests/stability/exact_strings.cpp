@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "corda/reference/ropes.hpp"
-#include "corda/sim/distance.hpp"
+#include "corda/sim/defs.hpp"
 #include "corda/sim/exact/string/part.hpp"
 #include "support/strings.hpp"
 #include "support/unstopped.hpp"

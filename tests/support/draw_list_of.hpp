@@ -7,10 +7,10 @@
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/live_plot_data.hpp"
-#include "corda/sim/bounds.hpp"
-#include "corda/sim/spread.hpp"
+#include "corda/sim/recording.hpp"
+#include "corda/sim/system.hpp"
 #include "corda/view/camera.hpp"
-#include "corda/view/color_scale.hpp"
+#include "corda/view/colors.hpp"
 #include "corda/view/overlay.hpp"
 #include "corda/view/scene_view.hpp"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "corda/view/capsule.hpp"
+#include "corda/view/draw_list.hpp"
 #include "corda/view/font.hpp"
 
 namespace corda::test {

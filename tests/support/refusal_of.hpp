@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "corda/sim/refusal.hpp"
 #include "corda/sim/solver.hpp"
+#include "corda/sim/validate.hpp"
 
 namespace corda::test {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "corda/sim/distance.hpp"
+#include "corda/sim/defs.hpp"
 #include "corda/sim/exact/exact.hpp"
 #include "corda/sim/rattle/rattle.hpp"
 #include "corda/sim/solver.hpp"

@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "corda/sim/rattle/rattle.hpp"
-#include "corda/sim/split.hpp"
+#include "corda/sim/system.hpp"
 
 namespace corda::sim {
 namespace {
 
 /// Tolerances of `exact` are powers of ten: a preview at another size, whose pixels are of nearly the same
-/// size, shows the same bits. They are told by their digits.
+/// size, shows the same bits. They are denoted by their digits.
 constexpr std::array<double, 16> kTolerance{1.0,  1e-1, 1e-2,  1e-3,  1e-4,  1e-5,  1e-6,  1e-7,
                                             1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15};
 constexpr std::size_t kMaxDigits = 3;
@@ -35,7 +35,7 @@ constexpr TightestDigits kSmooth{10, 12};
 constexpr TightestDigits kWithKinks{13, 15};
 
 /// A trial for closed ropes and nets: an order of `rattle` and how often its step is halved. In order of
-/// cost; each gains several digits on the one before.
+/// cost; each gains several digits over its predecessor.
 struct Rung {
     int order;
     int halvings;
@@ -88,7 +88,7 @@ std::vector<Trial> graph_trials(const System& system, const WorldDef& world, con
     return trials;
 }
 
-/// Whether two trials in a row diverged at the same time: a finer one would too.
+/// True if two trials in a row diverged at the same time: a finer trial would too.
 bool give_up_together(const Trial& a, const Trial& b) {
     return a.diverged && b.diverged && a.reached_s == b.reached_s;
 }
@@ -109,7 +109,7 @@ double farther(const System& system, const Trial& last, std::size_t left, double
 }
 
 /// The trial to run after number `failed`; those that would not reach the end either are left out. Errors of
-/// chaotic motions grow exponentially, so that each trial gains about as much time as the one before.
+/// chaotic motions grow exponentially, so that each trial gains about as much time as its predecessor.
 std::size_t next_trial(const System& system, const BodyPlan& plan, std::size_t failed, std::size_t count,
                        double end_s) {
     const std::size_t ran = plan.trials.size();
@@ -123,9 +123,9 @@ std::size_t next_trial(const System& system, const BodyPlan& plan, std::size_t f
     return next;
 }
 
-/// Whether even the tightest of all trials is not expected to tell a tenth of the motion. A horizon so early
-/// is not worth the tightest method's cost: the one that failed will do, unless it is so loose that energy
-/// is seen to change.
+/// True if even the tightest trial is not expected to predict a tenth of the motion. So early a horizon is
+/// not worth the cost of the tightest method: the failed trial is used, unless it is so loose that its energy
+/// visibly drifts.
 bool can_tell_little(const BodyPlan& plan, std::size_t failed, std::size_t count, double end_s) {
     constexpr double kLooseTolerance = 1e-6;
     constexpr std::size_t kRungs = 3;  // of `rattle`: orders 2 and 4 say little of 6 and 8
@@ -204,8 +204,8 @@ BodyPlan record_named(const System& system, const WorldDef& world, const PlanDef
     return plan;
 }
 
-/// Whether nothing of a recorded body ever moves because it is a plate, by Maxwell's count of its bars, that
-/// its pins hold.
+/// True if a recorded body never moves because it is a rigid plate (by Maxwell's count of its bars) held by
+/// its pins.
 bool stands_still(const System& system, const Recording& recording) {
     constexpr double kStill = 1e-9;  // of the length
     const Body& body = system.bodies.front();
@@ -220,7 +220,7 @@ bool stands_still(const System& system, const Recording& recording) {
     return near(start.min_m(), recording.bounds().min_m()) && near(start.max_m(), recording.bounds().max_m());
 }
 
-/// The plan of all bodies from those of each, and how often all particles together were integrated.
+/// Combines the plans of the bodies, and counts how often all particles together were integrated.
 void sum_up(const System& system, Plan& plan) {
     plan.error_bound_m = 0.0;
     std::size_t integrated = 0;
@@ -238,23 +238,6 @@ void sum_up(const System& system, Plan& plan) {
 }
 
 }  // namespace
-
-double step_cost_ns(const Body& body, const MethodDef& method) {
-    // Per particle and step at 20 to 1000 particles; of `rattle` at orders 2, 4, 6, 8.
-    constexpr double kExactCost = 140.0;
-    constexpr std::array<double, RattleDef::kOrders.size()> kChainCosts{45.0, 180.0, 330.0, 600.0};
-    constexpr double kStageCostInAGraph = 500.0;  // the factorisation of a cloth of 40 x 30
-    constexpr double kBarCost = 8.0;              // relaxation, per bar and sweep
-    const auto particles = static_cast<double>(body.particle_count);
-    if (const auto* relaxation = std::get_if<RelaxationDef>(&method))
-        return kBarCost * static_cast<double>(body.bar_count) * relaxation->sweeps;
-    if (const auto* rattle = std::get_if<RattleDef>(&method)) {
-        if (is_rigid_chain(body))
-            return kChainCosts[static_cast<std::size_t>(rattle->order / 2 - 1)] * particles;
-        return kStageCostInAGraph * particles * static_cast<double>(composition(rattle->order).stages.size());
-    }
-    return kExactCost * particles;
-}
 
 BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& def, Recording& recording) {
     const double interval_s = def.timeline.fps().interval_s();

@@ -7,9 +7,8 @@
 
 namespace corda::sim {
 
-/// Finds a method for the only body of `system` whose positions stay within the tolerance, and proves it by
-/// tighter runs beside the first. The states of the proved run are left in `recording`: they are what is
-/// drawn.
+/// Finds a method whose positions stay within the tolerance for the only body of `system`, and verifies it by
+/// tighter runs. `recording` then holds the states of the verified run, which are drawn.
 ///
 /// - Chains, and bodies that stretch: `exact` at the loosest sufficient tolerance, checked by runs ten
 ///   thousand times tighter, as far as rounding lets them be.
@@ -24,7 +23,7 @@ namespace corda::sim {
 [[nodiscard]] BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& def,
                                  Recording& recording);
 
-/// What moves each body; std::nullopt: plan_body() is to find it.
+/// The method of each body; std::nullopt: plan_body() chooses it.
 using NamedMethods = std::vector<std::optional<MethodDef>>;
 
 /// Plans the bodies one after the other; those whose method is named are run by it. The tolerance of each is
@@ -32,9 +31,5 @@ using NamedMethods = std::vector<std::optional<MethodDef>>;
 /// plan_body().
 [[nodiscard]] Plan plan_methods(const System& system, const NamedMethods& named, const WorldDef& world,
                                 const PlanDef& def, Recording& recording);
-
-/// The time that a step of a method takes for a body, in nanoseconds, on the machine on which its constants
-/// were measured: good for a rough forecast.
-[[nodiscard]] double step_cost_ns(const Body& body, const MethodDef& method);
 
 }  // namespace corda::sim

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "corda/sim/distance.hpp"
+#include "corda/sim/defs.hpp"
 
 namespace corda::sim {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "corda/sim/chain_tensions.hpp"
-#include "corda/sim/distance.hpp"
-#include "corda/sim/refusal.hpp"
+#include "corda/sim/defs.hpp"
+#include "corda/sim/validate.hpp"
 
 namespace corda::sim {
 namespace {

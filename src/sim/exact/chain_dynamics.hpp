@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "corda/sim/exact/chain_bending.hpp"
-#include "corda/sim/exact/dynamics.hpp"
+#include "corda/sim/exact/dop853.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::sim {

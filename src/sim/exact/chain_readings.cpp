@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "corda/sim/distance.hpp"
+#include "corda/sim/defs.hpp"
 #include "corda/sim/exact/chain_dynamics.hpp"
 
 namespace corda::sim {

@@ -4,7 +4,7 @@
 #include <cassert>
 #include <cmath>
 
-#include "corda/sim/distance.hpp"
+#include "corda/sim/defs.hpp"
 
 namespace corda::sim {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "corda/sim/elastic_forces.hpp"
-#include "corda/sim/exact/dynamics.hpp"
+#include "corda/sim/exact/dop853.hpp"
+#include "corda/sim/forces/elastic_forces.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::sim {

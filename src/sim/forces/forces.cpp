@@ -3,20 +3,52 @@
 #include <algorithm>
 #include <cmath>
 
-#include "corda/sim/distance.hpp"
-#include "corda/sim/forces/drag.hpp"
-#include "corda/sim/forces/gravity.hpp"
+#include <fmt/format.h>
+
+#include "corda/sim/defs.hpp"
 
 namespace corda::sim {
 namespace {
 
-constexpr ForceTerm (*kTerms[])(const WorldDef&) = {gravity, drag};
+/// One row per force. A new force needs nothing else but its field of WorldDef and its key.
+constexpr ForceKind kForces[] = {
+    // Gravity: the same acceleration for every mass.
+    {.term =
+         [](const WorldDef& world) {
+             return ForceTerm{world.gravity_m_s2, 0.0};
+         },
+     .problem = [](const WorldDef& world) -> const char* {
+         const Vec2 g = world.gravity_m_s2;
+         return std::isfinite(g.x) && std::isfinite(g.y) ? nullptr : "gravity_m_s2 is not finite";
+     },
+     .text =
+         [](const WorldDef& world) {
+             const Vec2 g = world.gravity_m_s2;
+             return g == Vec2{} ? "no gravity" : fmt::format("gravity of ({}, {}) m/s2", g.x, g.y);
+         }},
+    // Linear drag in still air: velocities alone decay by exp(-drag t).
+    {.term =
+         [](const WorldDef& world) {
+             return ForceTerm{{}, world.drag_1_s};
+         },
+     .problem = [](const WorldDef& world) -> const char* {
+         return world.drag_1_s >= 0.0 && std::isfinite(world.drag_1_s) ? nullptr : "drag_1_s is not >= 0";
+     },
+     .text =
+         [](const WorldDef& world) {
+             return world.drag_1_s == 0.0 ? "" : fmt::format("linear drag of {} 1/s, exact", world.drag_1_s);
+         }},
+};
 
 }  // namespace
 
+std::span<const ForceKind> force_kinds() {
+    return kForces;
+}
+
 Forces::Forces(const WorldDef& world) {
-    for (const auto term_of : kTerms) {
-        const ForceTerm term = term_of(world);
+    for (const ForceKind& kind : kForces) {
+        const ForceTerm term = kind.term(world);
         sum_.uniform_m_s2 = sum_.uniform_m_s2 + term.uniform_m_s2;
         sum_.drag_1_s += term.drag_1_s;
     }

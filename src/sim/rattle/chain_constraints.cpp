@@ -6,8 +6,7 @@
 #include <string>
 
 #include "corda/sim/chain_tensions.hpp"
-#include "corda/sim/refusal.hpp"
-#include "corda/sim/tridiagonal.hpp"
+#include "corda/sim/validate.hpp"
 
 namespace corda::sim {
 namespace {

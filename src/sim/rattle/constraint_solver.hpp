@@ -116,7 +116,7 @@ class ConstraintSolver {
     [[nodiscard]] std::span<const Link> links() const { return links_; }
 
   protected:
-    /// Of the rigid bars of a system that have an end whose inverse mass is not 0.
+    /// Handles the rigid bars of a system that have an end whose inverse mass is not 0.
     ConstraintSolver(const System& system, std::vector<double> inverse_mass_1_kg);
 
     /// The first and the last part of a stage: the change of all velocities, and the move.
@@ -133,5 +133,11 @@ class ConstraintSolver {
 /// determine the motion. `goes_on`: see Rattle.
 [[nodiscard]] std::unique_ptr<ConstraintSolver> make_constraint_solver(const System& system,
                                                                        const GoesOn& goes_on = {});
+
+/// The inverse masses of a system, 0 also for particles that can never move because they lie on a row of
+/// rigid bars that is straight between two that cannot: the top row of a net between its pinned corners. To
+/// first order the bars of such a row say nothing of its sideways motion, so a ConstraintSolver could not
+/// keep it.
+[[nodiscard]] std::vector<double> inverse_masses_with_taut_rows_held(const System& system);
 
 }  // namespace corda::sim

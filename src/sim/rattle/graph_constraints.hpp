@@ -1,15 +1,35 @@
 #pragma once
 
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "corda/core/stop_check.hpp"
 #include "corda/sim/rattle/constraint_solver.hpp"
-#include "corda/sim/rattle/stoppable_ldlt.hpp"
 
 namespace corda::sim {
+
+/// Eigen's sparse LDL', with a factorisation that can be broken off: that of a large net takes seconds.
+class StoppableLdlt final : public Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> {
+  public:
+    /// Factorises the matrix with this lower triangle, whose pattern has been analysed, by the operations of
+    /// Eigen's factorize() in their order (T. Davis, Algorithm 849, ACM Transactions on Mathematical Software
+    /// 31 (2005) 587). False if a pivot is 0. If `stop` throws, there are no factors.
+    [[nodiscard]] bool factorize(const Eigen::SparseMatrix<double>& lower, StopCheck& stop);
+
+  private:
+    /// Writes the columns of the pattern of row k of L to the end of pattern_, and that row of the matrix to
+    /// row_. Returns where the pattern begins.
+    int scatter(const Eigen::SparseMatrix<double>& upper, int k);
+
+    Eigen::VectorXd row_;
+    VectorI pattern_;
+    VectorI visited_by_;
+};
 
 /// Bars in any graph: closed ropes, nets. The matrix G W G' at the start of a stage is factorised once per
 /// stage (Eigen's sparse LDL', its pattern and order analysed once) and used for all corrections of the

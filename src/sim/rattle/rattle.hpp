@@ -3,14 +3,28 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "corda/sim/elastic_forces.hpp"
-#include "corda/sim/rattle/composition.hpp"
+#include "corda/sim/forces/elastic_forces.hpp"
 #include "corda/sim/rattle/constraint_solver.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::sim {
+
+/// A symmetric composition: one step h consists of the steps `stages[0]` h, `stages[1]` h, ... of a symmetric
+/// method of order 2, some of them backwards.
+struct Composition {
+    int order = 2;
+    std::span<const double> stages;  ///< symmetric, with the sum 1
+    /// Largest omega h, rounded down, up to which the composed leapfrog stays bounded on an oscillation of
+    /// angular frequency omega: there the trace of its matrix first leaves [-2, 2].
+    double stable_omega_h = 2.0;
+};
+
+/// The composition of that order: 2, 4 (Suzuki, 5 stages), 6 (Kahan and Li, 9 stages) or 8 (Kahan and Li, 17
+/// stages). The numbers are those of Hairer, Lubich, Wanner, Geometric Numerical Integration, V.3.2.
+[[nodiscard]] const Composition& composition(int order);
 
 /// Method `rattle`: RATTLE (Andersen 1983; Hairer, Lubich, Wanner, Geometric Numerical Integration, VII.1.4)
 /// composed to order 2, 4, 6 or 8. A stage of span s, which may be negative, is
@@ -48,6 +62,13 @@ class Rattle final : public Solver {
     /// can end it: factorising the matrix of a large net takes seconds.
     Rattle(const System& system, const Forces& forces, const RattleDef& def, double frame_interval_s,
            const GoesOn& goes_on = {});
+
+    // Facts about the method: see solver.cpp.
+    static constexpr bool kKnowsTensions = true;
+    [[nodiscard]] static const char* problem_of(const RattleDef& def);
+    [[nodiscard]] static std::string text_of(const RattleDef& def);
+    [[nodiscard]] static double step_cost_ns(const RattleDef& def, const Body& body);
+    [[nodiscard]] static std::optional<double> fixed_step_s(const RattleDef& def) { return def.step_s; }
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;

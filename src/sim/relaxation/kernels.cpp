@@ -4,7 +4,7 @@
 #include <array>
 
 #include "corda/core/cpu.hpp"
-#include "corda/sim/distance.hpp"
+#include "corda/sim/defs.hpp"
 
 #if defined(__x86_64__)
 #include <immintrin.h>
@@ -51,7 +51,7 @@ struct Cursor {
     bool updates = false;    ///< this sweep is the first of a step
 };
 
-/// What the kernel needs of a schedule and of the motion, at hand.
+/// Pointers into a schedule and a motion.
 struct Pointers {
     const RelaxationPacket* packets;
     const std::uint8_t* next_is_independent;
@@ -231,7 +231,7 @@ void run_by_avx2(const Pointers& p, std::span<Cursor> sweeps, std::size_t packet
     kRun[sweeps.size() - 1](p, sweeps.data(), packets);
 }
 
-/// Runs sweeps of `length` packets, each at least `lag` packets behind the one before.
+/// Runs sweeps of `length` packets, each at least `lag` packets behind its predecessor.
 void run_staggered(const Pointers& p, const RelaxationSweeps& sweeps, std::size_t length, std::size_t lag,
                    bool is_by_avx2) {
     const auto run_together = is_by_avx2 ? run_by_avx2 : run_by_sse2;

@@ -8,7 +8,7 @@
 
 namespace corda::sim {
 
-/// What moves in a relaxation: x and y of each particle in turn.
+/// State of a relaxation: x and y of each particle, interleaved.
 struct RelaxationMotion {
     std::vector<double> position_m;
     std::vector<double> move_m;       ///< Verlet's move in this step, without what the bars add to it

@@ -4,10 +4,12 @@
 #include <cassert>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "corda/core/cpu.hpp"
-#include "corda/sim/distance.hpp"
-#include "corda/sim/refusal.hpp"
-#include "corda/sim/step_grid.hpp"
+#include "corda/sim/defs.hpp"
+#include "corda/sim/solver.hpp"
+#include "corda/sim/validate.hpp"
 
 namespace corda::sim {
 namespace {
@@ -113,6 +115,24 @@ Relaxation::Relaxation(const System& system, const Forces& forces, const Relaxat
     } else {
         schedules_ = schedule_bodies(system);
     }
+}
+
+const char* Relaxation::problem_of(const RelaxationDef& def) {
+    if (def.step_s && !(*def.step_s > 0.0 && std::isfinite(*def.step_s))) return "step_s is not > 0";
+    if (def.sweeps < 1) return "sweeps is not >= 1";
+    if (!(def.delta >= 0.0 && def.delta < 1.0)) return "delta is not within 0 .. 1";
+    const bool is_finite = !def.force_n || (std::isfinite(def.force_n->x) && std::isfinite(def.force_n->y));
+    return is_finite ? nullptr : "force_n is not finite";
+}
+
+std::string Relaxation::text_of(const RelaxationDef& def) {
+    return fmt::format("relaxation with {} sweep{}", def.sweeps, def.sweeps == 1 ? "" : "s") +
+           (def.step_s ? fmt::format(", step {:.6g} s", *def.step_s) : "");
+}
+
+double Relaxation::step_cost_ns(const RelaxationDef& def, const Body& body) {
+    constexpr double kPerBarAndSweep = 8.0;
+    return kPerBarAndSweep * static_cast<double>(body.bar_count) * def.sweeps;
 }
 
 Status Relaxation::advance_to(double time_s, State& state, StopCheck& stop) {

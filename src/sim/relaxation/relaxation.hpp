@@ -18,8 +18,8 @@ namespace corda::sim {
 ///
 /// The update is kept in its summed form: a particle carries its last move d = current - previous, and
 /// d <- (1 - delta) d + (h^2 / m) f, current <- current + d; then d takes up what the bars moved. The numbers
-/// are the same but for rounding, which grows with the number of steps instead of its square (Hairer, Lubich,
-/// Wanner, Geometric Numerical Integration, VIII.5).
+/// are the same except for rounding, which grows with the number of steps instead of its square (Hairer,
+/// Lubich, Wanner, Geometric Numerical Integration, VIII.5).
 ///
 /// The first position is an Euler step, x(h) = x(0) + h v(0), as in the report. The state at n h is therefore
 /// Verlet's after n - 1 updates, and free fall is late by -g h t / 2. A drag c acts as damping too: it
@@ -31,6 +31,16 @@ class Relaxation final : public Solver {
     /// `default_step_s`: the step if `def` names none. `kernel` changes the time taken, not the bits.
     Relaxation(const System& system, const Forces& forces, const RelaxationDef& def, double default_step_s,
                RelaxationKernel kernel = relaxation_kernels().back());
+    Relaxation(const System& system, const Forces& forces, const RelaxationDef& def, double default_step_s,
+               const GoesOn& /*goes_on*/)
+        : Relaxation(system, forces, def, default_step_s) {}
+
+    // Facts about the method: see solver.cpp.
+    static constexpr bool kKnowsTensions = false;
+    [[nodiscard]] static const char* problem_of(const RelaxationDef& def);
+    [[nodiscard]] static std::string text_of(const RelaxationDef& def);
+    [[nodiscard]] static double step_cost_ns(const RelaxationDef& def, const Body& body);
+    [[nodiscard]] static std::optional<double> fixed_step_s(const RelaxationDef& def) { return def.step_s; }
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;
@@ -41,7 +51,6 @@ class Relaxation final : public Solver {
 
   private:
     void advance(std::uint64_t steps, StopCheck& stop);
-    /// Runs sweeps over some bars, to which `size` bars and particles belong, as one run_sweeps() would.
     void interpolate(double fraction, State& state) const;
 
     RelaxationDef def_;  ///< with its step

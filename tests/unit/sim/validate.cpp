@@ -8,7 +8,7 @@
 #include <string>
 
 #include "corda/reference/ropes.hpp"
-#include "corda/sim/refusal.hpp"
+#include "corda/sim/solver.hpp"
 
 namespace corda::sim {
 namespace {

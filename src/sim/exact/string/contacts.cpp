@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "corda/sim/distance.hpp"
+#include "corda/sim/defs.hpp"
 
 namespace corda::sim {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "corda/sim/distance.hpp"
-#include "corda/sim/refusal.hpp"
+#include "corda/sim/defs.hpp"
+#include "corda/sim/validate.hpp"
 
 namespace corda::sim {
 namespace {

@@ -1,14 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
+#include "corda/sim/exact/chain_dynamics.hpp"
 #include "corda/sim/exact/dop853.hpp"
-#include "corda/sim/exact/exact_part.hpp"
+#include "corda/sim/exact/exact.hpp"
 #include "corda/sim/exact/string/contacts.hpp"
-#include "corda/sim/exact/string/dynamics.hpp"
 #include "corda/sim/exact/string/events.hpp"
 #include "corda/sim/system.hpp"
 

@@ -3,13 +3,136 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <utility>
 
 #include "corda/sim/chain_tensions.hpp"
-#include "corda/sim/exact/string/interior_point.hpp"
 
 namespace corda::sim {
+namespace {
+
+constexpr int kMaxIterations = 100;
+
+/// The mean of z w, in parts of its first value, below which either z or w counts as 0.
+constexpr double kEnough = 1e-24;
+
+/// Of the longest step that keeps z and w positive.
+constexpr double kShareOfStep = 0.995;
+
+/// A pivot is at least this share of its row's diagonal entry, of which less is rounding.
+constexpr double kMinPivot = 1e-15;
+
+class InteriorPoint {
+  public:
+    /// Every unknown is scaled such that the matrix has the diagonal 1.
+    explicit InteriorPoint(TridiagonalLcp problem) : lcp_(std::move(problem)), size_(lcp_.right.size()) {
+        std::vector<double> scale(size_);
+        for (std::size_t k = 0; k < size_; ++k) scale[k] = 1.0 / std::sqrt(lcp_.diagonal[k]);
+        double largest = 0.0;
+        for (std::size_t k = 0; k < size_; ++k) {
+            lcp_.right[k] *= scale[k];
+            if (k + 1 < size_) lcp_.beside[k] *= scale[k] * scale[k + 1];
+            largest = std::max(largest, std::abs(lcp_.right[k]));
+        }
+        if (largest == 0.0) largest = 1.0;
+        z_.assign(size_, largest);
+        w_.assign(size_, largest);
+        for (std::vector<double>* const array : {&missing_, &pivot_, &dz_, &dw_, &aim_})
+            array->assign(size_, 0.0);
+    }
+
+    /// Iterates until either z or w is 0 in every row, or no step is possible.
+    void run(StopCheck& stop) {
+        const double enough = kEnough * mean_product(0.0);
+        for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+            const double mean = mean_product(0.0);
+            if (!(mean > enough)) return;
+            stop.spend(1 + size_);
+            factorise();
+            for (std::size_t k = 0; k < size_; ++k) aim_[k] = -z_[k] * w_[k];
+            find_step();
+            const double share = mean_product(longest_step()) / mean;
+            const double centre = share * share * share * mean;
+            for (std::size_t k = 0; k < size_; ++k) aim_[k] = centre - z_[k] * w_[k] - dz_[k] * dw_[k];
+            find_step();
+            const double step = std::min(1.0, kShareOfStep * longest_step());
+            if (!(step > 0.0)) return;
+            for (std::size_t k = 0; k < size_; ++k) {
+                z_[k] += step * dz_[k];
+                w_[k] += step * dw_[k];
+            }
+        }
+    }
+
+    [[nodiscard]] bool is_positive(std::size_t k) const { return z_[k] > w_[k]; }
+
+  private:
+    /// The mean of z w after a step of this length.
+    [[nodiscard]] double mean_product(double step) const {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < size_; ++k) sum += (z_[k] + step * dz_[k]) * (w_[k] + step * dw_[k]);
+        return sum / static_cast<double>(size_);
+    }
+
+    /// Factorises A + diag(w / z), and finds by how much the rows miss w = A z - b.
+    void factorise() {
+        for (std::size_t k = 0; k < size_; ++k) {
+            const double before = k > 0 ? lcp_.beside[k - 1] : 0.0;
+            const double from_before = k > 0 ? before * z_[k - 1] : 0.0;
+            const double from_after = k + 1 < size_ ? lcp_.beside[k] * z_[k + 1] : 0.0;
+            missing_[k] = w_[k] + lcp_.right[k] - z_[k] - from_before - from_after;
+            const double diagonal = 1.0 + w_[k] / z_[k];
+            const double rest = k > 0 ? diagonal - before * (before / pivot_[k - 1]) : diagonal;
+            pivot_[k] = std::max(rest, kMinPivot * diagonal);
+        }
+    }
+
+    /// The step at whose end the rows hold and, to first order, z w has changed by aim_.
+    void find_step() {
+        for (std::size_t k = 0; k < size_; ++k) {
+            dz_[k] = missing_[k] + aim_[k] / z_[k];
+            if (k > 0) dz_[k] -= lcp_.beside[k - 1] / pivot_[k - 1] * dz_[k - 1];
+        }
+        for (std::size_t k = size_; k-- > 0;) {
+            if (k + 1 < size_) dz_[k] -= lcp_.beside[k] * dz_[k + 1];
+            dz_[k] /= pivot_[k];
+        }
+        for (std::size_t k = 0; k < size_; ++k) dw_[k] = (aim_[k] - w_[k] * dz_[k]) / z_[k];
+    }
+
+    /// At most 1.
+    [[nodiscard]] double longest_step() const {
+        double step = 1.0;
+        for (std::size_t k = 0; k < size_; ++k) {
+            if (dz_[k] < 0.0) step = std::min(step, -z_[k] / dz_[k]);
+            if (dw_[k] < 0.0) step = std::min(step, -w_[k] / dw_[k]);
+        }
+        return step;
+    }
+
+    TridiagonalLcp lcp_;
+    std::size_t size_;
+    std::vector<double> z_;
+    std::vector<double> w_;
+    std::vector<double> missing_;  ///< w + b - A z
+    std::vector<double> pivot_;
+    std::vector<double> dz_;
+    std::vector<double> dw_;
+    std::vector<double> aim_;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> guess_positive(TridiagonalLcp problem, StopCheck& stop) {
+    std::vector<std::uint8_t> is_positive(problem.right.size());
+    if (is_positive.empty()) return is_positive;
+    InteriorPoint point(std::move(problem));
+    point.run(stop);
+    for (std::size_t k = 0; k < is_positive.size(); ++k) is_positive[k] = point.is_positive(k) ? 1 : 0;
+    return is_positive;
+}
+
 namespace {
 
 /// Exchanges of whole blocks in a row that may fail to leave fewer wrong signs than ever before; Judice and

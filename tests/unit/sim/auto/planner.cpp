@@ -199,16 +199,5 @@ TEST(AutoPlans, KnowANetThatItsBarsAndPinsHold) {
     }
 }
 
-TEST(StepCost, GrowsWithTheWork) {
-    const RopeDef rope = reference::straight_rope(20, 1.0, 45.0);
-    const RopeDef ring = test::ring(21);
-    const Body chain = build_system({&rope, 1}).bodies.front();
-    const Body graph = build_system({&ring, 1}).bodies.front();
-    EXPECT_GT(step_cost_ns(chain, RattleDef{8}), step_cost_ns(chain, RattleDef{2}));
-    EXPECT_GT(step_cost_ns(graph, RattleDef{2}), step_cost_ns(chain, RattleDef{2}));
-    EXPECT_EQ(step_cost_ns(chain, RelaxationDef{.sweeps = 5}), 5.0 * step_cost_ns(chain, RelaxationDef{}));
-    EXPECT_GT(step_cost_ns(chain, ExactDef{}), 0.0);
-}
-
 }  // namespace
 }  // namespace corda::sim

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "corda/sim/refusal.hpp"
+#include "corda/sim/validate.hpp"
 #include "support/chains.hpp"
 
 namespace corda::sim {

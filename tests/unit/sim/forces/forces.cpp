@@ -27,6 +27,19 @@ TEST(Forces, AreTheSumOfGravityAndDrag) {
     EXPECT_EQ(forces.inverse_timescale_1_s(0.2, 2.0), 10.0);
 }
 
+TEST(Forces, SayWhatTheyDoAndWhichParameterIsOutOfRange) {
+    WorldDef world;
+    std::vector<std::string> texts;
+    for (const ForceKind& kind : force_kinds()) {
+        EXPECT_EQ(kind.problem(world), nullptr);
+        texts.push_back(kind.text(world));
+    }
+    EXPECT_EQ(texts, (std::vector<std::string>{"gravity of (0, -9.81) m/s2", ""}));
+    world = {{}, 10.0, -1.0};
+    EXPECT_EQ(force_kinds()[0].text(world), "no gravity");
+    EXPECT_STREQ(force_kinds()[1].problem(world), "drag_1_s is not >= 0");
+}
+
 TEST(Forces, DecayIsTheExponentialToRounding) {
     double largest_error = 0.0;
     for (const double drag_1_s : {1e-9, 0.3, 1.0, 17.0}) {

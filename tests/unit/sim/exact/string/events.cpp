@@ -6,7 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "corda/sim/exact/exact_part.hpp"
+#include "corda/sim/exact/exact.hpp"
+#include "support/chains.hpp"
 #include "support/strings.hpp"
 #include "support/unstopped.hpp"
 
@@ -96,6 +97,92 @@ TEST(StringEvents, FindTheTimeAtWhichATautLinkGoesSlack) {
 TEST(StringEvents, AreNoneWhileNothingChanges) {
     RopeDef rope = test::string_of({{0.0, 0.0}, {0.3, -std::sqrt(0.91)}}, {1.0});
     EXPECT_FALSE(first_event(rope, {1}, 1e-9, 5.0).has_value());
+}
+
+const WorldDef kWorld{{0.5, -9.81}, 1.0, 0.2};
+
+/// Slack links 0, 3 and 4, so that particles 0 and 4 are loose; 1 to 3 and 5 to 8 are runs.
+const std::vector<std::uint8_t> kTaut{0, 1, 1, 0, 0, 1, 1, 1};
+
+System free_string() {
+    System system = test::chain(test::Pins::kNone);
+    for (const std::size_t k : {0U, 3U, 4U}) system.bars[k].rest_m *= 1.5;
+    return system;
+}
+
+TEST(StringDynamics, LetsLooseParticlesFallAndMovesRunsAsChains) {
+    const System system = free_string();
+    StringDynamics dynamics(system, kTaut, kWorld);
+    const std::vector<double>& y = dynamics.initial_state();
+    std::vector<double> slope(y.size());
+    dynamics.derivative(y.data(), slope.data());
+    // The displacement and the velocity of the two loose particles come last.
+    const std::size_t first = y.size() - 8;
+    for (const auto& [at, particle] : {std::pair(first, 0U), std::pair(first + 4, 4U)}) {
+        EXPECT_EQ(y[at], 0.0);
+        EXPECT_EQ(slope[at], system.vx_m_s[particle]);
+        EXPECT_EQ(slope[at + 1], system.vy_m_s[particle]);
+        EXPECT_DOUBLE_EQ(slope[at + 2], 0.5 - 0.2 * system.vx_m_s[particle]);
+        EXPECT_DOUBLE_EQ(slope[at + 3], -9.81 - 0.2 * system.vy_m_s[particle]);
+    }
+    Body run;
+    run.first_particle = run.first_bar = 5;
+    run.particle_count = 4;
+    run.bar_count = run.link_count = 3;
+    ChainDynamics alone(system, {&run, 1}, kWorld);
+    std::vector<double> expected_n;
+    alone.tensions(alone.initial_state().data(), expected_n);
+    std::vector<double> tension_n;
+    dynamics.tensions(y.data(), tension_n);
+    ASSERT_EQ(tension_n.size(), kTaut.size());
+    for (const std::size_t k : {0U, 3U, 4U}) EXPECT_EQ(tension_n[k], 0.0) << k;
+    for (const std::size_t k : {5U, 6U, 7U}) EXPECT_NEAR(tension_n[k], expected_n[k], 1e-12) << k;
+    EXPECT_NE(tension_n[1], 0.0);
+}
+
+TEST(StringDynamics, KnowsAllPositionsVelocitiesAndTheEnergy) {
+    const System system = free_string();
+    const StringDynamics dynamics(system, kTaut, kWorld);
+    const double* const y = dynamics.initial_state().data();
+    State state{0.0, std::vector<double>(test::kChainParticles, NAN),
+                std::vector<double>(test::kChainParticles, NAN)};
+    dynamics.positions(y, state);
+    std::vector<double> vx(test::kChainParticles, NAN);
+    std::vector<double> vy(test::kChainParticles, NAN);
+    dynamics.velocities(y, vx, vy);
+    double energy_j = 0.0;
+    for (std::size_t i = 0; i < test::kChainParticles; ++i) {
+        EXPECT_NEAR(state.x_m[i], system.x_m[i], 1e-15) << i;
+        EXPECT_NEAR(state.y_m[i], system.y_m[i], 1e-15) << i;
+        energy_j += system.mass_kg[i] * (0.5 * (vx[i] * vx[i] + vy[i] * vy[i]) -
+                                         dot(kWorld.gravity_m_s2, {state.x_m[i], state.y_m[i]}));
+    }
+    EXPECT_EQ(vx[4], system.vx_m_s[4]);
+    EXPECT_NEAR(dynamics.energy_j(y), energy_j, 1e-12);
+}
+
+TEST(StringDynamics, MeasuresErrorsOfEveryNumberOfAState) {
+    const System system = free_string();
+    const StringDynamics dynamics(system, kTaut, kWorld);
+    std::vector<int> measured(dynamics.initial_state().size(), 0);
+    for (const ErrorScale& scale : dynamics.error_scales())
+        for (std::size_t i = 0; i < scale.count; ++i) ++measured.at(scale.first + i);
+    EXPECT_EQ(measured, std::vector<int>(measured.size(), 1));
+}
+
+TEST(StringDynamics, HasATimeScaleThatASlackLinkCannotOutrun) {
+    // Two particles of a slack link of 0.1 m that part at 20 m/s: faster than gravity alone would make them.
+    RopeDef rope = reference::rope_through({{0.0, 0.0}, {0.05, 0.0}});
+    rope.pinned = {};
+    rope.velocity_m_s = {{-10.0, 0.0}, {10.0, 0.0}};
+    System system = build_system({&rope, 1});
+    system.bars[0].rest_m = 0.1;
+    const StringDynamics dynamics(system, {0}, WorldDef{});
+    EXPECT_GE(dynamics.inverse_timescale_1_s(), 20.0 / 0.1);
+    rope.velocity_m_s = {};
+    system = build_system({&rope, 1});
+    const StringDynamics resting(system, {0}, WorldDef{{0.0, 0.0}});
+    EXPECT_EQ(resting.inverse_timescale_1_s(), 1.0);
 }
 
 }  // namespace

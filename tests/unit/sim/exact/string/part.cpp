@@ -57,7 +57,7 @@ TEST(LongString, AsksWhetherToGoOnWhileItsFirstContactsAreFound) {
     rope.material.is_string = true;
     const System system = build_system({&rope, 1});
     try {
-        const Exact exact(system, WorldDef{}, ExactDef{1e-9}, [] { return false; });
+        const Exact exact(system, WorldDef{}, ExactDef{1e-9}, 0.0, [] { return false; });
         FAIL() << "the string was made";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ExitCode::kInterrupted);
@@ -72,7 +72,7 @@ TEST(LongString, StartsTautAtOnceWhereItsLinksAreShortByTheRoundingOfTheirEnds) 
     for (Vec2& point : rope.points_m) point = {0.8 * point.x - 0.6 * point.y, 0.6 * point.x + 0.8 * point.y};
     const System system = build_system({&rope, 1});
     std::uint64_t asked = 0;
-    Exact exact(system, WorldDef{}, ExactDef{1e-9}, [&asked] {
+    Exact exact(system, WorldDef{}, ExactDef{1e-9}, 0.0, [&asked] {
         ++asked;
         return true;
     });

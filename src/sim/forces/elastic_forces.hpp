@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "corda/sim/simulation.hpp"
 #include "corda/sim/system.hpp"
 
 namespace corda::sim {
@@ -44,7 +46,7 @@ class ElasticForces {
 
     /// Writes the tensions of the bars that stretch, in N, to an array of all bars of the system.
     void tensions(const double* x_m, const double* y_m, std::vector<double>& tensions_n) const;
-    /// Largest tension of a bar; a bar that pushes counts by the size of its tension.
+    /// Largest absolute tension of a bar.
     [[nodiscard]] double largest_tension_n(const double* x_m, const double* y_m) const;
 
   private:
@@ -76,6 +78,30 @@ class ElasticForces {
     /// initial lengths.
     double spring_square_frequency_ = 0.0;
     double joint_square_frequency_ = 0.0;
+};
+
+/// The mechanical energy of free particles and of what joins them, in J.
+struct Energy {
+    double kinetic_j = 0.0;
+    double weight_j = 0.0;   ///< potential of gravity or of its replacement; 0 at the origin of the system
+    double elastic_j = 0.0;  ///< of bars that stretch and ropes that resist bending
+
+    [[nodiscard]] double potential_j() const { return weight_j + elastic_j; }
+};
+
+/// Computes the energy of states.
+class EnergyMeter {
+  public:
+    /// `methods`: one per body of the system, or one for all. The system must outlive it.
+    EnergyMeter(const System& system, const WorldDef& world, std::span<const MethodDef> methods);
+
+    /// The energy of a state that has velocities.
+    [[nodiscard]] Energy of(const State& state) const;
+
+  private:
+    const System* system_;
+    std::vector<Vec2> weight_n_;  ///< on each particle
+    ElasticForces elastic_;
 };
 
 }  // namespace corda::sim

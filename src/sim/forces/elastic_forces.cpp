@@ -1,12 +1,13 @@
-#include "corda/sim/elastic_forces.hpp"
+#include "corda/sim/forces/elastic_forces.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <variant>
 
 #include "corda/sim/defs.hpp"
-#include "corda/sim/distance.hpp"
+#include "corda/sim/forces/forces.hpp"
 
 namespace corda::sim {
 namespace {
@@ -181,6 +182,32 @@ void ElasticForces::tensions(const double* x_m, const double* y_m, std::vector<d
 double ElasticForces::tension_n(const Spring& spring, const double* x_m, const double* y_m) {
     return spring.stiffness_n_m *
            std::max(along(x_m, y_m, spring.a, spring.b).length_m - spring.rest_m, spring.least_stretch_m);
+}
+
+EnergyMeter::EnergyMeter(const System& system, const WorldDef& world, std::span<const MethodDef> methods)
+    : system_(&system),
+      weight_n_(Forces(world).on_particles(system)),
+      elastic_(system, 0, system.particle_count()) {
+    for (std::size_t b = 0; b < system.bodies.size(); ++b) {
+        const auto* relaxation = std::get_if<RelaxationDef>(&methods[methods.size() == 1 ? 0 : b]);
+        if (relaxation == nullptr || !relaxation->force_n) continue;
+        const Body& body = system.bodies[b];
+        for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i)
+            weight_n_[i] = *relaxation->force_n;
+    }
+}
+
+Energy EnergyMeter::of(const State& state) const {
+    Energy energy;
+    for (std::size_t i = 0; i < system_->particle_count(); ++i) {
+        if (system_->is_pinned(i)) continue;
+        const double vx = state.vx_m_s[i];
+        const double vy = state.vy_m_s[i];
+        energy.kinetic_j += 0.5 * system_->mass_kg[i] * (vx * vx + vy * vy);
+        energy.weight_j -= weight_n_[i].x * state.x_m[i] + weight_n_[i].y * state.y_m[i];
+    }
+    energy.elastic_j = elastic_.energy_j(state.x_m.data(), state.y_m.data());
+    return energy;
 }
 
 }  // namespace corda::sim

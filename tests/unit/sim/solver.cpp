@@ -1,10 +1,10 @@
-#include "corda/sim/body_solvers.hpp"
+#include "corda/sim/solver.hpp"
 
 #include <gtest/gtest.h>
 
 #include "corda/reference/ropes.hpp"
-#include "corda/sim/refusal.hpp"
 #include "corda/sim/simulation.hpp"
+#include "corda/sim/validate.hpp"
 #include "support/nets.hpp"
 #include "support/refusal_of.hpp"
 #include "support/strings.hpp"
@@ -101,6 +101,52 @@ TEST(BodySolvers, NeedAMethodPerBodyOrOne) {
     const std::vector<MethodDef> two(2, ExactDef{});
     EXPECT_THROW(Simulation(mixed.system, WorldDef{}, two), Error);
     EXPECT_THROW(Simulation(mixed.system, WorldDef{}, std::vector<MethodDef>{}), Error);
+}
+
+TEST(StepGrid, FindsTimesOnTheGridDespiteTheirRounding) {
+    for (const double step_s : {0.1, 1.0 / 3.0, 1.0 / 60.0, 1e-7}) {
+        for (const std::uint64_t step : {0U, 1U, 2U, 7U, 1000U, 123456789U}) {
+            const auto steps = static_cast<double>(step);
+            for (const double time_s :
+                 {step_s * steps, step_s * steps * (1.0 + 1e-15), steps / (1.0 / step_s)}) {
+                const GridTime at = locate(time_s, step_s);
+                EXPECT_TRUE(at.is_on_grid) << step_s << " " << step;
+                EXPECT_EQ(at.step, step);
+            }
+        }
+    }
+}
+
+TEST(StepGrid, TellsTimesBetweenTwoSteps) {
+    const GridTime at = locate(0.523, 0.1);
+    EXPECT_FALSE(at.is_on_grid);
+    EXPECT_EQ(at.step, 5U);
+    EXPECT_NEAR(at.fraction, 0.23, 1e-14);
+    EXPECT_FALSE(locate(0.1 * (1.0 + 2e-9), 0.1).is_on_grid);
+    EXPECT_TRUE(locate(0.1 * (1.0 + 0.5e-9), 0.1).is_on_grid);
+    EXPECT_EQ(locate(0.1 * (1.0 - 2e-9), 0.1).step, 0U);
+}
+
+TEST(Methods, HaveACostOfAStepThatGrowsWithOrderAndSweeps) {
+    const RopeDef rope = reference::straight_rope(20, 1.0, 45.0);
+    const RopeDef ring = test::ring(21);
+    const Body chain = build_system({&rope, 1}).bodies.front();
+    const Body graph = build_system({&ring, 1}).bodies.front();
+    EXPECT_GT(step_cost_ns(chain, RattleDef{8}), step_cost_ns(chain, RattleDef{2}));
+    EXPECT_GT(step_cost_ns(graph, RattleDef{2}), step_cost_ns(chain, RattleDef{2}));
+    EXPECT_EQ(step_cost_ns(chain, RelaxationDef{.sweeps = 5}), 5.0 * step_cost_ns(chain, RelaxationDef{}));
+    EXPECT_GT(step_cost_ns(chain, ExactDef{}), 0.0);
+}
+
+TEST(Methods, StateTheirWordsStepsAndWhetherTheyKnowTensions) {
+    const MethodDef stepped = RattleDef{.order = 6, .step_s = 0.01};
+    EXPECT_EQ(method_text(stepped), "rattle of order 6, step 0.01 s");
+    EXPECT_EQ(method_text(RelaxationDef{}), "relaxation with 1 sweep");
+    EXPECT_EQ(method_text(ExactDef{1e-7}), "exact at tolerance 1e-07");
+    EXPECT_EQ(fixed_step_s(stepped), 0.01);
+    EXPECT_EQ(fixed_step_s(ExactDef{}), std::nullopt);
+    EXPECT_TRUE(knows_tensions(stepped));
+    EXPECT_FALSE(knows_tensions(RelaxationDef{}));
 }
 
 }  // namespace

@@ -1,0 +1,251 @@
+#include "corda/sim/solver.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <numeric>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "corda/sim/exact/exact.hpp"
+#include "corda/sim/rattle/rattle.hpp"
+#include "corda/sim/relaxation/relaxation.hpp"
+#include "corda/sim/validate.hpp"
+
+namespace corda::sim {
+namespace {
+
+// The solver of each method. It states the facts about its method as static members, which with_solver()
+// finds:
+//
+//   static const char* problem_of(const Def&);   the parameter that is out of range; nullptr: none
+//   static std::string text_of(const Def&);      see method_text()
+//   static double step_cost_ns(const Def&, const Body&);
+//   static std::optional<double> fixed_step_s(const Def&);
+//   static constexpr bool kKnowsTensions;
+template <class Def>
+struct SolverOf;
+template <>
+struct SolverOf<ExactDef> : std::type_identity<Exact> {};
+template <>
+struct SolverOf<RattleDef> : std::type_identity<Rattle> {};
+template <>
+struct SolverOf<RelaxationDef> : std::type_identity<Relaxation> {};
+
+/// Calls use.operator()<Solver>(def) for the method's definition and its solver.
+template <class Use>
+auto with_solver(const MethodDef& method, const Use& use) {
+    return std::visit(
+        [&use](const auto& def) {
+            return use.template operator()<typename SolverOf<std::decay_t<decltype(def)>>::type>(def);
+        },
+        method);
+}
+
+/// A bar without length has no direction; `relaxation` alone leaves such bars be.
+void refuse_bars_without_length(const System& system) {
+    for (const Bar& bar : system.bars) {
+        if (bar.rest_m > 0.0) continue;
+        throw Refusal(Refusal::Reason::kBarWithoutLength, "particles " + std::to_string(bar.a) + " and " +
+                                                              std::to_string(bar.b) +
+                                                              ", which a bar joins, coincide");
+    }
+}
+
+/// Solver of a system that one solver moves.
+std::unique_ptr<Solver> make_solver_of(const System& system, const Forces& forces, const MethodDef& method,
+                                       double frame_interval_s, const GoesOn& goes_on) {
+    if (!std::holds_alternative<RelaxationDef>(method)) refuse_bars_without_length(system);
+    return with_solver(method, [&]<class S>(const auto& def) -> std::unique_ptr<Solver> {
+        return std::make_unique<S>(system, forces, def, frame_interval_s, goes_on);
+    });
+}
+
+/// Making a solver takes as long as this many updates of a StopCheck.
+constexpr std::uint64_t kUpdatesPerBody = 20;
+
+/// The solver of one body, and the body's place in the system.
+struct Part {
+    std::size_t first_particle = 0;
+    std::size_t first_bar = 0;
+    std::unique_ptr<Solver> solver;
+    State state;  ///< of its particles and bars
+};
+
+double sum_of_scales_j(const std::vector<Part>& parts) {
+    return std::accumulate(parts.begin(), parts.end(), 0.0, [](double sum_j, const Part& part) {
+        return sum_j + part.solver->energy_scale_j();
+    });
+}
+
+bool all_conserve_energy(const std::vector<Part>& parts) {
+    return std::all_of(parts.begin(), parts.end(),
+                       [](const Part& part) { return part.solver->conserves_energy(); });
+}
+
+void put(const std::vector<double>& values, std::size_t first, std::vector<double>& all) {
+    std::copy(values.begin(), values.end(), all.begin() + static_cast<std::ptrdiff_t>(first));
+}
+
+/// One solver per body: bodies do not act on each other.
+class BodySolvers final : public Solver {
+  public:
+    /// `parts`: one per body, in order.
+    explicit BodySolvers(std::vector<Part> parts);
+
+    Status advance_to(double time_s, State& state, StopCheck& stop) override;
+    [[nodiscard]] double energy_j() const override;
+    [[nodiscard]] bool has_branched() const override;
+    [[nodiscard]] std::optional<Loads> loads() const override;
+    void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override;
+    [[nodiscard]] bool tensions(std::vector<double>& tension_n) override;
+    /// The sum over all bodies.
+    [[nodiscard]] std::uint64_t steps() const override;
+    [[nodiscard]] std::vector<MethodDef> methods() const override;
+
+  private:
+    std::vector<Part> parts_;
+};
+
+Loads larger_loads(const Loads& a, const Loads& b) {
+    return {std::max(a.pin_force_n, b.pin_force_n), std::max(a.largest_tension_n, b.largest_tension_n)};
+}
+
+}  // namespace
+
+BodySolvers::BodySolvers(std::vector<Part> parts)
+    : Solver(sum_of_scales_j(parts), all_conserve_energy(parts)), parts_(std::move(parts)) {}
+
+Status BodySolvers::advance_to(double time_s, State& state, StopCheck& stop) {
+    for (Part& part : parts_) {
+        if (part.solver->advance_to(time_s, part.state, stop) == Status::kDiverged) return Status::kDiverged;
+        put(part.state.x_m, part.first_particle, state.x_m);
+        put(part.state.y_m, part.first_particle, state.y_m);
+    }
+    state.time_s = time_s;
+    return Status::kOk;
+}
+
+double BodySolvers::energy_j() const {
+    double energy_j = 0.0;
+    for (const Part& part : parts_) energy_j += part.solver->energy_j();
+    return energy_j;
+}
+
+bool BodySolvers::has_branched() const {
+    return std::any_of(parts_.begin(), parts_.end(),
+                       [](const Part& part) { return part.solver->has_branched(); });
+}
+
+std::optional<Loads> BodySolvers::loads() const {
+    std::optional<Loads> largest = Loads{};
+    for (const Part& part : parts_) largest = loads_of_both(largest, part.solver->loads());
+    return largest;
+}
+
+void BodySolvers::velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) {
+    for (Part& part : parts_) {
+        part.state.vx_m_s.assign(part.state.x_m.size(), 0.0);
+        part.state.vy_m_s.assign(part.state.x_m.size(), 0.0);
+        part.solver->velocities(part.state.vx_m_s, part.state.vy_m_s);
+        put(part.state.vx_m_s, part.first_particle, vx_m_s);
+        put(part.state.vy_m_s, part.first_particle, vy_m_s);
+    }
+}
+
+bool BodySolvers::tensions(std::vector<double>& tension_n) {
+    bool are_known = true;
+    for (Part& part : parts_) {
+        are_known = part.solver->tensions(part.state.tension_n) && are_known;
+        put(part.state.tension_n, part.first_bar, tension_n);
+    }
+    return are_known;
+}
+
+std::uint64_t BodySolvers::steps() const {
+    std::uint64_t steps = 0;
+    for (const Part& part : parts_) steps += part.solver->steps();
+    return steps;
+}
+
+std::vector<MethodDef> BodySolvers::methods() const {
+    std::vector<MethodDef> methods;
+    for (const Part& part : parts_) methods.push_back(part.solver->methods().front());
+    return methods;
+}
+
+std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces,
+                                    std::span<const MethodDef> methods, double frame_interval_s,
+                                    const GoesOn& goes_on) {
+    const std::size_t count = system.bodies.size();
+    if (methods.size() != 1 && methods.size() != count) {
+        throw Error(ExitCode::kUsage, std::to_string(methods.size()) + " methods for the " +
+                                          std::to_string(count) +
+                                          " bodies of the system; give one each, or one for all");
+    }
+    // `relaxation` fills the lanes of a processor with several small bodies.
+    const bool relaxes_all = std::all_of(methods.begin(), methods.end(), [&](const MethodDef& method) {
+        return std::holds_alternative<RelaxationDef>(method) && method == methods.front();
+    });
+    if (count == 1 || relaxes_all)
+        return make_solver_of(system, forces, methods.front(), frame_interval_s, goes_on);
+    StopCheck stop(goes_on);
+    std::vector<Part> parts;
+    for_each_body(system, [&](const System& body, std::size_t i) {
+        stop.spend(kUpdatesPerBody + body.particle_count());
+        const MethodDef& method = methods.size() == 1 ? methods.front() : methods[i];
+        parts.push_back({system.bodies[i].first_particle,
+                         system.bodies[i].first_bar,
+                         make_solver_of(body, forces, method, frame_interval_s, goes_on),
+                         {0.0, body.x_m, body.y_m}});
+        parts.back().state.tension_n.resize(body.bars.size());
+    });
+    return std::make_unique<BodySolvers>(std::move(parts));
+}
+
+void validate(const MethodDef& method) {
+    const char* const problem =
+        with_solver(method, []<class S>(const auto& def) { return S::problem_of(def); });
+    if (problem != nullptr)
+        throw Refusal(Refusal::Reason::kDefinition, std::string(method_name(method)) + ": " + problem);
+}
+
+std::string method_text(const MethodDef& method) {
+    return with_solver(method, []<class S>(const auto& def) { return S::text_of(def); });
+}
+
+double step_cost_ns(const Body& body, const MethodDef& method) {
+    return with_solver(method, [&]<class S>(const auto& def) { return S::step_cost_ns(def, body); });
+}
+
+std::optional<double> fixed_step_s(const MethodDef& method) {
+    return with_solver(method, []<class S>(const auto& def) { return S::fixed_step_s(def); });
+}
+
+bool knows_tensions(const MethodDef& method) {
+    return with_solver(method, []<class S>(const auto&) { return S::kKnowsTensions; });
+}
+
+Figures larger_figures(const Figures& a, const Figures& b) {
+    Figures larger;
+    larger.strain = std::max(a.strain, b.strain);
+    if (a.energy_error || b.energy_error)
+        larger.energy_error = std::max(a.energy_error.value_or(0.0), b.energy_error.value_or(0.0));
+    if (a.loads || b.loads) larger.loads = larger_loads(a.loads.value_or(Loads{}), b.loads.value_or(Loads{}));
+    return larger;
+}
+
+std::optional<Loads> loads_of_both(const std::optional<Loads>& a, const std::optional<Loads>& b) {
+    if (!a || !b) return std::nullopt;
+    return larger_loads(*a, *b);
+}
+
+std::optional<double> energy_error(double change_j, double scale_j) {
+    if (std::isnan(change_j) || !(scale_j > 0.0)) return std::nullopt;
+    return std::abs(change_j) / scale_j;
+}
+
+}  // namespace corda::sim

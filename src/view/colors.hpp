@@ -1,0 +1,46 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "corda/sim/recording.hpp"
+#include "corda/view/defs.hpp"
+#include "corda/view/draw_list.hpp"
+
+namespace corda::view {
+
+/// Colours of a scene: from its style, otherwise from its theme.
+struct Look {
+    Ground ground;
+    std::vector<Color> palette;
+    Color support;  ///< plates and rings, which do not move
+    Color outline;  ///< of balls
+    Color pinned;
+    Color free;
+    Color real_bar;
+    Color imaginary_bar;
+};
+
+[[nodiscard]] Look look_of(const StyleDef& style);
+
+/// A colour that can be read on the background; on a transparent background, the theme's.
+[[nodiscard]] Color text_color(const Look& look);
+
+/// Colour scale of a quantity for all pictures of a film: linear from `low` to `high`.
+struct ColorScale {
+    Quantity quantity = Quantity::kTension;
+    double low = 0.0;
+    double high = 1.0;
+    bool is_cut = false;            ///< few values lie beyond the ends
+    std::array<Color, 9> colors{};  ///< between which others are mixed
+    Color unknown;                  ///< for NaN
+
+    [[nodiscard]] Color color(double value) const;
+};
+
+/// The scale of a quantity: from 0 to high, or from -high to high through grey if there are values well below
+/// 0. `high` is a round number above the largest value, or above 98 % of the values if that is less than half
+/// of the largest.
+[[nodiscard]] ColorScale scale_of(Quantity quantity, const sim::Spread& spread, const StyleDef& style);
+
+}  // namespace corda::view
