@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
+#include "corda/core/csv.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
@@ -35,15 +36,19 @@ struct SimulateOptions {
 /// The names of the columns, with units as the files of `report` have them. The time and the positions, in s
 /// and m, have the names that scripts know.
 std::string csv_header(const System& system, const Columns& columns) {
-    std::string line = "t";
-    for (std::size_t i = 0; i < system.particle_count(); ++i) line += fmt::format(",x{},y{}", i, i);
+    CsvLine line;
+    line.add("t");
+    for (std::size_t i = 0; i < system.particle_count(); ++i)
+        for (const char axis : {'x', 'y'}) line.add(fmt::format("{}{}", axis, i));
     for (std::size_t i = 0; columns.velocities && i < system.particle_count(); ++i)
-        line += fmt::format(",vx{}_m_s,vy{}_m_s", i, i);
+        for (const char axis : {'x', 'y'}) line.add(fmt::format("v{}{}_m_s", axis, i));
     for (std::size_t k = 0; columns.tensions && k < system.link_count(); ++k)
-        line += fmt::format(",tension{}_n", k);
-    if (columns.energy) line += ",energy_change_j";
-    if (columns.diagnostics) line += ",energy_error,strain,pin_force_n,largest_tension_n";
-    return line + "\n";
+        line.add(fmt::format("tension{}_n", k));
+    if (columns.energy) line.add("energy_change_j");
+    if (columns.diagnostics)
+        for (const char* const name : {"energy_error", "strain", "pin_force_n", "largest_tension_n"})
+            line.add(name);
+    return std::string(line.end());
 }
 
 /// The particles and links of each body, by which the columns are numbered.
@@ -75,39 +80,33 @@ std::string columns_text(const System& system) {
 }
 
 /// A figure that the method does not have is an empty cell.
-void write_figures(const Figures& figures, std::string& line) {
-    auto out = std::back_inserter(line);
-    const auto write = [&out](const std::optional<double>& figure) {
-        *out++ = ',';
-        if (figure) fmt::format_to(out, "{:.17g}", *figure);
-    };
-    write(figures.energy_error);
-    write(figures.strain);
-    write(figures.loads ? std::optional(figures.loads->pin_force_n) : std::nullopt);
-    write(figures.loads ? std::optional(figures.loads->largest_tension_n) : std::nullopt);
+void add_figures(const Figures& figures, CsvLine& line) {
+    const double none = std::nan("");
+    line.add(figures.energy_error.value_or(none));
+    line.add(figures.strain);
+    line.add(figures.loads ? figures.loads->pin_force_n : none);
+    line.add(figures.loads ? figures.loads->largest_tension_n : none);
 }
 
-void write_row(const Film& film, const State& state, const Columns& columns, std::string& line) {
+void add_row(const Film& film, const State& state, const Columns& columns, CsvLine& line) {
     const System& system = film.system();
     const Vec2 origin_m = system.origin_m;
-    line.clear();
-    auto out = std::back_inserter(line);
-    fmt::format_to(out, "{:.17g}", state.time_s);
+    line.add(state.time_s);
     for (std::size_t i = 0; i < state.x_m.size(); ++i) {
-        fmt::format_to(out, ",{:.17g},{:.17g}", origin_m.x + state.x_m[i], origin_m.y + state.y_m[i]);
+        line.add(origin_m.x + state.x_m[i]);
+        line.add(origin_m.y + state.y_m[i]);
     }
-    for (std::size_t i = 0; columns.velocities && i < state.x_m.size(); ++i)
-        fmt::format_to(out, ",{:.17g},{:.17g}", state.vx_m_s[i], state.vy_m_s[i]);
+    for (std::size_t i = 0; columns.velocities && i < state.x_m.size(); ++i) {
+        line.add(state.vx_m_s[i]);
+        line.add(state.vy_m_s[i]);
+    }
     for (std::size_t i = 0; columns.tensions && i < system.bodies.size(); ++i) {
         const Body& body = system.bodies[i];
-        for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k) {
-            *out++ = ',';
-            if (!std::isnan(state.tension_n[k])) fmt::format_to(out, "{:.17g}", state.tension_n[k]);
-        }
+        for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k)
+            line.add(state.tension_n[k]);
     }
-    if (columns.energy) fmt::format_to(out, ",{:.17g}", film.figures().energy_change_j);
-    if (columns.diagnostics) write_figures(film.figures(), line);
-    line += '\n';
+    if (columns.energy) line.add(film.figures().energy_change_j);
+    if (columns.diagnostics) add_figures(film.figures(), line);
 }
 
 nlohmann::json report(const Film& film) {
@@ -149,13 +148,13 @@ std::string cost_text(const Film& film) {
 /// Writes the states of all frame times.
 void write_states(const Console& console, const Film& film, const Columns& columns, OutputFile* csv) {
     Progress progress(console, "simulate", film.last_frame() + 1);
-    std::string line;
+    CsvLine line;
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
         stop_if_asked(kSomethingWritten);
         const State& state = film.state(k);
         if (csv != nullptr) {
-            write_row(film, state, columns, line);
-            csv->write(line);
+            add_row(film, state, columns, line);
+            csv->write(line.end());
         }
         progress.update(k + 1);
     }

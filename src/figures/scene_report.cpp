@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
+#include "corda/core/csv.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
 #include "corda/figures/chapters.hpp"
-#include "corda/figures/csv_file.hpp"
 #include "corda/figures/drawings.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film_renderer.hpp"

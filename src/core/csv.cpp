@@ -1,0 +1,59 @@
+#include "corda/core/csv.hpp"
+
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+
+#include "corda/core/text.hpp"
+
+namespace corda {
+
+void CsvLine::begin_cell() {
+    if (is_ended_)
+        line_.clear();
+    else
+        line_ += ',';
+    is_ended_ = false;
+}
+
+void CsvLine::add(double value) {
+    begin_cell();
+    if (!std::isnan(value)) fmt::format_to(std::back_inserter(line_), "{:.17g}", value);
+}
+
+void CsvLine::add(std::string_view text) {
+    begin_cell();
+    const std::string readable = utf8(text);
+    if (readable.find_first_of(",\"\r\n") == std::string::npos) {
+        line_ += readable;
+        return;
+    }
+    line_ += '"';
+    for (const char c : readable) {
+        if (c == '"') line_ += '"';
+        line_ += c;
+    }
+    line_ += '"';
+}
+
+std::string_view CsvLine::end() {
+    if (is_ended_) line_.clear();
+    line_ += '\n';
+    is_ended_ = true;
+    return line_;
+}
+
+CsvFile::CsvFile(const std::string& path, const OutputOptions& options,
+                 const std::vector<std::string>& columns)
+    : file_(path, options) {
+    for (const std::string& column : columns) line_.add(column);
+    file_.write(line_.end());
+}
+
+void CsvFile::add_row(std::span<const double> values) {
+    for (const double value : values) line_.add(value);
+    file_.write(line_.end());
+}
+
+}  // namespace corda

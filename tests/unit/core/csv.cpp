@@ -1,0 +1,36 @@
+#include "corda/core/csv.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/command.hpp"
+
+namespace corda {
+namespace {
+
+TEST(CsvLine, QuotesTextsThatNeedItAndLeavesNanEmpty) {
+    CsvLine line;
+    line.add("a");
+    line.add("b,c");
+    line.add("say \"no\"");
+    line.add(0.1);
+    line.add(std::nan(""));
+    line.add(-2.0);
+    EXPECT_EQ(line.end(), "a,\"b,c\",\"say \"\"no\"\"\",0.10000000000000001,,-2\n");
+    line.add(1.0);
+    EXPECT_EQ(line.end(), "1\n");
+    EXPECT_EQ(line.end(), "\n");
+}
+
+TEST(CsvFile, HasAHeaderAndARowPerCall) {
+    const test::ScratchFolder folder;
+    CsvFile file(folder.file("a.csv"), {}, {"time_s", "x_m"});
+    file.add_row(std::vector{0.0, 1.5});
+    file.add_row(std::vector{1.0, std::nan("")});
+    file.commit();
+    EXPECT_EQ(test::read_file(folder.file("a.csv")), "time_s,x_m\n0,1.5\n1,\n");
+}
+
+}  // namespace
+}  // namespace corda
