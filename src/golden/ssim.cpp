@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "corda/core/similarity.hpp"
 #include "corda/golden/perceived.hpp"
 
 namespace corda {

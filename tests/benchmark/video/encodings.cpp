@@ -11,9 +11,9 @@
 #include "corda/core/file.hpp"
 #include "corda/core/temporary_folder.hpp"
 #include "corda/media/format/format.hpp"
-#include "corda/media/picture_quality.hpp"
 #include "corda/media/read/video_reader.hpp"
 #include "corda/pipeline/film_renderer.hpp"
+#include "support/edge_quality.hpp"
 
 namespace corda::benchmark {
 namespace {
@@ -27,7 +27,7 @@ constexpr std::int64_t kCompared = 10;
 json quality_of(const Film& film, std::int64_t frames, const std::string& path) {
     FilmRenderer renderer(film);
     media::VideoReader reader(path);
-    media::EdgeQuality edges;
+    test::EdgeQuality edges;
     Image shown;
     for (std::int64_t k = 0; k < frames; ++k) {
         if (!reader.read_shown(shown)) throw Error(ExitCode::kEncoder, "the video has too few frames");
@@ -35,7 +35,7 @@ json quality_of(const Film& film, std::int64_t frames, const std::string& path) 
         static_cast<void>(renderer.draw(film.time_s(k)));
         edges.add(renderer.image(), shown);
     }
-    return {{"edge_psnr_db", media::psnr_db(edges.mean_square())}, {"edge_ssim", edges.ssim()}};
+    return {{"edge_psnr_db", test::psnr_db(edges.mean_square())}, {"edge_ssim", edges.ssim()}};
 }
 
 json render_and_compare(const EncodingDef& def, std::int64_t frames) {

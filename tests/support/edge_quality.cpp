@@ -1,4 +1,4 @@
-#include "corda/media/picture_quality.hpp"
+#include "support/edge_quality.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,15 +7,14 @@
 #include <cstdint>
 #include <limits>
 
-#include "corda/core/similarity.hpp"
+#include "corda/golden/perceived.hpp"
 
-namespace corda::media {
+namespace corda::test {
 namespace {
 
 constexpr double kPeak = 255.0;
 constexpr int kWindow = 8;
 constexpr std::int64_t kWindowSamples = 64;
-constexpr int kStride = 4;
 
 double window_ssim(const std::uint8_t* a, const std::uint8_t* b, int row_bytes) {
     std::int64_t sum_a = 0;
@@ -76,36 +75,9 @@ struct RgbWindow {
 
 }  // namespace
 
-double luma_mean_square(const Yuv420Image& a, const Yuv420Image& b) {
-    assert(a.width() == b.width() && a.height() == b.height());
-    const std::int64_t count = std::int64_t{a.width()} * a.height();
-    std::int64_t sum = 0;
-    for (std::int64_t i = 0; i < count; ++i) {
-        const std::int64_t difference = std::int64_t{a.plane(0)[i]} - b.plane(0)[i];
-        sum += difference * difference;
-    }
-    return static_cast<double>(sum) / static_cast<double>(count);
-}
-
 double psnr_db(double mean_square) {
     if (mean_square == 0.0) return std::numeric_limits<double>::infinity();
     return 10.0 * std::log10(kPeak * kPeak / mean_square);
-}
-
-double luma_ssim(const Yuv420Image& a, const Yuv420Image& b) {
-    assert(a.width() == b.width() && a.height() == b.height());
-    assert(a.width() >= kWindow && a.height() >= kWindow);
-    const int width = a.width();
-    double sum = 0.0;
-    std::int64_t windows = 0;
-    for (int y = 0; y + kWindow <= a.height(); y += kStride) {
-        for (int x = 0; x + kWindow <= width; x += kStride) {
-            const std::ptrdiff_t at = std::ptrdiff_t{y} * width + x;
-            sum += window_ssim(a.plane(0) + at, b.plane(0) + at, width);
-            ++windows;
-        }
-    }
-    return sum / static_cast<double>(windows);
 }
 
 void EdgeQuality::add(const Image& exact, const Image& shown) {
@@ -133,4 +105,4 @@ double EdgeQuality::ssim() const {
     return windows_ == 0 ? 1.0 : similarities_ / static_cast<double>(windows_);
 }
 
-}  // namespace corda::media
+}  // namespace corda::test
