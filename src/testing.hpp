@@ -18,7 +18,7 @@
 #include <utility>
 
 #include "corda/core/image.hpp"
-#include "corda/suite/check_golden.hpp"
+#include "corda/golden/check_golden.hpp"
 
 namespace corda {
 

@@ -9,17 +9,17 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/suite/suite.hpp"
+#include "corda/golden/suite.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
 namespace {
 
-using suite::Checked;
-using suite::Verdict;
+using golden::Checked;
+using golden::Verdict;
 
 struct GoldenOptions {
-    suite::SuiteDef def;
+    golden::SuiteDef def;
     GlOptions gl;
     std::string junit;
     std::string html;
@@ -87,7 +87,7 @@ void write_text(const std::string& path, const std::string& text) {
 }
 
 /// Prints what did not pass, what has changed and the sums.
-void tell(const Console& console, const GoldenOptions& options, const suite::SuiteResult& result) {
+void tell(const Console& console, const GoldenOptions& options, const golden::SuiteResult& result) {
     nlohmann::json pictures = nlohmann::json::array();
     std::int64_t changed = 0;
     for (const Checked& picture : result.pictures) {
@@ -140,9 +140,9 @@ ExitCode run_suite(const Console& console, GoldenOptions options) {
     options.gl.apply_to(options.def.film);
     options.def.film.on_progress = stopping_if_asked(kSomethingWritten);
     options.def.on_progress = stopping_if_asked(kSomethingWritten);
-    const suite::SuiteResult result = suite::run(options.def);
-    if (!options.junit.empty()) write_text(options.junit, suite::junit_xml(result));
-    if (!options.html.empty()) write_text(options.html, suite::page_html(result, options.def.folder));
+    const golden::SuiteResult result = golden::run(options.def);
+    if (!options.junit.empty()) write_text(options.junit, golden::junit_xml(result));
+    if (!options.html.empty()) write_text(options.html, golden::page_html(result, options.def.folder));
     tell(console, options, result);
     if (result.count(Verdict::kInvalid) > 0) return ExitCode::kInvalidScene;
     const bool failed = std::any_of(result.pictures.begin(), result.pictures.end(),

@@ -3,16 +3,15 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 corda_add_public_library(
-    FOLDERS core sim view gl render media golden scene pipeline suite
+    FOLDERS core sim view gl render media scene pipeline golden
     HEADERS
         corda.hpp
         core/basics.hpp core/image.hpp core/rational.hpp
-        golden/compare.hpp
+        golden/compare.hpp golden/check_golden.hpp testing.hpp
         media/defs.hpp
         pipeline/film.hpp
         scene/scene.hpp
         sim/defs.hpp sim/simulation.hpp sim/system.hpp
-        suite/check_golden.hpp testing.hpp
         view/defs.hpp
     PRIVATE Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json PNG::PNG
         PkgConfig::CAIRO PkgConfig::EPOXY PkgConfig::FREETYPE PkgConfig::LIBAV PkgConfig::WEBP PkgConfig::TOMLPLUSPLUS ${CORDA_X264_TARGET})

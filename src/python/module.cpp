@@ -5,7 +5,7 @@
 #include <pybind11/stl.h>
 
 #include <corda/corda.hpp>
-#include <corda/suite/check_golden.hpp>
+#include <corda/golden/check_golden.hpp>
 
 #include <unistd.h>
 

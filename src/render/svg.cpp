@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/markup.hpp"
 #include "corda/core/text.hpp"
 #include "corda/render/paint.hpp"
 #include "corda/render/vector.hpp"
@@ -19,21 +20,6 @@ constexpr std::string_view kHead =
 <title>{}</title>
 <g fill="none" stroke-linecap="round" stroke-linejoin="round">
 )";
-
-std::string xml_text(std::string_view text) {
-    std::string escaped;
-    for (const char c : text) {
-        if (c == '&')
-            escaped += "&amp;";
-        else if (c == '<')
-            escaped += "&lt;";
-        else if (c == '>')  // "]]>" is not allowed in text
-            escaped += "&gt;";
-        else
-            escaped += c;
-    }
-    return escaped;
-}
 
 /// Rounds to a hundredth of a pixel, without trailing zeros.
 std::string number(double value) {
@@ -75,7 +61,7 @@ class Svg : public VectorPage {
   public:
     explicit Svg(const PageDef& def) : def_(def) {
         text_ = fmt::format(fmt::runtime(kHead), def.width_mm, def.width_mm * def.height_px / def.width_px,
-                            def.width_px, def.height_px, xml_text(printable(def.title)));
+                            def.width_px, def.height_px, markup_text(printable(def.title)));
     }
 
     void draw(const view::DrawList& list, int x_px, int y_px) override {
@@ -195,7 +181,7 @@ class Svg : public VectorPage {
                            R"(xml:space="preserve">{}</text>)",
                            number(text.x_px + 0.5 * width_px), text.y_px, width_px, text.size_px,
                            opaque_text(text.color), opacity("fill-opacity", text.color),
-                           xml_text(printable(text.utf8)));
+                           markup_text(printable(text.utf8)));
             text_ += "\n";
         }
     }

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "corda/core/markup.hpp"
 #include "corda/core/text.hpp"
-#include "corda/report/page_style.hpp"
 #include "corda/report/writers.hpp"
 
 namespace corda::report {
@@ -11,33 +11,6 @@ namespace {
 
 /// A cell with more bytes than this may be broken into lines.
 constexpr std::size_t kLongText = 40;
-
-/// Plain text as the text or an attribute value of HTML and XML.
-std::string html_text(std::string_view text) {
-    std::string result;
-    for (const char c : printable(text)) {
-        switch (c) {
-            case '&':
-                result += "&amp;";
-                break;
-            case '<':
-                result += "&lt;";
-                break;
-            case '>':
-                result += "&gt;";
-                break;
-            case '"':
-                result += "&quot;";
-                break;
-            case '\'':
-                result += "&#39;";
-                break;
-            default:
-                result += c;
-        }
-    }
-    return result;
-}
 
 /// "1.23e-5" as 1.23 · 10 to the -5.
 std::string number_html(double value) {
@@ -54,7 +27,7 @@ std::string cell_html(const Cell& cell) {
     }
     if (const auto* text = std::get_if<std::string>(&cell); text != nullptr && !text->empty()) {
         return fmt::format("<td class=\"{}\">{}</td>", text->size() > kLongText ? "long" : "text",
-                           html_text(*text));
+                           markup_text(*text));
     }
     return "<td class=\"missing\">–</td>";
 }
@@ -62,12 +35,12 @@ std::string cell_html(const Cell& cell) {
 std::string table_html(const Table& table) {
     std::string text =
         fmt::format("<details>\n<summary>{}</summary>\n<div class=\"scroll\">\n<table id=\"table-{}\">\n",
-                    html_text(table.title), table.id);
+                    markup_text(table.title), table.id);
     text += "<thead><tr>";
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
         if (!is_for_people(table, i)) continue;
         text += fmt::format("<th scope=\"col\"{}>{}</th>", is_numeric(table, i) ? " class=\"number\"" : "",
-                            html_text(table.columns[i].title));
+                            markup_text(table.columns[i].title));
     }
     text += "</tr></thead>\n<tbody>\n";
     for (std::size_t r = 0; r < table.rows.size(); ++r) {
@@ -78,7 +51,7 @@ std::string table_html(const Table& table) {
         text += "</tr>\n";
     }
     text += "</tbody>\n</table>\n</div>\n";
-    if (!table.note.empty()) text += fmt::format("<p class=\"note\">{}</p>\n", html_text(table.note));
+    if (!table.note.empty()) text += fmt::format("<p class=\"note\">{}</p>\n", markup_text(table.note));
     return text + "</details>\n";
 }
 
@@ -108,7 +81,7 @@ std::string svg_element(std::string svg, const std::string& id, const std::strin
     // A black curve is as dark as letters are, which a dark page makes light.
     replace_all(svg, "'rgb(  0,   0,   0)'", "'black'");
     if (svg.rfind("<svg", 0) == 0)
-        svg.insert(4, fmt::format(" role=\"img\" aria-label=\"{}\"", html_text(title)));
+        svg.insert(4, fmt::format(" role=\"img\" aria-label=\"{}\"", markup_text(title)));
     return svg;
 }
 
@@ -135,7 +108,7 @@ std::string caption_html(const Report& report, const std::string& id, const std:
                          const std::string& data, FigureCount& figures) {
     if (caption.empty()) return {};
     return fmt::format("<figcaption><b>Figure {}.</b> {}{}</figcaption>\n", ++figures.count,
-                       html_text(caption), files_html(report, id, data));
+                       markup_text(caption), files_html(report, id, data));
 }
 
 std::string picture_html(const Report& report, const Picture& picture, const SvgOf& svg_of,
@@ -151,8 +124,8 @@ std::string setting_html(const Report& report) {
         "<div class=\"scroll\">\n<table class=\"setting\" "
         "id=\"setting\">\n<caption>Setting</caption>\n<tbody>\n";
     for (const auto& [name, value] : report.setting) {
-        text +=
-            fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", html_text(name), html_text(value));
+        text += fmt::format("<tr><th scope=\"row\">{}</th><td>{}</td></tr>\n", markup_text(name),
+                            markup_text(value));
     }
     return text + "</tbody>\n</table>\n</div>\n";
 }
@@ -162,7 +135,7 @@ std::string contents_html(const Report& report) {
     std::string text = "<nav aria-label=\"Chapters\">\n<ol>\n";
     for (std::size_t i = 0; i < report.chapters.size(); ++i) {
         text += fmt::format("<li><a href=\"#chapter-{}\">{}</a></li>\n", i + 1,
-                            html_text(report.chapters[i].title));
+                            markup_text(report.chapters[i].title));
     }
     return text + "</ol>\n</nav>\n";
 }
@@ -183,9 +156,9 @@ std::string chapter_html(const Report& report, const Chapter& chapter, std::size
                          const SvgOf& svg_of, FigureCount& figures) {
     std::string text =
         fmt::format("<section id=\"chapter-{0}\">\n<h2><a href=\"#chapter-{0}\">{0}. {1}</a></h2>\n", number,
-                    html_text(chapter.title));
+                    markup_text(chapter.title));
     for (const std::string& paragraph : chapter.paragraphs) {
-        text += fmt::format("<p>{}</p>\n", html_text(paragraph));
+        text += fmt::format("<p>{}</p>\n", markup_text(paragraph));
     }
     text += pictures_html(report, chapter, svg_of, figures);
     for (const Plot& plot : chapter.plots) {
@@ -205,10 +178,10 @@ std::string html_text(const Report& report, const SvgOf& svg_of) {
         "<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" content=\"width=device-width, "
         "initial-scale=1\"/>\n"
         "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n",
-        html_text(report.title), kPageStyle);
+        markup_text(report.title), kPageStyle);
     for (const Chapter& chapter : report.chapters) {
         if (!chapter.summary.empty())
-            text += fmt::format("<p class=\"summary\">{}</p>\n", html_text(chapter.summary));
+            text += fmt::format("<p class=\"summary\">{}</p>\n", markup_text(chapter.summary));
     }
     text += contents_html(report) + setting_html(report);
     FigureCount figures;

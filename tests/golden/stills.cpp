@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "corda/golden/provenance.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/render/reference_renderer.hpp"
-#include "corda/suite/provenance.hpp"
 #include "corda/testing.hpp"
 #include "support/command.hpp"
 #include "support/draw_list_of.hpp"
@@ -58,8 +58,8 @@ TEST_P(GoldenStill, IsUnchanged) {
     std::vector<Setting> settings{"world.duration=1.0"};
     const Scene scene = load_scene(GetParam(), settings);
     settings.push_back(fmt::format("video.size=[{},{}]", scene.golden->width_px, scene.golden->height_px));
-    const auto made = suite::from_png_info(read_png_info(folder + "/" + name));
-    for (const Setting& frozen : suite::freezing(scene, made)) settings.push_back(frozen);
+    const auto made = golden::from_png_info(read_png_info(folder + "/" + name));
+    for (const Setting& frozen : golden::freezing(scene, made)) settings.push_back(frozen);
     const Film film(load_scene(GetParam(), settings));
     const Image drawn = film.still(kTimeSeconds, {}, film.scene().video.shutter);
     EXPECT_THAT(drawn, corda::testing::MatchesGolden(name, {.folder = folder}));

@@ -43,7 +43,7 @@ TEST(Html, PageEscapesAndMarksFailures) {
     const std::string page = html_text(small_report(), [](const std::string&) { return "<svg></svg>\n"; });
     EXPECT_THAT(page, HasSubstr("<title>A &lt;report&gt;</title>"));
     EXPECT_THAT(page, HasSubstr("<h2><a href=\"#chapter-1\">1. First &amp; &lt;foremost&gt;</a></h2>"));
-    EXPECT_THAT(page, HasSubstr("<p>Plain a_b, &quot;q&quot; &lt;b&gt;&amp;amp; | *x* &#39;y&#39;"));
+    EXPECT_THAT(page, HasSubstr("<p>Plain a_b, &quot;q&quot; &lt;b&gt;&amp;amp; | *x* 'y'"));
     EXPECT_THAT(page, HasSubstr("<th scope=\"row\">Processor</th><td>Some &amp; any &lt;CPU&gt;</td>"));
     EXPECT_THAT(page, HasSubstr("<tr class=\"failed\"><td class=\"text\">rattle</td>"));
     EXPECT_THAT(page, HasSubstr("title=\"1.0000000000000001e-05\">1·10<sup>−5</sup></td>"));

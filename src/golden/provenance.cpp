@@ -1,4 +1,4 @@
-#include "corda/suite/provenance.hpp"
+#include "corda/golden/provenance.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 #include "corda/pipeline/provenance.hpp"
 #include "corda/scene/write_scene.hpp"
 
-namespace corda::suite {
+namespace corda::golden {
 namespace {
 
 constexpr std::size_t kDigits = 16;  // of a double's bits
@@ -173,4 +173,4 @@ std::string cause_of(const Provenance& reference, const Provenance& now) {
     return "same positions, camera and version, but pixels differ";
 }
 
-}  // namespace corda::suite
+}  // namespace corda::golden

@@ -1,10 +1,10 @@
-#include "corda/suite/markup.hpp"
+#include "corda/core/markup.hpp"
 
 #include "corda/core/text.hpp"
 
-namespace corda::suite {
+namespace corda {
 
-std::string markup_text(const std::string& text) {
+std::string markup_text(std::string_view text) {
     std::string markup;
     for (const char c : printable(text)) {
         switch (c) {
@@ -27,4 +27,4 @@ std::string markup_text(const std::string& text) {
     return markup;
 }
 
-}  // namespace corda::suite
+}  // namespace corda

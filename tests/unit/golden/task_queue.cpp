@@ -5,9 +5,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "corda/suite/task_queue.hpp"
+#include "corda/golden/task_queue.hpp"
 
-namespace corda::suite {
+namespace corda::golden {
 namespace {
 
 TEST(TaskQueue, RunsTasksThatTasksAdd) {
@@ -46,4 +46,4 @@ TEST(TaskQueue, DropsTheRestAfterAFailure) {
 }
 
 }  // namespace
-}  // namespace corda::suite
+}  // namespace corda::golden

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include "corda/suite/markup.hpp"
-#include "corda/suite/suite.hpp"
+#include "corda/core/markup.hpp"
+#include "corda/golden/suite.hpp"
 
-namespace corda::suite {
+namespace corda::golden {
 namespace {
 
 std::string case_xml(const Checked& picture) {
@@ -35,4 +35,4 @@ std::string junit_xml(const SuiteResult& result) {
     return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n" + suites + "</testsuites>\n";
 }
 
-}  // namespace corda::suite
+}  // namespace corda::golden

@@ -6,7 +6,7 @@
 
 #include "corda/core/file.hpp"
 
-namespace corda::suite {
+namespace corda::golden {
 
 /// The folder inside a folder of golden pictures in which an update stages its changes. A journal makes the
 /// changes one: once it is written, they are published, or taken back if one of them fails. If the process is
@@ -72,4 +72,4 @@ class UpdateFolder {
 /// is an error. Throws corda::Error: kTemporary if another update is publishing; kIo.
 [[nodiscard]] std::string settle_update(const std::string& pictures, bool dry_run);
 
-}  // namespace corda::suite
+}  // namespace corda::golden

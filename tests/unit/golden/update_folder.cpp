@@ -1,6 +1,6 @@
 // Updates of golden pictures are all or nothing, whether killed at any moment or stopped by a picture that
 // cannot be replaced.
-#include "corda/suite/update_folder.hpp"
+#include "corda/golden/update_folder.hpp"
 
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -20,7 +20,7 @@
 #include "support/command.hpp"
 #include "support/failure.hpp"
 
-namespace corda::suite {
+namespace corda::golden {
 namespace {
 
 namespace fs = std::filesystem;
@@ -205,4 +205,4 @@ TEST_F(UpdateFolderTest, IgnoresATruncatedJournal) {
 }
 
 }  // namespace
-}  // namespace corda::suite
+}  // namespace corda::golden

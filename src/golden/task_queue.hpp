@@ -6,7 +6,7 @@
 #include <functional>
 #include <mutex>
 
-namespace corda::suite {
+namespace corda::golden {
 
 /// Pieces of work that a few threads do, and that may add more of them.
 class TaskQueue {
@@ -31,4 +31,4 @@ class TaskQueue {
     std::exception_ptr error_;
 };
 
-}  // namespace corda::suite
+}  // namespace corda::golden

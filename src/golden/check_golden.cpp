@@ -1,4 +1,4 @@
-#include "corda/suite/check_golden.hpp"
+#include "corda/golden/check_golden.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 
 #include "corda/core/file.hpp"
 #include "corda/core/version.hpp"
+#include "corda/golden/cases.hpp"
+#include "corda/golden/provenance.hpp"
 #include "corda/media/defs.hpp"
-#include "corda/suite/cases.hpp"
-#include "corda/suite/provenance.hpp"
 
 namespace corda::testing {
 namespace {
@@ -66,7 +66,7 @@ std::string keep_artifacts(const std::string& name, const fs::path& golden_folde
 /// Whether `corda golden` made a picture.
 bool is_of_suite(const std::string& path) {
     try {
-        return suite::from_png_info(read_png_info(path)).is_golden();
+        return golden::from_png_info(read_png_info(path)).is_golden();
     } catch (const Error&) {  // it is missing, or damaged
         return false;
     }
@@ -88,7 +88,7 @@ GoldenOutcome update(const fs::path& path, const Image& drawn, const std::string
         return {.matches = false,
                 .written = false,
                 .message = why + "; update it by corda golden --update, which made it"};
-    if (suite::is_no_png(path.string()))
+    if (golden::is_no_png(path.string()))
         return {.matches = false,
                 .written = false,
                 .message = why + "; the file is no PNG and stays; remove it to have the picture written"};
@@ -102,13 +102,13 @@ GoldenOutcome update(const fs::path& path, const Image& drawn, const std::string
 }  // namespace
 
 GoldenOutcome check_golden(const Image& drawn, const std::string& name, const GoldenOptions& options) {
-    if (!name.ends_with(suite::kEnding))
+    if (!name.ends_with(golden::kEnding))
         throw Error(ExitCode::kUsage,
                     fmt::format("a golden picture's name ends in .png, and '{}' does not", name));
     const fs::path path = folder_of(options) / name;
     const fs::path folder = path.parent_path().empty() ? "." : path.parent_path();
     const std::string file = path.filename().string();
-    if (suite::has_one_color(drawn))
+    if (golden::has_one_color(drawn))
         return {.matches = false,
                 .written = false,
                 .message = "the picture has one colour alone: nothing is in view" +
@@ -116,7 +116,7 @@ GoldenOutcome check_golden(const Image& drawn, const std::string& name, const Go
     std::string why = fmt::format("there is no golden picture '{}'", path.string());
     std::optional<Picture> golden;
     const Picture shown{.image = drawn};
-    for (const std::string& variant : suite::variants_of(suite::references_in(folder.string()), file)) {
+    for (const std::string& variant : golden::variants_of(golden::references_in(folder.string()), file)) {
         Picture one;
         if (const std::string damage = read_golden(variant, one); !damage.empty()) {
             if (!golden) why = damage;

@@ -5,14 +5,14 @@
 #include <filesystem>
 
 #include "corda/core/file.hpp"
+#include "corda/core/markup.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
+#include "corda/golden/page_text.hpp"
+#include "corda/golden/suite.hpp"
 #include "corda/media/png/png.hpp"
-#include "corda/suite/markup.hpp"
-#include "corda/suite/page_text.hpp"
-#include "corda/suite/suite.hpp"
 
-namespace corda::suite {
+namespace corda::golden {
 namespace {
 
 constexpr int kGain = 16;  // of the difference: one step of 255 is seen
@@ -100,7 +100,7 @@ std::string case_html(const Checked& picture, const std::string& folder) {
 std::string page_html(const SuiteResult& result, const std::string& folder) {
     const std::int64_t failed = std::count_if(result.pictures.begin(), result.pictures.end(),
                                               [](const Checked& picture) { return picture.failed(); });
-    std::string html = kPageHead;
+    std::string html = fmt::format(kPageHead, kPageStyle, kPicturesStyle);
     html += fmt::format("<h1>Golden pictures: {} failed</h1>\n<p>{} passed. Drawn by corda {}.</p>\n", failed,
                         counted(result.count(Verdict::kPassed), "picture"), version());
     for (const Checked& picture : result.pictures)
@@ -112,4 +112,4 @@ std::string page_html(const SuiteResult& result, const std::string& folder) {
     return html + kPageTail;
 }
 
-}  // namespace corda::suite
+}  // namespace corda::golden

@@ -1,4 +1,4 @@
-#include "corda/suite/cases.hpp"
+#include "corda/golden/cases.hpp"
 
 #include <fmt/format.h>
 
@@ -11,11 +11,11 @@
 #include "corda/core/file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/timeline.hpp"
+#include "corda/golden/provenance.hpp"
 #include "corda/golden/variant.hpp"
 #include "corda/media/format/file_kind.hpp"
-#include "corda/suite/provenance.hpp"
 
-namespace corda::suite {
+namespace corda::golden {
 namespace {
 
 namespace fs = std::filesystem;
@@ -247,4 +247,4 @@ std::vector<std::string> stale_ones(const SuiteDef& def, const std::vector<Case>
     return stale;
 }
 
-}  // namespace corda::suite
+}  // namespace corda::golden

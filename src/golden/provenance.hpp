@@ -9,7 +9,7 @@
 #include "corda/media/defs.hpp"
 #include "corda/pipeline/film.hpp"
 
-namespace corda::suite {
+namespace corda::golden {
 
 /// What a golden picture says about how it was made.
 struct Provenance {
@@ -59,4 +59,4 @@ struct Provenance {
 /// The largest distance between particles in m; empty if positions are not known or differ in number.
 [[nodiscard]] std::optional<double> largest_distance_m(const Provenance& a, const Provenance& b);
 
-}  // namespace corda::suite
+}  // namespace corda::golden

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "corda/suite/provenance.hpp"
+#include "corda/golden/provenance.hpp"
 #include "support/command.hpp"
 
-namespace corda::suite {
+namespace corda::golden {
 namespace {
 
 using ::testing::HasSubstr;
@@ -100,4 +100,4 @@ TEST(SuiteProvenance, AcceptsOnlyNumbersAsPositions) {
 }
 
 }  // namespace
-}  // namespace corda::suite
+}  // namespace corda::golden

@@ -1,4 +1,4 @@
-#include "corda/suite/update_folder.hpp"
+#include "corda/golden/update_folder.hpp"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -17,7 +17,7 @@
 #include "corda/core/output_file.hpp"
 #include "corda/core/saving.hpp"
 
-namespace corda::suite {
+namespace corda::golden {
 namespace {
 
 namespace fs = std::filesystem;
@@ -269,4 +269,4 @@ std::string settle_update(const std::string& pictures, bool dry_run) {
     return done;
 }
 
-}  // namespace corda::suite
+}  // namespace corda::golden

@@ -1,9 +1,9 @@
-#include "corda/suite/staging.hpp"
+#include "corda/golden/staging.hpp"
 
 #include <filesystem>
 #include <utility>
 
-namespace corda::suite {
+namespace corda::golden {
 
 Staging::Staging(std::string folder) : folder_(std::move(folder)) {}
 
@@ -33,4 +33,4 @@ void Staging::publish(const std::vector<std::string>& stale) {
     inside_->publish(names_, removed);
 }
 
-}  // namespace corda::suite
+}  // namespace corda::golden

@@ -1,4 +1,4 @@
-#include "corda/suite/suite.hpp"
+#include "corda/golden/suite.hpp"
 
 #include <fmt/format.h>
 
@@ -9,14 +9,14 @@
 #include <mutex>
 
 #include "corda/core/machine.hpp"
+#include "corda/golden/cases.hpp"
+#include "corda/golden/provenance.hpp"
+#include "corda/golden/staging.hpp"
+#include "corda/golden/task_queue.hpp"
+#include "corda/golden/update_folder.hpp"
 #include "corda/pipeline/film_renderer.hpp"
-#include "corda/suite/cases.hpp"
-#include "corda/suite/provenance.hpp"
-#include "corda/suite/staging.hpp"
-#include "corda/suite/task_queue.hpp"
-#include "corda/suite/update_folder.hpp"
 
-namespace corda::suite {
+namespace corda::golden {
 namespace {
 
 namespace fs = std::filesystem;
@@ -376,4 +376,4 @@ SuiteResult run(const SuiteDef& def) {
     return result;
 }
 
-}  // namespace corda::suite
+}  // namespace corda::golden

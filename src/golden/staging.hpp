@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "corda/golden/update_folder.hpp"
 #include "corda/media/defs.hpp"
-#include "corda/suite/update_folder.hpp"
 
-namespace corda::suite {
+namespace corda::golden {
 
 /// Pictures for a folder that are published when all are drawn, or not at all. Until publish() they are in an
 /// UpdateFolder, which is removed with this object.
@@ -35,4 +35,4 @@ class Staging {
     std::vector<std::string> names_;
 };
 
-}  // namespace corda::suite
+}  // namespace corda::golden

@@ -1,10 +1,10 @@
-#include "corda/suite/task_queue.hpp"
+#include "corda/golden/task_queue.hpp"
 
 #include <utility>
 
 #include "corda/core/threads.hpp"
 
-namespace corda::suite {
+namespace corda::golden {
 
 void TaskQueue::push_back(Work work) {
     const std::lock_guard lock(mutex_);
@@ -50,4 +50,4 @@ void TaskQueue::help() {
     }
 }
 
-}  // namespace corda::suite
+}  // namespace corda::golden

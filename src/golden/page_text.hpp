@@ -1,23 +1,23 @@
 #pragma once
 
-namespace corda::suite {
+namespace corda::golden {
 
-/// The head of the page. Light or dark follows the reader's system.
+/// The head of the page, with two style sheets to be filled in.
 inline constexpr const char* kPageHead = R"html(<!DOCTYPE html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>Golden pictures</title>
-<style>
-:root { color-scheme: light dark; --ink: #1c2026; --soft: #5b6470; --line: #dde1e6; --page: #fff; --bad: #b3261e; }
-@media (prefers-color-scheme: dark) {
-  :root { --ink: #e4e7eb; --soft: #9aa4b0; --line: #333a43; --page: #14171b; --bad: #ff8f85; }
-}
-body { margin: 0 auto; padding: 2rem 1.5rem 4rem; max-width: 80rem; background: var(--page); color: var(--ink);
-  font: 1rem/1.5 system-ui, "Segoe UI", Arial, sans-serif; }
-h1 { font-size: 1.8rem; margin: 0 0 .5rem; }
-h2 { font-size: 1.1rem; margin: 0; overflow-wrap: anywhere; }
+<style>{}{}</style>
+</head>
+<body>
+)html";
+
+/// The style of the pictures.
+inline constexpr const char* kPicturesStyle = R"css(
+body { max-width: 80rem; }
+h2 { font-size: 1.1rem; margin: 0; padding: 0; border: 0; overflow-wrap: anywhere; }
 section { border-top: 1px solid var(--line); margin-top: 1.5rem; padding-top: 1.2rem; }
 .cause { color: var(--bad); margin: .2rem 0; }
 .figures { color: var(--soft); margin: .2rem 0 .8rem; font-variant-numeric: tabular-nums; }
@@ -28,8 +28,7 @@ button[aria-pressed=true] { border-color: var(--ink); font-weight: 600; }
 input[type=range] { width: 16rem; visibility: hidden; }
 .slide input[type=range] { visibility: visible; }
 .pictures { display: flex; flex-wrap: wrap; gap: 1rem; }
-figure { margin: 0; }
-figcaption { color: var(--soft); font-size: .875rem; }
+.pictures figure { margin: 0; padding: 0; border: 0; }
 img { display: block; max-width: 100%; height: auto; image-rendering: pixelated;
   background: repeating-conic-gradient(#bbb 0 25%, #eee 0 50%) 0 0 / 16px 16px; }
 .blink .pictures, .slide .pictures { display: grid; justify-content: start; }
@@ -39,14 +38,11 @@ img { display: block; max-width: 100%; height: auto; image-rendering: pixelated;
 .slide .drawn img { clip-path: inset(0 0 0 var(--cut, 50%)); }
 .slide .drawn figcaption { visibility: hidden; }
 .slide .reference figcaption::after { content: " on the left, new on the right"; }
-</style>
-</head>
-<body>
-)html";
+)css";
 
-/// What stands above the pictures of a case that has both.
+/// The controls above a pair of pictures.
 inline constexpr const char* kPageModes = R"html(<div class="modes">
-<button data-mode="" aria-pressed="true">beside each other</button>
+<button data-mode="" aria-pressed="true">side by side</button>
 <button data-mode="blink" aria-pressed="false">blink</button>
 <button data-mode="slide" aria-pressed="false">slider</button>
 <input type="range" min="0" max="100" value="50" aria-label="where the reference ends and the new picture begins">
@@ -76,4 +72,4 @@ setInterval(() => {
 </html>
 )html";
 
-}  // namespace corda::suite
+}  // namespace corda::golden

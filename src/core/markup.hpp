@@ -1,9 +1,15 @@
 #pragma once
 
-namespace corda::report {
+#include <string>
+#include <string_view>
 
-/// The style sheet, which stands in the page. Light or dark follows the reader's system, for plots too: their
-/// text, borders and grid get the page's colours.
+namespace corda {
+
+/// Any bytes as the text or an attribute value in double quotes of XML and HTML.
+[[nodiscard]] std::string markup_text(std::string_view text);
+
+/// The style sheet of HTML pages, to be embedded. Light or dark follows the reader's system, for plots too:
+/// their text, borders and grid get the page's colours.
 inline constexpr const char* kPageStyle = R"css(
 :root {
   color-scheme: light dark;
@@ -67,4 +73,4 @@ svg .gridline { stroke: var(--grid); }
 }
 )css";
 
-}  // namespace corda::report
+}  // namespace corda

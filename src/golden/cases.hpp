@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "corda/suite/suite.hpp"
+#include "corda/golden/suite.hpp"
 
-namespace corda::suite {
+namespace corda::golden {
 
 /// The ending of a reference.
 inline constexpr const char* kEnding = ".png";
@@ -45,4 +45,4 @@ struct Case {
 [[nodiscard]] std::vector<std::string> stale_ones(const SuiteDef& def, const std::vector<Case>& cases,
                                                   const std::vector<std::string>& references);
 
-}  // namespace corda::suite
+}  // namespace corda::golden

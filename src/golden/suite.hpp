@@ -7,7 +7,7 @@
 #include "corda/golden/compare.hpp"
 #include "corda/pipeline/film.hpp"
 
-namespace corda::suite {
+namespace corda::golden {
 
 /// Scenes with a table [golden], and the pictures that are kept of them.
 struct SuiteDef {
@@ -68,4 +68,4 @@ struct SuiteResult {
 /// times their difference, beside each other, blinking, or under a slider. `folder`: of the references.
 [[nodiscard]] std::string page_html(const SuiteResult& result, const std::string& folder);
 
-}  // namespace corda::suite
+}  // namespace corda::golden
