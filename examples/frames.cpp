@@ -12,7 +12,7 @@ int main(int argc, char** argv) try {
     scene.video.height_px = 180;
     scene.style.theme = corda::Theme::kPaper;
     scene.style.background.reset();
-    const corda::Film film(scene);
+    corda::Film film(scene);
     corda::Image background(320, 180);
     std::fill_n(background.data(), background.size_bytes(), 255);  // white
     for (std::int64_t k = 0; k < film.frame_count(); k += 60) {

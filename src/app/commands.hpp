@@ -113,13 +113,13 @@ struct GlOptions {
 [[nodiscard]] OnProgress show_progress(const Console& console, const std::string& what);
 
 /// Says what method `auto` became and how far it can be trusted.
-void report_plan(const Console& console, const Film& film);
+void report_plan(const Console& console, Film& film);
 /// Warns if a method that the scene names took one of several ways. To be called when the motion is known.
 void warn_of_branch(const Console& console, const Film& film);
 
 /// What every report on a film begins with: method, size, proof, camera and passes; null for what a film does
 /// not have. Simulates what has not been yet.
-[[nodiscard]] nlohmann::json film_json(const Film& film);
+[[nodiscard]] nlohmann::json film_json(Film& film);
 
 /// Pictures in which nothing is in view.
 struct EmptyPictures {

@@ -160,7 +160,7 @@ ExitCode FigureOptions::write_one(const Console& console, const Scene& loaded,
     whole.video.width_px = width_px;
     whole.video.height_px = height_px;
     const PictureOrigin origin{.command = is_sheet ? "sheet" : "strobe", .columns = def.columns};
-    const Film film = film_of(console, loaded, some);
+    Film film = film_of(console, loaded, some);
     EmptyPictures empties = empty;
     if (!dry_run) {
         if (output.ends_with(".png")) report_gl(console, film.gl());

@@ -87,7 +87,7 @@ void report_methods(const Console& console, const Film& film) {
     }
 }
 
-void report_in_words(const Console& console, const Film& film, const std::vector<std::string>& terms) {
+void report_in_words(const Console& console, Film& film, const std::vector<std::string>& terms) {
     console.result(fmt::format("{}: {}", film.scene().name, describe(film.system())));
     for (const std::string& term : terms) console.result("modelled: " + term);
     report_methods(console, film);
@@ -101,7 +101,7 @@ void report_in_words(const Console& console, const Film& film, const std::vector
 ExitCode plan(const Console& console, const PlanOptions& options) {
     FilmDef def;
     def.on_progress = show_progress(console, "plan");
-    const Film film(options.scene.load(console), def);
+    Film film(options.scene.load(console), def);
     report_plan(console, film);
     const CameraDef& camera = film.camera();
     if (options.toml) {

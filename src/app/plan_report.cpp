@@ -78,7 +78,7 @@ void warn_of_horizon(const Console& console, const Film& film) {
 
 }  // namespace
 
-void report_plan(const Console& console, const Film& film) {
+void report_plan(const Console& console, Film& film) {
     for (const std::string& note : film.plan().notes) console.warning(note);
     if (!std::holds_alternative<AutoDef>(film.scene().solver)) return;
     if (const auto bound = bound_text(film)) {
@@ -120,7 +120,7 @@ ExitCode EmptyPictures::report(const Console& console, std::int64_t all) const {
     return are_failures ? ExitCode::kMismatch : ExitCode::kOk;
 }
 
-nlohmann::json film_json(const Film& film) {
+nlohmann::json film_json(Film& film) {
     const Plan& plan = film.plan();
     const System& system = film.system();
     nlohmann::json json = {{"schema", 1},

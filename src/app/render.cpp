@@ -88,7 +88,7 @@ std::string words_of_interruption(const RenderOptions& options, std::int64_t fir
                         : done;
 }
 
-nlohmann::json report(const Film& film, const RenderOptions& options, const Rendered& rendered, double wall_s,
+nlohmann::json report(Film& film, const RenderOptions& options, const Rendered& rendered, double wall_s,
                       const std::string& gl_renderer) {
     const VideoDef& video = film.scene().video;
     nlohmann::json json = film_json(film);

@@ -47,7 +47,7 @@ class Parts {
 };
 
 /// Writes the report; returns why the motion ended early, if it did.
-std::optional<Error> write_report(const Console& console, const Film& film,
+std::optional<Error> write_report(const Console& console, Film& film,
                                   const std::vector<RequestedTime>& shots, const ReportOptions& options,
                                   report::ReportFolder& folder) {
     Parts parts(console);
@@ -79,7 +79,7 @@ ExitCode report_command(const Console& console, const ReportOptions& options) {
     def.readings = figures::needed_readings();
     for (const RequestedTime& shot : shots) def.stills_s.push_back(shot.time_s);
     options.gl.apply_to(def);
-    const Film film(scene, def);
+    Film film(scene, def);
     report_plan(console, film);
     if (options.dry_run) {
         console.info(fmt::format("would write a report into {}", options.output));

@@ -109,7 +109,7 @@ void add_row(const Film& film, const State& state, const Columns& columns, CsvLi
     if (columns.diagnostics) add_figures(film.figures(), line);
 }
 
-nlohmann::json report(const Film& film) {
+nlohmann::json report(Film& film) {
     const Figures& largest = film.diagnostics().largest;
     nlohmann::json json = film_json(film);
     json["steps"] = film.diagnostics().steps;
@@ -146,7 +146,7 @@ std::string cost_text(const Film& film) {
 }
 
 /// Writes the states of all frame times.
-void write_states(const Console& console, const Film& film, const Columns& columns, OutputFile* csv) {
+void write_states(const Console& console, Film& film, const Columns& columns, OutputFile* csv) {
     Progress progress(console, "simulate", film.last_frame() + 1);
     CsvLine line;
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
@@ -185,7 +185,7 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     FilmDef def;
     def.on_progress = [&on_progress](std::int64_t done, std::int64_t all) { return on_progress(done, all); };
     def.readings = {options.columns.velocities, options.columns.tensions};
-    const Film film(scene, def);
+    Film film(scene, def);
     report_plan(console, film);
     console.info(fmt::format("{}: {}, method {}", film.scene().name, describe(film.system()),
                              method_names(film.plan())));

@@ -81,7 +81,7 @@ void set_paths(const FigureOptions& options, std::vector<Still>& stills) {
 
 /// Draws and writes the stills, and counts the empty ones. If interrupted, the message says how many were
 /// written.
-void write_each(const std::vector<Still>& stills, const FigureOptions& options, const Film& film,
+void write_each(const std::vector<Still>& stills, const FigureOptions& options, Film& film,
                 EmptyPictures& empty) {
     std::size_t written = 0;
     const std::vector<double> stills_s = options.film_times({stills.begin(), stills.end()});
@@ -110,7 +110,7 @@ ExitCode write_stills(const Console& console, FigureOptions options) {
     const std::vector<RequestedTime> shots = options.shots.list(scene);
     std::vector<Still> stills = list_stills(shots, scene);
     set_paths(options, stills);
-    const Film film = options.film_of(console, scene, shots);
+    Film film = options.film_of(console, scene, shots);
     EmptyPictures empty = options.empty;
     if (!options.dry_run) {
         if (stills.front().path.ends_with(".png")) report_gl(console, film.gl());

@@ -17,7 +17,7 @@ using WritePoses =
 
 /// What is modelled, by which method and how well, and how it looks: a strobe, stills and the largest
 /// figures.
-[[nodiscard]] report::Chapter motion_chapter(const Film& film, const MotionSummary& reading,
+[[nodiscard]] report::Chapter motion_chapter(Film& film, const MotionSummary& reading,
                                              const FigureTimes& moments, const WritePoses& write);
 /// The paths of the followed particles.
 [[nodiscard]] report::Chapter path_chapter(const Film& film, const MotionSummary& reading);

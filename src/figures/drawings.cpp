@@ -44,7 +44,7 @@ Scene look_in_print(const Scene& scene, double width_mm) {
     return look;
 }
 
-const Film& Drawings::look(double width_mm) {
+Film& Drawings::look(double width_mm) {
     const auto known = looks_.find(width_mm);
     if (known != looks_.end()) return known->second;
     return looks_
@@ -54,7 +54,7 @@ const Film& Drawings::look(double width_mm) {
 
 void Drawings::write(const std::string& path, double width_mm, const std::vector<double>& times_s,
                      const OutputOptions& options) {
-    const Film& film = look(width_mm);
+    Film& film = look(width_mm);
     PngInfo info;
     info.pixels_per_inch = film.scene().video.width_px * kMmPerInch / width_mm;
     info.text = {{"Title", printable(film.scene().name)},

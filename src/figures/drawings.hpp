@@ -17,7 +17,7 @@ namespace corda::figures {
 class Drawings {
   public:
     /// The film must outlive it.
-    explicit Drawings(const Film& film) : film_(&film) {}
+    explicit Drawings(Film& film) : film_(&film) {}
 
     /// Writes the poses at some times in one picture; the ending of `path` is .svg, .png or .pdf. Throws as
     /// corda::write_figure().
@@ -27,9 +27,9 @@ class Drawings {
     [[nodiscard]] GlInfo gl(double width_mm) { return look(width_mm).gl(); }
 
   private:
-    [[nodiscard]] const Film& look(double width_mm);
+    [[nodiscard]] Film& look(double width_mm);
 
-    const Film* film_;
+    Film* film_;
     std::map<double, Film> looks_;  ///< by width
 };
 

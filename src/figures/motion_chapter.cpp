@@ -18,7 +18,7 @@ std::string model_text(const Film& film) {
     return fmt::format("Modelled: {}; {}.", corda::describe(film.system()), fmt::join(terms, "; "));
 }
 
-std::string method_text(const Film& film) {
+std::string method_text(Film& film) {
     const Plan& plan = film.plan();
     std::string text = fmt::format("Method: {}", corda::describe(film.system(), plan));
     const std::vector<MethodGroup> groups = groups_of(plan);
@@ -95,7 +95,7 @@ void add_pictures(const Film& film, const FigureTimes& moments, const WritePoses
 
 }  // namespace
 
-report::Chapter motion_chapter(const Film& film, const MotionSummary& reading, const FigureTimes& moments,
+report::Chapter motion_chapter(Film& film, const MotionSummary& reading, const FigureTimes& moments,
                                const WritePoses& write) {
     report::Chapter chapter;
     chapter.title = "Motion";

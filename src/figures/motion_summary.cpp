@@ -24,7 +24,7 @@ std::string key_of(const System& system, std::size_t body) {
 
 class Reader {
   public:
-    Reader(const Film& film, const OpenRows& open)
+    Reader(Film& film, const OpenRows& open)
         : film_(film),
           system_(film.system()),
           meter_(system_, film.scene().world, methods_of(film)),
@@ -200,7 +200,7 @@ class Reader {
         }
     }
 
-    const Film& film_;
+    Film& film_;
     const System& system_;
     sim::EnergyMeter meter_;
     MotionSummary reading_;
@@ -232,7 +232,7 @@ StateFields needed_readings() {
     return {.velocities = true, .tensions = true, .unknown_tensions = true};
 }
 
-MotionSummary read_motion(const Film& film, const OpenRows& open, const OnProgress& on_progress) {
+MotionSummary read_motion(Film& film, const OpenRows& open, const OnProgress& on_progress) {
     const std::int64_t rows = film.last_frame() + 1;
     Reader reader(film, open);
     std::optional<Error> failure;

@@ -18,7 +18,7 @@ namespace corda::figures {
 namespace {
 
 /// Reads the motion, and leaves its rows in the folder.
-MotionSummary read_into(const Film& film, const SceneReportDef& def, report::ReportFolder& folder) {
+MotionSummary read_into(Film& film, const SceneReportDef& def, report::ReportFolder& folder) {
     std::vector<std::pair<std::string, std::unique_ptr<CsvFile>>> files;
     const auto open = [&](const std::string& name, const std::vector<std::string>& keys) -> OnRow {
         const std::string path = folder.path_of(name);
@@ -52,7 +52,7 @@ void write_tensions_along(const Film& film, const MotionSummary& reading, const 
     folder.note(path);
 }
 
-std::vector<report::Chapter> list_chapters(const Film& film, const MotionSummary& reading,
+std::vector<report::Chapter> list_chapters(Film& film, const MotionSummary& reading,
                                            const FigureTimes& moments, const WritePoses& write) {
     std::vector<report::Chapter> chapters;
     chapters.push_back(motion_chapter(film, reading, moments, write));
@@ -82,7 +82,7 @@ report::Report page_of(const Film& film, std::vector<report::Chapter> chapters) 
 
 }  // namespace
 
-std::optional<Error> write_scene_report(const Film& film, const SceneReportDef& def,
+std::optional<Error> write_scene_report(Film& film, const SceneReportDef& def,
                                         report::ReportFolder& folder) {
     Drawings drawings(film);
     static_cast<void>(drawings.gl(kColumnMm));  // before anything is simulated, if the method is named

@@ -27,7 +27,7 @@ struct SceneReportDef {
 /// time, figures, and the pages. A motion that diverges gives a report of what comes before, and its error is
 /// returned. If it is asked to stop, the pages have what was drawn. Throws corda::Error: kIo, kNoGl,
 /// kDiverged if there is no state at all, kInterrupted.
-[[nodiscard]] std::optional<Error> write_scene_report(const Film& film, const SceneReportDef& def,
+[[nodiscard]] std::optional<Error> write_scene_report(Film& film, const SceneReportDef& def,
                                                       report::ReportFolder& folder);
 
 }  // namespace corda::figures

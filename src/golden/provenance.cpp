@@ -50,7 +50,7 @@ std::vector<double> from_hex(std::string_view text) {
 
 }  // namespace
 
-Provenance provenance_of(const Film& film, double time_s) {
+Provenance provenance_of(Film& film, double time_s) {
     const CameraDef& camera = film.camera();
     Provenance made{.version = std::string(version()),
                     .scene = printable(film.scene().name),
@@ -77,7 +77,7 @@ Provenance provenance_of(const Film& film, double time_s) {
     return made;
 }
 
-PngInfo to_png_info(const Provenance& made, const Film& film, double time_s) {
+PngInfo to_png_info(const Provenance& made, Film& film, double time_s) {
     corda::Provenance origin = corda::provenance_of(film.scene());
     origin.picture = PictureOrigin{.command = "still",
                                    .times = {{.frame = {}, .time_s = time_s}},

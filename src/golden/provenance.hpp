@@ -35,11 +35,11 @@ struct Provenance {
 };
 
 /// How a film's picture at a time is made.
-[[nodiscard]] Provenance provenance_of(const Film& film, double time_s);
+[[nodiscard]] Provenance provenance_of(Film& film, double time_s);
 
 /// As the texts of a PNG. Positions are the bits of their numbers, so that they are read back exactly. `film`
 /// is what the picture was drawn from: `still --from` draws it again.
-[[nodiscard]] PngInfo to_png_info(const Provenance& provenance, const Film& film, double time_s);
+[[nodiscard]] PngInfo to_png_info(const Provenance& provenance, Film& film, double time_s);
 
 /// Texts that are missing, or not what to_png_info() writes, leave their fields empty.
 [[nodiscard]] Provenance from_png_info(const PngInfo& info);

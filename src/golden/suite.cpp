@@ -119,8 +119,9 @@ class Runner {
             may_split ? std::clamp<std::size_t>(count / kMinApart, 1, static_cast<std::size_t>(threads_))
                       : std::size_t{1};
         for (std::size_t i = 0; i < pieces; ++i)
-            queue_.push_front([this, job, first = count * i / pieces, end = count * (i + 1) / pieces,
-                               pieces] { draw(*job, first, end, pieces > 1); });
+            queue_.push_front([this, job, first = count * i / pieces, end = count * (i + 1) / pieces] {
+                draw(*job, first, end);
+            });
     }
 
     /// The film with what is frozen, or without if that does not fit the scene any more.
@@ -140,7 +141,7 @@ class Runner {
     }
 
     /// Whether a particle is outside of one of the pictures, and the scene itself does not say where to look.
-    static bool leaves_frame(const Job& job) {
+    static bool leaves_frame(Job& job) {
         const CameraDef& own = job.scene->scene.camera;
         if (own.center_m || own.height_m) return false;
         const CameraDef& camera = job.film->camera();
@@ -176,15 +177,8 @@ class Runner {
         for (const double time_s : def.stills_s) job.made.push_back(provenance_of(*job.film, time_s));
     }
 
-    void draw(Job& job, std::size_t first, std::size_t end, bool apart) {
-        std::optional<FilmRenderer> renderer;
-        {
-            const std::lock_guard lock(mutex_);  // renderers of a film are made one at a time
-            if (apart)
-                renderer.emplace(*job.film, FilmRenderer::OwnContext{});
-            else
-                renderer.emplace(*job.film);
-        }
+    void draw(Job& job, std::size_t first, std::size_t end) {
+        std::optional<FilmRenderer> renderer(std::in_place, *job.film);
         for (std::size_t i = first; i < end; ++i) {
             Checked& picture = job.scene->pictures[i];
             renderer->draw(picture.time_s);
@@ -237,7 +231,7 @@ class Runner {
     }
 
     /// Writes a picture that is missing, differs, or freezes something else.
-    void update(const Job& job, std::size_t i, const Image& drawn, Checked& picture) {
+    void update(Job& job, std::size_t i, const Image& drawn, Checked& picture) {
         const Provenance& made = job.made[i];
         if (picture.verdict == Verdict::kPassed) {
             const std::string path = (fs::path(def_.folder) / picture.name).string();

@@ -185,7 +185,7 @@ void for_each_cell(const Film& film, const FigureDef& def,
         visit(def.times_s[i], sheet.x_px(i, video.width_px), sheet.y_px(i, video.height_px));
 }
 
-Image draw_sheet(const Film& film, const FigureDef& def, const OnProgress& on_progress,
+Image draw_sheet(Film& film, const FigureDef& def, const OnProgress& on_progress,
                  std::vector<double>& empty_s) {
     Image image = render::render_reference(list_captions(film, def));
     for_each_cell(film, def, [&](double time_s, int x, int y) {
@@ -197,8 +197,7 @@ Image draw_sheet(const Film& film, const FigureDef& def, const OnProgress& on_pr
     return image;
 }
 
-Image draw(const Film& film, const FigureDef& def, const OnProgress& on_progress,
-           std::vector<double>& empty_s) {
+Image draw(Film& film, const FigureDef& def, const OnProgress& on_progress, std::vector<double>& empty_s) {
     check(film, def);
     if (def.columns > 0) return draw_sheet(film, def, on_progress, empty_s);
     if (def.shutter != 0.0) {
@@ -206,10 +205,9 @@ Image draw(const Film& film, const FigureDef& def, const OnProgress& on_progress
         if (film.shows_nothing()) empty_s.push_back(def.times_s.front());
         return image;
     }
-    FilmRenderer renderer(film);
-    renderer.draw(FilmRenderer::poses(film, def.times_s, on_progress), on_progress);
+    Image image = FilmRenderer::draw_poses(film, def.times_s, on_progress);
     if (film.shows_nothing()) empty_s.push_back(def.times_s.front());
-    return renderer.image();
+    return image;
 }
 
 std::string ending_of(const std::string& path) {
@@ -217,8 +215,8 @@ std::string ending_of(const std::string& path) {
 }
 
 /// The bytes of an SVG or a PDF.
-std::string describe_lines(const std::string& ending, const Film& film, const FigureDef& def,
-                           const PngInfo& info, const OnProgress& on_progress, std::vector<double>& empty_s) {
+std::string describe_lines(const std::string& ending, Film& film, const FigureDef& def, const PngInfo& info,
+                           const OnProgress& on_progress, std::vector<double>& empty_s) {
     check(film, def);
     if (def.shutter != 0.0) {
         throw Error(ExitCode::kUsage,
@@ -235,7 +233,7 @@ std::string describe_lines(const std::string& ending, const Film& film, const Fi
     }
     const auto page = ending == ".svg" ? render::make_svg(page_def) : render::make_pdf(page_def);
     const auto add = [&](std::span<const double> times_s, int x, int y) {
-        const view::DrawList list = FilmRenderer::poses(film, times_s, on_progress);
+        const view::DrawList list = FilmRenderer::list_poses(film, times_s, on_progress);
         if (list.shows_nothing()) empty_s.push_back(times_s.front());
         page->draw(list, x, y);
     };
@@ -269,7 +267,7 @@ FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns) 
     return def;
 }
 
-Image draw_figure(const Film& film, const FigureDef& def, const OnProgress& on_progress) {
+Image draw_figure(Film& film, const FigureDef& def, const OnProgress& on_progress) {
     std::vector<double> ignored;
     return draw(film, def, on_progress, ignored);
 }
@@ -279,7 +277,7 @@ bool is_figure_path(const std::string& path) {
     return ending == ".png" || ending == ".svg" || ending == ".pdf";
 }
 
-std::vector<double> write_figure(const std::string& path, const Film& film, const FigureDef& def,
+std::vector<double> write_figure(const std::string& path, Film& film, const FigureDef& def,
                                  const PngInfo& info, const OutputOptions& options) {
     if (!is_figure_path(path)) {
         throw Error(ExitCode::kUsage,

@@ -8,7 +8,6 @@
 
 #include "corda/core/clock.hpp"
 #include "corda/pipeline/describe.hpp"
-#include "corda/pipeline/draw_context.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "corda/pipeline/live_plot_data.hpp"
 #include "corda/pipeline/methods.hpp"
@@ -22,11 +21,11 @@
 namespace corda {
 namespace {
 
-/// More capsules of several poses are refused: they would take hundreds of megabytes, and nobody could tell
-/// them apart.
+/// Maximum number of capsules in several poses: more would take hundreds of megabytes and be
+/// indistinguishable.
 constexpr std::size_t kMaxPoseCapsules = 5'000'000;
 
-/// How much of pose `k` of `count` shows: of the last one all, of earlier ones the less the earlier.
+/// Opacity of pose `k` of `count`: 1 for the last one, decreasing with age.
 double pose_opacity(std::size_t k, std::size_t count) {
     constexpr double kFirst = 0.2;
     constexpr double kSecondLast = 0.65;
@@ -35,17 +34,56 @@ double pose_opacity(std::size_t k, std::size_t count) {
     return kFirst + (kSecondLast - kFirst) * age;
 }
 
+/// A progress callback that this thread is running for a motion. Callbacks nest if one draws another film.
+class Callback {
+  public:
+    explicit Callback(const void* motion) : motion_(motion), outer_(std::exchange(innermost, this)) {}
+    Callback(const Callback&) = delete;
+    Callback& operator=(const Callback&) = delete;
+    ~Callback() { innermost = outer_; }
+
+    [[nodiscard]] static bool is_running_for(const void* motion) {
+        const Callback* callback = innermost;
+        while (callback != nullptr && callback->motion_ != motion) callback = callback->outer_;
+        return callback != nullptr;
+    }
+
+  private:
+    inline static thread_local const Callback* innermost = nullptr;
+    const void* motion_;
+    const Callback* outer_;
+};
+
 }  // namespace
 
-/// What films of one motion share.
+/// The motion, which several films may show in different looks, and several renderers in different threads.
 struct Film::Run {
     explicit Run(const Scene& scene) : system(system_of(scene)), named(pipeline::named_methods(scene)) {}
+
+    /// Required to read the motion. Throws corda::Error (kUsage) inside of a guarded() callback.
+    [[nodiscard]] std::unique_lock<std::mutex> lock() {
+        if (Callback::is_running_for(this)) {
+            throw Error(ExitCode::kUsage,
+                        "on_progress used the film whose progress it reports; draw and read the film after "
+                        "the call that reports progress, or make another Film");
+        }
+        return std::unique_lock(reading);
+    }
+
+    /// The callback, which must outlive the result, such that lock() refuses to be called inside of it.
+    [[nodiscard]] OnProgress guarded(const OnProgress& on_progress) const {
+        if (!on_progress) return {};
+        return [this, &on_progress](std::int64_t done, std::int64_t total) {
+            const Callback callback(this);
+            return on_progress(done, total);
+        };
+    }
 
     System system;
     sim::NamedMethods named;
     std::optional<pipeline::Motion> motion;
     Plan plan;
-    std::recursive_mutex reading;  ///< on_progress may draw a film itself
+    std::mutex reading;
 };
 
 struct Film::Impl {
@@ -56,11 +94,12 @@ struct Film::Impl {
           def(std::move(options)),
           run(std::make_shared<Run>(scene)),
           system(run->system),
+          on_progress(run->guarded(def.on_progress)),
           drawing(scene, system, def),
           plot_data(scene, system),
-          motion(run->motion.emplace(
-              system, scene.world, pipeline::if_all_named(run->named), timeline(), def.motion_budget_bytes,
-              def.on_progress, quantity_of(scene.style.color_by), def.readings.with(plot_data.readings()))),
+          motion(run->motion.emplace(system, scene.world, pipeline::if_all_named(run->named), timeline(),
+                                     def.motion_budget_bytes, on_progress, quantity_of(scene.style.color_by),
+                                     def.readings.with(plot_data.readings()))),
           plan(run->plan) {
         if (motion.methods().empty()) {
             plan = motion.record([&](const Timeline& timeline, sim::Recording& recording) {
@@ -70,12 +109,12 @@ struct Film::Impl {
             for (const MethodDef& method : motion.methods()) plan.bodies.emplace_back().method = method;
         }
         plan.notes = pipeline::input_notes(scene, system, plan, [this] {
-            report_progress(def.on_progress, 0, pipeline::last_frame_of(scene) + 1);
+            report_progress(on_progress, 0, pipeline::last_frame_of(scene) + 1);
             return true;
         });
     }
 
-    /// The times to be recorded: those within exposures too, if there is room.
+    /// The times to record, including those within exposures if memory suffices.
     Timeline timeline() const {
         const VideoDef& video = scene.video;
         const std::int64_t last_frame = pipeline::last_frame_of(scene);
@@ -94,8 +133,7 @@ struct Film::Impl {
         return {video.fps, last_frame, std::move(times_s)};
     }
 
-    /// The time of one of the pictures that are exposed at a time; none is before the motion's start or after
-    /// its end.
+    /// The time of sub-frame `i` of the exposure at `time_s`, clipped to the motion.
     double subframe_s(double time_s, double shutter, double end_s, int i) const {
         const double half_s = 0.5 * shutter * scene.video.fps.interval_s();
         const double from_s = std::max(0.0, time_s - half_s);
@@ -109,6 +147,7 @@ struct Film::Impl {
           def(other.def),
           run(other.run),
           system(run->system),
+          on_progress(run->guarded(def.on_progress)),
           drawing(scene, system, def),
           plot_data(scene, system),
           motion(*run->motion),
@@ -119,75 +158,76 @@ struct Film::Impl {
         const auto tolerance_m = [&](const MotionBounds& bounds) {
             return tolerance_px / drawing.renderer.largest_pixels_per_metre(bounds);
         };
-        return sim::plan_methods(system, run->named, scene.world,
-                                 {tolerance_m, timeline, def.on_progress, now_s}, recording);
+        return sim::plan_methods(system, run->named, scene.world, {tolerance_m, timeline, on_progress, now_s},
+                                 recording);
     }
 
-    /// The camera, fitted once the motion is known as far as it needs it.
+    /// The camera, fitted to the motion if it depends on it.
     const CameraDef& find_camera() {
+        const auto lock = run->lock();
+        return find_camera_locked();
+    }
+
+    const CameraDef& find_camera_locked() {
         if (camera) return *camera;
-        if (drawing.renderer.needs_motion()) motion.run_to_end(def.on_progress);
+        if (drawing.renderer.needs_motion()) motion.run_to_end(on_progress);
         if (scene.overlay.plot != LivePlot::kNone) {
-            const std::vector<MethodDef> methods = motion.methods();  // reading may begin the motion anew
-            plot = plot_data.read(methods, last_s(drawing), [this](double time_s) -> const State& {
-                return motion.at(time_s, def.on_progress);
+            const std::vector<MethodDef> methods =
+                motion.methods();  // a copy: reading may restart the motion
+            plot = plot_data.read(methods, last_s_locked(), [this](double time_s) -> const State& {
+                return motion.at(time_s, on_progress);
             });
         }
-        camera = fit(drawing.renderer);
+        camera = fit_locked(drawing.renderer);
         return *camera;
     }
 
     /// Fits a renderer to the motion.
-    CameraDef fit(pipeline::SceneRenderer& renderer) const {
+    CameraDef fit_locked(pipeline::SceneRenderer& renderer) const {
         if (plot) renderer.set_plot(*plot);
-        // The start is there even if the first step diverges.
+        // The start exists even if the first step diverges.
         const sim::Recording& recording = motion.recording();
         return renderer.fit(recording.size() > 0 ? recording.particle_bounds() : bounds_of_start(system),
                             recording.spread());
     }
 
-    /// A second draw context of this film.
-    std::unique_ptr<DrawContext> another_context() {
-        static_cast<void>(find_camera());
+    /// The state of another renderer of this film.
+    std::unique_ptr<DrawContext> make_context() {
+        const auto lock = run->lock();
+        static_cast<void>(find_camera_locked());
         auto made = std::make_unique<DrawContext>(scene, system, def);
-        static_cast<void>(fit(made->renderer));
+        static_cast<void>(fit_locked(made->renderer));
         made->trails = drawing.trails;
         return made;
     }
 
-    /// As time_within() takes it. Throws kUsage for a time at which there is no motion.
+    /// A time in the form of time_within(). Throws corda::Error (kUsage) if there is no motion at that time.
     [[nodiscard]] double checked_s(double time_s) const {
         if (const auto within_s = pipeline::motion_time_s(scene, time_s)) return *within_s;
         throw Error(ExitCode::kUsage, fmt::format("{} s is not within 0 .. {} s; world.duration sets the end",
                                                   time_s, scene.world.duration_s));
     }
 
-    /// Renderers in other threads may read the motion meanwhile.
     const State& at(double time_s) {
         time_s = checked_s(time_s);
-        const std::lock_guard lock(run->reading);
-        asked = motion.at(time_s, def.on_progress);
+        const auto lock = run->lock();
+        asked = motion.at(time_s, on_progress);
         figures = motion.figures();
         return asked;
     }
 
-    /// The progress callback while the motion is simulated for a draw context.
-    [[nodiscard]] OnProgress asking(const DrawContext& by) const {
-        return by.is_silent ? OnProgress() : def.on_progress;
-    }
-
-    /// Reads the state at a time, and the trails up to it, into a draw context. Several threads may do so,
-    /// each with its own.
+    /// Reads the state at a time, and the trails up to it, into a draw context. Threads may do so at once,
+    /// each with its own context.
     const State& read(double time_s, DrawContext& by) {
         time_s = checked_s(time_s);
-        const std::lock_guard lock(run->reading);
-        by.trails.read(motion, time_s, asking(by));
-        by.state = motion.at(time_s, asking(by));
+        const auto lock = run->lock();
+        by.trails.read(motion, time_s, on_progress);
+        by.state = motion.at(time_s, on_progress);
         by.figures = motion.figures();
         return by.state;
     }
 
-    view::DrawList poses(std::span<const double> times_s, const OnProgress& on_progress) {
+    view::DrawList list_poses(std::span<const double> times_s, const OnProgress& ask) {
         pipeline::SceneRenderer& renderer = drawing.renderer;
         const view::Camera map = renderer.map_of(find_camera());
         const view::SceneView& view = renderer.view();
@@ -195,8 +235,7 @@ struct Film::Impl {
         view.start(list);
         view.draw_trails(drawing.trails.to(read(times_s.back(), drawing)), map, list);
         for (std::size_t k = 0; k < times_s.size(); ++k) {
-            report_progress(on_progress, static_cast<std::int64_t>(k),
-                            static_cast<std::int64_t>(times_s.size()));
+            report_progress(ask, static_cast<std::int64_t>(k), static_cast<std::int64_t>(times_s.size()));
             const std::size_t first_layer = list.layers.size();
             view.draw_pose(read(times_s[k], drawing), map, list);
             const double opacity = pose_opacity(k, times_s.size());
@@ -213,7 +252,7 @@ struct Film::Impl {
         const State& last = read(times_s.back(), drawing);
         view.draw_supports(last, map, list);
         view::Caption caption = caption_of(drawing, map);
-        if (times_s.size() > 1) {  // it is of no one time
+        if (times_s.size() > 1) {  // the picture has no single time
             caption.time_s.reset();
             caption.energy_error.reset();
         }
@@ -222,54 +261,44 @@ struct Film::Impl {
         return list;
     }
 
-    /// The caption of the last state that was read into a draw context.
+    /// The caption of the state in a draw context.
     view::Caption caption_of(const DrawContext& by, const view::Camera& map) const {
         std::optional<double> bound_px;
         if (plan.error_bound_m) bound_px = *plan.error_bound_m * map.pixels_per_metre();
         return {by.state.time_s, by.figures.energy_error, method_caption(plan, bound_px)};
     }
 
-    /// Requires a Use of the context's renderer. `camera`: of find_camera().
-    Damage draw(double time_s, double shutter, const CameraDef& camera_def, const OnProgress& on_progress,
+    /// Requires a Use of the context's renderer. `camera_def`: as find_camera() returns it.
+    Damage draw(double time_s, double shutter, const CameraDef& camera_def, const OnProgress& ask,
                 DrawContext& by) {
         time_s = checked_s(time_s);
         if (!(shutter >= 0.0 && shutter <= 1.0))
             throw Error(ExitCode::kUsage, fmt::format("a shutter of {} is not within 0 .. 1", shutter));
         const view::Camera map = by.renderer.map_of(camera_def);
-        const auto draw_asking = [&](const OnProgress& ask) {
-            return shutter > 0.0 ? expose(time_s, shutter, map, ask, by) : draw_sharp(time_s, map, ask, by);
-        };
-        try {
-            return draw_asking(on_progress);
-        } catch (const pipeline::SceneRenderer::Overdrawn&) {
-            // Ask nobody: a callback would draw again.
-            const pipeline::Silence silence(by);
-            return draw_asking({});
-        }
-    }
-
-    Damage draw_sharp(double time_s, const view::Camera& map, const OnProgress& on_progress,
-                      DrawContext& by) {
+        if (shutter > 0.0) return expose(time_s, shutter, map, ask, by);
         const State& state = read(time_s, by);
-        return by.renderer.draw(state, map, caption_of(by, map), {by.trails.to(state), state.time_s},
-                                on_progress);
+        return by.renderer.draw(state, map, caption_of(by, map), {by.trails.to(state), state.time_s}, ask);
     }
 
-    /// The end of the motion: that of the scene, or of the last recorded state if it diverges, which is only
-    /// known once it has been simulated.
-    double last_s(const DrawContext& by) {
-        const std::lock_guard lock(run->reading);
-        motion.run_to_end(asking(by));
+    /// The end of the motion: that of the scene, or the last recorded state if the motion diverges. Simulates
+    /// it to its end.
+    double last_s() {
+        const auto lock = run->lock();
+        return last_s_locked();
+    }
+
+    double last_s_locked() {
+        motion.run_to_end(on_progress);
         const std::size_t states = motion.recording().size();
         return motion.diverges() && states > 0 ? motion.timeline().time_s(states - 1)
                                                : scene.world.duration_s;
     }
 
-    /// The states are read in the order of time: what is not recorded is simulated on the way.
-    Damage expose(double time_s, double shutter, const view::Camera& map, const OnProgress& on_progress,
+    /// Reads the states in order of time, so that those that are not recorded take one simulation.
+    Damage expose(double time_s, double shutter, const view::Camera& map, const OnProgress& ask,
                   DrawContext& by) {
-        const double end_s = last_s(by);
-        const std::int64_t picture = by.renderer.begin_exposure();
+        const double end_s = last_s();
+        by.renderer.begin_exposure();
         std::optional<view::Caption> caption;
         const auto note = [&] {
             static_cast<void>(read(time_s, by));
@@ -279,13 +308,13 @@ struct Film::Impl {
             const double at_s = subframe_s(time_s, shutter, end_s, i);
             if (!caption && at_s >= time_s) note();
             const State& state = read(at_s, by);
-            by.renderer.expose(picture, state, map, {by.trails.to(state), time_s}, on_progress);
+            by.renderer.expose(state, map, {by.trails.to(state), time_s}, ask);
         }
         if (!caption) note();
-        return by.renderer.develop(picture, *caption, map);
+        return by.renderer.develop(*caption, map);
     }
 
-    /// Whether the frame at a time would show nothing.
+    /// True if the frame at a time would be empty.
     bool is_empty(double time_s) {
         const view::Camera map = drawing.renderer.map_of(find_camera());
         const auto shows_nothing_at = [&](double at_s) {
@@ -294,24 +323,25 @@ struct Film::Impl {
         };
         const VideoDef& video = scene.video;
         if (video.shutter == 0.0) return shows_nothing_at(time_s);
-        const double end_s = last_s(drawing);
+        const double end_s = last_s();
         for (int i = 0; i < video.subframes; ++i)
             if (!shows_nothing_at(subframe_s(time_s, video.shutter, end_s, i))) return false;
         return true;
     }
 
-    /// Whether frames before `end` can be drawn in any order without being simulated again.
+    /// True if frames before `end` can be drawn in any order without another simulation.
     bool holds(std::int64_t end) {
+        const auto lock = run->lock();
         const VideoDef& video = scene.video;
         const double last_frame_s = video.fps.time_s(end - 1);
         const double needed_s = video.shutter > 0.0
                                     ? std::max(last_frame_s, subframe_s(last_frame_s, video.shutter,
-                                                                        last_s(drawing), video.subframes - 1))
+                                                                        last_s_locked(), video.subframes - 1))
                                     : last_frame_s;
         const auto last = motion.timeline().find(needed_s);
         if (!last) return false;
         try {
-            if (motion.recording().size() <= *last) static_cast<void>(motion.at(needed_s, def.on_progress));
+            if (motion.recording().size() <= *last) static_cast<void>(motion.at(needed_s, on_progress));
         } catch (const Error& error) {
             if (error.code() != ExitCode::kDiverged) throw;
         }
@@ -322,14 +352,15 @@ struct Film::Impl {
     FilmDef def;
     std::shared_ptr<Run> run;
     const System& system;
-    DrawContext drawing;
+    OnProgress on_progress;  ///< that of `def`, guarded
+    DrawContext drawing;     ///< of frames and stills
     pipeline::LivePlotData plot_data;
     pipeline::Motion& motion;
     Plan& plan;
     std::optional<view::PlotData> plot;
     std::optional<CameraDef> camera;
-    State asked;      ///< what was asked for last
-    Figures figures;  ///< of that
+    State asked;      ///< returned last by at()
+    Figures figures;  ///< of that state
 };
 
 Film::Film(const Scene& scene, FilmDef def) {
@@ -373,12 +404,12 @@ const Plan& Film::plan() const {
     return impl_->plan;
 }
 
-std::optional<double> Film::error_bound_px() const {
+std::optional<double> Film::error_bound_px() {
     if (!plan().error_bound_m) return std::nullopt;
     return *plan().error_bound_m * impl_->drawing.renderer.map_of(impl_->find_camera()).pixels_per_metre();
 }
 
-const CameraDef& Film::camera() const {
+const CameraDef& Film::camera() {
     return impl_->find_camera();
 }
 
@@ -386,11 +417,11 @@ int Film::simulation_passes() const {
     return plan().simulation_passes + impl_->motion.passes();
 }
 
-const State& Film::state(std::int64_t k) const {
+const State& Film::state(std::int64_t k) {
     return impl_->at(time_s(k));
 }
 
-const State& Film::state_at(double time_s) const {
+const State& Film::state_at(double time_s) {
     return impl_->at(time_s);
 }
 
@@ -406,14 +437,14 @@ double Film::stepping_s() const {
     return impl_->motion.recording().wall_s();
 }
 
-Image Film::frame(std::int64_t k, const OnProgress& on_progress) const {
+Image Film::frame(std::int64_t k, const OnProgress& on_progress) {
     return still(time_s(k), on_progress, scene().video.shutter);
 }
 
-Image Film::still(double time_s, const OnProgress& on_progress, double shutter) const {
+Image Film::still(double time_s, const OnProgress& on_progress, double shutter) {
     const pipeline::SceneRenderer::Use use(impl_->drawing.renderer);
     const CameraDef& camera = impl_->find_camera();
-    impl_->draw(time_s, shutter, camera, on_progress, impl_->drawing);
+    impl_->draw(time_s, shutter, camera, impl_->run->guarded(on_progress), impl_->drawing);
     return impl_->drawing.renderer.image();
 }
 
@@ -421,53 +452,45 @@ bool Film::shows_nothing() const {
     return impl_->drawing.renderer.shows_nothing();
 }
 
-GlInfo Film::gl() const {
+GlInfo Film::gl() {
     const pipeline::SceneRenderer::Use use(impl_->drawing.renderer, pipeline::SceneRenderer::Needs::kContext);
     const gl::Context& context = impl_->drawing.renderer.context();
     return {context.info().gl_renderer, context.info().gl_vendor, context.info().gl_version,
             context.platform()};
 }
 
-FilmRenderer::FilmRenderer(const Film& film)
+FilmRenderer::FilmRenderer(Film& film)
     : film_(&film),
-      drawing_(&film.impl_->drawing),
-      use_(drawing_->renderer),
-      camera_(film.impl_->find_camera()) {}
-
-FilmRenderer::FilmRenderer(const Film& film, OwnContext)
-    : film_(&film),
-      own_(film.impl_->another_context()),
-      drawing_(own_.get()),
-      use_(drawing_->renderer),
+      context_(film.impl_->make_context()),
+      use_(context_->renderer),
       camera_(film.impl_->find_camera()) {}
 
 FilmRenderer::~FilmRenderer() = default;
 
-bool FilmRenderer::can_draw_in_any_order(const Film& film, std::int64_t end) {
+bool FilmRenderer::can_draw_in_any_order(Film& film, std::int64_t end) {
     return film.impl_->holds(end);
 }
 
 Damage FilmRenderer::draw(double time_s, const OnProgress& on_progress) {
-    pipeline::SceneRenderer& renderer = drawing_->renderer;
-    Damage damage = film_->impl_->draw(time_s, film_->scene().video.shutter, camera_, on_progress, *drawing_);
-    const bool is_next = renderer.pictures() == pictures_ + 1;
-    pictures_ = renderer.pictures();
-    return is_next ? damage : Damage{renderer.image().rect()};
+    Film::Impl& impl = *film_->impl_;
+    return impl.draw(time_s, impl.scene.video.shutter, camera_, impl.run->guarded(on_progress), *context_);
 }
 
-void FilmRenderer::draw(view::DrawList list, const OnProgress& on_progress) {
-    pipeline::SceneRenderer& renderer = drawing_->renderer;
-    try {
-        renderer.draw(list, on_progress);
-    } catch (const pipeline::SceneRenderer::Overdrawn&) {
-        renderer.draw(std::move(list));  // without asking: it would not end
-    }
-    pictures_ = -1;
+view::DrawList FilmRenderer::list_poses(Film& film, std::span<const double> times_s,
+                                        const OnProgress& on_progress) {
+    return film.impl_->list_poses(times_s, film.impl_->run->guarded(on_progress));
 }
 
-view::DrawList FilmRenderer::poses(const Film& film, std::span<const double> times_s,
-                                   const OnProgress& on_progress) {
-    return film.impl_->poses(times_s, on_progress);
+Image FilmRenderer::draw_poses(Film& film, std::span<const double> times_s, const OnProgress& on_progress) {
+    pipeline::SceneRenderer& renderer = film.impl_->drawing.renderer;
+    const pipeline::SceneRenderer::Use use(renderer);
+    const OnProgress ask = film.impl_->run->guarded(on_progress);
+    renderer.draw(film.impl_->list_poses(times_s, ask), ask);
+    return renderer.image();
+}
+
+OnProgress FilmRenderer::guarded(const Film& film, const OnProgress& on_progress) {
+    return film.impl_->run->guarded(on_progress);
 }
 
 Film FilmRenderer::another_look(const Film& film, const Scene& look) {
@@ -478,23 +501,23 @@ Film FilmRenderer::another_look(const Film& film, const Scene& look) {
     return Film(std::make_unique<Film::Impl>(*film.impl_, look));
 }
 
-void FilmRenderer::keep(const Film& film, std::span<const double> times_s) {
+void FilmRenderer::keep(Film& film, std::span<const double> times_s) {
     std::vector<double> checked_s;
     for (const double time_s : times_s) checked_s.push_back(film.impl_->checked_s(time_s));
-    const std::lock_guard lock(film.impl_->run->reading);
-    film.impl_->motion.keep(checked_s, film.impl_->def.on_progress);
+    const auto lock = film.impl_->run->lock();
+    film.impl_->motion.keep(checked_s, film.impl_->on_progress);
 }
 
-bool FilmRenderer::is_empty(const Film& film, double time_s) {
+bool FilmRenderer::is_empty(Film& film, double time_s) {
     return film.impl_->is_empty(time_s);
 }
 
 const Image& FilmRenderer::image() const {
-    return drawing_->renderer.image();
+    return context_->renderer.image();
 }
 
 bool FilmRenderer::shows_nothing() const {
-    return drawing_->renderer.shows_nothing();
+    return context_->renderer.shows_nothing();
 }
 
 }  // namespace corda

@@ -30,9 +30,9 @@ struct FilmDef {
     std::string backend = "auto";
     bool require_gpu = false;  ///< refuse an OpenGL that runs on the CPU
     StateFields readings;      ///< what its states have besides positions
-    /// Called with the frames done so far, in every pass of the simulation, and again during frames that take
-    /// long; returning false ends what is being asked for by kInterrupted. It can be asked for again. It may
-    /// query states that have already been simulated, and draw them; any other query throws kUsage.
+    /// Called with the number of frames done, in every pass of the simulation, and repeatedly during frames
+    /// that take long. Returning false ends the current call with kInterrupted; the call can be repeated. It
+    /// may use other films, but not this one.
     OnProgress on_progress;
 };
 
@@ -44,10 +44,12 @@ struct GlInfo {
     std::string platform;  ///< how the context was reached, e.g. "EGL device 0"
 };
 
-/// A scene as pictures: plans a method, simulates the motion once, fits the camera to it, and draws any frame
-/// in any order. The same scene gives the same bytes.
+/// A scene as pictures: plans a method, simulates the motion once, fits the camera to it, and draws frames in
+/// any order. The same scene gives the same bytes.
 ///
-/// A Film may be used from any thread, but only by one at a time. Films of any sizes work side by side.
+/// Any thread may use a film, but only one at a time, except for the `const` functions. Several films may be
+/// used at once. A film must not be used inside of its own progress callbacks, whether given here or to one
+/// of its functions: reading or drawing it there throws corda::Error (kUsage).
 class Film {
   public:
     /// Plans a scene of method `auto`, which simulates it; another is simulated as far as it is asked for,
@@ -72,18 +74,18 @@ class Film {
     /// The method and the proof of its error.
     [[nodiscard]] const Plan& plan() const;
     /// Bound on the displayed position error in pixels; std::nullopt if the plan has none.
-    [[nodiscard]] std::optional<double> error_bound_px() const;
+    [[nodiscard]] std::optional<double> error_bound_px();
     /// The camera with center and height filled in: given again, it draws the same bytes. Simulates what has
     /// not been yet, unless the scene gives both and has no supports.
-    [[nodiscard]] const CameraDef& camera() const;
+    [[nodiscard]] const CameraDef& camera();
     /// How often the whole motion has been integrated so far, counted by the code that integrates.
     [[nodiscard]] int simulation_passes() const;
 
     /// Positions at frame `k`, 0 .. last_frame(), or at a time in 0 .. world.duration_s. The reference holds
     /// until the next call. Throws corda::Error: kUsage out of range, kDiverged if the motion ends before,
     /// kInterrupted if on_progress asks to stop.
-    [[nodiscard]] const State& state(std::int64_t k) const;
-    [[nodiscard]] const State& state_at(double time_s) const;
+    [[nodiscard]] const State& state(std::int64_t k);
+    [[nodiscard]] const State& state_at(double time_s);
     /// Figures of the last state asked for.
     [[nodiscard]] const Figures& figures() const;
     /// Figures of the run up to the last time simulated.
@@ -98,12 +100,12 @@ class Film {
     /// all, in any other order up to one each. A blurred picture first simulates the whole motion, because
     /// exposures are clipped to its end. Asks `on_progress` again and again if the picture is large or
     /// blurred. Throws as state(), and kNoGl, kInterrupted.
-    [[nodiscard]] Image frame(std::int64_t k, const OnProgress& on_progress = {}) const;
-    [[nodiscard]] Image still(double time_s, const OnProgress& on_progress = {}, double shutter = 0.0) const;
-    /// Whether nothing is in view in the last picture that was drawn.
+    [[nodiscard]] Image frame(std::int64_t k, const OnProgress& on_progress = {});
+    [[nodiscard]] Image still(double time_s, const OnProgress& on_progress = {}, double shutter = 0.0);
+    /// True if the last picture was empty.
     [[nodiscard]] bool shows_nothing() const;
-    /// What draws. Throws kNoGl.
-    [[nodiscard]] GlInfo gl() const;
+    /// The OpenGL driver. Throws kNoGl.
+    [[nodiscard]] GlInfo gl();
 
   private:
     friend class FilmRenderer;
@@ -116,12 +118,12 @@ class Film {
 
 /// The scene of a film with the methods and the camera that were chosen: it gives the same frames, byte for
 /// byte. Throws what camera() throws.
-[[nodiscard]] Scene frozen_scene(const Film& film);
+[[nodiscard]] Scene frozen_scene(Film& film);
 
 /// The tables [solver], [[solver.bodies]] and [camera] of frozen_scene(), for pasting into a scene file.
 /// Throws corda::Error (kUsage) if method `relaxation` moves ropes that differ in reach (only code can make
 /// such).
-[[nodiscard]] std::string frozen_toml(const Film& film);
+[[nodiscard]] std::string frozen_toml(Film& film);
 
 /// Draws positions that come from anywhere: one's own simulation, or measured ones.
 class Renderer {
@@ -211,7 +213,7 @@ struct FigureDef {
 
 /// Throws corda::Error as Film::still(), and kUsage for a definition that is not what it is declared to be,
 /// or poses of too many lines.
-[[nodiscard]] Image draw_figure(const Film& film, const FigureDef& def, const OnProgress& on_progress = {});
+[[nodiscard]] Image draw_figure(Film& film, const FigureDef& def, const OnProgress& on_progress = {});
 
 /// Whether the ending of `path` is that of a figure: .png, .svg or .pdf.
 [[nodiscard]] bool is_figure_path(const std::string& path);
@@ -220,7 +222,7 @@ struct FigureDef {
 /// pixels, needs no OpenGL, and its size is that of its pixels in print; of the texts of `info` it has the
 /// title. Returns the times of the pictures in which nothing is in view: one at most, but for a contact
 /// sheet. Throws corda::Error: as draw_figure(), kIo, and kUsage for another ending.
-std::vector<double> write_figure(const std::string& path, const Film& film, const FigureDef& def,
+std::vector<double> write_figure(const std::string& path, Film& film, const FigureDef& def,
                                  const PngInfo& info = {}, const OutputOptions& options = {});
 
 }  // namespace corda

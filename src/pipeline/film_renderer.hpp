@@ -5,63 +5,78 @@
 #include <span>
 
 #include "corda/pipeline/film.hpp"
+#include "corda/pipeline/motion.hpp"
 #include "corda/pipeline/scene_renderer.hpp"
+#include "corda/pipeline/trail_recorder.hpp"
 
 namespace corda {
 namespace pipeline {
-struct DrawContext;
-}
 
-/// Draws a film's frames one after the other without copying them, for a caller that encodes them. A context
-/// is current on this thread for as long as it lives; afterwards, the one before is again.
+/// Per-thread drawing state.
+struct DrawContext {
+    DrawContext(const Scene& scene, const System& system, const FilmDef& def)
+        : renderer(scene, system, def.backend, def.require_gpu),
+          trails(renderer.traced(), scene.style.trail_s, scene.video.fps) {}
+
+    SceneRenderer renderer;
+    TrailRecorder trails;
+    State state;
+    Figures figures;  ///< of the state
+};
+
+}  // namespace pipeline
+
+/// Draws the frames of a film without copying them, with an OpenGL context of its own, which is current on
+/// its thread as long as it lives; afterwards the previous one is current again. Several threads may make and
+/// use renderers of one film, each its own, as long as none uses the film itself.
 class FilmRenderer {
   public:
-    /// Draws with the film's own context. Throws corda::Error (kNoGl).
-    explicit FilmRenderer(const Film& film);
-    /// Draws with an OpenGL context of its own, so that several renderers of a film can draw side by side,
-    /// each in the thread that made it. Make them one at a time. Throws corda::Error (kNoGl).
-    struct OwnContext {};
-    FilmRenderer(const Film& film, OwnContext);
+    /// Throws corda::Error: kNoGl, and what Film::camera() throws.
+    explicit FilmRenderer(Film& film);
     FilmRenderer(const FilmRenderer&) = delete;
     FilmRenderer& operator=(const FilmRenderer&) = delete;
     ~FilmRenderer();
 
-    /// True if frames before `end` can be drawn in any order without being simulated again. Simulates what
-    /// has not been yet.
-    [[nodiscard]] static bool can_draw_in_any_order(const Film& film, std::int64_t end);
-
-    /// Draws the picture at a time; returns what may differ from the last one that this renderer drew: all,
-    /// if somebody else has drawn the film since. Asks `on_progress` as Film::still().
+    /// Draws the frame at a time; returns what may differ from the last one. Calls `on_progress` and throws
+    /// like Film::still().
     Damage draw(double time_s, const OnProgress& on_progress = {});
-    /// Draws a list of the film's size.
-    void draw(view::DrawList list, const OnProgress& on_progress = {});
-    /// The poses at some times, at least one, in one picture: earlier ones fainter, the last on top in
-    /// full. Needs no OpenGL. Asks `on_progress` at each. Throws corda::Error as Film::state_at(),
-    /// kInterrupted, and kUsage for several poses of more lines than memory is meant for.
-    [[nodiscard]] static view::DrawList poses(const Film& film, std::span<const double> times_s,
-                                              const OnProgress& on_progress = {});
-    /// The same motion in pictures of another size, style or overlay, without a plot: nothing is simulated
-    /// again. `look` has the bodies, the world and the colouring of the film's scene. Not to be used while
-    /// the film is by another thread. Throws corda::Error (kInternal) for another colouring or a plot.
-    [[nodiscard]] static Film another_look(const Film& film, const Scene& look);
-    /// Reads the states at these times, in order and at most one pass over the motion, and keeps them: what
-    /// is beyond the film's memory budget is not simulated for each picture. Throws as Film::state_at().
-    static void keep(const Film& film, std::span<const double> times_s);
-    /// Whether the frame at a time would show nothing. Draws nothing and needs no OpenGL. Must not be called
-    /// while another thread uses the film. Throws as Film::state_at().
-    [[nodiscard]] static bool is_empty(const Film& film, double time_s);
-    /// The last picture.
+    /// The last frame.
     [[nodiscard]] const Image& image() const;
-    /// True if the last picture was empty.
+    /// True if the last frame was empty.
     [[nodiscard]] bool shows_nothing() const;
 
+    // What the pipeline needs of a film beyond its public interface. None may be called while another thread
+    // uses the film.
+
+    /// True if frames before `end` can be drawn in any order without another simulation. Simulates the motion
+    /// as far as they need it.
+    [[nodiscard]] static bool can_draw_in_any_order(Film& film, std::int64_t end);
+    /// The poses at one or more times in one picture: earlier ones fainter, the last one opaque and on top.
+    /// Needs no OpenGL. Calls `on_progress` for each. Throws corda::Error as Film::state_at(), kInterrupted,
+    /// and kUsage for poses with too many lines in total.
+    [[nodiscard]] static view::DrawList list_poses(Film& film, std::span<const double> times_s,
+                                                   const OnProgress& on_progress = {});
+    /// Draws list_poses() with the film's own context.
+    [[nodiscard]] static Image draw_poses(Film& film, std::span<const double> times_s,
+                                          const OnProgress& on_progress = {});
+    /// The same motion in pictures of another size, style or overlay, without a plot and without another
+    /// simulation. `look` has the bodies, the world and the colouring of the film's scene. Throws
+    /// corda::Error (kInternal) for another colouring or a plot.
+    [[nodiscard]] static Film another_look(const Film& film, const Scene& look);
+    /// Reads the states at these increasing times in at most one simulation and keeps them whatever the
+    /// memory budget is. Throws as Film::state_at().
+    static void keep(Film& film, std::span<const double> times_s);
+    /// True if the frame at a time would be empty. Needs no OpenGL. Throws as Film::state_at().
+    [[nodiscard]] static bool is_empty(Film& film, double time_s);
+    /// A callback, which must outlive the result, such that using the film inside of it throws corda::Error
+    /// (kUsage).
+    [[nodiscard]] static OnProgress guarded(const Film& film, const OnProgress& on_progress);
+
   private:
-    const Film* film_;
-    std::unique_ptr<pipeline::DrawContext> own_;
-    pipeline::DrawContext* drawing_;
+    Film* film_;
+    std::unique_ptr<pipeline::DrawContext> context_;
     pipeline::SceneRenderer::Use use_;
     CameraDef camera_;
-    std::int64_t pictures_ = -1;  ///< the renderer's count after the last draw
 };
 
 }  // namespace corda

@@ -122,7 +122,7 @@ std::vector<std::string> modelled_terms(const Scene& scene, const Plan& plan) {
     return terms;
 }
 
-std::optional<std::string> bound_text(const Film& film) {
+std::optional<std::string> bound_text(Film& film) {
     const Plan& plan = film.plan();
     std::optional<double> largest_m;
     std::vector<std::size_t> unbounded;

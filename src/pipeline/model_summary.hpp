@@ -13,6 +13,6 @@ namespace corda {
 
 /// The bound on the error of all bodies that have one: "0.06 px, 0.0003 m, up to 0.75 s, but for net 1";
 /// std::nullopt if none has, or if predictability ends at the start.
-[[nodiscard]] std::optional<std::string> bound_text(const Film& film);
+[[nodiscard]] std::optional<std::string> bound_text(Film& film);
 
 }  // namespace corda

@@ -11,24 +11,6 @@
 
 namespace corda::pipeline {
 
-/// Guards against re-entry: on_progress is called while the motion is stepped and must not step it again.
-class Motion::Stepping {
-  public:
-    explicit Stepping(Motion& motion) : motion_(&motion) {
-        if (motion.is_stepping_)
-            throw Error(ExitCode::kUsage,
-                        "on_progress asked for a state that has not been simulated yet; ask for it after the "
-                        "call whose progress it reports");
-        motion.is_stepping_ = true;
-    }
-    Stepping(const Stepping&) = delete;
-    Stepping& operator=(const Stepping&) = delete;
-    ~Stepping() { motion_->is_stepping_ = false; }
-
-  private:
-    Motion* motion_;
-};
-
 Motion::Motion(const System& system, const WorldDef& world, std::vector<MethodDef> methods, Timeline timeline,
                std::size_t budget_bytes, const OnProgress& on_progress, std::optional<Quantity> quantity,
                const StateFields& readings)
@@ -90,8 +72,6 @@ bool Motion::step(const OnProgress& on_progress) {
 
 void Motion::run_to_end(const OnProgress& on_progress) {
     const auto total = static_cast<std::int64_t>(timeline_.size());
-    if (recording_.size() == timeline_.size() || diverges_) return;
-    const Stepping stepping(*this);
     while (recording_.size() < timeline_.size() && !diverges_) {
         if (!run_ || next_ > recording_.size()) start(on_progress);
         report_progress(on_progress, static_cast<std::int64_t>(next_), total);
@@ -111,7 +91,6 @@ const State& Motion::at(double time_s, const OnProgress& on_progress) {
         return kept->second.state;
     }
     if (index && diverges_ && *index >= recording_.size()) fail_diverged(time_s);
-    const Stepping stepping(*this);
     if (!run_ || run_->state().time_s > time_s) start(on_progress);
     while (next_ < timeline_.size() && timeline_.time_s(next_) <= time_s) {
         if (!step(on_progress)) fail_diverged(time_s);

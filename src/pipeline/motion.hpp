@@ -37,9 +37,8 @@ class Motion {
     void run_to_end(const OnProgress& on_progress);
 
     /// The state at a time of the timeline, or at any other time between 0 and its end. The reference holds
-    /// until the next call. `on_progress` is asked during steps that take long. Throws corda::Error:
-    /// kDiverged if the motion ends before, kInterrupted if asked to stop, kUsage if `on_progress` asks for
-    /// what has to be simulated.
+    /// until the next call. Calls `on_progress` during steps that take long; it must not use the motion.
+    /// Throws corda::Error: kDiverged if the motion ends before, kInterrupted if asked to stop.
     const State& at(double time_s, const OnProgress& on_progress = {});
     /// Keeps the states at these times, increasing, beside the recording, whatever its budget is. Throws as
     /// at().
@@ -61,7 +60,6 @@ class Motion {
         State state;
         Figures figures;
     };
-    class Stepping;
 
     void start(const OnProgress& on_progress);
     /// Tells `on_progress`, which must outlive it, the time that run_ goes to.
@@ -81,7 +79,6 @@ class Motion {
     std::size_t next_ = 0;           ///< the time that it goes to next
     int passes_ = 0;
     bool diverges_ = false;
-    bool is_stepping_ = false;
     std::map<double, Kept> kept_;  ///< by time
     State state_;
     Figures figures_;

@@ -9,7 +9,7 @@
 
 namespace corda {
 
-Scene frozen_scene(const Film& film) {
+Scene frozen_scene(Film& film) {
     Scene scene = film.scene();
     std::vector<MethodGroup> groups = groups_of(film.plan());
     // [solver] is for the largest group.
@@ -31,7 +31,7 @@ Scene frozen_scene(const Film& film) {
     return scene;
 }
 
-std::string frozen_toml(const Film& film) {
+std::string frozen_toml(Film& film) {
     constexpr std::array<std::string_view, 3> kSections{"solver", "solver.bodies", "camera"};
     return write_sections(frozen_scene(film), kSections);
 }

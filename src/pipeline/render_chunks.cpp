@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -26,7 +25,7 @@ struct Made {
 /// Makes the chunks of a film's frames from `from` on.
 class ChunkMaker {
   public:
-    ChunkMaker(const Film& film, const media::VideoWriter& writer, std::int64_t from, std::int64_t end)
+    ChunkMaker(Film& film, const media::VideoWriter& writer, std::int64_t from, std::int64_t end)
         : film_(&film), writer_(&writer), from_(from), end_(end), length_(writer.frames_per_chunk()) {}
 
     [[nodiscard]] std::int64_t first_chunk() const { return from_ / length_; }
@@ -36,8 +35,7 @@ class ChunkMaker {
 
     /// For a thread, which gets a renderer of its own.
     [[nodiscard]] OrderedWorkers<Made>::Make maker() {
-        const std::lock_guard lock(making_);
-        const auto renderer = std::make_shared<FilmRenderer>(*film_, FilmRenderer::OwnContext{});
+        const auto renderer = std::make_shared<FilmRenderer>(*film_);
         return [this, renderer](std::int64_t number, const OrderedWorkers<Made>& all) {
             return make(number, all, *renderer);
         };
@@ -83,12 +81,11 @@ class ChunkMaker {
         }
     }
 
-    const Film* film_;
+    Film* film_;
     const media::VideoWriter* writer_;
     std::int64_t from_;
     std::int64_t end_;
     std::int64_t length_;
-    std::mutex making_;  ///< of renderers, one at a time
     std::atomic<std::int64_t> drawn_ = 0;
 };
 
@@ -101,8 +98,8 @@ void add(Made made, media::VideoWriter& writer, Rendered& result) {
 
 }  // namespace
 
-bool render_chunks(const Film& film, std::int64_t from, std::int64_t end, int jobs,
-                   const OnProgress& on_progress, media::VideoWriter& writer, Rendered& result) {
+bool render_chunks(Film& film, std::int64_t from, std::int64_t end, int jobs, const OnProgress& on_progress,
+                   media::VideoWriter& writer, Rendered& result) {
     const std::int64_t had = writer.frames();
     ChunkMaker maker(film, writer, from + had, end);
     OrderedWorkers<Made> chunks(maker.first_chunk(), maker.end_chunk(), jobs,

@@ -15,7 +15,7 @@ namespace corda::pipeline {
 /// FilmRenderer::can_draw_in_any_order(film, end). Throws corda::Error: kEncoder, kNoGl, kIo, and
 /// kInterrupted if asked to stop; then the writer has the frames before the first that was not drawn. Returns
 /// false, with nothing done, if the system starts no thread.
-[[nodiscard]] bool render_chunks(const Film& film, std::int64_t from, std::int64_t end, int jobs,
+[[nodiscard]] bool render_chunks(Film& film, std::int64_t from, std::int64_t end, int jobs,
                                  const OnProgress& on_progress, media::VideoWriter& writer, Rendered& result);
 
 }  // namespace corda::pipeline

@@ -76,7 +76,7 @@ void check_part(const std::string& path, const std::map<std::string, std::string
 }
 
 /// What the file says of itself beside its pictures.
-media::VideoMetadata metadata(const Film& film, std::int64_t first, std::int64_t end,
+media::VideoMetadata metadata(Film& film, std::int64_t first, std::int64_t end,
                               const std::map<std::string, std::string>& origin) {
     const Scene& scene = film.scene();
     const Plan& plan = film.plan();
@@ -167,7 +167,7 @@ void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProg
     for (; k < end; ++k) {
         report_progress(on_progress, k - first, end - first);
         const Damage damage = renderer.draw(film.time_s(k), ask);
-        if (film.shows_nothing()) note_empty(film.time_s(k), result);
+        if (renderer.shows_nothing()) note_empty(film.time_s(k), result);
         writer.write(renderer.image(), damage, k + 1 == end);
     }
     report_progress(on_progress, end - first, end - first);
@@ -219,7 +219,7 @@ media::Format checked_format(const Scene& scene, const std::string& path, const 
     return format;
 }
 
-media::VideoWriter make_writer(const Film& film, const std::string& path, const media::Format& format,
+media::VideoWriter make_writer(Film& film, const std::string& path, const media::Format& format,
                                const RenderDef& def, std::int64_t end) {
     const OutputOptions options{.force = def.force, .on_progress = def.on_progress};
     const VideoDef& video = film.scene().video;
@@ -240,7 +240,9 @@ void check_render(const Scene& scene, const std::string& path, const RenderDef& 
     media::check_encoder_starts(format, scene.video, waiting);
 }
 
-Rendered render_video(Film& film, const std::string& path, const RenderDef& def) {
+Rendered render_video(Film& film, const std::string& path, const RenderDef& given) {
+    RenderDef def = given;
+    def.on_progress = FilmRenderer::guarded(film, given.on_progress);
     const media::Format format = checked_format(film.scene(), path, def, {});
     const std::int64_t end = def.end.value_or(film.frame_count());
     static_cast<void>(film.camera());  // what can fail does so before a file is made

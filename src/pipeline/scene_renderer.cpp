@@ -25,10 +25,10 @@ SceneRenderer::~SceneRenderer() {
     const gl::SavedContext saved;
     const auto lock = canvas_->context.exclusive();
     try {
-        canvas_->context.make_current();  // throws in a forked child, which must not destroy its parent's
+        canvas_->context.make_current();  // throws in a forked child
     } catch (const Error&) {
-        // The renderer's objects can be given back only in their own context. It is lost, or another
-        // thread's.
+        // OpenGL objects can only be deleted in their own context, which is lost, in use by another thread,
+        // or that of a parent process.
         static_cast<void>(canvas_.release());
         return;
     }
@@ -63,7 +63,7 @@ view::Camera SceneRenderer::map_of(const CameraDef& camera) const {
 }
 
 void SceneRenderer::open(Needs needs) {
-    // A forked child draws in a context of its own, and leaves its parent's alone.
+    // A forked child needs a context of its own and must not destroy that of its parent.
     if (canvas_ && canvas_->context.is_inherited()) static_cast<void>(canvas_.release());
     if (canvas_) {
         canvas_->context.make_current();
@@ -104,16 +104,14 @@ Damage SceneRenderer::draw(view::DrawList list, const OnProgress& on_progress) {
     return paint(on_progress);
 }
 
-std::int64_t SceneRenderer::begin_exposure() {
+void SceneRenderer::begin_exposure() {
     shows_nothing_ = true;
     canvas_->renderer->begin_exposure();
-    return ++pictures_;
 }
 
-void SceneRenderer::expose(std::int64_t picture, const State& state, const view::Camera& map,
-                           const Traces& traces, const OnProgress& on_progress) {
+void SceneRenderer::expose(const State& state, const view::Camera& map, const Traces& traces,
+                           const OnProgress& on_progress) {
     canvas_->context.make_current();
-    if (picture != pictures_) throw Overdrawn();
     list(state, map, traces);
     shows_nothing_ = list_.shows_nothing() && shows_nothing_;
     check_tints();
@@ -122,17 +120,15 @@ void SceneRenderer::expose(std::int64_t picture, const State& state, const view:
     canvas_->renderer->expose(list_, ask);
 }
 
-Damage SceneRenderer::develop(std::int64_t picture, const view::Caption& caption, const view::Camera& map) {
+Damage SceneRenderer::develop(const view::Caption& caption, const view::Camera& map) {
     canvas_->context.make_current();
-    if (picture != pictures_) throw Overdrawn();
     view_.start(list_);
     annotate(caption, map, list_);
     return canvas_->renderer->develop(list_);
 }
 
 Damage SceneRenderer::paint(const OnProgress& on_progress) {
-    canvas_->context.make_current();  // a callback since open() may have left another one
-    ++pictures_;
+    canvas_->context.make_current();  // the host may have made another one current since open()
     shows_nothing_ = list_.shows_nothing();
     check_tints();
     return canvas_->renderer->render(list_, asking(on_progress));
@@ -146,9 +142,8 @@ void SceneRenderer::check_tints() {
 
 OnProgress SceneRenderer::asking(const OnProgress& on_progress) {
     if (!on_progress) return {};
-    return [this, &on_progress, picture = pictures_](std::int64_t done, std::int64_t total) {
+    return [this, &on_progress](std::int64_t done, std::int64_t total) {
         if (!on_progress(done, total)) return false;
-        if (pictures_ != picture) throw Overdrawn();
         canvas_->context.make_current();
         return true;
     };

@@ -208,7 +208,7 @@ class Asking {
     std::exception_ptr raised_;
 };
 
-/// A film that any thread of Python may use: one at a time does.
+/// A film that any thread of Python may use; calls of several threads wait for each other.
 class PyFilm {
   public:
     PyFilm(const corda::Scene& scene, const std::string& backend, bool require_gpu) {
@@ -230,18 +230,27 @@ class PyFilm {
     ~PyFilm() {
         const Calls::Scope call;
         const std::unique_lock lock(mutex_, std::try_to_lock);
-        // What a thread that never returns was using is left as it is.
+        // Leaks a film that a thread which never returns is using.
         if (!lock.owns_lock() || is_cut_off()) static_cast<void>(film_.release());
         film_.reset();
     }
 
-    /// Calls `work` with the film and what asks Python whether to go on.
+    /// For `const` functions, which several threads may call at once.
+    [[nodiscard]] const corda::Film& constant() const { return *film_; }
+
+    /// Calls `work` with the film and a callback that asks Python whether to continue. Throws corda::Error
+    /// (kUsage) inside of such a callback.
     template <class Work>
     auto with_film(const Work& work, py::object on_progress = py::none()) {
         if (is_cut_off()) {
             throw corda::Error(corda::ExitCode::kUsage,
                                "the parent process was using this film when it forked, so its state is "
                                "unfinished here; make another Film, or start processes by spawn");
+        }
+        if (thread_ == std::this_thread::get_id()) {
+            throw corda::Error(corda::ExitCode::kUsage,
+                               "on_progress used the film whose progress it reports; draw and read the film "
+                               "after the call that reports progress, or make another Film");
         }
         Asking asking(std::move(on_progress));
         auto result = asking.run([&](const corda::OnProgress& ask) {
@@ -254,49 +263,47 @@ class PyFilm {
     }
 
   private:
-    /// Simulations ask what the call in progress asks.
+    /// Marks the film as used by this thread, and gives simulations the callback of the current call.
     class Use {
       public:
-        Use(PyFilm& film, const corda::OnProgress& ask)
-            : film_(&film), before_(std::exchange(film.ask_, ask)), user_(film.user_.exchange(getpid())) {}
+        Use(PyFilm& film, const corda::OnProgress& ask) : film_(&film) {
+            film.ask_ = ask;
+            film.process_ = getpid();
+            film.thread_ = std::this_thread::get_id();
+        }
         Use(const Use&) = delete;
         Use& operator=(const Use&) = delete;
         ~Use() {
-            film_->ask_ = before_;
-            film_->user_ = user_;
+            film_->thread_ = std::thread::id();
+            film_->process_ = 0;
+            film_->ask_ = {};
         }
 
       private:
         PyFilm* film_;
-        corda::OnProgress before_;
-        pid_t user_;
     };
 
-    /// True in a process that was forked while a thread of its parent used the film: the child lacks the
-    /// thread, so its work never ends and its lock stays taken.
+    /// True in a process that was forked while a thread of its parent used the film: the child lacks that
+    /// thread, so the work never ends and the lock stays taken.
     [[nodiscard]] bool is_cut_off() const {
-        const pid_t user = user_;
-        return user != 0 && user != getpid();
+        const pid_t process = process_;
+        return process != 0 && process != getpid();
     }
 
-    std::recursive_mutex mutex_;   ///< on_progress may draw
-    std::atomic<pid_t> user_ = 0;  ///< the process that is using the film; 0: none
+    std::mutex mutex_;
+    std::atomic<pid_t> process_ = 0;         ///< the process that is using the film; 0: none
+    std::atomic<std::thread::id> thread_{};  ///< the thread that is using the film
     corda::OnProgress ask_;
     std::unique_ptr<corda::Film> film_;
 };
 
 py::array_t<double> positions(PyFilm& film) {
-    std::int64_t frames = 0;
-    std::size_t particles = 0;
-    film.with_film([&](const corda::Film& its, const corda::OnProgress&) {
-        frames = its.frame_count();
-        particles = its.system().particle_count();
-        return true;
-    });
+    const std::int64_t frames = film.constant().frame_count();
+    const std::size_t particles = film.constant().system().particle_count();
     py::array_t<double> all(
         {static_cast<py::ssize_t>(frames), static_cast<py::ssize_t>(particles), py::ssize_t{2}});
     double* to = all.mutable_data();
-    film.with_film([&](const corda::Film& its, const corda::OnProgress& ask) {
+    film.with_film([&](corda::Film& its, const corda::OnProgress& ask) {
         const corda::Vec2 origin_m = its.system().origin_m;
         for (std::int64_t k = 0; k < frames; ++k) {
             corda::report_progress(ask, k, frames);
@@ -311,17 +318,15 @@ py::array_t<double> positions(PyFilm& film) {
     return all;
 }
 
-py::array_t<double> times(PyFilm& film) {
-    return film.with_film([](const corda::Film& its, const corda::OnProgress&) {
-        std::vector<double> all;
-        for (std::int64_t k = 0; k < its.frame_count(); ++k) all.push_back(its.time_s(k));
-        const py::gil_scoped_acquire hold;
-        return py::array_t<double>(static_cast<py::ssize_t>(all.size()), all.data());
-    });
+py::array_t<double> times(const PyFilm& film) {
+    const corda::Film& its = film.constant();
+    std::vector<double> all;
+    for (std::int64_t k = 0; k < its.frame_count(); ++k) all.push_back(its.time_s(k));
+    return py::array_t<double>(static_cast<py::ssize_t>(all.size()), all.data());
 }
 
 py::dict plan(PyFilm& film) {
-    return film.with_film([](const corda::Film& its, const corda::OnProgress&) {
+    return film.with_film([](corda::Film& its, const corda::OnProgress&) {
         const corda::Plan& chosen = its.plan();
         const auto bound_px = its.error_bound_px();
         const py::gil_scoped_acquire hold;
@@ -339,7 +344,7 @@ py::dict plan(PyFilm& film) {
 }
 
 py::dict camera(PyFilm& film) {
-    return film.with_film([](const corda::Film& its, const corda::OnProgress&) {
+    return film.with_film([](corda::Film& its, const corda::OnProgress&) {
         const corda::CameraDef& def = its.camera();
         const py::gil_scoped_acquire hold;
         py::dict all;
@@ -368,10 +373,9 @@ std::int64_t save(PyFilm& film, const std::string& path, bool force, bool resume
 
 /// The ending of a video that browsers play, and the film that it is to be made of if `film` does not fit it:
 /// with even sides, as render --pad makes them, and the default encoder.
-std::pair<std::string, std::unique_ptr<PyFilm>> for_browser(PyFilm& film, const std::string& backend,
+std::pair<std::string, std::unique_ptr<PyFilm>> for_browser(const PyFilm& film, const std::string& backend,
                                                             bool require_gpu) {
-    corda::Scene scene =
-        film.with_film([](const corda::Film& its, const corda::OnProgress&) { return its.scene(); });
+    corda::Scene scene = film.constant().scene();
     const bool is_opaque = !scene.style.background || scene.style.background->is_opaque();
     const corda::EncoderDef encoder = scene.video.encoder;
     const bool is_default =
@@ -421,33 +425,26 @@ void add_film(py::module_& module) {
                 throw py::error_already_set();
             return std::make_unique<PyFilm>(scene, backend, require_gpu);
         }))
-        .def("frame_count",
-             [](PyFilm& film) {
-                 return film.with_film([](const Film& its, const OnProgress&) { return its.frame_count(); });
-             })
+        .def("frame_count", [](const PyFilm& film) { return film.constant().frame_count(); })
         .def("size",
-             [](PyFilm& film) {
-                 return film.with_film([](const Film& its, const OnProgress&) {
-                     return std::pair(its.scene().video.width_px, its.scene().video.height_px);
-                 });
+             [](const PyFilm& film) {
+                 const corda::VideoDef& video = film.constant().scene().video;
+                 return std::pair(video.width_px, video.height_px);
              })
         .def("fps",
-             [](PyFilm& film) {
-                 return film.with_film([](const Film& its, const OnProgress&) {
-                     const corda::Rational fps = its.scene().video.fps.rational();
-                     return std::pair(fps.num, fps.den);
-                 });
+             [](const PyFilm& film) {
+                 const corda::Rational fps = film.constant().scene().video.fps.rational();
+                 return std::pair(fps.num, fps.den);
              })
         .def("frame",
              [](PyFilm& film, std::int64_t k) {
-                 return to_array(film.with_film(
-                     [k](const Film& its, const OnProgress& ask) { return its.frame(k, ask); }));
+                 return to_array(
+                     film.with_film([k](Film& its, const OnProgress& ask) { return its.frame(k, ask); }));
              })
         .def("still",
              [](PyFilm& film, double time_s, double shutter) {
-                 return to_array(film.with_film([=](const Film& its, const OnProgress& ask) {
-                     return its.still(time_s, ask, shutter);
-                 }));
+                 return to_array(film.with_film(
+                     [=](Film& its, const OnProgress& ask) { return its.still(time_s, ask, shutter); }));
              })
         .def("for_browser", &for_browser)
         .def("positions", &positions)

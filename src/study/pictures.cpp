@@ -135,7 +135,7 @@ void time_film(Film& film, const VideoDef& video, double simulate_s, const std::
 }
 
 /// Largest displayed distance of a particle from the truth, in pixels.
-std::optional<double> error_px(const Pictures& pictures, const Film& film, int reach) {
+std::optional<double> error_px(const Pictures& pictures, Film& film, int reach) {
     std::vector<MethodDef> methods;
     for (const BodyPlan& body : film.plan().bodies) methods.push_back(body.method);
     const Problem problem = with_reach(facing(pictures.subject, methods.front()), reach);

@@ -248,7 +248,7 @@ TEST(BarsInLine, AutoClaimsATrueBoundBeyondThem) {
     for (const auto& [size, spacing_m] : {std::pair(3, 0.3), std::pair(4, 0.2), std::pair(6, 0.1)}) {
         // Half a minute, most of it for the truth.
         if (size == 6 && std::getenv("CORDA_TEST_LONG") == nullptr) continue;
-        const Film film(grid_scene(size, spacing_m, kDurationSeconds));
+        Film film(grid_scene(size, spacing_m, kDurationSeconds));
         const BodyPlan& plan = film.plan().bodies.front();
         EXPECT_EQ(plan.horizon_s, std::nullopt) << size;
         Rhombi truth(size, spacing_m);
@@ -284,7 +284,7 @@ TEST(BarsInLine, ARunThatFindsNoWayLeapsAndSaysSo) {
 }
 
 TEST(BarsInLine, NoBoundReachesBeyondALeap) {
-    const Film film(diamond_scene("method = 'auto'"));
+    Film film(diamond_scene("method = 'auto'"));
     int branched = 0;
     for (const Trial& trial : film.plan().bodies.front().trials) {
         std::printf("%.0f steps: up to %g s\n", static_cast<double>(trial.steps), trial.reached_s);

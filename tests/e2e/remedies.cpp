@@ -391,7 +391,7 @@ INSTANTIATE_TEST_SUITE_P(
 /// The message with which a scene from code, which no file reader has checked, is refused.
 void expect_refused(const Scene& scene, const std::string& advice) {
     try {
-        const Film film(scene);
+        Film film(scene);
         ADD_FAILURE() << "not refused: " << advice;
     } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find(advice), std::string::npos) << error.what();
@@ -399,7 +399,7 @@ void expect_refused(const Scene& scene, const std::string& advice) {
 }
 
 void expect_to_run(const Scene& scene) {
-    const Film film(scene);
+    Film film(scene);
     EXPECT_NO_THROW(static_cast<void>(film.state(film.last_frame())));
 }
 

@@ -19,7 +19,7 @@ namespace {
 class Examples : public testing::TestWithParam<std::string> {};
 
 TEST_P(Examples, EqualTheReferenceByteForByte) {
-    const Film film(load_scene(GetParam()));  // sizes and widths share its motion
+    Film film(load_scene(GetParam()));  // sizes and widths share its motion
     const double end_s = film.scene().world.duration_s;
     std::vector<State> states;
     std::vector<MotionBounds> motion;

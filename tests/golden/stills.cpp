@@ -28,7 +28,7 @@ namespace {
 constexpr double kTimeSeconds = 0.7;
 
 /// A frame of a film by the reference renderer.
-Image reference_of(const Film& film) {
+Image reference_of(Film& film) {
     const view::DrawList sharp = test::draw_list_of(film, kTimeSeconds);
     const VideoDef& video = film.scene().video;
     if (video.shutter == 0.0) return render::render_reference(sharp);
@@ -60,7 +60,7 @@ TEST_P(GoldenStill, IsUnchanged) {
     settings.push_back(fmt::format("video.size=[{},{}]", scene.golden->width_px, scene.golden->height_px));
     const auto made = golden::from_png_info(read_png_info(folder + "/" + name));
     for (const Setting& frozen : golden::freezing(scene, made)) settings.push_back(frozen);
-    const Film film(load_scene(GetParam(), settings));
+    Film film(load_scene(GetParam(), settings));
     const Image drawn = film.still(kTimeSeconds, {}, film.scene().video.shutter);
     EXPECT_THAT(drawn, corda::testing::MatchesGolden(name, {.folder = folder}));
     EXPECT_THAT(reference_of(film), corda::testing::MatchesGolden(name, {.folder = folder}));
@@ -69,7 +69,7 @@ TEST_P(GoldenStill, IsUnchanged) {
 TEST_P(GoldenStill, IsUnchangedAt1080p) {
     const std::string path =
         std::string(CORDA_GOLDENS) + "/stills_1080p/" + test::test_name(GetParam()) + ".txt";
-    const Film film(load_scene(GetParam(), {"video.size=[1920,1080]", "world.duration=1.0"}));
+    Film film(load_scene(GetParam(), {"video.size=[1920,1080]", "world.duration=1.0"}));
     const std::string hash = hash_of(film.still(kTimeSeconds, {}, film.scene().video.shutter));
     if (std::getenv("CORDA_UPDATE_GOLDENS") != nullptr) std::ofstream(path) << hash;
     EXPECT_EQ(test::read_file(path), hash) << path;

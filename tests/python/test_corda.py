@@ -196,8 +196,33 @@ def test_progress_is_told_and_can_stop(film, tmp_path):
 
     with pytest.raises(KeyError, match="mine"):
         film.save(tmp_path / "c.mp4", on_progress=fail)
-    film.save(tmp_path / "d.mp4", on_progress=lambda done, total: film.still(0.5))  # may draw the film itself
+    other = corda.Film(SCENE, size=(32, 18))
+    film.save(tmp_path / "d.mp4", on_progress=lambda done, total: other.still(0.5))
     assert (tmp_path / "d.mp4").read_bytes() == (tmp_path / "a.mp4").read_bytes()
+
+
+def test_a_progress_callback_cannot_use_its_film(film, tmp_path):
+    film.save(tmp_path / "a.mp4")
+    uses = [lambda: film.frame(3), lambda: film.still(0.5), lambda: film.positions, lambda: film.camera,
+            lambda: film.save(tmp_path / "other.mp4")]
+    calls = 0
+
+    def use(done, total):
+        nonlocal calls
+        calls += 1
+        assert (len(film), film.times[1]) == (60, 1 / film.fps)  # needs no simulation
+        for refused in uses:
+            with pytest.raises(corda.Error, match="on_progress used the film whose progress it reports") as raised:
+                refused()
+            assert raised.value.code == 2
+        return True
+
+    film.save(tmp_path / "b.mp4", on_progress=use)
+    assert calls > 0
+    assert (tmp_path / "b.mp4").read_bytes() == (tmp_path / "a.mp4").read_bytes()
+    with pytest.raises(corda.Error, match="on_progress used the film") as raised:
+        film.save(tmp_path / "c.mp4", on_progress=lambda done, total: film.still(0.5))
+    assert raised.value.code == 2
 
 
 def test_an_interrupted_video_is_gone_on_with(tmp_path):

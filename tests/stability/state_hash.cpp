@@ -18,7 +18,7 @@ namespace {
 
 /// FNV-1a over the bytes of all positions at ten times of the first second.
 std::uint64_t hash_motion(const Scene& scene) {
-    const Film film(scene);
+    Film film(scene);
     std::uint64_t hash = 0xcbf29ce484222325U;
     const auto add = [&hash](double value) {
         std::uint64_t bits = 0;

@@ -41,7 +41,7 @@ double error_m(const State& state, Vec2 origin_m, const ExtendedMotion& truth) {
 }
 
 /// True if the truth with other steps, and so with other rounding, differs far less than the error.
-bool is_sure(const Film& film, const BoundCase& given, const Verdict& verdict) {
+bool is_sure(Film& film, const BoundCase& given, const Verdict& verdict) {
     ExtendedMotion truth(film.system(), given.scene.world, given.start);
     ExtendedMotion other(film.system(), given.scene.world, given.start);
     for (std::int64_t k = 1; k <= film.last_frame() && film.time_s(k) <= verdict.worst_s; ++k) {
@@ -55,7 +55,7 @@ bool is_sure(const Film& film, const BoundCase& given, const Verdict& verdict) {
     return largest_m <= 0.1 * *verdict.ratio * verdict.bound_m;
 }
 
-void compare(const Film& film, const BoundCase& given, Verdict& verdict) {
+void compare(Film& film, const BoundCase& given, Verdict& verdict) {
     ExtendedMotion truth(film.system(), given.scene.world, given.start);
     verdict.ratio = 0.0;
     const double until_s = verdict.horizon_s.value_or(given.scene.world.duration_s);
@@ -78,7 +78,7 @@ Verdict judge_bound(const BoundCase& given) {
     Verdict verdict;
     const Watch watch;
     try {
-        const Film film(given.scene);
+        Film film(given.scene);
         const Plan& plan = film.plan();
         verdict.plan_s = watch.seconds();
         verdict.horizon_s = plan.horizon_s;

@@ -23,7 +23,7 @@ inline void include(const State& state, std::vector<MotionBounds>& motion) {
 }
 
 /// The live plot of a film.
-inline std::optional<view::PlotData> plotted_of(const Film& film) {
+inline std::optional<view::PlotData> plotted_of(Film& film) {
     if (film.scene().overlay.plot == LivePlot::kNone) return std::nullopt;
     const pipeline::LivePlotData curves(film.scene(), film.system());
     std::vector<MethodDef> methods;
@@ -59,20 +59,20 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
 }
 
 /// The particles whose paths a film draws.
-inline std::vector<std::size_t> traced(const Film& film) {
+inline std::vector<std::size_t> traced(Film& film) {
     const Scene& scene = film.scene();
     return view::SceneView(film.system(), scene.world.gravity_m_s2, scene.style, scene.body_styles, 64, 64)
         .traced();
 }
 
-inline void add_points(const Film& film, const State& state, double age_s, std::vector<view::Trail>& trails) {
+inline void add_points(Film& film, const State& state, double age_s, std::vector<view::Trail>& trails) {
     const std::vector<std::size_t> ends = traced(film);
     for (std::size_t i = 0; i < ends.size(); ++i)
         trails[i].push_back({age_s, {state.x_m[ends[i]], state.y_m[ends[i]]}});
 }
 
 /// Adds the quantity that a film's colours show to a state.
-inline void add_values(const Film& film, const State& state, sim::Spread& spread) {
+inline void add_values(Film& film, const State& state, sim::Spread& spread) {
     const auto quantity = quantity_of(film.scene().style.color_by);
     if (!quantity) return;
     for (const Body& body : film.system().bodies) {
@@ -82,7 +82,7 @@ inline void add_values(const Film& film, const State& state, sim::Spread& spread
 }
 
 /// The draw list of a film at a time.
-inline view::DrawList draw_list_of(const Film& film, double time_s) {
+inline view::DrawList draw_list_of(Film& film, double time_s) {
     std::vector<MotionBounds> motion;
     sim::Spread spread;
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {

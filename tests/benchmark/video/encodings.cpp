@@ -24,7 +24,7 @@ using nlohmann::json;
 constexpr std::int64_t kCompared = 10;
 
 /// The quality of the video at `path`.
-json quality_of(const Film& film, std::int64_t frames, const std::string& path) {
+json quality_of(Film& film, std::int64_t frames, const std::string& path) {
     FilmRenderer renderer(film);
     media::VideoReader reader(path);
     test::EdgeQuality edges;

@@ -77,7 +77,7 @@ json render(const BenchDef& def, int jobs, const std::string& path) {
 
 /// Draws the frames one after the other.
 template <class Use>
-void draw_frames(const Film& film, std::int64_t frames, const Use& use) {
+void draw_frames(Film& film, std::int64_t frames, const Use& use) {
     FilmRenderer renderer(film);
     for (std::int64_t k = 0; k < frames; ++k) {
         const Damage damage = renderer.draw(film.time_s(k));
@@ -96,7 +96,7 @@ json encode_alone(const BenchDef& def) {
     const VideoDef& video = def.scene.video;
     media::BaselineEncoder encoder(video);
     {
-        const Film film(def.scene, def.film);
+        Film film(def.scene, def.film);
         draw_frames(film, std::min(frames_of(def), max_pictures(video)),
                     [&](const Image& picture, const Damage&) { encoder.add(picture); });
     }

@@ -7,6 +7,6 @@ TEST(Swing, LooksAsItDid) {
     corda::Scene scene = corda::load_scene(SCENE);
     scene.video.width_px = 320;
     scene.video.height_px = 180;
-    const corda::Film film(scene);
+    corda::Film film(scene);
     EXPECT_THAT(film.frame(30), corda::testing::MatchesGolden("swing_0030.png", {.folder = REF}));
 }

@@ -13,7 +13,7 @@ using testing::HasSubstr;
 using testing::StartsWith;
 
 TEST(Chapters, DescribeThePendulum) {
-    const ReadScene scene(pendulum_toml("duration = 2.0"));
+    ReadScene scene(pendulum_toml("duration = 2.0"));
     const auto write = [](const std::string&, double, const std::vector<double>&) {};
     const report::Chapter motion =
         motion_chapter(scene.film, scene.reading, find_figure_times(scene.film, scene.reading, {}), write);
@@ -32,7 +32,7 @@ TEST(Chapters, DescribeThePendulum) {
 }
 
 TEST(Chapters, HaveUnitsAndTheCurvesOfTheMotion) {
-    const ReadScene scene(pendulum_toml("duration = 1.0", "10"));
+    ReadScene scene(pendulum_toml("duration = 1.0", "10"));
     const report::Plot phase = phase_chapter(scene.film, scene.reading).plots.at(0);
     EXPECT_EQ(phase.x_title, "angle (rad)");
     EXPECT_EQ(phase.y_title, "angular velocity (rad/s)");
@@ -50,7 +50,7 @@ TEST(Chapters, HaveUnitsAndTheCurvesOfTheMotion) {
 
 TEST(Chapters, UseXAndVxWhereAnAngleSaysNothing) {
     // A double pendulum whose end passes near its pin.
-    const ReadScene scene(
+    ReadScene scene(
         "[world]\nduration = 0.1\n[[rope]]\npoints = [[0.0, 0.0], [1.0, 0.0], [0.05, 0.0]]\n");
     const report::Plot phase = phase_chapter(scene.film, scene.reading).plots.at(0);
     EXPECT_EQ(phase.x_title, "x (mm)");
@@ -60,7 +60,7 @@ TEST(Chapters, UseXAndVxWhereAnAngleSaysNothing) {
 }
 
 TEST(Chapters, SayWhyTensionsAreNotKnown) {
-    const ReadScene scene(
+    ReadScene scene(
         "[world]\nduration = 0.05\n[[net]]\ngrid = { columns = 4, rows = 3, spacing = 0.1 "
         "}\n[solver]\nmethod = \"relaxation\"\n");
     const report::Chapter tension = tension_chapter(scene.film, scene.reading);
@@ -72,7 +72,7 @@ TEST(Chapters, ShowSixBodiesAndCountTheOthers) {
     std::string bodies = "[world]\nduration = 0.05\n";
     for (int i = 0; i < 8; ++i)
         bodies += "[[rope]]\nhang = { links = 3, length = 2.0, angle_deg = 9.0 }\nmass = 1000.0\n";
-    const ReadScene scene(bodies);
+    ReadScene scene(bodies);
     const report::Chapter tension = tension_chapter(scene.film, scene.reading);
     const report::Plot& plot = tension.plots.at(0);
     EXPECT_EQ(plot.series.size(), 6U);

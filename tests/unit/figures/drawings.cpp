@@ -25,7 +25,7 @@ TEST(Drawings, HaveTheShapeOfTheSceneAtThreeHundredPixelsPerInch) {
 }
 
 TEST(Drawings, ReuseTheMotion) {
-    const ReadScene scene(pendulum_toml());
+    ReadScene scene(pendulum_toml());
     const test::ScratchFolder folder;
     Drawings drawings(scene.film);
     for (const char* name : {"a.svg", "a.pdf", "a.png"}) {

@@ -11,7 +11,7 @@ namespace {
 using testing::ElementsAre;
 
 TEST(FigureTimes, AreThoseOfTheFirstSwing) {
-    const ReadScene scene(pendulum_toml("duration = 3.0", "100"));
+    ReadScene scene(pendulum_toml("duration = 3.0", "100"));
     const FigureTimes moments = find_figure_times(scene.film, scene.reading, {});
     EXPECT_TRUE(moments.is_swing);
     ASSERT_EQ(moments.strobe_s.size(), 6U);
@@ -24,7 +24,7 @@ TEST(FigureTimes, AreThoseOfTheFirstSwing) {
 }
 
 TEST(FigureTimes, AreThoseOfTheWholeMotionIfNothingSwings) {
-    const ReadScene scene(
+    ReadScene scene(
         "[world]\nduration = 1.0\n[[rope]]\npoints = [[0.0, 0.0], [1.0, 0.0]]\npinned = []\n[video]\nfps = "
         "10\n");
     const FigureTimes moments = find_figure_times(scene.film, scene.reading, {});
@@ -33,7 +33,7 @@ TEST(FigureTimes, AreThoseOfTheWholeMotionIfNothingSwings) {
 }
 
 TEST(FigureTimes, AreTheRequestedOnes) {
-    const ReadScene scene(pendulum_toml(), {0.123, 0.456});
+    ReadScene scene(pendulum_toml(), {0.123, 0.456});
     const FigureTimes moments = find_figure_times(scene.film, scene.reading, {0.456, 0.123});
     EXPECT_THAT(moments.strobe_s, ElementsAre(0.123, 0.456));
     EXPECT_THAT(moments.stills_s, ElementsAre(0.123, 0.456));

@@ -15,7 +15,7 @@ namespace {
 constexpr double kWeightN = 2.0 * 9.81;
 
 TEST(MotionSummary, HasTheEnergyAndTheTensionOfAPendulum) {
-    const ReadScene scene(pendulum_toml());
+    ReadScene scene(pendulum_toml());
     ASSERT_EQ(scene.reading.rows, 201);
     const auto y = scene.column("tip.csv", "rope_0_y_m");
     const auto kinetic = scene.column("energy.csv", "kinetic_j");
@@ -44,7 +44,7 @@ TEST(MotionSummary, HasTheEnergyAndTheTensionOfAPendulum) {
 }
 
 TEST(MotionSummary, CountsTheAngleFromStraightDown) {
-    const ReadScene scene(pendulum_toml());
+    ReadScene scene(pendulum_toml());
     const auto angle = scene.column("tip.csv", "rope_0_angle_rad");
     const auto rate = scene.column("tip.csv", "rope_0_angular_velocity_rad_s");
     const auto x = scene.column("tip.csv", "rope_0_x_m");
@@ -75,7 +75,7 @@ TEST(MotionSummary, CountsTurnsFromAnyNumberOfRows) {
 TEST(MotionSummary, IncludesTheEnergyOfASpring) {
     // 1 kg on a spring of 100 N/m, released at rest length: it falls by 2 m g / k and stretches by the same
     // length.
-    const ReadScene scene(
+    ReadScene scene(
         "[world]\nduration = 1.0\n[[rope]]\npoints = [[0.0, 0.0], [0.0, -1.0]]\ncompliance = "
         "0.01\n[video]\nfps = 500\n");
     EXPECT_TRUE(scene.reading.is_elastic);
@@ -89,7 +89,7 @@ TEST(MotionSummary, IncludesTheEnergyOfASpring) {
 }
 
 TEST(MotionSummary, OmitsUnknownTensions) {
-    const ReadScene scene(
+    ReadScene scene(
         "[world]\nduration = 0.1\n[[rope]]\nhang = { links = 3, length = 1.0, angle_deg = 9.0 "
         "}\n[[rope]]\nhang = { links = 3, length = 1.0, angle_deg = 9.0 }\n[[solver.bodies]]\nropes = "
         "[0]\nmethod = \"relaxation\"\n[[solver.bodies]]\nropes = [1]\nmethod = \"exact\"\n");
@@ -103,7 +103,7 @@ TEST(MotionSummary, OmitsUnknownTensions) {
 }
 
 TEST(MotionSummary, EndsWhereTheMotionDiverges) {
-    const ReadScene scene(
+    ReadScene scene(
         "[world]\nduration = 1.0\ngravity = [1e14, 0.0]\n[[rope]]\npoints = [[0.0, 0.0], [1.0, 0.0]]\npinned "
         "= []\n[solver]\nmethod = \"relaxation\"\n[video]\nfps = 50\n");
     ASSERT_TRUE(scene.reading.failure);
@@ -115,7 +115,7 @@ TEST(MotionSummary, EndsWhereTheMotionDiverges) {
 }
 
 TEST(MotionSummary, StopsAtItsCallback) {
-    const Film film(parse_scene("schema = 1\n" + pendulum_toml(), "a"), def_of());
+    Film film(parse_scene("schema = 1\n" + pendulum_toml(), "a"), def_of());
     const auto open = [](const std::string&, const std::vector<std::string>&) -> OnRow {
         return [](std::span<const double>) {};
     };

@@ -21,8 +21,12 @@ Film swing(int links = 5, const std::vector<Setting>& settings = {}) {
     return Film(parse_scene(text, "swing.toml", settings));
 }
 
+Provenance made_of(Film film, double time_s) {
+    return provenance_of(film, time_s);
+}
+
 TEST(SuiteProvenance, SurvivesARoundTrip) {
-    const Film film = swing();
+    Film film = swing();
     const Provenance made = provenance_of(film, 0.25);
     const Provenance read = from_png_info(to_png_info(made, film, 0.25));
     EXPECT_TRUE(read.is_golden());
@@ -36,7 +40,7 @@ TEST(SuiteProvenance, SurvivesARoundTrip) {
 TEST(SuiteProvenance, NamesTheKeyOfTheSceneThatChanged) {
     const test::ScratchFolder folder;
     const std::string kept = folder.file("kept.png");
-    const Film film = swing();
+    Film film = swing();
     write_png(kept, Image(2, 2), to_png_info(provenance_of(film, 0.25), film, 0.25));
     EXPECT_EQ(scene_change(kept, swing().scene()), "");
     EXPECT_EQ(scene_change(kept, swing(5, {"world.drag=0.5"}).scene()), "world.drag is 0.5 and was 0");
@@ -49,27 +53,27 @@ TEST(SuiteProvenance, NamesTheKeyOfTheSceneThatChanged) {
 }
 
 TEST(SuiteProvenance, KeepsSomeParticlesOfALongRope) {
-    const Provenance short_one = provenance_of(swing(255), 0.0);
+    const Provenance short_one = made_of(swing(255), 0.0);
     EXPECT_THAT(short_one.positions_m, SizeIs(512));
-    const Film film = swing(600);
+    Film film = swing(600);
     const Provenance long_one = provenance_of(film, 0.0);
     EXPECT_THAT(long_one.positions_m, SizeIs(2 * 201));  // every third of 601
     EXPECT_EQ(long_one.positions_m[2], film.state_at(0.0).x_m[3]);
 }
 
 TEST(SuiteProvenance, FreezesTheOpenChoicesOfTheScene) {
-    const Provenance made = provenance_of(swing(), 0.0);
+    const Provenance made = made_of(swing(), 0.0);
     EXPECT_THAT(freezing(swing().scene(), made), SizeIs(3));
     EXPECT_THAT(freezing(swing(5, {"camera.height=3"}).scene(), made), SizeIs(2));
     EXPECT_THAT(freezing(swing(5, {"solver.method=\"rattle\""}).scene(), made), SizeIs(2));
     EXPECT_THAT(freezing(swing().scene(), {}), SizeIs(0));
-    const Provenance again = provenance_of(swing(5, freezing(swing().scene(), made)), 0.0);
+    const Provenance again = made_of(swing(5, freezing(swing().scene(), made)), 0.0);
     EXPECT_TRUE(again.is_frozen_as(made));
     EXPECT_EQ(again.state, made.state);
 }
 
 TEST(SuiteProvenance, ReportsTheFirstDifference) {
-    const Provenance made = provenance_of(swing(), 0.25);
+    const Provenance made = made_of(swing(), 0.25);
     Provenance other = made;
     other.renderer = "Voodoo";
     EXPECT_THAT(cause_of(other, made), HasSubstr("another OpenGL: Voodoo"));

@@ -39,20 +39,19 @@ Scene scene_of(const std::string& more = {}) {
     return parse_scene(kFigureRope + more, "figure.toml");
 }
 
-ExitCode code_of(const Film& film, const FigureDef& def) {
+ExitCode code_of(Film& film, const FigureDef& def) {
     return test::code_of([&] { static_cast<void>(draw_figure(film, def)); });
 }
 
 TEST(Strobe, OfOneTimeIsTheStill) {
     for (const char* const style : {"", "[style]\ntrail_s = 0.4\n"}) {
-        const Film film(scene_of(style));
+        Film film(scene_of(style));
         EXPECT_TRUE(equal_images(draw_figure(film, {.times_s = {0.5}}), film.still(0.5))) << style;
     }
 }
 
 TEST(Strobe, ShowsTheLastPoseInFullAndTheOthersFainter) {
-    const Film film(
-        scene_of("[style]\nbackground = \"#000000\"\nsupports = false\npalette = [\"#ffffff\"]\n"));
+    Film film(scene_of("[style]\nbackground = \"#000000\"\nsupports = false\npalette = [\"#ffffff\"]\n"));
     const Image strobe = draw_figure(film, {.times_s = {0.0, 0.3, 0.6}});
     const Image first = film.still(0.0);
     const Image second = film.still(0.3);
@@ -76,15 +75,15 @@ TEST(Strobe, ShowsTheLastPoseInFullAndTheOthersFainter) {
 
 TEST(Strobe, EqualsTheReferenceByteForByte) {
     for (const char* const ground : {"#203040", "transparent"}) {
-        const Film film(scene_of(std::string("[style]\nbackground = \"") + ground + "\"\n"));
+        Film film(scene_of(std::string("[style]\nbackground = \"") + ground + "\"\n"));
         const std::vector<double> times_s{0.0, 0.2, 0.4};
         EXPECT_TRUE(equal_images(draw_figure(film, {.times_s = times_s}),
-                                 render::render_reference(FilmRenderer::poses(film, times_s))));
+                                 render::render_reference(FilmRenderer::list_poses(film, times_s))));
     }
 }
 
 TEST(Strobe, OfTenThousandPosesIsDrawn) {
-    const Film film(scene_of());
+    Film film(scene_of());
     FigureDef def;
     for (int k = 0; k < 10'000; ++k) def.times_s.push_back(film.time_s(k % 30));
     std::sort(def.times_s.begin(), def.times_s.end());
@@ -96,7 +95,7 @@ TEST(Strobe, OfTooManyLinesIsRefused) {
         "schema = 1\n[[net]]\ngrid = { columns = 120, rows = 100, spacing = 0.1 }\n[world]\nduration = 0.1\n"
         "[solver]\nmethod = \"relaxation\"\n[video]\nsize = [64, 64]\nfps = 30\n",
         "net.toml");
-    const Film film(scene);
+    Film film(scene);
     const auto failure = failure_of(
         [&] { static_cast<void>(draw_figure(film, {.times_s = std::vector<double>(10'000, 0.0)})); });
     EXPECT_EQ(failure.code, ExitCode::kUsage);
@@ -105,7 +104,7 @@ TEST(Strobe, OfTooManyLinesIsRefused) {
 
 TEST(Strobe, RefusesTimesThatCannotBe) {
     for (const char* const style : {"", "[style]\ntrail_s = 0.4\n"}) {
-        const Film film(scene_of(style));
+        Film film(scene_of(style));
         for (const std::vector<double>& times_s :
              {std::vector<double>{}, {0.5, 0.2}, {0.0, 1.1}, {-0.1, 0.2}, {0.0, 1e9}, {HUGE_VAL}})
             EXPECT_EQ(code_of(film, {.times_s = times_s}), ExitCode::kUsage);
@@ -120,7 +119,7 @@ TEST(ContactSheet, HasTheStillsInItsCells) {
     EXPECT_EQ(def.columns, 3);
     EXPECT_EQ(scene.video.width_px, (500 - 4 * 3) / 3);
     EXPECT_EQ(scene.video.height_px, (301 - 3 * 3) / 2 - 12);  // 12 for the time
-    const Film film(scene);
+    Film film(scene);
     const Image sheet = draw_figure(film, def);
     EXPECT_EQ(sheet.width(), 500);
     EXPECT_EQ(sheet.height(), 301);
@@ -155,7 +154,7 @@ TEST(ContactSheet, RefusesWhatHasNoRoom) {
         failure_of([&] { static_cast<void>(contact_sheet(scene, std::vector<double>(500, 0.0))); }).code,
         ExitCode::kUsage);
     EXPECT_EQ(failure_of([&] { static_cast<void>(contact_sheet(scene, {0.0}, -1)); }).code, ExitCode::kUsage);
-    const Film film(scene);
+    Film film(scene);
     for (const FigureDef& def : {FigureDef{{0.0}, -1, 160, 120}, FigureDef{{0.0, 0.1}, 2, 319, 120},
                                  FigureDef{{0.0, 0.1}, 1, 160, 239}, FigureDef{{0.0}, 1, 99999, 120}})
         EXPECT_EQ(code_of(film, def), ExitCode::kUsage);
@@ -163,7 +162,7 @@ TEST(ContactSheet, RefusesWhatHasNoRoom) {
 
 TEST(FigureFiles, AreNotWrittenIfAskedToStop) {
     const test::ScratchFolder folder;
-    const Film film(scene_of());
+    Film film(scene_of());
     for (const char* const name : {"a.png", "a.svg", "a.pdf"}) {
         for (const int enough : {0, 1, 4}) {
             int asked = 0;
@@ -179,7 +178,7 @@ TEST(FigureFiles, AreNotWrittenIfAskedToStop) {
 }
 
 TEST(FigureFiles, RefuseOtherEndings) {
-    const Film film(scene_of());
+    Film film(scene_of());
     EXPECT_EQ(failure_of([&] { write_figure("x.gif", film, {.times_s = {0.0}}); }).code, ExitCode::kUsage);
 }
 
@@ -190,7 +189,7 @@ TEST(ContactSheet, OfTooManyColumnsIsRefused) {
                       static_cast<void>(contact_sheet(scene, {0.0, 0.1}, columns));
                   }),
                   ExitCode::kUsage);
-        const Film film(scene_of());
+        Film film(scene_of());
         EXPECT_EQ(
             code_of(film, {.times_s = {0.0, 0.1}, .columns = columns, .width_px = 640, .height_px = 480}),
             ExitCode::kUsage);

@@ -41,8 +41,8 @@ subframes = 6
 )";
 
 TEST(FilmBlur, LeavesPlansStatesAndStillsAlone) {
-    const Film sharp(parse_scene(kBlur, "a", {"video.shutter=0"}));
-    const Film film = blurred_film(kBlur);
+    Film sharp(parse_scene(kBlur, "a", {"video.shutter=0"}));
+    Film film = blurred_film(kBlur);
     const Image blurred = film.frame(9);
     EXPECT_FALSE(blurred == sharp.frame(9));
     EXPECT_TRUE(equal_images(film.still(film.time_s(9)), sharp.frame(9)));
@@ -59,7 +59,7 @@ TEST(FilmBlur, KeepsNothingOfAnExposureThatWasBrokenOff) {
     int asked = 0;
     FilmDef def;
     def.motion_budget_bytes = 0;  // sub-frames are simulated, and ask
-    const Film film = blurred_film(kBlur, def);
+    Film film = blurred_film(kBlur, def);
     const Image expected = film.frame(20);
     const auto third = [&asked](std::int64_t, std::int64_t) { return ++asked < 3; };
     EXPECT_EQ(code_of([&] { static_cast<void>(film.frame(9, third)); }), ExitCode::kInterrupted);
@@ -67,14 +67,14 @@ TEST(FilmBlur, KeepsNothingOfAnExposureThatWasBrokenOff) {
 }
 
 TEST(FilmBlur, GivesTheSameFramesInAnyOrderAndMemory) {
-    const Film film = blurred_film(kBlur);
-    const Film forgetful = blurred_film(kBlur, def_of(0));
+    Film film = blurred_film(kBlur);
+    Film forgetful = blurred_film(kBlur, def_of(0));
     FilmRenderer renderer(film);
     for (std::int64_t k = 0; k < 12; ++k) {
         renderer.draw(film.time_s(k));
         EXPECT_TRUE(equal_images(renderer.image(), forgetful.frame(k))) << k;
     }
-    const Film other = blurred_film(kBlur);
+    Film other = blurred_film(kBlur);
     const Image seventh = other.frame(7);
     EXPECT_TRUE(equal_images(film.frame(7), seventh));
     EXPECT_TRUE(equal_images(other.frame(2), forgetful.frame(2)));
@@ -83,7 +83,7 @@ TEST(FilmBlur, GivesTheSameFramesInAnyOrderAndMemory) {
 
 TEST(FilmBlur, TakesOneMoreSimulationAtMostIfFramesAreDrawnInOrder) {
     for (const std::size_t bytes : {std::size_t{0}, std::size_t{1} << 12, std::size_t{1} << 20}) {
-        const Film film = blurred_film(kBlur + "[solver]\nmethod = \"exact\"\n", def_of(bytes));
+        Film film = blurred_film(kBlur + "[solver]\nmethod = \"exact\"\n", def_of(bytes));
         static_cast<void>(film.camera());
         const int passes = film.simulation_passes();
         for (std::int64_t k = 0; k < film.frame_count(); ++k) static_cast<void>(film.frame(k));
@@ -100,7 +100,7 @@ double covered_share(double x_px, double way_px) {
 
 TEST(FilmBlur, OfAConstantSpeedIsTheIntegral) {
     // 100 px/m; a white line that moves by 64 px per frame on black, and is in the middle in frame 1.
-    const Film film = blurred_film(R"(schema = 1
+    Film film = blurred_film(R"(schema = 1
 [world]
 gravity = 0
 duration = 0.3

@@ -23,10 +23,10 @@ Scene coloured(ColorBy by, const std::string& solver = {}) {
 
 TEST(Colours, AreTheSameBeyondTheMemoryBudget) {
     for (const ColorBy by : {ColorBy::kTension, ColorBy::kSpeed, ColorBy::kStrain}) {
-        const Film film(coloured(by));
+        Film film(coloured(by));
         FilmDef small;
         small.motion_budget_bytes = 2000;  // some states
-        const Film again(coloured(by), small);
+        Film again(coloured(by), small);
         for (const double time_s : {0.9, 0.31, 0.0})
             EXPECT_TRUE(test::equal_images(film.still(time_s), again.still(time_s))) << time_s;
     }
@@ -35,15 +35,15 @@ TEST(Colours, AreTheSameBeyondTheMemoryBudget) {
 TEST(Colours, AskForNoMoreThanTheyNeed) {
     EXPECT_TRUE(Film(coloured(ColorBy::kBody)).state(3).vx_m_s.empty());
     EXPECT_TRUE(Film(coloured(ColorBy::kStrain)).state(3).tension_n.empty());
-    const Film film(coloured(ColorBy::kTension));
+    Film film(coloured(ColorBy::kTension));
     EXPECT_EQ(film.state(3).tension_n.size(), 6U);
     EXPECT_TRUE(film.state(3).vx_m_s.empty());
     EXPECT_EQ(Film(coloured(ColorBy::kSpeed)).state(3).vx_m_s.size(), 7U);
 }
 
 TEST(Colours, DoNotChangeTheMotion) {
-    const Film plain(coloured(ColorBy::kBody));
-    const Film film(coloured(ColorBy::kTension));
+    Film plain(coloured(ColorBy::kBody));
+    Film film(coloured(ColorBy::kTension));
     EXPECT_EQ(film.state(20).x_m, plain.state(20).x_m);
     static_cast<void>(film.still(0.5));
     EXPECT_EQ(film.simulation_passes(), plain.simulation_passes());

@@ -21,12 +21,12 @@ fps = 20
 
 TEST(FilmLook, IsThePictureOfASceneOfThatLookWithoutAnotherRun) {
     Scene scene = parse_scene(std::string(kSceneOfLooks) + "[solver]\nmethod = \"exact\"\n", "a");
-    const Film film(scene);
+    Film film(scene);
     Scene look = scene;
     look.video.width_px = 96;
     look.video.height_px = 96;
     look.style.theme = Theme::kPaper;
-    const Film shown = FilmRenderer::another_look(film, look);
+    Film shown = FilmRenderer::another_look(film, look);
     EXPECT_TRUE(equal_images(shown.still(0.75), Film(look).still(0.75)));
     EXPECT_EQ(film.still(0.75).width(), 192);
     EXPECT_EQ(film.simulation_passes(), 1);
@@ -35,17 +35,17 @@ TEST(FilmLook, IsThePictureOfASceneOfThatLookWithoutAnotherRun) {
 
 TEST(FilmLook, HasThePlanOfItsFilm) {
     const Scene scene = parse_scene(kSceneOfLooks, "a");
-    const Film film(scene);
+    Film film(scene);
     Scene look = scene;
     look.video.width_px *= 2;
     look.video.height_px *= 2;
-    const Film shown = FilmRenderer::another_look(film, look);
+    Film shown = FilmRenderer::another_look(film, look);
     EXPECT_EQ(shown.plan().error_bound_m, film.plan().error_bound_m);
     EXPECT_NEAR(*shown.error_bound_px(), 2.0 * *film.error_bound_px(), 0.1 * *film.error_bound_px());
 }
 
 TEST(FilmLook, CannotShowWhatTheMotionDoesNotHave) {
-    const Film film(parse_scene(kSceneOfLooks, "a"));
+    Film film(parse_scene(kSceneOfLooks, "a"));
     Scene look = film.scene();
     look.style.color_by = ColorBy::kTension;
     EXPECT_EQ(test::code_of([&] { std::ignore = FilmRenderer::another_look(film, look); }),
@@ -56,7 +56,7 @@ TEST(FilmLook, DrawsKeptStatesBeyondTheBudgetWithoutAnotherRun) {
     FilmDef def;
     def.motion_budget_bytes = 0;
     const Scene scene = parse_scene(kSceneOfLooks, "a", {"solver.method=\"exact\"", "style.trail_s=0"});
-    const Film film(scene, def);
+    Film film(scene, def);
     static_cast<void>(film.camera());
     FilmRenderer::keep(film, std::vector<double>{0.2, 0.5, 0.8});
     const int passes = film.simulation_passes();

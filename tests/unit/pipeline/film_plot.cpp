@@ -31,12 +31,12 @@ fps = 30
                        "plot.toml", all);
 }
 
-view::PlotData plot_of(const Film& film) {
+view::PlotData plot_of(Film& film) {
     return test::plotted_of(film).value();
 }
 
 TEST(FilmPlot, TellsTheEnergyOfAPendulum) {
-    const Film film(plotted_scene("energy"));
+    Film film(plotted_scene("energy"));
     const view::PlotData data = plot_of(film);
     ASSERT_EQ(data.curves.size(), 3U);
     // 3 kg that fall by up to 2 m: 58.86 J. One of the 4000 times is within 0.125 ms of the lowest point,
@@ -55,13 +55,13 @@ TEST(FilmPlot, TellsTheEnergyOfAPendulum) {
 }
 
 TEST(FilmPlot, TellsNoTotalWhereStretchedBarsHaveNoEnergy) {
-    const Film film(plotted_scene("energy", {"solver.method=relaxation", "solver.step=0.01"}));
+    Film film(plotted_scene("energy", {"solver.method=relaxation", "solver.step=0.01"}));
     EXPECT_EQ(plot_of(film).curves.size(), 2U);
 }
 
 TEST(FilmPlot, IsOfTheMotionAndNotOfItsFrames) {
-    const Film often(plotted_scene("tip", {"video.fps=50"}));
-    const Film seldom(plotted_scene("tip", {"video.fps=2"}));
+    Film often(plotted_scene("tip", {"video.fps=50"}));
+    Film seldom(plotted_scene("tip", {"video.fps=2"}));
     // The times between frames are the same, and those of few frames are among those of many.
     const auto points = plot_of(seldom).curves[0].points;
     const auto others = plot_of(often).curves[0].points;
@@ -75,7 +75,7 @@ TEST(FilmPlot, IsOfTheMotionAndNotOfItsFrames) {
 
 TEST(FilmPlot, IsSharpInABlurredFrame) {
     const Scene scene = plotted_scene("tip", {"video.shutter=1"});
-    const Film film(scene);
+    Film film(scene);
     const Image blurred = film.frame(12);
     const Image sharp = film.still(film.time_s(12));
     const view::Room room = view::room_beside(LivePlot::kTip, 256, 144);
@@ -89,11 +89,11 @@ TEST(FilmPlot, IsSharpInABlurredFrame) {
 }
 
 TEST(FilmPlot, TellsThePlaceOfTheTipInTheWorld) {
-    const Film film(plotted_scene("tip"));
+    Film film(plotted_scene("tip"));
     const view::PlotData data = plot_of(film);
     EXPECT_EQ(data.curves[0].points.front().y, 7.0);
     EXPECT_EQ(data.curves[1].points.front().y, 7.0);
-    const Film phase(plotted_scene("phase"));
+    Film phase(plotted_scene("phase"));
     const view::PlotData portrait = plot_of(phase);
     EXPECT_EQ(portrait.curves[0].points.front().x, 7.0);
     EXPECT_EQ(portrait.curves[0].points.front().y, 0.0);
@@ -102,10 +102,10 @@ TEST(FilmPlot, TellsThePlaceOfTheTipInTheWorld) {
 
 TEST(FilmPlot, LeavesTheMotionAloneAndSimulatesItOnce) {
     Scene scene = plotted_scene("energy");
-    const Film film(scene);
+    Film film(scene);
     static_cast<void>(film.frame(3));
     scene.overlay.plot = LivePlot::kNone;
-    const Film plain(scene);
+    Film plain(scene);
     static_cast<void>(plain.frame(3));
     for (const std::int64_t k : {0, 7, 30}) EXPECT_EQ(film.state(k).x_m, plain.state(k).x_m);
     EXPECT_EQ(film.simulation_passes(), plain.simulation_passes());
@@ -117,8 +117,8 @@ TEST(FilmPlot, IsTheSameInAnyOrderAndMemory) {
             const Scene scene = plotted_scene(plot, {shutter});
             FilmDef forgetful;
             forgetful.motion_budget_bytes = 0;
-            const Film film(scene);
-            const Film other(scene, forgetful);
+            Film film(scene);
+            Film other(scene, forgetful);
             FilmRenderer renderer(film);
             for (std::int64_t k = 0; k < 6; ++k) {
                 renderer.draw(film.time_s(k));
@@ -132,11 +132,11 @@ TEST(FilmPlot, IsTheSameInAnyOrderAndMemory) {
 }
 
 TEST(FilmPlot, IsNothingOfTheSceneInView) {
-    const Film film(plotted_scene("tip", {"camera.center=[100,100]", "camera.height=1"}));
+    Film film(plotted_scene("tip", {"camera.center=[100,100]", "camera.height=1"}));
     static_cast<void>(film.still(0.5));
     EXPECT_TRUE(film.shows_nothing());
     const double time_s = 0.5;
-    EXPECT_TRUE(FilmRenderer::poses(film, {&time_s, 1}).shows_nothing());
+    EXPECT_TRUE(FilmRenderer::list_poses(film, {&time_s, 1}).shows_nothing());
 }
 
 TEST(FilmPlot, IsNotForPositionsAlone) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "corda/media/chunks/chunk.hpp"
@@ -73,7 +74,8 @@ TEST_F(RenderChunks, HaveTheSameBytesHoweverManyAreMadeAtATime) {
 
 TEST_F(RenderChunks, HaveTheSameBytesIfTheyAreBlurred) {
     const std::vector<Setting> blur{"video.shutter=0.5", "video.subframes=4"};
-    EXPECT_TRUE(FilmRenderer::can_draw_in_any_order(Film(chunked_scene(1, blur)), 130));
+    Film film(chunked_scene(1, blur));
+    EXPECT_TRUE(FilmRenderer::can_draw_in_any_order(film, 130));
     const std::string expected = bytes_of(chunked_scene(1, blur));
     EXPECT_TRUE(bytes_of(chunked_scene(3, blur)) == expected);
     EXPECT_TRUE(bytes_of(chunked_scene(3, blur), {}, 0) == expected);
@@ -173,15 +175,26 @@ TEST(ChunkLength, IsOneToTwoSeconds) {
     }
 }
 
-TEST(FilmPainters, DrawTheSameApart) {
-    const Film film(chunked_scene(1));
+TEST(FilmRenderers, OfSeveralThreadsDrawTheSame) {
+    Film film(chunked_scene(1));
     ASSERT_TRUE(FilmRenderer::can_draw_in_any_order(film, film.frame_count()));
-    FilmRenderer one(film);
-    FilmRenderer other(film, FilmRenderer::OwnContext{});
-    for (const std::int64_t k : {70, 3, 71}) {
-        other.draw(film.time_s(k));
-        const Image image = other.image();
-        EXPECT_TRUE(test::equal_images(image, film.frame(k))) << k;
+    const std::vector<std::int64_t> frames{70, 3, 71};
+    std::vector<std::vector<Image>> drawn(3);
+    std::vector<std::thread> threads;
+    for (std::vector<Image>& images : drawn) {
+        threads.emplace_back([&] {
+            FilmRenderer renderer(film);
+            for (const std::int64_t k : frames) {
+                renderer.draw(film.time_s(k));
+                images.push_back(renderer.image());
+            }
+        });
+    }
+    for (std::thread& thread : threads) thread.join();
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const Image expected = film.frame(frames[i]);
+        for (const std::vector<Image>& images : drawn)
+            EXPECT_TRUE(test::equal_images(images[i], expected)) << i;
     }
 }
 

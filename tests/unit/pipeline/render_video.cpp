@@ -247,17 +247,16 @@ TEST_F(RenderVideo, KeepsTheSameFramesBeforeADivergenceWithAnyJobs) {
     EXPECT_TRUE(parts[1] == parts[3]);
 }
 
-TEST_F(RenderVideo, HasTheSameBytesWhateverItsCallbackDraws) {
+TEST_F(RenderVideo, HasTheSameBytesIfItsCallbackDrawsAnotherFilm) {
     Film film = rope_film();
     const std::string alone = render(film);
-    const Film other = rope_film(
+    Film other = rope_film(
         "schema = 1\n[[rope]]\nline = { particles = 5, step = [0.1, -1.0] }\n"
         "[video]\nsize = [50, 30]\n");
     const test::HostContext host;
     std::optional<Film> dying;
     RenderDef def;
     const std::vector<std::function<void(std::int64_t)>> callbacks{
-        [&](std::int64_t done) { static_cast<void>(film.frame(19 - std::min<std::int64_t>(done, 19))); },
         [&](std::int64_t done) { static_cast<void>(other.frame(done)); },
         [&](std::int64_t) {
             dying.emplace(rope_film());
@@ -275,20 +274,22 @@ TEST_F(RenderVideo, HasTheSameBytesWhateverItsCallbackDraws) {
     }
 }
 
-TEST_F(RenderVideo, HasTheSameBytesIfItsCallbackAsksForStates) {
-    Film film = rope_film(
-        "schema = 1\n[world]\nduration = 4.0\n[[rope]]\nhang = { links = 100, length = 1.0, angle_deg = 60 "
-        "}\n"
-        "[video]\nsize = [64, 48]\n");
-    RenderDef def;
-    const std::string alone = render(film, def);
-    const double first_m = film.state(7).x_m.back();
-    def.on_progress = [&](std::int64_t, std::int64_t) {
-        for (std::int64_t k = 0; k < 240; ++k) static_cast<void>(film.state(k));
-        EXPECT_EQ(film.state(7).x_m.back(), first_m);
-        return true;
-    };
-    EXPECT_EQ(render(film, def), alone);
+TEST_F(RenderVideo, RefusesItsCallbackToUseTheFilm) {
+    for (const char* const jobs : {"1", "3"}) {
+        Film film(
+            parse_scene(kVideoRope, "film.toml", {"world.duration=5.0", std::string("video.jobs=") + jobs}));
+        const std::string alone = render(film);
+        RenderDef def;
+        def.on_progress = [&](std::int64_t, std::int64_t) {
+            EXPECT_EQ(code_of([&] { static_cast<void>(film.frame(3)); }), ExitCode::kUsage);
+            EXPECT_EQ(code_of([&] { static_cast<void>(film.state(3)); }), ExitCode::kUsage);
+            return true;
+        };
+        EXPECT_EQ(render(film, def), alone);
+        def.on_progress = [&](std::int64_t, std::int64_t) { return film.frame(3).width() > 0; };
+        EXPECT_EQ(code_of([&] { static_cast<void>(render(film, def)); }), ExitCode::kUsage);
+        std::filesystem::remove(file("out.mp4.part"));
+    }
 }
 
 }  // namespace

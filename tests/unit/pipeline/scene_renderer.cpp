@@ -19,7 +19,7 @@ namespace {
 using pipeline::SceneRenderer;
 using test::equal_images;
 
-/// A rope of two points, in a picture of that size.
+/// A rope of two points in a picture of this size.
 Scene scene_of(int width_px, int height_px) {
     Scene scene;
     scene.ropes.resize(1);
@@ -31,7 +31,7 @@ Scene scene_of(int width_px, int height_px) {
     return scene;
 }
 
-/// A renderer with all that it needs.
+/// A renderer with its scene and system.
 struct Show {
     explicit Show(Scene given) : scene(std::move(given)) {}
 
@@ -46,7 +46,7 @@ struct Show {
     SceneRenderer renderer{scene, system, "auto", false};
 };
 
-TEST(Stages, RefuseWhatCannotBeDrawn) {
+TEST(SceneRenderers, RefuseInvalidScenes) {
     const auto code_of = [](void (*spoil)(Scene&)) {
         Scene scene = scene_of(16, 16);
         spoil(scene);
@@ -64,7 +64,7 @@ TEST(Stages, RefuseWhatCannotBeDrawn) {
               ExitCode::kUsage);
 }
 
-TEST(Stages, DrawTheSameWhenTheirUsesNest) {
+TEST(SceneRenderers, DrawTheSameIfTheirUsesNest) {
     Show a(scene_of(64, 48));
     Show b(scene_of(40, 40));
     const Image a_alone = a.draw();
@@ -73,15 +73,14 @@ TEST(Stages, DrawTheSameWhenTheirUsesNest) {
     for (int i = 0; i < 2; ++i) {
         EXPECT_TRUE(equal_images(b.draw(), b_alone));
         EXPECT_TRUE(equal_images(a.draw(), a_alone));
-        Show(scene_of(20, 20)).draw();  // ends here
+        Show(scene_of(20, 20)).draw();  // is destroyed here
         const State state{0.0, a.system.x_m, a.system.y_m};
         a.renderer.draw(state, a.renderer.map_of(a.scene.camera));
         EXPECT_TRUE(equal_images(a.renderer.image(), a_alone));
     }
-    EXPECT_EQ(a.renderer.pictures(), 5);
 }
 
-TEST(Stages, DrawTheSameAfterACallbackThatLeftAnotherContext) {
+TEST(SceneRenderers, DrawTheSameAfterTheHostChangedTheContext) {
     Show a(scene_of(64, 48));
     const Image alone = a.draw();
     const SceneRenderer::Use use(a.renderer);
@@ -91,13 +90,13 @@ TEST(Stages, DrawTheSameAfterACallbackThatLeftAnotherContext) {
     EXPECT_TRUE(equal_images(a.renderer.image(), alone));
 }
 
-TEST(Stages, LeaveTheContextOfTheHostCurrent) {
+TEST(SceneRenderers, RestoreTheContextOfTheHost) {
     const test::HostContext host;
     {
         Show show(scene_of(32, 32));
         show.draw();
         EXPECT_TRUE(host.is_current());
-        const Film film(show.scene);
+        Film film(show.scene);
         static_cast<void>(film.frame(1));
         static_cast<void>(film.gl());
         EXPECT_TRUE(host.is_current());
@@ -106,14 +105,14 @@ TEST(Stages, LeaveTheContextOfTheHostCurrent) {
     EXPECT_TRUE(host.is_alive());
 }
 
-TEST(Stages, LeaveNoContextBehindForOtherThreads) {
+TEST(SceneRenderers, CanBeUsedByAnotherThreadLater) {
     Show show(scene_of(32, 32));
     const Image here = show.draw();
     std::thread([&] { EXPECT_TRUE(equal_images(show.draw(), here)); }).join();
     EXPECT_TRUE(equal_images(show.draw(), here));
 }
 
-/// A picture that is filled by a rope, and large enough to be drawn in bands.
+/// A rope that fills a picture large enough to be drawn in bands.
 Scene large_scene() {
     Scene scene = scene_of(4096, 2048);
     scene.camera = {Vec2{0.35, -0.25}, 0.4, 0.0};
@@ -121,13 +120,12 @@ Scene large_scene() {
     return scene;
 }
 
-TEST(LargePictures, HaveTheSameBytesWhateverTheirCallbackDraws) {
+TEST(LargePictures, AreTheSameIfTheirCallbackDrawsAnotherFilm) {
     const Image alone = Film(large_scene()).frame(1);
-    const Film film(large_scene());
-    const Film other(scene_of(40, 40));
+    Film film(large_scene());
+    Film other(scene_of(40, 40));
     const test::HostContext host;
     const std::vector<std::function<void()>> callbacks{
-        [&] { static_cast<void>(film.frame(2)); },
         [&] { static_cast<void>(other.frame(2)); },
         [&] { host.make_current(); },
     };
@@ -145,8 +143,8 @@ TEST(LargePictures, HaveTheSameBytesWhateverTheirCallbackDraws) {
     }
 }
 
-TEST(LargePictures, AreStoppedByTheirCallback) {
-    const Film film(large_scene());
+TEST(LargePictures, CanBeInterrupted) {
+    Film film(large_scene());
     EXPECT_EQ(test::code_of([&] {
                   static_cast<void>(film.frame(0, [](std::int64_t done, std::int64_t) { return done == 0; }));
               }),
@@ -154,34 +152,20 @@ TEST(LargePictures, AreStoppedByTheirCallback) {
     EXPECT_TRUE(equal_images(film.frame(0), Film(large_scene()).frame(0)));
 }
 
-TEST(LargePictures, AreWholeForAPainterWhoseCallbackDrawsOthers) {
-    Film film(large_scene());
-    const Image first = film.frame(0);
-    FilmRenderer renderer(film);
-    renderer.draw(0.0);
-    EXPECT_EQ(renderer.draw(0.1,
-                            [&](std::int64_t, std::int64_t) {
-                                static_cast<void>(film.frame(2));
-                                return true;
-                            }),
-              Damage{first.rect()});
-    EXPECT_TRUE(equal_images(renderer.image(), Film(large_scene()).still(0.1)));
-}
-
-TEST(Painters, InterleaveAndTellWhatOthersHaveDrawn) {
+TEST(FilmRenderers, InterleaveWithEachOtherAndTheirFilms) {
     Film a(scene_of(300, 48));  // wider than the tiles of the rope
     Film b(scene_of(40, 40));
     const Image a_first = a.frame(0);
     const Image b_first = b.frame(0);
-    FilmRenderer paint_a(a);
-    FilmRenderer paint_b(b);
-    EXPECT_EQ(paint_a.draw(0.0), Damage{a_first.rect()});
-    EXPECT_EQ(paint_b.draw(0.0), Damage{b_first.rect()});
-    EXPECT_TRUE(equal_images(paint_a.image(), a_first));
-    EXPECT_TRUE(equal_images(paint_b.image(), b_first));
-    EXPECT_NE(paint_a.draw(0.1), Damage{a_first.rect()});
-    static_cast<void>(a.frame(40));
-    EXPECT_EQ(paint_a.draw(0.1), Damage{a_first.rect()});
+    FilmRenderer of_a(a);
+    FilmRenderer of_b(b);
+    EXPECT_EQ(of_a.draw(0.0), Damage{a_first.rect()});
+    EXPECT_EQ(of_b.draw(0.0), Damage{b_first.rect()});
+    EXPECT_TRUE(equal_images(of_a.image(), a_first));
+    EXPECT_TRUE(equal_images(of_b.image(), b_first));
+    const Image a_later = a.still(0.1);
+    EXPECT_NE(of_a.draw(0.1), Damage{a_first.rect()});
+    EXPECT_TRUE(equal_images(of_a.image(), a_later));
 }
 
 }  // namespace

@@ -161,7 +161,7 @@ TEST(SceneNet, AParticleThatNoBarJoinsFalls) {
         "schema = 1\n[[net]]\npoints = [[0, 0], [0, -1], [3, 2]]\nbars = [[0, 1]]\n"
         "[solver]\nmethod = \"rattle\"\n",
         "a");
-    const Film film(scene);
+    Film film(scene);
     const State& state = film.state_at(1.0);
     EXPECT_EQ(state.x_m[2], 3.0);
     EXPECT_NEAR(state.y_m[2], 2.0 - 0.5 * 9.81, 1e-13);  // measured 2e-15
