@@ -15,6 +15,7 @@
 #include "corda/core/clock.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
+#include "corda/media/chunks/video_writer.hpp"
 #include "corda/media/encode/disk_space.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/media/format/picture_names.hpp"
@@ -121,11 +122,10 @@ std::string endings_text() {
     return text;
 }
 
-/// Says what is not as the ending's default would be.
-void report_format(const Console& console, const Scene& scene, const std::string& output,
-                   const RenderDef& def) {
+/// Warns if the output format falls back from its default, loses transparency or may fill the disk.
+void report_format(const Console& console, const Scene& scene, const CheckedOutput& output) {
     const bool is_opaque = view::look_of(scene.style).ground.is_opaque();
-    const media::Format format = media::find_format(output, scene.video, !is_opaque);
+    const media::Format& format = output.video().format;
     if (format.is_fallback) {
         console.warning(fmt::format("{}, the default of {}, is not here: encoding with {} ({})",
                                     format.ending->codecs.front(), format.ending->text, format.codec->name,
@@ -134,8 +134,8 @@ void report_format(const Console& console, const Scene& scene, const std::string
     if (!is_opaque && std::string_view(format.ending->muxer) == "gif")
         console.warning(
             "a GIF has no half transparent pixels: edges will be hard; .webp and .apng keep them");
-    const std::int64_t end = def.end.value_or(scene.video.fps.frame_count(scene.world.duration_s));
-    const std::string warning = media::disk_warning(format, output, scene.video, end - def.first);
+    const std::string warning =
+        media::disk_warning(format, output.path(), scene.video, output.end() - output.first());
     if (!warning.empty()) console.warning(warning);
 }
 
@@ -189,8 +189,8 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     parse_range(range_of(console, options), def);
     check_standard_output(console, options.output);
     def.on_progress = stopping_if_asked();  // what stands under the name of a part may be large
-    check_render(scene, options.output, def, options.scene.input());
-    report_format(console, scene, options.output, def);
+    const CheckedOutput output = check_render(scene, options.output, def, options.scene.input());
+    report_format(console, scene, output);
     OnProgress on_progress = show_progress(console, "simulate");
     FilmDef film_def;
     film_def.on_progress = [&on_progress](std::int64_t done, std::int64_t all) {
@@ -199,7 +199,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     options.gl.apply_to(film_def);
     Film film(scene, film_def);
     report_plan(console, film);
-    const std::int64_t count = def.end.value_or(film.frame_count()) - def.first;
+    const std::int64_t count = output.end() - output.first();
     const VideoDef& video = film.scene().video;
     console.info(fmt::format("{}: {}, method {}; {} of {}x{} at {} per second", film.scene().name,
                              describe(film.system()), method_names(film.plan()), counted(count, "frame"),
@@ -214,19 +214,18 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     report_gl(console, gl);
     on_progress = stopping_if_asked();  // what is simulated from now on shows as frames that are drawn
     Progress progress(console, "render", count);
-    def.on_progress = [&](std::int64_t done, std::int64_t total) {
+    if (is_one_file(options.output)) keep_words_of_part(part_path(options.output));
+    const Rendered rendered = render_video(film, output, [&](std::int64_t done, std::int64_t total) {
         progress.update(total > 0 ? done * count / total : done);
         return interruption() == ExitCode::kOk;
-    };
-    if (is_one_file(options.output)) keep_words_of_part(part_path(options.output));
-    const Rendered rendered = render_video(film, options.output, def);
+    });
     if (rendered.reader_left) return ExitCode::kOk;
     if (!rendered.complete)
-        throw Error(interruption(), words_of_interruption(options, def.first, count, rendered));
+        throw Error(interruption(), words_of_interruption(options, output.first(), count, rendered));
     const double wall_s = now_s() - start_s;
     report_rendered(console, options.output, rendered, wall_s);
     warn_of_branch(console, film);
-    if (!def.end) warn_of_other_pictures(console, options.output, def.first + count);
+    if (!def.end) warn_of_other_pictures(console, options.output, output.end());
     if (!is_standard_output(options.output)) console.result(options.output);
     console.report(report(film, options, rendered, wall_s, gl.renderer));
     const EmptyPictures empty{options.empty.are_failures, rendered.empty_frames, rendered.first_empty_s};

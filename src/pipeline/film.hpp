@@ -151,21 +151,20 @@ class Renderer {
 /// Which frames render_video writes, and how.
 struct RenderDef {
     bool force = false;  ///< replace an existing file
-    /// Go on with what an interrupted render of the same scene, frames and name has left, if there is any:
-    /// the file has the bytes that it would have had. Throws kUsage for a part of another render, naming a
-    /// difference.
+    /// Continue an interrupted render of the same scene, frames and name, if there is one: the file has the
+    /// bytes of an uninterrupted render. Throws kUsage for a part of another render, naming a difference.
     bool resume = false;
     std::int64_t first = 0;
     std::optional<std::int64_t> end;  ///< one past the last frame; default Film::frame_count()
     /// Decode every frame of the finished video, also of H.264, ProRes and FFV1.
     bool verify_all = false;
-    /// Called after each frame, and again and again while a large one is drawn and while the finished video
-    /// is copied and verified, then with all frames done; returning false stops. Frames of a .gif, .apng or
-    /// .webp count twice: once drawn, and once encoded when all are.
+    /// Called after each frame, repeatedly while a large frame is drawn and while the finished video is
+    /// copied and verified, and with all frames at the end; returning false stops. Frames of a .gif, .apng or
+    /// .webp count twice: once when drawn, and once when encoded after all are drawn.
     OnProgress on_progress;
 };
 
-/// What render_video has made.
+/// The result of render_video().
 struct Rendered {
     std::int64_t frames = 0;
     std::int64_t resumed_frames = 0;  ///< of these, how many an interrupted render had made
@@ -180,15 +179,43 @@ struct Rendered {
     bool is_short_of_memory = false;  ///< there would have been more jobs
 };
 
-/// Refuses a video of `scene` that render_video would refuse, before there is a film. Throws corda::Error:
-/// kUsage for an ending, a size, a codec or a range that cannot be, or if `path` is the file `input` (empty:
-/// there is none); kIo if the file exists (see force) or cannot be written.
-void check_render(const Scene& scene, const std::string& path, const RenderDef& def = {},
-                  const std::string& input = {});
+namespace media {
+struct CheckedVideo;
+}
 
-/// Draws, encodes, verifies and names a video; the ending of `path` chooses the format. Throws corda::Error:
-/// as check_render, before anything is simulated or drawn; kEncoder, kNoGl, kDiverged (the frames before it
-/// are kept; the message names the file).
+/// A video output that check_render() has accepted.
+class CheckedOutput {
+  public:
+    [[nodiscard]] const std::string& path() const;
+    /// The frames first <= k < end of the film are written.
+    [[nodiscard]] std::int64_t first() const;
+    [[nodiscard]] std::int64_t end() const;
+    [[nodiscard]] bool verifies_all() const { return verify_all_; }
+    /// Format and codec; for this library's own use.
+    [[nodiscard]] const media::CheckedVideo& video() const { return *video_; }
+
+  private:
+    friend CheckedOutput check_render(const Scene& scene, const std::string& path, const RenderDef& def,
+                                      const std::string& input);
+    CheckedOutput(media::CheckedVideo video, bool verify_all);
+
+    std::shared_ptr<const media::CheckedVideo> video_;
+    bool verify_all_;
+};
+
+/// Checks a video of `scene` before there is a film: everything that could make render_video() refuse it
+/// later, and whether the encoder starts. Calls `def.on_progress` meanwhile. Throws corda::Error: kUsage for
+/// an invalid ending, size, codec or range, or if `path` is the file `input` (empty: there is none); kIo if
+/// the file exists (see force) or cannot be written; kEncoder, kTemporary, kInterrupted.
+[[nodiscard]] CheckedOutput check_render(const Scene& scene, const std::string& path,
+                                         const RenderDef& def = {}, const std::string& input = {});
+
+/// Draws, encodes, verifies and names a video of a film whose scene was checked. Calls `on_progress` as
+/// RenderDef describes. Throws corda::Error: kUsage for a film of another size or rate, kEncoder, kNoGl, kIo,
+/// kDiverged (the frames before the divergence are kept; the message names their file).
+Rendered render_video(Film& film, const CheckedOutput& output, const OnProgress& on_progress = {});
+
+/// Checks the output, then renders it; the ending of `path` chooses the format.
 Rendered render_video(Film& film, const std::string& path, const RenderDef& def = {});
 
 /// The poses of a film at some times: in one picture, or side by side.

@@ -1,31 +1,33 @@
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "corda/core/clock.hpp"
 #include "corda/core/machine.hpp"
+#include "corda/core/ordered_workers.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
+#include "corda/media/chunks/chunk.hpp"
 #include "corda/media/chunks/part_reader.hpp"
-#include "corda/media/chunks/video_sink.hpp"
 #include "corda/media/chunks/video_writer.hpp"
 #include "corda/media/encode/disk_space.hpp"
 #include "corda/media/encode/job_memory.hpp"
 #include "corda/media/encode/probe.hpp"
-#include "corda/media/format/format.hpp"
 #include "corda/media/read/video_comment.hpp"
 #include "corda/media/verify/verify.hpp"
 #include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "corda/pipeline/provenance.hpp"
-#include "corda/pipeline/render_chunks.hpp"
 #include "corda/pipeline/validate.hpp"
 #include "corda/scene/write_scene.hpp"
 #include "corda/view/colors.hpp"
@@ -35,7 +37,7 @@ namespace {
 
 constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
 
-/// All that the bytes of a video follow from, by keys.
+/// Everything that determines the bytes of a video, by key.
 std::map<std::string, std::string> origin_of(const Scene& scene, const media::Format& format,
                                              std::int64_t first, std::int64_t end) {
     std::map<std::string, std::string> origin = digest(scene);
@@ -46,7 +48,7 @@ std::map<std::string, std::string> origin_of(const Scene& scene, const media::Fo
     return origin;
 }
 
-/// A part of another render cannot be resumed, and what is no part is not replaced.
+/// Refuses to resume a part of another render, or a file that is not a part.
 void check_part(const std::string& path, const std::map<std::string, std::string>& origin,
                 const OnProgress& on_progress) {
     const std::string part = part_path(path);
@@ -64,9 +66,9 @@ void check_part(const std::string& path, const std::map<std::string, std::string
     const media::PartComment comment = media::part_comment(part, on_progress);
     if (comment.is_damaged) fail("is damaged in its first chunk", "move it away");
     if (!comment.text) {
-        // A part of this render that breaks off in its first chunk holds nothing that would be lost.
-        const std::string told = fmt::format("\"{}\":{}", media::kOriginKey, nlohmann::json(origin).dump());
-        if (media::holds_in_front(part, told)) return;
+        // A part of this render that was interrupted in its first chunk has no frames to lose.
+        const std::string marker = fmt::format("\"{}\":{}", media::kOriginKey, nlohmann::json(origin).dump());
+        if (media::holds_in_front(part, marker)) return;
         fail("holds no whole chunk of this render", "move it away");
     }
     const std::map<std::string, std::string> its = media::told_origin(*comment.text);
@@ -75,7 +77,7 @@ void check_part(const std::string& path, const std::map<std::string, std::string
         fail("is of another render: " + differences_text(changes));
 }
 
-/// What the file says of itself beside its pictures.
+/// Title, comment and provenance of the file.
 media::VideoMetadata metadata(Film& film, std::int64_t first, std::int64_t end,
                               const std::map<std::string, std::string>& origin) {
     const Scene& scene = film.scene();
@@ -90,7 +92,7 @@ media::VideoMetadata metadata(Film& film, std::int64_t first, std::int64_t end,
     if (plan.horizon_s) comment["horizon_s"] = *plan.horizon_s;
     comment[media::kOriginKey] = origin;
     Provenance made = provenance_of(scene);
-    // A picture tells its own frame alone: it has the bytes of the still.
+    // Without the range of frames, so that a picture has the bytes of the still.
     const std::string of_picture = provenance_text(made);
     made.frames = fmt::format("{}:{}", first, end);
     const std::string provenance = provenance_text(std::move(made));
@@ -102,7 +104,7 @@ media::VideoMetadata metadata(Film& film, std::int64_t first, std::int64_t end,
             }};
 }
 
-/// The frames up to a divergence are kept, and the message names their file.
+/// Keeps the frames before a divergence, and adds their file to the message.
 [[noreturn]] void keep_diverged(const Error& error, const std::string& path, std::int64_t first,
                                 media::VideoWriter& writer) {
     const std::int64_t frames = writer.frames();
@@ -113,13 +115,13 @@ media::VideoMetadata metadata(Film& film, std::int64_t first, std::int64_t end,
                             error.what(), first, first + frames - 1, kept, path));
 }
 
-/// How many chunks of so many frames to make at a time.
+/// Number of chunks to make at a time: at most one per chunk of `length` frames.
 int jobs_for(const VideoDef& video, std::int64_t length, std::int64_t frames) {
     return static_cast<int>(
         std::min<std::int64_t>(media::jobs_of(video.encoder.jobs), (frames + length - 1) / length));
 }
 
-/// The machine would run out of memory, and kill this process or another.
+/// Refuses a video for which memory does not suffice, before the system kills a process.
 void check_memory(const media::Format& format, const VideoDef& video) {
     const std::uint64_t bytes = media::bytes_per_job(format, video);
     if (media::jobs_that_fit(1, bytes) == 1) return;
@@ -140,8 +142,128 @@ void note_empty(double time_s, Rendered& result) {
     if (result.empty_frames++ == 0) result.first_empty_s = time_s;
 }
 
-/// Draws and encodes frames first <= k < end, skipping those the writer already holds; counts the empty
-/// frames among all of them.
+/// A chunk from a worker thread.
+struct Made {
+    media::Chunk chunk;
+    std::int64_t empty_frames = 0;
+    double first_empty_s = 0.0;
+    bool is_whole = true;
+};
+
+/// Makes the chunks of frames from <= k < end of a film.
+class ChunkMaker {
+  public:
+    ChunkMaker(Film& film, const media::VideoWriter& writer, std::int64_t from, std::int64_t end)
+        : film_(&film), writer_(&writer), from_(from), end_(end), length_(writer.frames_per_chunk()) {}
+
+    [[nodiscard]] std::int64_t first_chunk() const { return from_ / length_; }
+    [[nodiscard]] std::int64_t end_chunk() const { return (end_ + length_ - 1) / length_; }
+    /// Number of frames drawn so far.
+    [[nodiscard]] std::int64_t drawn() const { return drawn_; }
+
+    /// The function that makes chunks in one thread, with a renderer of its own.
+    [[nodiscard]] OrderedWorkers<Made>::Make maker() {
+        const auto renderer = std::make_shared<FilmRenderer>(*film_);
+        return [this, renderer](std::int64_t number, const OrderedWorkers<Made>& all) {
+            return make(number, all, *renderer);
+        };
+    }
+
+  private:
+    /// Makes a chunk, or as much of it as is drawn when all threads are stopped.
+    Made make(std::int64_t number, const OrderedWorkers<Made>& all, FilmRenderer& renderer) {
+        Made made;
+        const OnProgress goes_on = [&all](std::int64_t, std::int64_t) { return !all.is_stopped(); };
+        const std::int64_t first = std::max(from_, number * length_);
+        const std::int64_t end = std::min(end_, (number + 1) * length_);
+        media::ChunkEncoder encoder = writer_->chunk_encoder(first);
+        for (std::int64_t k = first; k < end && !all.is_stopped(); ++k) {
+            const double time_s = film_->time_s(k);
+            try {
+                const Damage damage = renderer.draw(time_s, goes_on);
+                if (renderer.shows_nothing() && made.empty_frames++ == 0) made.first_empty_s = time_s;
+                encoder.encode(renderer.image(), damage, k + 1 == end);
+            } catch (const Error& error) {
+                if (error.code() != ExitCode::kInterrupted || !all.is_stopped()) throw;
+                break;
+            }
+            ++drawn_;
+        }
+        made.is_whole = encoder.frames() == end - first;
+        // If it is incomplete, only the next chunk to write is kept.
+        if (made.is_whole || number == all.taken()) finish(encoder, all, made);
+        return made;
+    }
+
+    /// Flushes the encoder; once all threads are stopped, only for a moment.
+    static void finish(media::ChunkEncoder& encoder, const OrderedWorkers<Made>& all, Made& made) {
+        std::optional<GoesOn> moment;
+        try {
+            made.chunk = encoder.finish([&] {
+                if (all.is_stopped() && !moment) moment = for_a_moment();
+                return !moment || (*moment)();
+            });
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::kInterrupted) throw;
+            made.is_whole = false;
+        }
+    }
+
+    Film* film_;
+    const media::VideoWriter* writer_;
+    std::int64_t from_;
+    std::int64_t end_;
+    std::int64_t length_;
+    std::atomic<std::int64_t> drawn_ = 0;
+};
+
+void add(Made made, media::VideoWriter& writer, Rendered& result) {
+    if (made.chunk.frames == 0) return;  // dropped because it was incomplete
+    if (made.empty_frames > 0 && result.empty_frames == 0) result.first_empty_s = made.first_empty_s;
+    result.empty_frames += made.empty_frames;
+    writer.append(std::move(made.chunk));
+}
+
+/// Draws and encodes the frames from the end of the writer's up to `end`, in chunks, several at a time, each
+/// in a thread of its own. `from` is the number in the film of the writer's first frame. The frames have the
+/// bytes that FilmRenderer and VideoWriter::write() give. Counts the empty ones in `result`.
+///
+/// Calls `on_progress` in this thread only, with the number of frames drawn. Requires
+/// FilmRenderer::can_draw_in_any_order(film, end). Throws corda::Error: kEncoder, kNoGl, kIo, and
+/// kInterrupted if on_progress asks to stop; then the writer has the frames before the first one that was not
+/// drawn. Returns false, without any frame, if the system starts no thread.
+bool render_chunks(Film& film, std::int64_t from, std::int64_t end, int jobs, const OnProgress& on_progress,
+                   media::VideoWriter& writer, Rendered& result) {
+    const std::int64_t had = writer.frames();
+    ChunkMaker maker(film, writer, from + had, end);
+    OrderedWorkers<Made> chunks(maker.first_chunk(), maker.end_chunk(), jobs,
+                                [&maker] { return maker.maker(); });
+    if (!chunks.has_threads()) return false;
+    bool is_adding = false;
+    try {
+        while (writer.frames() < end - from) {
+            if (auto made = chunks.wait()) {
+                is_adding = true;
+                add(std::move(*made), writer, result);
+                is_adding = false;
+            }
+            report_progress(on_progress, had + maker.drawn(), end - from);
+        }
+        return true;
+    } catch (const Error& error) {
+        if (!is_interruption(error.code())) throw;
+        chunks.stop();
+        bool is_whole = !is_adding;  // an incomplete chunk is the last one
+        while (is_whole) {
+            auto made = chunks.rest();
+            is_whole = made && made->is_whole;
+            if (made) add(std::move(*made), writer, result);
+        }
+        throw;
+    }
+}
+
+/// Draws and encodes frames first <= k < end that the writer does not have yet; counts all empty frames.
 void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProgress& on_progress,
                   media::VideoWriter& writer, Rendered& result) {
     const VideoDef& video = film.scene().video;
@@ -156,9 +278,7 @@ void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProg
         result.is_short_of_memory = jobs < wanted;
         result.jobs = std::max(1, jobs);
     }
-    if (result.jobs > 1 &&
-        pipeline::render_chunks(film, first, end, result.jobs, on_progress, writer, result))
-        return;
+    if (result.jobs > 1 && render_chunks(film, first, end, result.jobs, on_progress, writer, result)) return;
     result.jobs = 1;
     FilmRenderer renderer(film);
     const OnProgress ask = [&](std::int64_t, std::int64_t) {
@@ -173,7 +293,7 @@ void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProg
     report_progress(on_progress, end - first, end - first);
 }
 
-/// A transparent ground would become black without a word.
+/// Refuses a transparent ground in a format without alpha, which would show it black.
 void check_ground(const Scene& scene, const media::Format& format) {
     const Ground ground = view::look_of(scene.style).ground;
     if (ground.is_opaque() || format.has_alpha) return;
@@ -188,13 +308,41 @@ void check_ground(const Scene& scene, const media::Format& format) {
                               : "draw stills as .png, or a video as " + media::endings_with_alpha()));
 }
 
+/// The output of frames first <= k < end with everything checked but the encoder's start. `starting`: called
+/// while a part is read.
+media::CheckedVideo check_video(const Scene& scene, const std::string& path, const RenderDef& def,
+                                const std::string& input, std::int64_t end, const OnProgress& starting) {
+    media::CheckedVideo video =
+        media::check_video_output(path, scene.video, input, def.force,
+                                  !view::look_of(scene.style).ground.is_opaque(), def.first, end, def.resume);
+    check_ground(scene, video.format);
+    check_memory(video.format, scene.video);
+    std::error_code none;
+    const auto part_bytes = def.resume ? std::filesystem::file_size(part_path(path), none) : 0;
+    media::check_disk_space(video.format, path, scene.video, end - def.first, none ? 0 : part_bytes);
+    if (def.resume) check_part(path, origin_of(scene, video.format, def.first, end), starting);
+    return video;
+}
+
 }  // namespace
 
-namespace {
+CheckedOutput::CheckedOutput(media::CheckedVideo video, bool verify_all)
+    : video_(std::make_shared<const media::CheckedVideo>(std::move(video))), verify_all_(verify_all) {}
 
-/// Returns what a render makes.
-media::Format checked_format(const Scene& scene, const std::string& path, const RenderDef& def,
-                             const std::string& input) {
+const std::string& CheckedOutput::path() const {
+    return video_->path;
+}
+
+std::int64_t CheckedOutput::first() const {
+    return video_->first;
+}
+
+std::int64_t CheckedOutput::end() const {
+    return video_->end;
+}
+
+CheckedOutput check_render(const Scene& scene, const std::string& path, const RenderDef& def,
+                           const std::string& input) {
     pipeline::validate(scene, {});
     const std::int64_t count = scene.video.fps.frame_count(scene.world.duration_s);
     const std::int64_t end = def.end.value_or(count);
@@ -204,76 +352,61 @@ media::Format checked_format(const Scene& scene, const std::string& path, const 
             fmt::format("frames {}:{} are not FIRST:END with 0 <= FIRST < END <= {} (END is not drawn)",
                         def.first, end, count));
     }
-    const media::Format format =
-        media::check_video_output(path, scene.video, input, def.force,
-                                  !view::look_of(scene.style).ground.is_opaque(), def.first, end, def.resume);
-    check_ground(scene, format);
-    check_memory(format, scene.video);
-    std::error_code none;
-    const auto part_bytes = def.resume ? std::filesystem::file_size(part_path(path), none) : 0;
-    media::check_disk_space(format, path, scene.video, end - def.first, none ? 0 : part_bytes);
-    if (def.resume)
-        check_part(path, origin_of(scene, format, def.first, end), [&](std::int64_t, std::int64_t) {
-            return !def.on_progress || def.on_progress(0, end - def.first);
-        });
-    return format;
-}
-
-media::VideoWriter make_writer(Film& film, const std::string& path, const media::Format& format,
-                               const RenderDef& def, std::int64_t end) {
-    const OutputOptions options{.force = def.force, .on_progress = def.on_progress};
-    const VideoDef& video = film.scene().video;
-    media::VideoMetadata data =
-        metadata(film, def.first, end, origin_of(film.scene(), format, def.first, end));
-    if (def.resume) return media::VideoWriter::resume(path, video, std::move(data), options, def.first, end);
-    return {path, video, std::move(data), options, def.first, end};
-}
-
-}  // namespace
-
-void check_render(const Scene& scene, const std::string& path, const RenderDef& def,
-                  const std::string& input) {
-    const media::Format format = checked_format(scene, path, def, input);
-    const OnProgress waiting = [&](std::int64_t, std::int64_t) {
-        return !def.on_progress || def.on_progress(0, scene.video.fps.frame_count(scene.world.duration_s));
+    std::int64_t total = end - def.first;
+    const OnProgress starting = [&](std::int64_t, std::int64_t) {
+        return !def.on_progress || def.on_progress(0, total);
     };
-    media::check_encoder_starts(format, scene.video, waiting);
+    media::CheckedVideo video = check_video(scene, path, def, input, end, starting);
+    total *= media::passes(*video.format.ending);
+    media::check_encoder_starts(video.format, scene.video, starting);
+    return {std::move(video), def.verify_all};
 }
 
-Rendered render_video(Film& film, const std::string& path, const RenderDef& given) {
-    RenderDef def = given;
-    def.on_progress = FilmRenderer::guarded(film, given.on_progress);
-    const media::Format format = checked_format(film.scene(), path, def, {});
-    const std::int64_t end = def.end.value_or(film.frame_count());
-    static_cast<void>(film.camera());  // what can fail does so before a file is made
+Rendered render_video(Film& film, const CheckedOutput& output, const OnProgress& on_progress) {
+    const media::CheckedVideo& video = output.video();
+    const VideoDef& shown = film.scene().video;
+    if (shown.width_px != video.def.width_px || shown.height_px != video.def.height_px ||
+        shown.fps.rational() != video.def.fps.rational()) {
+        throw Error(
+            ExitCode::kUsage,
+            fmt::format("'{}' was checked for {}x{} at {} frames per second, and the film has {}x{} "
+                        "at {}; check the output with the scene of the film",
+                        video.path, video.def.width_px, video.def.height_px, video.def.fps.rational().text(),
+                        shown.width_px, shown.height_px, shown.fps.rational().text()));
+    }
+    const OnProgress guarded = FilmRenderer::guarded(film, on_progress);
+    static_cast<void>(film.camera());  // may fail, which is to happen before a file is made
     static_cast<void>(film.gl());
-    const OnProgress waiting = [&def, all = media::passes(*format.ending) * (end - def.first)](std::int64_t,
-                                                                                               std::int64_t) {
-        return !def.on_progress || def.on_progress(0, all);
-    };
-    media::check_encoder_starts(format, film.scene().video, waiting);
-    media::VideoWriter writer = make_writer(film, path, format, def, end);
-    const OnProgress drawn = [&def, passes = media::passes(*format.ending)](std::int64_t k,
-                                                                            std::int64_t all) {
-        return !def.on_progress || def.on_progress(k, passes * all);
+    media::VideoWriter writer(
+        video,
+        metadata(film, video.first, video.end, origin_of(film.scene(), video.format, video.first, video.end)),
+        guarded);
+    const OnProgress drawn = [&guarded, passes = media::passes(*video.format.ending)](std::int64_t k,
+                                                                                      std::int64_t all) {
+        return !guarded || guarded(k, passes * all);
     };
     Rendered result;
     result.resumed_frames = writer.frames();
     result.was_part_damaged = writer.was_part_damaged();
-    result.encoder = writer.format().encoder_name();
+    result.encoder = video.format.encoder_name();
     try {
-        write_frames(film, def.first, end, drawn, writer, result);
-        writer.finish(def.verify_all ? media::VerifyDepth::kAllFrames : media::VerifyDepth::kKeyFrames);
+        write_frames(film, video.first, video.end, drawn, writer, result);
+        writer.finish(output.verifies_all() ? media::VerifyDepth::kAllFrames
+                                            : media::VerifyDepth::kKeyFrames);
     } catch (const ReaderLeft&) {
         result.reader_left = true;
     } catch (const Error& error) {
-        if (error.code() == ExitCode::kDiverged) keep_diverged(error, path, def.first, writer);
+        if (error.code() == ExitCode::kDiverged) keep_diverged(error, video.path, video.first, writer);
         if (!is_interruption(error.code())) throw;
         result.complete = false;
         result.kept_part = writer.abandon(for_a_moment());
     }
     result.frames = writer.frames();
     return result;
+}
+
+Rendered render_video(Film& film, const std::string& path, const RenderDef& def) {
+    return render_video(film, check_render(film.scene(), path, def), def.on_progress);
 }
 
 }  // namespace corda

@@ -80,12 +80,14 @@ bool is_decoded_at_no_cost(const Format& format) {
 
 }  // namespace
 
-Format check_video_output(const std::string& path, const VideoDef& def, const std::string& input, bool force,
-                          bool is_transparent, std::int64_t first, std::int64_t end, bool resume) {
+CheckedVideo check_video_output(const std::string& path, const VideoDef& def, const std::string& input,
+                                bool force, bool is_transparent, std::int64_t first, std::int64_t end,
+                                bool resume) {
     check_video_def(def);
     const Format format = find_format(path, def, is_transparent);
     if (format.codec->is_hardware) static_cast<void>(make_encoder(format, def));
-    check_animation_frames(*format.ending, end - first);
+    const std::int64_t known_end = end == CheckedVideo::kNoEnd ? first : end;
+    check_animation_frames(*format.ending, known_end - first);
     const bool has_part =
         format.ending->kind == FileKind::kVideo || format.ending->kind == FileKind::kAnimation;
     if (resume && !has_part) {
@@ -100,28 +102,27 @@ Format check_video_output(const std::string& path, const VideoDef& def, const st
         case FileKind::kStream:
             break;
         case FileKind::kPictures:
-            check_pictures(path, input, force, first, end);
+            check_pictures(path, input, force, first, known_end);
             break;
         case FileKind::kVideo:
         case FileKind::kAnimation:
             check_output(path, input, force);
             PartFile::check(part_path(path), {.force = force || resume});
     }
-    return format;
+    return {path, def, format, first, end, force, resume};
 }
 
 struct VideoWriter::Impl {
-    Impl(std::string final_path, const VideoDef& video, VideoMetadata meta,
-         const OutputOptions& output_options, std::int64_t first, std::int64_t end, bool resume = false)
-        : path(std::move(final_path)),
-          def(video),
+    Impl(const CheckedVideo& output, VideoMetadata meta, OnProgress on_progress)
+        : path(output.path),
+          def(output.def),
           metadata(std::move(meta)),
-          format(check_video_output(path, def, "", output_options.force, metadata.is_transparent, first,
-                                    end == kNoEnd ? first : end, resume)),
+          format(output.format),
           comment(parsed_comment(metadata.comment_json)),
-          first_frame(first),
-          sink(make_sink(format, path, output_options, {first, end, media::frames_per_chunk(format, def.fps)},
-                         resume)),
+          first_frame(output.first),
+          sink(make_sink(format, path, {.force = output.force, .on_progress = std::move(on_progress)},
+                         {output.first, output.end, media::frames_per_chunk(format, def.fps)},
+                         output.resume)),
           written(sink->resumed_frames()) {
         if (written == 0) return;
         parameters = check_allocated(CodecParameters(avcodec_parameters_alloc()), "codec parameters");
@@ -223,19 +224,16 @@ struct VideoWriter::Impl {
     bool is_broken = false;  ///< a chunk could not be written, or not all of it
 };
 
-VideoWriter::VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata,
-                         const OutputOptions& options, std::int64_t first, std::int64_t end)
-    : impl_(std::make_unique<Impl>(std::move(path), def, std::move(metadata), options, first, end)) {}
+VideoWriter::VideoWriter(const CheckedVideo& output, VideoMetadata metadata, OnProgress on_progress)
+    : impl_(std::make_unique<Impl>(output, std::move(metadata), std::move(on_progress))) {}
 
-VideoWriter::VideoWriter(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+VideoWriter::VideoWriter(const std::string& path, const VideoDef& def, VideoMetadata metadata,
+                         const OutputOptions& options)
+    : VideoWriter(check_video_output(path, def, "", options.force, metadata.is_transparent), metadata,
+                  options.on_progress) {}
+
 VideoWriter::VideoWriter(VideoWriter&&) noexcept = default;
 VideoWriter::~VideoWriter() = default;
-
-VideoWriter VideoWriter::resume(std::string path, const VideoDef& def, VideoMetadata metadata,
-                                const OutputOptions& options, std::int64_t first, std::int64_t end) {
-    return VideoWriter(
-        std::make_unique<Impl>(std::move(path), def, std::move(metadata), options, first, end, true));
-}
 
 void VideoWriter::write(const Image& frame, const Damage& damage, bool is_last) {
     Impl& impl = *impl_;

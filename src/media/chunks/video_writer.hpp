@@ -13,13 +13,27 @@
 
 namespace corda::media {
 
-/// Refuses a video of frames first <= k < end that cannot be written, before any work is done: everything
-/// that check_video_def, find_format and corda::check_output refuse, an encoder of the hardware that does not
-/// open, and an interrupted render of the same name, unless `force` is set. Throws corda::Error (kUsage,
-/// kIo, kEncoder).
-Format check_video_output(const std::string& path, const VideoDef& def, const std::string& input, bool force,
-                          bool is_transparent = false, std::int64_t first = 0, std::int64_t end = 0,
-                          bool resume = false);
+/// A video output that check_video_output() has accepted.
+struct CheckedVideo {
+    /// Value of `end` if the number of frames is unknown.
+    static constexpr std::int64_t kNoEnd = std::int64_t{1} << 62U;
+
+    std::string path;
+    VideoDef def;
+    Format format;
+    std::int64_t first = 0;  ///< number of the first frame in the film
+    std::int64_t end = kNoEnd;
+    bool force = false;   ///< replace an existing video at the end, and the part of an interrupted render now
+    bool resume = false;  ///< continue the part of an interrupted render of the same video, if there is one
+};
+
+/// Checks a video of frames first <= k < end before any work is done: everything that check_video_def,
+/// find_format and corda::check_output check, whether a hardware encoder opens, and, without `force` and
+/// `resume`, that there is no interrupted render of the same name. Throws corda::Error (kUsage, kIo,
+/// kEncoder).
+CheckedVideo check_video_output(const std::string& path, const VideoDef& def, const std::string& input,
+                                bool force, bool is_transparent = false, std::int64_t first = 0,
+                                std::int64_t end = CheckedVideo::kNoEnd, bool resume = false);
 
 /// What a video file says beside its pictures.
 struct VideoMetadata {
@@ -27,7 +41,7 @@ struct VideoMetadata {
     /// Compact JSON that `verify` reads back; VideoWriter adds "frames", "fps", "crf" and "patches" to it
     /// (see verify.hpp). What it tells under kOriginKey (see video_comment.hpp) stays in the part.
     std::string comment_json = "{}";
-    bool is_transparent = false;  ///< whether pictures may be; a format that has alpha keeps it then
+    bool is_transparent = false;  ///< `is_transparent` of check_video_output(), where the writer calls it
     PictureInfo picture_info{};   ///< of formats of a file for each frame
 };
 
@@ -39,21 +53,14 @@ struct VideoMetadata {
 /// and verified. Pictures and standard output have no part: each frame is complete as it is.
 class VideoWriter {
   public:
-    /// The end of frames whose number is not known before.
-    static constexpr std::int64_t kNoEnd = std::int64_t{1} << 62U;
-
-    /// Opens the part file, for frames first <= k < end of a film, or for fewer. With `force`, an existing
-    /// video is replaced at the end, and the part of an interrupted render now. Throws corda::Error: kUsage
-    /// for an unknown ending or a bad def, kEncoder if the encoder is missing (one that does not open shows
-    /// with the first frame), kIo if the file cannot be made, exists, or is being written by another render.
-    VideoWriter(std::string path, const VideoDef& def, VideoMetadata metadata,
-                const OutputOptions& options = {}, std::int64_t first = 0, std::int64_t end = kNoEnd);
-    /// As above; goes on with the part of an interrupted render of the same video, if there is one: frames()
-    /// tells how many it has. Its bytes will be those of a render without interruption. Also throws kMismatch
-    /// for a part that cannot be read.
-    [[nodiscard]] static VideoWriter resume(std::string path, const VideoDef& def, VideoMetadata metadata,
-                                            const OutputOptions& options, std::int64_t first,
-                                            std::int64_t end);
+    /// Opens the part file, for the frames of `output` or fewer. If it resumes a part, frames() returns the
+    /// number of frames in it, and the video will have the bytes of an uninterrupted render. Throws
+    /// corda::Error: kIo if the file cannot be created or another render is writing it, kMismatch for a part
+    /// that cannot be read. An encoder that does not open fails with the first frame.
+    VideoWriter(const CheckedVideo& output, VideoMetadata metadata, OnProgress on_progress = {});
+    /// Checks the output first, and throws as check_video_output() too.
+    VideoWriter(const std::string& path, const VideoDef& def, VideoMetadata metadata,
+                const OutputOptions& options = {});
     VideoWriter(VideoWriter&&) noexcept;
     VideoWriter(const VideoWriter&) = delete;
     VideoWriter& operator=(const VideoWriter&) = delete;
@@ -99,7 +106,6 @@ class VideoWriter {
 
   private:
     struct Impl;
-    explicit VideoWriter(std::unique_ptr<Impl> impl);
     std::unique_ptr<Impl> impl_;
 };
 

@@ -1,5 +1,3 @@
-#include "corda/pipeline/render_chunks.hpp"
-
 #include <gmock/gmock.h>
 
 #include <filesystem>

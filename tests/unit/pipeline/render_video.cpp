@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <thread>
+#include <tuple>
 
 #include "corda/media/chunks/finish_part.hpp"
 #include "corda/media/verify/verify.hpp"
@@ -137,7 +138,8 @@ TEST_F(RenderVideo, RefusesRangesThatCannotBe) {
         const test::Failure failure = failure_of([&] { render_video(film, file("a.mp4"), def); });
         EXPECT_EQ(failure.code, ExitCode::kUsage) << first;
         EXPECT_THAT(failure.message, HasSubstr("0 <= FIRST < END <= 20"));
-        EXPECT_EQ(failure_of([&] { check_render(film.scene(), file("a.mp4"), def); }).code, ExitCode::kUsage);
+        EXPECT_EQ(failure_of([&] { std::ignore = check_render(film.scene(), file("a.mp4"), def); }).code,
+                  ExitCode::kUsage);
     }
     EXPECT_THAT(folder_.files(), IsEmpty());
 }
@@ -153,9 +155,31 @@ TEST_F(RenderVideo, ChecksTheOutputBeforeItSimulates) {
     EXPECT_EQ(test::read_file(file("a.mp4")), "precious");
     RenderDef def;
     def.force = true;
-    EXPECT_EQ(failure_of([&] { check_render(film.scene(), file("a.mp4"), def, file("a.mp4")); }).code,
-              ExitCode::kUsage);
-    check_render(film.scene(), file("a.mp4"), def);
+    EXPECT_EQ(
+        failure_of([&] { std::ignore = check_render(film.scene(), file("a.mp4"), def, file("a.mp4")); }).code,
+        ExitCode::kUsage);
+    EXPECT_EQ(check_render(film.scene(), file("a.mp4"), def).path(), file("a.mp4"));
+}
+
+TEST_F(RenderVideo, WritesACheckedOutput) {
+    Film film = rope_film();
+    const CheckedOutput output = check_render(film.scene(), file("a.mp4"), range(5, 12));
+    EXPECT_EQ(output.first(), 5);
+    EXPECT_EQ(output.end(), 12);
+    EXPECT_EQ(film.simulation_passes(), 0);
+    EXPECT_EQ(render_video(film, output).frames, 7);
+    EXPECT_EQ(media::verify(file("a.mp4")).frames, 7);
+}
+
+TEST_F(RenderVideo, RefusesAFilmOfAnotherSizeThanTheCheckedOutput) {
+    Film film = rope_film();
+    Scene larger = film.scene();
+    larger.video.width_px *= 2;
+    const CheckedOutput output = check_render(larger, file("a.mp4"));
+    const test::Failure failure = failure_of([&] { render_video(film, output); });
+    EXPECT_EQ(failure.code, ExitCode::kUsage);
+    EXPECT_THAT(failure.message, HasSubstr("checked for 192x64 at 20 frames per second"));
+    EXPECT_THAT(folder_.files(), IsEmpty());
 }
 
 TEST_F(RenderVideo, ChecksTheVideoBeforeItSimulates) {

@@ -100,7 +100,7 @@ TEST_P(PartOf, IsGoneOnWithBeforeAChangedByte) {
     std::string changed = bytes_;
     changed[(ends_[0] + ends_[1]) / 2] ^= 1;
     test::write_file(part_path(path_), changed);
-    VideoWriter writer = VideoWriter::resume(path_, def_, {"A swing", "{}"}, {}, 0, all);
+    VideoWriter writer(check_video_output(path_, def_, "", false, false, 0, all, true), {"A swing", "{}"});
     ASSERT_EQ(writer.frames(), chunk_);
     write(writer, chunk_, all);
     writer.finish();
