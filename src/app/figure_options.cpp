@@ -9,7 +9,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/pipeline/describe.hpp"
+#include "corda/pipeline/plan_text.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -102,7 +102,7 @@ Film FigureOptions::film_of(const Console& console, const Scene& loaded,
     gl.apply_to(def);
     Film film(loaded, def);
     report_plan(console, film);
-    console.detail(fmt::format("{}: {}", film.scene().name, corda::describe(film.system())));
+    console.detail(fmt::format("{}: {}", film.scene().name, system_text(film.system())));
     static_cast<void>(film.camera());
     return film;
 }

@@ -7,8 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "corda/pipeline/describe.hpp"
-#include "corda/pipeline/model_summary.hpp"
+#include "corda/pipeline/plan_text.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::app {
@@ -45,8 +44,8 @@ std::optional<Cost> cost_of(const Film& film) {
 }
 
 nlohmann::json to_json(const Trial& trial) {
-    return {{"solver", describe(trial.method)},
-            {"check", describe(trial.check)},
+    return {{"solver", sim::method_text(trial.method)},
+            {"check", sim::method_text(trial.check)},
             {"steps", trial.steps},
             {"largest_difference_m", trial.largest_difference_m},
             {"reached_s", trial.reached_s},
@@ -57,8 +56,8 @@ nlohmann::json to_json(const Film& film, std::size_t i) {
     const BodyPlan& body = film.plan().bodies[i];
     nlohmann::json json = {{"body", body_name(film.system(), i)},
                            {"method", method_name(body.method)},
-                           {"solver", describe(body.method)},
-                           {"reason", describe(body)},
+                           {"solver", sim::method_text(body.method)},
+                           {"reason", reason_text(body)},
                            {"error_bound_m", nullptr},
                            {"horizon_s", nullptr},
                            {"trials", nlohmann::json::array()}};
@@ -74,21 +73,21 @@ void report_methods(const Console& console, const Film& film) {
     const bool is_one = film.plan().bodies.size() == 1;
     for (const MethodGroup& group : groups) {
         const BodyPlan& body = film.plan().bodies[group.bodies.front()];
-        const std::string whose = groups.size() == 1 ? "" : " of " + describe(film.system(), group.bodies);
-        console.result(
-            fmt::format("solver{}: {}, because {}", whose, describe(group.method), describe(body)));
+        const std::string whose = groups.size() == 1 ? "" : " of " + bodies_text(film.system(), group.bodies);
+        console.result(fmt::format("solver{}: {}, because {}", whose, sim::method_text(group.method),
+                                   reason_text(body)));
         const std::string whom =
             is_one ? "" : fmt::format(" for {}", body_name(film.system(), group.bodies.front()));
         for (const Trial& trial : body.trials) {
             console.result(fmt::format("tried{}: {} against {}: {} steps, differ by {:.2g} m up to {:.6g} s",
-                                       whom, describe(trial.method), describe(trial.check), trial.steps,
-                                       trial.largest_difference_m, trial.reached_s));
+                                       whom, sim::method_text(trial.method), sim::method_text(trial.check),
+                                       trial.steps, trial.largest_difference_m, trial.reached_s));
         }
     }
 }
 
 void report_in_words(const Console& console, Film& film, const std::vector<std::string>& terms) {
-    console.result(fmt::format("{}: {}", film.scene().name, describe(film.system())));
+    console.result(fmt::format("{}: {}", film.scene().name, system_text(film.system())));
     for (const std::string& term : terms) console.result("modelled: " + term);
     report_methods(console, film);
     if (const auto bound = bound_text(film)) {

@@ -7,8 +7,8 @@
 
 #include "commands.hpp"
 #include "corda/core/clock.hpp"
-#include "corda/pipeline/describe.hpp"
-#include "corda/pipeline/model_summary.hpp"
+#include "corda/pipeline/plan_text.hpp"
+#include "corda/sim/solver.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -34,8 +34,10 @@ void warn_of_unbounded(const Console& console, const Film& film) {
     for (const MethodGroup& group : groups_of(plan)) {
         const BodyPlan& body = plan.bodies[group.bodies.front()];
         if (body.reason == PlanReason::kNamed || body.error_bound_m) continue;
-        const std::string whose = plan.bodies.size() == 1 ? "" : describe(film.system(), group.bodies) + ": ";
-        console.warning(fmt::format("auto: {}{}: {}", whose, describe(group.method), describe(body)));
+        const std::string whose =
+            plan.bodies.size() == 1 ? "" : bodies_text(film.system(), group.bodies) + ": ";
+        console.warning(
+            fmt::format("auto: {}{}: {}", whose, sim::method_text(group.method), reason_text(body)));
     }
 }
 
@@ -83,7 +85,7 @@ void report_plan(const Console& console, Film& film) {
     if (!std::holds_alternative<AutoDef>(film.scene().solver)) return;
     if (const auto bound = bound_text(film)) {
         console.info(fmt::format("auto: {}; displayed error at most {}, shown by tighter runs",
-                                 describe(film.system(), film.plan()), *bound));
+                                 plan_text(film.system(), film.plan()), *bound));
     }
     warn_of_unbounded(console, film);
     warn_of_plates(console, film);
@@ -125,7 +127,7 @@ nlohmann::json film_json(Film& film) {
     const System& system = film.system();
     nlohmann::json json = {{"schema", 1},
                            {"method", method_names(plan)},
-                           {"solver", describe(system, plan)},
+                           {"solver", plan_text(system, plan)},
                            {"particles", system.particle_count()},
                            {"bars", system.bars.size()},
                            {"links", system.link_count()},

@@ -19,8 +19,8 @@
 #include "corda/media/encode/disk_space.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/media/format/picture_names.hpp"
-#include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
+#include "corda/pipeline/plan_text.hpp"
 #include "corda/view/colors.hpp"
 #include "interrupt.hpp"
 #include "time_options.hpp"
@@ -202,7 +202,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     const std::int64_t count = output.end() - output.first();
     const VideoDef& video = film.scene().video;
     console.info(fmt::format("{}: {}, method {}; {} of {}x{} at {} per second", film.scene().name,
-                             describe(film.system()), method_names(film.plan()), counted(count, "frame"),
+                             system_text(film.system()), method_names(film.plan()), counted(count, "frame"),
                              video.width_px, video.height_px, video.fps.rational().text()));
     static_cast<void>(film.camera());
     if (options.dry_run) {

@@ -47,9 +47,8 @@ class Parts {
 };
 
 /// Writes the report; returns why the motion ended early, if it did.
-std::optional<Error> write_report(const Console& console, Film& film,
-                                  const std::vector<RequestedTime>& shots, const ReportOptions& options,
-                                  report::ReportFolder& folder) {
+std::optional<Error> write_report(const Console& console, Film& film, const std::vector<RequestedTime>& shots,
+                                  const ReportOptions& options, report::ReportFolder& folder) {
     Parts parts(console);
     figures::SceneReportDef def;
     for (const RequestedTime& shot : shots) def.at_s.push_back(shot.time_s);

@@ -10,8 +10,8 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/csv.hpp"
 #include "corda/core/output_file.hpp"
-#include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
+#include "corda/pipeline/plan_text.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -187,7 +187,7 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     def.readings = {options.columns.velocities, options.columns.tensions};
     Film film(scene, def);
     report_plan(console, film);
-    console.info(fmt::format("{}: {}, method {}", film.scene().name, describe(film.system()),
+    console.info(fmt::format("{}: {}, method {}", film.scene().name, system_text(film.system()),
                              method_names(film.plan())));
     if (options.dry_run) {
         console.report(film_json(film));

@@ -6,7 +6,7 @@
 #include "corda/figures/chapters.hpp"
 #include "corda/figures/chart.hpp"
 #include "corda/figures/quantity_text.hpp"
-#include "corda/pipeline/describe.hpp"
+#include "corda/pipeline/plan_text.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::figures {
@@ -25,7 +25,7 @@ std::string link_text(const System& system, const Extreme& extreme) {
 std::string unknown_text(const Film& film, const MotionSummary& reading) {
     const auto relaxes = [&](std::size_t b) { return !sim::knows_tensions(film.plan().bodies[b].method); };
     const auto& bodies = reading.unknown_tensions;
-    const std::string names = corda::describe(film.system(), bodies);
+    const std::string names = bodies_text(film.system(), bodies);
     if (std::all_of(bodies.begin(), bodies.end(), relaxes)) {
         return fmt::format(
             "Tensions of {} are not known: method relaxation moves particles until bars have "

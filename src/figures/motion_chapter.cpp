@@ -7,23 +7,21 @@
 #include "corda/core/text.hpp"
 #include "corda/figures/chapters.hpp"
 #include "corda/figures/quantity_text.hpp"
-#include "corda/pipeline/describe.hpp"
-#include "corda/pipeline/model_summary.hpp"
+#include "corda/pipeline/plan_text.hpp"
 
 namespace corda::figures {
 namespace {
 
 std::string model_text(const Film& film) {
     const std::vector<std::string> terms = modelled_terms(film.scene(), film.plan());
-    return fmt::format("Modelled: {}; {}.", corda::describe(film.system()), fmt::join(terms, "; "));
+    return fmt::format("Modelled: {}; {}.", system_text(film.system()), fmt::join(terms, "; "));
 }
 
 std::string method_text(Film& film) {
     const Plan& plan = film.plan();
-    std::string text = fmt::format("Method: {}", corda::describe(film.system(), plan));
+    std::string text = fmt::format("Method: {}", plan_text(film.system(), plan));
     const std::vector<MethodGroup> groups = groups_of(plan);
-    if (groups.size() == 1)
-        text += ", because " + corda::describe(plan.bodies[groups.front().bodies.front()]);
+    if (groups.size() == 1) text += ", because " + reason_text(plan.bodies[groups.front().bodies.front()]);
     text += ". ";
     if (const auto bound = bound_text(film)) {
         text +=

@@ -11,8 +11,8 @@
 #include "corda/core/version.hpp"
 #include "corda/figures/chapters.hpp"
 #include "corda/figures/drawings.hpp"
-#include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film_renderer.hpp"
+#include "corda/pipeline/plan_text.hpp"
 
 namespace corda::figures {
 namespace {
@@ -71,8 +71,8 @@ report::Report page_of(const Film& film, std::vector<report::Chapter> chapters) 
     const Scene& scene = film.scene();
     report::Report page;
     page.title = "Report of " + printable(scene.name);
-    page.setting = {{"Bodies", corda::describe(film.system())},
-                    {"Method", corda::describe(film.system(), film.plan())},
+    page.setting = {{"Bodies", system_text(film.system())},
+                    {"Method", plan_text(film.system(), film.plan())},
                     {"Duration", fmt::format("{:g} s", scene.world.duration_s)},
                     {"Rows", fmt::format("{} per second", scene.video.fps.rational().text())},
                     {"Corda", std::string(version())}};
@@ -82,8 +82,7 @@ report::Report page_of(const Film& film, std::vector<report::Chapter> chapters) 
 
 }  // namespace
 
-std::optional<Error> write_scene_report(Film& film, const SceneReportDef& def,
-                                        report::ReportFolder& folder) {
+std::optional<Error> write_scene_report(Film& film, const SceneReportDef& def, report::ReportFolder& folder) {
     Drawings drawings(film);
     static_cast<void>(drawings.gl(kColumnMm));  // before anything is simulated, if the method is named
     const MotionSummary reading = read_into(film, def, folder);

@@ -92,7 +92,7 @@ report::Chapter path_chapter(const Film& film, const MotionSummary& reading) {
     report::Plot plot = make_plot("path", "Path of the tip", {"x", "m"}, {"y", "m"}, curves);
     plot.has_equal_scales = true;
     fit_height(plot);
-    plot.caption = fmt::format("Path of {}.{}{}{}", describe(system, followed_of(reading)),
+    plot.caption = fmt::format("Path of {}.{}{}{}", pipeline::particles_text(system, followed_of(reading)),
                                is_far ? fmt::format(" Counted from ({}, {}) m.", origin_m.x, origin_m.y) : "",
                                left_out_text(system, reading), path_thinning_text(reading));
     plot.data = kTipData;
@@ -114,12 +114,12 @@ report::Chapter phase_chapter(const Film& film, const MotionSummary& reading) {
     plot.caption = turns ? fmt::format(
                                "Phase portrait: the angle of the line from the pin to {}, from straight "
                                "down, positive towards +x, turns counted on, and its rate of change.",
-                               describe(system, followed_of(reading)))
+                               pipeline::particles_text(system, followed_of(reading)))
                          : fmt::format(
                                "Phase portrait: the horizontal position of {}, counted from the pin of "
                                "its body or, if that has none or several, from the start, and the "
                                "horizontal velocity.",
-                               describe(system, followed_of(reading)));
+                               pipeline::particles_text(system, followed_of(reading)));
     plot.caption += left_out_text(system, reading) + path_thinning_text(reading);
     plot.data = kTipData;
     chapter.plots.push_back(plot);

@@ -28,13 +28,13 @@ constexpr int kMaxTextPx = 60;
 constexpr double kLinePerText = 1.6;
 constexpr double kCapitalPerText = 0.73;  // of DejaVu Sans
 
-/// Where the cells of a contact sheet are, each with a line of text below it.
+/// Layout of the cells of a contact sheet, each with a line of text below it.
 class Sheet {
   public:
     Sheet(int width_px, int height_px, int columns, int count)
         : width_px_(width_px),
           height_px_(height_px),
-          columns_(std::min(columns, kMaxSidePx)),  // more have no room
+          columns_(std::min(columns, kMaxSidePx)),  // more do not fit
           rows_((count - 1) / columns_ + 1),
           gap_px_(std::max(1, static_cast<int>(kGapPerSide * std::min(width_px, height_px)))) {}
 
@@ -46,20 +46,20 @@ class Sheet {
     }
     [[nodiscard]] int caption_px() const { return static_cast<int>(kLinePerText * text_px()); }
     [[nodiscard]] bool has_room() const { return std::min(cell_width_px(), cell_height_px()) >= kMinCellPx; }
-    /// The upper left corner of cell `i` of that size. What division leaves is shared out among the gaps.
+    /// The upper left corner of cell `i` of this size. The gaps share the remainder of the division.
     [[nodiscard]] int x_px(int i, int cell_px) const {
         return edge(i % columns_, columns_, cell_px, width_px_);
     }
     [[nodiscard]] int y_px(int i, int cell_px) const {
         return edge(i / columns_, rows_, cell_px + caption_px(), height_px_);
     }
-    /// Whether cells of that size have room.
+    /// True if cells of this size fit.
     [[nodiscard]] bool holds(int cell_width_px, int cell_height_px) const {
         return std::int64_t{cell_width_px} * columns_ <= width_px_ &&
                std::int64_t{cell_height_px + caption_px()} * rows_ <= height_px_;
     }
 
-    /// How far it is from square cells and no blank ones.
+    /// Penalty for cells that are not square and for blank cells.
     [[nodiscard]] double badness(int count) const {
         if (!has_room()) return 1e9;
         const double ratio = static_cast<double>(cell_width_px()) / cell_height_px();
@@ -110,7 +110,7 @@ void check(const Film& film, const FigureDef& def) {
                             counted(def.columns, "column"), def.width_px, def.height_px));
 }
 
-/// Between the cells: the ground, a little towards the colour of supports.
+/// The colour between cells: the ground, slightly mixed with the colour of supports.
 Color gap_color(const view::Look& look) {
     if (!look.ground.is_opaque()) return {0, 0, 0, 0};
     const auto mixed = [](int ground, int line) {
@@ -121,8 +121,8 @@ Color gap_color(const view::Look& look) {
             mixed(ground.b, look.support.b)};
 }
 
-/// "t = 0.25 s" for each time, all with as many digits as it takes to tell them exactly, if these are few, or
-/// at least apart.
+/// "t = 0.25 s" for each time, all with the same number of digits: enough to be exact, or at least to be
+/// distinct if that takes many digits.
 std::vector<std::string> captions_of(const std::vector<double>& times_s) {
     constexpr int kFewDigits = 3;
     constexpr int kMaxDigits = 9;
@@ -142,7 +142,7 @@ std::vector<std::string> captions_of(const std::vector<double>& times_s) {
     return captions;
 }
 
-/// A contact sheet without its cells.
+/// A contact sheet without the pictures in its cells.
 view::DrawList list_captions(const Film& film, const FigureDef& def) {
     const view::Look look = view::look_of(film.scene().style);
     const Color gap = gap_color(look);
@@ -215,8 +215,8 @@ std::string ending_of(const std::string& path) {
 }
 
 /// The bytes of an SVG or a PDF.
-std::string describe_lines(const std::string& ending, Film& film, const FigureDef& def, const PngInfo& info,
-                           const OnProgress& on_progress, std::vector<double>& empty_s) {
+std::string vector_bytes(const std::string& ending, Film& film, const FigureDef& def, const PngInfo& info,
+                         const OnProgress& on_progress, std::vector<double>& empty_s) {
     check(film, def);
     if (def.shutter != 0.0) {
         throw Error(ExitCode::kUsage,
@@ -261,7 +261,7 @@ FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns) 
                         "takes {} at least); ask for fewer times or a larger size",
                         count, counted(columns, "column"), video.width_px, video.height_px, kMinCellPx));
     }
-    scene.overlay.time = false;  // it stands below the cell
+    scene.overlay.time = false;  // it is written below the cell
     video.width_px = sheet.cell_width_px();
     video.height_px = sheet.cell_height_px();
     return def;
@@ -289,7 +289,7 @@ std::vector<double> write_figure(const std::string& path, Film& film, const Figu
         write_png(path, draw(film, def, options.on_progress, empty_s), info, options);
         return empty_s;
     }
-    const std::string bytes = describe_lines(ending, film, def, info, options.on_progress, empty_s);
+    const std::string bytes = vector_bytes(ending, film, def, info, options.on_progress, empty_s);
     OutputFile file(path, options);
     file.write(bytes);
     file.commit();

@@ -1,19 +1,16 @@
 #include "corda/pipeline/film.hpp"
 
 #include <cmath>
-#include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "corda/core/clock.hpp"
-#include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "corda/pipeline/live_plot_data.hpp"
-#include "corda/pipeline/methods.hpp"
 #include "corda/pipeline/motion.hpp"
-#include "corda/pipeline/notes.hpp"
-#include "corda/pipeline/validate.hpp"
+#include "corda/pipeline/motion_input.hpp"
+#include "corda/pipeline/plan_text.hpp"
 #include "corda/sim/auto/planner.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/camera.hpp"
@@ -34,57 +31,7 @@ double pose_opacity(std::size_t k, std::size_t count) {
     return kFirst + (kSecondLast - kFirst) * age;
 }
 
-/// A progress callback that this thread is running for a motion. Callbacks nest if one draws another film.
-class Callback {
-  public:
-    explicit Callback(const void* motion) : motion_(motion), outer_(std::exchange(innermost, this)) {}
-    Callback(const Callback&) = delete;
-    Callback& operator=(const Callback&) = delete;
-    ~Callback() { innermost = outer_; }
-
-    [[nodiscard]] static bool is_running_for(const void* motion) {
-        const Callback* callback = innermost;
-        while (callback != nullptr && callback->motion_ != motion) callback = callback->outer_;
-        return callback != nullptr;
-    }
-
-  private:
-    inline static thread_local const Callback* innermost = nullptr;
-    const void* motion_;
-    const Callback* outer_;
-};
-
 }  // namespace
-
-/// The motion, which several films may show in different looks, and several renderers in different threads.
-struct Film::Run {
-    explicit Run(const Scene& scene) : system(system_of(scene)), named(pipeline::named_methods(scene)) {}
-
-    /// Required to read the motion. Throws corda::Error (kUsage) inside of a guarded() callback.
-    [[nodiscard]] std::unique_lock<std::mutex> lock() {
-        if (Callback::is_running_for(this)) {
-            throw Error(ExitCode::kUsage,
-                        "on_progress used the film whose progress it reports; draw and read the film after "
-                        "the call that reports progress, or make another Film");
-        }
-        return std::unique_lock(reading);
-    }
-
-    /// The callback, which must outlive the result, such that lock() refuses to be called inside of it.
-    [[nodiscard]] OnProgress guarded(const OnProgress& on_progress) const {
-        if (!on_progress) return {};
-        return [this, &on_progress](std::int64_t done, std::int64_t total) {
-            const Callback callback(this);
-            return on_progress(done, total);
-        };
-    }
-
-    System system;
-    sim::NamedMethods named;
-    std::optional<pipeline::Motion> motion;
-    Plan plan;
-    std::mutex reading;
-};
 
 struct Film::Impl {
     using DrawContext = pipeline::DrawContext;
@@ -92,7 +39,7 @@ struct Film::Impl {
     Impl(const Scene& given, FilmDef options)
         : scene(given),
           def(std::move(options)),
-          run(std::make_shared<Run>(scene)),
+          run(std::make_shared<pipeline::SharedMotion>(scene)),
           system(run->system),
           on_progress(run->guarded(def.on_progress)),
           drawing(scene, system, def),
@@ -350,7 +297,7 @@ struct Film::Impl {
 
     Scene scene;
     FilmDef def;
-    std::shared_ptr<Run> run;
+    std::shared_ptr<pipeline::SharedMotion> run;
     const System& system;
     OnProgress on_progress;  ///< that of `def`, guarded
     DrawContext drawing;     ///< of frames and stills

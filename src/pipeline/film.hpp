@@ -20,23 +20,23 @@ namespace corda {
 
 /// How a Film is made.
 struct FilmDef {
-    /// Times in seconds, beside those of frames, at which stills or states will be asked for. Others can be
-    /// asked for too, and then cost a simulation of their own. 0 .. world.duration_s.
+    /// Times in seconds, 0 .. world.duration_s, between frames at which stills or states will be needed.
+    /// Other times are possible, but cost another simulation.
     std::vector<double> stills_s;
-    /// Most memory for recorded states. A motion that needs more is simulated again when it is read, with
+    /// Maximum memory for recorded states. A motion that needs more is simulated again when it is read, with
     /// the same bits.
     std::size_t motion_budget_bytes = std::size_t{256} << 20;
     /// How to reach OpenGL: "auto", "device", "device:N", "surfaceless" or "default".
     std::string backend = "auto";
-    bool require_gpu = false;  ///< refuse an OpenGL that runs on the CPU
-    StateFields readings;      ///< what its states have besides positions
+    bool require_gpu = false;  ///< refuse OpenGL on the CPU
+    StateFields readings;      ///< fields of states in addition to positions
     /// Called with the number of frames done, in every pass of the simulation, and repeatedly during frames
     /// that take long. Returning false ends the current call with kInterrupted; the call can be repeated. It
     /// may use other films, but not this one.
     OnProgress on_progress;
 };
 
-/// What draws a Film.
+/// OpenGL driver information.
 struct GlInfo {
     std::string renderer;  ///< GL_RENDERER
     std::string vendor;
@@ -52,10 +52,10 @@ struct GlInfo {
 /// of its functions: reading or drawing it there throws corda::Error (kUsage).
 class Film {
   public:
-    /// Plans a scene of method `auto`, which simulates it; another is simulated as far as it is asked for,
-    /// for pictures mostly to its end. Throws corda::Error: kInvalidScene if no method can run it or tell its
-    /// tensions, or a field of it is not what it is declared to be, kUsage for an unknown backend or a still
-    /// outside of the scene, kInterrupted if on_progress asks to stop.
+    /// Plans a scene with method `auto`, which simulates it. Other scenes are simulated on demand, for
+    /// pictures usually to the end. Throws corda::Error: kInvalidScene if no method can run the scene or
+    /// provide its tensions, or if a field is outside of its declared range, kUsage for an unknown backend or
+    /// a still outside of the scene, kInterrupted if on_progress asks to stop.
     explicit Film(const Scene& scene, FilmDef def = {});
     Film(Film&&) noexcept;
     Film& operator=(Film&&) noexcept;
@@ -64,9 +64,9 @@ class Film {
     [[nodiscard]] const Scene& scene() const;
     [[nodiscard]] const System& system() const;
 
-    /// Number of images of the scene's video: those that start before its end.
+    /// Number of frames of the scene's video: those that start before its end.
     [[nodiscard]] std::int64_t frame_count() const;
-    /// The index of the last frame time that is not after the scene's end: states exist up to it.
+    /// The index of the last frame whose time is not after the scene's end; states exist up to it.
     [[nodiscard]] std::int64_t last_frame() const;
     /// The time of frame `k`: exactly k / fps, rounded once.
     [[nodiscard]] double time_s(std::int64_t k) const;
@@ -75,10 +75,10 @@ class Film {
     [[nodiscard]] const Plan& plan() const;
     /// Bound on the displayed position error in pixels; std::nullopt if the plan has none.
     [[nodiscard]] std::optional<double> error_bound_px();
-    /// The camera with center and height filled in: given again, it draws the same bytes. Simulates what has
-    /// not been yet, unless the scene gives both and has no supports.
+    /// The camera with center and height filled in; a scene with this camera gives the same bytes. Simulates
+    /// the motion to its end unless the scene gives both and has no supports.
     [[nodiscard]] const CameraDef& camera();
-    /// How often the whole motion has been integrated so far, counted by the code that integrates.
+    /// Number of simulations of the motion so far.
     [[nodiscard]] int simulation_passes() const;
 
     /// Positions at frame `k`, 0 .. last_frame(), or at a time in 0 .. world.duration_s. The reference holds
@@ -86,20 +86,20 @@ class Film {
     /// kInterrupted if on_progress asks to stop.
     [[nodiscard]] const State& state(std::int64_t k);
     [[nodiscard]] const State& state_at(double time_s);
-    /// Figures of the last state asked for.
+    /// Figures of the state that state() or state_at() returned last.
     [[nodiscard]] const Figures& figures() const;
-    /// Figures of the run up to the last time simulated.
+    /// Figures of the run up to the last simulated time.
     [[nodiscard]] const Diagnostics& diagnostics() const;
-    /// Seconds of the stepping alone.
+    /// Seconds spent in stepping.
     [[nodiscard]] double stepping_s() const;
 
-    /// Draws frame `k`, 0 .. last_frame(), as the video has it, blurred if video.shutter says so; or the
-    /// picture at a time in 0 .. world.duration_s, sharp unless `shutter` is more than 0 (0 .. 1, see
-    /// VideoDef). RGBA8, row 0 on top. States within an exposure are recorded if they fit into half of the
-    /// budget; otherwise they are simulated in passing: frames in order of time take one more simulation in
-    /// all, in any other order up to one each. A blurred picture first simulates the whole motion, because
-    /// exposures are clipped to its end. Asks `on_progress` again and again if the picture is large or
-    /// blurred. Throws as state(), and kNoGl, kInterrupted.
+    /// Draws frame `k`, 0 .. last_frame(), as in the video, blurred by video.shutter; or the picture at a
+    /// time in 0 .. world.duration_s, sharp unless `shutter` (0 .. 1, see VideoDef) is more than 0. RGBA8,
+    /// row 0 on top. States within exposures are recorded if they fit into half of the budget; otherwise
+    /// frames in order of time take one more simulation in total, in any other order up to one each. A
+    /// blurred picture first simulates the whole motion, because exposures are clipped to its end. Calls
+    /// `on_progress` repeatedly if the picture is large or blurred. Throws as state(), and kNoGl,
+    /// kInterrupted.
     [[nodiscard]] Image frame(std::int64_t k, const OnProgress& on_progress = {});
     [[nodiscard]] Image still(double time_s, const OnProgress& on_progress = {}, double shutter = 0.0);
     /// True if the last picture was empty.
@@ -109,7 +109,6 @@ class Film {
 
   private:
     friend class FilmRenderer;
-    struct Run;
     struct Impl;
     explicit Film(std::unique_ptr<Impl> impl);
 
@@ -125,12 +124,12 @@ class Film {
 /// such).
 [[nodiscard]] std::string frozen_toml(Film& film);
 
-/// Draws positions that come from anywhere: one's own simulation, or measured ones.
+/// Draws given positions: from another simulation, or measured ones.
 class Renderer {
   public:
-    /// Bodies, style and picture size are those of `scene`, whose points count as the first positions: a
-    /// camera without center and height is fitted to them. Throws corda::Error: kInvalidScene for a field
-    /// that is not what its declaration says, kUsage for an unknown backend (see FilmDef).
+    /// `scene` gives bodies, style and picture size. A camera without center and height is fitted to its
+    /// points. Throws corda::Error: kInvalidScene for a field outside of its declared range, kUsage for an
+    /// unknown backend (see FilmDef).
     explicit Renderer(const Scene& scene, const std::string& backend = "auto");
     Renderer(Renderer&&) noexcept;
     Renderer& operator=(Renderer&&) noexcept;
@@ -138,9 +137,8 @@ class Renderer {
 
     /// The camera with center and height filled in.
     [[nodiscard]] const CameraDef& camera() const;
-    /// Draws the particles at these positions in m, in world coordinates, one per particle: those of the
-    /// ropes, then those of the nets. Throws corda::Error: kUsage for another number of them, or one that
-    /// is not finite, kNoGl.
+    /// Draws the particles at these positions in m, in world coordinates, one per particle, ropes before
+    /// nets. Throws corda::Error: kUsage for another number of positions or one that is not finite, kNoGl.
     [[nodiscard]] Image draw(std::span<const Vec2> positions_m);
 
   private:
@@ -148,7 +146,7 @@ class Renderer {
     std::unique_ptr<Impl> impl_;
 };
 
-/// Which frames render_video writes, and how.
+/// Options of render_video().
 struct RenderDef {
     bool force = false;  ///< replace an existing file
     /// Continue an interrupted render of the same scene, frames and name, if there is one: the file has the
@@ -167,16 +165,16 @@ struct RenderDef {
 /// The result of render_video().
 struct Rendered {
     std::int64_t frames = 0;
-    std::int64_t resumed_frames = 0;  ///< of these, how many an interrupted render had made
-    bool was_part_damaged = false;    ///< its part had changed after these
+    std::int64_t resumed_frames = 0;  ///< number of these that an interrupted render had made
+    bool was_part_damaged = false;    ///< the part of that render was damaged after these
     bool complete = true;             ///< false if on_progress asked to stop
-    std::string kept_part;     ///< where the frames so far are if it is not complete; empty if there are none
-    bool reader_left = false;  ///< standard output was closed by whoever read it: no more was wanted
+    std::string kept_part;     ///< the file with the frames so far if incomplete; empty if there are none
+    bool reader_left = false;  ///< standard output was closed by its reader, which ends the video early
     std::string encoder;       ///< libav's name
-    std::int64_t empty_frames = 0;    ///< in which nothing is in view
-    double first_empty_s = 0.0;       ///< the time of the first of them
-    int jobs = 1;                     ///< how many chunks were made at a time
-    bool is_short_of_memory = false;  ///< there would have been more jobs
+    std::int64_t empty_frames = 0;    ///< number of empty frames
+    double first_empty_s = 0.0;       ///< time of the first empty frame
+    int jobs = 1;                     ///< number of chunks made at a time
+    bool is_short_of_memory = false;  ///< jobs was reduced because memory is short
 };
 
 namespace media {
@@ -218,37 +216,35 @@ Rendered render_video(Film& film, const CheckedOutput& output, const OnProgress&
 /// Checks the output, then renders it; the ending of `path` chooses the format.
 Rendered render_video(Film& film, const std::string& path, const RenderDef& def = {});
 
-/// The poses of a film at some times: in one picture, or side by side.
+/// Poses of a film at several times, in one picture or side by side.
 struct FigureDef {
     /// In seconds, increasing, at least one; 0 .. world.duration_s.
     std::vector<double> times_s;
-    /// 0: one picture of the film's size, in which earlier poses are fainter, and the
-    /// last is as in a still. Otherwise a contact sheet of that many columns, whose cells have the film's
-    /// size.
+    /// 0: one picture of the film's size, in which earlier poses are fainter and the last one looks as in a
+    /// still. Otherwise the columns of a contact sheet, whose cells have the film's size.
     int columns = 0;
-    // Of a contact sheet, at least what its cells take.
+    /// Size of a contact sheet; its cells must fit.
     int width_px = 0;
     int height_px = 0;
-    /// Of one time in one picture of pixels: exposes it as Film::still() does, 0 .. 1.
+    /// Exposure as in Film::still(), 0 .. 1; only for one time in one PNG.
     double shutter = 0.0;
 };
 
-/// A contact sheet of the scene's picture size: gives `scene` the size of a cell, for a film of which
-/// draw_figure() and write_figure() draw the sheet. `columns`: 0 chooses them. Throws corda::Error (kUsage)
-/// if there is no room for so many cells.
+/// A contact sheet of the scene's picture size. Changes `scene` to the size of a cell: draw_figure() and
+/// write_figure() draw the sheet with a film of this scene. `columns`: 0 chooses them. Throws corda::Error
+/// (kUsage) if the cells do not fit.
 [[nodiscard]] FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns = 0);
 
-/// Throws corda::Error as Film::still(), and kUsage for a definition that is not what it is declared to be,
-/// or poses of too many lines.
+/// Throws corda::Error as Film::still(), and kUsage for an invalid definition or poses with too many lines.
 [[nodiscard]] Image draw_figure(Film& film, const FigureDef& def, const OnProgress& on_progress = {});
 
-/// Whether the ending of `path` is that of a figure: .png, .svg or .pdf.
+/// True if `path` ends with .png, .svg or .pdf.
 [[nodiscard]] bool is_figure_path(const std::string& path);
 
-/// Writes a figure; the ending of `path` chooses the format. As .svg and .pdf it has lines in place of
-/// pixels, needs no OpenGL, and its size is that of its pixels in print; of the texts of `info` it has the
-/// title. Returns the times of the pictures in which nothing is in view: one at most, but for a contact
-/// sheet. Throws corda::Error: as draw_figure(), kIo, and kUsage for another ending.
+/// Writes a figure; the ending of `path` chooses the format. An .svg or .pdf consists of lines, needs no
+/// OpenGL, has the size of the pixels at info.pixels_per_inch, and only the title of the texts of `info`.
+/// Returns the times of empty pictures: at most one, except in a contact sheet. Throws corda::Error as
+/// draw_figure(), kIo, and kUsage for another ending.
 std::vector<double> write_figure(const std::string& path, Film& film, const FigureDef& def,
                                  const PngInfo& info = {}, const OutputOptions& options = {});
 

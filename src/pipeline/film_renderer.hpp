@@ -7,7 +7,6 @@
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/motion.hpp"
 #include "corda/pipeline/scene_renderer.hpp"
-#include "corda/pipeline/trail_recorder.hpp"
 
 namespace corda {
 namespace pipeline {

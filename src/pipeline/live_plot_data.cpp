@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "corda/core/timeline.hpp"
-#include "corda/pipeline/describe.hpp"
+#include "corda/pipeline/plan_text.hpp"
 #include "corda/pipeline/tracked_particle.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/system.hpp"
@@ -16,21 +16,21 @@
 namespace corda::pipeline {
 namespace {
 
-/// Of a longer motion, every so many states are read.
+/// Maximum number of samples: a longer motion is read at a stride.
 constexpr std::size_t kMaxSamples = 100'000;
-/// A few per pixel of a wide plot.
+/// Number of samples of a short motion: a few per pixel of a wide plot.
 constexpr std::size_t kFinestSamples = 4000;
-/// Of the states that are recorded for a plot alone.
+/// Maximum memory of the states that are recorded only for the plot.
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
-/// What changes less, per size of the scene at its start, and per duration, stands still.
+/// Motion below this share of the scene's initial size, and of that per duration, is drawn as rest.
 constexpr double kStill = 1e-3;
 
-/// The first free end of a rope; without one, what stands for the first body that moves.
+/// The first free end of a rope; without one, the first tracked particle.
 std::size_t tip_of(const System& system) {
     const std::vector<std::size_t> ends = view::free_ends(system);
     if (!ends.empty()) return ends.front();
-    const std::vector<TrackedParticle> followed = tracked_particles(system);
-    return followed.empty() ? 0 : followed.front().particle;
+    const std::vector<TrackedParticle> tracked = tracked_particles(system);
+    return tracked.empty() ? 0 : tracked.front().particle;
 }
 
 std::size_t body_of(const System& system, std::size_t particle) {

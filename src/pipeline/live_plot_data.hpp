@@ -12,20 +12,20 @@
 
 namespace corda::pipeline {
 
-/// What the live plot of a scene shows of its motion.
+/// The data of a scene's live plot.
 class LivePlotData {
   public:
     /// The scene and its system must outlive it.
     LivePlotData(const Scene& scene, const System& system);
 
-    /// What states must have.
+    /// Fields that states must have.
     [[nodiscard]] StateFields readings() const;
-    /// Times beside those of frames at which states are to be recorded, so that the curves do not depend on
-    /// the frame rate. Empty without a plot.
+    /// Times between frames at which to record states, so that the curves do not depend on the frame rate.
+    /// Empty without a plot.
     [[nodiscard]] std::vector<double> times_s() const;
-    /// Reads the whole motion of bodies with these methods, at those times and at those of frames, up to
-    /// `end_s`: the same whatever else is recorded. The potential energy is 0 where it
-    /// is least. With relaxation there is no total: bars that it stretches have no energy.
+    /// Reads the motion of bodies with these methods up to `end_s`, at those times and at frame times,
+    /// whatever else is recorded. The minimum of the potential energy is 0. With relaxation there is no total
+    /// energy: bars that it stretches store none.
     [[nodiscard]] view::PlotData read(std::span<const MethodDef> methods, double end_s,
                                       const std::function<const State&(double time_s)>& state_at) const;
 
@@ -37,8 +37,8 @@ class LivePlotData {
     const Scene* scene_;
     const System* system_;
     LivePlot plot_;
-    std::size_t tip_;   ///< the particle that is followed
-    std::size_t body_;  ///< that it belongs to
+    std::size_t tip_;   ///< the tracked particle
+    std::size_t body_;  ///< the body of that particle
 };
 
 }  // namespace corda::pipeline

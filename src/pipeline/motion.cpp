@@ -1,6 +1,7 @@
 #include "corda/pipeline/motion.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -8,8 +9,38 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
+#include "corda/pipeline/motion_input.hpp"
 
 namespace corda::pipeline {
+namespace {
+
+/// More segments would be shorter than a pixel.
+constexpr double kMaxPoints = 400.0;
+
+/// A point closer to the end, in frame intervals, gives its segment no direction.
+constexpr double kTooClose = 1e-6;
+
+/// A progress callback that this thread is running for a motion. Callbacks nest if one draws another film.
+class Callback {
+  public:
+    explicit Callback(const SharedMotion* motion) : motion_(motion), outer_(std::exchange(innermost, this)) {}
+    Callback(const Callback&) = delete;
+    Callback& operator=(const Callback&) = delete;
+    ~Callback() { innermost = outer_; }
+
+    [[nodiscard]] static bool is_running_for(const SharedMotion* motion) {
+        const Callback* callback = innermost;
+        while (callback != nullptr && callback->motion_ != motion) callback = callback->outer_;
+        return callback != nullptr;
+    }
+
+  private:
+    inline static thread_local const Callback* innermost = nullptr;
+    const SharedMotion* motion_;
+    const Callback* outer_;
+};
+
+}  // namespace
 
 Motion::Motion(const System& system, const WorldDef& world, std::vector<MethodDef> methods, Timeline timeline,
                std::size_t budget_bytes, const OnProgress& on_progress, std::optional<Quantity> quantity,
@@ -52,7 +83,7 @@ Status Motion::advance_to(double time_s, bool is_new, const OnProgress& on_progr
         return is_new ? recording_.advance(*run_, timeline_, now_s, goes_on)
                       : run_->advance_to(time_s, goes_on);
     } catch (...) {
-        run_.reset();  // it must not be used further; the next that is asked for starts anew
+        run_.reset();  // it cannot be used any more; the next call starts again
         throw;
     }
 }
@@ -121,6 +152,55 @@ void Motion::fail_diverged(double time_s) const {
                 fmt::format("the simulation diverged before t = {:.6g} s (last good state at {:.6g} s); less "
                             "speed or force may help{}",
                             time_s, last_s, has_step ? ", or a smaller solver.step" : ""));
+}
+
+SharedMotion::SharedMotion(const Scene& scene) : system(system_of(scene)), named(named_methods(scene)) {}
+
+std::unique_lock<std::mutex> SharedMotion::lock() {
+    if (Callback::is_running_for(this)) {
+        throw Error(ExitCode::kUsage,
+                    "on_progress used the film whose progress it reports; draw and read the film after the "
+                    "call that reports progress, or make another Film");
+    }
+    return std::unique_lock(mutex_);
+}
+
+OnProgress SharedMotion::guarded(const OnProgress& on_progress) const {
+    if (!on_progress) return {};
+    return [this, &on_progress](std::int64_t done, std::int64_t total) {
+        const Callback callback(this);
+        return on_progress(done, total);
+    };
+}
+
+TrailRecorder::TrailRecorder(std::vector<std::size_t> particles, double trail_s, FrameRate fps)
+    : particles_(std::move(particles)),
+      trail_s_(trail_s),
+      fps_(fps),
+      stride_(std::max<std::int64_t>(1, std::llround(std::ceil(trail_s / fps.interval_s() / kMaxPoints)))),
+      trails_(particles_.size()) {}
+
+void TrailRecorder::read(Motion& motion, double end_s, const OnProgress& on_progress) {
+    if (particles_.empty()) return;
+    for (; time_s(points_) <= end_s; ++points_) {
+        const State& state = motion.at(time_s(points_), on_progress);
+        for (const std::size_t i : particles_) at_m_.push_back({state.x_m[i], state.y_m[i]});
+    }
+}
+
+const std::vector<view::Trail>& TrailRecorder::to(const State& state) {
+    std::size_t first = points_;
+    while (first > 0 && time_s(first - 1) >= state.time_s - kTooClose * fps_.interval_s()) --first;
+    const std::size_t end = first;
+    while (first > 0 && state.time_s - time_s(first - 1) < trail_s_) --first;
+    for (std::size_t p = 0; p < particles_.size(); ++p) {
+        view::Trail& trail = trails_[p];
+        trail.clear();
+        for (std::size_t k = first; k < end; ++k)
+            trail.push_back({state.time_s - time_s(k), at_m_[k * particles_.size() + p]});
+        trail.push_back({0.0, {state.x_m[particles_[p]], state.y_m[particles_[p]]}});
+    }
+    return trails_;
 }
 
 }  // namespace corda::pipeline

@@ -24,11 +24,11 @@
 #include "corda/media/encode/probe.hpp"
 #include "corda/media/read/video_comment.hpp"
 #include "corda/media/verify/verify.hpp"
-#include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/film_renderer.hpp"
+#include "corda/pipeline/motion_input.hpp"
+#include "corda/pipeline/plan_text.hpp"
 #include "corda/pipeline/provenance.hpp"
-#include "corda/pipeline/validate.hpp"
 #include "corda/scene/write_scene.hpp"
 #include "corda/view/colors.hpp"
 
@@ -59,7 +59,7 @@ void check_part(const std::string& path, const std::map<std::string, std::string
         throw Error(
             ExitCode::kUsage,
             fmt::format("'{}' {}, so --resume cannot continue it; {}, render to another name, or start "
-                        "anew (--force without --resume)",
+                        "again (--force without --resume)",
                         part, problem, other));
     };
     media::check_part_in_child(part, false, on_progress);
@@ -72,7 +72,7 @@ void check_part(const std::string& path, const std::map<std::string, std::string
         fail("holds no whole chunk of this render", "move it away");
     }
     const std::map<std::string, std::string> its = media::told_origin(*comment.text);
-    if (its.empty()) fail("does not tell what it was rendered from");
+    if (its.empty()) fail("does not record what it was rendered from");
     if (const auto changes = differences(origin, its); !changes.empty())
         fail("is of another render: " + differences_text(changes));
 }

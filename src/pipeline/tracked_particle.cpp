@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "corda/pipeline/describe.hpp"
+#include "corda/pipeline/plan_text.hpp"
 #include "corda/view/scene_view.hpp"
 
 namespace corda::pipeline {
@@ -19,7 +19,7 @@ std::vector<std::size_t> particles_of(const System& system, const Body& body, bo
     return particles;
 }
 
-/// Of those that are equally near, rounding apart, the first.
+/// The first one of those that are closest to the mean, up to rounding.
 std::size_t most_central(const System& system, const std::vector<std::size_t>& particles) {
     constexpr double kSame = 1e-9;
     Vec2 mean_m;
@@ -48,14 +48,14 @@ std::vector<TrackedParticle> tracked_particles(const System& system) {
         const auto end = std::find_if(ends.begin(), ends.end(), [&](std::size_t i) {
             return i >= body.first_particle && i < body.first_particle + body.particle_count;
         });
-        TrackedParticle& followed = all.emplace_back();
-        followed.body = b;
-        followed.is_free_end = end != ends.end();
-        followed.particle = followed.is_free_end ? *end
-                            : body.is_net        ? most_central(system, free)
-                                                 : free[free.size() / 2];
+        TrackedParticle& tracked = all.emplace_back();
+        tracked.body = b;
+        tracked.is_free_end = end != ends.end();
+        tracked.particle = tracked.is_free_end ? *end
+                           : body.is_net       ? most_central(system, free)
+                                               : free[free.size() / 2];
         const std::vector<std::size_t> pins = particles_of(system, body, true);
-        if (pins.size() == 1) followed.pin = pins.front();
+        if (pins.size() == 1) tracked.pin = pins.front();
     }
     return all;
 }
@@ -66,25 +66,25 @@ std::size_t moving_count(const System& system) {
                       [&](const Body& body) { return !particles_of(system, body, false).empty(); }));
 }
 
-std::string describe(const System& system, const TrackedParticle& followed) {
-    const std::string name = body_name(system, followed.body);
-    const std::size_t number = followed.particle - system.bodies[followed.body].first_particle;
-    return followed.is_free_end
+std::string particle_text(const System& system, const TrackedParticle& particle) {
+    const std::string name = body_name(system, particle.body);
+    const std::size_t number = particle.particle - system.bodies[particle.body].first_particle;
+    return particle.is_free_end
                ? fmt::format("the free end of {} (particle {})", name, number)
                : fmt::format("particle {} of {} (the {} of its free ones)", number, name,
-                             system.bodies[followed.body].is_net ? "most central" : "middle one");
+                             system.bodies[particle.body].is_net ? "most central" : "middle one");
 }
 
-std::string describe(const System& system, const std::vector<TrackedParticle>& followed) {
+std::string particles_text(const System& system, const std::vector<TrackedParticle>& particles) {
     std::vector<std::size_t> ends;
     std::vector<std::size_t> numbers;
     std::string others;
-    for (const TrackedParticle& one : followed) {
+    for (const TrackedParticle& one : particles) {
         if (one.is_free_end) {
             ends.push_back(one.body);
             numbers.push_back(one.particle - system.bodies[one.body].first_particle);
         } else {
-            others += (others.empty() ? "" : " and ") + describe(system, one);
+            others += (others.empty() ? "" : " and ") + particle_text(system, one);
         }
     }
     if (ends.empty()) return others;
@@ -95,7 +95,7 @@ std::string describe(const System& system, const std::vector<TrackedParticle>& f
     } else {
         const bool are_same =
             std::count(numbers.begin(), numbers.end(), numbers.front()) == std::ssize(numbers);
-        text = fmt::format("the free ends of {} ({})", corda::describe(system, ends),
+        text = fmt::format("the free ends of {} ({})", bodies_text(system, ends),
                            are_same ? fmt::format("particle {} of each", numbers.front())
                                     : fmt::format("particles {}", fmt::join(numbers, ", ")));
     }

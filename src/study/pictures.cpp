@@ -12,8 +12,8 @@
 #include "corda/core/clock.hpp"
 #include "corda/core/temporary_folder.hpp"
 #include "corda/media/chunks/video_writer.hpp"
-#include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film_renderer.hpp"
+#include "corda/pipeline/plan_text.hpp"
 #include "corda/study/problems.hpp"
 #include "corda/study/step.hpp"
 #include "corda/study/truth.hpp"
@@ -156,7 +156,7 @@ void add_solver(const SolverSetting& setting, Pictures& pictures) {
             static_cast<void>(film.state(film.frame_count() - 1));
             time_film(film, scene.video, now_s() - start_s, pictures.folder.file("trial.mp4"), time);
             if (repeat > 0) continue;
-            if (words.empty()) words = describe(film.system(), film.plan());
+            if (words.empty()) words = plan_text(film.system(), film.plan());
             error = error_px(pictures, film, setting.reach);
         }
     } catch (const Error& failure) {

@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
                          "pinned = [0]\n",
                          method_of("rattle")),
                "simulate SCENE",
-               "bend what is in line a little, leave out bars that others imply, or use method relaxation",
+               "bend collinear bars a little, leave out bars that others imply, or use method relaxation",
                {{{"[1, 0]", "[1, -0.01]"}}, {{", [0, 2]", ""}}, {{"rattle", "relaxation"}}}},
         Remedy{
             "ring_and_string",

@@ -213,7 +213,7 @@ TEST_F(Resume, RefusesAPartThatIsDamagedInItsFirstChunk) {
     const auto refused = run_corda(render("a.mp4", again));
     EXPECT_EQ(refused.exit_code, 2);
     EXPECT_THAT(refused.err, HasSubstr("is damaged in its first chunk"));
-    EXPECT_THAT(refused.err, HasSubstr("start anew (--force without --resume)"));
+    EXPECT_THAT(refused.err, HasSubstr("start again (--force without --resume)"));
     EXPECT_TRUE(read_file(file("a.mp4.part")) == part);
 }
 

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/live_plot_data.hpp"
+#include "corda/pipeline/plan_text.hpp"
 #include "corda/sim/recording.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/camera.hpp"

@@ -50,8 +50,7 @@ TEST(Chapters, HaveUnitsAndTheCurvesOfTheMotion) {
 
 TEST(Chapters, UseXAndVxWhereAnAngleSaysNothing) {
     // A double pendulum whose end passes near its pin.
-    ReadScene scene(
-        "[world]\nduration = 0.1\n[[rope]]\npoints = [[0.0, 0.0], [1.0, 0.0], [0.05, 0.0]]\n");
+    ReadScene scene("[world]\nduration = 0.1\n[[rope]]\npoints = [[0.0, 0.0], [1.0, 0.0], [0.05, 0.0]]\n");
     const report::Plot phase = phase_chapter(scene.film, scene.reading).plots.at(0);
     EXPECT_EQ(phase.x_title, "x (mm)");
     EXPECT_EQ(phase.y_title, "vx (mm/s)");

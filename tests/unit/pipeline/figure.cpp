@@ -43,14 +43,14 @@ ExitCode code_of(Film& film, const FigureDef& def) {
     return test::code_of([&] { static_cast<void>(draw_figure(film, def)); });
 }
 
-TEST(Strobe, OfOneTimeIsTheStill) {
+TEST(Strobe, OfOneTimeEqualsTheStill) {
     for (const char* const style : {"", "[style]\ntrail_s = 0.4\n"}) {
         Film film(scene_of(style));
         EXPECT_TRUE(equal_images(draw_figure(film, {.times_s = {0.5}}), film.still(0.5))) << style;
     }
 }
 
-TEST(Strobe, ShowsTheLastPoseInFullAndTheOthersFainter) {
+TEST(Strobe, ShowsEarlierPosesFainter) {
     Film film(scene_of("[style]\nbackground = \"#000000\"\nsupports = false\npalette = [\"#ffffff\"]\n"));
     const Image strobe = draw_figure(film, {.times_s = {0.0, 0.3, 0.6}});
     const Image first = film.still(0.0);
@@ -82,7 +82,7 @@ TEST(Strobe, EqualsTheReferenceByteForByte) {
     }
 }
 
-TEST(Strobe, OfTenThousandPosesIsDrawn) {
+TEST(Strobe, CanHaveTenThousandPoses) {
     Film film(scene_of());
     FigureDef def;
     for (int k = 0; k < 10'000; ++k) def.times_s.push_back(film.time_s(k % 30));
@@ -90,7 +90,7 @@ TEST(Strobe, OfTenThousandPosesIsDrawn) {
     EXPECT_EQ(draw_figure(film, def).width(), 160);
 }
 
-TEST(Strobe, OfTooManyLinesIsRefused) {
+TEST(Strobe, RefusesTooManyLines) {
     Scene scene = parse_scene(
         "schema = 1\n[[net]]\ngrid = { columns = 120, rows = 100, spacing = 0.1 }\n[world]\nduration = 0.1\n"
         "[solver]\nmethod = \"relaxation\"\n[video]\nsize = [64, 64]\nfps = 30\n",
@@ -102,7 +102,7 @@ TEST(Strobe, OfTooManyLinesIsRefused) {
     EXPECT_NE(failure.message.find("ask for fewer times"), std::string::npos) << failure.message;
 }
 
-TEST(Strobe, RefusesTimesThatCannotBe) {
+TEST(Strobe, RefusesInvalidTimes) {
     for (const char* const style : {"", "[style]\ntrail_s = 0.4\n"}) {
         Film film(scene_of(style));
         for (const std::vector<double>& times_s :
@@ -111,7 +111,7 @@ TEST(Strobe, RefusesTimesThatCannotBe) {
     }
 }
 
-TEST(ContactSheet, HasTheStillsInItsCells) {
+TEST(ContactSheet, ContainsTheStills) {
     Scene scene = scene_of();
     scene.video.width_px = 500;
     scene.video.height_px = 301;
@@ -148,7 +148,7 @@ TEST(ContactSheet, ChoosesColumns) {
     EXPECT_EQ(columns(1080, 1920, 6), 2);
 }
 
-TEST(ContactSheet, RefusesWhatHasNoRoom) {
+TEST(ContactSheet, RefusesCellsThatDoNotFit) {
     Scene scene = scene_of();
     EXPECT_EQ(
         failure_of([&] { static_cast<void>(contact_sheet(scene, std::vector<double>(500, 0.0))); }).code,
@@ -160,7 +160,7 @@ TEST(ContactSheet, RefusesWhatHasNoRoom) {
         EXPECT_EQ(code_of(film, def), ExitCode::kUsage);
 }
 
-TEST(FigureFiles, AreNotWrittenIfAskedToStop) {
+TEST(FigureFiles, AreNotWrittenIfInterrupted) {
     const test::ScratchFolder folder;
     Film film(scene_of());
     for (const char* const name : {"a.png", "a.svg", "a.pdf"}) {
@@ -182,7 +182,7 @@ TEST(FigureFiles, RefuseOtherEndings) {
     EXPECT_EQ(failure_of([&] { write_figure("x.gif", film, {.times_s = {0.0}}); }).code, ExitCode::kUsage);
 }
 
-TEST(ContactSheet, OfTooManyColumnsIsRefused) {
+TEST(ContactSheet, RefusesTooManyColumns) {
     for (const int columns : {std::numeric_limits<int>::max(), 100'000}) {
         Scene scene = scene_of();
         EXPECT_EQ(test::code_of([&] {

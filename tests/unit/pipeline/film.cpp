@@ -43,7 +43,7 @@ void expect_same_bits(const State& a, const State& b) {
     EXPECT_EQ(a.y_m, b.y_m);
 }
 
-TEST(FilmPasses, AreTwoForAutoWhoseFirstTrialHoldsWhateverIsReadAfterwards) {
+TEST(FilmPasses, AreTwoIfTheFirstTrialOfAutoHolds) {
     Film film = film_of(kRope);
     ASSERT_EQ(film.plan().bodies.front().trials.size(), 1U);
     EXPECT_EQ(film.simulation_passes(), 2);
@@ -63,7 +63,7 @@ TEST(FilmPasses, AreOneForANamedMethod) {
     }
 }
 
-TEST(FilmPasses, CountTheTrialsThatFailed) {
+TEST(FilmPasses, IncludeFailedTrials) {
     // A motion that outgrows the first tolerance: a chain that magnifies every error.
     Film film = film_of(
         "schema = 1\n[[rope]]\nhang = { links = 3, length = 1.0, angle_deg = 170.0 }\n"
@@ -73,7 +73,7 @@ TEST(FilmPasses, CountTheTrialsThatFailed) {
     EXPECT_EQ(film.simulation_passes(), 2 * static_cast<int>(film.plan().bodies.front().trials.size()) + 2);
 }
 
-TEST(FilmMotion, IsTheRunThatWasProved) {
+TEST(FilmMotion, IsTheVerifiedRun) {
     Film film = film_of(kRope);
     Simulation again(film.system(), film.scene().world, film.plan().bodies.front().method);
     for (const std::int64_t k : {0, 11, 30}) {
@@ -82,7 +82,7 @@ TEST(FilmMotion, IsTheRunThatWasProved) {
     }
 }
 
-TEST(FilmMotion, BeyondItsBudgetIsSimulatedAgainWithTheSameBits) {
+TEST(FilmMotion, HasTheSameBitsBeyondItsBudget) {
     Film whole = film_of(kRope);
     for (const std::size_t budget : {std::size_t{0}, std::size_t{2000}}) {
         FilmDef def;
@@ -94,7 +94,7 @@ TEST(FilmMotion, BeyondItsBudgetIsSimulatedAgainWithTheSameBits) {
     }
 }
 
-TEST(FilmMotion, HasTheSameBitsAtTimesThatWereAnnouncedAndThatWereNot) {
+TEST(FilmMotion, HasTheSameBitsAtUnannouncedTimes) {
     FilmDef def;
     def.stills_s = {0.123, 0.777, 0.5};
     Film announced = film_of(kRope, def);
@@ -116,7 +116,7 @@ TEST(FilmMotion, RefusesTimesAndFramesOutsideOfTheScene) {
         EXPECT_EQ(code_of([&] { static_cast<void>(film.frame(k)); }), ExitCode::kUsage) << k;
 }
 
-TEST(FilmMotion, ThatDivergesIsShownAsFarAsItGoes) {
+TEST(FilmMotion, IsShownUpToItsDivergence) {
     Film film = film_by("method = \"relaxation\"\nforce = [1e300, 0.0]");
     static_cast<void>(film.camera());  // fits what there is
     static_cast<void>(film.frame(1));
@@ -124,7 +124,7 @@ TEST(FilmMotion, ThatDivergesIsShownAsFarAsItGoes) {
     static_cast<void>(film.frame(0));
 }
 
-TEST(FilmFrames, AreTheSameInAnyOrderAndByThePainter) {
+TEST(FilmFrames, AreTheSameInAnyOrderAndByARenderer) {
     Film film = film_by("method = \"exact\"");
     std::vector<Image> backwards(30);
     for (std::int64_t k = 29; k >= 0; --k) backwards[static_cast<std::size_t>(k)] = film.frame(k);
@@ -135,7 +135,7 @@ TEST(FilmFrames, AreTheSameInAnyOrderAndByThePainter) {
     }
 }
 
-TEST(FilmFrames, WithTrailsAreTheSameInAnyOrderAndWithoutTheMotion) {
+TEST(FilmFrames, WithTrailsAreTheSameInAnyOrderBeyondTheBudget) {
     const auto film = [](std::size_t budget_bytes) {
         Scene scene = parse_scene(kRope, "film.toml");
         scene.style.trail_s = 0.4;
@@ -156,7 +156,7 @@ TEST(FilmFrames, WithTrailsAreTheSameInAnyOrderAndWithoutTheMotion) {
     EXPECT_TRUE(equal_images(whole.still(0.0), Film(bare).still(0.0)));
 }
 
-TEST(FilmFrames, OfFilmsOfDifferentSizeSideBySideInOneThreadAndInTwo) {
+TEST(FilmFrames, AreTheSameNextToAnotherFilmInOneThreadAndInTwo) {
     const auto sized = [](int width_px, int height_px) {
         Scene scene = parse_scene(kRope, "film.toml");
         scene.video.width_px = width_px;
@@ -181,7 +181,7 @@ TEST(FilmFrames, OfFilmsOfDifferentSizeSideBySideInOneThreadAndInTwo) {
     EXPECT_TRUE(equal_images(large_in_thread, large_alone));
 }
 
-TEST(FilmPlan, OfRopesThatDifferInReachCannotBeFrozen) {
+TEST(FilmPlan, CannotBeFrozenIfRopesDifferInReach) {
     Scene scene = parse_scene(
         kRope +
             "[[rope]]\nhang = { links = 3, length = 1.0 }\n[solver]\nmethod = \"relaxation\"\nreach = 2\n",
@@ -193,7 +193,7 @@ TEST(FilmPlan, OfRopesThatDifferInReachCannotBeFrozen) {
     EXPECT_EQ(code_of([&] { static_cast<void>(frozen_toml(mixed)); }), ExitCode::kUsage);
 }
 
-TEST(FilmPlan, FrozenInTheSceneGivesTheSameBytes) {
+TEST(FilmPlan, GivesTheSameBytesWhenFrozen) {
     for (const char* solver : {"method = \"auto\"", "method = \"rattle\"\norder = 6",
                                "method = \"relaxation\"\nreach = 3\nsweeps = 2\ndelta = 0.01"}) {
         Film chosen = film_by(solver);
@@ -207,7 +207,7 @@ TEST(FilmPlan, FrozenInTheSceneGivesTheSameBytes) {
     }
 }
 
-TEST(FilmPlan, OfSeveralMethodsFrozenInTheSceneGivesTheSameBytes) {
+TEST(FilmPlan, OfSeveralMethodsGivesTheSameBytesWhenFrozen) {
     const std::string bodies = kRope +
                                "[[rope]]\npoints = [[0.5, 0], [0.25, 0.45], [-0.25, 0.45], [-0.5, 0]]\n"
                                "closed = true\n[[rope]]\nhang = { links = 4, length = 1.0 }\n"
@@ -291,7 +291,7 @@ TEST(FilmProgress, CannotUseTheFilmFromTheCallbackOfAnotherOneThatItDraws) {
     EXPECT_TRUE(equal_images(film.frame(3), alone));
 }
 
-TEST(FilmRefusal, NamesTheFileTheProblemAndWhatToChange) {
+TEST(FilmRefusal, NamesFileProblemAndRemedy) {
     try {
         static_cast<void>(
             film_of("schema = 1\n[[rope]]\npoints = [[0, 0], [1, 0], [2, 0]]\npinned = [0, 2]\n"));
@@ -304,7 +304,7 @@ TEST(FilmRefusal, NamesTheFileTheProblemAndWhatToChange) {
     }
 }
 
-TEST(FilmRefusal, NamesTheFileWhateverIsWrong) {
+TEST(FilmRefusal, AlwaysNamesTheFile) {
     const Scene sound = parse_scene("schema = 1\n[[rope]]\npoints = [[0, 0], [1, 0], [2, 0]]\n", "film.toml");
     Scene coinciding = sound;
     coinciding.ropes[0].points_m[1] = coinciding.ropes[0].points_m[0];
@@ -330,7 +330,7 @@ TEST(FilmRefusal, NamesTheFileWhateverIsWrong) {
     }
 }
 
-TEST(FilmOfABuiltScene, NeedsPointsAlone) {
+TEST(FilmOfABuiltScene, NeedsOnlyPoints) {
     Scene scene;
     scene.ropes.resize(1);
     scene.ropes[0].points_m = {{0.0, 0.0}, {0.5, -0.5}, {1.0, -1.0}};
@@ -342,7 +342,7 @@ TEST(FilmOfABuiltScene, NeedsPointsAlone) {
     EXPECT_TRUE(film.error_bound_px().has_value());
 }
 
-TEST(FilmOfABuiltScene, RefusesFieldsThatAreNotWhatTheyAreDeclared) {
+TEST(FilmOfABuiltScene, RefusesFieldsOutsideOfTheirDeclaredRange) {
     Scene sound;
     sound.ropes.resize(1);
     sound.ropes[0].points_m = {{0.0, 0.0}, {0.5, -0.5}, {1.0, -1.0}};
@@ -420,7 +420,7 @@ TEST(FilmOfABuiltScene, RefusesFieldsThatAreNotWhatTheyAreDeclared) {
     }
 }
 
-TEST(FilmOfABuiltScene, RefusesStillsOutsideOfItsTime) {
+TEST(FilmOfABuiltScene, RefusesStillsOutsideOfItsMotion) {
     Scene scene;
     scene.ropes.resize(1);
     scene.ropes[0].points_m = {{0.0, 0.0}, {0.5, -0.5}};
@@ -432,7 +432,7 @@ TEST(FilmOfABuiltScene, RefusesStillsOutsideOfItsTime) {
     }
 }
 
-TEST(FilmOfABuiltScene, TakesTheLargestAndSmallestFieldsThatAreDeclared) {
+TEST(FilmOfABuiltScene, AcceptsTheExtremesOfDeclaredRanges) {
     Scene scene;
     scene.ropes.resize(1);
     scene.ropes[0].points_m = {{0.0, 0.0}, {0.5, -0.5}, {1.0, -1.0}};
@@ -449,7 +449,7 @@ TEST(FilmOfABuiltScene, TakesTheLargestAndSmallestFieldsThatAreDeclared) {
     }
 }
 
-TEST(Renderer, TakesAnyFinitePosition) {
+TEST(Renderer, AcceptsAnyFinitePosition) {
     Film film = film_of(kRope);
     Renderer renderer(film.scene());
     std::vector<Vec2> positions_m(film.system().particle_count());
@@ -470,7 +470,7 @@ TEST(Renderer, TakesAnyFinitePosition) {
     EXPECT_EQ(code_of([&] { static_cast<void>(renderer.draw(positions_m)); }), ExitCode::kUsage);
 }
 
-TEST(Renderer, DrawsAFilmsPositionsAsTheFilmDoes) {
+TEST(Renderer, DrawsPositionsLikeAFilm) {
     Film film = film_of(kRope);
     Scene scene = film.scene();
     scene.camera = film.camera();

@@ -40,7 +40,7 @@ shutter = 0.75
 subframes = 6
 )";
 
-TEST(FilmBlur, LeavesPlansStatesAndStillsAlone) {
+TEST(FilmBlur, DoesNotChangePlansStatesAndStills) {
     Film sharp(parse_scene(kBlur, "a", {"video.shutter=0"}));
     Film film = blurred_film(kBlur);
     const Image blurred = film.frame(9);
@@ -55,7 +55,7 @@ TEST(FilmBlur, LeavesPlansStatesAndStillsAlone) {
     EXPECT_EQ(code_of([&] { static_cast<void>(film.still(0.1, {}, 1.1)); }), ExitCode::kUsage);
 }
 
-TEST(FilmBlur, KeepsNothingOfAnExposureThatWasBrokenOff) {
+TEST(FilmBlur, DiscardsAnInterruptedExposure) {
     int asked = 0;
     FilmDef def;
     def.motion_budget_bytes = 0;  // sub-frames are simulated, and ask
@@ -66,7 +66,7 @@ TEST(FilmBlur, KeepsNothingOfAnExposureThatWasBrokenOff) {
     EXPECT_TRUE(equal_images(film.frame(20), expected));
 }
 
-TEST(FilmBlur, GivesTheSameFramesInAnyOrderAndMemory) {
+TEST(FilmBlur, IsTheSameInAnyOrderWithAnyMemory) {
     Film film = blurred_film(kBlur);
     Film forgetful = blurred_film(kBlur, def_of(0));
     FilmRenderer renderer(film);
@@ -81,7 +81,7 @@ TEST(FilmBlur, GivesTheSameFramesInAnyOrderAndMemory) {
     EXPECT_TRUE(equal_images(other.frame(30), forgetful.frame(30)));  // half of it is after the end
 }
 
-TEST(FilmBlur, TakesOneMoreSimulationAtMostIfFramesAreDrawnInOrder) {
+TEST(FilmBlur, TakesAtMostOneMoreSimulationInOrder) {
     for (const std::size_t bytes : {std::size_t{0}, std::size_t{1} << 12, std::size_t{1} << 20}) {
         Film film = blurred_film(kBlur + "[solver]\nmethod = \"exact\"\n", def_of(bytes));
         static_cast<void>(film.camera());
@@ -98,7 +98,7 @@ double covered_share(double x_px, double way_px) {
     return std::max(0.0, until - from) / way_px;
 }
 
-TEST(FilmBlur, OfAConstantSpeedIsTheIntegral) {
+TEST(FilmBlur, IsTheIntegralAtConstantSpeed) {
     // 100 px/m; a white line that moves by 64 px per frame on black, and is in the middle in frame 1.
     Film film = blurred_film(R"(schema = 1
 [world]

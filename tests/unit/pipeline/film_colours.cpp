@@ -32,7 +32,7 @@ TEST(Colours, AreTheSameBeyondTheMemoryBudget) {
     }
 }
 
-TEST(Colours, AskForNoMoreThanTheyNeed) {
+TEST(Colours, RecordOnlyTheFieldsTheyNeed) {
     EXPECT_TRUE(Film(coloured(ColorBy::kBody)).state(3).vx_m_s.empty());
     EXPECT_TRUE(Film(coloured(ColorBy::kStrain)).state(3).tension_n.empty());
     Film film(coloured(ColorBy::kTension));
@@ -49,7 +49,7 @@ TEST(Colours, DoNotChangeTheMotion) {
     EXPECT_EQ(film.simulation_passes(), plain.simulation_passes());
 }
 
-TEST(Colours, OfTensionsThatNoMethodKnowsAreRefused) {
+TEST(Colours, OfUnknownTensionsAreRefused) {
     // Imaginary bars that share the load in any way.
     const Scene scene = parse_scene(
         "schema = 1\n[[net]]\ngrid = { columns = 4, rows = 3, spacing = 0.2 }\n[style]\ncolor_by = "
@@ -61,7 +61,7 @@ TEST(Colours, OfTensionsThatNoMethodKnowsAreRefused) {
     EXPECT_NE(failure.message.find("set style.color_by"), std::string::npos) << failure.message;
 }
 
-TEST(Colours, OfAQuantityAreNotForPositionsAlone) {
+TEST(Colours, OfAQuantityNeedAMotion) {
     EXPECT_EQ(test::code_of([] { Renderer{coloured(ColorBy::kSpeed)}; }), ExitCode::kInvalidScene);
 }
 

@@ -19,7 +19,7 @@ size = [192, 108]
 fps = 20
 )";
 
-TEST(FilmLook, IsThePictureOfASceneOfThatLookWithoutAnotherRun) {
+TEST(FilmLook, EqualsASceneOfThatLookWithoutAnotherRun) {
     Scene scene = parse_scene(std::string(kSceneOfLooks) + "[solver]\nmethod = \"exact\"\n", "a");
     Film film(scene);
     Scene look = scene;
@@ -44,7 +44,7 @@ TEST(FilmLook, HasThePlanOfItsFilm) {
     EXPECT_NEAR(*shown.error_bound_px(), 2.0 * *film.error_bound_px(), 0.1 * *film.error_bound_px());
 }
 
-TEST(FilmLook, CannotShowWhatTheMotionDoesNotHave) {
+TEST(FilmLook, RefusesQuantitiesThatTheMotionLacks) {
     Film film(parse_scene(kSceneOfLooks, "a"));
     Scene look = film.scene();
     look.style.color_by = ColorBy::kTension;

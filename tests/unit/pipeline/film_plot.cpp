@@ -35,7 +35,7 @@ view::PlotData plot_of(Film& film) {
     return test::plotted_of(film).value();
 }
 
-TEST(FilmPlot, TellsTheEnergyOfAPendulum) {
+TEST(FilmPlot, ShowsTheEnergyOfAPendulum) {
     Film film(plotted_scene("energy"));
     const view::PlotData data = plot_of(film);
     ASSERT_EQ(data.curves.size(), 3U);
@@ -54,12 +54,12 @@ TEST(FilmPlot, TellsTheEnergyOfAPendulum) {
     EXPECT_EQ(std::count_if(data.curves[1].points.begin(), data.curves[1].points.end(), is_zero), 1);
 }
 
-TEST(FilmPlot, TellsNoTotalWhereStretchedBarsHaveNoEnergy) {
+TEST(FilmPlot, HasNoTotalEnergyWithRelaxation) {
     Film film(plotted_scene("energy", {"solver.method=relaxation", "solver.step=0.01"}));
     EXPECT_EQ(plot_of(film).curves.size(), 2U);
 }
 
-TEST(FilmPlot, IsOfTheMotionAndNotOfItsFrames) {
+TEST(FilmPlot, DoesNotDependOnTheFrameRate) {
     Film often(plotted_scene("tip", {"video.fps=50"}));
     Film seldom(plotted_scene("tip", {"video.fps=2"}));
     // The times between frames are the same, and those of few frames are among those of many.
@@ -88,7 +88,7 @@ TEST(FilmPlot, IsSharpInABlurredFrame) {
     }
 }
 
-TEST(FilmPlot, TellsThePlaceOfTheTipInTheWorld) {
+TEST(FilmPlot, ShowsTheTipInWorldCoordinates) {
     Film film(plotted_scene("tip"));
     const view::PlotData data = plot_of(film);
     EXPECT_EQ(data.curves[0].points.front().y, 7.0);
@@ -100,7 +100,7 @@ TEST(FilmPlot, TellsThePlaceOfTheTipInTheWorld) {
     EXPECT_LT(portrait.curves[0].points.back().y, 0.0);
 }
 
-TEST(FilmPlot, LeavesTheMotionAloneAndSimulatesItOnce) {
+TEST(FilmPlot, DoesNotChangeTheMotionAndSimulatesItOnce) {
     Scene scene = plotted_scene("energy");
     Film film(scene);
     static_cast<void>(film.frame(3));
@@ -111,7 +111,7 @@ TEST(FilmPlot, LeavesTheMotionAloneAndSimulatesItOnce) {
     EXPECT_EQ(film.simulation_passes(), plain.simulation_passes());
 }
 
-TEST(FilmPlot, IsTheSameInAnyOrderAndMemory) {
+TEST(FilmPlot, IsTheSameInAnyOrderWithAnyMemory) {
     for (const char* const shutter : {"video.shutter=0", "video.shutter=0.5"}) {
         for (const char* const plot : {"energy", "tip", "phase"}) {
             const Scene scene = plotted_scene(plot, {shutter});
@@ -131,7 +131,7 @@ TEST(FilmPlot, IsTheSameInAnyOrderAndMemory) {
     }
 }
 
-TEST(FilmPlot, IsNothingOfTheSceneInView) {
+TEST(FilmPlot, DoesNotMakeAnEmptyFrameNonEmpty) {
     Film film(plotted_scene("tip", {"camera.center=[100,100]", "camera.height=1"}));
     static_cast<void>(film.still(0.5));
     EXPECT_TRUE(film.shows_nothing());
@@ -139,7 +139,7 @@ TEST(FilmPlot, IsNothingOfTheSceneInView) {
     EXPECT_TRUE(FilmRenderer::list_poses(film, {&time_s, 1}).shows_nothing());
 }
 
-TEST(FilmPlot, IsNotForPositionsAlone) {
+TEST(FilmPlot, NeedsAMotion) {
     EXPECT_EQ(test::code_of([] { const Renderer renderer(plotted_scene("tip")); }), ExitCode::kInvalidScene);
 }
 

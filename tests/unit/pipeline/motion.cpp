@@ -39,7 +39,7 @@ void expect_same(const State& a, const State& b) {
     EXPECT_EQ(a.y_m, b.y_m);
 }
 
-TEST(Motions, BeginWhenTheyAreRead) {
+TEST(Motions, StartWhenTheyAreRead) {
     Swing swing;
     EXPECT_EQ(swing.motion.passes(), 0);
     EXPECT_EQ(swing.motion.recording().size(), 0U);
@@ -49,7 +49,7 @@ TEST(Motions, BeginWhenTheyAreRead) {
     EXPECT_EQ(swing.motion.recording().size(), 12U);  // frames 0 .. 10 and the still
 }
 
-TEST(Motions, AreSimulatedOnceWhateverTheOrder) {
+TEST(Motions, AreSimulatedOnceForAnyOrder) {
     Swing swing;
     Simulation run(swing.system, WorldDef{}, RattleDef{}, kFps.interval_s());
     std::vector<State> states;
@@ -64,7 +64,7 @@ TEST(Motions, AreSimulatedOnceWhateverTheOrder) {
     EXPECT_EQ(swing.motion.passes(), 1);
 }
 
-TEST(Motions, HaveStatesBetweenTheirTimesAtTheCostOfARun) {
+TEST(Motions, HaveStatesBetweenTheirTimesByAnotherRun) {
     Swing swing;
     Simulation run(swing.system, WorldDef{}, RattleDef{}, kFps.interval_s());
     for (const double time_s : {0.123, 0.777}) {
@@ -97,7 +97,7 @@ TEST(Motions, ReportTheirProgressAndCanBeStopped) {
     };
     EXPECT_EQ(failure_of([&] { swing.motion.run_to_end(stop); }).code, ExitCode::kInterrupted);
     EXPECT_EQ(swing.motion.recording().size(), 5U);
-    swing.motion.run_to_end({});  // goes on
+    swing.motion.run_to_end({});  // continues
     EXPECT_EQ(swing.motion.recording().size(), 22U);
     EXPECT_EQ(swing.motion.passes(), 1);
     EXPECT_FALSE(swing.motion.diverges());
@@ -119,7 +119,7 @@ TEST(Motions, ThatDivergeEndEarly) {
     EXPECT_EQ(swing.motion.at(0.0).time_s, 0.0);
 }
 
-TEST(Motions, TakeTheRunThatAPlannerRecords) {
+TEST(Motions, ReuseTheRunThatAPlannerRecords) {
     const System system = system_of_a_rope();
     Motion motion(system, WorldDef{}, {}, Timeline(kFps, 20), kMuch);
     const Plan plan = motion.record([&](const Timeline& timeline, sim::Recording& recording) {
@@ -136,7 +136,7 @@ TEST(Motions, TakeTheRunThatAPlannerRecords) {
     EXPECT_FALSE(motion.diverges());
 }
 
-TEST(Motions, AskDuringLongStepsAndBeginAnewAfterAnInterruption) {
+TEST(Motions, ReportDuringLongStepsAndRestartAfterAnInterruption) {
     const System system = system_of_a_rope();
     const MethodDef method = RelaxationDef{1e-5, 8};
     Motion motion(system, WorldDef{}, {method}, Timeline(kFps, 3), kMuch);

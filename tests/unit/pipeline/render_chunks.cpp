@@ -59,7 +59,7 @@ class RenderChunks : public testing::Test {
     test::ScratchFolder folder_;
 };
 
-TEST_F(RenderChunks, HaveTheSameBytesHoweverManyAreMadeAtATime) {
+TEST_F(RenderChunks, HaveTheSameBytesForAnyNumberOfJobs) {
     const std::string expected = bytes_of(chunked_scene(1));
     for (const int jobs : {2, 3, 8, 0}) EXPECT_TRUE(bytes_of(chunked_scene(jobs)) == expected) << jobs;
     // A motion that is not recorded is drawn in order.
@@ -79,7 +79,7 @@ TEST_F(RenderChunks, HaveTheSameBytesIfTheyAreBlurred) {
     EXPECT_TRUE(bytes_of(chunked_scene(3, blur), {}, 0) == expected);
 }
 
-TEST_F(RenderChunks, BeginWhereTheFilmsDo) {
+TEST_F(RenderChunks, BeginAtMultiplesOfTheirLengthInTheFilm) {
     const FrameRate fps = chunked_scene(1).video.fps;
     EXPECT_EQ(media::frames_per_chunk(fps), 30);
     Film film(chunked_scene(2));
@@ -92,7 +92,7 @@ TEST_F(RenderChunks, BeginWhereTheFilmsDo) {
     EXPECT_EQ(report.frames, 80);
 }
 
-TEST_F(RenderChunks, TellProgressInOrderAndEmptyFrames) {
+TEST_F(RenderChunks, ReportProgressInOrderAndEmptyFrames) {
     const Scene scene = chunked_scene(3, {"camera.center=[100,100]", "camera.height=1"});
     Film film(scene);
     std::vector<std::int64_t> heard;
@@ -110,7 +110,7 @@ TEST_F(RenderChunks, TellProgressInOrderAndEmptyFrames) {
     EXPECT_EQ(heard.back(), 130);
 }
 
-TEST_F(RenderChunks, TellTheEmptyFramesOfAPartToo) {
+TEST_F(RenderChunks, CountEmptyFramesOfAResumedPart) {
     for (const char* const shutter : {"video.shutter=0", "video.shutter=0.5"}) {
         Scene scene = chunked_scene(2, {"camera.center=[100,100]", "camera.height=1", shutter});
         Film film(scene);
@@ -143,7 +143,7 @@ TEST_F(RenderChunks, KeepTheFramesBeforeAStop) {
     EXPECT_FALSE(kept.truncated);
 }
 
-TEST_F(RenderChunks, EndWithWhatTheHostThrows) {
+TEST_F(RenderChunks, PassOnExceptionsOfTheCallback) {
     Film film(chunked_scene(3));
     RenderDef def;
     int asked = 0;

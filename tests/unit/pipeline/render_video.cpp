@@ -90,7 +90,7 @@ TEST_F(RenderVideo, WritesEveryFrameOnce) {
     EXPECT_THAT(folder_.files(), ElementsAre("a.mp4"));
 }
 
-TEST_F(RenderVideo, CountsTheFramesOfAnAnimationTwiceAndCanBeStoppedWhereverItIs) {
+TEST_F(RenderVideo, CountsFramesOfAnimationsTwiceAndCanBeStoppedAnyTime) {
     for (const std::string name : {"a.gif", "a.apng", "a.webp"}) {
         Scene scene = parse_scene(kVideoRope, "rope.toml");
         scene.video.encoder.preset.clear();
@@ -129,7 +129,7 @@ TEST_F(RenderVideo, WritesARange) {
     EXPECT_EQ(render_video(film, file("c.mp4"), range(0, 2)).frames, 2);
 }
 
-TEST_F(RenderVideo, RefusesRangesThatCannotBe) {
+TEST_F(RenderVideo, RefusesInvalidRanges) {
     Film film = rope_film();
     using Range = std::pair<std::int64_t, std::optional<std::int64_t>>;
     for (const auto& [first, end] :
@@ -210,7 +210,7 @@ TEST_F(RenderVideo, KeepsThePartWhenItIsStopped) {
     EXPECT_THAT(folder_.files(), IsEmpty());
 }
 
-TEST_F(RenderVideo, KeepsAllFramesWhenItIsStoppedWhileTheVideoIsCopiedOrVerified) {
+TEST_F(RenderVideo, KeepsAllFramesIfStoppedWhileCopyingOrVerifying) {
     Film film = rope_film();
     // Measured: 21 calls for the frames, 20 while the part is read, 20 while it is copied, 20 while the copy
     // is verified.
@@ -230,7 +230,7 @@ TEST_F(RenderVideo, KeepsAllFramesWhenItIsStoppedWhileTheVideoIsCopiedOrVerified
     }
 }
 
-TEST_F(RenderVideo, NamesASceneThatIsNotUtf8) {
+TEST_F(RenderVideo, EscapesANameThatIsNotUtf8) {
     Film film(parse_scene(kVideoRope, "caf\xe9\x1b.toml"));
     render_video(film, file("a.mp4"));
     EXPECT_TRUE(media::verify(file("a.mp4")).ok());

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "corda/pipeline/describe.hpp"
 #include "corda/pipeline/film.hpp"
+#include "corda/pipeline/plan_text.hpp"
 #include "unit/scene/support.hpp"
 
 namespace corda::scene {
@@ -135,7 +135,7 @@ TEST(SceneNet, ComesAfterTheRopesWhereverItStands) {
     ASSERT_EQ(system.bodies.size(), 2U);
     EXPECT_FALSE(system.bodies[0].is_net);
     EXPECT_TRUE(system.bodies[1].is_net);
-    EXPECT_EQ(describe(system), "1 net: 7 particles, 8 bars (6 real)");
+    EXPECT_EQ(system_text(system), "1 net: 7 particles, 8 bars (6 real)");
 }
 
 TEST(SceneNet, AloneIsAScene) {

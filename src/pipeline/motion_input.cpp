@@ -1,13 +1,18 @@
-#include "corda/pipeline/notes.hpp"
+#include "corda/pipeline/motion_input.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <type_traits>
+#include <variant>
 
 #include <fmt/format.h>
 
+#include "corda/core/basics.hpp"
+#include "corda/core/timeline.hpp"
+#include "corda/scene/schema.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/solver.hpp"
 #include "corda/sim/system.hpp"
@@ -16,10 +21,28 @@
 namespace corda::pipeline {
 namespace {
 
-/// A smaller share of the kinetic energy, or of a velocity, is rounding of the digits of a scene.
+void validate_frame_rate(const Scene& scene) {
+    const Rational fps = scene.video.fps.rational();
+    if (fps.is_rate()) return;
+    throw Error(ExitCode::kInvalidScene,
+                fmt::format("video.fps: {}/{} is not a fraction of integers within 1 .. {}", fps.num, fps.den,
+                            Rational::kMaxPart));
+}
+
+void validate_frames(const Scene& scene) {
+    const Rational fps = scene.video.fps.rational();
+    const double frames = scene.world.duration_s * scene.video.fps.per_second();
+    constexpr auto kMost = static_cast<double>(scene::Limits::kFrames);
+    if (frames <= kMost && scene.video.fps.frame_count(scene.world.duration_s) >= 1) return;
+    throw Error(ExitCode::kInvalidScene,
+                fmt::format("world.duration: {:g} s at {} frames per second are {:g} frames; give 1 .. {}",
+                            scene.world.duration_s, fps.text(), frames, scene::Limits::kFrames));
+}
+
+/// Relative differences of kinetic energy or velocity below this one come from rounded numbers in the scene.
 constexpr double kRounding = 1e-9;
 
-/// Of the free particles, in J.
+/// Kinetic energy of the free particles in J.
 double kinetic_j(const System& system, std::span<const double> vx_m_s, std::span<const double> vy_m_s) {
     double sum_j = 0.0;
     for (std::size_t i = 0; i < system.particle_count(); ++i) {
@@ -29,7 +52,7 @@ double kinetic_j(const System& system, std::span<const double> vx_m_s, std::span
     return sum_j;
 }
 
-/// Whether the ends of a rigid bar approach each other or separate at the start. A string may do the first.
+/// True if the ends of a rigid bar separate at the start, or approach each other unless it is a string.
 bool has_velocity_along_bars(const System& body) {
     const MaterialDef& material = body.bodies.front().material;
     if (material.compliance_1_n > 0.0) return false;
@@ -43,11 +66,11 @@ bool has_velocity_along_bars(const System& body) {
     });
 }
 
-/// The kinetic energy in J with which a body of these bars starts; std::nullopt if its method cannot run it.
+/// The kinetic energy in J after projecting the velocities; std::nullopt if the method cannot run the body.
 std::optional<double> kinetic_after_j(const System& body, const WorldDef& world, const MethodDef& method,
                                       double frame_interval_s, const GoesOn& goes_on) {
-    // Relaxation takes the velocities as they are. Its first steps take them from a rope's links as `rattle`
-    // does, but let a net stretch.
+    // Relaxation uses the velocities unchanged. Its first steps remove those along a rope's links like
+    // `rattle`, but let a net stretch.
     const bool is_relaxed = std::holds_alternative<RelaxationDef>(method);
     if (is_relaxed && body.bars.size() != body.bodies.front().link_count) return std::nullopt;
     const MethodDef projecting = is_relaxed ? RattleDef{} : method;
@@ -84,7 +107,7 @@ void add_lost_velocity(const Scene& scene, const System& system, const Plan& pla
     });
 }
 
-/// Velocities in a list for each particle; a single one applies to the free particles.
+/// Notes a velocity of a pinned particle in a list per particle; a single velocity is for free particles.
 void add_pinned_velocity(const std::string& name, const std::vector<Vec2>& velocity_m_s,
                          const std::vector<std::uint32_t>& pinned, std::vector<std::string>& notes) {
     const auto is_same = [&](Vec2 v) {
@@ -102,7 +125,7 @@ void add_pinned_velocity(const std::string& name, const std::vector<Vec2>& veloc
     }
 }
 
-/// Links of a string that are too short for the points that it is given.
+/// Notes links of a string that are too short for its points.
 void add_pulled_in(const std::string& name, const RopeDef& rope, std::vector<std::string>& notes) {
     const std::optional<RopeDef> start = pulled_in(rope);
     if (!start) return;
@@ -125,7 +148,7 @@ void add_pulled_in(const std::string& name, const RopeDef& rope, std::vector<std
                     name, farthest, at.x, at.y, given.x, given.y));
 }
 
-void add_of_rope(const std::string& name, const RopeDef& rope, std::vector<std::string>& notes) {
+void add_rope_notes(const std::string& name, const RopeDef& rope, std::vector<std::string>& notes) {
     add_pulled_in(name, rope, notes);
     add_pinned_velocity(name, rope.velocity_m_s, rope.pinned, notes);
     const auto last = static_cast<std::uint32_t>(rope.points_m.size() - 1);
@@ -142,7 +165,7 @@ void add_of_rope(const std::string& name, const RopeDef& rope, std::vector<std::
     }
 }
 
-/// Colours of links beyond the last link.
+/// Notes colours of links beyond the last link.
 void add_spare_colors(const Scene& scene, const System& system, std::vector<std::string>& notes) {
     for (std::size_t i = 0; i < std::min(scene.body_styles.size(), system.bodies.size()); ++i) {
         const std::size_t colors = scene.body_styles[i].link_colors.size();
@@ -156,12 +179,57 @@ void add_spare_colors(const Scene& scene, const System& system, std::vector<std:
 
 }  // namespace
 
+sim::NamedMethods named_methods(const Scene& scene) {
+    sim::NamedMethods named;
+    for (const SolverDef& solver : solvers_of(scene)) {
+        named.push_back(std::visit(
+            [](const auto& def) -> std::optional<MethodDef> {
+                if constexpr (std::is_same_v<std::decay_t<decltype(def)>, AutoDef>)
+                    return std::nullopt;
+                else
+                    return def;
+            },
+            solver));
+    }
+    return named;
+}
+
+std::vector<MethodDef> if_all_named(const sim::NamedMethods& named) {
+    std::vector<MethodDef> methods;
+    for (const auto& method : named) {
+        if (!method) return {};
+        methods.push_back(*method);
+    }
+    return methods;
+}
+
+std::int64_t last_frame_of(const Scene& scene) {
+    return scene.video.fps.last_frame_within(scene.world.duration_s);
+}
+
+std::optional<double> motion_time_s(const Scene& scene, double time_s) {
+    const double last_s = scene.video.fps.time_s(last_frame_of(scene));
+    return time_within(time_s, std::max(scene.world.duration_s, last_s));
+}
+
+void validate(const Scene& scene, std::span<const double> stills_s) {
+    validate_frame_rate(scene);
+    check_definitions(scene);
+    validate_frames(scene);
+    static_cast<void>(solvers_of(scene));
+    for (const double time_s : stills_s) {
+        if (motion_time_s(scene, time_s)) continue;
+        throw Error(ExitCode::kUsage,
+                    fmt::format("stills_s: {} s is not within 0 .. {} s", time_s, scene.world.duration_s));
+    }
+}
+
 std::vector<std::string> input_notes(const Scene& scene, const System& system, const Plan& plan,
                                      const GoesOn& goes_on) {
     std::vector<std::string> notes;
     add_lost_velocity(scene, system, plan, goes_on, notes);
     for (std::size_t i = 0; i < scene.ropes.size(); ++i)
-        add_of_rope(body_name(system, i), scene.ropes[i], notes);
+        add_rope_notes(body_name(system, i), scene.ropes[i], notes);
     for (std::size_t i = 0; i < scene.nets.size(); ++i) {
         const NetDef& net = scene.nets[i];
         add_pinned_velocity(body_name(system, scene.ropes.size() + i), net.velocity_m_s, net.pinned, notes);

@@ -1,0 +1,311 @@
+#include "corda/pipeline/plan_text.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "corda/core/text.hpp"
+#include "corda/core/version.hpp"
+#include "corda/pipeline/provenance.hpp"
+#include "corda/scene/write_scene.hpp"
+#include "corda/sim/forces/forces.hpp"
+#include "corda/sim/solver.hpp"
+#include "corda/view/number_text.hpp"
+
+namespace corda {
+namespace {
+
+std::string_view remedy(Refusal::Reason reason) {
+    using Reason = Refusal::Reason;
+    switch (reason) {
+        case Reason::kDefinition:
+            return "see its declaration in corda/sim/defs.hpp";
+        case Reason::kBarWithoutLength:
+            return "move one, or use method relaxation";
+        case Reason::kImaginaryBars:
+            return "remove the imaginary bars (solver.reach, net.grid.diagonals) or use method relaxation";
+        case Reason::kRigidGraph:
+            return "use method auto, or let the bars stretch by a compliance";
+        case Reason::kRigidStringGraph:
+            return "open it, or let it stretch by a compliance";
+        case Reason::kRigidString:
+            return "use method auto, or let the string stretch by a compliance";
+        case Reason::kRigidBendingString:
+            return "remove bending, or let the string stretch by a compliance";
+        case Reason::kStretchedString:
+            return "give a larger link_length, or a compliance";
+        case Reason::kUndecidedString:
+            return "change its points or velocity a little";
+        case Reason::kTautBetweenPins:
+            return "let the rope sag between its pins (other points, or a string with a larger link_length), "
+                   "or pin the particles between them too";
+        case Reason::kDependentBars:
+            return "bend collinear bars a little, leave out bars that others imply, or use method "
+                   "relaxation";
+        case Reason::kMaterial:
+            return "remove compliance, string and bending, or use method auto";
+        case Reason::kUnknownTensions:
+            return "leave out --tension, set style.color_by = \"strain\" or \"speed\", or let the bars "
+                   "stretch by a compliance";
+    }
+    return "";
+}
+
+/// Range of the values above 0 of one quantity over all bodies.
+class Values {
+  public:
+    void include(double value) {
+        if (value == 0.0) return;
+        low_ = std::min(low_, value);
+        high_ = std::max(high_, value);
+    }
+    [[nodiscard]] bool empty() const { return high_ == 0.0; }
+    [[nodiscard]] std::string text() const {
+        return low_ == high_ ? fmt::format("{}", low_) : fmt::format("{} .. {}", low_, high_);
+    }
+
+  private:
+    double low_ = HUGE_VAL;
+    double high_ = 0.0;
+};
+
+/// Materials of all bodies.
+struct Materials {
+    Values compliance_1_n;
+    Values bending_n_m2;
+    bool rigid = false;
+    bool slack = false;    ///< there is a string
+    bool plastic = false;  ///< there is a rigid string, which loses energy when it comes taut
+};
+
+Materials list_materials(const Scene& scene) {
+    Materials result;
+    const auto include = [&result](const MaterialDef& material) {
+        const bool rigid = material.compliance_1_n == 0.0;
+        result.compliance_1_n.include(material.compliance_1_n);
+        result.rigid = result.rigid || rigid;
+        result.slack = result.slack || material.is_string;
+        result.plastic = result.plastic || (material.is_string && rigid);
+    };
+    for (const RopeDef& rope : scene.ropes) {
+        include(rope.material);
+        result.bending_n_m2.include(rope.bending_n_m2);
+    }
+    for (const NetDef& net : scene.nets) include(net.material);
+    return result;
+}
+
+/// The forces, and the loss of energy other than by drag.
+std::vector<std::string> force_terms(const Scene& scene, const Materials& materials,
+                                     const RelaxationDef* relaxation) {
+    std::vector<std::string> terms;
+    const bool is_replaced = relaxation != nullptr && relaxation->force_n;
+    if (is_replaced) {
+        terms.push_back(fmt::format("a force of ({}, {}) N per particle, in place of gravity",
+                                    relaxation->force_n->x, relaxation->force_n->y));
+    }
+    for (const sim::ForceKind& kind : sim::force_kinds()) {
+        const bool has_drag = kind.term(scene.world).drag_1_s != 0.0;
+        const std::string text = is_replaced && !has_drag ? "" : kind.text(scene.world);
+        if (!text.empty()) terms.push_back(text);
+    }
+    if (sim::Forces(scene.world).drag_1_s() != 0.0) return terms;
+    if (relaxation != nullptr && relaxation->delta > 0.0)
+        terms.push_back(
+            fmt::format("damping: a share of {} of the velocity is lost per step", relaxation->delta));
+    else if (relaxation != nullptr)
+        terms.emplace_back("no drag; the passes lose energy, and print how much");
+    else if (materials.plastic)
+        terms.emplace_back("no drag: energy is lost only when a string comes taut");
+    else
+        terms.emplace_back("no drag: energy is kept");
+    return terms;
+}
+
+std::string nets_term(const Scene& scene) {
+    std::size_t real = 0;
+    std::size_t all = 0;
+    for (const NetDef& net : scene.nets) {
+        all += net.bars.size();
+        real += static_cast<std::size_t>(
+            std::count_if(net.bars.begin(), net.bars.end(), [](const NetBar& bar) { return bar.is_real; }));
+    }
+    return fmt::format("nets: {}, of {} bars and {} imaginary ones", scene.nets.size(), real, all - real);
+}
+
+}  // namespace
+
+std::string system_text(const System& system) {
+    const std::int64_t nets = std::ssize(system.bodies) - static_cast<std::int64_t>(rope_count(system));
+    const std::string what = nets == 0 ? "" : counted(nets, "net") + ": ";
+    return what + fmt::format("{}, {} ({} real)",
+                              counted(static_cast<std::int64_t>(system.particle_count()), "particle"),
+                              counted(std::ssize(system.bars), "bar"), system.link_count());
+}
+
+std::string reason_text(const BodyPlan& plan) {
+    switch (plan.reason) {
+        case PlanReason::kNamed:
+            return fmt::format("the scene asks for {}", method_name(plan.method));
+        case PlanReason::kExact:
+            return "it moves chains, and bodies that stretch, with the least error";
+        case PlanReason::kGraph:
+            return "it keeps the bars of closed ropes and nets at their lengths";
+        case PlanReason::kDependent:
+            return "bars depend on each other at the start in such a way that no method can tell the true "
+                   "motion; there is no bound of the error";
+    }
+    return "";
+}
+
+std::vector<MethodGroup> groups_of(const Plan& plan) {
+    std::vector<MethodGroup> groups;
+    std::map<std::pair<std::string, PlanReason>, std::size_t> group_of;
+    for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
+        const BodyPlan& body = plan.bodies[i];
+        const auto [entry, is_new] =
+            group_of.try_emplace({method_toml(body.method), body.reason}, groups.size());
+        if (is_new) groups.push_back({body.method, {}});
+        groups[entry->second].bodies.push_back(i);
+    }
+    return groups;
+}
+
+std::string bodies_text(const System& system, const std::vector<std::size_t>& bodies) {
+    std::string text;
+    for (std::size_t i = 0; i < bodies.size();) {
+        std::size_t last = i;
+        while (last + 1 < bodies.size() && bodies[last + 1] == bodies[last] + 1 &&
+               system.bodies[bodies[last + 1]].is_net == system.bodies[bodies[i]].is_net)
+            ++last;
+        if (i > 0) text += ", ";
+        text += body_name(system, bodies[i]);
+        if (last > i) text += " to " + body_name(system, bodies[last]);
+        i = last + 1;
+    }
+    return text;
+}
+
+std::string plan_text(const System& system, const Plan& plan) {
+    const std::vector<MethodGroup> groups = groups_of(plan);
+    if (groups.size() == 1) return sim::method_text(groups.front().method);
+    std::string text;
+    for (const MethodGroup& group : groups) {
+        if (!text.empty()) text += "; ";
+        text += fmt::format("{} ({})", sim::method_text(group.method), bodies_text(system, group.bodies));
+    }
+    return text;
+}
+
+std::string method_names(const Plan& plan) {
+    std::vector<std::string_view> names;
+    for (const BodyPlan& body : plan.bodies) {
+        const std::string_view name = method_name(body.method);
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+std::string method_caption(const Plan& plan, const std::optional<double>& error_bound_px) {
+    std::string names = method_names(plan);
+    if (!error_bound_px) return names;
+    constexpr double kSmallest = 1e-3;  // with decimals
+    if (*error_bound_px < kSmallest)
+        return fmt::format("{}, error below {} px", names, view::power_text(*error_bound_px));
+    return fmt::format("{}, error below {:g} px", names, view::rounded_up(*error_bound_px));
+}
+
+Error pipeline::explained(const Refusal& refusal, const std::string& source) {
+    const std::string place = source.empty() ? "" : source + ": ";
+    return {refusal.code(), fmt::format("{}{}; {}", place, refusal.what(), remedy(refusal.reason()))};
+}
+
+PngInfo picture_info(const std::string& scene_name, const std::string& times, const std::string& frames,
+                     const std::string& provenance) {
+    PngInfo info;
+    info.text = {{"Software", fmt::format("corda {}", version())},
+                 {"Title", printable(scene_name)},
+                 {"Time", times + " s"}};
+    if (!frames.empty()) info.text.emplace_back("Frame", frames);
+    info.text.emplace_back(kProvenanceKeyword, provenance);
+    return info;
+}
+
+std::vector<std::string> modelled_terms(const Scene& scene, const Plan& plan) {
+    const RelaxationDef* relaxation = nullptr;
+    bool relaxes_all = true;
+    for (const BodyPlan& body : plan.bodies) {
+        const auto* const def = std::get_if<RelaxationDef>(&body.method);
+        relaxes_all = relaxes_all && def != nullptr;
+        if (def != nullptr) relaxation = def;
+    }
+    const Materials materials = list_materials(scene);
+    std::vector<std::string> terms = force_terms(scene, materials, relaxation);
+    if (relaxation != nullptr) terms.emplace_back("bars that stretch by what the passes of relaxation leave");
+    if (!relaxes_all && materials.rigid) terms.emplace_back("links that do not stretch");
+    if (!materials.compliance_1_n.empty()) {
+        terms.push_back(fmt::format("links that stretch by {} of their length per newton",
+                                    materials.compliance_1_n.text()));
+    }
+    if (materials.slack) terms.emplace_back("strings: links that pull and never push");
+    if (!materials.bending_n_m2.empty())
+        terms.push_back(fmt::format("bending stiffness of {} N m2", materials.bending_n_m2.text()));
+    const auto closed = std::count_if(scene.ropes.begin(), scene.ropes.end(),
+                                      [](const RopeDef& rope) { return rope.closed; });
+    if (closed > 0) terms.push_back(fmt::format("closed ropes: {}", closed));
+    if (!scene.nets.empty()) terms.push_back(nets_term(scene));
+    return terms;
+}
+
+std::optional<std::string> bound_text(Film& film) {
+    const Plan& plan = film.plan();
+    std::optional<double> largest_m;
+    std::vector<std::size_t> unbounded;
+    for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
+        if (plan.bodies[i].error_bound_m)
+            largest_m = std::max(largest_m.value_or(0.0), *plan.bodies[i].error_bound_m);
+        else
+            unbounded.push_back(i);
+    }
+    if (!largest_m || plan.horizon_s == 0.0) return std::nullopt;
+    const double pixels_per_metre = film.scene().video.height_px / film.camera().height_m.value();
+    std::string text = fmt::format("{:.2g} px, {:.2g} m", view::rounded_up(pixels_per_metre * *largest_m),
+                                   view::rounded_up(*largest_m));
+    if (plan.horizon_s) text += fmt::format(", up to {:.6g} s", *plan.horizon_s);
+    if (!unbounded.empty()) text += ", except " + bodies_text(film.system(), unbounded);
+    return text;
+}
+
+Scene frozen_scene(Film& film) {
+    Scene scene = film.scene();
+    std::vector<MethodGroup> groups = groups_of(film.plan());
+    // [solver] is for the largest group.
+    std::stable_sort(groups.begin(), groups.end(), [](const MethodGroup& a, const MethodGroup& b) {
+        return a.bodies.size() > b.bodies.size();
+    });
+    scene.solver = solver_of(groups.front().method);
+    scene.body_solvers.clear();
+    for (std::size_t i = 1; i < groups.size(); ++i) {
+        BodySolverDef& own = scene.body_solvers.emplace_back();
+        own.method = groups[i].method;
+        for (const std::size_t body : groups[i].bodies) {
+            const bool is_rope = body < scene.ropes.size();
+            (is_rope ? own.ropes : own.nets)
+                .push_back(static_cast<std::uint32_t>(is_rope ? body : body - scene.ropes.size()));
+        }
+    }
+    scene.camera = film.camera();
+    return scene;
+}
+
+std::string frozen_toml(Film& film) {
+    constexpr std::array<std::string_view, 3> kSections{"solver", "solver.bodies", "camera"};
+    return write_sections(frozen_scene(film), kSections);
+}
+
+}  // namespace corda
