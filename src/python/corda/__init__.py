@@ -274,7 +274,7 @@ class Film:
         force: replace an existing file. resume: continue an interrupted render of the same film from its part file, with the
         bytes of an uninterrupted render; without a part, start from the beginning. on_progress: called with the number of
         finished frames and of all frames, at most every 50 ms and at the end; returning False stops, which raises Error (code
-        130) and keeps the finished frames in the part file.
+        130) and keeps the finished frames in the part file. It must not use this film, which raises Error (code 2).
         """
         return self._film.save(_path(path), bool(force), bool(resume), _answering(on_progress))
 
