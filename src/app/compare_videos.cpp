@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <new>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -156,25 +155,17 @@ Json json_of(const VideoDifference& found) {
     return json;
 }
 
-/// What the child tells: a report, or an error; and after it the picture of the differences.
-std::string told_of_videos(const CompareOptions& options, const std::string& path_b,
-                           const std::optional<Image>& mask) {
-    Json json;
+/// The report as a line of JSON, and after it the picture of the differences.
+std::string compared(const CompareOptions& options, const std::string& path_b,
+                     const std::optional<Image>& mask) {
+    const VideoDifference found = compare_all_frames(options, path_b, mask);
+    Json json = json_of(found);
     std::string pixels;
-    try {
-        const VideoDifference found = compare_all_frames(options, path_b, mask);
-        json = json_of(found);
-        if (!options.diff.empty() && found.differing > 0) {
-            const Image picture = difference_image(found.worst_pictures[0], found.worst_pictures[1], {},
-                                                   mask && found.worst.same_size ? &*mask : nullptr);
-            json["picture"] = {picture.width(), picture.height()};
-            pixels.assign(reinterpret_cast<const char*>(picture.data()), picture.size_bytes());
-        }
-    } catch (const Error& error) {
-        json = {{"error", printable(error.what())}, {"code", static_cast<int>(error.code())}};
-    } catch (const std::bad_alloc&) {
-        json = {{"error", "a video asks for more memory than it may have"},
-                {"code", static_cast<int>(ExitCode::kIo)}};
+    if (!options.diff.empty() && found.differing > 0) {
+        const Image picture = difference_image(found.worst_pictures[0], found.worst_pictures[1], {},
+                                               mask && found.worst.same_size ? &*mask : nullptr);
+        json["picture"] = {picture.width(), picture.height()};
+        pixels.assign(reinterpret_cast<const char*>(picture.data()), picture.size_bytes());
     }
     return json.dump(-1, ' ', true, Json::error_handler_t::replace) + '\n' + pixels;
 }
@@ -195,21 +186,20 @@ ChildLimits limits_of_videos(const std::string& a, const std::string& b) {
 /// The report of the child; writes the picture of the differences.
 Json compare_two(const CompareOptions& options, const std::string& path_b, const std::optional<Image>& mask,
                  std::string& pixels) {
-    const auto end = run_in_child([&] { return told_of_videos(options, path_b, mask); },
+    const auto end = run_in_child([&] { return compared(options, path_b, mask); },
                                   limits_of_videos(options.a, path_b), [] { stop_if_asked(); });
-    if (end && !end->finished) {
+    if (end && end->outcome == ChildEnd::Outcome::kOutOfMemory)
+        throw Error(ExitCode::kIo, "a video asks for more memory than it may have");
+    if (end && !end->finished()) {
         throw Error(ExitCode::kIo,
                     fmt::format("cannot compare '{}' with '{}': decoding {}; `corda verify` says "
                                 "which is damaged",
                                 options.a, path_b, end->text));
     }
-    const std::string told = end ? end->text : told_of_videos(options, path_b, mask);
-    const std::size_t line = told.find('\n');
-    Json json = Json::parse(told.substr(0, line));
-    if (json.contains("error"))
-        throw Error(static_cast<ExitCode>(json["code"].get<int>()), json["error"].get<std::string>());
-    pixels = told.substr(line + 1);
-    return json;
+    const std::string report = end ? end->text : compared(options, path_b, mask);
+    const std::size_t line = report.find('\n');
+    pixels = report.substr(line + 1);
+    return Json::parse(report.substr(0, line));
 }
 
 void write_difference(const CompareOptions& options, const Json& json, const std::string& pixels) {

@@ -14,17 +14,22 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
+#include <new>
 #include <system_error>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
+#include "corda/core/machine.hpp"
 
 namespace corda {
 namespace {
 
 constexpr int kWaitMs = 100;
+// The first byte of a child's answer.
+constexpr char kResult = '+';
+constexpr char kError = '-';
+constexpr char kNoMemory = '!';
 
 /// Kills what still runs when it goes out of scope.
 class Child {
@@ -54,12 +59,6 @@ class Child {
     pid_t pid_;
 };
 
-std::uint64_t address_space_bytes() {
-    std::uint64_t pages = 0;
-    std::ifstream("/proc/self/statm") >> pages;
-    return pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-}
-
 void lower_limit(decltype(RLIMIT_AS) resource, rlim_t value) {
     rlimit limit{};
     getrlimit(resource, &limit);
@@ -77,11 +76,26 @@ void lower_limit(decltype(RLIMIT_AS) resource, rlim_t value) {
     lower_limit(RLIMIT_AS, address_space_bytes() + limits.memory_bytes);
     lower_limit(RLIMIT_CPU, static_cast<rlim_t>(limits.cpu_s));
     lower_limit(RLIMIT_CORE, 0);
+    std::string answer;
     try {
-        _exit(write_all(out.get(), work()) == 0 ? EXIT_SUCCESS : EXIT_FAILURE);
+        answer = kResult + work();
+    } catch (const Error& error) {
+        answer = kError + std::to_string(static_cast<int>(error.code())) + ' ' + error.what();
+    } catch (const std::bad_alloc&) {
+        answer = kNoMemory;
     } catch (...) {
         _exit(EXIT_FAILURE);
     }
+    _exit(write_all(out.get(), answer) == 0 ? EXIT_SUCCESS : EXIT_FAILURE);
+}
+
+/// The end of a child that has sent `answer`. Throws its corda::Error.
+ChildEnd end_of(const std::string& answer) {
+    if (answer.front() == kResult) return {ChildEnd::Outcome::kFinished, answer.substr(1)};
+    if (answer.front() == kNoMemory)
+        return {ChildEnd::Outcome::kOutOfMemory, "asks for more memory than it may have"};
+    const std::size_t space = answer.find(' ');
+    throw Error(static_cast<ExitCode>(std::stoi(answer.substr(1, space - 1))), answer.substr(space + 1));
 }
 
 /// Appends what the child writes until it closes its end; false if that takes longer than `wall_s`.
@@ -101,9 +115,11 @@ bool receive(const Descriptor& in, double wall_s, const std::function<void()>& o
     return false;
 }
 
-/// What ended a child that did not finish; throws if it was not its own doing.
-std::string fate(int status, const ChildLimits& limits) {
-    if (!WIFSIGNALED(status)) return "crashed (status " + std::to_string(WEXITSTATUS(status)) + ")";
+/// The end of a child that has sent no answer; throws if something else ended it.
+ChildEnd end_without_answer(int status, const ChildLimits& limits) {
+    using Outcome = ChildEnd::Outcome;
+    if (!WIFSIGNALED(status))
+        return {Outcome::kCrashed, "crashed (status " + std::to_string(WEXITSTATUS(status)) + ")"};
     const int signal = WTERMSIG(status);
     for (const int foreign : {SIGKILL, SIGTERM, SIGINT, SIGHUP}) {
         if (signal == foreign)
@@ -111,8 +127,9 @@ std::string fate(int status, const ChildLimits& limits) {
                                                   strsignal(signal) +
                                                   "), as a system does that runs out of memory; try again");
     }
-    if (signal == SIGXCPU) return "took more than " + std::to_string(limits.cpu_s) + " s of computing";
-    return std::string("crashed (") + strsignal(signal) + ")";
+    if (signal == SIGXCPU)
+        return {Outcome::kTimedOut, "took more than " + std::to_string(limits.cpu_s) + " s of computing"};
+    return {Outcome::kCrashed, std::string("crashed (") + strsignal(signal) + ")"};
 }
 
 }  // namespace
@@ -139,19 +156,17 @@ std::optional<ChildEnd> run_in_child(const std::function<std::string()>& work, c
     }
     Child child(pid);
     static_cast<void>(out.close());
-    ChildEnd end;
-    if (!receive(in, limits.wall_s, on_wait, end.text)) {
+    std::string answer;
+    if (!receive(in, limits.wall_s, on_wait, answer)) {
         child.kill();
         std::array<char, 32> seconds{};
         const auto [stop, status] = std::to_chars(seconds.begin(), seconds.end(), limits.wall_s);
-        end.text = "did not end within " + std::string(seconds.begin(), stop) + " s";
-        return end;
+        return ChildEnd{ChildEnd::Outcome::kTimedOut,
+                        "did not end within " + std::string(seconds.begin(), stop) + " s"};
     }
     const int status = child.wait();
     if (on_wait) on_wait();  // a signal that ended the child may have been meant for both
-    end.finished = status == 0 && !end.text.empty();
-    if (!end.finished) end.text = fate(status, limits);
-    return end;
+    return status == 0 && !answer.empty() ? end_of(answer) : end_without_answer(status, limits);
 }
 
 }  // namespace corda

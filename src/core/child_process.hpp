@@ -14,19 +14,22 @@ struct ChildLimits {
     double wall_s = 0.0;             ///< not counting the time for which this process is stopped
 };
 
-/// How work in a child process ended.
+/// The end of work in a child process.
 struct ChildEnd {
-    bool finished = false;
-    std::string text;  ///< what the work returned, or what ended it: "crashed (Aborted)"
+    enum class Outcome { kFinished, kOutOfMemory, kTimedOut, kCrashed };
+
+    Outcome outcome = Outcome::kCrashed;
+    std::string text;  ///< the result of the work, or the reason of its end: "crashed (Aborted)"
+
+    [[nodiscard]] bool finished() const { return outcome == Outcome::kFinished; }
 };
 
 /// Whether this process has more than one thread.
 [[nodiscard]] bool has_other_threads();
 
 /// Runs `work` in a copy of this process within `limits`, and waits for it; std::nullopt if the system starts
-/// no further process. `work` returns at least one character; if it throws, that is a crash. `on_wait` is
-/// called at least ten times a second, and may throw: then the child is killed first. No child outlives the
-/// call, or this thread.
+/// no further process. A corda::Error that `work` throws is thrown here. `on_wait` is called at least ten
+/// times a second, and may throw: then the child is killed first. No child outlives the call, or this thread.
 ///
 /// The child is a fork without an exec: a lock that another thread of this process holds stays locked in the
 /// child, which then waits until `limits` end it. So there should be no other thread (has_other_threads()).

@@ -92,6 +92,10 @@ std::optional<std::uint64_t> left_of_limit(decltype(RLIMIT_AS) resource, const c
 
 }  // namespace
 
+std::uint64_t address_space_bytes() {
+    return 1024 * number_after("/proc/self/status", "VmSize:").value_or(0);
+}
+
 std::optional<std::uint64_t> address_space_left(const std::filesystem::path& root) {
     return left_of_limit(RLIMIT_AS, "VmSize:", root);
 }

@@ -12,6 +12,9 @@ namespace corda {
 /// none of these is told. `root` is the folder with proc/ and sys/.
 [[nodiscard]] std::optional<std::uint64_t> available_memory_bytes(const std::filesystem::path& root = "/");
 
+/// Bytes of address space that this process has; 0 if Linux does not report them.
+[[nodiscard]] std::uint64_t address_space_bytes();
+
 /// Bytes that the limit on the address space of this process leaves (ulimit -v); empty without one.
 [[nodiscard]] std::optional<std::uint64_t> address_space_left(const std::filesystem::path& root = "/");
 

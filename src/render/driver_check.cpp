@@ -77,13 +77,12 @@ std::optional<std::string> fate_of_trial(const gl::ContextDef& def) {
             check_driver(context);
         } catch (const Error&) {  // the parent will throw it too
         }
-        return "done";
+        return {};
     };
     const bool may_wait_for_locks = has_other_threads();
     const auto end = run_in_child(draw, kTrialLimits);
-    if (!end || (may_wait_for_locks && !end->finished && !end->text.starts_with("crashed")))
-        return std::nullopt;
-    return end->finished ? "" : end->text;
+    if (!end || (may_wait_for_locks && end->outcome == ChildEnd::Outcome::kTimedOut)) return std::nullopt;
+    return end->finished() ? "" : end->text;
 }
 
 }  // namespace

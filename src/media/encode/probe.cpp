@@ -81,7 +81,7 @@ Trial try_encoders(const Format& format, const VideoDef& video, int jobs, std::u
     const VideoDef def = left ? video : small_video(video);
     ChildLimits limits{std::uint64_t{1} << 46U, std::int64_t{60}, kMaxS};
     if (left) limits.memory_bytes = *left - std::min(*left, kept_bytes * static_cast<std::uint64_t>(jobs));
-    const auto work = [&] { return "-" + encode_one(format, def, jobs); };
+    const auto work = [&] { return encode_one(format, def, jobs); };
     const auto end = run_in_child(work, limits, on_wait);
     const auto starts_threads = [&] { return can_start_threads(1 + threads_of(*format.codec)); };
     if (!end && starts_threads()) return {};
@@ -90,10 +90,9 @@ Trial try_encoders(const Format& format, const VideoDef& video, int jobs, std::u
             "the system starts no further process or thread; run fewer processes, or raise the limit (ulimit "
             "-u)",
             true};
-    if (end->finished && end->text == "-") return {};
-    Trial trial{end->finished ? end->text.substr(1) : fmt::format("{} {}", format.codec->name, end->text),
-                false};
-    const bool hangs = !end->finished && end->text.starts_with("did not end");
+    if (end->finished() && end->text.empty()) return {};
+    Trial trial{end->finished() ? end->text : fmt::format("{} {}", format.codec->name, end->text), false};
+    const bool hangs = end->outcome == ChildEnd::Outcome::kTimedOut;
     if (format.codec->is_hardware) return trial;  // it is the device that is missing
     if (data_left()) {
         trial.failure +=

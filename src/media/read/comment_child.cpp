@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <new>
-
 #include "corda/core/basics.hpp"
 #include "corda/core/child_process.hpp"
 #include "corda/media/chunks/part_reader.hpp"
@@ -12,22 +10,17 @@ namespace corda::media {
 namespace {
 
 constexpr ChildLimits kCommentLimits{std::uint64_t{4} << 30, 20, 60.0};
-constexpr char kTold = '+';
-constexpr char kFailed = '-';
-constexpr char kRefused = '!';
+[[noreturn]] void fail_reading(const std::string& path, ExitCode code, const std::string& problem) {
+    throw Error(code, fmt::format("cannot read '{}': {}; give a PNG or a video that corda has written", path,
+                                  problem));
+}
 
-/// What the child tells: a sign, and the comment or what went wrong.
-std::string comment_told(const std::string& path) {
+std::string read_comment(const std::string& path) {
     try {
         const OpenVideo file = open_video(path);
-        const std::string comment = metadata_entry(*file.format, "comment");
-        if (const std::string problem = comment_problem(comment); !problem.empty())
-            return fmt::format("{}its comment {}", kRefused, problem);
-        return kTold + comment;
+        return metadata_entry(*file.format, "comment");
     } catch (const Error& error) {
-        return kFailed + std::string(error.what());
-    } catch (const std::bad_alloc&) {
-        return kFailed + std::string("it asks for more memory than it may have");
+        fail_reading(path, ExitCode::kIo, error.what());
     }
 }
 
@@ -35,13 +28,13 @@ std::string comment_told(const std::string& path) {
 
 std::string comment_in_child(const std::string& path, const OnProgress& on_progress) {
     const QuietLog quiet;
-    const auto end = run_in_child([&] { return comment_told(path); }, kCommentLimits,
+    const auto end = run_in_child([&] { return read_comment(path); }, kCommentLimits,
                                   [&] { report_progress(on_progress, 0, 0); });
-    const std::string told = !end ? comment_told(path) : end->finished ? end->text : kFailed + end->text;
-    if (told.front() == kTold) return told.substr(1);
-    throw Error(told.front() == kRefused ? ExitCode::kUsage : ExitCode::kIo,
-                fmt::format("cannot read '{}': {}; give a PNG or a video that corda has written", path,
-                            told.substr(1)));
+    if (end && !end->finished()) fail_reading(path, ExitCode::kIo, "it " + end->text);
+    std::string comment = end ? end->text : read_comment(path);
+    if (const std::string problem = comment_problem(comment); !problem.empty())
+        fail_reading(path, ExitCode::kUsage, "its comment " + problem);
+    return comment;
 }
 
 }  // namespace corda::media

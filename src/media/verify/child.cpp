@@ -56,16 +56,16 @@ bool has_little_memory() {
     return is_little(address_space_left()) || is_little(data_left());
 }
 
-/// Throws corda::Error (kTemporary) for a file whose reading ended as `fate` says, if a lack of memory may be
+/// Throws corda::Error (kTemporary) for a file whose reading ended so, if a lack of memory may be
 /// the reason.
-void throw_if_memory_may_lack(const std::string& path, const std::string& fate) {
-    if (!has_little_memory() || !fate.starts_with("crashed")) return;
+void throw_if_memory_may_lack(const std::string& path, const ChildEnd& end) {
+    if (!has_little_memory() || end.outcome != ChildEnd::Outcome::kCrashed) return;
     throw Error(
         ExitCode::kTemporary,
         fmt::format(
             "reading '{}' {}, perhaps because the system allows little memory (ulimit -v, ulimit -d): raise "
             "the limit; if that changes nothing, the file is damaged",
-            path, fate));
+            path, end.text));
 }
 
 /// The same for problems that were found: without memory libavformat loses packets, and libavcodec frames,
@@ -84,27 +84,24 @@ void throw_if_memory_may_lack(const std::string& path, const VerifyReport& repor
                     path, report.problems.front()));
 }
 
-/// What the child tells: the report, or the error that `verify` threw. As CBOR, because the words may quote
-/// any bytes of the file.
-std::string told(const std::string& path, bool has_little, std::optional<Rational> fps) {
-    Json json;
-    const auto fail = [&](ExitCode code, const char* message) {
-        if (code == ExitCode::kTemporary && !has_little) {
-            json["report"] =
-                damaged(fmt::format("asks for more memory than it may have ({} GiB)", kMemoryGib));
-        } else {
-            json["error"] = {{"code", static_cast<int>(code)}, {"message", message}};
+/// The report as CBOR, because the words may quote any bytes of the file.
+std::string report_bytes(const std::string& path, bool has_little, std::optional<Rational> fps) {
+    const auto report_of = [&] {
+        const auto out_of_memory = [] {
+            return damaged(fmt::format("asks for more memory than it may have ({} GiB)", kMemoryGib));
+        };
+        try {
+            return verify(path, {}, VerifyDepth::kAllFrames, {}, fps);
+        } catch (const std::bad_alloc&) {
+            if (has_little) throw Error(ExitCode::kTemporary, "out of memory");
+            return out_of_memory();
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::kTemporary || has_little) throw;
+            return out_of_memory();
         }
     };
-    try {
-        json["report"] = verify(path, {}, VerifyDepth::kAllFrames, {}, fps);
-    } catch (const Error& error) {
-        fail(error.code(), error.what());
-    } catch (const std::bad_alloc&) {
-        fail(ExitCode::kTemporary, "out of memory");
-    }
     std::string bytes;
-    Json::to_cbor(json, bytes);
+    Json::to_cbor(report_of(), bytes);
     return bytes;
 }
 
@@ -114,20 +111,16 @@ VerifyReport verify_in_child(const std::string& path, const OnProgress& on_progr
                              std::optional<Rational> fps) {
     const bool has_little = has_little_memory();
     const auto on_wait = [&] { report_progress(on_progress, 0, 0); };
-    const auto end = run_in_child([&] { return told(path, has_little, fps); }, limits_for(path), on_wait);
+    const auto end =
+        run_in_child([&] { return report_bytes(path, has_little, fps); }, limits_for(path), on_wait);
     if (!end) return verify(path, on_progress, VerifyDepth::kAllFrames, {}, fps);
-    if (!end->finished) {
-        throw_if_memory_may_lack(path, end->text);
+    if (!end->finished()) {
+        throw_if_memory_may_lack(path, *end);
         return damaged(end->text);
     }
-    const Json json = Json::from_cbor(end->text);
-    if (!json.contains("error")) {
-        VerifyReport report = json.at("report");
-        throw_if_memory_may_lack(path, report);
-        return report;
-    }
-    const Json& error = json["error"];
-    throw Error(static_cast<ExitCode>(error.at("code").get<int>()), error.at("message").get<std::string>());
+    VerifyReport report = Json::from_cbor(end->text);
+    throw_if_memory_may_lack(path, report);
+    return report;
 }
 
 void check_part_in_child(const std::string& path, bool decodes, const OnProgress& on_progress) {
@@ -138,13 +131,13 @@ void check_part_in_child(const std::string& path, bool decodes, const OnProgress
             static_cast<void>(index_part(path, {}));
             if (decodes) static_cast<void>(verify(path));
         } catch (const std::exception&) {
-            return "done";  // this process comes to the same point, and tells
+            // This process comes to the same point, and reports it.
         }
-        return "done";
+        return {};
     };
     const auto end = run_in_child(read, limits_for(path), [&] { report_progress(on_progress, 0, 0); });
-    if (!end || end->finished) return;
-    throw_if_memory_may_lack(path, end->text);
+    if (!end || end->finished()) return;
+    throw_if_memory_may_lack(path, *end);
     throw Error(ExitCode::kMismatch,
                 fmt::format("'{}' is damaged: reading it {}; render it again (--force)", path, end->text));
 }

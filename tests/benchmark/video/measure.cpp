@@ -168,22 +168,12 @@ json measure_stages(const BenchDef& def, const std::string& path) {
 }  // namespace
 
 json in_child(const std::function<void()>& on_wait, const std::function<json()>& work) {
-    const auto answer = [&work] {
-        try {
-            return work().dump();
-        } catch (const Error& error) {
-            return json{{"code", static_cast<int>(error.code())}, {"error", error.what()}}.dump();
-        }
-    };
     constexpr double kMaxS = 86'400.0;
     const ChildLimits limits{std::uint64_t{1} << 46U, static_cast<std::int64_t>(kMaxS), kMaxS};
-    const auto end = run_in_child(answer, limits, on_wait);
+    const auto end = run_in_child([&work] { return work().dump(); }, limits, on_wait);
     if (!end) throw Error(ExitCode::kTemporary, "the system starts no further process; try again");
-    if (!end->finished) throw Error(ExitCode::kTemporary, "the process that measures " + end->text);
-    json result = json::parse(end->text);
-    if (result.contains("error"))
-        throw Error(static_cast<ExitCode>(result["code"].get<int>()), result["error"].get<std::string>());
-    return result;
+    if (!end->finished()) throw Error(ExitCode::kTemporary, "the process that measures " + end->text);
+    return json::parse(end->text);
 }
 
 Measured measure(const BenchDef& def) {

@@ -29,7 +29,7 @@ bool has_child() {
 /// The error that ended the work.
 std::string end_of(const std::function<std::string()>& work, const ChildLimits& limits = kLimits) {
     const auto end = run_in_child(work, limits);
-    EXPECT_TRUE(end && !end->finished);
+    EXPECT_TRUE(end && !end->finished());
     EXPECT_FALSE(has_child());
     return end ? end->text : "";
 }
@@ -38,7 +38,7 @@ TEST(ChildProcess, ReturnsTheResultOfTheWork) {
     const std::string much(1 << 20, '\0');  // more than a pipe holds
     const auto end = run_in_child([&] { return much; }, kLimits);
     ASSERT_TRUE(end);
-    EXPECT_TRUE(end->finished);
+    EXPECT_TRUE(end->finished());
     EXPECT_EQ(end->text, much);
     EXPECT_FALSE(has_child());
 }
@@ -46,13 +46,26 @@ TEST(ChildProcess, ReturnsTheResultOfTheWork) {
 TEST(ChildProcess, ReportsHowTheWorkCrashed) {
     EXPECT_EQ(end_of([]() -> std::string { std::abort(); }), "crashed (Aborted)");
     EXPECT_EQ(end_of([]() -> std::string { throw 1; }), "crashed (status 1)");
-    EXPECT_EQ(end_of([] { return std::string(); }), "crashed (status 0)");
+    EXPECT_EQ(end_of([]() -> std::string { _exit(0); }), "crashed (status 0)");
+    EXPECT_EQ(run_in_child([]() -> std::string { std::abort(); }, kLimits)->outcome,
+              ChildEnd::Outcome::kCrashed);
+}
+
+TEST(ChildProcess, PassesOnAnErrorOfTheWork) {
+    const test::Failure failure = test::failure_of([] {
+        (void)run_in_child([]() -> std::string { throw Error(ExitCode::kMismatch, "x \xff y\nz"); }, kLimits);
+    });
+    EXPECT_EQ(failure.code, ExitCode::kMismatch);
+    EXPECT_EQ(failure.message, "x \xff y\nz");
+    EXPECT_EQ(run_in_child([] { return std::string(); }, kLimits)->text, "");
 }
 
 TEST(ChildProcess, IsLimitedInMemory) {
     const auto take = [] { return std::to_string(std::vector<char>(std::size_t{1} << 28, 'x').back()); };
-    EXPECT_TRUE(run_in_child(take, kLimits)->finished);
-    EXPECT_THAT(end_of(take, {std::uint64_t{1} << 26, 20, 20.0}), HasSubstr("crashed"));
+    EXPECT_TRUE(run_in_child(take, kLimits)->finished());
+    const auto end = run_in_child(take, {std::uint64_t{1} << 26, 20, 20.0});
+    EXPECT_EQ(end->outcome, ChildEnd::Outcome::kOutOfMemory);
+    EXPECT_EQ(end->text, "asks for more memory than it may have");
 }
 
 TEST(ChildProcess, IsLimitedInTime) {
@@ -64,7 +77,9 @@ TEST(ChildProcess, IsLimitedInTime) {
     EXPECT_EQ(end_of(spin, {kLimits.memory_bytes, 1, 20.0}), "took more than 1 s of computing");
     const double start_s = now_s();
     const auto sleep = [] { return std::to_string(::sleep(60)); };
-    EXPECT_EQ(end_of(sleep, {kLimits.memory_bytes, 20, 0.3}), "did not end within 0.3 s");
+    const ChildLimits short_wait{kLimits.memory_bytes, 20, 0.3};
+    EXPECT_EQ(end_of(sleep, short_wait), "did not end within 0.3 s");
+    EXPECT_EQ(run_in_child(sleep, short_wait)->outcome, ChildEnd::Outcome::kTimedOut);
     EXPECT_LT(now_s() - start_s, 10.0);
 }
 

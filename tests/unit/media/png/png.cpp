@@ -182,7 +182,7 @@ TEST_F(Png, RefusesASmallFileOfManyPixelsBeforeTakingMemory) {
         return std::to_string(static_cast<int>(failure.code));
     };
     const auto end = run_in_child(read, {std::uint64_t{1} << 26, 10, 10.0});
-    EXPECT_TRUE(end->finished);
+    EXPECT_TRUE(end->finished());
     EXPECT_EQ(end->text, "6");
 }
 
