@@ -147,8 +147,8 @@ class Reader {
         const Body& body = system_.bodies[b];
         Extreme largest;
         for (std::size_t k = 0; k < body.link_count; ++k) {
-            largest.include(sim::value_of(quantity, system_, body, body.first_bar + k, state), state.time_s,
-                            b, k);
+            largest.include(sim::kind_of(quantity).value(system_, body, body.first_bar + k, state),
+                            state.time_s, b, k);
         }
         return largest;
     }

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "corda/sim/solver.hpp"
 #include "corda/sim/work.hpp"
 
 namespace corda::scene {
@@ -50,11 +51,14 @@ bool check_frames(const Sections& sections, const Scene& scene) {
     return problem.empty();
 }
 
+/// The method of a solver; `auto` is estimated as `exact`.
+MethodDef method_of(const SolverDef& solver) {
+    return method_in(solver).value_or(ExactDef{});
+}
+
 /// Number of steps that the solver's key `step` gives; one per frame without it.
 double step_count(const SolverDef& solver, const Scene& scene) {
-    std::optional<double> step_s;
-    if (const auto* rattle = std::get_if<RattleDef>(&solver)) step_s = rattle->step_s;
-    if (const auto* relaxation = std::get_if<RelaxationDef>(&solver)) step_s = relaxation->step_s;
+    const std::optional<double> step_s = sim::fixed_step_s(method_of(solver));
     return scene.world.duration_s / step_s.value_or(scene.video.fps.interval_s());
 }
 
@@ -210,26 +214,12 @@ struct Work {
     double updates = 0.0;  ///< of particles
 };
 
-/// The cost of a step of rattle per particle, in updates of 144 ns: each of its stages takes 27 ns, measured
-/// with chains of 300 to 30 000 links.
-double updates_of_rattle(const RattleDef& rattle) {
-    constexpr double kUpdatesPerStage = 0.19;
-    return kUpdatesPerStage * static_cast<double>(sim::stage_count(rattle));
-}
-
 Work work_of(const Scene& scene, const Body& body, const SolverDef& solver, double frequency_1_s) {
-    // A rigid string is searched for events in every step.
-    constexpr double kOfAString = 2.5;
-    const auto* rattle = std::get_if<RattleDef>(&solver);
-    const bool is_searched = body.material.is_string && body.material.compliance_1_n == 0.0;
+    const MethodDef method = method_of(solver);
     Work work;
-    work.steps = rattle != nullptr
-                     ? sim::expected_rattle_steps(*rattle, body, frequency_1_s, scene.world.duration_s)
-                     : sim::expected_steps(frequency_1_s, scene.world.duration_s);
-    const double updates_per_step = rattle != nullptr ? updates_of_rattle(*rattle)
-                                    : is_searched     ? kOfAString
-                                                      : 1.0;
-    work.updates = work.steps * static_cast<double>(body.particle_count) * updates_per_step;
+    work.steps = sim::expected_steps(method, body, frequency_1_s, scene.world.duration_s);
+    work.updates =
+        work.steps * static_cast<double>(body.particle_count) * sim::relative_step_work(method, body);
     return work;
 }
 
@@ -351,9 +341,9 @@ std::string cost_notice(const Scene& scene) {
         if (std::holds_alternative<RelaxationDef>(solvers[i])) {
             body_s =
                 steps * sweep_count(solvers[i]) * static_cast<double>(body.bar_count) / kBarUpdatesPerSecond;
-        } else if (const auto* rattle = std::get_if<RattleDef>(&solvers[i])) {
-            body_s = steps * static_cast<double>(body.particle_count) * updates_of_rattle(*rattle) /
-                     kUpdatesPerSecond;
+        } else if (std::holds_alternative<RattleDef>(solvers[i])) {
+            body_s = steps * static_cast<double>(body.particle_count) *
+                     sim::relative_step_work(method_of(solvers[i]), body) / kUpdatesPerSecond;
         }
         const double of_net = cost_of_elastic_net(body, solvers[i]);
         // The checks of `auto` see the rounding of long ropes at rest.

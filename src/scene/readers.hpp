@@ -22,8 +22,29 @@ inline constexpr double kDefaultMassKg = 1.0;
 inline constexpr int kDefaultReach = 7;  ///< the source report's
 
 /// The names of the alternatives of SolverDef, in its order.
-inline constexpr std::array<std::string_view, std::variant_size_v<SolverDef>> kMethodNames{
-    AutoDef::kName, ExactDef::kName, RattleDef::kName, RelaxationDef::kName};
+inline constexpr auto kMethodNames = []<class... Defs>(const std::variant<Defs...>*) {
+    return std::array<std::string_view, sizeof...(Defs)>{Defs::kName...};
+}(static_cast<const SolverDef*>(nullptr));
+
+/// Calls `use` with the defaults of every alternative of SolverDef.
+template <class Use>
+void for_each_solver(const Use& use) {
+    [&use]<class... Defs>(const std::variant<Defs...>*) {
+        (use(Defs{}), ...);
+    }(static_cast<const SolverDef*>(nullptr));
+}
+
+/// The method of a solver; std::nullopt for `auto`.
+[[nodiscard]] inline std::optional<MethodDef> method_in(const SolverDef& solver) {
+    return std::visit(
+        [](const auto& def) -> std::optional<MethodDef> {
+            if constexpr (std::is_same_v<std::decay_t<decltype(def)>, AutoDef>)
+                return std::nullopt;
+            else
+                return def;
+        },
+        solver);
+}
 
 /// The keys of [solver], or of a table of [[solver.bodies]], in addition to those of its method.
 struct SolverTable {

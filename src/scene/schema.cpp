@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "corda/scene/readers.hpp"
 #include "corda/scene/rows.hpp"
 
 namespace corda::scene {
@@ -29,10 +30,11 @@ std::vector<Key> root_keys() {
 
 /// The method that a definition belongs to; empty for others.
 std::string_view method_of(std::type_index def) {
-    if (def == typeid(AutoDef)) return AutoDef::kName;
-    if (def == typeid(ExactDef)) return ExactDef::kName;
-    if (def == typeid(RattleDef)) return RattleDef::kName;
-    return def == typeid(RelaxationDef) ? RelaxationDef::kName : "";
+    std::string_view name;
+    for_each_solver([&](const auto& solver) {
+        if (def == typeid(solver)) name = solver.kName;
+    });
+    return name;
 }
 
 /// Derives the default and the methods from the fields.

@@ -5,16 +5,18 @@
 
 #include "corda/scene/field.hpp"
 #include "corda/scene/readers.hpp"
+#include "corda/sim/solver.hpp"
 
 namespace corda::scene {
 namespace {
 
 /// An empty definition of a method.
 SolverDef solver_named(std::string_view method) {
-    if (method == ExactDef::kName) return ExactDef{};
-    if (method == RattleDef::kName) return RattleDef{};
-    if (method == RelaxationDef::kName) return RelaxationDef{};
-    return AutoDef{};
+    SolverDef solver;
+    for_each_solver([&](const auto& def) {
+        if (method == def.kName) solver = def;
+    });
+    return solver;
 }
 
 SolverGroup read_group(const TableReader& table) {
@@ -24,18 +26,6 @@ SolverGroup read_group(const TableReader& table) {
     std::visit([&](auto& method) { read_fields(table, method); }, def);
     if (!std::holds_alternative<RelaxationDef>(def)) return {table, def, 1};
     return {table, def, keys.reach.empty() ? kDefaultReach : keys.reach.front()};
-}
-
-/// `auto` stands for a method that is missing, which is a problem already.
-MethodDef method_in(const SolverDef& solver) {
-    return std::visit(
-        [](const auto& def) -> MethodDef {
-            if constexpr (std::is_same_v<std::decay_t<decltype(def)>, AutoDef>)
-                return MethodDef{};
-            else
-                return def;
-        },
-        solver);
 }
 
 /// Puts the bodies of one list of a table of [[solver.bodies]] into the last group. The list is of `count`
@@ -78,7 +68,8 @@ BodySolverDef read_body_solver(const TableReader& table, const Sections& section
     BodySolverDef def;
     if (problems.is_sound("rope")) def.ropes = read_members(table, "ropes", ropes, 0, section);
     if (problems.is_sound("net")) def.nets = read_members(table, "nets", nets, ropes, section);
-    def.method = method_in(section.groups.back().def);
+    // `auto` stands for a missing method, which is already a problem.
+    def.method = method_in(section.groups.back().def).value_or(MethodDef{});
     return def;
 }
 
@@ -94,14 +85,17 @@ SolverSection read_solver(const Sections& sections, Scene& scene) {
 }
 
 void check_color_by(const Sections& sections, const SolverSection& solver, const StyleDef& style) {
-    const bool relaxes = std::any_of(
-        solver.groups.begin(), solver.groups.end(),
-        [](const SolverGroup& group) { return std::holds_alternative<RelaxationDef>(group.def); });
-    if (style.color_by != ColorBy::kTension || !relaxes) return;
-    sections.style.find("color_by")
-        ->add_problem(
-            "method \"relaxation\" knows no tensions; give \"speed\" or \"strain\", or another "
-            "solver.method");
+    if (style.color_by != ColorBy::kTension) return;
+    for (const SolverGroup& group : solver.groups) {
+        const std::optional<MethodDef> method = method_in(group.def);
+        if (!method || sim::knows_tensions(*method)) continue;
+        sections.style.find("color_by")
+            ->add_problem(
+                fmt::format("method \"{}\" knows no tensions; give \"speed\" or \"strain\", or another "
+                            "solver.method",
+                            method_name(*method)));
+        return;
+    }
 }
 
 }  // namespace corda::scene

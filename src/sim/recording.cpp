@@ -1,6 +1,7 @@
 #include "corda/sim/recording.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <functional>
@@ -15,26 +16,31 @@ namespace {
 constexpr unsigned kDropped = 48;  // bits of a double
 constexpr std::size_t kBins = std::size_t{1} << (63U - kDropped);
 
-}  // namespace
-
-StateFields readings_for(Quantity quantity) {
-    return {.velocities = quantity == Quantity::kSpeed, .tensions = quantity == Quantity::kTension};
+double tension_of_link(const System& /*system*/, const Body& /*body*/, std::size_t k, const State& state) {
+    return state.tension_n[k];
 }
 
-double value_of(Quantity quantity, const System& system, const Body& body, std::size_t k,
-                const State& state) {
+/// Mean speed of the ends.
+double speed_of_link(const System& system, const Body& /*body*/, std::size_t k, const State& state) {
     const auto [a, b, reach, rest_m] = system.bars[k];
-    switch (quantity) {
-        case Quantity::kTension:
-            return state.tension_n[k];
-        case Quantity::kSpeed:
-            return 0.5 *
-                   (length(state.vx_m_s[a], state.vy_m_s[a]) + length(state.vx_m_s[b], state.vy_m_s[b]));
-        case Quantity::kStrain:
-            break;
-    }
+    return 0.5 * (length(state.vx_m_s[a], state.vy_m_s[a]) + length(state.vx_m_s[b], state.vy_m_s[b]));
+}
+
+double strain_of_link(const System& system, const Body& body, std::size_t k, const State& state) {
+    const auto [a, b, reach, rest_m] = system.bars[k];
     const double strain = length(state.x_m[b] - state.x_m[a], state.y_m[b] - state.y_m[a]) / rest_m - 1.0;
     return body.material.is_string ? std::max(0.0, strain) : strain;
+}
+
+/// One row per Quantity, in its order.
+constexpr std::array<QuantityKind, 3> kQuantities{{{"tension", "N", {.tensions = true}, tension_of_link},
+                                                   {"speed", "m/s", {.velocities = true}, speed_of_link},
+                                                   {"strain", "", {}, strain_of_link}}};
+
+}  // namespace
+
+const QuantityKind& kind_of(Quantity quantity) {
+    return kQuantities[static_cast<std::size_t>(quantity)];
 }
 
 void Spread::add(double value) {
@@ -70,7 +76,7 @@ Recording::Recording(std::size_t particle_count, std::size_t state_count, std::s
                      std::size_t bar_count, std::optional<Quantity> quantity, const StateFields& readings)
     : particle_count_(particle_count),
       quantity_(quantity),
-      readings_(quantity ? readings.with(readings_for(*quantity)) : readings),
+      readings_(quantity ? readings.with(kind_of(*quantity).fields) : readings),
       parts_{{{&State::x_m, particle_count},
               {&State::y_m, particle_count},
               {&State::vx_m_s, readings_.velocities ? particle_count : 0},
@@ -134,7 +140,7 @@ Status Recording::advance(Simulation& run, const Timeline& timeline, const std::
 void Recording::add_spread(const System& system, const State& state) {
     for (const Body& body : system.bodies) {
         for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k)
-            spread_.add(value_of(*quantity_, system, body, k, state));
+            spread_.add(kind_of(*quantity_).value(system, body, k, state));
     }
 }
 

@@ -14,12 +14,15 @@
 
 namespace corda::sim {
 
-/// The fields of a state from which a quantity is computed.
-[[nodiscard]] StateFields readings_for(Quantity quantity);
-
-/// Value of a quantity for bar `k` of a body; NaN if unknown. The state must have readings_for(quantity).
-[[nodiscard]] double value_of(Quantity quantity, const System& system, const Body& body, std::size_t k,
-                              const State& state);
+/// A quantity of a link: a row of the table in recording.cpp.
+struct QuantityKind {
+    const char* name;    ///< "tension", as in style.color_by
+    const char* unit;    ///< takes a prefix, as in "kN"; empty: a bare number
+    StateFields fields;  ///< of a state, from which the value is computed
+    /// The value for bar `k` of a body; NaN if unknown.
+    double (*value)(const System& system, const Body& body, std::size_t k, const State& state);
+};
+[[nodiscard]] const QuantityKind& kind_of(Quantity quantity);
 
 /// Distribution of values: minimum, maximum and a histogram of their sizes. Ignores NaN.
 class Spread {

@@ -25,6 +25,8 @@ namespace {
 //   static std::string text_of(const Def&);      see method_text()
 //   static double step_cost_ns(const Def&, const Body&);
 //   static std::optional<double> fixed_step_s(const Def&);
+//   static double expected_steps(const Def&, const Body&, double frequency_1_s, double time_s);
+//   static double relative_step_work(const Def&, const Body&);
 //   static constexpr bool kKnowsTensions;
 template <class Def>
 struct SolverOf;
@@ -223,6 +225,16 @@ double step_cost_ns(const Body& body, const MethodDef& method) {
 
 std::optional<double> fixed_step_s(const MethodDef& method) {
     return with_solver(method, []<class S>(const auto& def) { return S::fixed_step_s(def); });
+}
+
+double expected_steps(const MethodDef& method, const Body& body, double frequency_1_s, double time_s) {
+    return with_solver(method, [&]<class S>(const auto& def) {
+        return S::expected_steps(def, body, frequency_1_s, time_s);
+    });
+}
+
+double relative_step_work(const MethodDef& method, const Body& body) {
+    return with_solver(method, [&]<class S>(const auto& def) { return S::relative_step_work(def, body); });
 }
 
 bool knows_tensions(const MethodDef& method) {

@@ -81,6 +81,20 @@ class Solver {
     /// with the same bits.
     [[nodiscard]] virtual std::vector<MethodDef> methods() const = 0;
 
+    // Defaults of two facts about methods: an explicit method of high order that chooses its steps.
+    template <class Def>
+    [[nodiscard]] static double expected_steps(const Def& /*def*/, const Body& /*body*/, double frequency_1_s,
+                                               double time_s) {
+        constexpr double kFrequencyTimesStep = 5.0;
+        return frequency_1_s * time_s / kFrequencyTimesStep;
+    }
+    template <class Def>
+    [[nodiscard]] static double relative_step_work(const Def& /*def*/, const Body& body) {
+        // A rigid string is searched for events in every step.
+        constexpr double kOfAString = 2.5;
+        return body.material.is_string && body.material.compliance_1_n == 0.0 ? kOfAString : 1.0;
+    }
+
   protected:
     Solver(double energy_scale_j, bool conserves_energy)
         : energy_scale_j_(energy_scale_j), conserves_energy_(conserves_energy) {}
@@ -111,6 +125,15 @@ void validate(const MethodDef& method);
 
 /// The step that the method is given, in s; std::nullopt if it is given none or chooses each step by itself.
 [[nodiscard]] std::optional<double> fixed_step_s(const MethodDef& method);
+
+/// Rough number of steps for `time_s` seconds of a motion of the body with this angular frequency, if the
+/// method chooses its steps. For a chain without compliance, `frequency_1_s` is that of
+/// tension_frequency_1_s().
+[[nodiscard]] double expected_steps(const MethodDef& method, const Body& body, double frequency_1_s,
+                                    double time_s);
+
+/// The work of a step per particle, relative to a step of `exact` for a rope, which takes 144 ns.
+[[nodiscard]] double relative_step_work(const MethodDef& method, const Body& body);
 
 /// False if the method never knows the tensions of bars.
 [[nodiscard]] bool knows_tensions(const MethodDef& method);

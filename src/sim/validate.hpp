@@ -8,7 +8,7 @@
 
 namespace corda {
 
-/// What `sim` throws for a definition with a field outside its range and for a system that a method cannot
+/// Thrown by `sim` for a definition with a field outside its range and for a system that a method cannot
 /// run: an Error of code kInvalidScene. The message gives the physical reason; pipeline adds the name of the
 /// scene and, chosen by `reason()`, the keys of the scene file that would help.
 class Refusal : public Error {

@@ -8,7 +8,6 @@
 
 #include "corda/sim/defs.hpp"
 #include "corda/sim/forces/elastic_forces.hpp"
-#include "corda/sim/rattle/rattle.hpp"
 
 namespace corda::sim {
 namespace {
@@ -82,24 +81,6 @@ double tension_frequency_1_s(const System& system, const Body& body, const Force
     for (std::size_t i = 0; i < load_n_m.size(); ++i)
         largest = std::max(largest, 2.0 * system.inverse_mass_1_kg[body.first_particle + i] * load_n_m[i]);
     return std::sqrt(largest);
-}
-
-double expected_steps(double frequency_1_s, double time_s) {
-    constexpr double kFrequencyTimesStep = 5.0;
-    return frequency_1_s * time_s / kFrequencyTimesStep;
-}
-
-double expected_rattle_steps(const RattleDef& def, const Body& body, double frequency_1_s, double time_s) {
-    const bool is_elastic = body.material.compliance_1_n > 0.0;
-    // A rigid net that keeps its shape takes few steps, and the tensions of others are not known from the
-    // start.
-    if (!is_elastic && !body.is_chain) return expected_steps(frequency_1_s, time_s);
-    const double allowed_1_s = is_elastic ? frequency_1_s : std::sqrt(Rattle::kLoadFactor) * frequency_1_s;
-    return allowed_1_s * time_s / (def.guard * composition(def.order).stable_omega_h);
-}
-
-std::size_t stage_count(const RattleDef& def) {
-    return composition(def.order).stages.size();
 }
 
 }  // namespace corda::sim

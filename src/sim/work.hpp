@@ -25,15 +25,4 @@ namespace corda::sim {
 [[nodiscard]] double tension_frequency_1_s(const System& system, const Body& body, const Forces& forces,
                                            bool is_moved_by_rounding = false);
 
-/// Steps that an explicit method of high order takes in `time_s` for a motion of this angular frequency.
-[[nodiscard]] double expected_steps(double frequency_1_s, double time_s);
-
-/// The same of method rattle where it finds its step itself. For a chain without compliance `frequency_1_s`
-/// is that of tension_frequency_1_s(); rattle allows for Rattle::kLoadFactor times the weight.
-[[nodiscard]] double expected_rattle_steps(const RattleDef& def, const Body& body, double frequency_1_s,
-                                           double time_s);
-
-/// Stages of a step of method rattle.
-[[nodiscard]] std::size_t stage_count(const RattleDef& def);
-
 }  // namespace corda::sim

@@ -107,15 +107,8 @@ NumberTitle title_of(const std::string& name, const std::string& unit, double la
 }
 
 NumberTitle title_of(const ColorScale& scale) {
-    switch (scale.quantity) {
-        case Quantity::kTension:
-            return title_of("tension", "N", scale.high);
-        case Quantity::kSpeed:
-            return title_of("speed", "m/s", scale.high);
-        case Quantity::kStrain:
-            break;
-    }
-    return title_of("strain", "", scale.high);
+    const sim::QuantityKind& kind = sim::kind_of(scale.quantity);
+    return title_of(kind.name, kind.unit, scale.high);
 }
 
 }  // namespace corda::view

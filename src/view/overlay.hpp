@@ -21,7 +21,7 @@ struct Caption {
     std::string method;
 };
 
-/// Texts and scale bar at the edges of a picture, and the plot beside it. Time and energy are at the lower
+/// Texts and scale bar at the edges of a picture, and the live plot. Time and energy are at the lower
 /// left, the scale bar at the lower right, title and method at the upper left, the legend at the upper right.
 /// A long title or method is shortened; other items without room are left out.
 class Overlay {

@@ -299,8 +299,9 @@ void SceneView::draw_supports(const State& state, const Camera& camera, DrawList
 Tint SceneView::tint_of(std::size_t body, std::size_t link, const State& state) const {
     const Body& of = system_->bodies[body];
     const std::vector<Color>& in_turn = bodies_[body].link_colors;
-    const Color color = scale_ ? scale_->color(sim::value_of(scale_->quantity, *system_, of, link, state))
-                               : in_turn[(link - of.first_bar) % in_turn.size()];
+    const Color color = scale_
+                            ? scale_->color(sim::kind_of(scale_->quantity).value(*system_, of, link, state))
+                            : in_turn[(link - of.first_bar) % in_turn.size()];
     return {color.r, color.g, color.b};
 }
 

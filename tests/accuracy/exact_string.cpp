@@ -26,7 +26,7 @@ class StringRun {
   public:
     explicit StringRun(const RopeDef& rope, double tolerance = 1e-9, const WorldDef& world = {})
         : system(build_system({&rope, 1})),
-          part(system, system.bodies[0], world, tolerance, test::unstopped),
+          part(system, world, tolerance, test::unstopped),
           state{0.0, system.x_m, system.y_m} {}
 
     bool advance_to(double time_s) { return part.advance_to(time_s, state, test::unstopped) == Status::kOk; }

@@ -51,7 +51,7 @@ void exact_derivative(benchmark::State& bench) {
 }
 
 std::unique_ptr<ExactPart> by_series(const System& system, double tolerance) {
-    return std::make_unique<ChainPart>(system, system.bodies.front(), WorldDef{}, tolerance);
+    return std::make_unique<ChainPart>(system, WorldDef{}, tolerance);
 }
 
 std::unique_ptr<ExactPart> by_dop853(const System& system, double tolerance) {

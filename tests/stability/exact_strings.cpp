@@ -23,7 +23,7 @@ class WatchedString {
   public:
     explicit WatchedString(const RopeDef& rope, double tolerance = 1e-9, const WorldDef& world = {})
         : system_(build_system({&rope, 1})),
-          part_(system_, system_.bodies[0], world, tolerance, test::unstopped),
+          part_(system_, world, tolerance, test::unstopped),
           state_{0.0, system_.x_m, system_.y_m},
           energy_j_(part_.energy_j()) {
         const double scale_j = energy_scale_j(system_, Forces(world).on_particles(system_));

@@ -77,7 +77,7 @@ inline void add_values(Film& film, const State& state, sim::Spread& spread) {
     if (!quantity) return;
     for (const Body& body : film.system().bodies) {
         for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k)
-            spread.add(sim::value_of(*quantity, film.system(), body, k, state));
+            spread.add(sim::kind_of(*quantity).value(film.system(), body, k, state));
     }
 }
 

@@ -323,8 +323,9 @@ constexpr double kMinTerm = 1e-18;
 
 }  // namespace
 
-ChainPart::ChainPart(const System& system, const Body& body, const Forces& forces, double tolerance)
-    : dynamics_(system, {&body, 1}, forces), state_(dynamics_.initial_state()), output_(state_) {
+ChainPart::ChainPart(const System& system, const Forces& forces, double tolerance)
+    : dynamics_(system, system.bodies, forces), state_(dynamics_.initial_state()) {
+    output_ = state_;
     movers_.reserve(dynamics_.chains().size());
     for (const ChainDynamics::Chain& chain : dynamics_.chains()) {
         StepControl control = step_control(chain.inverse_timescale_1_s, tolerance);

@@ -143,18 +143,11 @@ class ChainSeries {
 /// come out whatever these are.
 class ChainPart final : public ExactPart {
   public:
-    /// `body`: a chain of the system. Throws what ChainDynamics throws.
-    ChainPart(const System& system, const Body& body, const Forces& forces, double tolerance);
+    /// Requires one body, a chain. Throws what ChainDynamics throws.
+    ChainPart(const System& system, const Forces& forces, double tolerance);
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
-    [[nodiscard]] double energy_j() const override { return dynamics_.energy_j(output_.data()); }
-    [[nodiscard]] Loads loads() override { return dynamics_.loads(output_.data()); }
-    void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override {
-        dynamics_.velocities(output_.data(), vx_m_s, vy_m_s);
-    }
-    void tensions(std::vector<double>& tension_n) override { dynamics_.tensions(output_.data(), tension_n); }
     [[nodiscard]] std::uint64_t steps() const override;
-    [[nodiscard]] std::uint64_t rejected_steps() const override { return 0; }
 
   private:
     struct Mover {
@@ -166,11 +159,11 @@ class ChainPart final : public ExactPart {
         std::uint64_t steps = 0;
     };
 
+    [[nodiscard]] Dynamics& dynamics() const override { return dynamics_; }
     Status step(Mover& mover, StopCheck& stop);
 
-    ChainDynamics dynamics_;
-    std::vector<double> state_;   ///< each chain at the end of its last step
-    std::vector<double> output_;  ///< at the last time asked for
+    mutable ChainDynamics dynamics_;  ///< only its scratch memory changes
+    std::vector<double> state_;       ///< each chain at the end of its last step
     std::vector<Mover> movers_;
 };
 

@@ -15,12 +15,10 @@ namespace {
 constexpr double kStableOmegaH = 5.0;
 
 /// The unit of errors of positions: the length of a rope, the diagonal of a net's bounding box.
-double size_of(const System& system, const Body& body) {
-    if (body.is_chain) return links_length_m(system, body);
-    const auto extent = [&](const std::vector<double>& x_m) {
-        const auto first = x_m.begin() + static_cast<std::ptrdiff_t>(body.first_particle);
-        const auto [least, most] =
-            std::minmax_element(first, first + static_cast<std::ptrdiff_t>(body.particle_count));
+double size_of(const System& system) {
+    if (system.bodies.front().is_chain) return links_length_m(system, system.bodies.front());
+    const auto extent = [](const std::vector<double>& x_m) {
+        const auto [least, most] = std::minmax_element(x_m.begin(), x_m.end());
         return *most - *least;
     };
     return length(extent(system.x_m), extent(system.y_m));
@@ -28,26 +26,24 @@ double size_of(const System& system, const Body& body) {
 
 }  // namespace
 
-ElasticDynamics::ElasticDynamics(const System& system, const Body& body, const Forces& forces)
-    : first_particle_(body.first_particle),
-      count_(body.particle_count),
-      origin_m_{system.x_m[body.first_particle], system.y_m[body.first_particle]},
+ElasticDynamics::ElasticDynamics(const System& system, const Forces& forces)
+    : count_(system.particle_count()),
+      origin_m_{system.x_m.front(), system.y_m.front()},
       forces_(forces),
-      elastic_(system, body.first_particle, body.particle_count),
-      size_m_(size_of(system, body)),
-      force_n_(2 * body.particle_count, 0.0) {
-    assert(body.material.compliance_1_n > 0.0);
+      elastic_(system, 0, count_),
+      size_m_(size_of(system)),
+      force_n_(2 * count_, 0.0) {
+    assert(system.bodies.size() == 1 && system.bodies.front().material.compliance_1_n > 0.0);
     initial_state_.resize(4 * count_);
+    inverse_mass_1_kg_ = system.inverse_mass_1_kg;
     for (std::size_t i = 0; i < count_; ++i) {
-        const std::size_t particle = first_particle_ + i;
-        mass_kg_.push_back(system.is_pinned(particle) ? 0.0 : system.mass_kg[particle]);
-        inverse_mass_1_kg_.push_back(system.inverse_mass_1_kg[particle]);
-        falls_.push_back(system.is_pinned(particle) ? 0.0 : 1.0);
-        if (system.is_pinned(particle)) pins_.push_back({i, {system.x_m[particle], system.y_m[particle]}});
-        initial_state_[i] = system.x_m[particle] - origin_m_.x;
-        initial_state_[count_ + i] = system.y_m[particle] - origin_m_.y;
-        initial_state_[2 * count_ + i] = system.vx_m_s[particle];
-        initial_state_[3 * count_ + i] = system.vy_m_s[particle];
+        mass_kg_.push_back(system.is_pinned(i) ? 0.0 : system.mass_kg[i]);
+        falls_.push_back(system.is_pinned(i) ? 0.0 : 1.0);
+        if (system.is_pinned(i)) pins_.push_back({i, {system.x_m[i], system.y_m[i]}});
+        initial_state_[i] = system.x_m[i] - origin_m_.x;
+        initial_state_[count_ + i] = system.y_m[i] - origin_m_.y;
+        initial_state_[2 * count_ + i] = system.vx_m_s[i];
+        initial_state_[3 * count_ + i] = system.vy_m_s[i];
     }
     measure();
 }
@@ -96,12 +92,12 @@ void ElasticDynamics::derivative(const double* y, double* slope) {
 
 void ElasticDynamics::positions(const double* y, State& state) const {
     for (std::size_t i = 0; i < count_; ++i) {
-        state.x_m[first_particle_ + i] = origin_m_.x + y[i];
-        state.y_m[first_particle_ + i] = origin_m_.y + y[count_ + i];
+        state.x_m[i] = origin_m_.x + y[i];
+        state.y_m[i] = origin_m_.y + y[count_ + i];
     }
     for (const Pin& pin : pins_) {
-        state.x_m[first_particle_ + pin.particle] = pin.position_m.x;
-        state.y_m[first_particle_ + pin.particle] = pin.position_m.y;
+        state.x_m[pin.particle] = pin.position_m.x;
+        state.y_m[pin.particle] = pin.position_m.y;
     }
 }
 
@@ -117,8 +113,8 @@ double ElasticDynamics::energy_j(const double* y) const {
 
 void ElasticDynamics::velocities(const double* y, std::vector<double>& vx_m_s,
                                  std::vector<double>& vy_m_s) const {
-    std::copy_n(y + 2 * count_, count_, vx_m_s.begin() + static_cast<std::ptrdiff_t>(first_particle_));
-    std::copy_n(y + 3 * count_, count_, vy_m_s.begin() + static_cast<std::ptrdiff_t>(first_particle_));
+    std::copy_n(y + 2 * count_, count_, vx_m_s.begin());
+    std::copy_n(y + 3 * count_, count_, vy_m_s.begin());
 }
 
 Loads ElasticDynamics::loads(const double* y) {

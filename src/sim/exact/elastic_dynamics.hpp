@@ -22,8 +22,8 @@ namespace corda::sim {
 /// meet the tolerance, but the estimate for a step with a kink is less reliable than others.
 class ElasticDynamics final : public Dynamics {
   public:
-    /// Requires a compliance of the body's material.
-    ElasticDynamics(const System& system, const Body& body, const Forces& forces);
+    /// Requires one body, whose material has a compliance.
+    ElasticDynamics(const System& system, const Forces& forces);
 
     [[nodiscard]] const std::vector<double>& initial_state() const override { return initial_state_; }
 
@@ -46,12 +46,11 @@ class ElasticDynamics final : public Dynamics {
 
   private:
     struct Pin {
-        std::size_t particle = 0;  ///< index in the body
-        Vec2 position_m;           ///< relative to the system's origin, to the last bit
+        std::size_t particle = 0;
+        Vec2 position_m;  ///< relative to the system's origin, to the last bit
     };
     void measure();
 
-    std::size_t first_particle_;
     std::size_t count_;
     Vec2 origin_m_;  ///< of a state, relative to the system's origin
     Forces forces_;

@@ -33,31 +33,6 @@ constexpr double kShareOfAStep = 0.01;
 /// Share of a step below which the error estimate is rounding alone.
 constexpr double kMinShare = 1e-15;
 
-}  // namespace
-
-StepControl step_control(double inverse_timescale_1_s, double tolerance) {
-    assert(tolerance >= ExactDef::kMinTolerance && tolerance <= ExactDef::kMaxTolerance);
-    const double pace = std::sqrt(std::sqrt(std::sqrt(std::sqrt(tolerance))));
-    return {std::max(kShareOfAStep * tolerance, kMinShare), pace * kFirstStep / inverse_timescale_1_s,
-            pace * kMaxStep / inverse_timescale_1_s, kMinStep / inverse_timescale_1_s};
-}
-
-OdePart::OdePart(std::unique_ptr<Dynamics> dynamics, double tolerance)
-    : dynamics_(std::move(dynamics)),
-      output_(dynamics_->initial_state()),
-      integrator_(*dynamics_, dynamics_->initial_state(), dynamics_->error_scales(),
-                  step_control(dynamics_->inverse_timescale_1_s(), tolerance)) {}
-
-Status OdePart::advance_to(double time_s, State& state, StopCheck& stop) {
-    if (integrator_.advance_to(time_s, stop) == Status::kDiverged) return Status::kDiverged;
-    integrator_.interpolate(time_s, output_.data());
-    dynamics_->project(output_.data());
-    dynamics_->positions(output_.data(), state);
-    return Status::kOk;
-}
-
-namespace {
-
 /// The series of a longer rope do not fit into a processor's own cache, and fetching them costs more than
 /// longer steps save: they take half the time of Dop853 at 1000 links, the same at 3000, 1.6 times as much at
 /// 100 000.
@@ -79,32 +54,29 @@ void refuse_rigid_graph(const Body& body) {
         "method exact moves rigid links only if they form an open chain, not a closed rope or a net");
 }
 
-/// The part that moves a string of rigid links.
-std::unique_ptr<ExactPart> string_part(const System& system, const Forces& forces, const ExactDef& def,
-                                       StopCheck& stop) {
-    const Body& body = system.bodies.front();
-    if (!body.is_chain) {
-        throw Refusal(Refusal::Reason::kRigidStringGraph,
-                      "method exact moves a string of rigid links only if it is an open chain");
-    }
-    return std::make_unique<StringPart>(system, body, forces, def.tolerance, stop);
+void refuse_rigid_string_graph(const Body& body) {
+    if (body.is_chain) return;
+    throw Refusal(Refusal::Reason::kRigidStringGraph,
+                  "method exact moves a string of rigid links only if it is an open chain");
 }
 
-/// The part that moves a body.
+/// Makes the part that moves the only body of a system.
 std::unique_ptr<ExactPart> make_part(const System& system, const Forces& forces, const ExactDef& def,
                                      const GoesOn& goes_on) {
     StopCheck stop(goes_on);
     stop.spend(1 + system.particle_count());
     const Body& body = system.bodies.front();
     if (body.material.compliance_1_n > 0.0) {
-        return std::make_unique<OdePart>(std::make_unique<ElasticDynamics>(system, body, forces),
-                                         def.tolerance);
+        return std::make_unique<OdePart>(std::make_unique<ElasticDynamics>(system, forces), def.tolerance);
     }
     if (!body.material.is_string) refuse_rigid_graph(body);
     refuse_imaginary_bars(system);
-    if (body.material.is_string) return string_part(system, forces, def, stop);
+    if (body.material.is_string) {
+        refuse_rigid_string_graph(body);
+        return std::make_unique<StringPart>(system, forces, def.tolerance, stop);
+    }
     if (body.link_count <= kMaxLinksOfSeries && system.bends.empty()) {
-        return std::make_unique<ChainPart>(system, body, forces, def.tolerance);
+        return std::make_unique<ChainPart>(system, forces, def.tolerance);
     }
     return std::make_unique<OdePart>(std::make_unique<ChainDynamics>(system, system.bodies, forces),
                                      def.tolerance);
@@ -117,6 +89,27 @@ bool conserves_energy_in(const System& system, const Forces& forces) {
 }
 
 }  // namespace
+
+StepControl step_control(double inverse_timescale_1_s, double tolerance) {
+    assert(tolerance >= ExactDef::kMinTolerance && tolerance <= ExactDef::kMaxTolerance);
+    const double pace = std::sqrt(std::sqrt(std::sqrt(std::sqrt(tolerance))));
+    return {std::max(kShareOfAStep * tolerance, kMinShare), pace * kFirstStep / inverse_timescale_1_s,
+            pace * kMaxStep / inverse_timescale_1_s, kMinStep / inverse_timescale_1_s};
+}
+
+OdePart::OdePart(std::unique_ptr<Dynamics> dynamics, double tolerance)
+    : ExactPart(dynamics->initial_state()),
+      dynamics_(std::move(dynamics)),
+      integrator_(*dynamics_, dynamics_->initial_state(), dynamics_->error_scales(),
+                  step_control(dynamics_->inverse_timescale_1_s(), tolerance)) {}
+
+Status OdePart::advance_to(double time_s, State& state, StopCheck& stop) {
+    if (integrator_.advance_to(time_s, stop) == Status::kDiverged) return Status::kDiverged;
+    integrator_.interpolate(time_s, output_.data());
+    dynamics_->project(output_.data());
+    dynamics_->positions(output_.data(), state);
+    return Status::kOk;
+}
 
 Exact::Exact(const System& system, const Forces& forces, const ExactDef& def, double /*frame_interval_s*/,
              const GoesOn& goes_on)

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "corda/sim/exact/dop853.hpp"
@@ -10,24 +12,30 @@
 
 namespace corda::sim {
 
-/// A body that method `exact` integrates with steps of its own.
+/// A body that method `exact` integrates with its own steps.
 class ExactPart {
   public:
-    ExactPart() = default;
     ExactPart(const ExactPart&) = delete;
     ExactPart& operator=(const ExactPart&) = delete;
     virtual ~ExactPart() = default;
 
-    /// Writes the positions of the body's particles at `time_s` to `state`; leaves the rest of it alone.
+    // See Solver.
     virtual Status advance_to(double time_s, State& state, StopCheck& stop) = 0;
-
-    // See Solver; of this body alone.
-    [[nodiscard]] virtual double energy_j() const = 0;
-    [[nodiscard]] virtual Loads loads() = 0;
-    virtual void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) = 0;
-    virtual void tensions(std::vector<double>& tension_n) = 0;
+    [[nodiscard]] virtual double energy_j() const { return dynamics().energy_j(output_.data()); }
+    [[nodiscard]] Loads loads() { return dynamics().loads(output_.data()); }
+    void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) const {
+        dynamics().velocities(output_.data(), vx_m_s, vy_m_s);
+    }
+    void tensions(std::vector<double>& tension_n) { dynamics().tensions(output_.data(), tension_n); }
     [[nodiscard]] virtual std::uint64_t steps() const = 0;
-    [[nodiscard]] virtual std::uint64_t rejected_steps() const = 0;
+    [[nodiscard]] virtual std::uint64_t rejected_steps() const { return 0; }
+
+  protected:
+    explicit ExactPart(std::vector<double> output = {}) : output_(std::move(output)) {}
+    /// The equations of motion at the last requested time.
+    [[nodiscard]] virtual Dynamics& dynamics() const = 0;
+
+    std::vector<double> output_;  ///< state of dynamics() at the last requested time
 };
 
 /// Bounds of the steps for a motion of this inverse time scale (Dynamics::inverse_timescale_1_s) and
@@ -40,18 +48,13 @@ class OdePart final : public ExactPart {
     OdePart(std::unique_ptr<Dynamics> dynamics, double tolerance);
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
-    [[nodiscard]] double energy_j() const override { return dynamics_->energy_j(output_.data()); }
-    [[nodiscard]] Loads loads() override { return dynamics_->loads(output_.data()); }
-    void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override {
-        dynamics_->velocities(output_.data(), vx_m_s, vy_m_s);
-    }
-    void tensions(std::vector<double>& tension_n) override { dynamics_->tensions(output_.data(), tension_n); }
     [[nodiscard]] std::uint64_t steps() const override { return integrator_.accepted_steps(); }
     [[nodiscard]] std::uint64_t rejected_steps() const override { return integrator_.rejected_steps(); }
 
   private:
+    [[nodiscard]] Dynamics& dynamics() const override { return *dynamics_; }
+
     std::unique_ptr<Dynamics> dynamics_;
-    std::vector<double> output_;  ///< state at the last time asked for
     Dop853 integrator_;
 };
 

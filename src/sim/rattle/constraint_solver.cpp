@@ -80,7 +80,7 @@ namespace {
 constexpr double kSlack = 1e-14;
 /// Of the coordinates and, where a check moves its start by rounding, of all lengths together.
 constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
-/// The sine of the angle by which a bar of a straight row may turn from the one before, far above what kSlack
+/// The sine of the angle by which a bar of a straight row may turn from its predecessor, far above what kSlack
 /// leaves and rounding.
 constexpr double kSameDirection = 1e-5;
 

@@ -69,6 +69,10 @@ class Rattle final : public Solver {
     [[nodiscard]] static std::string text_of(const RattleDef& def);
     [[nodiscard]] static double step_cost_ns(const RattleDef& def, const Body& body);
     [[nodiscard]] static std::optional<double> fixed_step_s(const RattleDef& def) { return def.step_s; }
+    /// Allows for kLoadFactor times the weight.
+    [[nodiscard]] static double expected_steps(const RattleDef& def, const Body& body, double frequency_1_s,
+                                               double time_s);
+    [[nodiscard]] static double relative_step_work(const RattleDef& def, const Body& body);
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;

@@ -365,7 +365,7 @@ TEST(Trails, AreSmooth) {
     for (const double left : {0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.05})
         path.push_back({{300.0 * std::cos(1.5 * left), 300.0 * std::sin(1.5 * left)}, left});
     add_trail(path, 1.0, {}, list);
-    for (std::size_t i = 4; i < 20; ++i) {  // but for the first step, which has no neighbour before it
+    for (std::size_t i = 4; i < 20; ++i) {  // the first step has no predecessor
         const Capsule& piece = list.capsules[i];
         EXPECT_NEAR(std::hypot(piece.ax, piece.ay), 300.0, 0.5) << i;  // measured 0.12; chords: 3.4
     }

@@ -31,31 +31,11 @@ double distance_m(const System& string, const Bar& link) {
     return length(string.x_m[link.b] - string.x_m[link.a], string.y_m[link.b] - string.y_m[link.a]);
 }
 
-/// The body as a system of its own, with its first particle at (0, 0).
-System system_of(const System& system, const Body& body) {
-    System string;
-    const std::size_t first = body.first_particle;
-    const std::size_t end = first + body.particle_count;
-    const auto part = [&](const std::vector<double>& of) {
-        return std::vector<double>(of.begin() + static_cast<std::ptrdiff_t>(first),
-                                   of.begin() + static_cast<std::ptrdiff_t>(end));
-    };
-    string.x_m = part(system.x_m);
-    string.y_m = part(system.y_m);
-    string.vx_m_s = part(system.vx_m_s);
-    string.vy_m_s = part(system.vy_m_s);
-    string.mass_kg = part(system.mass_kg);
-    string.inverse_mass_1_kg = part(system.inverse_mass_1_kg);
+/// A copy of the system relative to its first particle.
+System relative_to_first(System string) {
     const Vec2 offset{string.x_m[0], string.y_m[0]};
     for (double& x : string.x_m) x -= offset.x;
     for (double& y : string.y_m) y -= offset.y;
-    for (std::size_t k = 0; k + 1 < body.particle_count; ++k) {
-        const auto near = static_cast<std::uint32_t>(k);
-        string.bars.push_back({near, near + 1, 1, system.bars[body.first_bar + k].rest_m});
-    }
-    Body whole = body;
-    whole.first_particle = whole.first_bar = 0;
-    string.bodies.push_back(whole);
     return string;
 }
 
@@ -74,12 +54,10 @@ std::vector<std::uint8_t> links_at_rest_length(const System& string) {
     return is_taut;
 }
 
-void refuse_bends(const System& system, const Body& body) {
-    for (const Bend& bend : system.bends) {
-        if (bend.b < body.first_particle || bend.b >= body.first_particle + body.particle_count) continue;
-        throw Refusal(Refusal::Reason::kRigidBendingString,
-                      "method exact moves a string of rigid links only if it does not resist bending");
-    }
+void refuse_bends(const System& system) {
+    if (system.bends.empty()) return;
+    throw Refusal(Refusal::Reason::kRigidBendingString,
+                  "method exact moves a string of rigid links only if it does not resist bending");
 }
 
 void refuse_long_links(const System& string) {
@@ -112,19 +90,16 @@ void refuse_taut(const System& string) {
 
 }  // namespace
 
-StringPart::StringPart(const System& system, const Body& body, const Forces& forces, double tolerance,
-                       StopCheck& stop)
+StringPart::StringPart(const System& system, const Forces& forces, double tolerance, StopCheck& stop)
     : forces_(forces),
       tolerance_(tolerance),
-      offset_m_{system.x_m[body.first_particle], system.y_m[body.first_particle]},
-      first_particle_(body.first_particle),
-      string_(system_of(system, body)),
+      offset_m_{system.x_m.front(), system.y_m.front()},
+      string_(relative_to_first(system)),
       is_taut_(links_at_rest_length(string_)),
       contacts_(string_, forces, tolerance),
       finder_(string_.particle_count()) {
-    assert(body.is_chain && body.material.is_string && body.material.compliance_1_n == 0.0);
     stop.spend(1 + string_.particle_count());
-    refuse_bends(system, body);
+    refuse_bends(system);
     refuse_long_links(string_);
     refuse_taut(string_);
     if (!start(0.0, stop)) {
@@ -148,8 +123,8 @@ Status StringPart::advance_to(double time_s, State& state, StopCheck& stop) {
     dynamics_->positions(output_.data(), local_);
     for (std::size_t i = 0; i < string_.particle_count(); ++i) {
         if (string_.is_pinned(i)) continue;
-        state.x_m[first_particle_ + i] = offset_m_.x + local_.x_m[i];
-        state.y_m[first_particle_ + i] = offset_m_.y + local_.y_m[i];
+        state.x_m[i] = offset_m_.x + local_.x_m[i];
+        state.y_m[i] = offset_m_.y + local_.y_m[i];
     }
     return Status::kOk;
 }

@@ -25,20 +25,13 @@ namespace corda::sim {
 /// Dop853, nothing depends on the times that are asked for. Memory is allocated at events only.
 class StringPart final : public ExactPart {
   public:
-    /// `body`: a chain of `system` with is_string and without compliance. Throws corda::Refusal if it resists
+    /// Requires one body, a chain with is_string and without compliance. Throws corda::Refusal if it resists
     /// bending, if a link is longer than its rest length, if it is taut between two pins, or if its start
-    /// does not determine which links are taut. `stop` hears of the work that finding them takes.
-    StringPart(const System& system, const Body& body, const Forces& forces, double tolerance,
-               StopCheck& stop);
+    /// does not determine which links are taut. `stop` counts the work of finding them.
+    StringPart(const System& system, const Forces& forces, double tolerance, StopCheck& stop);
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;
-    /// Slack links carry no tension.
-    [[nodiscard]] Loads loads() override { return dynamics_->loads(output_.data()); }
-    void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override {
-        dynamics_->velocities(output_.data(), vx_m_s, vy_m_s);
-    }
-    void tensions(std::vector<double>& tension_n) override { dynamics_->tensions(output_.data(), tension_n); }
     [[nodiscard]] std::uint64_t steps() const override;
     [[nodiscard]] std::uint64_t rejected_steps() const override;
 
@@ -46,6 +39,7 @@ class StringPart final : public ExactPart {
     [[nodiscard]] std::uint64_t events() const { return events_; }
 
   private:
+    [[nodiscard]] Dynamics& dynamics() const override { return *dynamics_; }
     /// Finds the taut links of string_ and starts the motion there, with a first step of at least
     /// `first_step_s` if the tolerance allows. False if the taut links cannot be found.
     [[nodiscard]] bool start(double first_step_s, StopCheck& stop);
@@ -57,8 +51,7 @@ class StringPart final : public ExactPart {
     Forces forces_;
     double tolerance_;
     Vec2 offset_m_;                      ///< position of string_ in the system
-    std::size_t first_particle_;         ///< in the system
-    System string_;                      ///< the body alone, relative to its first particle; at start_s_
+    System string_;                      ///< the system relative to its first particle, at start_s_
     std::vector<std::uint8_t> is_taut_;  ///< one per link, from start_s_ on
     StringContacts contacts_;
     StringEvents finder_;
@@ -67,7 +60,6 @@ class StringPart final : public ExactPart {
     double start_s_ = 0.0;
     double known_s_ = 0.0;           ///< until then the motion is that of integrator_
     std::optional<double> event_s_;  ///< if known_s_ is an event: the time of integrator_ there
-    std::vector<double> output_;     ///< state at the last time asked for
     State local_;                    ///< positions of string_'s particles there; scratch
     std::uint64_t events_ = 0;
     std::uint64_t burst_ = 0;  ///< events since burst_s_

@@ -152,7 +152,7 @@ TEST_P(ChecksOfARope, AskWhetherToGoOnInTheCallersThreadAlone) {
     checks.start(30.0);  // a second of work or more
     try {
         static_cast<void>(checks.finish());
-        ADD_FAILURE() << "nobody asked";
+        ADD_FAILURE() << "the callback was not called";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ExitCode::kInterrupted);
     }

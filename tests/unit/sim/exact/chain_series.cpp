@@ -93,8 +93,8 @@ double largest_distance_m(const State& a, const State& b) {
 TEST(ChainPart, GivesTheSameBitsWhateverTimesAreAskedFor) {
     for (const test::Pins pins : {test::Pins::kNone, test::Pins::kStart, test::Pins::kBoth}) {
         const System system = test::chain(pins);
-        ChainPart direct(system, system.bodies.front(), WorldDef{}, 1e-9);
-        ChainPart often(system, system.bodies.front(), WorldDef{}, 1e-9);
+        ChainPart direct(system, WorldDef{}, 1e-9);
+        ChainPart often(system, WorldDef{}, 1e-9);
         State state = start_of(system);
         State other = start_of(system);
         ASSERT_EQ(direct.advance_to(0.9, state, test::unstopped), Status::kOk);
@@ -110,7 +110,7 @@ TEST(ChainPart, GivesTheSameBitsWhateverTimesAreAskedFor) {
 TEST(ChainPart, ComesNearerToTheTruthByMoreSteps) {
     const System system = test::chain(test::Pins::kStart);
     const auto run = [&](double tolerance) {
-        ChainPart part(system, system.bodies.front(), WorldDef{}, tolerance);
+        ChainPart part(system, WorldDef{}, tolerance);
         State state = start_of(system);
         EXPECT_EQ(part.advance_to(0.5, state, test::unstopped), Status::kOk);
         EXPECT_EQ(part.rejected_steps(), 0U);
@@ -132,8 +132,8 @@ TEST(ChainPart, LetsEachChainTakeStepsOfItsOwn) {
     const System both = build_system({&rope, 1});
     RopeDef side = reference::rope_through({{0.0, 0.0}, {-1.0, 0.0}});
     const System alone = build_system({&side, 1});
-    ChainPart two(both, both.bodies.front(), WorldDef{}, 1e-9);
-    ChainPart one(alone, alone.bodies.front(), WorldDef{}, 1e-9);
+    ChainPart two(both, WorldDef{}, 1e-9);
+    ChainPart one(alone, WorldDef{}, 1e-9);
     State state = start_of(both);
     State expected = start_of(alone);
     ASSERT_EQ(two.advance_to(2.0, state, test::unstopped), Status::kOk);
@@ -145,7 +145,7 @@ TEST(ChainPart, LetsEachChainTakeStepsOfItsOwn) {
 
 TEST(ChainPart, CannotReachATimeThatIsNone) {
     const System system = test::chain(test::Pins::kStart);
-    ChainPart part(system, system.bodies.front(), WorldDef{}, 1e-9);
+    ChainPart part(system, WorldDef{}, 1e-9);
     State state = start_of(system);
     EXPECT_EQ(part.advance_to(std::numeric_limits<double>::infinity(), state, test::unstopped),
               Status::kDiverged);
