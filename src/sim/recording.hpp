@@ -69,7 +69,7 @@ class Recording {
 
     /// Number of states added.
     [[nodiscard]] std::size_t size() const { return energy_change_j_.size(); }
-    /// Whether state `i` was added and is kept.
+    /// True if state `i` was added and is kept.
     [[nodiscard]] bool holds(std::size_t i) const { return i < figures_.size(); }
     /// Writes state `i`, which must be held, to `state`.
     void read(std::size_t i, State& state) const;

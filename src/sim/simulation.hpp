@@ -27,7 +27,7 @@ struct Figures {
     double energy_change_j = 0.0;  ///< E(t) - E(0), kinetic plus potential, of all bodies, in J
 };
 
-/// The largest figures of a run over all times that were asked for.
+/// The largest figures of a run over all requested times.
 struct Diagnostics {
     std::uint64_t steps = 0;
     Figures largest;

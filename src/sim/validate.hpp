@@ -26,7 +26,7 @@ class Refusal : public Error {
         kTautBetweenPins,     ///< a rigid rope that is straight between two pins
         kDependentBars,       ///< `rattle`: the lengths of rigid bars depend on each other
         kMaterial,            ///< `relaxation`: compliance, a string or bending
-        kUnknownTensions,     ///< tensions are asked for that the method does not know
+        kUnknownTensions,     ///< tensions are requested that the method does not know
     };
 
     Refusal(Reason reason, const std::string& problem)

@@ -14,7 +14,7 @@ constexpr double kMinViewMetres = 1e-6;
 /// A scale at which pixels do not count.
 constexpr double kFinest = 1e100;
 
-/// What is drawn, seen along one axis: around `low_m` it extends `before_px` towards smaller coordinates,
+/// Extent of a drawn item along one axis: around `low_m` it extends `before_px` towards smaller coordinates,
 /// around `high_m` `after_px` towards larger ones.
 struct Span {
     double low_m;
@@ -23,7 +23,7 @@ struct Span {
     double after_px;
 };
 
-/// All that is drawn, along one axis.
+/// All extents along one axis.
 class Axis {
   public:
     explicit Axis(std::vector<Span> spans) : spans_(std::move(spans)) {}
@@ -39,7 +39,7 @@ class Axis {
     /// The largest scale at which all fits into `room_px`. Thick lines may leave no room in a tiny picture;
     /// the motion always gets at least a tenth.
     [[nodiscard]] double scale(double room_px) const {
-        // What is drawn grows with the scale by the convex function high - low: Newton's method comes down to
+        // The extent grows with the scale by the convex function high - low: Newton's method comes down to
         // the root in a finite number of steps.
         double scale = room_px / extent_m(ends_at(kFinest));
         const double least = 0.1 * scale;
@@ -53,7 +53,7 @@ class Axis {
         return scale;
     }
 
-    /// The same if `center_m` is in the middle of the room.
+    /// The same with `center_m` in the middle of the room.
     [[nodiscard]] double scale(double room_px, double center_m) const {
         double scale = 1e300;
         double least = 1e300;
@@ -70,7 +70,7 @@ class Axis {
     }
 
   private:
-    /// What reaches farthest in both directions.
+    /// The items that reach farthest in both directions.
     struct Ends {
         const Span* low;
         const Span* high;

@@ -133,7 +133,7 @@ double rounded_end(double value) {
     return 10.0 * power / inverse;
 }
 
-/// Whether a ground is light, as far as it can be seen.
+/// True if the background is light.
 bool is_light(const StyleDef& style) {
     const Color text = text_color(look_of(style));
     return text.g < 128;

@@ -68,7 +68,7 @@ Range range_of(const PlotData& data, double CurvePoint::*value) {
     return range;
 }
 
-/// Whether an axis of that extent has steps.
+/// True if an axis of that extent has steps.
 bool can_be_divided(double extent) {
     constexpr double kLeast = 1e-290;
     return extent >= kLeast && extent <= 1.0 / kLeast;

@@ -308,7 +308,7 @@ Tint SceneView::tint_of(std::size_t body, std::size_t link, const State& state) 
 void SceneView::draw_body(std::size_t i, const Positions& positions, DrawList& list) const {
     const Body& body = system_->bodies[i];
     const BodyLook& look = bodies_[i];
-    // What is behind the first body is the ground.
+    // Only the background is behind the first body.
     const double halo_px = style_.halo && i > 0 ? kHaloPerWidth * 2.0 * look.radius_px : 0.0;
     const bool is_tinted = scale_.has_value() || !look.link_colors.empty();
     list.add_layer(look.color, is_tinted);

@@ -59,7 +59,7 @@ void Supports::add_pins(const System& system, const Body& body, std::span<const 
     const double top_m = std::max(local(bounds.min_m()).up, local(bounds.max_m()).up);
     const double hidden_m = kHidden * links_length_m(system, body);
     for (std::size_t i = body.first_particle; i < end; ++i) {
-        // What is pinned beside a pin of a rope is clamped by it.
+        // A pinned particle next to a pin of a rope is a clamp.
         const bool is_clamped = !body.is_net && i > body.first_particle && system.is_pinned(i - 1);
         if (!system.is_pinned(i) || is_clamped) continue;
         const Vec2 pin_m{system.x_m[i], system.y_m[i]};

@@ -169,7 +169,7 @@ class Comparison {
             !(kBoundPerDifference * records_.back().largest_m <= kHopeless * (*tolerance_m_)(bounds_so_far));
     }
 
-    /// Whether the difference is more than the tolerance will ever allow.
+    /// True if the difference is more than the tolerance will ever allow.
     [[nodiscard]] bool has_parted() const { return has_parted_; }
 
     void conclude(const MotionBounds& bounds, double hidden_m, Trial& trial) const {

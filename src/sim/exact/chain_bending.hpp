@@ -26,7 +26,7 @@ struct ChainLink {
 ///   q_i = (k_i S_i - k_{i-1} S_{i-1}) / a_i,   S_i = u_i x u_{i+1},   k_i between links i and i+1.
 class ChainBending {
   public:
-    /// A link between two pins, which bends hold the link beside it to.
+    /// A fixed link between two pins, to which bends hold the adjacent link.
     struct Clamp {
         std::size_t link = 0;  ///< index in a state of the link that moves
         // The link that does not move.
@@ -46,7 +46,7 @@ class ChainBending {
     ChainBending(const System& system, const std::vector<ChainLink>& links,
                  const std::vector<double>& length_m);
 
-    /// Whether there are no bends.
+    /// True if there are no bends.
     [[nodiscard]] bool empty() const { return couple_n_.empty(); }
 
     /// Computes couple_n() and the forces of clamps() in a state of the ChainDynamics.

@@ -34,7 +34,7 @@ class ChainDynamics final : public Dynamics {
     struct Chain {
         std::size_t first_link = 0;
         std::size_t link_count = 0;
-        std::size_t first_particle = 0;  ///< the one that link 0 starts at
+        std::size_t first_particle = 0;  ///< start of link 0
         bool runs_backwards = false;     ///< towards lower indices of particles
         bool starts_pinned = true;
         bool ends_pinned = false;
@@ -82,7 +82,7 @@ class ChainDynamics final : public Dynamics {
     [[nodiscard]] double energy_j(const double* y) const override;
     [[nodiscard]] Loads loads(const double* y) override;
 
-    /// Entry i is that of the link that joins particle i of the system to the next one; 0 if none does.
+    /// Entry i belongs to the link between particle i of the system and the next one; 0 without a link.
     void tensions(const double* y, std::vector<double>& tension_n) override;
 
     /// Brings the end of a chain between two pins back to its pin, and the end's velocity to 0, by the least

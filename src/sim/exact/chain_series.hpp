@@ -139,8 +139,8 @@ class ChainSeries {
 /// steps of its own.
 ///
 /// The length of a step follows from the last terms of its series, and the series is the motion at all times
-/// within the step. Steps depend on the start alone, never on the times that are asked for, so the same bits
-/// come out whatever these are.
+/// within the step. Steps depend on the start alone, never on the requested times, so the bits are always the
+/// same.
 class ChainPart final : public ExactPart {
   public:
     /// Requires one body, a chain. Throws what ChainDynamics throws.

@@ -58,8 +58,8 @@ struct StepControl {
 /// digits). The error of a step is the largest of all components, not their mean: one link that whips must be
 /// noticed among thousands that hang still.
 ///
-/// Steps depend on the start alone, never on the times that are asked for, so the same bits come out whatever
-/// these are. Its only operations are +, -, *, / and the square root.
+/// Steps depend on the start alone, never on the requested times, so the bits are always the same. Its only
+/// operations are +, -, *, / and the square root.
 class Dop853 {
   public:
     /// `ode` must outlive it. `start` needs no projection.

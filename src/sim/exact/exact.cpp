@@ -19,8 +19,8 @@ namespace corda::sim {
 namespace {
 
 // In parts of the time scale. The first two are for a tolerance of 1 and fall with its 16th root: a run and
-// its check at a tolerance a hundred times tighter, whose difference tells the error, must not take the same
-// steps even if nothing else limits them.
+// its check at a tolerance a hundred times tighter, whose difference estimates the error, must not take the
+// same steps even if nothing else limits them.
 constexpr double kFirstStep = 4e-3;
 constexpr double kMaxStep = 1.0;
 constexpr double kMinStep = 1e-14;

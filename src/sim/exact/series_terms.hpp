@@ -94,7 +94,7 @@ CORDA_INLINE void factorise(SeriesArrays& a) {
     }
 }
 
-/// What is known of coefficient k of a block before coefficient k of the tensions is.
+/// Parts of coefficient k of a block that do not depend on coefficient k of the tensions.
 struct Known {
     Four load{};       ///< right-hand sides of the tensions, without the terms of the joint before each link
     Four load_next{};  ///< terms of a link's own joint in the right-hand side of the next link

@@ -15,7 +15,7 @@ namespace corda::sim {
 /// a further evaluation: it is exactly | span du |^2, du being the change of the bar's relative velocity.
 class ChainConstraints final : public ConstraintSolver {
   public:
-    /// Whether all of these bars join a particle i to particle i + 1, in ascending order. True if there are
+    /// True if all of these bars join a particle i to particle i + 1, in ascending order. True if there are
     /// none.
     [[nodiscard]] static bool suits(std::span<const Bar> bars);
 

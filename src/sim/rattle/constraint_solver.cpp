@@ -80,8 +80,8 @@ namespace {
 constexpr double kSlack = 1e-14;
 /// Of the coordinates and, where a check moves its start by rounding, of all lengths together.
 constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
-/// The sine of the angle by which a bar of a straight row may turn from its predecessor, far above what kSlack
-/// leaves and rounding.
+/// The sine of the angle by which a bar of a straight row may turn from its predecessor, far above what
+/// kSlack leaves and rounding.
 constexpr double kSameDirection = 1e-5;
 
 struct End {
@@ -143,7 +143,7 @@ class Rows {
         return nearest;
     }
 
-    /// Whether a row that starts like this is straight and ends at a held particle; row_ are then the ones
+    /// True if a row that starts like this is straight and ends at a held particle; row_ are then the ones
     /// between.
     [[nodiscard]] bool find_row(std::uint32_t from, const End& first) {
         row_.clear();

@@ -26,7 +26,7 @@ struct Motion {
     std::vector<double> vx_lost_m_s;
     std::vector<double> vy_lost_m_s;
 
-    /// The start of a system.
+    /// The motion at the start of a system.
     [[nodiscard]] static Motion start_of(const System& system);
 };
 
@@ -70,14 +70,14 @@ class ConstraintSolver {
     [[nodiscard]] virtual bool move(const Stage& stage, Motion& motion, std::span<double> impulse,
                                     StopCheck& stop) = 0;
 
-    /// Whether the impulses of the last move() tell the tensions. Those of bars near the line in which they
-    /// depend on each other are differences of second order over the angle to it.
+    /// True if the impulses of the last move() determine the tensions. For bars close to a line in which they
+    /// depend on each other, the impulses are differences of second order over the angle to it.
     [[nodiscard]] virtual bool tells_tensions() const { return true; }
 
-    /// Moves on by `span_s` from where move() finds no way, as a rule because bars have come to depend on
-    /// each other: to the positions nearest to x + span v, weighted with the masses, at which the bars have
-    /// their lengths, and with the part of v that turns no bar into its length there. Of first order. False
-    /// if there are none near.
+    /// Advances by `span_s` where move() fails, usually because bars have come to depend on each other: to
+    /// the positions nearest to x + span v, weighted with the masses, at which the bars have their lengths,
+    /// and with the part of v that turns no bar into its length there. Of first order. False if there are
+    /// none near.
     [[nodiscard]] virtual bool leap(double span_s, Motion& motion, StopCheck& stop) {
         static_cast<void>(span_s), static_cast<void>(motion), static_cast<void>(stop);
         return false;
@@ -88,7 +88,7 @@ class ConstraintSolver {
     /// False if it cannot.
     [[nodiscard]] virtual bool solve(const Motion& motion, std::span<double> right, StopCheck& stop) = 0;
 
-    /// Whether the bars of the last solve() did not depend on each other, so that it was of full rank.
+    /// True if the bars of the last solve() did not depend on each other, so that it was of full rank.
     [[nodiscard]] virtual bool had_full_rank() const { return true; }
 
     /// The square of the largest angular frequency, 1 / s^2, of small motions about a state whose bars have
@@ -96,7 +96,7 @@ class ConstraintSolver {
     /// particles of 2 w sum |multiplier|.
     [[nodiscard]] virtual double square_frequency(std::span<const double> multiplier) const = 0;
 
-    /// The same of the states to expect: those in which each bar carries this acceleration times the mass
+    /// The same for expected states: those in which each bar carries this acceleration times the mass
     /// that may hang on it, and those with twice these multipliers.
     [[nodiscard]] virtual double expected_square_frequency(const System& system, double acceleration_m_s2,
                                                            std::span<const double> multiplier) const;
@@ -105,11 +105,11 @@ class ConstraintSolver {
     /// seen from the pin; all mass between two pins, or if it is not known; 0 without a pin.
     [[nodiscard]] virtual std::vector<double> carried_mass(std::span<const double> mass_kg) const = 0;
 
-    /// Whether the forces and the lengths determine every bar's tension. Bars that others imply could share
+    /// True if the forces and the lengths determine every bar's tension. Bars that others imply could share
     /// the load in any way.
     [[nodiscard]] virtual bool determines_tensions() const { return true; }
 
-    /// Per particle; 0 if it is held.
+    /// Inverse mass of each particle; 0 if held.
     [[nodiscard]] const std::vector<double>& inverse_mass_1_kg() const { return inverse_mass_1_kg_; }
 
     /// The bars whose lengths are kept by impulses, in the order of `impulse`.

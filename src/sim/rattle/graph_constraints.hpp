@@ -79,10 +79,10 @@ class GraphConstraints final : public ConstraintSolver {
     [[nodiscard]] bool is_regular(const Motion& motion, StopCheck& stop);
     /// Moves the links that others imply to implied_, as far as a factorisation with this raise shows them.
     void leave_out_implied(const Motion& start, double raise, StopCheck& stop);
-    /// Whether regular links leave only the motions of a rigid body.
+    /// True if regular links leave only the motions of a rigid body.
     [[nodiscard]] bool is_rigid() const;
     [[nodiscard]] Plate plate_of(const System& system) const;
-    /// Whether every motion from these positions that keeps the links' lengths keeps those of the implied
+    /// True if every motion from these positions that keeps the links' lengths keeps those of the implied
     /// bars, to second order.
     [[nodiscard]] bool stay_implied(Motion motion, StopCheck& stop);
     [[nodiscard]] bool meet_implied(const Motion& motion) const;

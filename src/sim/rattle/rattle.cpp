@@ -67,7 +67,7 @@ constexpr double kJoinShare = 0.8;
 /// A step is divided into at most 2^24 parts, so that a step of 1 s can follow frequencies of 1e7 / s.
 constexpr int kMaxLevel = 24;
 constexpr std::uint64_t kMinParts = std::uint64_t{1} << kMaxLevel;
-/// A stage whose kick is this much shorter than its span does not tell the tension.
+/// A stage whose kick is this much shorter than its span does not determine the tension.
 constexpr double kShortKick = 1e-3;
 
 void refuse_rigid_strings(const System& system) {

@@ -37,13 +37,13 @@ struct Composition {
 /// acceleration (Forces) plus the forces of bars that stretch and ropes that resist bending (ElasticForces)
 /// over the mass; c is the drag, which is split off symmetrically and exact. Without rigid bars this is the
 /// leapfrog. q and the next stage's p lie along the same bars, and p makes up for any q: the solver leaves q
-/// out between stages, merges the half kicks that meet, and computes q only for states that it hands out. The
+/// out between stages, merges adjacent half kicks, and computes q only for requested states. The
 /// positions are the same. When a string that stretches comes taut, its force has a kink, and errors are of
 /// order 2 whatever the composition.
 ///
 /// Grid point n is at n h, h being the step; `steps()` counts grid steps. A time between two grid points is
 /// reached by one shorter step from the grid point before it, on a copy, so that the trajectory does not
-/// depend on the times that are asked for.
+/// depend on the requested times.
 ///
 /// A grid step is taken in 2, 4, 8, ... parts if it is unstable (step times a bound on the largest frequency,
 /// some 7 % too large, which follows from the tensions and the elastic stiffness), if a bar turns by more
@@ -52,8 +52,8 @@ struct Composition {
 /// none, the run has diverged.
 class Rattle final : public Solver {
   public:
-    /// A step that no scene names stays within the guard under this many times the weight that hangs below
-    /// each link: the tension that a pendulum released from the horizontal reaches.
+    /// A default step stays within the guard under this multiple of the weight below each link: the tension
+    /// of a pendulum released from the horizontal.
     static constexpr double kLoadFactor = 3.0;
 
     /// If `def` names no step, `frame_interval_s` is divided by the smallest whole number that makes a stable
@@ -76,8 +76,8 @@ class Rattle final : public Solver {
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;
-    /// From the tensions that keep the second derivatives of the rigid bars' lengths 0. std::nullopt if bars
-    /// depend on each other: they could share the load in any way, and no way is truer than another.
+    /// Computed from the tensions that keep the second derivatives of the rigid bars' lengths 0. std::nullopt
+    /// if bars depend on each other, because the distribution of the load among them is then arbitrary.
     [[nodiscard]] std::optional<Loads> loads() const override;
     void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override;
     /// As loads().
@@ -156,7 +156,7 @@ class Rattle final : public Solver {
     // without elastic forces.
     std::vector<double> force_x_n_;
     std::vector<double> force_y_n_;
-    Motion output_;  ///< at the last time asked for, velocities complete
+    Motion output_;  ///< at the last requested time, with complete velocities
     // Of output_; scratch of loads().
     mutable std::vector<double> tension_over_length_n_m_;
     mutable std::vector<Vec2> pin_force_n_;  ///< one per particle; only those of pinned ones are used

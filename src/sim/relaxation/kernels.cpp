@@ -28,7 +28,7 @@ void relax(double* a, double* b, double rest_m, double share_a, double share_b) 
     const double dx = b[0] - a[0];
     const double dy = b[1] - a[1];
     const double distance = length(dx, dy);
-    // Two particles in one place have no direction to be pushed along; other bars part them.
+    // Two particles in one place have no direction; other bars separate them.
     if (distance == 0.0) return;
     const double adjust = distance - rest_m;
     const double move_x = dx / distance * adjust;

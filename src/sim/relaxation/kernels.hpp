@@ -13,17 +13,17 @@ struct RelaxationMotion {
     std::vector<double> position_m;
     std::vector<double> move_m;       ///< Verlet's move in this step, without what the bars add to it
     std::vector<double> unrelaxed_m;  ///< position_m before the bars' moves of this step
-    std::vector<double> last_move_m;  ///< the whole move of the step before
+    std::vector<double> last_move_m;  ///< the whole move of the previous step
     std::vector<double> push_m;       ///< (h^2 / m) f
     double keep = 1.0;                ///< share of the velocity kept per step
 };
 
-/// Code that relaxes. All kernels give the same bits: they do the same correctly rounded operations on each
-/// particle in the same order.
+/// Implementations of the sweeps. All kernels give the same bits: they do the same correctly rounded
+/// operations on each particle in the same order.
 ///
 /// kScalar takes the bars one by one in the given order and waits for each: a bar's square root and division
 /// take some 50 cycles, and the next bar of the same reach starts from their result. kSse2 takes packets of
-/// two bars (RelaxationSchedule), and several sweeps at once, each `lag` packets behind the one before, so
+/// two bars (RelaxationSchedule), and several sweeps at once, each `lag` packets behind its predecessor, so
 /// that they wait for little but the divider's throughput. kAvx2 takes the packets of two sweeps at once.
 enum class RelaxationKernel { kScalar, kSse2, kAvx2 };
 

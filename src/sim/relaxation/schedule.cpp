@@ -24,7 +24,7 @@ std::vector<std::uint32_t> sorted_by(const std::vector<std::uint32_t>& key) {
 /// ropes.
 constexpr std::size_t kManyPackets = 400;
 
-/// Whether no particle is in both.
+/// True if no particle is in both.
 bool are_apart(const RelaxationPacket& first, const RelaxationPacket& second) {
     const auto has = [&](std::uint32_t at) {
         const auto is_it = [at](std::uint32_t other) { return other == at; };

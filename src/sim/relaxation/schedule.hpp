@@ -38,7 +38,7 @@ struct alignas(64) RelaxationPacket {
 /// packets form a wavefront: bar (t, t + 1) of reach 1, and some way behind it one bar of each longer reach.
 ///
 /// The same holds from sweep to sweep, and for Verlet's update of a particle, which comes just before the
-/// particle's first packet. A sweep may therefore begin while the one before is under way, as long as it
+/// particle's first packet. A sweep may therefore begin while its predecessor is running, as long as it
 /// stays `lag` packets behind.
 struct RelaxationSchedule {
     std::vector<RelaxationPacket> packets;
@@ -49,8 +49,8 @@ struct RelaxationSchedule {
     std::vector<std::uint32_t> update_begin;
     /// Packet k of a sweep comes after packet k + lag - 1 of the sweep before; 1 .. number of packets.
     std::size_t lag = 1;
-    /// False for a single short rope: most of its packets depend on the one before, and two that run together
-    /// wait for both.
+    /// False for a single short rope: most of its packets depend on their predecessor, and two that run
+    /// together wait for both.
     bool is_wide = false;
 };
 

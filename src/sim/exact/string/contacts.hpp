@@ -10,8 +10,8 @@
 
 namespace corda::sim {
 
-/// The links of a string that are at their rest length: the snap when another one gets there, and which of
-/// them stay taut.
+/// Resolves the links of a string that are at their rest length: the snap when a link reaches it, and the
+/// choice of links that stay taut.
 class StringContacts {
   public:
     /// `string`: link k joins particles k and k + 1, and there are no other bars. `tolerance`: of the motion.
@@ -26,9 +26,9 @@ class StringContacts {
     /// if it is at its rest length to rounding, or gets there within 1e-11 of the string's time scale: events
     /// that are simultaneous in a symmetric scene must not depend on their order.
     ///
-    /// A link that the snap of another one shortens by less than a hundredth of the tolerance of its length
-    /// before it comes back counts as taut. Two links that lie on each other shorten each other so in turn,
-    /// ever more slowly; the end of this is what impulses along both at once give.
+    /// A link counts as taut if the snap of another link shortens it by less than a hundredth of the
+    /// tolerance of its length before it returns. Two links that lie on each other shorten each other in this
+    /// way in turn, ever more slowly; impulses along both at once give the limit.
     [[nodiscard]] bool resolve(System& string, std::vector<std::uint8_t>& is_taut, StopCheck& stop);
 
     // In the state that was resolved last, smaller tensions and changes of length are rounding.
@@ -55,7 +55,7 @@ class StringContacts {
     double length_m_ = 0.0;                ///< the sum of rest_m_
     std::vector<double> largest_mass_kg_;  ///< one per link; its tension's rounding comes from it
 
-    // Of the state that is being resolved.
+    // Scales of the state being resolved.
     double inverse_timescale_1_s_ = 0.0;  ///< see Forces
     double speed_error_m_s_ = 0.0;
     double acceleration_error_m_s2_ = 0.0;

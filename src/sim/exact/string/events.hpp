@@ -37,7 +37,7 @@ class StringDynamics final : public Dynamics {
 
     void velocities(const double* y, std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) const override;
 
-    /// That of a slack link is 0.
+    /// The tension of a slack link is 0.
     void tensions(const double* y, std::vector<double>& tension_n) override { runs_.tensions(y, tension_n); }
 
   private:
@@ -70,8 +70,8 @@ class StringDynamics final : public Dynamics {
 /// Margins are sampled at the ends of kParts equal parts of a step. A step is no longer than the time in
 /// which any part of the string moves by its own length, and the solution in it is a polynomial of degree 7,
 /// so over two parts of eight a margin is close to a parabola. If the parabola's top lies between the samples
-/// and near 0, the top is sought. Missed is only a link that exceeds its rest length by far less than the
-/// tolerance and comes back within a part.
+/// and near 0, the top is sought. Only a link that exceeds its rest length by far less than the tolerance
+/// and returns within a part is missed.
 class StringEvents {
   public:
     static constexpr std::size_t kParts = 8;
@@ -111,7 +111,7 @@ class StringEvents {
     /// largest margin of all links there; std::nullopt if there is none.
     [[nodiscard]] std::optional<Sample> top(const Motion& motion, std::size_t link, Sample before,
                                             Sample middle, Sample after);
-    /// The earliest top() of all links within the two parts beside this row.
+    /// The earliest top() of all links within the two parts adjacent to this row.
     [[nodiscard]] std::optional<Sample> first_top(const Motion& motion, std::size_t middle);
     /// The time at which the largest margin changes its sign, on the side where it is not negative.
     [[nodiscard]] double root(const Motion& motion, Sample low, Sample high);

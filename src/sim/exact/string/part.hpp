@@ -22,7 +22,7 @@ namespace corda::sim {
 /// lost.
 ///
 /// Each step is searched for events when it is taken, and the integration starts anew at each event. As in
-/// Dop853, nothing depends on the times that are asked for. Memory is allocated at events only.
+/// Dop853, nothing depends on the requested times. Memory is allocated at events only.
 class StringPart final : public ExactPart {
   public:
     /// Requires one body, a chain with is_string and without compliance. Throws corda::Refusal if it resists
