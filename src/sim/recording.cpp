@@ -9,6 +9,7 @@
 
 #include "corda/sim/defs.hpp"
 #include "corda/sim/simulation.hpp"
+#include "corda/sim/solver.hpp"
 
 namespace corda::sim {
 namespace {

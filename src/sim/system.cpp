@@ -113,6 +113,37 @@ void append(const NetDef& net, System& system) {
     system.bodies.push_back(body);
 }
 
+/// Copies `count` entries from `first` on.
+template <class T>
+std::vector<T> slice(const std::vector<T>& all, std::size_t first, std::size_t count) {
+    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+    return {begin, begin + static_cast<std::ptrdiff_t>(count)};
+}
+
+/// The body without its bends.
+System alone(const System& system, const Body& body) {
+    const std::size_t first = body.first_particle;
+    const std::size_t count = body.particle_count;
+    System part;
+    part.origin_m = system.origin_m;
+    part.x_m = slice(system.x_m, first, count);
+    part.y_m = slice(system.y_m, first, count);
+    part.vx_m_s = slice(system.vx_m_s, first, count);
+    part.vy_m_s = slice(system.vy_m_s, first, count);
+    part.mass_kg = slice(system.mass_kg, first, count);
+    part.inverse_mass_1_kg = slice(system.inverse_mass_1_kg, first, count);
+    part.bars = slice(system.bars, body.first_bar, body.bar_count);
+    const auto shift = static_cast<std::uint32_t>(first);
+    for (Bar& bar : part.bars) {
+        bar.a -= shift;
+        bar.b -= shift;
+    }
+    part.bodies = {body};
+    part.bodies.front().first_particle = 0;
+    part.bodies.front().first_bar = 0;
+    return part;
+}
+
 }  // namespace
 
 LinkRange links_between_pins(const RopeDef& rope) {
@@ -216,40 +247,6 @@ System build_system(std::span<const RopeDef> ropes, std::span<const NetDef> nets
 }  // namespace corda
 
 namespace corda::sim {
-namespace {
-
-/// Copies `count` entries from `first` on.
-template <class T>
-std::vector<T> slice(const std::vector<T>& all, std::size_t first, std::size_t count) {
-    const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
-    return {begin, begin + static_cast<std::ptrdiff_t>(count)};
-}
-
-/// The body without its bends.
-System alone(const System& system, const Body& body) {
-    const std::size_t first = body.first_particle;
-    const std::size_t count = body.particle_count;
-    System part;
-    part.origin_m = system.origin_m;
-    part.x_m = slice(system.x_m, first, count);
-    part.y_m = slice(system.y_m, first, count);
-    part.vx_m_s = slice(system.vx_m_s, first, count);
-    part.vy_m_s = slice(system.vy_m_s, first, count);
-    part.mass_kg = slice(system.mass_kg, first, count);
-    part.inverse_mass_1_kg = slice(system.inverse_mass_1_kg, first, count);
-    part.bars = slice(system.bars, body.first_bar, body.bar_count);
-    const auto shift = static_cast<std::uint32_t>(first);
-    for (Bar& bar : part.bars) {
-        bar.a -= shift;
-        bar.b -= shift;
-    }
-    part.bodies = {body};
-    part.bodies.front().first_particle = 0;
-    part.bodies.front().first_bar = 0;
-    return part;
-}
-
-}  // namespace
 
 void for_each_body(const System& system, const std::function<void(const System&, std::size_t)>& use) {
     auto bend = system.bends.begin();  // in the order of bodies, as bars are

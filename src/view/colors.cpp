@@ -1,7 +1,9 @@
 #include "corda/view/colors.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 namespace corda::view {
 namespace {
@@ -41,76 +43,32 @@ Look paper() {
             .imaginary_bar = {0x1f, 0x9c, 0x8c, 0xb0}};
 }
 
-}  // namespace
-
-Look look_of(const StyleDef& style) {
-    Look look = style.theme == Theme::kPaper ? paper() : dark();
-    if (style.background) look.ground = *style.background;
-    if (!style.palette.empty()) look.palette = style.palette;
-    look.pinned = style.pinned_color.value_or(look.pinned);
-    look.free = style.free_color.value_or(look.free);
-    look.real_bar = style.real_bar_color.value_or(look.real_bar);
-    look.imaginary_bar = style.imaginary_bar_color.value_or(look.imaginary_bar);
-    return look;
-}
-
-Color text_color(const Look& look) {
-    if (!look.ground.is_opaque()) return look.outline;
-    const auto lightness = [](const Color& c) {
-        return 299 * c.r + 587 * c.g + 114 * c.b;
-    };  // Y', thousandths
-    constexpr int kMiddle = 128'000;
-    const bool is_light = lightness(look.ground.top) + lightness(look.ground.bottom) > 2 * kMiddle;
-    return is_light ? Color{0x2a, 0x2f, 0x3a} : Color{0xd5, 0xdb, 0xe6};
-}
-
-namespace {
-
 using Colors = std::array<Color, 9>;
+
+constexpr Colors colors_of(const std::array<std::uint32_t, 9>& rgb) {
+    Colors colors{};
+    for (std::size_t i = 0; i < rgb.size(); ++i) {
+        const auto part = [&](unsigned shift) { return static_cast<std::uint8_t>(rgb[i] >> shift); };
+        colors[i] = {part(16), part(8), part(0)};
+    }
+    return colors;
+}
 
 // Our own, in B. Ottosson's colour space Oklab (2020): even steps of lightness, so that the colour-blind can
 // read them, away from that of the theme's ground.
 
 /// Lightness 0.56 to 0.95, violet, blue, green, yellow.
-constexpr Colors kDark{{{0x79, 0x5b, 0xce},
-                        {0x52, 0x7b, 0xe8},
-                        {0x03, 0x9b, 0xe3},
-                        {0x0b, 0xb4, 0xcd},
-                        {0x0b, 0xca, 0xba},
-                        {0x1f, 0xe0, 0x9e},
-                        {0x8f, 0xe9, 0x7b},
-                        {0xcb, 0xf0, 0x65},
-                        {0xff, 0xf4, 0x65}}};
+constexpr Colors kDark =
+    colors_of({0x795bce, 0x527be8, 0x039be3, 0x0bb4cd, 0x0bcaba, 0x1fe09e, 0x8fe97b, 0xcbf065, 0xfff465});
 /// 0.67 to 0.27, ochre, red, purple.
-constexpr Colors kPaper{{{0xb0, 0x93, 0x08},
-                         {0xb0, 0x7a, 0x06},
-                         {0xae, 0x61, 0x05},
-                         {0xab, 0x45, 0x01},
-                         {0xa9, 0x17, 0x0a},
-                         {0x92, 0x00, 0x2e},
-                         {0x78, 0x00, 0x3c},
-                         {0x5a, 0x00, 0x4e},
-                         {0x3a, 0x00, 0x56}}};
+constexpr Colors kPaper =
+    colors_of({0xb09308, 0xb07a06, 0xae6105, 0xab4501, 0xa9170a, 0x92002e, 0x78003c, 0x5a004e, 0x3a0056});
 /// 0.90 and 0.88, 0.60 in the middle: blue, grey, orange.
-constexpr Colors kDarkAboutZero{{{0xb1, 0xe8, 0xfe},
-                                 {0x65, 0xd6, 0xff},
-                                 {0x45, 0xbd, 0xe7},
-                                 {0x57, 0xa2, 0xbe},
-                                 {0x80, 0x80, 0x80},
-                                 {0xb7, 0x8c, 0x5a},
-                                 {0xdb, 0x9d, 0x4f},
-                                 {0xfd, 0xae, 0x47},
-                                 {0xfe, 0xce, 0x96}}};
+constexpr Colors kDarkAboutZero =
+    colors_of({0xb1e8fe, 0x65d6ff, 0x45bde7, 0x57a2be, 0x808080, 0xb78c5a, 0xdb9d4f, 0xfdae47, 0xfece96});
 /// 0.33 and 0.38, 0.68 in the middle: blue, grey, brown.
-constexpr Colors kPaperAboutZero{{{0x00, 0x2b, 0x81},
-                                  {0x0d, 0x42, 0xa8},
-                                  {0x35, 0x61, 0xb4},
-                                  {0x5d, 0x7d, 0xba},
-                                  {0x98, 0x98, 0x98},
-                                  {0xb5, 0x6b, 0x58},
-                                  {0xae, 0x46, 0x2d},
-                                  {0x9b, 0x25, 0x01},
-                                  {0x79, 0x1b, 0x01}}};
+constexpr Colors kPaperAboutZero =
+    colors_of({0x002b81, 0x0d42a8, 0x3561b4, 0x5d7dba, 0x989898, 0xb56b58, 0xae462d, 0x9b2501, 0x791b01});
 
 constexpr double kRare = 1.0 / 50.0;
 constexpr double kFarBeyond = 2.0;
@@ -140,6 +98,27 @@ bool is_light(const StyleDef& style) {
 }
 
 }  // namespace
+
+Look look_of(const StyleDef& style) {
+    Look look = style.theme == Theme::kPaper ? paper() : dark();
+    if (style.background) look.ground = *style.background;
+    if (!style.palette.empty()) look.palette = style.palette;
+    look.pinned = style.pinned_color.value_or(look.pinned);
+    look.free = style.free_color.value_or(look.free);
+    look.real_bar = style.real_bar_color.value_or(look.real_bar);
+    look.imaginary_bar = style.imaginary_bar_color.value_or(look.imaginary_bar);
+    return look;
+}
+
+Color text_color(const Look& look) {
+    if (!look.ground.is_opaque()) return look.outline;
+    const auto lightness = [](const Color& c) {
+        return 299 * c.r + 587 * c.g + 114 * c.b;
+    };  // Y', thousandths
+    constexpr int kMiddle = 128'000;
+    const bool is_light = lightness(look.ground.top) + lightness(look.ground.bottom) > 2 * kMiddle;
+    return is_light ? Color{0x2a, 0x2f, 0x3a} : Color{0xd5, 0xdb, 0xe6};
+}
 
 Color ColorScale::color(double value) const {
     if (std::isnan(value)) return unknown;

@@ -27,6 +27,13 @@ bool cut(double a, double b, double low, double high, double& t0, double& t1) {
     return t0 <= t1;
 }
 
+/// An arc of a few pixels needs few steps.
+int step_count(double length_px) {
+    constexpr double kPixelsPerStep = 5.0;
+    constexpr int kMaxPairs = (Arc::kMaxPoints - 1) / 2;
+    return 2 * std::clamp(static_cast<int>(std::min(length_px / (2.0 * kPixelsPerStep), 1e6)), 3, kMaxPairs);
+}
+
 }  // namespace
 
 std::optional<Capsule> make_capsule(PixelPoint a, PixelPoint b, double radius_px, int width, int height,
@@ -133,17 +140,6 @@ void DrawList::add_box(const PixelRect& box, Color color) {
     const PixelRect visible = box.intersected({0, 0, width, height});
     if (!visible.empty()) stamps.push_back({visible, color});
 }
-
-namespace {
-
-/// An arc of a few pixels needs few steps.
-int step_count(double length_px) {
-    constexpr double kPixelsPerStep = 5.0;
-    constexpr int kMaxPairs = (Arc::kMaxPoints - 1) / 2;
-    return 2 * std::clamp(static_cast<int>(std::min(length_px / (2.0 * kPixelsPerStep), 1e6)), 3, kMaxPairs);
-}
-
-}  // namespace
 
 Arc hang_slack(PixelPoint a, PixelPoint b, double length_px, PixelPoint down) {
     const int steps = step_count(length_px);

@@ -55,42 +55,6 @@ double alpha_over(double below, double wanted) {
     return (wanted - below) / (1.0 - below);
 }
 
-}  // namespace
-
-std::vector<std::size_t> free_ends(const System& system) {
-    std::vector<std::size_t> ends;
-    for (const Body& body : system.bodies) {
-        const bool is_closed = body.link_count == body.particle_count;
-        if (body.is_net || is_closed) continue;
-        const std::size_t first = body.first_particle;
-        const std::size_t last = first + body.particle_count - 1;
-        if (!system.is_pinned(last))
-            ends.push_back(last);
-        else if (!system.is_pinned(first))
-            ends.push_back(first);
-    }
-    return ends;
-}
-
-void add_trail(std::span<const FadingPoint> points, double radius_px, Color color, DrawList& list) {
-    const std::vector<FadingPoint> path = smooth(points);
-    const auto left = [&](std::size_t i) { return 0.5 * (path[i].left + path[i + 1].left); };
-    for (int step = 0; step < kSteps; ++step) {
-        const double young = kYoungAlpha * (color.a / 255.0);
-        Color layer = color;
-        layer.a = static_cast<std::uint8_t>(
-            std::lround(255.0 * alpha_over(young * step / kSteps, young * (step + 1) / kSteps)));
-        list.add_layer(layer);
-        for (std::size_t i = 0; i + 1 < path.size(); ++i) {
-            if (left(i) * kSteps < step) continue;
-            list.add_capsule(path[i].at, path[i + 1].at,
-                             radius_px * (kOldWidth + (1.0 - kOldWidth) * left(i)));
-        }
-    }
-}
-
-namespace {
-
 // Sizes as shares of the frame's shorter side.
 constexpr double kRopeWidth = 1.0 / 120.0;
 constexpr double kNetWidth = 1.0 / 240.0;   // so that the cells of a cloth stay open
@@ -137,6 +101,38 @@ Drawn around(const MotionBounds& bounds, double radius_px) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> free_ends(const System& system) {
+    std::vector<std::size_t> ends;
+    for (const Body& body : system.bodies) {
+        const bool is_closed = body.link_count == body.particle_count;
+        if (body.is_net || is_closed) continue;
+        const std::size_t first = body.first_particle;
+        const std::size_t last = first + body.particle_count - 1;
+        if (!system.is_pinned(last))
+            ends.push_back(last);
+        else if (!system.is_pinned(first))
+            ends.push_back(first);
+    }
+    return ends;
+}
+
+void add_trail(std::span<const FadingPoint> points, double radius_px, Color color, DrawList& list) {
+    const std::vector<FadingPoint> path = smooth(points);
+    const auto left = [&](std::size_t i) { return 0.5 * (path[i].left + path[i + 1].left); };
+    for (int step = 0; step < kSteps; ++step) {
+        const double young = kYoungAlpha * (color.a / 255.0);
+        Color layer = color;
+        layer.a = static_cast<std::uint8_t>(
+            std::lround(255.0 * alpha_over(young * step / kSteps, young * (step + 1) / kSteps)));
+        list.add_layer(layer);
+        for (std::size_t i = 0; i + 1 < path.size(); ++i) {
+            if (left(i) * kSteps < step) continue;
+            list.add_capsule(path[i].at, path[i + 1].at,
+                             radius_px * (kOldWidth + (1.0 - kOldWidth) * left(i)));
+        }
+    }
+}
 
 SceneView::SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& style,
                      const std::vector<BodyStyleDef>& body_styles, int width, int height)

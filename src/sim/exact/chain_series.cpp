@@ -170,6 +170,32 @@ double rough_exp2(double x) {
     return std::bit_cast<double>(static_cast<std::int64_t>((x + 1023.0) * 0x1p+52));
 }
 
+/// A step is at most this many times as long as the last one: terms may be small by chance, as at the start
+/// of a release from the horizontal.
+constexpr double kMaxStepGrowth = 4.0;
+
+/// In parts of the largest step of step_control(): a series of many terms holds for a pendulum's whole swing.
+constexpr double kMaxSeriesStep = 4.0;
+
+/// The share of the tolerance that the last terms of a step may reach. Errors of steps add up and, in a rope,
+/// grow. With this share, positions after some seconds are right to about the tolerance unless the motion is
+/// chaotic (R5: 5e-13 .. 2e-10 at 1e-9), and much better if a rope swings gently.
+constexpr double kShareOfASeriesStep = 0.0025;
+
+/// The order that meets a tolerance fastest: fewer terms make steps shorter, more make them dearer. Orders
+/// are multiples of 4, because these damp quick small oscillations that a step does not resolve; others feed
+/// them.
+std::size_t order_for(double tolerance) {
+    if (tolerance >= 1e-5) return 12;
+    return tolerance >= 1e-12 ? 16 : kMaxSeriesOrder;
+}
+
+/// Work of a step as a StopCheck counts it: its series take as long as this many updates of a particle.
+constexpr std::uint64_t kUpdatesPerLink = 8;
+
+/// Less than a rounding error of the angular velocities, because it bounds the last term alone.
+constexpr double kMinTerm = 1e-18;
+
 }  // namespace
 
 std::span<const SeriesKernel> series_kernels() {
@@ -292,36 +318,6 @@ double ChainSeries::sum(const Series& series, double t) const {
     for (std::size_t k = arrays_.order + 1; k-- > 0;) value = value * t + series[k];
     return value;
 }
-
-namespace {
-
-/// A step is at most this many times as long as the last one: terms may be small by chance, as at the start
-/// of a release from the horizontal.
-constexpr double kMaxStepGrowth = 4.0;
-
-/// In parts of the largest step of step_control(): a series of many terms holds for a pendulum's whole swing.
-constexpr double kMaxSeriesStep = 4.0;
-
-/// The share of the tolerance that the last terms of a step may reach. Errors of steps add up and, in a rope,
-/// grow. With this share, positions after some seconds are right to about the tolerance unless the motion is
-/// chaotic (R5: 5e-13 .. 2e-10 at 1e-9), and much better if a rope swings gently.
-constexpr double kShareOfASeriesStep = 0.0025;
-
-/// The order that meets a tolerance fastest: fewer terms make steps shorter, more make them dearer. Orders
-/// are multiples of 4, because these damp quick small oscillations that a step does not resolve; others feed
-/// them.
-std::size_t order_for(double tolerance) {
-    if (tolerance >= 1e-5) return 12;
-    return tolerance >= 1e-12 ? 16 : kMaxSeriesOrder;
-}
-
-/// Work of a step as a StopCheck counts it: its series take as long as this many updates of a particle.
-constexpr std::uint64_t kUpdatesPerLink = 8;
-
-/// Less than a rounding error of the angular velocities, because it bounds the last term alone.
-constexpr double kMinTerm = 1e-18;
-
-}  // namespace
 
 ChainPart::ChainPart(const System& system, const Forces& forces, double tolerance)
     : dynamics_(system, system.bodies, forces), state_(dynamics_.initial_state()) {

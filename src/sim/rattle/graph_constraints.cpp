@@ -13,6 +13,57 @@ namespace {
 /// Products that take as long as one update of a StopCheck.
 constexpr std::uint64_t kProductsPerUpdate = 64;
 
+/// Corrections end when no squared length is off by more than this share of it, a few roundings. Much less is
+/// never reached; more would be seen as strain.
+constexpr double kExcessTolerance = 4e-15;
+/// Five to ten are normal. If it takes more than forty, the bars turn too far for the matrix.
+constexpr int kMaxCorrections = 40;
+/// Bars depend on each other if a pivot is below this share of its diagonal entry. Dependent bars leave 1e-16
+/// to 1e-14; a net that is only just determined, sagging by a part in 1e5, leaves 1e-10.
+constexpr double kDependentPivot = 1e-12;
+/// Implied bars are found with all diagonal entries raised by this share, so that the elimination can go on
+/// beyond one. A pivot is then this share times 1 + c^2, c being the coefficients by which the others imply
+/// the bar: 2e-14 to 2e-11 in a grid of 200 x 200 with both diagonals, while independent bars leave 3e-9.
+constexpr double kRaise = 1e-14;
+constexpr double kImpliedPivot = 1e-11;
+/// Bars whose smallest pivot is below this share of that at the start are near a line in which they depend on
+/// each other: some hundredth of a radian.
+constexpr double kNearLine = 1e-3;
+/// From such a start, Newton's method proper converges in five steps or not at all.
+constexpr int kMaxCrossingSteps = 10;
+/// In the line two motions branch off, and the true one keeps its velocities. Those of bars may change in the
+/// stage by this share of the fastest; and Newton's corrections have to shrink by kShrink each, as they do
+/// from a start that is ten times nearer to the one branch than to the other.
+constexpr double kCrossingChange = 0.05;
+constexpr double kShrink = 0.1;
+constexpr double kRoundedChange = 1e-11;
+/// In a leap, the share by which all diagonal entries are raised, so that what the bars leave undetermined
+/// stays as it is.
+constexpr double kLeapRaise = 1e-10;
+/// By how much of its square the length of an implied bar may be off: rounding, magnified by the others.
+constexpr double kImpliedTolerance = 1e-9;
+/// By how much of the largest squared speed at which a bar turns an implied bar may bend away. Bars that do
+/// not stay implied bend away by a share near 1.
+constexpr double kBendTolerance = 1e-5;
+
+/// Of a bar: its vector times the difference of its ends' velocities, and the square of that difference.
+struct Rates {
+    double along;
+    double square;
+};
+
+Rates rates(const Link& link, const Motion& motion) {
+    const double ux = motion.vx_m_s[link.b] - motion.vx_m_s[link.a];
+    const double uy = motion.vy_m_s[link.b] - motion.vy_m_s[link.a];
+    return {(motion.x_m[link.b] - motion.x_m[link.a]) * ux + (motion.y_m[link.b] - motion.y_m[link.a]) * uy,
+            ux * ux + uy * uy};
+}
+
+void stand_still(Motion& motion) {
+    for (auto* part : {&motion.vx_m_s, &motion.vy_m_s, &motion.vx_lost_m_s, &motion.vy_lost_m_s})
+        std::fill(part->begin(), part->end(), 0.0);
+}
+
 }  // namespace
 
 int StoppableLdlt::scatter(const Eigen::SparseMatrix<double>& upper, int k) {
@@ -72,61 +123,6 @@ bool StoppableLdlt::factorize(const Eigen::SparseMatrix<double>& lower, StopChec
     m_factorizationIsOk = true;
     return true;
 }
-
-namespace {
-
-/// Corrections end when no squared length is off by more than this share of it, a few roundings. Much less is
-/// never reached; more would be seen as strain.
-constexpr double kExcessTolerance = 4e-15;
-/// Five to ten are normal. If it takes more than forty, the bars turn too far for the matrix.
-constexpr int kMaxCorrections = 40;
-/// Bars depend on each other if a pivot is below this share of its diagonal entry. Dependent bars leave 1e-16
-/// to 1e-14; a net that is only just determined, sagging by a part in 1e5, leaves 1e-10.
-constexpr double kDependentPivot = 1e-12;
-/// Implied bars are found with all diagonal entries raised by this share, so that the elimination can go on
-/// beyond one. A pivot is then this share times 1 + c^2, c being the coefficients by which the others imply
-/// the bar: 2e-14 to 2e-11 in a grid of 200 x 200 with both diagonals, while independent bars leave 3e-9.
-constexpr double kRaise = 1e-14;
-constexpr double kImpliedPivot = 1e-11;
-/// Bars whose smallest pivot is below this share of that at the start are near a line in which they depend on
-/// each other: some hundredth of a radian.
-constexpr double kNearLine = 1e-3;
-/// From such a start, Newton's method proper converges in five steps or not at all.
-constexpr int kMaxCrossingSteps = 10;
-/// In the line two motions branch off, and the true one keeps its velocities. Those of bars may change in the
-/// stage by this share of the fastest; and Newton's corrections have to shrink by kShrink each, as they do
-/// from a start that is ten times nearer to the one branch than to the other.
-constexpr double kCrossingChange = 0.05;
-constexpr double kShrink = 0.1;
-constexpr double kRoundedChange = 1e-11;
-/// In a leap, the share by which all diagonal entries are raised, so that what the bars leave undetermined
-/// stays as it is.
-constexpr double kLeapRaise = 1e-10;
-/// By how much of its square the length of an implied bar may be off: rounding, magnified by the others.
-constexpr double kImpliedTolerance = 1e-9;
-/// By how much of the largest squared speed at which a bar turns an implied bar may bend away. Bars that do
-/// not stay implied bend away by a share near 1.
-constexpr double kBendTolerance = 1e-5;
-
-/// Of a bar: its vector times the difference of its ends' velocities, and the square of that difference.
-struct Rates {
-    double along;
-    double square;
-};
-
-Rates rates(const Link& link, const Motion& motion) {
-    const double ux = motion.vx_m_s[link.b] - motion.vx_m_s[link.a];
-    const double uy = motion.vy_m_s[link.b] - motion.vy_m_s[link.a];
-    return {(motion.x_m[link.b] - motion.x_m[link.a]) * ux + (motion.y_m[link.b] - motion.y_m[link.a]) * uy,
-            ux * ux + uy * uy};
-}
-
-void stand_still(Motion& motion) {
-    for (auto* part : {&motion.vx_m_s, &motion.vy_m_s, &motion.vx_lost_m_s, &motion.vy_lost_m_s})
-        std::fill(part->begin(), part->end(), 0.0);
-}
-
-}  // namespace
 
 GraphConstraints::GraphConstraints(const System& system, const GoesOn& goes_on)
     : ConstraintSolver(system, inverse_masses_with_taut_rows_held(system)),

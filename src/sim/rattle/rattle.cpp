@@ -52,15 +52,6 @@ constexpr std::array<Composition, 4> kCompositions{
     Composition{8, kOrder8, 3.09},
 };
 
-}  // namespace
-
-const Composition& composition(int order) {
-    assert(order == 2 || order == 4 || order == 6 || order == 8);
-    return kCompositions[static_cast<std::size_t>(order / 2 - 1)];
-}
-
-namespace {
-
 /// Two parts are joined again if the doubled span stays below this share of the guard. Below 1, because
 /// otherwise parts would change with every ripple, and each change costs some energy.
 constexpr double kJoinShare = 0.8;
@@ -85,6 +76,11 @@ double power_of_half(int exponent) {
 }
 
 }  // namespace
+
+const Composition& composition(int order) {
+    assert(order == 2 || order == 4 || order == 6 || order == 8);
+    return kCompositions[static_cast<std::size_t>(order / 2 - 1)];
+}
 
 Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def, double frame_interval_s,
                const GoesOn& goes_on)

@@ -32,6 +32,20 @@ std::vector<Body> runs_of(const std::vector<std::uint8_t>& is_taut) {
     return runs;
 }
 
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
+/// The top of a parabola counts as near 0 within this share of its height above the lower outer point: more
+/// than the parabola differs from the margin within parts of a step.
+constexpr double kNearTop = 0.25;
+/// Points tried to find a top; each adds some 30 % to the number of correct digits.
+constexpr int kTopPoints = 8;
+/// No point is tried nearer to the last one than this share of the interval: it would add no information.
+constexpr double kApart = 0.01;
+
+/// Regula falsi takes some ten points; a bisection every fourth time bounds their number.
+constexpr int kRootPoints = 240;
+
 }  // namespace
 
 StringDynamics::StringDynamics(const System& string, const std::vector<std::uint8_t>& is_taut,
@@ -121,24 +135,6 @@ double StringDynamics::energy_j(const double* y) const {
     }
     return energy_j;
 }
-
-namespace {
-
-constexpr double kNever = std::numeric_limits<double>::infinity();
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
-/// The top of a parabola counts as near 0 within this share of its height above the lower outer point: more
-/// than the parabola differs from the margin within parts of a step.
-constexpr double kNearTop = 0.25;
-/// Points tried to find a top; each adds some 30 % to the number of correct digits.
-constexpr int kTopPoints = 8;
-/// No point is tried nearer to the last one than this share of the interval: it would add no information.
-constexpr double kApart = 0.01;
-
-/// Regula falsi takes some ten points; a bisection every fourth time bounds their number.
-constexpr int kRootPoints = 240;
-
-}  // namespace
 
 StringEvents::StringEvents(std::size_t particles)
     : link_count_(particles - 1),

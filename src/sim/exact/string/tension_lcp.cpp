@@ -122,6 +122,13 @@ class InteriorPoint {
     std::vector<double> aim_;
 };
 
+/// Exchanges of whole blocks in a row that may fail to leave fewer wrong signs than ever before; Judice and
+/// Pires recommend 10 or fewer.
+constexpr int kPatience = 5;
+
+/// Rounds before an interior point makes a new guess, which costs as much as some 200.
+constexpr std::size_t kRoundsBeforeGuess = 50;
+
 }  // namespace
 
 std::vector<std::uint8_t> guess_positive(TridiagonalLcp problem, StopCheck& stop) {
@@ -132,17 +139,6 @@ std::vector<std::uint8_t> guess_positive(TridiagonalLcp problem, StopCheck& stop
     for (std::size_t k = 0; k < is_positive.size(); ++k) is_positive[k] = point.is_positive(k) ? 1 : 0;
     return is_positive;
 }
-
-namespace {
-
-/// Exchanges of whole blocks in a row that may fail to leave fewer wrong signs than ever before; Judice and
-/// Pires recommend 10 or fewer.
-constexpr int kPatience = 5;
-
-/// Rounds before an interior point makes a new guess, which costs as much as some 200.
-constexpr std::size_t kRoundsBeforeGuess = 50;
-
-}  // namespace
 
 TensionLcp::TensionLcp(std::vector<double> inverse_mass_1_kg)
     : inverse_mass_1_kg_(std::move(inverse_mass_1_kg)) {
