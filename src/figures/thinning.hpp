@@ -4,14 +4,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "corda/view/plot_panel.hpp"
+
 namespace corda::figures {
 
-/// A point of a curve, and its time.
-struct CurvePoint {
-    double time_s = 0.0;
-    double x = 0.0;
-    double y = 0.0;
-};
+using view::CurvePoint;
 
 /// Keeps few points of a long curve, and none of its extremes is lost: rows are taken in blocks of equal
 /// length, of each of which stay the first, the last, and those where x or y is least or largest. Memory does

@@ -133,7 +133,7 @@ std::vector<std::string> captions_of(const std::vector<double>& times_s) {
         bool is_exact = true;
         steps_1_s *= 10.0;
         for (const double time_s : times_s) {
-            captions.push_back(view::time_text(fmt::format("{:.{}f}", time_s, digits)));
+            captions.push_back(view::time_label(fmt::format("{:.{}f}", time_s, digits)));
             is_exact &= std::abs(std::round(time_s * steps_1_s) / steps_1_s - time_s) < 1e-9;
         }
         const bool are_apart = std::adjacent_find(captions.begin(), captions.end()) == captions.end();

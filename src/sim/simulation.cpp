@@ -15,10 +15,10 @@ namespace corda {
 namespace {
 
 /// A run with a coordinate beyond this has diverged.
-constexpr double kFarthestMetres = 1e12;
+constexpr double kMaxDistanceMetres = 1e12;
 
 bool is_sound(const State& state) {
-    const auto near = [](double x_m) { return std::abs(x_m) < kFarthestMetres; };  // false for NaN
+    const auto near = [](double x_m) { return std::abs(x_m) < kMaxDistanceMetres; };  // false for NaN
     return std::all_of(state.x_m.begin(), state.x_m.end(), near) &&
            std::all_of(state.y_m.begin(), state.y_m.end(), near);
 }

@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kSnap = 1024.0;  // steps per pixel: 16384 px * 1024 still fits into a float's 24 bits
 
-constexpr double kFarthestPx = 1e30;  // far from overflow in every product below
-constexpr double kCutSlack = 1.0;     // px; more than rounding takes within the coordinates of a sane scene
+constexpr double kMaxDistancePx = 1e30;  // far from overflow in every product below
+constexpr double kCutSlack = 1.0;  // px; more than rounding takes within the coordinates of a sane scene
 
 double snapped(double x_px) {
     return std::round(x_px * kSnap) / kSnap;
@@ -40,7 +40,7 @@ std::optional<Capsule> make_capsule(PixelPoint a, PixelPoint b, double radius_px
                                     double halo_px) {
     if (std::isnan(a.x) || std::isnan(a.y) || std::isnan(b.x) || std::isnan(b.y)) return std::nullopt;
     for (double* coordinate : {&a.x, &a.y, &b.x, &b.y})
-        *coordinate = std::clamp(*coordinate, -kFarthestPx, kFarthestPx);
+        *coordinate = std::clamp(*coordinate, -kMaxDistancePx, kMaxDistancePx);
     // Twice what the capsule extends around its segment, so that the cap at a cut stays outside the frame.
     const double margin = 2.0 * (radius_px + halo_px + static_cast<double>(kEdgeMargin));
     double t0 = 0.0;

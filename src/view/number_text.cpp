@@ -89,7 +89,7 @@ std::string length_text(int digit, int exponent) {
     return fmt::format("{} {}", rest < 0 ? digit / power_of_10(-rest) : digit * power_of_10(rest), unit);
 }
 
-std::string number_text(double value, int digits) {
+std::string display_number(double value, int digits) {
     return fmt::format("{}{:.{}g}", value < 0.0 ? "−" : "", std::abs(value), digits);
 }
 

@@ -37,7 +37,7 @@ struct RoundNumber {
 [[nodiscard]] std::string length_text(int digit, int exponent);
 
 /// "−0.25": at most `digits` digits, and a minus sign as wide as a plus.
-[[nodiscard]] std::string number_text(double value, int digits = 6);
+[[nodiscard]] std::string display_number(double value, int digits = 6);
 
 /// Title of numbers, such as "tension (kN)", and the divisor of their values for this unit.
 struct NumberTitle {

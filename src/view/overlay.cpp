@@ -43,7 +43,7 @@ std::size_t end_of_character(std::string_view utf8, std::size_t i) {
 
 }  // namespace
 
-std::string time_text(const std::string& digits) {
+std::string time_label(const std::string& digits) {
     return "t = " + digits + " s";
 }
 
@@ -101,12 +101,12 @@ Insets Overlay::insets() const {
     return insets;
 }
 
-std::string Overlay::wide_time_text(double time_s) const {
+std::string Overlay::padded_time_label(double time_s) const {
     std::string digits = fmt::format("{:.{}f}", time_s, decimals_);
     while (digits.size() < time_digits_) digits.insert(0, 1, ' ');
     std::string text;
     for (const char digit : digits) text += digit == ' ' ? kFigureSpace : std::string(1, digit);
-    return time_text(text);
+    return time_label(text);
 }
 
 void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& list) {
@@ -114,7 +114,7 @@ void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& li
     int left_px = edge_px_;
     int right_px = width_ - edge_px_;
     if (time_ && caption.time_s)
-        left_px = write_bottom(wide_time_text(*caption.time_s), left_px, right_px, list);
+        left_px = write_bottom(padded_time_label(*caption.time_s), left_px, right_px, list);
     if (scale_bar_) right_px = draw_scale_bar(pixels_per_metre, left_px, list);
     if (def_.energy && caption.time_s) {
         const std::string error = caption.energy_error ? power_text(*caption.energy_error) : "not defined";
@@ -159,7 +159,7 @@ int Overlay::draw_scale_bar(double pixels_per_metre, int begin_px, DrawList& lis
 
 int Overlay::draw_legend(DrawList& list) {
     const NumberTitle title = title_of(*scale_);
-    const auto number = [&](double value) { return number_text(value / title.unit); };
+    const auto number = [&](double value) { return display_number(value / title.unit); };
     const std::string first = (scale_->is_cut && scale_->low < 0.0 ? "≤ " : "") + number(scale_->low);
     const std::string last = (scale_->is_cut ? "≥ " : "") + number(scale_->high);
     const auto half_px = [&](const std::string& text) { return font_.width_px(text, em_px_) / 2; };

@@ -53,7 +53,7 @@ class Overlay {
     /// Baseline of the legend's numbers.
     [[nodiscard]] int legend_baseline_px() const;
     /// Padded to the width of the last frame's time.
-    [[nodiscard]] std::string wide_time_text(double time_s) const;
+    [[nodiscard]] std::string padded_time_label(double time_s) const;
     /// Writes a text at the left end of the lower baseline if it ends before `end_px`; returns where the next
     /// may begin.
     int write_bottom(const std::string& text, int x_px, int end_px, DrawList& list);
@@ -86,6 +86,6 @@ class Overlay {
 };
 
 /// "t = 1.20 s"
-[[nodiscard]] std::string time_text(const std::string& digits);
+[[nodiscard]] std::string time_label(const std::string& digits);
 
 }  // namespace corda::view

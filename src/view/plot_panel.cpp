@@ -13,21 +13,21 @@
 namespace corda::view {
 namespace {
 
-constexpr double kWidestShare = 0.38;  // where the least is more
-constexpr double kHighestShare = 0.5;
+constexpr double kMaxWidthShare = 0.38;  // where the least is more
+constexpr double kMaxHeightShare = 0.5;
 constexpr double kPanelShare = 0.36;           // of the frame
 constexpr double kHeightPerWidth = 0.8;        // of the box, if the panel is beside the picture
 constexpr double kBoxLineWidth = 1.0 / 600.0;  // of the frame's shorter side
 constexpr double kCurveWidth = 1.0 / 300.0;
-constexpr double kThinnestCurvePx = 1.5;
+constexpr double kMinCurvePx = 1.5;
 constexpr double kDotPerCurve = 3.0;
 
 // Shares of the em.
 constexpr double kTickLength = 0.25;
 constexpr double kAboveBox = 1.1;  // from the baseline above it
 constexpr double kMinBox = 4.0;
-constexpr double kNarrowestPanel = 9.5;
-constexpr double kLowestPanel = 13.0;
+constexpr double kMinPanelWidth = 9.5;
+constexpr double kMinPanelHeight = 13.0;
 constexpr double kPerLabel = 3.0;  // of the height
 
 constexpr int kMinLabels = 2;
@@ -40,7 +40,7 @@ constexpr double kTooClosePx = 0.5;
 /// Of a curve that is not over time, the last so many points show.
 constexpr std::size_t kMaxPoints = 4000;
 
-struct Range {
+struct ValueRange {
     double low = std::numeric_limits<double>::infinity();
     double high = -std::numeric_limits<double>::infinity();
 
@@ -50,19 +50,19 @@ struct Range {
     }
     [[nodiscard]] double largest() const { return std::max(std::abs(low), std::abs(high)); }
     /// Widened if it is too narrow to draw: upwards from 0, otherwise about its middle.
-    [[nodiscard]] Range widened(double least) const {
-        constexpr double kNarrowest = 1e-6;
-        least = std::max(least, kNarrowest * largest());
+    [[nodiscard]] ValueRange widened(double least) const {
+        constexpr double kMinShare = 1e-6;
+        least = std::max(least, kMinShare * largest());
         if (least == 0.0) least = 1.0;
         if (high - low >= least) return *this;
-        if (low >= 0.0 && low < kNarrowest * least) return {0.0, least};
+        if (low >= 0.0 && low < kMinShare * least) return {0.0, least};
         const double middle = 0.5 * (low + high);
         return {middle - 0.5 * least, middle + 0.5 * least};
     }
 };
 
-Range range_of(const PlotData& data, double CurvePoint::*value) {
-    Range range;
+ValueRange range_of(const PlotData& data, double CurvePoint::*value) {
+    ValueRange range;
     for (const PlotData::Curve& curve : data.curves)
         for (const CurvePoint& point : curve.points) range.include(point.*value);
     return range;
@@ -70,8 +70,8 @@ Range range_of(const PlotData& data, double CurvePoint::*value) {
 
 /// True if an axis of that extent has steps.
 bool can_be_divided(double extent) {
-    constexpr double kLeast = 1e-290;
-    return extent >= kLeast && extent <= 1.0 / kLeast;
+    constexpr double kMinExtent = 1e-290;
+    return extent >= kMinExtent && extent <= 1.0 / kMinExtent;
 }
 
 /// From one label to the next, so that there are at most so many steps.
@@ -126,10 +126,10 @@ Color faint(Color color, std::uint8_t alpha) {
 Room room_beside(LivePlot plot, int width_px, int height_px) {
     const bool is_beside = width_px > height_px;
     const int all_px = std::max(width_px, height_px);
-    const double least_em = is_beside ? kNarrowestPanel : kLowestPanel;
+    const double least_em = is_beside ? kMinPanelWidth : kMinPanelHeight;
     const int least_px = rounded(least_em * em_of(std::min(width_px, height_px)));
     const int panel_px = std::max(rounded(kPanelShare * all_px), least_px);
-    const bool has_room = panel_px <= (is_beside ? kWidestShare : kHighestShare) * all_px;
+    const bool has_room = panel_px <= (is_beside ? kMaxWidthShare : kMaxHeightShare) * all_px;
     if (plot == LivePlot::kNone || !has_room) return {width_px, height_px};
     if (is_beside) return {width_px - panel_px, height_px};
     return {width_px, height_px - panel_px};
@@ -168,7 +168,7 @@ void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_color
     const PixelRect panel{width_px_ > height_px_ ? room.width_px : 0,
                           width_px_ > height_px_ ? 0 : room.height_px, width_px_, height_px_};
     const bool is_over_time = data.end_s > 0.0;
-    const auto start_axis = [](const PlotData::AxisName& name, const Range& range) {
+    const auto start_axis = [](const PlotData::AxisName& name, const ValueRange& range) {
         const NumberTitle title = title_of(name.text, name.unit, range.largest());
         Axis axis;
         axis.low = range.low;
@@ -177,7 +177,7 @@ void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_color
         axis.unit = title.unit;
         return axis;
     };
-    x_ = start_axis(data.x, is_over_time ? Range{0.0, data.end_s}
+    x_ = start_axis(data.x, is_over_time ? ValueRange{0.0, data.end_s}
                                          : range_of(data, &CurvePoint::x).widened(data.x.least_extent));
     y_ = start_axis(data.y, range_of(data, &CurvePoint::y).widened(data.y.least_extent));
     curves_.clear();
@@ -283,7 +283,7 @@ void PlotPanel::add_labels(Axis& axis, int most) const {
     const auto last = static_cast<std::int64_t>(std::floor(axis.high / step.value() + kSlack));
     for (std::int64_t k = first; k <= last; ++k) {
         const double value = step.times(static_cast<double>(k));
-        axis.labels.push_back({number_text(value / axis.unit, digits), rounded(axis.px(value))});
+        axis.labels.push_back({display_number(value / axis.unit, digits), rounded(axis.px(value))});
     }
 }
 
@@ -308,7 +308,7 @@ void PlotPanel::draw_curves(double time_s, DrawList& list) const {
     for (const Label& label : y_.labels)
         list.add_capsule({box_.x0 + half_px, label.at_px + half_px},
                          {box_.x1 - half_px, label.at_px + half_px}, half_px);
-    const double radius_px = 0.5 * std::max(kThinnestCurvePx, kCurveWidth * std::min(width_px_, height_px_));
+    const double radius_px = 0.5 * std::max(kMinCurvePx, kCurveWidth * std::min(width_px_, height_px_));
     for (std::size_t i = curves_.size(); i-- > 0;) {
         const PixelCurve& curve = curves_[i];
         list.add_layer(curve.color);

@@ -64,14 +64,14 @@ constexpr double kOutlineWidth = 1.0 / 400.0;
 constexpr double kMinBall = 0.018;
 constexpr double kMaxBall = 0.055;
 
-constexpr double kThinnestLinePx = 2.0;
+constexpr double kMinLineWidthPx = 2.0;
 constexpr double kNetWidthPerRopeWidth = 0.5;
 constexpr double kBallPerLine = 1.6;  // radius, at least
 constexpr double kTrailPerLine = 0.6;
-constexpr double kThinnestTrail = 0.8;
+constexpr double kMinTrailRadiusPx = 0.8;
 constexpr double kHaloPerWidth = 0.35;
 constexpr double kBarWidthPerRopeWidth = 0.25;
-constexpr double kThinnestBarPx = 1.0;
+constexpr double kMinBarWidthPx = 1.0;
 
 /// A ball hides the links that end in it.
 constexpr std::uint8_t kBallWeight = 64;
@@ -143,10 +143,10 @@ SceneView::SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& st
       width_(width),
       height_(height),
       side_px_(std::min(width, height)),
-      rope_width_px_(style.rope_width_px.value_or(std::max(kThinnestLinePx, kRopeWidth * side_px_))) {
+      rope_width_px_(style.rope_width_px.value_or(std::max(kMinLineWidthPx, kRopeWidth * side_px_))) {
     const double net_width_px =
         style.net_width_px.value_or(style.rope_width_px ? kNetWidthPerRopeWidth * rope_width_px_
-                                                        : std::max(kThinnestLinePx, kNetWidth * side_px_));
+                                                        : std::max(kMinLineWidthPx, kNetWidth * side_px_));
     std::size_t next_color = 0;
     for (std::size_t i = 0; i < system.bodies.size(); ++i) {
         const Body& body = system.bodies[i];
@@ -258,7 +258,7 @@ void SceneView::draw_trails(std::span<const Trail> trails, const Camera& camera,
         for (const TrailPoint& point : trails[i])
             path.push_back(
                 {{camera.x_px(point.at_m.x), camera.y_px(point.at_m.y)}, 1.0 - point.age_s / style_.trail_s});
-        add_trail(path, std::max(kThinnestTrail, kTrailPerLine * bodies_[body].radius_px),
+        add_trail(path, std::max(kMinTrailRadiusPx, kTrailPerLine * bodies_[body].radius_px),
                   bodies_[body].color, list);
     }
 }
@@ -347,7 +347,7 @@ void SceneView::draw_slack(const Bar& link, double radius_px, double halo_px, Ti
 
 void SceneView::draw_bars(bool real, const Positions& positions, DrawList& list) const {
     const double width_px =
-        style_.bar_width_px.value_or(std::max(kThinnestBarPx, kBarWidthPerRopeWidth * rope_width_px_));
+        style_.bar_width_px.value_or(std::max(kMinBarWidthPx, kBarWidthPerRopeWidth * rope_width_px_));
     list.add_layer(real ? look_.real_bar : look_.imaginary_bar);
     for (const Bar& bar : system_->bars) {
         if ((bar.reach == 1) == real)

@@ -13,12 +13,12 @@ constexpr double kHatchHeight = 0.02;
 constexpr double kHatchWidth = 1.0 / 400.0;
 constexpr double kRingRadius = 1.0 / 72.0;
 constexpr double kRingWidth = 1.0 / 270.0;
-constexpr double kThinnestStrokePx = 1.0;
+constexpr double kMinStrokeWidthPx = 1.0;
 
-constexpr double kWidestPlate = 3.0;    // of these widths
-constexpr int kStrokes = 7;             // of one plate, in a frame that is large enough
-constexpr double kStepPerStroke = 3.0;  // at least, so that there are gaps
-constexpr double kRingPerLine = 1.6;    // radius, at least, so that it shows on a wide line
+constexpr double kMaxPlateWidths = 3.0;  // of these widths
+constexpr int kStrokes = 7;              // of one plate, in a frame that is large enough
+constexpr double kStepPerStroke = 3.0;   // at least, so that there are gaps
+constexpr double kRingPerLine = 1.6;     // radius, at least, so that it shows on a wide line
 
 /// More would hide what hangs from them; they are dots.
 constexpr std::size_t kMaxSupports = 1000;
@@ -34,7 +34,7 @@ Vec2 axis_against(Vec2 gravity_m_s2) {
 }
 
 double width_px(double share, double side_px) {
-    return std::max(kThinnestStrokePx, share * side_px);
+    return std::max(kMinStrokeWidthPx, share * side_px);
 }
 
 }  // namespace
@@ -66,7 +66,7 @@ void Supports::add_pins(const System& system, const Body& body, std::span<const 
         const bool has_plate = up_ != Vec2{} && top_m <= local(pin_m).up + hidden_m;
         if (has_plate)
             plates_.push_back({pin_m, std::clamp(line_px, width_px(kPlateWidth, side_px_),
-                                                 kWidestPlate * width_px(kPlateWidth, side_px_))});
+                                                 kMaxPlateWidths * width_px(kPlateWidth, side_px_))});
         else
             rings_.push_back({pin_m, std::max(kRingRadius * side_px_, kRingPerLine * line_px)});
     }

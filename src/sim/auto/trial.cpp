@@ -167,7 +167,7 @@ class Checks::Check {
         [[nodiscard]] Vec2 of(Vec2 v) const { return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y}; }
     };
     static Turn turn(std::size_t number) {
-        constexpr std::array<Turn, kMost> kTurns{
+        constexpr std::array<Turn, kMaxCount> kTurns{
             {{0.8, 0.6}, {5.0 / 13.0, 12.0 / 13.0}, {24.0 / 25.0, 7.0 / 25.0}}};
         return kTurns[number];
     }
@@ -253,7 +253,7 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
     Simulation run(system, world, trial.method, interval_s, goes_on);
     const bool has_one = is_far_from_rounding(trial.method) ||
                          (kind.is_first && std::holds_alternative<RattleDef>(trial.method));
-    Checks checks(system, world, trial.check, interval_s, has_one ? 1 : Checks::kMost, goes_on);
+    Checks checks(system, world, trial.check, interval_s, has_one ? 1 : Checks::kMaxCount, goes_on);
     Comparison comparison(def.tolerance_m);
     recording.clear();
     bool is_checked = true;

@@ -58,9 +58,10 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
 /// the same either way.
 class Checks {
   public:
-    static constexpr std::size_t kMost = 3;
+    static constexpr std::size_t kMaxCount = 3;
 
-    /// `count` of them, 1 to kMost. `goes_on` is asked in the caller's thread alone and must outlive this.
+    /// `count` of them, 1 to kMaxCount. `goes_on` is asked in the caller's thread alone and must outlive
+    /// this.
     Checks(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
            std::size_t count, const GoesOn& goes_on);
     Checks(const Checks&) = delete;

@@ -14,7 +14,7 @@ namespace {
 
 /// A bar shorter than this share of its rest length counts as this long in the bound on the frequency. The
 /// bound would grow without limit when its ends pass each other: a jerk that no step resolves.
-constexpr double kShortest = 0.01;
+constexpr double kMinLengthShare = 0.01;
 
 /// |cos| + |sin| of 0.2 radians, rounded up.
 constexpr double kCommonBend = 1.2;
@@ -131,7 +131,7 @@ double ElasticForces::add_forces(const double* x_m, const double* y_m, double* f
         const double sine = u.x * v.y - u.y * v.x;
         const double cosine = u.x * v.x + u.y * v.y;
         const double shrink = std::min(
-            std::max(joint.before_m * u.inverse_1_m, joint.after_m * v.inverse_1_m), 1.0 / kShortest);
+            std::max(joint.before_m * u.inverse_1_m, joint.after_m * v.inverse_1_m), 1.0 / kMinLengthShare);
         sharpest = std::max(sharpest, (std::abs(cosine) + std::abs(sine)) * (shrink * shrink));
         const double a_n = joint.stiffness_n_m * sine * u.inverse_1_m;
         const double c_n = joint.stiffness_n_m * sine * v.inverse_1_m;
@@ -142,7 +142,7 @@ double ElasticForces::add_forces(const double* x_m, const double* y_m, double* f
         fx_n[joint.b] -= a_n * u.y + c_n * v.y;
         fy_n[joint.b] += a_n * u.x + c_n * v.x;
     }
-    const double push = 1.0 / std::max(shortest, kShortest) - 1.0;
+    const double push = 1.0 / std::max(shortest, kMinLengthShare) - 1.0;
     return push * spring_square_frequency_ + sharpest * joint_square_frequency_;
 }
 

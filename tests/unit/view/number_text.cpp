@@ -55,9 +55,9 @@ TEST(RoundedUp, DoesNotDependOnTheLocale) {
 }
 
 TEST(NumberText, HasAMinusSign) {
-    EXPECT_EQ(number_text(-0.25), "−0.25");
-    EXPECT_EQ(number_text(-0.0), "0");
-    EXPECT_EQ(number_text(1e6), "1e+06");
+    EXPECT_EQ(display_number(-0.25), "−0.25");
+    EXPECT_EQ(display_number(-0.0), "0");
+    EXPECT_EQ(display_number(1e6), "1e+06");
 }
 
 TEST(RoundNumbers, AreTheNearestOnes) {
