@@ -124,6 +124,10 @@ class ChainDynamics final : public Dynamics {
     void add_bending_along(const Chain& chain);
     void add_bending_across(const Chain& chain, const double* y, double* slope) const;
     void add_clamp_forces();
+    /// Calls visit(particle, displacement from the chain's start, velocity) for each free particle of a
+    /// chain.
+    template <class Visit>
+    void walk(const Chain& chain, const double* y, const Visit& visit) const;
 
     Forces forces_;
     std::vector<double> mass_kg_;  ///< one per particle of the system; 0 if pinned

@@ -8,72 +8,56 @@
 
 namespace corda::sim {
 
-void ChainDynamics::positions(const double* y, State& state) const {
+template <class Visit>
+void ChainDynamics::walk(const Chain& chain, const double* y, const Visit& visit) const {
     const std::size_t links = link_count();
+    Vec2 moved;
+    Vec2 velocity;
+    if (!chain.starts_pinned) {
+        const double* const extra = y + chain.first_extra;
+        moved = {extra[0], extra[1]};
+        velocity = {extra[2], extra[3]};
+        visit(chain.first_particle, moved, velocity);
+    }
+    const std::size_t moving = chain.ends_pinned ? chain.link_count - 1 : chain.link_count;
+    for (std::size_t i = 0; i < moving; ++i) {
+        const std::size_t link = chain.first_link + i;
+        const Vec2 direction{y[link], y[links + link]};
+        moved = moved + length_m_[link] * direction;
+        velocity = velocity + (length_m_[link] * y[2 * links + link]) * left_of(direction);
+        visit(chain.particle(i), moved, velocity);
+    }
+}
+
+void ChainDynamics::positions(const double* y, State& state) const {
     for (const Pin& pin : pins_) {
         state.x_m[pin.particle] = pin.position_m.x;
         state.y_m[pin.particle] = pin.position_m.y;
     }
     for (const Chain& chain : chains_) {
-        Vec2 moved;
-        if (!chain.starts_pinned) {
-            moved = {y[chain.first_extra], y[chain.first_extra + 1]};
-            state.x_m[chain.first_particle] = chain.start_m.x + moved.x;
-            state.y_m[chain.first_particle] = chain.start_m.y + moved.y;
-        }
-        const std::size_t moving = chain.ends_pinned ? chain.link_count - 1 : chain.link_count;
-        for (std::size_t i = 0; i < moving; ++i) {
-            const std::size_t link = chain.first_link + i;
-            moved = moved + length_m_[link] * Vec2{y[link], y[links + link]};
-            state.x_m[chain.particle(i)] = chain.start_m.x + moved.x;
-            state.y_m[chain.particle(i)] = chain.start_m.y + moved.y;
-        }
+        walk(chain, y, [&](std::size_t particle, Vec2 moved, Vec2 /*velocity*/) {
+            state.x_m[particle] = chain.start_m.x + moved.x;
+            state.y_m[particle] = chain.start_m.y + moved.y;
+        });
     }
 }
 
 void ChainDynamics::velocities(const double* y, std::vector<double>& vx_m_s,
                                std::vector<double>& vy_m_s) const {
-    const std::size_t links = link_count();
     for (const Chain& chain : chains_) {
-        Vec2 velocity;
-        if (!chain.starts_pinned) {
-            velocity = {y[chain.first_extra + 2], y[chain.first_extra + 3]};
-            vx_m_s[chain.first_particle] = velocity.x;
-            vy_m_s[chain.first_particle] = velocity.y;
-        }
-        const std::size_t moving = chain.ends_pinned ? chain.link_count - 1 : chain.link_count;
-        for (std::size_t i = 0; i < moving; ++i) {
-            const std::size_t link = chain.first_link + i;
-            velocity =
-                velocity + (length_m_[link] * y[2 * links + link]) * left_of({y[link], y[links + link]});
-            vx_m_s[chain.particle(i)] = velocity.x;
-            vy_m_s[chain.particle(i)] = velocity.y;
-        }
+        walk(chain, y, [&](std::size_t particle, Vec2 /*moved*/, Vec2 velocity) {
+            vx_m_s[particle] = velocity.x;
+            vy_m_s[particle] = velocity.y;
+        });
     }
 }
 
 double ChainDynamics::energy_j(const double* y) const {
-    const std::size_t links = link_count();
     double energy_j = 0.0;
     for (const Chain& chain : chains_) {
-        Vec2 moved;
-        Vec2 velocity;
-        const auto add = [&](std::size_t particle) {
+        walk(chain, y, [&](std::size_t particle, Vec2 moved, Vec2 velocity) {
             energy_j += mass_kg_[particle] * (0.5 * dot(velocity, velocity) + forces_.potential_j_kg(moved));
-        };
-        if (!chain.starts_pinned) {
-            const double* const extra = y + chain.first_extra;
-            moved = {extra[0], extra[1]};
-            velocity = {extra[2], extra[3]};
-            add(chain.first_particle);
-        }
-        for (std::size_t i = 0; i < chain.link_count; ++i) {
-            const std::size_t link = chain.first_link + i;
-            const Vec2 direction{y[link], y[links + link]};
-            moved = moved + length_m_[link] * direction;
-            velocity = velocity + (length_m_[link] * y[2 * links + link]) * left_of(direction);
-            add(chain.particle(i));
-        }
+        });
     }
     if (bends()) energy_j += bending_.energy_j(y);
     return energy_offset_j_ + energy_j;
