@@ -65,7 +65,7 @@ void Motion::start(const OnProgress& on_progress) {
     next_ = 0;
     run_.reset();
     run_.emplace(*system_, world_, methods_, timeline_.fps().interval_s(), asking(on_progress));
-    run_->set_outputs(recording_.readings());
+    run_->set_outputs(recording_.fields());
     methods_ = run_->methods();
 }
 

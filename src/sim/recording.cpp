@@ -74,15 +74,15 @@ double Spread::size_exceeded_by(double share) const {
 }
 
 Recording::Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes,
-                     std::size_t bar_count, std::optional<Quantity> quantity, const StateFields& readings)
+                     std::size_t bar_count, std::optional<Quantity> quantity, const StateFields& fields)
     : particle_count_(particle_count),
       quantity_(quantity),
-      readings_(quantity ? readings.with(kind_of(*quantity).fields) : readings),
+      fields_(quantity ? fields.with(kind_of(*quantity).fields) : fields),
       parts_{{{&State::x_m, particle_count},
               {&State::y_m, particle_count},
-              {&State::vx_m_s, readings_.velocities ? particle_count : 0},
-              {&State::vy_m_s, readings_.velocities ? particle_count : 0},
-              {&State::tension_n, readings_.tensions ? bar_count : 0, true}}},
+              {&State::vx_m_s, fields_.velocities ? particle_count : 0},
+              {&State::vy_m_s, fields_.velocities ? particle_count : 0},
+              {&State::tension_n, fields_.tensions ? bar_count : 0, true}}},
       state_size_(std::accumulate(parts_.begin(), parts_.end(), std::size_t{1},
                                   [](std::size_t sum, const Part& part) { return sum + part.count; })),
       most_states_(std::min(state_count, budget_bytes / (state_size_ * sizeof(double) + sizeof(Figures)))) {
@@ -93,7 +93,7 @@ Recording::Recording(std::size_t particle_count, std::size_t state_count, std::s
 }
 
 Recording Recording::for_part(std::size_t particle_count, std::size_t bar_count) const {
-    Recording part(particle_count, 0, 0, bar_count, quantity_, readings_);
+    Recording part(particle_count, 0, 0, bar_count, quantity_, fields_);
     part.most_states_ = most_states_;
     return part;
 }
@@ -113,7 +113,7 @@ void Recording::clear() {
 
 Status Recording::advance(Simulation& run, const Timeline& timeline, const std::function<double()>& clock_s,
                           const GoesOn& goes_on) {
-    run.set_outputs(readings_);
+    run.set_outputs(fields_);
     const double start_s = clock_s ? clock_s() : 0.0;
     const Status status = run.advance_to(timeline.time_s(size()), goes_on);
     if (clock_s) wall_s_ += clock_s() - start_s;

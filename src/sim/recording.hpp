@@ -52,7 +52,7 @@ class Recording {
     /// collect its distribution; states then also have the fields that it needs.
     Recording(std::size_t particle_count, std::size_t state_count, std::size_t budget_bytes,
               std::size_t bar_count = 0, std::optional<Quantity> quantity = {},
-              const StateFields& readings = {});
+              const StateFields& fields = {});
 
     /// An empty recording of some of the particles and bars with room for as many states.
     [[nodiscard]] Recording for_part(std::size_t particle_count, std::size_t bar_count = 0) const;
@@ -84,7 +84,7 @@ class Recording {
     /// quantity.
     [[nodiscard]] const Spread& spread() const { return spread_; }
     /// The fields of its states.
-    [[nodiscard]] const StateFields& readings() const { return readings_; }
+    [[nodiscard]] const StateFields& fields() const { return fields_; }
     /// Diagnostics of the run up to the last state added.
     [[nodiscard]] const Diagnostics& diagnostics() const { return diagnostics_; }
 
@@ -104,7 +104,7 @@ class Recording {
 
     std::size_t particle_count_;
     std::optional<Quantity> quantity_;
-    StateFields readings_;
+    StateFields fields_;
     std::array<Part, 5> parts_;
     std::size_t state_size_;
     std::size_t most_states_;

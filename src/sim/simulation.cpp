@@ -85,21 +85,21 @@ double Simulation::energy_change_j() const {
     return conserves_energy_ ? figures_.energy_change_j : std::numeric_limits<double>::quiet_NaN();
 }
 
-void Simulation::set_outputs(const StateFields& readings) {
-    if (readings == readings_) return;
-    readings_ = readings;
+void Simulation::set_outputs(const StateFields& fields) {
+    if (fields == fields_) return;
+    fields_ = fields;
     read();
 }
 
 void Simulation::read() {
-    if (readings_.velocities) {
+    if (fields_.velocities) {
         state_.vx_m_s.assign(state_.x_m.size(), 0.0);
         state_.vy_m_s.assign(state_.x_m.size(), 0.0);
         solver_->velocities(state_.vx_m_s, state_.vy_m_s);
     }
-    if (!readings_.tensions) return;
+    if (!fields_.tensions) return;
     state_.tension_n.assign(system_.bars.size(), 0.0);
-    if (!solver_->tensions(state_.tension_n) && !readings_.unknown_tensions) {
+    if (!solver_->tensions(state_.tension_n) && !fields_.unknown_tensions) {
         throw Refusal(Refusal::Reason::kUnknownTensions,
                       "tensions are asked for, which the method does not know: relaxation has none, and bars "
                       "that depend on each other share them in any way");

@@ -63,7 +63,7 @@ class Simulation {
     /// Sets the fields of all states from now on. Throws corda::Error (kInvalidScene) if tensions are
     /// requested that a method does not know (`relaxation`, or `rattle` if bars depend on each other), unless
     /// unknown tensions are allowed.
-    void set_outputs(const StateFields& readings);
+    void set_outputs(const StateFields& fields);
 
     /// Positions relative to `system().origin_m`, at the last time that was reached.
     [[nodiscard]] const State& state() const { return state_; }
@@ -87,7 +87,7 @@ class Simulation {
     std::unique_ptr<sim::Solver> solver_;
     State state_;
     State next_;  ///< kept for its memory
-    StateFields readings_;
+    StateFields fields_;
     bool has_diverged_ = false;
     bool is_stepping_ = false;  ///< still, if an exception ended the steps
     bool conserves_energy_ = true;

@@ -28,7 +28,7 @@ class Axis {
   public:
     explicit Axis(std::vector<Span> spans) : spans_(std::move(spans)) {}
 
-    /// The middle of what is drawn at that scale.
+    /// The middle of the extents at that scale.
     [[nodiscard]] double middle_m(double pixels_per_metre) const {
         const Ends ends = ends_at(pixels_per_metre);
         const double low_px = pixels_per_metre * ends.low->low_m - ends.low->before_px;

@@ -80,7 +80,7 @@ constexpr double kMinStrain = 1e-9;
 
 /// The next of these digits times a power of 10, whose halves are short.
 double rounded_end(double value) {
-    // One of them is 1, so that what is returned is rounded once.
+    // One of them is 1, so that the result is rounded once.
     double power = 1.0;
     double inverse = 1.0;
     while (10.0 * power <= value) power *= 10.0;

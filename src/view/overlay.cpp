@@ -24,7 +24,7 @@ constexpr double kLegendHeight = 0.6;
 constexpr double kLegendTick = 0.2;
 constexpr int kGradientStepPx = 2;
 
-/// In frames whose shorter side is less, overlays are in the way.
+/// Smallest shorter side of a frame that has overlays by default.
 constexpr int kMinSidePx = 160;
 
 constexpr double kBarPerWidth = 0.2;
@@ -35,7 +35,7 @@ constexpr const char* kFigureSpace = "\u2007";
 
 /// Where the character that begins at byte `i` of a UTF-8 text ends.
 std::size_t end_of_character(std::string_view utf8, std::size_t i) {
-    constexpr unsigned kFollowing = 2;  // the two first bits of a byte that goes on
+    constexpr unsigned kFollowing = 2;  // the first two bits of a continuation byte
     do ++i;
     while (i < utf8.size() && static_cast<unsigned char>(utf8[i]) >> 6U == kFollowing);
     return i;

@@ -16,7 +16,7 @@ namespace {
 constexpr double kMaxWidthShare = 0.38;  // where the least is more
 constexpr double kMaxHeightShare = 0.5;
 constexpr double kPanelShare = 0.36;           // of the frame
-constexpr double kHeightPerWidth = 0.8;        // of the box, if the panel is beside the picture
+constexpr double kHeightPerWidth = 0.8;        // of the box, for a panel at the right
 constexpr double kBoxLineWidth = 1.0 / 600.0;  // of the frame's shorter side
 constexpr double kCurveWidth = 1.0 / 300.0;
 constexpr double kMinCurvePx = 1.5;
@@ -37,7 +37,7 @@ constexpr std::uint8_t kBoxAlpha = 0x90;
 
 /// Points that are closer than this to the last one are left out.
 constexpr double kTooClosePx = 0.5;
-/// Of a curve that is not over time, the last so many points show.
+/// Number of points shown of a curve that is not over time: the last ones.
 constexpr std::size_t kMaxPoints = 4000;
 
 struct ValueRange {
@@ -74,12 +74,12 @@ bool can_be_divided(double extent) {
     return extent >= kMinExtent && extent <= 1.0 / kMinExtent;
 }
 
-/// From one label to the next, so that there are at most so many steps.
+/// The distance of labels that gives at most `most_steps` steps.
 RoundNumber step_of(double extent, int most_steps) {
     return round_number_above(extent / most_steps);
 }
 
-/// Of points that share a column of pixels, the first, the highest, the lowest and the last draw the same.
+/// Keeps the first, highest, lowest and last of the points in each column of pixels, which look the same.
 void keep_outline(std::vector<PixelPoint>& points, std::vector<double>& times_s) {
     std::size_t kept = 0;
     for (std::size_t first = 0; first < points.size();) {

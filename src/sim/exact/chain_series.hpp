@@ -116,7 +116,7 @@ class ChainSeries {
     /// chain's time scale together; infinite if the terms are zero, 0 if a coefficient is not finite.
     [[nodiscard]] double longest_step_s(double tolerance);
 
-    /// Writes to `y` the chain's part of the state `time_s` after the one that was expanded.
+    /// Writes to `y` the chain's part of the state `time_s` after the expanded state.
     void evaluate(double time_s, double* y);
 
   private:

@@ -50,7 +50,7 @@ CORDA_INLINE void start_series(SeriesArrays& a) {
     }
 }
 
-/// One step of an elimination: writes the fraction's q and the pivot times q, and goes on past the joint at a
+/// One step of an elimination: writes the fraction's q and the pivot times q, and passes the joint at a
 /// particle.
 CORDA_INLINE void pass(InverseMassFraction& fraction, double inverse_mass, double square_sine, double& q_here,
                        double& divisor) {
@@ -190,7 +190,7 @@ CORDA_INLINE double eliminate(SeriesArrays& a, std::size_t k) {
     const std::size_t half = a.meeting / kLanes;
     double down = 0.0;
     double up = 0.0;
-    Four lower_next{};  // load_next of the block below the one that eliminate_up has reached, or a pin's pull
+    Four lower_next{};  // load_next of the block below that of eliminate_up, or a pin's pull
     lower_next[kLanes - 1] = a.start_pull_m_s2.x * a.first_c[k] + a.start_pull_m_s2.y * a.first_s[k];
     Known upper;
     for (std::size_t d = 0; d < a.blocks - half; ++d) {

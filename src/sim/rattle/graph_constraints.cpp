@@ -21,9 +21,10 @@ constexpr int kMaxCorrections = 40;
 /// Bars depend on each other if a pivot is below this share of its diagonal entry. Dependent bars leave 1e-16
 /// to 1e-14; a net that is only just determined, sagging by a part in 1e5, leaves 1e-10.
 constexpr double kDependentPivot = 1e-12;
-/// Implied bars are found with all diagonal entries raised by this share, so that the elimination can go on
-/// beyond one. A pivot is then this share times 1 + c^2, c being the coefficients by which the others imply
-/// the bar: 2e-14 to 2e-11 in a grid of 200 x 200 with both diagonals, while independent bars leave 3e-9.
+/// Implied bars are found with all diagonal entries raised by this share, so that the elimination can
+/// continue past one. A pivot is then this share times 1 + c^2, c being the coefficients by which the others
+/// imply the bar: 2e-14 to 2e-11 in a grid of 200 x 200 with both diagonals, while independent bars leave
+/// 3e-9.
 constexpr double kRaise = 1e-14;
 constexpr double kImpliedPivot = 1e-11;
 /// Bars whose smallest pivot is below this share of that at the start are near a line in which they depend on

@@ -14,7 +14,7 @@ namespace corda::sim {
 ///
 ///   next = current + (1 - delta) (current - previous) + (h^2 / m) f
 ///   adjust = distance - rest length, direction = (p2 - p1) / distance; each of two free particles moves by
-///   adjust / 2 towards the other, a free one beside a pinned one by the whole adjustment.
+///   adjust / 2 towards the other; a free particle joined to a pinned one takes the whole adjustment.
 ///
 /// The update is kept in its summed form: a particle carries its last move d = current - previous, and
 /// d <- (1 - delta) d + (h^2 / m) f, current <- current + d; then d takes up what the bars moved. The numbers

@@ -34,7 +34,7 @@ struct alignas(64) RelaxationPacket {
 /// Two bars depend on each other if they share a particle. Each bar goes into the first packet that has room
 /// and comes after the packets of all earlier bars that it depends on. So every particle meets its bars in
 /// the given order, at most one per packet, and because a bar reads and writes its two particles alone, every
-/// number is the one that the given order yields, bit for bit. Along a rope with bars of several reaches the
+/// number has the bits of the given order. Along a rope with bars of several reaches the
 /// packets form a wavefront: bar (t, t + 1) of reach 1, and some way behind it one bar of each longer reach.
 ///
 /// The same holds from sweep to sweep, and for Verlet's update of a particle, which comes just before the

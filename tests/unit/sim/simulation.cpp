@@ -175,7 +175,7 @@ RopeDef plumb_line() {
 }
 
 TEST(Simulation, TellsVelocitiesAndTensionsByEveryMethodThatKnowsThem) {
-    // It turns as a rod at first: every link carries the weight and the centripetal force of what is below.
+    // It turns as a rod at first: every link carries the weight and the centripetal force of the links below.
     constexpr double kTurn = 1.0;  // 1/s
     RopeDef elastic = plumb_line();
     RopeDef string = plumb_line();

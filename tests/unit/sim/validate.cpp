@@ -16,7 +16,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// What a check says; empty if it has nothing to say.
+/// The message of a check; empty if it passes.
 std::string problem_of(const std::function<void()>& check) {
     try {
         check();
@@ -31,14 +31,14 @@ std::string problem_of(const MethodDef& method) {
     return problem_of([&] { validate(method); });
 }
 
-/// Of a sound rope that is spoiled.
+/// The message for a valid rope after a change.
 std::string problem_of_rope(const std::function<void(RopeDef&)>& spoil) {
     RopeDef ropes[] = {reference::straight_rope(3, 1.0, 20.0), reference::straight_rope(3, 1.0, 30.0)};
     spoil(ropes[1]);
     return problem_of([&] { validate(ropes, {}); });
 }
 
-/// Of a sound net of three particles that is spoiled.
+/// The message for a valid net of three particles after a change.
 std::string problem_of_net(const std::function<void(NetDef&)>& spoil) {
     NetDef net;
     net.points_m = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};

@@ -13,7 +13,7 @@ MotionBounds box(double x0, double y0, double x1, double y1) {
     return bounds;
 }
 
-/// What extends so far around points within `bounds`.
+/// An item with this extent around points within `bounds`.
 Drawn drawn(const MotionBounds& bounds, double extent_px) {
     return {bounds, extent_px, extent_px, extent_px, extent_px};
 }

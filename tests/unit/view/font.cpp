@@ -15,7 +15,7 @@ DrawList frame_of(int width, int height) {
     return list;
 }
 
-/// What a text looks like.
+/// A text as pixels.
 DrawList written(const std::string& utf8, int size_px) {
     DrawList list = frame_of(2000, 200);
     Font font;

@@ -182,7 +182,7 @@ TEST(Legends, NameTheirUnitAndTheEndsOfTheScale) {
 
 TEST(Legends, StayInTheirFrameAndKeepClearOfTheTitle) {
     OverlayDef def;
-    def.title = "a title that is a good deal longer than there is room for beside the legend of a picture";
+    def.title = "a title that is a good deal longer than the room to the left of the legend of a picture";
     for (const auto& [width, height] :
          {std::pair{128, 128}, {160, 90}, {960, 540}, {540, 960}, {3840, 2160}}) {
         const DrawList list = with_legend(kilonewtons(), def, width, height);

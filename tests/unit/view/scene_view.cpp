@@ -17,7 +17,7 @@ namespace {
 constexpr int kWidth = 200;
 constexpr int kHeight = 100;
 
-/// What is drawn of ropes and nets at their start, by a camera that is fitted to it.
+/// The draw list of ropes and nets at their start, with a fitted camera.
 DrawList draw(std::vector<RopeDef> ropes, const StyleDef& style, std::vector<BodyStyleDef> styles = {},
               const std::vector<NetDef>& nets = {}, Vec2 gravity_m_s2 = {0.0, -9.81}) {
     for (RopeDef& rope : ropes) rope.reach = rope.material.is_string ? 1 : 3;

@@ -28,9 +28,9 @@ constexpr double kRounding = 1e-12;
 constexpr double kMinShareOfMass = 1e-3;
 
 /// A link that shortens by less than this share of its length and comes back counts as taut all the time: a
-/// share of the tolerance, because one that does not come back after all goes on from there, and a tighter
-/// run has to show it. Within the limits: far above the rounding of lengths, within which a returning link
-/// gains speed, so that bounces might never end, and below any error that could be seen.
+/// share of the tolerance, because a link that does not come back continues from there, and a tighter run
+/// must show it. Within the limits: far above the rounding of lengths, within which a returning link gains
+/// speed, so that bounces might never end, and below any error that could be seen.
 constexpr double kNoBouncePerTolerance = 1e-2;
 constexpr double kMinNoBounce = 1e-13;
 constexpr double kMaxNoBounce = 1e-10;

@@ -19,8 +19,8 @@ class StringContacts {
 
     /// Changes the velocities of `string` by the impulses of a plastic snap of all links at their rest length
     /// whose ends separate: impulses pull and never push, and links that pull have no speed of separation
-    /// afterwards. Of the links without such a speed, those whose tension is positive then stay taut, and the
-    /// others go slack. False if no such solution was found.
+    /// afterwards. Links without such a speed then stay taut if their tension is positive; the others go
+    /// slack. False if no such solution was found.
     ///
     /// `is_taut`, one entry per link: on entry before the snap, on return after it. A slack link takes part
     /// if it is at its rest length to rounding, or gets there within 1e-11 of the string's time scale: events

@@ -21,7 +21,7 @@ namespace corda::sim {
 /// links at their rest length stop their ends from separating (StringContacts). Momentum is kept, energy is
 /// lost.
 ///
-/// Each step is searched for events when it is taken, and the integration starts anew at each event. As in
+/// Each step is searched for events when it is taken, and the integration restarts at each event. As in
 /// Dop853, nothing depends on the requested times. Memory is allocated at events only.
 class StringPart final : public ExactPart {
   public:

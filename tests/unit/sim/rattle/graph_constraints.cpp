@@ -13,7 +13,7 @@
 namespace corda::sim {
 namespace {
 
-/// A net of squares, with different masses, and a ring beside it.
+/// A net of squares, with different masses, and a ring.
 System net_and_ring() {
     NetDef net = test::leaning_net(5, 4, 0.1);
     for (std::size_t i = 0; i < net.mass_kg.size(); ++i) net.mass_kg[i] = 0.5 + 0.25 * static_cast<double>(i);

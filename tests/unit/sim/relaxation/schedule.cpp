@@ -17,7 +17,7 @@ std::vector<RelaxationBar> numbered_bars(const System& system) {
     return bars;
 }
 
-/// What happens to each particle, in order: -1 for Verlet's update, else the number of the bar.
+/// The operations on each particle, in order: -1 for Verlet's update, else the number of the bar.
 using Events = std::vector<std::vector<int>>;
 
 Events events_in_order(const std::vector<RelaxationBar>& bars, std::size_t particles, int sweeps) {

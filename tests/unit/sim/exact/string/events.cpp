@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kGravity = 9.81;
 
-/// What has happened to a string when the first of its links changes sides.
+/// A string at the moment the first of its links changes sides.
 struct Event {
     double time_s = 0.0;
     State state;

@@ -27,7 +27,7 @@ struct Moving {
     ChainDynamics dynamics;
 };
 
-TEST(ChainReadings, StartAtThePositionsOfTheSystem) {
+TEST(ChainOutputs, StartAtThePositionsOfTheSystem) {
     for (const test::Pins pins : kAllPins) {
         const Moving moving(test::chain(pins));
         const State state = moving.positions(moving.dynamics.initial_state());
@@ -38,7 +38,7 @@ TEST(ChainReadings, StartAtThePositionsOfTheSystem) {
     }
 }
 
-TEST(ChainReadings, HaveVelocitiesThatAreTheChangeOfThePositions) {
+TEST(ChainOutputs, HaveVelocitiesThatAreTheChangeOfThePositions) {
     for (const test::Pins pins : kAllPins) {
         Moving moving(test::chain(pins));
         const std::vector<double>& y = moving.dynamics.initial_state();
@@ -63,7 +63,7 @@ TEST(ChainReadings, HaveVelocitiesThatAreTheChangeOfThePositions) {
     }
 }
 
-TEST(ChainReadings, HaveTheEnergyOfTheirParticles) {
+TEST(ChainOutputs, HaveTheEnergyOfTheirParticles) {
     const WorldDef world{{1.5, -9.81}, 1.0, 0.0};
     for (const test::Pins pins : kAllPins) {
         const Moving moving(test::chain(pins), world);
@@ -82,7 +82,7 @@ TEST(ChainReadings, HaveTheEnergyOfTheirParticles) {
     }
 }
 
-TEST(ChainReadings, HaveTheLoadsOfAHangingRope) {
+TEST(ChainOutputs, HaveTheLoadsOfAHangingRope) {
     // Two sides hang from the pin in the middle: 1.5 and 2 kg.
     RopeDef rope = reference::rope_through({{0.0, -2.0}, {0.0, -1.0}, {0.0, 0.0}, {0.0, -0.5}});
     rope.mass_kg = {0.5, 1.0, 7.0, 2.0};
@@ -97,7 +97,7 @@ TEST(ChainReadings, HaveTheLoadsOfAHangingRope) {
     EXPECT_NEAR(tension_n[1], 1.5 * 9.81, 1e-13);
 }
 
-TEST(ChainReadings, HaveTheForceOfAClampAtItsPins) {
+TEST(ChainOutputs, HaveTheForceOfAClampAtItsPins) {
     // A link that two pins hold, and one that is bent from it by a right angle: a torque of 3 N m on links of
     // 1 m.
     RopeDef rope = reference::rope_through({{-1.0, 0.0}, {0.0, 0.0}, {0.0, -1.0}});
