@@ -18,7 +18,7 @@
 
 namespace corda::app {
 
-/// What the chosen subcommand does; set by its `add_...` below once it is parsed.
+/// The action of the chosen subcommand; set by its `add_...` below once it is parsed.
 using Action = std::function<ExitCode(const Console&)>;
 
 // Each adds one subcommand to `app`; parsing it sets `action`.
@@ -50,7 +50,7 @@ void add_help(CLI::App& app, Action& action);
 /// The names of the subcommands.
 [[nodiscard]] std::vector<std::string> command_names(const CLI::App& app);
 
-/// What to use in place of an unknown word: "did you mean render?", or all the words that are known.
+/// Advice for an unknown word: "did you mean render?", or all the words that are known.
 [[nodiscard]] std::string advice(std::string_view word, const std::vector<std::string>& known);
 
 /// Accepts a number from `low` to `high`. CLI::Range lets "nan" pass.
@@ -75,7 +75,7 @@ struct SceneOptions {
     void require() const;
     /// Whether the scene is that of a picture or a video.
     [[nodiscard]] bool is_from() const { return !from_.empty(); }
-    /// What the file of `--from` carries, read once; warns if another version made it.
+    /// The provenance in the file of `--from`, read once; warns if another version made it.
     [[nodiscard]] const Provenance& provenance(const Console& console) const;
     /// Throws corda::Error as load_scene does, but with kUsage if the scene is valid without the options
     /// other than --set: then the command line is wrong, not the scene.
@@ -112,7 +112,7 @@ struct GlOptions {
 /// if a signal asks for that. `console` must outlive it.
 [[nodiscard]] OnProgress show_progress(const Console& console, const std::string& what);
 
-/// Says what method `auto` became and how far it can be trusted.
+/// Reports the methods that `auto` chose and their error bounds.
 void report_plan(const Console& console, Film& film);
 /// Warns if a method that the scene names took one of several ways. To be called when the motion is known.
 void warn_of_branch(const Console& console, const Film& film);
@@ -133,7 +133,7 @@ struct EmptyPictures {
     [[nodiscard]] ExitCode report(const Console& console, std::int64_t all) const;
 };
 
-/// Says with -v what draws, and how it was reached.
+/// Reports the OpenGL driver and its platform with -v.
 void report_gl(const Console& console, const GlInfo& gl);
 
 }  // namespace corda::app

@@ -103,7 +103,7 @@ ExitCode compare(const Console& console, CompareOptions options) {
     options.json = console.json();
     std::optional<Image> mask;
     if (!options.mask.empty()) mask = read_png(options.mask, stopping_if_asked());
-    std::error_code none;  // who reads it tells what is wrong
+    std::error_code none;  // the reader reports the problem
     for (const std::string& path : {options.a, options.b})
         if (!std::filesystem::exists(path, none)) fail_file("read", path, none ? none.value() : ENOENT);
     const bool is_folder = std::filesystem::is_directory(options.a, none);
@@ -178,7 +178,7 @@ ComparedPicture compare_picture(const CompareOptions& options, const std::string
     Picture chosen_picture;
     for (const std::string& path : references) {
         Picture b;
-        // Small pictures have no SSIM; only who asks for it is told.
+        // Small pictures have no SSIM; only an explicit request is refused.
         const bool is_small = std::min(a.image.width(), a.image.height()) < kMinSsimSidePx;
         if (is_small && !options.limits.ssim) figures.ssim = false;
         ComparedPicture compared;

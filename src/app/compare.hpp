@@ -11,7 +11,7 @@
 
 namespace corda::app {
 
-/// What the command line of `compare` says.
+/// The command line of `compare`.
 struct CompareOptions {
     std::string a;
     std::string b;

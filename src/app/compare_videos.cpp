@@ -25,7 +25,7 @@ using Json = nlohmann::json;
 constexpr double kSameTimeS = 1e-3;
 constexpr double kSameRate = 1e-4;
 
-/// What the comparison of two videos has found so far.
+/// Result of the comparison of two videos so far.
 struct VideoDifference {
     std::array<std::int64_t, 2> frames{};
     std::array<Rational, 2> rates{};

@@ -49,7 +49,7 @@ nlohmann::json to_json(const gl::Attempt& attempt) {
     return json;
 }
 
-/// What can be written of an ending, and what is missing.
+/// Available encoders of an ending, and missing ones.
 struct Writable {
     std::string ending;
     std::vector<std::string> usable;

@@ -11,7 +11,7 @@
 
 namespace corda::app {
 
-/// What `still`, `strobe` and `sheet` have in common.
+/// Options that `still`, `strobe` and `sheet` share.
 struct FigureOptions {
     SceneOptions scene;
     GlOptions gl;

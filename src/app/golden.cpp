@@ -86,7 +86,7 @@ void write_text(const std::string& path, const std::string& text) {
     file.commit();
 }
 
-/// Prints what did not pass, what has changed and the sums.
+/// Prints failures, changes and totals.
 void tell(const Console& console, const GoldenOptions& options, const golden::SuiteResult& result) {
     nlohmann::json pictures = nlohmann::json::array();
     std::int64_t changed = 0;

@@ -85,7 +85,7 @@ std::optional<std::string> unknown_option(const CLI::App& app, int argc, char** 
     return std::nullopt;
 }
 
-/// Says what went wrong, with --json on standard output too.
+/// Reports an error, with --json on standard output too.
 int fail(const Console& console, ExitCode code, const std::string& text) {
     const std::string message = printable_lines(text);
     console.error(message);

@@ -20,7 +20,7 @@ void add_force(CLI::App& command, bool& force);
 /// it cannot be written to, or is not empty and `force` is not set.
 void prepare_page_folder(const std::string& path, bool force, bool dry_run = false);
 
-/// An error that ended it early, with what was written.
+/// An error that ended it early, with the names of the files written.
 [[nodiscard]] Error with_files(const Error& error, const report::ReportFolder& folder);
 
 /// Prints its files, the page first; `json` gets them too.

@@ -28,7 +28,7 @@ OnProgress show_progress(const Console& console, const std::string& what) {
 
 namespace {
 
-/// Says of which bodies `auto` can tell nothing.
+/// Reports the bodies for which `auto` has no bound.
 void warn_of_unbounded(const Console& console, const Film& film) {
     const Plan& plan = film.plan();
     for (const MethodGroup& group : groups_of(plan)) {

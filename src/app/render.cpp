@@ -71,7 +71,7 @@ bool is_one_file(const std::string& output) {
     return kind == media::FileKind::kVideo || kind == media::FileKind::kAnimation;
 }
 
-/// What an interrupted render has done, and how to go on.
+/// Message for an interrupted render: its state, and the way to continue.
 std::string words_of_interruption(const RenderOptions& options, std::int64_t first, std::int64_t count,
                                   const Rendered& rendered) {
     if (rendered.frames == 0)

@@ -17,7 +17,7 @@
 namespace corda::app {
 namespace {
 
-/// The columns beside the positions.
+/// The columns in addition to the positions.
 struct Columns {
     bool velocities = false;
     bool tensions = false;

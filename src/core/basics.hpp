@@ -43,7 +43,7 @@ class Error : public std::runtime_error {
     ExitCode code_;
 };
 
-/// Hears how far a piece of work is: `done` of `total` equal parts. Returning false stops the work cleanly.
+/// Progress of a piece of work: `done` of `total` equal parts. Returning false stops the work cleanly.
 /// May be empty.
 using OnProgress = std::function<bool(std::int64_t done, std::int64_t total)>;
 
@@ -56,7 +56,7 @@ inline void require_going_on(bool goes_on) {
     if (!goes_on) throw Error(ExitCode::kInterrupted, "stopped by the caller");
 }
 
-/// Tells `on_progress`. Throws corda::Error (kInterrupted) if it asks to stop.
+/// Calls `on_progress`. Throws corda::Error (kInterrupted) if it asks to stop.
 inline void report_progress(const OnProgress& on_progress, std::int64_t done, std::int64_t total) {
     if (on_progress) require_going_on(on_progress(done, total));
 }

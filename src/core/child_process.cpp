@@ -66,7 +66,8 @@ void lower_limit(decltype(RLIMIT_AS) resource, rlim_t value) {
     setrlimit(resource, &limit);
 }
 
-/// What the child does. It ends without the destructors and handlers of the process that it is a copy of.
+/// Runs the work in the child, which ends without the destructors and handlers of the process that it is a
+/// copy of.
 [[noreturn]] void be_child(const std::function<std::string()>& work, const ChildLimits& limits,
                            const Descriptor& out) {
     for (const int signal : {SIGINT, SIGTERM, SIGALRM, SIGXCPU}) std::signal(signal, SIG_DFL);

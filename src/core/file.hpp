@@ -24,7 +24,7 @@ void check_path(const std::string& path);
 /// while it waits for the writer of a pipe.
 [[nodiscard]] FileHandle open_for_reading(const std::string& path);
 
-/// Reads up to so many bytes into `bytes`; fewer only at the end of the file. Throws corda::Error (kIo).
+/// Reads up to `count` bytes into `bytes`; fewer only at the end of the file. Throws corda::Error (kIo).
 [[nodiscard]] std::size_t read_bytes(const FileHandle& file, const std::string& path, char* bytes,
                                      std::size_t count);
 
@@ -73,10 +73,10 @@ class Descriptor {
 /// Throws corda::Error (kIo): another render is writing `what`.
 [[noreturn]] void fail_busy(const std::string& what);
 
-/// What was to be done with a file.
+/// Purpose of using a file.
 enum class FileUse { kRead, kWrite };
 
-/// What a user can do about an errno value; empty if its text says it all.
+/// Remedy for an errno value; empty if its text is enough.
 [[nodiscard]] std::string_view hint_for_errno(int error_number, FileUse use = FileUse::kWrite);
 
 /// Makes a folder and its missing parents. Throws corda::Error (kIo).
@@ -89,10 +89,10 @@ void make_folder(const std::string& path);
 /// Checks that a folder can be made or, if it exists, written to. Throws corda::Error (kIo).
 void check_folder(const std::string& path);
 
-/// Forces what was written to an open file onto the disk. Throws corda::Error (kIo).
+/// Flushes an open file to disk. Throws corda::Error (kIo).
 void sync_file(const Descriptor& file, const std::string& path);
 
-/// Forces the entry of `path` in its folder onto the disk, so that a rename survives a power cut. A folder
+/// Flushes the entry of `path` in its folder to disk, so that a rename survives a power cut. A folder
 /// that cannot be read or synced is no failure, because the entry is there: its file system is synced
 /// instead, as far as it can be. Throws corda::Error (kIo) if there is no such folder.
 void sync_folder_of(const std::string& path);

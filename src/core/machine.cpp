@@ -35,7 +35,7 @@ std::optional<std::uint64_t> number_in(const std::filesystem::path& file) {
     return text >> number ? std::optional(number) : std::nullopt;
 }
 
-/// What the limit of one group leaves. Its page cache gives way.
+/// Bytes that the limit of one group leaves. Its page cache can be reclaimed.
 std::optional<std::uint64_t> left_in(const std::filesystem::path& group) {
     const auto most = number_in(group / "memory.max");
     const auto used = number_in(group / "memory.current");

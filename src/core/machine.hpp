@@ -9,7 +9,7 @@ namespace corda {
 
 /// How many bytes of memory this process may still take without harm to others: what Linux tells as
 /// available, and what the limits of its control groups (version 2) and of its address space leave. Empty if
-/// none of these is told. `root` is the folder with proc/ and sys/.
+/// none of these is known. `root` is the folder with proc/ and sys/.
 [[nodiscard]] std::optional<std::uint64_t> available_memory_bytes(const std::filesystem::path& root = "/");
 
 /// Bytes of address space that this process has; 0 if Linux does not report them.

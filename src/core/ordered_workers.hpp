@@ -106,7 +106,7 @@ class OrderedWorkers {
     std::function<Make()> new_maker_;
     std::int64_t end_;
     std::int64_t ahead_;  ///< how many may be made or waiting at a time
-    std::mutex mutex_;    ///< of what follows
+    std::mutex mutex_;    ///< for the members below
     std::condition_variable changed_;
     std::int64_t next_;                ///< to be made
     std::atomic<std::int64_t> taken_;  ///< all before this one

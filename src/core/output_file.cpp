@@ -32,7 +32,7 @@ fs::path folder_of(const std::string& path) {
     return folder.empty() ? fs::path(".") : folder;
 }
 
-/// What the names of the temporary files of an output begin with.
+/// Prefix of the names of the temporary files of an output.
 std::string temporary_stem(const std::string& path) {
     const fs::path whole(path);
     return (whole.parent_path() / whole.filename().string().substr(0, kMaxStem)).string() + ".";
@@ -48,7 +48,7 @@ std::optional<std::string> output_of(std::string_view name) {
     return is_hexadecimal ? std::optional<std::string>(name.substr(0, dot)) : std::nullopt;
 }
 
-/// Removes a temporary file unless somebody holds it.
+/// Removes a temporary file unless a process holds it.
 void remove_unheld(const std::string& path) {
     const Descriptor file(::open(path.c_str(), O_RDWR | O_NOFOLLOW | O_CLOEXEC));
     if (file && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0) ::unlink(path.c_str());

@@ -10,7 +10,7 @@
 
 namespace corda {
 
-/// What the bytes of an output can go to.
+/// Kinds of destinations of an output.
 enum class OutputKind {
     kFile,    ///< an ordinary file, because the writer goes back in it
     kStream,  ///< also a device, a pipe or standard output
@@ -57,10 +57,10 @@ class OutputFile {
     /// Throws ReaderLeft, like all below, if whoever reads standard output closed it.
     void write(std::string_view bytes);
 
-    /// Writes out what `write` has buffered, for whoever reads the file before it has its name.
+    /// Flushes the buffer of `write`, for readers of the file before it has its name.
     void flush();
 
-    /// Writes out what `write` has buffered, forces it onto the disk, closes, and gives the file its name.
+    /// Flushes the buffer of `write` and the file to disk, closes it, and gives it its name.
     /// If the name was taken meanwhile, without `force` by anything, with it by a device or a pipe, the
     /// complete file is kept as by `keep`, and the message says where.
     void commit();

@@ -25,7 +25,7 @@ bool lock(const Descriptor& file, const std::string& path, int operation) {
     return leads_to(path, file);
 }
 
-/// Opens what stands under the name of a part. O_NONBLOCK: a pipe there must not stop us.
+/// Opens the file under the name of a part. O_NONBLOCK: a pipe there must not stop us.
 Descriptor open_existing(const std::string& path) {
     return Descriptor(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC));
 }

@@ -7,7 +7,7 @@
 
 namespace corda {
 
-/// The name of what is unfinished of the file `path`.
+/// The name of the unfinished file of `path`.
 [[nodiscard]] inline std::string part_path(const std::string& path) {
     return path + ".part";
 }
@@ -51,7 +51,7 @@ class PartFile {
     /// Whether its name still leads to this file: it or its folder may have been removed.
     [[nodiscard]] bool is_named() const;
 
-    /// Forces what was written, and the name, onto the disk. Throws corda::Error (kIo).
+    /// Flushes the file and its name to disk. Throws corda::Error (kIo).
     void sync();
 
     /// Removes the file and releases the lock; never throws, because an old part does no harm.

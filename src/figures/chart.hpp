@@ -18,7 +18,8 @@ struct Curve {
     bool is_joined = true;
 };
 
-/// What an axis shows, and the unit of its values, which takes a prefix; "": bare numbers, "rad": as it is.
+/// The quantity of an axis, and the unit of its values, which takes a prefix; "": bare numbers, "rad": as it
+/// is.
 struct AxisDef {
     std::string text;
     std::string unit;

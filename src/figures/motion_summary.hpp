@@ -48,7 +48,7 @@ struct BodyCurves {
     double nearest_m = std::numeric_limits<double>::infinity();  ///< to that pin
 };
 
-/// What a report needs of a motion, from one reading of its states at all frame times.
+/// Summary of a motion for a report, from its states at all frame times.
 struct MotionSummary {
     explicit MotionSummary(std::int64_t most) : kinetic(most), weight(most), elastic(most), total(most) {}
 
@@ -70,7 +70,7 @@ struct MotionSummary {
     std::optional<Error> failure;
 };
 
-/// What a film's states need for that: FilmDef::readings.
+/// Fields that the states of the film need: FilmDef::readings.
 [[nodiscard]] StateFields needed_readings();
 
 /// Where rows go: a file name and the keys of its columns give what takes its rows.

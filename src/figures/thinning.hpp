@@ -20,7 +20,7 @@ class Thinner {
   public:
     enum class Kind { kOverTime, kPath };
 
-    /// A curve has at most so many points.
+    /// Largest number of points of a curve.
     static constexpr std::int64_t kMaxPoints = 2000;
 
     /// `rows`: how many will be added at most. Up to kMaxPoints all stay.
@@ -28,7 +28,7 @@ class Thinner {
 
     /// A point that is not finite breaks the curve if no other of its block is left.
     void add(const CurvePoint& point);
-    /// What is left, in the order in which it was added.
+    /// The remaining points, in the order in which they were added.
     [[nodiscard]] std::vector<CurvePoint> points() const;
     /// Whether lines between the points are the curve; otherwise it is dots.
     [[nodiscard]] bool is_joined() const { return !is_sparse_; }

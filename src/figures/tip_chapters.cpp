@@ -18,7 +18,7 @@ std::vector<pipeline::TrackedParticle> followed_of(const MotionSummary& reading)
     return followed;
 }
 
-/// Curves that are not over time: dots if lines would show what is not there.
+/// Curves that are not over time: dots where lines would be misleading.
 std::vector<Curve> tip_curves(const Film& film, const MotionSummary& reading, Thinner BodyCurves::*curve) {
     std::vector<Curve> curves = curves_of(film.scene(), film.system(), reading, curve);
     for (std::size_t i = 0; i < curves.size(); ++i)

@@ -115,7 +115,7 @@ bool is_foreign(const std::string& path) {
     return !has_schema(text) && !has_tables_of_scenes(text);
 }
 
-/// What a picture says of how it was made; nothing if it cannot be read.
+/// The record of a golden picture; empty if it cannot be read.
 Provenance provenance_in(const std::string& path) {
     try {
         return from_png_info(read_png_info(path));

@@ -72,7 +72,7 @@ bool is_of_suite(const std::string& path) {
     }
 }
 
-/// What to say of a golden picture that cannot be read; empty if it can.
+/// Message for a golden picture that cannot be read; empty if it can.
 std::string read_golden(const std::string& path, Picture& golden) {
     try {
         golden = read_picture(path);

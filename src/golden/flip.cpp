@@ -206,7 +206,7 @@ float largest_error(const Matrix& matrix) {
     return power(hyab(lab(1), lab(2)), kColorExponent);
 }
 
-/// What does not depend on the pictures.
+/// Constants that do not depend on the pictures.
 struct Constants {
     Filters filters;
     Matrix matrix = make_matrix();

@@ -8,7 +8,7 @@
 #pragma GCC visibility push(default)
 namespace corda {
 
-/// Pixels per degree of the field of view in which flip() is meant: a screen 0.7 m and 3840 pixels wide, seen
+/// Pixels per degree of the field of view for flip(): a screen 0.7 m and 3840 pixels wide, seen
 /// from 0.7 m, as in the authors' program.
 inline constexpr double kFlipPixelsPerDegree = 3840.0 * std::numbers::pi / 180.0;
 /// The least side of pictures that have an ssim().

@@ -118,7 +118,7 @@ std::vector<Setting> freezing(const Scene& scene, const Provenance& made) {
     std::vector<Setting> settings;
     const bool is_open = std::holds_alternative<AutoDef>(scene.solver) && scene.body_solvers.empty();
     if (is_open && !made.solver.empty()) settings.push_back(made.solver);
-    // Of a picture with another border the camera is none of this scene's.
+    // A picture with another margin has a camera of another scene.
     if (!made.margin.empty() && made.margin != fmt::format("{}", scene.camera.margin)) return settings;
     if (!scene.camera.center_m && !made.center.empty()) settings.push_back(made.center);
     if (!scene.camera.height_m && !made.height.empty()) settings.push_back(made.height);

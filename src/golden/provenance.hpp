@@ -11,7 +11,7 @@
 
 namespace corda::golden {
 
-/// What a golden picture says about how it was made.
+/// The record in a golden picture of the way it was made.
 struct Provenance {
     std::string version;   ///< of Corda
     std::string scene;     ///< its name
@@ -53,7 +53,7 @@ struct Provenance {
 /// carry its scene.
 [[nodiscard]] std::string scene_change(const std::string& reference, const Scene& now);
 
-/// Why two pictures may differ, in words: from what is most likely the cause.
+/// The most likely cause of the difference of two pictures, in words.
 [[nodiscard]] std::string cause_of(const Provenance& reference, const Provenance& now);
 
 /// The largest distance between particles in m; empty if positions are not known or differ in number.

@@ -63,7 +63,7 @@ class Rows {
         }
     }
 
-    /// Of the windows whose last row is `y`.
+    /// Sum over the windows that end at row `y`.
     [[nodiscard]] double sum(int y) const {
         double sum = 0.0;
         for (std::size_t x = 0; x < out_; ++x) {

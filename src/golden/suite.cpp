@@ -95,7 +95,7 @@ class Runner {
         queue_.run(threads_);
     }
 
-    /// Writes what an update has drawn, and removes what is stale.
+    /// Writes the pictures of an update and removes stale ones.
     void publish(const std::vector<std::string>& stale) { staging_.publish(stale); }
 
   private:
@@ -124,7 +124,7 @@ class Runner {
             });
     }
 
-    /// The film with what is frozen, or without if that does not fit the scene any more.
+    /// The film with the frozen solver and camera, or without if they no longer fit the scene.
     void make_film(Job& job) {
         try {
             make_film(job, job.frozen);

@@ -18,9 +18,9 @@ struct SuiteDef {
     bool update = false;            ///< replace references that differ, add missing ones, remove stale ones
     bool force =
         false;  ///< with `update`: also replace files that are no PNG, and remove stale ones without a record
-    bool replan = false;   ///< with `update`: choose solver and camera of all scenes anew
+    bool replan = false;   ///< with `update`: choose solver and camera of all scenes again
     bool dry_run = false;  ///< with `update`: change nothing
-    int most_drawn = 0;    ///< of so many failed pictures what was drawn is kept, for a page
+    int most_drawn = 0;    ///< largest number of failed pictures that are kept for a page
     FilmDef film;
     OnProgress on_progress;  ///< called with the pictures done, by one thread at a time; false stops
 };

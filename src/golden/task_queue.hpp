@@ -17,7 +17,7 @@ class TaskQueue {
     void push_back(Work work);
     /// Work that is done before all that waits.
     void push_front(Work work);
-    /// Does all of it on so many threads, or on the calling one if the system starts none. Throws what the
+    /// Does all work on `threads` threads, or on the calling one if the system starts none. Throws what the
     /// first piece that failed threw; what was not begun by then is dropped.
     void run(int threads);
 

@@ -53,7 +53,7 @@ struct VideoDef {
     EncoderDef encoder;
 };
 
-/// What a PNG says beside its pixels.
+/// Metadata of a PNG.
 struct PngInfo {
     /// Texts in file order: keyword (1..79 Latin-1 characters) and UTF-8 text; bytes that are not UTF-8
     /// are written as "\xe9". Long ones are compressed.

@@ -89,7 +89,7 @@ Provenance parsed(const Json& json) {
     return provenance;
 }
 
-/// What a PNG carries.
+/// Provenance in the texts of a PNG.
 struct PngTexts {
     std::string provenance;  ///< empty if there is none
     std::string frame;       ///< its number, in words
@@ -117,7 +117,7 @@ std::string text_in_video(const std::string& path, const OnProgress& on_progress
     Json comment = Json::parse(text, nullptr, false);  // its size and depth were checked
     if (!comment.is_object() || !comment.contains(kProvenanceKey)) return {};
     Json& provenance = comment[kProvenanceKey];
-    // Of a recovered video those that it has, not those that it was to have.
+    // A recovered video has the frames that it contains, not those that were planned.
     const auto first = media::comment_number(text, "first_frame");
     const auto frames = media::comment_number(text, "frames");
     const auto is_count = [](std::int64_t number) { return number >= 0 && number <= std::int64_t{1} << 53U; };

@@ -30,7 +30,7 @@ struct PictureOrigin {
     friend bool operator==(const PictureOrigin&, const PictureOrigin&) = default;
 };
 
-/// What a file was made from.
+/// Origin of a file.
 struct Provenance {
     /// Of the text that a file carries. QuickTime's comments end at 64 KiB.
     static constexpr std::size_t kMaxBytes = std::size_t{32} << 10;
@@ -47,8 +47,8 @@ struct Provenance {
 inline constexpr const char* kProvenanceKeyword = "Provenance";
 inline constexpr const char* kProvenanceKey = "provenance";
 
-/// What this version makes of `scene`: without the scene if that takes too much space or code alone can say
-/// it. No folder, host or date is part of it.
+/// The provenance of a file that this version makes from `scene`: without the scene if that takes too much
+/// space or code alone can say it. No folder, host or date is part of it.
 [[nodiscard]] Provenance provenance_of(const Scene& scene);
 
 /// As a JSON object of at most kMaxBytes: without the scene, or without the picture, if they do not fit.

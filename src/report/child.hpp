@@ -5,7 +5,7 @@
 
 namespace corda::report {
 
-/// What a finished program left behind.
+/// Exit status and output of a finished program.
 struct ChildResult {
     int exit_code = -1;  ///< 128 + the number of the signal if one ended it
     std::string out;

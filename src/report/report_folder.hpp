@@ -25,7 +25,7 @@ class ReportFolder {
 
     /// Where a file of that name belongs.
     [[nodiscard]] std::string path_of(const std::string& name) const;
-    /// Counts a file that somebody else has written there.
+    /// Counts a file that other code has written there.
     void note(const std::string& path) { paths_.insert(paths_.begin(), path); }
 
     /// Writes report.md, report.json and report.html. A figure that `add` has not drawn is left out. A file
@@ -39,7 +39,7 @@ class ReportFolder {
     void write(const std::string& name, const std::string& bytes);
     void add_picture(const Picture& picture);
     void add_plot(const Plot& plot);
-    /// Tells that the next of the pictures is drawn.
+    /// Reports the start of the next picture.
     void ask();
 
     std::string path_;

@@ -127,7 +127,7 @@ std::string plot_item(const Plot& plot, std::size_t index, std::size_t place) {
                        kDashTypes[look / kColors.size() % kDashTypes.size()], title);
 }
 
-/// What gnuplot is to draw, the context first.
+/// The curves for gnuplot, the context first.
 std::vector<std::string> plot_items(const Plot& plot) {
     std::vector<std::string> items;
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
@@ -211,7 +211,7 @@ std::string last_words(const std::string& text) {
     return words.empty() ? "without a message" : words;
 }
 
-/// Says how large an SVG is in print.
+/// Sets the size of an SVG in print.
 void add_size(const Plot& plot, int width_mm, std::string& svg) {
     const std::size_t at = svg.find(" viewBox=");
     if (at == std::string::npos) return;

@@ -82,14 +82,6 @@ TEST_F(Study, PicturesHaveTheirErrorsAndTimes) {
     EXPECT_LT(solvers[10]["error_px"], 1e-10);  // exact at 1e-8: measured 2.5e-12
     EXPECT_LT(solvers[11]["error_px"], 0.1);    // auto: measured 7.7e-9
     EXPECT_EQ(solvers[11]["setting"], "exact at tolerance 0.0001");
-    const json& presets = chapter["tables"][1]["rows"];
-    ASSERT_EQ(presets.size(), 6U);
-    for (const json& row : presets) {
-        // The codec smooths the dithered background.
-        EXPECT_GT(row["psnr_db"], 50.0) << row;         // measured 58.0 .. 61.5
-        EXPECT_LT(row["one_minus_ssim"], 2e-3) << row;  // measured 4.1e-4 .. 5.8e-4
-    }
-    EXPECT_GT(presets[0]["bytes"], presets[5]["bytes"]);  // ultrafast 27556, slow 5343
     expect_files_of(report, out_);
 }
 

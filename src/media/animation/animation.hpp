@@ -13,8 +13,8 @@ namespace corda::media {
 /// Pictures of which an animation is made.
 struct AnimationDef {
     std::string part_path;    ///< they are exact
-    std::uint64_t bytes = 0;  ///< so many of its first bytes are read
-    std::int64_t frames = 0;  ///< so many of its first pictures
+    std::uint64_t bytes = 0;  ///< number of its first bytes to read
+    std::int64_t frames = 0;  ///< number of its first pictures
     Rational fps;
     int threads = 1;  ///< change the time that it takes, and no byte
 };

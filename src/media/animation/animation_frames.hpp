@@ -13,7 +13,7 @@
 
 namespace corda::media {
 
-/// Makes something of the frames first <= k < end. If `all` is stopped, nobody takes it.
+/// Makes something of the frames first <= k < end. If `all` is stopped, the result is dropped.
 template <class Section>
 using MakeSection =
     std::function<Section(std::int64_t first, std::int64_t end, const OrderedWorkers<Section>& all)>;

@@ -7,7 +7,7 @@
 
 namespace corda::media {
 
-/// What the frames of an APNG say of their times; libav rounds them.
+/// Times of the frames of an APNG; libav rounds them.
 struct ApngTimes {
     Rational delay_s{0, 1};       ///< of the first frame
     std::int64_t uneven_at = -1;  ///< index of the first frame that has another; -1: none

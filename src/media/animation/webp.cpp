@@ -18,7 +18,7 @@ using Mux = std::unique_ptr<WebPMux, decltype(&WebPMuxDelete)>;
     throw Error(ExitCode::kEncoder, fmt::format("libwebp {}; use a smaller picture or .apng", what));
 }
 
-/// What libwebp frees by itself.
+/// A picture encoded by libwebp, with the memory that libwebp frees.
 struct Encoded {
     Encoded() { WebPMemoryWriterInit(&writer); }
     Encoded(const Encoded&) = delete;

@@ -26,7 +26,7 @@ std::string listed(const std::vector<std::string>& lines) {
     return text;
 }
 
-/// Copies the indexed packets into `output`, with time stamps made anew from frame numbers and the frame
+/// Copies the indexed packets into `output`, with time stamps computed from frame numbers and the frame
 /// count in the comment.
 void remux(const PartIndex& index, const std::string& part_path, const Ending& ending,
            const OnProgress& on_progress, OutputFile& output) {
@@ -68,7 +68,7 @@ void check_ending(const PartIndex& index, const std::string& part_path, const st
                     part_path, avcodec_get_name(index.codec), path));
 }
 
-/// What an animation shows that cannot tell what it was rendered as.
+/// Colours of an animation without a record of its rendering.
 void check_animation(const PartIndex& index, const Ending& ending, VerifyReport& report) {
     if (ending.kind != FileKind::kAnimation || !report.ok()) return;
     const auto frames = std::ssize(index.frame_of);

@@ -11,7 +11,7 @@
 
 namespace corda::media {
 
-/// What became of a part file.
+/// Result of finishing a part file.
 struct RemuxResult {
     std::int64_t frames = 0;  ///< frames in the finished video
     bool truncated = false;   ///< the part breaks off in a chunk, or is damaged: what follows was left out

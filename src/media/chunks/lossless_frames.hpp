@@ -8,7 +8,7 @@
 
 namespace corda::media {
 
-/// What a frame of an animation changes.
+/// Changes of an animation frame.
 struct PictureChange {
     /// Where the frame differs from the last one, from even columns and rows on; one pixel if it does not.
     PixelRect part;

@@ -17,7 +17,7 @@ class PartChecksum {
     void add(std::string_view bytes);
     /// Whether bytes were counted since the last checksum.
     [[nodiscard]] bool is_due() const { return bytes_ > 0; }
-    /// The element to write next; counting begins anew after it. `container` is libav's name of the muxer.
+    /// The element to write next; counting begins again after it. `container` is libav's name of the muxer.
     [[nodiscard]] std::string element(std::string_view container) const;
     /// The element without its head: a mark, the number of bytes counted and their checksum. The bytes of the
     /// head are counted before it.
@@ -28,7 +28,7 @@ class PartChecksum {
     std::uint32_t crc_ = 0;
 };
 
-/// What the checksums of a part tell.
+/// Result of checking the checksums of a part.
 struct SoundBytes {
     /// Length of the longest prefix that ends with a checksum and whose checksums all match; 0 if there is
     /// none.

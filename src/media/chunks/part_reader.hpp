@@ -44,10 +44,10 @@ class EmptyPart : public Error {
 /// constant frame rate, kInterrupted if `on_progress` asks to stop.
 [[nodiscard]] PartIndex index_part(const std::string& path, const OnProgress& on_progress);
 
-/// What the part says of itself: "title" or "comment"; empty if it does not.
+/// Metadata of the part, "title" or "comment"; empty if it has none.
 [[nodiscard]] std::string metadata_entry(const AVFormatContext& format, const char* key);
 
-/// What a part tells with its first chunk.
+/// Metadata in the first chunk of a part.
 struct PartComment {
     std::optional<std::string> text;  ///< std::nullopt if that chunk is not whole
     bool is_damaged = false;          ///< it does not break off: it has changed
@@ -64,7 +64,7 @@ struct PartComment {
 /// name. Never throws: it does no harm.
 void remove_part_copy(const std::string& part) noexcept;
 
-/// Copies packets of a part, from the first one, into a track, with time stamps made anew from frame numbers.
+/// Copies packets of a part, from the first one, into a track, with time stamps computed from frame numbers.
 class PacketCopy {
   public:
     /// All must outlive it.

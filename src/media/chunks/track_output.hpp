@@ -14,7 +14,7 @@ enum class TrackLayout {
     kFinal,  ///< one index, ahead of the pictures
 };
 
-/// What a file says of its video track beside its pictures.
+/// Metadata of a video track.
 struct TrackInfo {
     Rational fps;
     std::string title;
@@ -48,7 +48,7 @@ class TrackOutput {
   private:
     static int write_bytes(void* output, const std::uint8_t* bytes, int count);
     static std::int64_t seek(void* output, std::int64_t offset, int whence);
-    /// Writes what is buffered; in a part, also a checksum of all bytes since the previous one.
+    /// Flushes the buffer; in a part, also a checksum of all bytes since the previous one.
     void end_bytes(const std::string& what);
     /// True if the header must be renewed at the end, to that of newer versions of FFmpeg.
     [[nodiscard]] bool has_old_header() const;

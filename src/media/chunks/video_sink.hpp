@@ -48,9 +48,9 @@ struct FrameRange {
     std::int64_t per_chunk = 1;  ///< chunks begin at multiples of this
 };
 
-/// What a format's packets go to, under this name. With `resume`, a part of an interrupted render of the same
-/// frames is resumed, if there is one. Throws corda::Error: kIo, and kMismatch for a part that cannot be
-/// read.
+/// Destination of the packets of a format, under this name. With `resume`, a part of an interrupted render of
+/// the same frames is resumed, if there is one. Throws corda::Error: kIo, and kMismatch for a part that
+/// cannot be read.
 [[nodiscard]] std::unique_ptr<VideoSink> make_sink(const Format& format, const std::string& path,
                                                    const OutputOptions& options, const FrameRange& frames,
                                                    bool resume);

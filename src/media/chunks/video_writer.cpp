@@ -34,7 +34,7 @@ nlohmann::json patches_json(const std::vector<ColorPatch>& patches) {
     return list;
 }
 
-/// Refuses files that are in the way. The folder is made if there is none.
+/// Refuses to replace existing files. The folder is made if there is none.
 void check_pictures(const std::string& pattern, const std::string& input, bool force, std::int64_t first,
                     std::int64_t end) {
     const std::filesystem::path folder = std::filesystem::path(pattern).parent_path();

@@ -35,7 +35,7 @@ CheckedVideo check_video_output(const std::string& path, const VideoDef& def, co
                                 bool force, bool is_transparent = false, std::int64_t first = 0,
                                 std::int64_t end = CheckedVideo::kNoEnd, bool resume = false);
 
-/// What a video file says beside its pictures.
+/// Metadata of a video file.
 struct VideoMetadata {
     std::string title{};
     /// Compact JSON that `verify` reads back; VideoWriter adds "frames", "fps", "crf" and "patches" to it
@@ -78,13 +78,13 @@ class VideoWriter {
     /// part of this video.
     void append(Chunk chunk);
 
-    /// What it is written as.
+    /// The format of the file.
     [[nodiscard]] const Format& format() const;
 
     /// How many frames a whole chunk has.
     [[nodiscard]] std::int64_t frames_per_chunk() const;
 
-    /// What encodes a chunk for append(), from frame `frame` of the film on. May be called by any thread.
+    /// An encoder of a chunk for append(), from frame `frame` of the film on. May be called by any thread.
     [[nodiscard]] ChunkEncoder chunk_encoder(std::int64_t frame) const;
 
     /// Whether the part that was resumed was damaged after its whole chunks.

@@ -30,7 +30,7 @@ class Encoder {
     /// Ends the stream; the remaining packets go to `sink`. Throws corda::Error (kEncoder).
     virtual void drain(const PacketSink& sink) = 0;
 
-    /// What a muxer needs to know about the stream.
+    /// Stream parameters for the muxer.
     [[nodiscard]] virtual const AVCodecParameters& parameters() const = 0;
 };
 

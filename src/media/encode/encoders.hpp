@@ -9,7 +9,7 @@
 
 namespace corda::media {
 
-// What libav's encoders of each family are told: Codec::settings.
+// Options of each family of libav's encoders: Codec::settings.
 [[nodiscard]] EncoderSettings nvenc_settings(const Format& format, const VideoDef& def);
 [[nodiscard]] EncoderSettings x265_settings(const Format& format, const VideoDef& def);
 [[nodiscard]] EncoderSettings svt_av1_settings(const Format& format, const VideoDef& def);
@@ -19,7 +19,7 @@ namespace corda::media {
 [[nodiscard]] EncoderSettings ffv1_settings(const Format& format, const VideoDef& def);
 [[nodiscard]] EncoderSettings exact_settings(const Format& format, const VideoDef& def);
 
-/// What a picture says of itself, by its number in the film.
+/// Metadata of a picture, by its number in the film.
 using PictureInfo = std::function<PngInfo(std::int64_t frame)>;
 
 /// Opens the encoder of a format for a definition that was checked, for a chunk that begins with frame

@@ -13,8 +13,8 @@ namespace {
 
 using BytesPerPixel = std::pair<std::string_view, int>;
 
-/// What one job adds, per pixel, to the 130 MiB of the process; measured at 1280x720 to 3840x2160: ultrafast
-/// 13 to 20, veryfast 61 to 77, medium 175 to 220, slow 207 to 260, veryslow 400 to 470.
+/// Memory that one job adds, per pixel, to the 130 MiB of the process; measured at 1280x720 to 3840x2160:
+/// ultrafast 13 to 20, veryfast 61 to 77, medium 175 to 220, slow 207 to 260, veryslow 400 to 470.
 constexpr std::array kX264{BytesPerPixel{"ultrafast", 24}, BytesPerPixel{"superfast", 60},
                            BytesPerPixel{"veryfast", 90},  BytesPerPixel{"faster", 150},
                            BytesPerPixel{"fast", 190},     BytesPerPixel{"medium", 220},

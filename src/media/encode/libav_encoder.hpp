@@ -31,8 +31,8 @@ class LibavEncoder : public Encoder {
 
     QuietLog quiet_;
     Convert convert_;
-    // The current picture. libav shares it by reference count. It is written only while nobody else holds it,
-    // so it is copied only if the encoder keeps its frames.
+    // The current picture. libav shares it by reference count. It is written only while nothing else holds
+    // it, so it is copied only if the encoder keeps its frames.
     Frame frame_;
     CodecContext context_;
     CodecParameters parameters_;

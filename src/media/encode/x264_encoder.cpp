@@ -36,7 +36,7 @@ int macroblocks(int side_px) {
     return (side_px + kMacroblockPx - 1) / kMacroblockPx;
 }
 
-/// x264's complaints go the way of libav's.
+/// Passes messages of x264 to libav's log.
 void on_x264_log(void* /*unused*/, int level, const char* format, va_list arguments) {
     if (level == X264_LOG_ERROR) av_vlog(nullptr, AV_LOG_ERROR, format, arguments);
 }
@@ -279,7 +279,7 @@ class X264Encoder : public Encoder {
         return &kept_[kMacroblockBytes * static_cast<std::size_t>(column - first)];
     }
 
-    /// Encodes a picture, or what was kept back if it is null.
+    /// Encodes a picture, or delayed ones if it is null.
     void encode(x264_picture_t* picture, const PacketSink& sink) {
         const LogCapture log;
         x264_nal_t* nals = nullptr;

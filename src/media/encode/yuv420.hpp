@@ -40,7 +40,7 @@ class Yuv420Image {
 /// columns 2i-1, 2i, 2i+1 (the edge column repeated) and 1-1 over the two rows.
 void convert_to_yuv420(const Image& rgb, const PixelRect& damage, Yuv420Image& yuv);
 
-/// The three planes of a picture in memory of somebody else.
+/// The three planes of a picture in borrowed memory.
 struct YuvPlanes {
     std::array<std::uint8_t*, 3> data{};
     std::array<std::ptrdiff_t, 3> row_bytes{};

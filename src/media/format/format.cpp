@@ -46,7 +46,7 @@ bool is_available(const Codec& codec) {
     return avcodec_find_encoder_by_name(codec.name) != nullptr;
 }
 
-/// What to say of a codec that is missing.
+/// Message for a missing codec.
 std::string missing_text(const Codec& codec) {
     if (codec.origin == EncoderOrigin::kX264)
         return "this Corda was built without libx264; build it with CORDA_X264, or use --codec libsvtav1";

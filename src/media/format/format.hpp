@@ -16,7 +16,7 @@ namespace corda::media {
 
 struct Format;
 
-/// What an encoder of libav is told beside size, rate, threads and colours.
+/// Options of a libav encoder in addition to size, rate, threads and colours.
 struct EncoderSettings {
     int profile = -99;                                         ///< libav's FF_PROFILE_UNKNOWN
     std::vector<std::pair<const char*, std::string>> options;  ///< the encoder's own, by libav's names
@@ -72,7 +72,7 @@ struct Ending {
 /// How many times all frames are gone through: those of an animation are drawn, and encoded afterwards.
 [[nodiscard]] std::int64_t passes(const Ending& ending);
 
-/// What a name, a definition and a ground together choose.
+/// The format that follows from a file name, a definition and a ground.
 struct Format {
     const Ending* ending = nullptr;
     const Codec* codec = nullptr;
@@ -84,7 +84,7 @@ struct Format {
     [[nodiscard]] int crf_of(const EncoderDef& def) const;
     /// "H.264 in MP4", "GIF".
     [[nodiscard]] std::string words() const;
-    /// Who makes what is in the file: "libx264", "gif".
+    /// The encoder: "libx264", "gif".
     [[nodiscard]] std::string encoder_name() const;
     /// The versions of libavformat and of libx264 or libavcodec: "libx264 164, libavformat 59.27.100".
     /// libavcodec does not tell those of the encoders behind it.
@@ -107,7 +107,7 @@ struct Format {
 /// Throws corda::Error (kUsage), naming the endings that are known.
 [[nodiscard]] const Ending& find_ending(std::string_view path);
 
-/// What is written under this name. Throws corda::Error: kUsage, naming the field, the value and what is
+/// The format of a file of this name. Throws corda::Error: kUsage, naming the field, the value and what is
 /// allowed, if the ending, the codec, the pixels, the preset, the crf, the size and the rate do not go
 /// together, kEncoder if libavcodec has no codec for it.
 [[nodiscard]] Format find_format(std::string_view path, const VideoDef& def, bool is_transparent = false);

@@ -19,7 +19,7 @@ constexpr int kFewFrames = 12;
 constexpr int kFfv1Frames = 36;
 /// FFV1 splits a picture into 2x2 slices.
 constexpr int kMinFfv1SidePx = 2;
-/// What SVT-AV1 itself allows; AV1 allows more.
+/// Limits of SVT-AV1; AV1 allows more.
 constexpr int kMaxSvtAv1HeightPx = 8704;
 /// At 32 one clear pixel in 5000 has an alpha over 8, which shows as specks on white; at 20, one in 50 000.
 constexpr int kVp9AlphaCrf = 20;

@@ -32,7 +32,7 @@ std::uint32_t number_at(std::span<const unsigned char> bytes, std::size_t at) {
     return static_cast<std::uint32_t>(from_big_endian({static_cast<const char*>(four), 4}));
 }
 
-/// What a chunk begins with: its length and its type (PNG specification, third edition, 5.3).
+/// The head of a chunk: its length and its type (PNG specification, third edition, 5.3).
 struct ChunkHead {
     std::array<unsigned char, 8> bytes{};
 

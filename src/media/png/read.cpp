@@ -29,7 +29,7 @@ constexpr png_alloc_size_t kMaxTextBytes = png_alloc_size_t{64} << 10;
 /// The parts of a file that a reader asks for.
 enum class Wanted { kPixels, kTexts };
 
-/// What libpng's callbacks work with. It lives outside the functions that longjmp returns to.
+/// Data of libpng's callbacks. It lives outside the functions that longjmp returns to.
 struct ReadJob {
     png_structp png = nullptr;
     png_infop info = nullptr;
@@ -148,7 +148,7 @@ Image rounded(const DeepImage& deep) {
         fmt::format("cannot read PNG '{}': {}; write the file again, or give another one", path, reason));
 }
 
-/// Of what libpng has ended.
+/// Message for a failure of libpng.
 [[noreturn]] void fail_png(const std::string& path, const ReadJob& job) {
     if (job.interruption) std::rethrow_exception(job.interruption);
     if (job.read_errno != 0) fail_file("read", path, job.read_errno);

@@ -52,7 +52,7 @@ bool is_opaque(const Image& image) {
     return all == 0xff;
 }
 
-/// What libpng's callbacks work with. It lives outside the function that longjmp returns to.
+/// Data of libpng's callbacks. It lives outside the function that longjmp returns to.
 struct WriteJob {
     png_structp png = nullptr;
     png_infop info = nullptr;

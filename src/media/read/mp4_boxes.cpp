@@ -109,7 +109,7 @@ struct BoxHeader {
     std::uint64_t header_size = 8;
 };
 
-/// Up to so many bytes of a file; fewer at its end.
+/// Up to `count` bytes of a file; fewer at its end.
 std::string read_range(const FileHandle& file, const std::string& path, std::uint64_t offset,
                        std::uint64_t size) {
     if (::fseeko(file.get(), static_cast<off_t>(offset), SEEK_SET) != 0) fail_file("read", path, errno);

@@ -12,7 +12,7 @@ struct Mp4Edit {
     std::int64_t media_time = 0;  ///< first stamp shown, in track ticks; -1 is an empty stretch
 };
 
-/// What the boxes of an MP4 file say, read without libav, because that rounds and repairs.
+/// Values of the boxes of an MP4 file, read without libav, which rounds and repairs them.
 struct Mp4Boxes {
     bool is_mp4 = false;        ///< begins with an ftyp box
     bool is_quicktime = false;  ///< its brand is QuickTime's: a .mov

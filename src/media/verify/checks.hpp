@@ -32,7 +32,7 @@ void check_clocks(const DecodedVideo& video, const Mp4Boxes& boxes, VerifyReport
 /// Checks that codec, pixel format and colour tags are what players show rightly.
 void check_picture_format(const DecodedVideo& video, VerifyReport& report);
 void check_tags(const DecodedVideo& video, VerifyReport& report);
-/// Says of a sound video what was checked and who plays it.
+/// Adds notes on the checks of a sound video, and on its players.
 void add_notes(const DecodedVideo& video, VerifyDepth depth, VerifyReport& report);
 
 }  // namespace corda::media

@@ -18,7 +18,7 @@ struct ShownPatch {
     std::optional<std::array<double, 3>> rgb;
 };
 
-/// What decoding a file has shown.
+/// Result of decoding a file.
 struct DecodedVideo {
     bool opened = false;      ///< the demuxer and a decoder accepted the file
     std::string open_reason;  ///< why it was not opened

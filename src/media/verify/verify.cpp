@@ -124,7 +124,7 @@ void check_patches(const DecodedVideo& video, VerifyReport& report) {
     }
 }
 
-/// Compares what the file says about itself with what was found.
+/// Compares the metadata of the file with its content.
 void check_comment(const DecodedVideo& video, VerifyReport& report) {
     if (const std::string found = comment_problem(video.comment); !found.empty()) {
         problem(report, "the comment {}; corda writes none like it: remove it by {}", found,

@@ -18,13 +18,13 @@ struct ColorPatch {
     std::array<std::uint8_t, 3> rgb{};
 };
 
-/// What a frame was rendered as, at a few places.
+/// Rendered colours of a frame at a few places.
 struct FrameColors {
     std::int64_t frame = 0;
     std::vector<ColorPatch> patches;
 };
 
-/// What `verify` found in a video file.
+/// Result of verifying a video file.
 struct VerifyReport {
     std::string container;
     std::string codec;
