@@ -8,7 +8,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/sim/auto/planner.hpp"
-#include "corda/study/step.hpp"
+#include "corda/study/measure.hpp"
 
 namespace corda::study {
 namespace {

@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "corda/study/probe.hpp"
+#include "corda/study/measure.hpp"
 #include "corda/study/study.hpp"
-#include "corda/study/work.hpp"
 
 namespace corda::study {
 

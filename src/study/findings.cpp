@@ -1,4 +1,4 @@
-#include "corda/study/findings.hpp"
+#include "corda/study/chapters.hpp"
 
 #include <array>
 #include <cmath>

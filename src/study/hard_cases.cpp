@@ -8,6 +8,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
+#include "corda/scene/scene.hpp"
 
 namespace corda::study {
 namespace {
@@ -47,6 +48,21 @@ report::Chapter chapter_of(const report::Table& table) {
     return chapter;
 }
 
+/// Passes if each of these scenes is refused as invalid.
+Outcome refused(const std::vector<std::string>& scenes) {
+    std::string message;
+    for (const std::string& toml : scenes) {
+        try {
+            static_cast<void>(parse_scene("schema = 1\n" + toml, "scene.toml"));
+            return {fmt::format("read without an error: {}", toml), false};
+        } catch (const Error& error) {
+            message = error.what();
+            if (error.code() != ExitCode::kInvalidScene) return {message, false};
+        }
+    }
+    return {fmt::format("refused, e.g. {}", message), true};
+}
+
 }  // namespace
 
 ChapterWork hard_cases_work(const StudyDef& def) {
@@ -67,6 +83,19 @@ ChapterWork hard_cases_work(const StudyDef& def) {
     }
     work.finish = [table] { return chapter_of(*table); };
     return work;
+}
+
+void add_hard_inputs(std::vector<HardCase>& cases) {
+    const std::string rope = "[[rope]]\nline = { particles = 5, step = [0.1, -1.0] }\n";
+    const std::string stepped = rope + "[solver]\nmethod = \"rattle\"\nstep = ";
+    const auto add = [&](const char* name, const std::vector<std::string>& scenes) {
+        cases.push_back({name, "all", "refused", false, [scenes] { return refused(scenes); }});
+    };
+    add("mass 0 of a free particle", {rope + "mass = 0.0\n", rope + "mass = [1.0, 1.0, 0.0, 1.0, 1.0]\n"});
+    add("step 0, negative, NaN", {stepped + "0.0\n", stepped + "-0.01\n", stepped + "nan\n"});
+    add("coincident particles, rest length 0",
+        {"[[rope]]\npoints = [[0.0, 0.0], [0.0, 0.0], [1.0, 0.0]]\n",
+         "[[rope]]\npoints = [[0.0, 0.0], [1.0, 0.0]]\nlink_length = 0.0\n"});
 }
 
 }  // namespace corda::study

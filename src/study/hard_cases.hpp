@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "corda/study/study.hpp"
-#include "corda/study/work.hpp"
 
 namespace corda::study {
 

@@ -9,7 +9,7 @@
 #include "corda/reference/ropes.hpp"
 #include "corda/report/writers.hpp"
 #include "corda/study/hard_cases.hpp"
-#include "corda/study/probe.hpp"
+#include "corda/study/measure.hpp"
 
 namespace corda::study {
 namespace {

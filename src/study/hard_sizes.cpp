@@ -10,7 +10,7 @@
 #include "corda/reference/numbers.hpp"
 #include "corda/reference/ropes.hpp"
 #include "corda/study/hard_cases.hpp"
-#include "corda/study/probe.hpp"
+#include "corda/study/measure.hpp"
 
 namespace corda::study {
 namespace {

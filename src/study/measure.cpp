@@ -1,16 +1,16 @@
 #include "corda/study/measure.hpp"
 
-#include "corda/sim/solver.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
-#include "corda/study/step.hpp"
+#include "corda/sim/solver.hpp"
 
 namespace corda::study {
 namespace {
@@ -84,6 +84,8 @@ report::Times stepping_s(const Problem& problem, const MethodDef& method, const 
     return times_s;
 }
 
+thread_local const OnStep* heard_by = nullptr;
+
 }  // namespace
 
 Problem with_reach(Problem problem, int reach) {
@@ -112,6 +114,59 @@ Measurement measure(const Problem& problem, const MethodDef& method, const std::
         result.failure = error.what();
     }
     return result;
+}
+
+CancelScope::CancelScope(const OnStep& on_step) : outer_(std::exchange(heard_by, &on_step)) {}
+
+CancelScope::~CancelScope() {
+    heard_by = outer_;
+}
+
+bool check_cancelled() {
+    if (heard_by != nullptr && *heard_by) (*heard_by)();
+    return true;
+}
+
+std::optional<Slope> fit_slope(std::span<const std::pair<double, double>> points) {
+    std::vector<std::pair<double, double>> logs;
+    double mean_x = 0.0;
+    double mean_y = 0.0;
+    for (const auto& [x, y] : points) {
+        if (!(x > 0.0 && y > 0.0 && std::isfinite(x) && std::isfinite(y))) continue;
+        logs.emplace_back(std::log(x), std::log(y));
+        mean_x += logs.back().first;
+        mean_y += logs.back().second;
+    }
+    if (logs.size() < 3) return std::nullopt;
+    mean_x /= static_cast<double>(logs.size());
+    mean_y /= static_cast<double>(logs.size());
+    double sum_xx = 0.0;
+    double sum_xy = 0.0;
+    for (const auto& [x, y] : logs) {
+        sum_xx += (x - mean_x) * (x - mean_x);
+        sum_xy += (x - mean_x) * (y - mean_y);
+    }
+    // Equal logarithms leave the rounding of their mean.
+    if (!(sum_xx > 1e-24)) return std::nullopt;
+    return Slope{sum_xy / sum_xx, logs.size()};
+}
+
+Probe::Probe(const RopeDef& rope, const WorldDef& world, const MethodDef& method, double frame_interval_s)
+    : simulation_(build_system({&rope, 1}), world, method, frame_interval_s) {}
+
+void Probe::go(double time_s) {
+    check_cancelled();
+    const double from_s = now_s();
+    const Status status = simulation_.advance_to(time_s, check_cancelled);
+    wall_s_ += now_s() - from_s;
+    if (status == Status::kDiverged)
+        throw Error(ExitCode::kDiverged, fmt::format("diverged before {:.6g} s", time_s));
+}
+
+void Probe::go_by_frames(double time_s, double frames_per_second) {
+    const auto last = std::llround(time_s * frames_per_second);
+    for (auto k = std::llround(state().time_s * frames_per_second) + 1; k <= last; ++k)
+        go(static_cast<double>(k) / frames_per_second);
 }
 
 }  // namespace corda::study

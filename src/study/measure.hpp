@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "corda/core/rational.hpp"
@@ -63,5 +65,58 @@ struct Timing {
 /// Runs a method on the problem, once for its errors and then again for its time.
 [[nodiscard]] Measurement measure(const Problem& problem, const MethodDef& method, const std::string& label,
                                   double parameter, const Timing& timing);
+
+/// Called many times a second while a study computes. An exception of it ends the study.
+using OnStep = std::function<void()>;
+
+/// For as long as it lives, check_cancelled() on this thread calls `on_step`, which must outlive it. The runs
+/// of a study are far below its chapters: a parameter would pass through all of them.
+class CancelScope {
+  public:
+    explicit CancelScope(const OnStep& on_step);
+    CancelScope(const CancelScope&) = delete;
+    CancelScope& operator=(const CancelScope&) = delete;
+    ~CancelScope();
+
+  private:
+    const OnStep* outer_;
+};
+
+/// Calls the `on_step` of this thread, if there is one. Returns true, so that it is a GoesOn.
+bool check_cancelled();
+
+/// The exponent of a power law fitted to points.
+struct Slope {
+    double exponent = 0.0;
+    std::size_t points = 0;
+};
+
+/// The exponent p of y = c x^p by least squares of log y over log x. Points with a coordinate that is not
+/// finite or not above 0 are left out; std::nullopt if fewer than three remain, or if all have the same x.
+[[nodiscard]] std::optional<Slope> fit_slope(std::span<const std::pair<double, double>> points);
+
+/// A run of one rope that can be looked at at any time, and the time that its steps take.
+class Probe {
+  public:
+    /// Throws corda::Error if the method cannot run the rope. `frame_interval_s`: see Simulation.
+    Probe(const RopeDef& rope, const WorldDef& world, const MethodDef& method,
+          double frame_interval_s = 1.0 / 60.0);
+
+    /// Goes on to a time. Throws corda::Error (kDiverged) if the run diverges.
+    void go(double time_s);
+    /// Goes on to a time in frames, so that the largest figures are those of every frame.
+    void go_by_frames(double time_s, double frames_per_second = 60.0);
+
+    [[nodiscard]] const State& state() const { return simulation_.state(); }
+    [[nodiscard]] const Figures& figures() const { return simulation_.figures(); }
+    [[nodiscard]] Diagnostics diagnostics() const { return simulation_.diagnostics(); }
+    [[nodiscard]] Vec2 tip_m() const { return {state().x_m.back(), state().y_m.back()}; }
+    /// Seconds that go() has taken so far.
+    [[nodiscard]] double wall_s() const { return wall_s_; }
+
+  private:
+    Simulation simulation_;
+    double wall_s_ = 0.0;
+};
 
 }  // namespace corda::study

@@ -1,4 +1,4 @@
-#include "corda/study/pictures.hpp"
+#include "corda/study/chapters.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -14,9 +14,8 @@
 #include "corda/media/chunks/video_writer.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "corda/pipeline/plan_text.hpp"
+#include "corda/study/measure.hpp"
 #include "corda/study/problems.hpp"
-#include "corda/study/step.hpp"
-#include "corda/study/truth.hpp"
 
 namespace corda::study {
 namespace {

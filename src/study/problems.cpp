@@ -3,13 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <string_view>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "corda/core/basics.hpp"
 #include "corda/core/text.hpp"
 #include "corda/reference/pendulum.hpp"
 #include "corda/reference/ropes.hpp"
+#include "corda/sim/auto/trial.hpp"
+#include "corda/sim/recording.hpp"
 
 namespace corda::study {
 namespace {
@@ -32,6 +38,76 @@ std::string id_of(std::string_view name) {
         id += is_upper ? static_cast<char>(c - 'A' + 'a') : (is_plain ? c : '_');
     }
     return id;
+}
+
+constexpr double kTightTolerance = 1e-14;
+constexpr double kTightShare = 0.25;  ///< of the step that rattle of order 8 chooses
+
+using SharedRecording = std::shared_ptr<const sim::Recording>;
+
+/// The states at all frames, up to where the run diverges.
+SharedRecording record(const Problem& problem, const MethodDef& method) {
+    Simulation run(problem.system(), problem.world, method, problem.fps.interval_s());
+    const Timeline timeline(problem.fps, problem.last_frame());
+    constexpr std::size_t kNoBudget = std::numeric_limits<std::size_t>::max();
+    auto frames = std::make_shared<sim::Recording>(run.system().particle_count(), timeline.size(), kNoBudget);
+    while (frames->size() < timeline.size()) {
+        check_cancelled();
+        if (frames->advance(run, timeline, {}, check_cancelled) == Status::kDiverged) break;
+    }
+    return frames;
+}
+
+/// The first `count` frames of a recording.
+Reference as_reference(SharedRecording frames, std::size_t count) {
+    return [kept = std::move(frames), count](std::int64_t k, State& state) {
+        const auto index = static_cast<std::size_t>(k);
+        if (index >= count) return false;
+        kept->read(index, state);
+        return true;
+    };
+}
+
+double rms_m(const State& a, const State& b) {
+    double sum_m2 = 0.0;
+    for (std::size_t i = 0; i < a.x_m.size(); ++i) {
+        const double dx = a.x_m[i] - b.x_m[i];
+        const double dy = a.y_m[i] - b.y_m[i];
+        sum_m2 += dx * dx + dy * dy;
+    }
+    return std::sqrt(sum_m2 / static_cast<double>(a.x_m.size()));
+}
+
+/// The number of frames before the horizon. Notes the horizon and the difference up to it.
+std::size_t find_horizon(const sim::Recording& first, const sim::Recording& second, Subject& subject) {
+    State a;
+    State b;
+    std::size_t k = 0;
+    subject.disagreement = 0.0;
+    for (; first.holds(k) && second.holds(k); ++k) {
+        first.read(k, a);
+        second.read(k, b);
+        const double apart = rms_m(a, b) / subject.problem.length_m;
+        if (!(apart <= kHorizonDifference)) break;
+        subject.disagreement = std::max(*subject.disagreement, apart);
+    }
+    const auto last = static_cast<std::int64_t>(k) - 1;
+    if (last < subject.problem.last_frame()) subject.horizon_s = subject.problem.fps.time_s(last);
+    return k;
+}
+
+struct TightRun {
+    MethodDef method;
+    std::string words;
+};
+
+TightRun tight_exact(double tolerance) {
+    return {ExactDef{tolerance}, fmt::format("method exact at a tolerance of {:.0e}", tolerance)};
+}
+
+TightRun tight_rattle(const Problem& problem, double share) {
+    const double step_s = share * rattle_step_s(problem, 8);
+    return {RattleDef{8, step_s}, fmt::format("method rattle of order 8 at a step of {:.3g} s", step_s)};
 }
 
 }  // namespace
@@ -109,6 +185,64 @@ Problem problem_of(const Scene& scene) {
     problem.fps = scene.video.fps;
     problem.length_m = largest_length_m(problem.system());
     return with_reach(problem, 1);
+}
+
+Problem facing(const Subject& subject, const MethodDef& method) {
+    Problem problem = subject.problem;
+    if (!std::holds_alternative<ExactDef>(method) || !subject.exact_reference) return problem;
+    problem.reference = subject.exact_reference;
+    problem.truth = subject.exact_truth;
+    return problem;
+}
+
+void find_truth(Subject& subject) {
+    Problem& problem = subject.problem;
+    const std::string exact_refusal = refusal(problem, ExactDef{kTightTolerance});
+    const bool has_exact = exact_refusal.empty();
+    const bool has_rattle = refusal(problem, RattleDef{8}).empty();
+    if (!has_exact && !has_rattle) {
+        if (!refusal(problem, RelaxationDef{}).empty()) {
+            throw Error(ExitCode::kInvalidScene,
+                        fmt::format("{}: no method moves all of its bodies, and a study compares methods; "
+                                    "study bodies that differ in kind in scenes of their own ({})",
+                                    problem.title, exact_refusal));
+        }
+        problem.truth =
+            "none, because no method can tell how this scene truly moves; errors of positions are not given";
+        return;
+    }
+    const TightRun first =
+        has_exact ? tight_exact(kTightTolerance) : tight_rattle(problem, kTightShare / 2.0);
+    const TightRun second =
+        has_rattle ? tight_rattle(problem, kTightShare) : tight_exact(10.0 * kTightTolerance);
+    const SharedRecording first_run = record(problem, first.method);
+    const SharedRecording second_run = record(problem, second.method);
+    const std::size_t count = find_horizon(*first_run, *second_run, subject);
+    problem.truth = first.words;
+    problem.reference = as_reference(first_run, count);
+    if (has_exact && has_rattle) {
+        subject.exact_truth = second.words;
+        subject.exact_reference = as_reference(second_run, count);
+    } else {
+        problem.truth +=
+            " (no other accurate method can run this scene, so that this method's own errors are "
+            "measured against a far tighter run of itself)";
+    }
+}
+
+double rattle_step_s(const Problem& problem, int order) {
+    check_cancelled();
+    const Simulation run(problem.system(), problem.world, RattleDef{order}, problem.fps.interval_s());
+    double shortest_s = HUGE_VAL;
+    for (const MethodDef& method : run.methods())
+        shortest_s = std::min(shortest_s, std::get<RattleDef>(method).step_s.value());
+    return shortest_s;
+}
+
+std::string refusal(const Problem& problem, const MethodDef& method) {
+    const auto refused =
+        sim::refusal(problem.system(), problem.world, method, problem.fps.interval_s(), check_cancelled);
+    return refused ? refused->what() : "";
 }
 
 }  // namespace corda::study

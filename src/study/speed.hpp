@@ -1,10 +1,11 @@
 #pragma once
 
 #include <span>
+#include <string>
+#include <vector>
 
 #include "corda/study/measure.hpp"
 #include "corda/study/study.hpp"
-#include "corda/study/work.hpp"
 
 namespace corda::study {
 
@@ -13,5 +14,18 @@ namespace corda::study {
 
 /// The chapter "Speed against error", on the scene of `def` or on the built-in problems.
 [[nodiscard]] ChapterWork speed_work(const StudyDef& def);
+
+/// A run of a sweep.
+struct SweepRun {
+    MethodDef method;
+    std::string label;       ///< of its series
+    double parameter = 0.0;  ///< step in s, or tolerance
+    int reach = 1;           ///< of the ropes' bars
+};
+
+/// All methods over their parameters: relaxation over reaches, sweeps and steps, rattle over orders and
+/// steps, exact over tolerances. Steps divide a frame. Runs that would take too long are left out. A method
+/// that refuses the problem has one run per series, which will fail.
+[[nodiscard]] std::vector<SweepRun> sweep_runs(const Problem& problem, bool is_quick);
 
 }  // namespace corda::study

@@ -2,18 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <fstream>
 #include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/core/text.hpp"
+#include "corda/core/version.hpp"
 #include "corda/study/accuracy.hpp"
-#include "corda/study/findings.hpp"
+#include "corda/study/chapters.hpp"
 #include "corda/study/hard_cases.hpp"
-#include "corda/study/pictures.hpp"
-#include "corda/study/setting.hpp"
 #include "corda/study/speed.hpp"
 
 namespace corda::study {
@@ -50,6 +51,16 @@ void check_chapters(const StudyDef& def) {
 bool is_wanted(const ChapterKind& kind, const StudyDef& def) {
     if (def.chapters.empty()) return kind.takes_a_scene || !def.scene;
     return std::find(def.chapters.begin(), def.chapters.end(), kind.name) != def.chapters.end();
+}
+
+std::string compiler() {
+#if defined(__clang__)
+    return "Clang " __clang_version__;
+#elif defined(__GNUC__)
+    return "GCC " __VERSION__;
+#else
+    return "unknown";
+#endif
 }
 
 }  // namespace
@@ -107,6 +118,26 @@ void Study::measure(const OnJob& on_job, const OnChapter& on_chapter, report::Re
         on_chapter(report.chapters.back());
     }
     if (on_job) on_job(done, total, "done");
+}
+
+std::string processor_name(std::istream& cpuinfo) {
+    for (std::string line; std::getline(cpuinfo, line);) {
+        const std::size_t colon = line.find(": ");
+        if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+    }
+    return "unknown";
+}
+
+std::vector<std::pair<std::string, std::string>> setting(const Timing& timing) {
+    std::ifstream cpuinfo("/proc/cpuinfo");
+    return {{"Processor", processor_name(cpuinfo)},
+            {"Usable cores", fmt::format("{}", usable_cores())},
+            {"Compiler", compiler()},
+            {"Build", CORDA_BUILD_TYPE ": " CORDA_BUILD_FLAGS},
+            {"Corda", std::string(version())},
+            {"Times",
+             fmt::format("on one thread, by CLOCK_MONOTONIC: the median of {} repeats of at least {:g} ms",
+                         timing.repeats, 1e3 * timing.shortest_s)}};
 }
 
 }  // namespace corda::study

@@ -1,19 +1,19 @@
 #pragma once
 
 #include <functional>
+#include <istream>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "corda/pipeline/film.hpp"
 #include "corda/report/report.hpp"
 #include "corda/study/measure.hpp"
-#include "corda/study/step.hpp"
-#include "corda/study/work.hpp"
 
 namespace corda::study {
 
-/// What a study measures, and how it is ended.
+/// The parameters of a study.
 struct StudyDef {
     bool quick = false;  ///< fewer points and shorter runs: to see whether it works, not to quote from
     std::optional<Scene> scene;         ///< studied instead of the built-in problems
@@ -22,10 +22,23 @@ struct StudyDef {
     OnStep on_step;                     ///< may be empty
 };
 
-/// Hears how far a study is: `done` of `total` jobs are done, and `what` is next. May be empty.
+/// A run of a chapter, or several that belong together.
+struct Job {
+    std::string what;  ///< for progress messages
+    std::function<void()> run;
+};
+
+/// A chapter before its measurement: its jobs in order, and `finish`, which makes the chapter from their
+/// results. They share their data.
+struct ChapterWork {
+    std::vector<Job> jobs;
+    std::function<report::Chapter()> finish;
+};
+
+/// Progress of a study: `done` of `total` jobs are done, and `what` is next. May be empty.
 using OnJob = std::function<void(int done, int total, const std::string& what)>;
 
-/// Hears of every chapter when it is measured.
+/// Called with every chapter after its measurement.
 using OnChapter = std::function<void(const report::Chapter&)>;
 
 /// The names of the chapters, [a-z0-9_]+, in the order of the report.
@@ -55,5 +68,12 @@ class Study {
     std::vector<ChapterWork> works_;
     std::vector<std::string> names_;  ///< of the chapters of works_
 };
+
+/// The machine and the timing of a study, for Report::setting: processor, cores, compiler, build, version of
+/// Corda, and `timing` in words. No dates, users or folders.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> setting(const Timing& timing);
+
+/// The processor's name in the text of /proc/cpuinfo; "unknown" if it has none.
+[[nodiscard]] std::string processor_name(std::istream& cpuinfo);
 
 }  // namespace corda::study

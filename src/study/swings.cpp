@@ -8,7 +8,7 @@
 #include "corda/reference/pendulum.hpp"
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/defs.hpp"
-#include "corda/study/probe.hpp"
+#include "corda/study/measure.hpp"
 
 namespace corda::study {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "corda/study/slope.hpp"
+#include "corda/study/measure.hpp"
 
 namespace corda::test {
 

@@ -1,4 +1,4 @@
-#include "corda/study/truth.hpp"
+#include "corda/study/problems.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,6 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/reference/numbers.hpp"
-#include "corda/study/problems.hpp"
 #include "own_problems.hpp"
 #include "support/nets.hpp"
 

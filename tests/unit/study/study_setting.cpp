@@ -1,4 +1,4 @@
-#include "corda/study/setting.hpp"
+#include "corda/study/study.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "corda/study/sweep.hpp"
+#include "corda/study/speed.hpp"
 
 #include <gtest/gtest.h>
 

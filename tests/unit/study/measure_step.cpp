@@ -1,4 +1,4 @@
-#include "corda/study/step.hpp"
+#include "corda/study/measure.hpp"
 
 #include <gtest/gtest.h>
 
