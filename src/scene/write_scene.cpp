@@ -324,8 +324,8 @@ std::vector<std::string> differences(const std::map<std::string, std::string>& n
 }
 
 std::string differences_text(const std::vector<std::string>& differences) {
-    constexpr std::size_t kMaxShown = 20;
-    const std::size_t shown = std::min(differences.size(), kMaxShown);
+    constexpr std::size_t kMaxNamed = 20;
+    const std::size_t shown = std::min(differences.size(), kMaxNamed);
     std::string text = fmt::format(
         "{}", fmt::join(differences.begin(), differences.begin() + static_cast<std::ptrdiff_t>(shown), ", "));
     if (shown < differences.size()) text += fmt::format(", and {} more", differences.size() - shown);

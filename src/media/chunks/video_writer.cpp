@@ -227,7 +227,7 @@ struct VideoWriter::Impl {
 VideoWriter::VideoWriter(const CheckedVideo& output, VideoMetadata metadata, OnProgress on_progress)
     : impl_(std::make_unique<Impl>(output, std::move(metadata), std::move(on_progress))) {}
 
-VideoWriter::VideoWriter(const std::string& path, const VideoDef& def, VideoMetadata metadata,
+VideoWriter::VideoWriter(const std::string& path, const VideoDef& def, const VideoMetadata& metadata,
                          const OutputOptions& options)
     : VideoWriter(check_video_output(path, def, "", options.force, metadata.is_transparent), metadata,
                   options.on_progress) {}

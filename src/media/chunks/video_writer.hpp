@@ -59,7 +59,7 @@ class VideoWriter {
     /// that cannot be read. An encoder that does not open fails with the first frame.
     VideoWriter(const CheckedVideo& output, VideoMetadata metadata, OnProgress on_progress = {});
     /// Checks the output first, and throws as check_video_output() too.
-    VideoWriter(const std::string& path, const VideoDef& def, VideoMetadata metadata,
+    VideoWriter(const std::string& path, const VideoDef& def, const VideoMetadata& metadata,
                 const OutputOptions& options = {});
     VideoWriter(VideoWriter&&) noexcept;
     VideoWriter(const VideoWriter&) = delete;
