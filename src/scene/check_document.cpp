@@ -181,8 +181,7 @@ class TableChecker {
     void check(toml::table& table, std::string_view section, const std::string& path) const {
         refuse_unknown_keys(table, section, path);
         if (const Key* const method = find_key(section, "method")) refuse_foreign_keys(table, *method, path);
-        for (const Key& key : all_keys()) {
-            if (key.section != section) continue;
+        for (const Key& key : keys_of(section)) {
             const std::string key_path = dotted(path, key.name);
             toml::node* const node = table.get(key.name);
             if (node != nullptr && !check_value(key, *node, dotted(section, key.name), key_path)) {
@@ -196,9 +195,10 @@ class TableChecker {
   private:
     void refuse_unknown_keys(const toml::table& table, std::string_view section,
                              const std::string& path) const {
-        const auto known = keys_of(section);
         for (const auto& [key, node] : table) {
             if (find_key(section, key.str()) != nullptr) continue;
+            std::vector<std::string_view> known;
+            for (const Key& one : keys_of(section)) known.push_back(one.name);
             const auto meant = nearest(key.str(), known);
             if (meant) problems_->add_misspelt(dotted(path, *meant));
             std::string hint = meant ? fmt::format("; did you mean \"{}\"?", *meant) : other_home(key.str());
@@ -217,8 +217,8 @@ class TableChecker {
         const std::string method =
             is_default ? std::string(solver_name(SolverDef{})) : solver["method"].value_or(std::string());
         if (!has(method_key.type.choices, method) || !problems_->is_sound(dotted(path, "method"))) return;
-        for (const Key& key : all_keys()) {
-            const toml::node* const node = key.section == method_key.section ? solver.get(key.name) : nullptr;
+        for (const Key& key : keys_of(method_key.section)) {
+            const toml::node* const node = solver.get(key.name);
             if (node == nullptr || key.methods.empty() || has(key.methods, method)) continue;
             problems_->add(node->source(), dotted(path, key.name),
                            fmt::format("method \"{}\" does not use it, only {}; remove it{}", method,

@@ -154,8 +154,8 @@ template <class Def, class T>
 /// Reads the keys of a table that are bound to `Def`. Keys with a problem keep their defaults.
 template <class Def>
 void read_fields(const TableReader& table, Def& def) {
-    for (const Key& key : all_keys()) {
-        if (key.section != table.section() || !table.has(key.name) || !table.is_sound(key.name)) continue;
+    for (const Key& key : keys_of(table.section())) {
+        if (!table.has(key.name) || !table.is_sound(key.name)) continue;
         for (const Field& one : key.binding.fields)
             if (one.read && one.def == typeid(Def)) one.read(key, *table.find(key.name), &def);
     }

@@ -126,8 +126,7 @@ Json key_json(const Key& key) {
 Json table_json(std::string_view section) {
     Json properties = Json::object();
     Json required = Json::array();
-    for (const Key& key : all_keys()) {
-        if (key.section != section) continue;
+    for (const Key& key : keys_of(section)) {
         properties[std::string(key.name)] = key_json(key);
         if (key.binding.initial.required) required.push_back(key.name);
     }

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 
 #include "corda/scene/readers.hpp"
 #include "corda/scene/rows.hpp"
@@ -22,7 +23,7 @@ std::vector<Key> root_keys() {
         {"", "solver", table, "", none(), "how the motion is computed"},
         {"", "video", table, "", none(), "picture size, frame rate and encoder"},
         {"", "style", table, "", none(), "how it looks"},
-        {"", "overlay", table, "", none(), "words, a scale bar and a plot beside the picture"},
+        {"", "overlay", table, "", none(), "words, a scale bar and a plot next to the picture"},
         {"", "camera", table, "", none(), "where the camera looks"},
         {"", "golden", table, "", none(), "which pictures `corda golden` keeps and compares"},
     };
@@ -149,25 +150,30 @@ const std::vector<Key>& all_keys() {
     return keys;
 }
 
+std::span<const Key> keys_of(std::string_view section) {
+    static const std::map<std::string_view, std::span<const Key>> sections = [] {
+        std::map<std::string_view, std::span<const Key>> all;
+        const std::span<const Key> keys = all_keys();
+        for (std::size_t first = 0, end = 0; first < keys.size(); first = end) {
+            while (end < keys.size() && keys[end].section == keys[first].section) ++end;
+            all.emplace(keys[first].section, keys.subspan(first, end - first));
+        }
+        return all;
+    }();
+    const auto found = sections.find(section);
+    return found == sections.end() ? std::span<const Key>() : found->second;
+}
+
 const Key* find_key(std::string_view section, std::string_view name) {
-    const auto& keys = all_keys();
-    const auto found = std::find_if(
-        keys.begin(), keys.end(), [&](const Key& key) { return key.section == section && key.name == name; });
-    return found == keys.end() ? nullptr : &*found;
+    for (const Key& key : keys_of(section))
+        if (key.name == name) return &key;
+    return nullptr;
 }
 
 const Key* key_of_section(std::string_view section) {
     const std::size_t dot = section.rfind('.');
     if (dot == std::string_view::npos) return find_key("", section);
     return find_key(section.substr(0, dot), section.substr(dot + 1));
-}
-
-std::vector<std::string_view> keys_of(std::string_view section) {
-    std::vector<std::string_view> names;
-    for (const Key& key : all_keys()) {
-        if (key.section == section) names.push_back(key.name);
-    }
-    return names;
 }
 
 std::string dotted(std::string_view front, std::string_view name) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <typeindex>
@@ -99,8 +100,8 @@ struct Key {
 /// The key of the table, or the tables, that a section is; null for the top level.
 [[nodiscard]] const Key* key_of_section(std::string_view section);
 
-/// The names of the keys of one section.
-[[nodiscard]] std::vector<std::string_view> keys_of(std::string_view section);
+/// The keys of one section; none if there is no such section.
+[[nodiscard]] std::span<const Key> keys_of(std::string_view section);
 
 /// "world.drag", or `name` alone if `front` is empty.
 [[nodiscard]] std::string dotted(std::string_view front, std::string_view name);

@@ -51,6 +51,15 @@ TEST(SceneKeys, AreUniqueInTheirSections) {
     EXPECT_EQ(find_key("world", "gravty"), nullptr);
 }
 
+TEST(SceneKeys, OfASectionStandTogether) {
+    for (const Key& key : all_keys()) {
+        const std::span<const Key> keys = keys_of(key.section);
+        EXPECT_TRUE(&key >= keys.data() && &key < keys.data() + keys.size()) << path_of(key);
+        for (const Key& other : keys) EXPECT_EQ(other.section, key.section);
+    }
+    EXPECT_TRUE(keys_of("wrld").empty());
+}
+
 TEST(SceneKeys, HaveThePathsOfTheirTables) {
     EXPECT_EQ(path_of(*find_key("world", "drag")), "world.drag");
     EXPECT_EQ(path_of(*find_key("net.grid", "rows")), "net[].grid.rows");
