@@ -137,9 +137,10 @@ void check_memory(const media::Format& format, const VideoDef& video) {
             static_cast<double>(available_memory_bytes().value_or(0)) / kGib, faster));
 }
 
-/// Counts an empty frame.
-void note_empty(double time_s, Rendered& result) {
-    if (result.empty_frames++ == 0) result.first_empty_s = time_s;
+/// Counts an empty frame of a Rendered or a Made.
+template <class Frames>
+void note_empty(double time_s, Frames& frames) {
+    if (frames.empty_frames++ == 0) frames.first_empty_s = time_s;
 }
 
 /// A chunk from a worker thread.
@@ -181,7 +182,7 @@ class ChunkMaker {
             const double time_s = film_->time_s(k);
             try {
                 const Damage damage = renderer.draw(time_s, goes_on);
-                if (renderer.shows_nothing() && made.empty_frames++ == 0) made.first_empty_s = time_s;
+                if (renderer.shows_nothing()) note_empty(time_s, made);
                 encoder.encode(renderer.image(), damage, k + 1 == end);
             } catch (const Error& error) {
                 if (error.code() != ExitCode::kInterrupted || !all.is_stopped()) throw;
