@@ -9,9 +9,9 @@ namespace corda::test {
 /// Peak signal-to-noise ratio in dB of a mean square: 10 log10(255^2 / mean_square); infinite for 0.
 [[nodiscard]] double psnr_db(double mean_square);
 
-/// Quality of shown pictures at the edges of what is drawn. Most of a frame is background, which every
-/// encoder keeps, so means over it hardly differ between encoders. Edges are the windows of 8x8 pixels, side
-/// by side, in which a channel of the exact picture spans at least 32 levels.
+/// Quality of shown pictures at the edges of drawn bodies. Most of a frame is background, which every encoder
+/// keeps, so means over it hardly differ between encoders. Edges are the windows of 8x8 pixels, side by side,
+/// in which a channel of the exact picture spans at least 32 levels.
 class EdgeQuality {
   public:
     /// Adds a picture; both have the same size. Alpha is ignored.
