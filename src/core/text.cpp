@@ -76,6 +76,18 @@ std::string lower(std::string_view text) {
     return result;
 }
 
+std::string hash_text(std::string_view bytes) {
+    std::uint64_t hash = 14695981039346656037U;
+    for (const char byte : bytes) {
+        hash ^= static_cast<unsigned char>(byte);
+        hash *= 1099511628211U;
+    }
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::string text;
+    for (int shift = 60; shift >= 0; shift -= 4) text += kDigits[hash >> static_cast<unsigned>(shift) & 15U];
+    return text;
+}
+
 std::string counted(std::int64_t count, const std::string& what) {
     return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }

@@ -22,6 +22,9 @@ namespace corda {
 /// All letters of ASCII in lower case.
 [[nodiscard]] std::string lower(std::string_view text);
 
+/// The 64-bit FNV-1a hash of some bytes (by Fowler, Noll and Vo), as 16 hexadecimal digits.
+[[nodiscard]] std::string hash_text(std::string_view bytes);
+
 /// "1 bar", "2 bars".
 [[nodiscard]] std::string counted(std::int64_t count, const std::string& what);
 

@@ -19,15 +19,6 @@ namespace {
 
 constexpr std::size_t kDigits = 16;  // of a double's bits
 
-std::string hash_of(const std::vector<double>& values) {
-    std::uint64_t hash = 0xcbf29ce484222325U;
-    for (const double value : values) {
-        const auto bits = std::bit_cast<std::uint64_t>(value);
-        for (int byte = 0; byte < 8; ++byte) hash = (hash ^ ((bits >> (8 * byte)) & 0xffU)) * 0x100000001b3U;
-    }
-    return fmt::format("{:016x}", hash);
-}
-
 std::string hex_of(const std::vector<double>& values) {
     std::string text;
     text.reserve(values.size() * kDigits);
@@ -66,7 +57,8 @@ Provenance provenance_of(Film& film, double time_s) {
         made.positions_m.push_back(state.x_m[i]);
         made.positions_m.push_back(state.y_m[i]);
     }
-    made.state = hash_of(made.positions_m);
+    made.state = hash_text(
+        {reinterpret_cast<const char*>(made.positions_m.data()), made.positions_m.size() * sizeof(double)});
     const std::size_t count = state.x_m.size();
     const std::size_t stride = (count + Provenance::kMaxKept - 1) / Provenance::kMaxKept;
     if (stride < 2) return made;

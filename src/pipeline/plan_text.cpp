@@ -1,7 +1,6 @@
 #include "corda/pipeline/plan_text.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <string_view>
@@ -165,11 +164,10 @@ std::string reason_text(const BodyPlan& plan) {
 
 std::vector<MethodGroup> groups_of(const Plan& plan) {
     std::vector<MethodGroup> groups;
-    std::map<std::pair<std::string, PlanReason>, std::size_t> group_of;
+    std::map<std::pair<MethodDef, PlanReason>, std::size_t> group_of;
     for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
         const BodyPlan& body = plan.bodies[i];
-        const auto [entry, is_new] =
-            group_of.try_emplace({method_toml(body.method), body.reason}, groups.size());
+        const auto [entry, is_new] = group_of.try_emplace({body.method, body.reason}, groups.size());
         if (is_new) groups.push_back({body.method, {}});
         groups[entry->second].bodies.push_back(i);
     }
@@ -304,8 +302,7 @@ Scene frozen_scene(Film& film) {
 }
 
 std::string frozen_toml(Film& film) {
-    constexpr std::array<std::string_view, 3> kSections{"solver", "solver.bodies", "camera"};
-    return write_sections(frozen_scene(film), kSections);
+    return write_solver_and_camera(frozen_scene(film));
 }
 
 }  // namespace corda

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 #include <typeindex>
 #include <utility>
@@ -11,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
 #include "corda/scene/document.hpp"
 #include "corda/scene/field.hpp"
 #include "corda/scene/readers.hpp"
@@ -23,14 +23,8 @@ namespace {
 
 constexpr std::string_view kHashed = "hash ";
 
-/// FNV-1a, by Fowler, Noll and Vo.
 std::string hashed(std::string_view text) {
-    std::uint64_t hash = 14695981039346656037U;
-    for (const char c : text) {
-        hash ^= static_cast<unsigned char>(c);
-        hash *= 1099511628211U;
-    }
-    return fmt::format("{}{:016x}", kHashed, hash);
+    return std::string(kHashed) + hash_text(text);
 }
 
 [[noreturn]] void fail_unwritable(const std::string& problem) {
@@ -60,8 +54,7 @@ struct Table {
 Table table_of(std::string section, std::string path, std::initializer_list<Part> parts,
                std::initializer_list<std::string_view> skipped = {}) {
     Table table{std::move(section), std::move(path), {}, {}};
-    for (const Key& key : all_keys()) {
-        if (key.section != table.section) continue;
+    for (const Key& key : keys_of(table.section)) {
         if (std::find(skipped.begin(), skipped.end(), key.name) != skipped.end()) continue;
         for (const Field& field : key.binding.fields) {
             const auto part = std::find_if(parts.begin(), parts.end(),
@@ -131,9 +124,12 @@ Table rope_table(const RopeDef& rope, const BodyStyleDef& style, const ShapeDef&
 Table net_table(const NetDef& net, const BodyStyleDef& style, const ShapeDef& shape, std::size_t i) {
     const std::string path = fmt::format("net[{}]", i);
     const auto* given = std::get_if<GridDef>(&shape);
-    const std::optional<GridDef> grid =
-        given != nullptr && gives(*given, net) ? std::optional(*given) : grid_of(net);
-    if (!grid || !gives(*grid, net)) return table_of("net", path, {part(net), part(style)});
+    std::optional<GridDef> grid;
+    if (given != nullptr && gives(*given, net))
+        grid = *given;
+    else if (grid = grid_of(net); grid && !gives(*grid, net))
+        grid.reset();
+    if (!grid) return table_of("net", path, {part(net), part(style)});
     Table table = table_of("net", path, {part(net), part(style)}, {"points", "origin", "bars"});
     table.inlined.push_back(table_of("net.grid", path + ".grid", {part(*grid)}));
     return table;
@@ -203,12 +199,15 @@ std::vector<Table> body_tables(const Scene& scene) {
     return tables;
 }
 
-std::vector<Table> all_tables(const Scene& scene) {
-    std::vector<Table> tables = solver_tables(scene);
-    for (std::vector<Table>& more : std::vector{plain_tables(scene), body_tables(scene)})
-        tables.insert(tables.end(), std::move_iterator(more.begin()), std::move_iterator(more.end()));
-    return tables;
-}
+/// All tables of a scene file.
+struct Tables {
+    explicit Tables(const Scene& scene)
+        : solver(solver_tables(scene)), plain(plain_tables(scene)), bodies(body_tables(scene)) {}
+
+    std::vector<Table> solver;
+    std::vector<Table> plain;
+    std::vector<Table> bodies;
+};
 
 /// "{ links = 30, length = 1 }".
 std::string inline_text(const Table& table) {
@@ -248,14 +247,33 @@ void add_to(std::map<std::string, std::string>& digest, const Table& table) {
         digest.emplace(dotted(table.path, key), toml.size() > kMaxText ? hashed(toml) : toml);
 }
 
+std::map<std::string, std::string> digest_of(const Tables& tables) {
+    constexpr std::size_t kMaxBodies = 100;
+    std::map<std::string, std::string> digest;
+    for (const Table& table : tables.plain) add_to(digest, table);
+    for (const Table& table : tables.solver) add_to(digest, table);
+    std::map<std::string, std::string> bodies;
+    for (const Table& table : tables.bodies) add_to(bodies, table);
+    if (tables.bodies.size() <= kMaxBodies) {
+        digest.merge(bodies);
+        return digest;
+    }
+    std::string all;
+    for (const auto& [key, value] : bodies) all += fmt::format("{} = {}\n", key, value);
+    digest.emplace("scene.bodies", hashed(all));
+    return digest;
+}
+
 }  // namespace
 
 std::string write_scene(const Scene& scene) {
+    const Tables tables(scene);
     std::string toml = "schema = 1\n";
-    for (const Table& table : all_tables(scene)) toml += text_of(table);
+    for (const auto* const some : {&tables.solver, &tables.plain, &tables.bodies})
+        for (const Table& table : *some) toml += text_of(table);
     std::vector<std::string> changes;
     try {
-        changes = differences(digest(scene), digest(parse_scene(toml, "scene")));
+        changes = differences(digest_of(tables), digest(parse_scene(toml, "scene")));
     } catch (const Error& error) {
         fail_unwritable(error.what());
     }
@@ -263,12 +281,10 @@ std::string write_scene(const Scene& scene) {
     return toml;
 }
 
-std::string write_sections(const Scene& scene, std::span<const std::string_view> sections) {
+std::string write_solver_and_camera(const Scene& scene) {
     std::string toml;
-    for (const Table& table : all_tables(scene))
-        if (std::find(sections.begin(), sections.end(), table.section) != sections.end())
-            toml += text_of(table);
-    return toml.substr(std::min<std::size_t>(1, toml.size()));
+    for (const Table& table : solver_tables(scene)) toml += text_of(table);
+    return toml.substr(1) + text_of(table_of("camera", "camera", {part(scene.camera)}));
 }
 
 Setting solver_setting(const Scene& scene) {
@@ -281,25 +297,8 @@ Setting solver_setting(const Scene& scene) {
     return "solver=" + text;
 }
 
-std::string method_toml(const MethodDef& method) {
-    return lines_of(solver_table("solver", "solver", solver_of(method), {}));
-}
-
 std::map<std::string, std::string> digest(const Scene& scene) {
-    constexpr std::size_t kMaxBodies = 100;
-    std::map<std::string, std::string> digest;
-    for (const Table& table : plain_tables(scene)) add_to(digest, table);
-    for (const Table& table : solver_tables(scene)) add_to(digest, table);
-    std::map<std::string, std::string> bodies;
-    for (const Table& table : body_tables(scene)) add_to(bodies, table);
-    if (scene.ropes.size() + scene.nets.size() <= kMaxBodies) {
-        digest.merge(bodies);
-        return digest;
-    }
-    std::string all;
-    for (const auto& [key, value] : bodies) all += fmt::format("{} = {}\n", key, value);
-    digest.emplace("scene.bodies", hashed(all));
-    return digest;
+    return digest_of(Tables(scene));
 }
 
 std::vector<std::string> differences(const std::map<std::string, std::string>& now,
@@ -337,8 +336,8 @@ void check_definitions(const Scene& scene) {
     const auto check = [&](const Table& table) {
         for (const auto& [name, toml] : table.values) {
             const Key* const key = find_key(table.section, name);
-            // The reach is one of the ropes, which may differ here.
-            if (key != nullptr && name != "reach")
+            // The reach is one of the ropes, which may differ here; any Color is valid.
+            if (key != nullptr && name != "reach" && key->type.kind != Kind::kColor)
                 check_value(*key, toml, dotted(table.path, name), problems);
         }
     };

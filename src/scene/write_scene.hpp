@@ -1,9 +1,7 @@
 #pragma once
 
 #include <map>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "corda/scene/scene.hpp"
@@ -17,14 +15,11 @@ namespace corda {
 /// file can give.
 [[nodiscard]] std::string write_scene(const Scene& scene);
 
-/// The tables of some sections alone, such as "solver" and "solver.bodies".
-[[nodiscard]] std::string write_sections(const Scene& scene, std::span<const std::string_view> sections);
+/// The tables [solver], [[solver.bodies]] and [camera] alone. Throws as write_scene().
+[[nodiscard]] std::string write_solver_and_camera(const Scene& scene);
 
 /// The table [solver] with its [[solver.bodies]] as a setting: "solver={method = "exact", tolerance = 1e-9}".
 [[nodiscard]] Setting solver_setting(const Scene& scene);
-
-/// The keys of a method, one per line.
-[[nodiscard]] std::string method_toml(const MethodDef& method);
 
 /// The values of a written scene by their keys ("video.crf", "rope[0].hang.links"), long ones as a hash.
 /// Scenes of equal digests have equal frames, whatever they were read from. A scene of more than a hundred

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <compare>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -17,7 +18,7 @@ struct Vec2 {
     double x = 0;
     double y = 0;
 
-    friend bool operator==(const Vec2&, const Vec2&) = default;
+    friend auto operator<=>(const Vec2&, const Vec2&) = default;
 };
 
 inline Vec2 operator+(Vec2 a, Vec2 b) {
@@ -108,7 +109,7 @@ struct ExactDef {
     /// kMaxTolerance.
     double tolerance = 1e-9;
 
-    friend bool operator==(const ExactDef&, const ExactDef&) = default;
+    friend auto operator<=>(const ExactDef&, const ExactDef&) = default;
 };
 
 /// Method `rattle`: RATTLE at a fixed step, composed to a higher order.
@@ -124,7 +125,7 @@ struct RattleDef {
     /// 0.3, 3e-6 at 0.2, 1e-8 at 0.1.
     double guard = 0.2;
 
-    friend bool operator==(const RattleDef&, const RattleDef&) = default;
+    friend auto operator<=>(const RattleDef&, const RattleDef&) = default;
 };
 
 /// Method `relaxation` of the source report.
@@ -136,7 +137,7 @@ struct RelaxationDef {
     double delta = 0.0;                 ///< share of the velocity lost per step; 0 <= delta < 1
     std::optional<Vec2> force_n = {};   ///< force per particle in place of gravity; finite
 
-    friend bool operator==(const RelaxationDef&, const RelaxationDef&) = default;
+    friend auto operator<=>(const RelaxationDef&, const RelaxationDef&) = default;
 };
 
 /// A method with its parameters.

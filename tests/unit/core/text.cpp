@@ -44,5 +44,12 @@ TEST(Text, ThatCanBePrintedHasNoControlCharacters) {
               "\\xe2\\x81\\xa7\xe2\x81\xaa\xe2\x80\xa7\xe2\x80\xaf");
 }
 
+TEST(Text, HashIsFnv1a) {
+    // Test vectors by Noll, http://www.isthe.com/chongo/tech/comp/fnv/
+    EXPECT_EQ(hash_text(""), "cbf29ce484222325");
+    EXPECT_EQ(hash_text("a"), "af63dc4c8601ec8c");
+    EXPECT_EQ(hash_text("foobar"), "85944171f73967e8");
+}
+
 }  // namespace
 }  // namespace corda
