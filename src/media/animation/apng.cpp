@@ -4,9 +4,8 @@
 #include <vector>
 
 #include "corda/media/animation/animation.hpp"
-#include "corda/media/animation/animation_frames.hpp"
-#include "corda/media/big_endian.hpp"
-#include "corda/media/chunks/lossless_frames.hpp"
+#include "corda/media/animation/frames.hpp"
+#include "corda/media/bytes.hpp"
 #include "corda/media/format/file_kind.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/png/png.hpp"

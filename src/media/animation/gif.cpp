@@ -4,11 +4,10 @@
 #include <vector>
 
 #include "corda/media/animation/animation.hpp"
-#include "corda/media/animation/animation_frames.hpp"
+#include "corda/media/animation/frames.hpp"
 #include "corda/media/animation/palette.hpp"
-#include "corda/media/chunks/lossless_frames.hpp"
 #include "corda/media/chunks/track_output.hpp"
-#include "corda/media/encode/libav_encoder.hpp"
+#include "corda/media/encode/encoder.hpp"
 #include "corda/media/libav_handles.hpp"
 
 namespace corda::media {

@@ -6,8 +6,7 @@
 #include <utility>
 
 #include "corda/media/animation/animation.hpp"
-#include "corda/media/animation/animation_frames.hpp"
-#include "corda/media/chunks/lossless_frames.hpp"
+#include "corda/media/animation/frames.hpp"
 
 namespace corda::media {
 namespace {

@@ -10,7 +10,7 @@
 #include "corda/media/animation/animation.hpp"
 #include "corda/media/chunks/part_reader.hpp"
 #include "corda/media/chunks/track_output.hpp"
-#include "corda/media/encode/job_memory.hpp"
+#include "corda/media/encode/resources.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/read/open_video.hpp"

@@ -1,6 +1,7 @@
 #include "corda/media/chunks/part_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <limits>
 #include <numeric>
@@ -11,12 +12,45 @@
 #include "corda/core/file.hpp"
 #include "corda/core/image.hpp"
 #include "corda/core/part_file.hpp"
-#include "corda/media/checked.hpp"
-#include "corda/media/chunks/part_checksum.hpp"
+#include "corda/media/bytes.hpp"
 #include "corda/media/format/file_kind.hpp"
 #include "corda/media/read/video_comment.hpp"
 
 namespace corda::media {
+
+SoundBytes sound_bytes_of(const std::string& path, PartExtent extent, const OnProgress& on_progress) {
+    const FileHandle file = open_for_reading(path);
+    std::array<char, 1 << 16> block{};
+    std::string ahead;  // what was read and not counted
+    std::uint64_t counted = 0;
+    SoundBytes sound;
+    PartChecksum checksum;
+    const auto count = [&](std::size_t bytes) {
+        checksum.add(std::string_view(ahead).substr(0, bytes));
+        ahead.erase(0, bytes);
+        counted += bytes;
+    };
+    while (extent == PartExtent::kAll || sound.count == 0) {
+        const std::size_t at = ahead.find(PartChecksum::kMark);
+        if (at != std::string::npos && at + PartChecksum::kRecordBytes <= ahead.size()) {
+            count(at);
+            sound.is_damaged = checksum.record() != ahead.substr(0, PartChecksum::kRecordBytes);
+            if (sound.is_damaged) break;
+            ahead.erase(0, PartChecksum::kRecordBytes);
+            counted += PartChecksum::kRecordBytes;
+            sound.count = counted;
+            checksum = {};
+            continue;
+        }
+        count(ahead.size() -
+              std::min(ahead.size(), PartChecksum::kRecordBytes - 1));  // the rest may begin a record
+        report_progress(on_progress, 0, 0);
+        const std::size_t read = read_bytes(file, path, block.data(), block.size());
+        if (read == 0) break;
+        ahead.append(block.data(), read);
+    }
+    return sound;
+}
 
 PartInput open_part(const std::string& path, std::uint64_t bytes) {
     PartInput input;

@@ -47,6 +47,22 @@ class EmptyPart : public Error {
 /// Metadata of the part, "title" or "comment"; empty if it has none.
 [[nodiscard]] std::string metadata_entry(const AVFormatContext& format, const char* key);
 
+/// Result of checking the checksums of a part.
+struct SoundBytes {
+    /// Length of the longest prefix that ends with a checksum and whose checksums all match; 0 if there is
+    /// none.
+    std::uint64_t count = 0;
+    bool is_damaged = false;  ///< the checksum after that prefix does not match; otherwise it is missing
+};
+
+/// How much of a part is read.
+enum class PartExtent { kAll, kFirstChunk };
+
+/// Compares the checksums of a part with its bytes. Throws corda::Error: kIo if the file cannot be read,
+/// kInterrupted.
+[[nodiscard]] SoundBytes sound_bytes_of(const std::string& path, PartExtent extent,
+                                        const OnProgress& on_progress = {});
+
 /// Metadata in the first chunk of a part.
 struct PartComment {
     std::optional<std::string> text;  ///< std::nullopt if that chunk is not whole

@@ -8,7 +8,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
-#include "corda/media/read/matroska_header.hpp"
+#include "corda/media/bytes.hpp"
 
 namespace corda::media {
 namespace {
@@ -48,7 +48,32 @@ void set_options(std::string_view container, TrackLayout layout, Rational fps, O
     }
 }
 
+/// What stands before a checksum: the head of a free box (ISO/IEC 14496-12, 8.1.2), or of a Void element (RFC
+/// 8794, 11.3.2).
+std::string checksum_head(std::string_view container) {
+    constexpr std::size_t kBytes = PartChecksum::kRecordBytes;
+    if (container == "mp4" || container == "mov") return big_endian(kBytes + 8, 4) + "free";
+    return {static_cast<char>(0xec), static_cast<char>(0x80U | kBytes)};
+}
+
 }  // namespace
+
+void PartChecksum::add(std::string_view bytes) {
+    crc_ = av_crc(av_crc_get_table(AV_CRC_32_IEEE_LE), crc_,
+                  reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+    bytes_ += bytes.size();
+}
+
+std::string PartChecksum::record() const {
+    return std::string(kMark) + big_endian(bytes_, kLengthBytes) + big_endian(crc_, kSumBytes);
+}
+
+std::string PartChecksum::element(std::string_view container) const {
+    PartChecksum with_head = *this;
+    const std::string head = checksum_head(container);
+    with_head.add(head);
+    return head + with_head.record();
+}
 
 int TrackOutput::write_bytes(void* output, const std::uint8_t* bytes, int count) {
     TrackOutput& track = *static_cast<TrackOutput*>(output);

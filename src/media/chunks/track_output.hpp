@@ -1,12 +1,42 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "corda/core/rational.hpp"
-#include "corda/media/chunks/part_checksum.hpp"
 #include "corda/media/libav_handles.hpp"
 
 namespace corda::media {
+
+/// Checksums in a part file, one after each chunk, so that changed or lost bytes are found without decoding:
+/// most decoders do not notice them. Each is in an element that players skip, and covers all bytes since the
+/// previous one.
+class PartChecksum {
+  public:
+    /// What a record begins with: 16 bytes that no text holds, as \xc3 and a letter are no UTF-8.
+    static constexpr std::string_view kMark =
+        "\xc3"
+        "corda checksum\n";
+    static constexpr std::size_t kLengthBytes = 8;
+    static constexpr std::size_t kSumBytes = 4;
+    static constexpr std::size_t kRecordBytes = kMark.size() + kLengthBytes + kSumBytes;
+
+    /// Counts bytes that have been written.
+    void add(std::string_view bytes);
+    /// True if bytes were counted since the last checksum.
+    [[nodiscard]] bool is_due() const { return bytes_ > 0; }
+    /// The element to write next; counting begins again after it. `container` is libav's name of the muxer.
+    [[nodiscard]] std::string element(std::string_view container) const;
+    /// The element without its head: a mark, the number of bytes counted and their checksum. The bytes of the
+    /// head are counted before it.
+    [[nodiscard]] std::string record() const;
+
+  private:
+    std::uint64_t bytes_ = 0;  ///< since the last checksum
+    std::uint32_t crc_ = 0;
+};
 
 /// How a file is laid out.
 enum class TrackLayout {
@@ -65,5 +95,21 @@ class TrackOutput {
     bool begun_ = false;
     bool ended_ = false;
 };
+
+/// True if this libavformat, of FFmpeg 5.1, writes headers of Matroska files that FFmpeg 7.1 writes
+/// otherwise. The same video must have the same bytes with either.
+inline constexpr bool kHasOldMatroska = LIBAVFORMAT_VERSION_MAJOR < 61;
+
+/// By how much the newer header is larger: a muxer of the older one must leave as much room
+/// (AVFormatContext::metadata_header_padding), of which it makes a Void element behind the tags.
+inline constexpr int kNewMatroskaBytes = 14;
+
+/// The bytes before the room's end that a longest header has.
+inline constexpr std::size_t kMaxMatroskaHeader = std::size_t{1} << 20;
+
+/// `file`, the beginning of a finished Matroska file with one video track and room in its header, as
+/// FFmpeg 7.1 writes it: its track has room for HDR metadata that may follow, and its duration in words ends
+/// with one zero rather than two. As it is if it has another structure.
+[[nodiscard]] std::string with_new_matroska_header(std::string file);
 
 }  // namespace corda::media

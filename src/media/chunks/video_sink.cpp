@@ -13,10 +13,10 @@
 #include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
 #include "corda/core/range_lock.hpp"
-#include "corda/media/big_endian.hpp"
+#include "corda/media/bytes.hpp"
 #include "corda/media/chunks/finish_part.hpp"
 #include "corda/media/chunks/part_reader.hpp"
-#include "corda/media/format/picture_names.hpp"
+#include "corda/media/format/format.hpp"
 #include "corda/media/read/open_video.hpp"
 
 namespace corda::media {

@@ -15,7 +15,7 @@
 #include "corda/media/animation/animation.hpp"
 #include "corda/media/chunks/chunk.hpp"
 #include "corda/media/chunks/video_sink.hpp"
-#include "corda/media/format/picture_names.hpp"
+#include "corda/media/format/format.hpp"
 
 namespace corda::media {
 namespace {

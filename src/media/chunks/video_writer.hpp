@@ -8,7 +8,7 @@
 #include "corda/core/image.hpp"
 #include "corda/media/chunks/chunk.hpp"
 #include "corda/media/defs.hpp"
-#include "corda/media/encode/encoders.hpp"
+#include "corda/media/encode/encoder.hpp"
 #include "corda/media/format/format.hpp"
 
 namespace corda::media {

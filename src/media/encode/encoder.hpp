@@ -1,9 +1,14 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <memory>
+#include <string>
 #include <vector>
 
 #include "corda/core/image.hpp"
+#include "corda/media/encode/pixels.hpp"
+#include "corda/media/format/format.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/verify/verify.hpp"
 
@@ -33,5 +38,66 @@ class Encoder {
     /// Stream parameters for the muxer.
     [[nodiscard]] virtual const AVCodecParameters& parameters() const = 0;
 };
+
+// Options of each family of libav's encoders: Codec::settings.
+[[nodiscard]] EncoderSettings nvenc_settings(const Format& format, const VideoDef& def);
+[[nodiscard]] EncoderSettings x265_settings(const Format& format, const VideoDef& def);
+[[nodiscard]] EncoderSettings svt_av1_settings(const Format& format, const VideoDef& def);
+[[nodiscard]] EncoderSettings aom_av1_settings(const Format& format, const VideoDef& def);
+[[nodiscard]] EncoderSettings vp9_settings(const Format& format, const VideoDef& def);
+[[nodiscard]] EncoderSettings prores_settings(const Format& format, const VideoDef& def);
+[[nodiscard]] EncoderSettings ffv1_settings(const Format& format, const VideoDef& def);
+[[nodiscard]] EncoderSettings exact_settings(const Format& format, const VideoDef& def);
+
+/// Metadata of a picture, by its number in the film.
+using PictureInfo = std::function<PngInfo(std::int64_t frame)>;
+
+/// Opens the encoder of a format for a definition that was checked, for a chunk that begins with frame
+/// `first_frame`; a picture file says what `info` tells. Throws corda::Error (kEncoder).
+[[nodiscard]] std::unique_ptr<Encoder> make_encoder(const Format& format, const VideoDef& def,
+                                                    std::int64_t first_frame = 0,
+                                                    const PictureInfo& info = {});
+
+/// Any encoder of libav in the table of codecs.
+class LibavEncoder : public Encoder {
+  public:
+    /// Puts a part of a picture into a frame; see pixels.hpp.
+    using Convert = std::function<void(const Image&, const PixelRect&, AVFrame&)>;
+
+    /// Opens the encoder of `format`. Throws corda::Error (kEncoder).
+    LibavEncoder(const Format& format, const VideoDef& def, Convert convert = convert_pixels);
+
+    LibavEncoder(const LibavEncoder&) = delete;
+    LibavEncoder& operator=(const LibavEncoder&) = delete;
+    ~LibavEncoder() override;
+
+    void encode(const Image& frame, const Damage& damage, const PacketSink& sink) override;
+    void drain(const PacketSink& sink) override;
+    [[nodiscard]] const AVCodecParameters& parameters() const override { return *parameters_; }
+
+  private:
+    void send(const AVFrame* frame, const PacketSink& sink);
+
+    QuietLog quiet_;
+    Convert convert_;
+    // The current picture. libav shares it by reference count. It is written only while nothing else holds
+    // it, so it is copied only if the encoder keeps its frames.
+    Frame frame_;
+    CodecContext context_;
+    CodecParameters parameters_;
+    Packet packet_;
+    std::int64_t frames_ = 0;
+    bool is_drained_ = false;
+};
+
+/// Whether Corda was built with libx264 (CORDA_X264).
+[[nodiscard]] bool has_x264();
+
+/// "libx264 164"; empty without it.
+[[nodiscard]] std::string x264_version();
+
+/// An encoder of libx264, which is told what libavcodec cannot tell it: which macroblocks are as they were in
+/// the previous frame. It does not look at them again. Throws corda::Error (kEncoder).
+[[nodiscard]] std::unique_ptr<Encoder> make_x264_encoder(const Format& format, const VideoDef& def);
 
 }  // namespace corda::media

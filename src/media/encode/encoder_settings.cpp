@@ -1,4 +1,4 @@
-#include "corda/media/encode/encoders.hpp"
+#include "corda/media/encode/encoder.hpp"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 // In place of x264_encoder.cpp in a build without libx264.
 
 #include "corda/core/basics.hpp"
-#include "corda/media/encode/x264_encoder.hpp"
+#include "corda/media/encode/encoder.hpp"
 
 namespace corda::media {
 

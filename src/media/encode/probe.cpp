@@ -14,8 +14,8 @@
 #include "corda/core/child_process.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/threads.hpp"
-#include "corda/media/encode/encoders.hpp"
-#include "corda/media/encode/job_memory.hpp"
+#include "corda/media/encode/encoder.hpp"
+#include "corda/media/encode/resources.hpp"
 #include "corda/media/format/format.hpp"
 
 namespace corda::media {

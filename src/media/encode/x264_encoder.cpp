@@ -1,4 +1,4 @@
-#include "corda/media/encode/x264_encoder.hpp"
+#include "corda/media/encode/encoder.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

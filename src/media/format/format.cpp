@@ -10,8 +10,7 @@
 #include "corda/core/image.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/media/encode/x264_encoder.hpp"
-#include "corda/media/format/picture_names.hpp"
+#include "corda/media/encode/encoder.hpp"
 #include "corda/media/libav_handles.hpp"
 
 namespace corda::media {

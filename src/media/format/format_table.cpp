@@ -1,7 +1,7 @@
 #include <array>
 #include <span>
 
-#include "corda/media/encode/encoders.hpp"
+#include "corda/media/encode/encoder.hpp"
 #include "corda/media/format/format.hpp"
 
 namespace corda::media {

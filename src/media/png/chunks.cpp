@@ -18,7 +18,7 @@
 
 #include "corda/core/file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/media/big_endian.hpp"
+#include "corda/media/bytes.hpp"
 #include "corda/media/format/file_kind.hpp"
 
 namespace corda::media {

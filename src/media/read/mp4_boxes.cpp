@@ -1,4 +1,4 @@
-#include "corda/media/read/mp4_boxes.hpp"
+#include "corda/media/read/containers.hpp"
 
 #include <sys/stat.h>
 
@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "corda/core/file.hpp"
-#include "corda/media/big_endian.hpp"
+#include "corda/media/bytes.hpp"
 
 namespace corda::media {
 namespace {

@@ -7,12 +7,10 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
-#include "corda/media/animation/apng_times.hpp"
-#include "corda/media/animation/webp_reader.hpp"
 #include "corda/media/format/file_kind.hpp"
-#include "corda/media/read/mp4_boxes.hpp"
-#include "corda/media/read/truncation.hpp"
+#include "corda/media/read/containers.hpp"
 #include "corda/media/read/video_reader.hpp"
+#include "corda/media/read/webp_reader.hpp"
 
 namespace corda::media {
 

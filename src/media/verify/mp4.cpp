@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "corda/media/checked.hpp"
+#include "corda/media/bytes.hpp"
 #include "corda/media/verify/checks.hpp"
 
 namespace corda::media {

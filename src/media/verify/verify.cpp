@@ -8,15 +8,13 @@
 #include <optional>
 
 #include "corda/core/file.hpp"
-#include "corda/media/checked.hpp"
+#include "corda/media/bytes.hpp"
 #include "corda/media/format/file_kind.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/read/color_patch.hpp"
-#include "corda/media/read/mp4_boxes.hpp"
-#include "corda/media/read/truncation.hpp"
+#include "corda/media/read/containers.hpp"
 #include "corda/media/read/video_comment.hpp"
 #include "corda/media/verify/checks.hpp"
-#include "corda/media/verify/decode.hpp"
 
 namespace corda::media {
 namespace {

@@ -10,6 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "benchmark/video/baseline_encoder.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/child_process.hpp"
 #include "corda/core/clock.hpp"
@@ -17,7 +18,6 @@
 #include "corda/core/temporary_folder.hpp"
 #include "corda/media/chunks/chunk.hpp"
 #include "corda/media/chunks/video_writer.hpp"
-#include "corda/media/encode/baseline_encoder.hpp"
 #include "corda/media/encode/yuv420.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/pipeline/film_renderer.hpp"
@@ -94,7 +94,7 @@ std::int64_t max_pictures(const VideoDef& video) {
 
 json encode_alone(const BenchDef& def) {
     const VideoDef& video = def.scene.video;
-    media::BaselineEncoder encoder(video);
+    BaselineEncoder encoder(video);
     {
         Film film(def.scene, def.film);
         draw_frames(film, std::min(frames_of(def), max_pictures(video)),

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "corda/media/chunks/part_checksum.hpp"
+#include "corda/media/chunks/part_reader.hpp"
 #include "corda/media/chunks/video_writer.hpp"
 #include "corda/media/verify/verify.hpp"
 #include "support/command.hpp"

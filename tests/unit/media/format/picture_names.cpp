@@ -1,4 +1,4 @@
-#include "corda/media/format/picture_names.hpp"
+#include "corda/media/format/format.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "corda/media/read/mp4_boxes.hpp"
+#include "corda/media/read/containers.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

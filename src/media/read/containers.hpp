@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "corda/core/rational.hpp"
+
 namespace corda::media {
 
 /// One entry of an edit list: which part of the track is shown.
@@ -34,5 +36,21 @@ struct Mp4Boxes {
 /// Reads the boxes of any file; one that is no MP4 gives a struct with little in it. Throws corda::Error
 /// (kIo) if the file cannot be opened for reading.
 [[nodiscard]] Mp4Boxes read_mp4_boxes(const std::string& path);
+
+/// Whether a file of a kind that file_kind() names is shorter than it claims to be: a GIF without its
+/// trailer, a PNG without its last chunk, YUV4MPEG2 that ends in a frame, Matroska of a length that is not
+/// there. Decoders take what there is and do not tell. False for other kinds. Throws corda::Error (kIo) if it
+/// cannot be opened for reading.
+[[nodiscard]] bool is_truncated(const std::string& path, const std::string& kind);
+
+/// Times of the frames of an APNG; libav rounds them.
+struct ApngTimes {
+    Rational delay_s{0, 1};       ///< of the first frame
+    std::int64_t uneven_at = -1;  ///< index of the first frame that has another; -1: none
+};
+
+/// Reads the chunks of an APNG file, up to one that is not whole. Throws corda::Error (kIo) if it cannot be
+/// read.
+[[nodiscard]] ApngTimes read_apng_times(const std::string& path);
 
 }  // namespace corda::media

@@ -1,4 +1,4 @@
-#include "corda/media/animation/webp_reader.hpp"
+#include "corda/media/read/webp_reader.hpp"
 
 #include <webp/decode.h>
 #include <webp/demux.h>

@@ -8,10 +8,9 @@
 #include "corda/media/defs.hpp"
 #include "corda/media/encode/yuv420.hpp"
 
-namespace corda::media {
+namespace corda::benchmark {
 
-/// x264 by itself, on pictures in memory, with threads of its own: what the time of a render is compared
-/// with.
+/// x264 alone, on pictures in memory, with threads of its own: the baseline of the time of a render.
 class BaselineEncoder {
   public:
     /// For videos of this size, rate, preset and crf.
@@ -20,13 +19,13 @@ class BaselineEncoder {
     /// Converts a picture and keeps it.
     void add(const Image& picture);
 
-    /// Encodes so many frames: the pictures in order, then backwards, and so on, with no jump between them.
+    /// Encodes `frames` frames: the pictures forwards, then backwards, and so on, so that nothing jumps.
     /// Requires a picture. Returns the bytes of the packets. Throws corda::Error (kEncoder).
     [[nodiscard]] std::int64_t encode(std::int64_t frames, int threads) const;
 
   private:
     VideoDef def_;
-    std::vector<Yuv420Image> pictures_;
+    std::vector<media::Yuv420Image> pictures_;
 };
 
-}  // namespace corda::media
+}  // namespace corda::benchmark

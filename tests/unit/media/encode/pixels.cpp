@@ -1,4 +1,4 @@
-#include "corda/media/encode/alpha_bleed.hpp"
+#include "corda/media/encode/pixels.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "corda/media/checked.hpp"
+#include "corda/media/bytes.hpp"
 
 #include <gtest/gtest.h>
 

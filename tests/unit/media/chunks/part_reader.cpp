@@ -1,4 +1,4 @@
-#include "corda/media/chunks/part_checksum.hpp"
+#include "corda/media/chunks/part_reader.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

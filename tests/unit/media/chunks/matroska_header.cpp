@@ -1,4 +1,4 @@
-#include "corda/media/read/matroska_header.hpp"
+#include "corda/media/chunks/track_output.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "corda/media/encode/baseline_encoder.hpp"
+#include "benchmark/video/baseline_encoder.hpp"
 
 #include <string>
 
@@ -7,8 +7,10 @@
 #include "corda/media/format/format.hpp"
 #include "corda/media/libav_handles.hpp"
 
-namespace corda::media {
+namespace corda::benchmark {
 namespace {
+
+using namespace media;  // this is an encoder as those of media/encode
 
 CodecContext open_x264(const VideoDef& video, int threads) {
     const AVCodec* const codec = avcodec_find_encoder_by_name("libx264");
@@ -81,4 +83,4 @@ std::int64_t BaselineEncoder::encode(std::int64_t frames, int threads) const {
     return bytes + send(*context, nullptr, *packet);
 }
 
-}  // namespace corda::media
+}  // namespace corda::benchmark
