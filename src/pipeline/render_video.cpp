@@ -125,7 +125,7 @@ void check_memory(const media::Format& format, const VideoDef& video) {
     const std::uint64_t bytes = media::bytes_per_job(format, video);
     if (media::jobs_that_fit(1, bytes) == 1) return;
     const bool can_be_faster =
-        format.codec->origin == media::EncoderOrigin::kX264 && format.preset_of(video.encoder) != "ultrafast";
+        !format.codec->preset_job_bytes.empty() && format.preset_of(video.encoder) != "ultrafast";
     const char* const faster = can_be_faster ? "a faster preset (--preset ultrafast), " : "";
     throw Error(
         ExitCode::kTemporary,

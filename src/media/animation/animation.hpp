@@ -27,13 +27,17 @@ void check_animation_frames(const Ending& ending, std::int64_t frames);
 void write_animation(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
                      OutputFile& output);
 
-/// As write_animation, of one kind: with a palette for all frames, and for each what has changed.
+// As write_animation, of one format: Codec::write.
+
+/// One palette for all frames; each frame holds the pixels that changed.
 void write_gif(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
                OutputFile& output);
 /// Lossless, with all levels of transparency; each frame is the rectangle that has changed. (libavcodec's
 /// encoder tries all ways to lay a frame over the last one, in four times the time for more bytes.)
-void write_apng(const AnimationDef& def, const OnProgress& on_progress, OutputFile& output);
+void write_apng(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
+                OutputFile& output);
 /// The same.
-void write_webp(const AnimationDef& def, const OnProgress& on_progress, OutputFile& output);
+void write_webp(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
+                OutputFile& output);
 
 }  // namespace corda::media

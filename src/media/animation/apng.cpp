@@ -102,7 +102,8 @@ class ApngFile {
 
 }  // namespace
 
-void write_apng(const AnimationDef& def, const OnProgress& on_progress, OutputFile& output) {
+void write_apng(const Ending& /*ending*/, const AnimationDef& def, const OnProgress& on_progress,
+                OutputFile& output) {
     ApngFile file(def.fps, def.frames, output);
     for_each_frame<ApngFrame>(
         def, on_progress, [](const LosslessFrames& pictures) { return encode_apng(pictures.change()); },

@@ -66,7 +66,8 @@ PictureChange LosslessFrames::change() const {
 }
 
 void check_animation_frames(const Ending& ending, std::int64_t frames) {
-    if (frames != 1 || std::string_view(ending.muxer) != "webp") return;
+    if (ending.kind != FileKind::kAnimation || frames != 1 || find_codec(ending.muxer)->min_frames == 1)
+        return;
     throw Error(ExitCode::kUsage,
                 fmt::format("{} holds one frame as a picture, which has no duration; use .apng, or .png "
                             "(corda still)",
@@ -76,10 +77,7 @@ void check_animation_frames(const Ending& ending, std::int64_t frames) {
 void write_animation(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
                      OutputFile& output) {
     check_animation_frames(ending, def.frames);
-    const std::string_view muxer = ending.muxer;
-    if (muxer == "webp") return write_webp(def, on_progress, output);
-    if (muxer == "apng") return write_apng(def, on_progress, output);
-    write_gif(ending, def, on_progress, output);
+    find_codec(ending.muxer)->write(ending, def, on_progress, output);
 }
 
 }  // namespace corda::media

@@ -13,13 +13,6 @@
 namespace corda::media {
 namespace {
 
-EncoderSettings no_settings(const Format& /*format*/, const VideoDef& /*def*/) {
-    return {-99, {}, 0};
-}
-
-constexpr Codec kGif{"gif",       "gif", "GIF", {"pal8"}, {}, "", {}, 0, 1, 0, false, EncoderOrigin::kLibav,
-                     &no_settings};
-
 /// The colours of a GIF, and how pictures get them.
 class Colors {
   public:
@@ -44,7 +37,7 @@ using SharedColors = std::shared_ptr<Colors>;
 
 std::unique_ptr<LibavEncoder> open_encoder(const Ending& ending, Rational fps, const Image& picture,
                                            const SharedColors& colors) {
-    const Format format{.ending = &ending, .codec = &kGif, .pixel_format = "pal8"};
+    const Format format{.ending = &ending, .codec = find_codec("gif"), .pixel_format = "pal8"};
     VideoDef video;
     video.width_px = picture.width();
     video.height_px = picture.height();

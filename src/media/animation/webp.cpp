@@ -58,7 +58,8 @@ WebpFrame encode_webp(const PictureChange& change) {
 
 }  // namespace
 
-void write_webp(const AnimationDef& def, const OnProgress& on_progress, OutputFile& output) {
+void write_webp(const Ending& /*ending*/, const AnimationDef& def, const OnProgress& on_progress,
+                OutputFile& output) {
     const Mux mux(WebPMuxNew(), &WebPMuxDelete);
     if (!mux) throw Error(ExitCode::kTemporary, "out of memory");
     const auto ms = [fps = def.fps](std::int64_t k) {

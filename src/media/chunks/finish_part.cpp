@@ -41,31 +41,26 @@ void remux(const PartIndex& index, const std::string& part_path, const Ending& e
     track.finish();
 }
 
-/// How many threads make an animation: those that are asked for, and whose pictures fit into memory.
-int animation_threads(int jobs, const PartInput& part) {
+/// The number of threads that make an animation: those that are asked for, as far as memory suffices.
+int animation_threads(int jobs, const Ending& ending, const PartInput& part) {
     const AVCodecParameters& parameters = *part.stream->codecpar;
-    const std::uint64_t bytes = std::uint64_t{kAnimationBytesPerPixel} *
+    const std::uint64_t bytes = static_cast<std::uint64_t>(find_codec(ending.codecs.front())->job_bytes) *
                                 static_cast<std::uint64_t>(parameters.width) *
                                 static_cast<std::uint64_t>(parameters.height);
     return std::max(1, jobs_that_fit(jobs_of(jobs), bytes));
-}
-
-AVCodecID codec_id_of(const Codec& codec) {
-    if (codec.origin == EncoderOrigin::kX264) return AV_CODEC_ID_H264;
-    const AVCodec* const encoder = avcodec_find_encoder_by_name(codec.name);
-    return encoder == nullptr ? AV_CODEC_ID_NONE : encoder->id;
 }
 
 /// A part can become what its codec goes into.
 void check_ending(const PartIndex& index, const std::string& part_path, const std::string& path,
                   const Ending& ending) {
     const bool is_file = ending.kind == FileKind::kVideo || ending.kind == FileKind::kAnimation;
+    const std::string_view stream = avcodec_get_name(index.codec);
     for (const char* const name : ending.codecs)
-        if (is_file && name != nullptr && codec_id_of(*find_codec(name)) == index.codec) return;
+        if (is_file && name != nullptr && find_codec(name)->stream == stream) return;
     throw Error(
         ExitCode::kUsage,
         fmt::format("'{}' holds {}, which '{}' cannot be made of; give the ending that the render was for",
-                    part_path, avcodec_get_name(index.codec), path));
+                    part_path, stream, path));
 }
 
 /// Colours of an animation without a record of its rendering.
@@ -107,7 +102,7 @@ RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOpt
             if (def.frames) done = result.frames + frame;
             return still_done(0, 0);
         };
-        const int threads = animation_threads(def.jobs, open_part(part.path(), index.bytes));
+        const int threads = animation_threads(def.jobs, ending, open_part(part.path(), index.bytes));
         write_animation(ending, {part.path(), index.bytes, result.frames, index.fps, threads}, encoded,
                         output);
     } else {

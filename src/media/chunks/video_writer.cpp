@@ -71,13 +71,6 @@ CodecParameters with_header(const Chunk& chunk) {
     return parameters;
 }
 
-/// Whether decoding a video takes a small part of the time that encoding takes: AV1, VP9 and H.265.
-bool is_decoded_at_no_cost(const Format& format) {
-    const Codec& codec = *format.codec;
-    return format.ending->kind == FileKind::kVideo && codec.origin == EncoderOrigin::kLibav &&
-           !codec.is_hardware && codec.chunk_frames == 0;
-}
-
 }  // namespace
 
 CheckedVideo check_video_output(const std::string& path, const VideoDef& def, const std::string& input,
@@ -285,7 +278,7 @@ void VideoWriter::finish(VerifyDepth depth) {
             fmt::format("'{}' would have no frame; ask for a duration of at least one frame", impl.path));
     }
     impl.drain();
-    const bool takes_all = depth == VerifyDepth::kKeyFrames && is_decoded_at_no_cost(impl.format);
+    const bool takes_all = depth == VerifyDepth::kKeyFrames && impl.format.codec->verifies_all;
     if (takes_all) depth = VerifyDepth::kAllFrames;
     impl.sink->finish({frames(), depth, impl.colors, impl.def.encoder.jobs});
 }

@@ -30,13 +30,13 @@ void configure(AVCodecContext& context, const Format& format, const VideoDef& de
     context.chroma_sample_location = chroma_location(context.pix_fmt);
 }
 
-void open(AVCodecContext& context, const VideoDef& def, const EncoderSettings& settings) {
+void open(AVCodecContext& context, const VideoDef& def, const EncoderOptions& settings) {
     // Unknown once it has failed to open.
     const std::string encoder = context.codec->name;
     const bool is_hardware = (context.codec->capabilities & AV_CODEC_CAP_HARDWARE) != 0;
     Options options;
     std::string text;
-    for (const auto& [name, value] : settings.options) {
+    for (const auto& [name, value] : settings) {
         options.set(name, value);
         text += fmt::format(", {} {}", name, value);
     }
@@ -66,7 +66,7 @@ Frame frame_for(const AVCodecContext& context) {
 }  // namespace
 
 LibavEncoder::LibavEncoder(const Format& format, const VideoDef& def, Convert convert)
-    : convert_(std::move(convert)) {
+    : codec_(format.codec), convert_(std::move(convert)) {
     const LogCapture log;
     const AVCodec* const codec = avcodec_find_encoder_by_name(format.codec->name);
     if (codec == nullptr)
@@ -74,11 +74,10 @@ LibavEncoder::LibavEncoder(const Format& format, const VideoDef& def, Convert co
             ExitCode::kEncoder,
             fmt::format("this libavcodec was built without {}; see `corda doctor`", format.codec->name));
     context_ = check_allocated(CodecContext(avcodec_alloc_context3(codec)), "an encoder");
-    const EncoderSettings settings = format.codec->settings(format, def);
-    context_->profile = settings.profile;
     configure(*context_, format, def);
-    open(*context_, def, settings);
-    if (settings.reorder_depth) context_->has_b_frames = *settings.reorder_depth;
+    open(*context_, def,
+         format.codec->options == nullptr ? EncoderOptions{} : format.codec->options(format, def));
+    context_->has_b_frames = 0;  // none has any; some encoders leave it unset
     parameters_ = check_allocated(CodecParameters(avcodec_parameters_alloc()), "codec parameters");
     check_libav(avcodec_parameters_from_context(parameters_.get(), context_.get()), ExitCode::kEncoder,
                 "cannot read the encoder's parameters");
@@ -87,9 +86,7 @@ LibavEncoder::LibavEncoder(const Format& format, const VideoDef& def, Convert co
 }
 
 LibavEncoder::~LibavEncoder() {
-    // SVT-AV1 waits for ever for the end of a stream that was begun, and for one that was not.
-    const bool waits = frame_ && std::string_view(context_->codec->name) == "libsvtav1";
-    if (!waits || is_drained_) return;
+    if (!frame_ || !codec_->must_drain || is_drained_) return;
     const LogCapture log;
     if (frames_ == 0) {
         for (AVBufferRef* const buffer : frame_->buf)
@@ -175,14 +172,16 @@ class PictureEncoder : public Encoder {
 
 std::unique_ptr<Encoder> make_encoder(const Format& format, const VideoDef& def, std::int64_t first_frame,
                                       const PictureInfo& info) {
-    switch (format.codec->origin) {
-        case EncoderOrigin::kX264:
-            return make_x264_encoder(format, def);
-        case EncoderOrigin::kPng:
-            return std::make_unique<PictureEncoder>(def, first_frame, info);
-        case EncoderOrigin::kLibav:
-            break;
-    }
+    return format.codec->make(format, def, first_frame, info);
+}
+
+std::unique_ptr<Encoder> make_png_encoder(const Format& /*format*/, const VideoDef& def,
+                                          std::int64_t first_frame, const PictureInfo& info) {
+    return std::make_unique<PictureEncoder>(def, first_frame, info);
+}
+
+std::unique_ptr<Encoder> make_libav_encoder(const Format& format, const VideoDef& def,
+                                            std::int64_t /*first_frame*/, const PictureInfo& /*info*/) {
     if (std::string_view(format.pixel_format) != "yuva420p")
         return std::make_unique<LibavEncoder>(format, def);
     return std::make_unique<LibavEncoder>(

@@ -39,19 +39,6 @@ class Encoder {
     [[nodiscard]] virtual const AVCodecParameters& parameters() const = 0;
 };
 
-// Options of each family of libav's encoders: Codec::settings.
-[[nodiscard]] EncoderSettings nvenc_settings(const Format& format, const VideoDef& def);
-[[nodiscard]] EncoderSettings x265_settings(const Format& format, const VideoDef& def);
-[[nodiscard]] EncoderSettings svt_av1_settings(const Format& format, const VideoDef& def);
-[[nodiscard]] EncoderSettings aom_av1_settings(const Format& format, const VideoDef& def);
-[[nodiscard]] EncoderSettings vp9_settings(const Format& format, const VideoDef& def);
-[[nodiscard]] EncoderSettings prores_settings(const Format& format, const VideoDef& def);
-[[nodiscard]] EncoderSettings ffv1_settings(const Format& format, const VideoDef& def);
-[[nodiscard]] EncoderSettings exact_settings(const Format& format, const VideoDef& def);
-
-/// Metadata of a picture, by its number in the film.
-using PictureInfo = std::function<PngInfo(std::int64_t frame)>;
-
 /// Opens the encoder of a format for a definition that was checked, for a chunk that begins with frame
 /// `first_frame`; a picture file says what `info` tells. Throws corda::Error (kEncoder).
 [[nodiscard]] std::unique_ptr<Encoder> make_encoder(const Format& format, const VideoDef& def,
@@ -79,6 +66,7 @@ class LibavEncoder : public Encoder {
     void send(const AVFrame* frame, const PacketSink& sink);
 
     QuietLog quiet_;
+    const Codec* codec_;
     Convert convert_;
     // The current picture. libav shares it by reference count. It is written only while nothing else holds
     // it, so it is copied only if the encoder keeps its frames.
@@ -90,14 +78,16 @@ class LibavEncoder : public Encoder {
     bool is_drained_ = false;
 };
 
-/// Whether Corda was built with libx264 (CORDA_X264).
-[[nodiscard]] bool has_x264();
-
-/// "libx264 164"; empty without it.
+/// "libx264 164"; empty if Corda was built without it (CORDA_X264).
 [[nodiscard]] std::string x264_version();
 
-/// An encoder of libx264, which is told what libavcodec cannot tell it: which macroblocks are as they were in
-/// the previous frame. It does not look at them again. Throws corda::Error (kEncoder).
-[[nodiscard]] std::unique_ptr<Encoder> make_x264_encoder(const Format& format, const VideoDef& def);
+/// Makes an encoder of libx264 that skips the macroblocks that are unchanged since the previous frame, for
+/// which libavcodec has no interface. Throws corda::Error (kEncoder).
+[[nodiscard]] std::unique_ptr<Encoder> make_x264_encoder(const Format& format, const VideoDef& def,
+                                                         std::int64_t first_frame, const PictureInfo& info);
+
+/// Makes an encoder of frames as the files that write_png() writes, with the metadata of `info`.
+[[nodiscard]] std::unique_ptr<Encoder> make_png_encoder(const Format& format, const VideoDef& def,
+                                                        std::int64_t first_frame, const PictureInfo& info);
 
 }  // namespace corda::media

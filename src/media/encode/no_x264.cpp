@@ -5,15 +5,12 @@
 
 namespace corda::media {
 
-bool has_x264() {
-    return false;
-}
-
 std::string x264_version() {
     return {};
 }
 
-std::unique_ptr<Encoder> make_x264_encoder(const Format& /*format*/, const VideoDef& /*def*/) {
+std::unique_ptr<Encoder> make_x264_encoder(const Format& /*format*/, const VideoDef& /*def*/,
+                                           std::int64_t /*first_frame*/, const PictureInfo& /*info*/) {
     throw Error(ExitCode::kEncoder, "this Corda was built without libx264");
 }
 

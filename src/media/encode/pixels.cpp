@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstddef>
-#include <cstring>
+#include <optional>
 
 #include "corda/media/encode/yuv420.hpp"
 
@@ -27,45 +28,33 @@ void copy_alpha(const Image& image, const PixelRect& part, int bits, AVFrame& fr
     }
 }
 
-void copy_bgr(const Image& image, const PixelRect& part, AVFrame& frame) {
-    for (int y = part.y0; y < part.y1; ++y) {
-        std::uint8_t* const line = frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0];
-        for (int x = part.x0; x < part.x1; ++x) {
-            const std::uint8_t* const from = image.pixel(x, y);
-            std::uint8_t* const to = line + std::ptrdiff_t{4} * x;
-            to[0] = from[2];
-            to[1] = from[1];
-            to[2] = from[0];
-            to[3] = from[3];
-        }
-    }
+/// Where the channels of a packed pixel of 8-bit R'G'B' are.
+struct PackedPixel {
+    int bytes = 0;
+    std::array<int, 4> offset{};  ///< of R, G, B and of alpha, or of the byte in its place
+    bool has_alpha = false;
+};
+
+/// The packed pixel of a format; std::nullopt if it has none.
+std::optional<PackedPixel> packed_pixel(const AVPixFmtDescriptor& descriptor) {
+    constexpr std::uint64_t kKind = AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PLANAR | AV_PIX_FMT_FLAG_PAL;
+    const auto& comp = descriptor.comp;
+    const bool is_packed =
+        (descriptor.flags & kKind) == AV_PIX_FMT_FLAG_RGB && comp[0].depth == 8 && comp[0].step >= 3;
+    if (!is_packed) return std::nullopt;
+    const int last = 6 - comp[0].offset - comp[1].offset - comp[2].offset;  // offsets are 0 .. 3
+    return PackedPixel{comp[0].step,
+                       {comp[0].offset, comp[1].offset, comp[2].offset, last},
+                       (descriptor.flags & AV_PIX_FMT_FLAG_ALPHA) != 0};
 }
 
-void copy_rgb(const Image& image, const PixelRect& part, AVFrame& frame) {
+void copy_packed(const Image& image, const PixelRect& part, const PackedPixel& pixel, AVFrame& frame) {
     for (int y = part.y0; y < part.y1; ++y) {
-        std::uint8_t* const line = frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0];
-        std::memcpy(line + std::ptrdiff_t{4} * part.x0, image.pixel(part.x0, y),
-                    static_cast<std::size_t>(part.width()) * 4);
-    }
-}
-
-void copy_argb(const Image& image, const PixelRect& part, AVFrame& frame) {
-    for (int y = part.y0; y < part.y1; ++y) {
-        std::uint8_t* const line = frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0];
-        for (int x = part.x0; x < part.x1; ++x) {
-            const std::uint8_t* const from = image.pixel(x, y);
-            std::uint8_t* const to = line + std::ptrdiff_t{4} * x;
-            to[0] = from[3];
-            std::copy_n(from, 3, to + 1);
-        }
-    }
-}
-
-void copy_without_alpha(const Image& image, const PixelRect& part, AVFrame& frame) {
-    for (int y = part.y0; y < part.y1; ++y) {
-        std::uint8_t* const line = frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0];
-        for (int x = part.x0; x < part.x1; ++x)
-            std::copy_n(image.pixel(x, y), 3, line + std::ptrdiff_t{3} * x);
+        const std::uint8_t* from = image.pixel(part.x0, y);
+        std::uint8_t* to =
+            frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0] + std::ptrdiff_t{pixel.bytes} * part.x0;
+        for (int x = part.x0; x < part.x1; ++x, from += 4, to += pixel.bytes)
+            for (int c = 0; c < pixel.bytes; ++c) to[pixel.offset[c]] = from[c];
     }
 }
 
@@ -75,63 +64,39 @@ void convert_pixels(const Image& image, const PixelRect& part, AVFrame& frame) {
     assert(image.width() == frame.width && image.height() == frame.height);
     const PixelRect inside = part.intersected(image.rect());
     if (inside.empty()) return;
+    const AVPixFmtDescriptor& descriptor = *av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
+    if (const auto pixel = packed_pixel(descriptor)) return copy_packed(image, inside, *pixel, frame);
+    const int bits = descriptor.comp[0].depth;
+    const bool is_420 = descriptor.log2_chroma_w == 1 && descriptor.log2_chroma_h == 1;
+    const bool is_444 = descriptor.log2_chroma_w == 0 && descriptor.log2_chroma_h == 0;
+    const bool is_known =
+        (descriptor.flags & (AV_PIX_FMT_FLAG_RGB | AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_BE)) == 0 &&
+        descriptor.nb_components >= 3 && descriptor.comp[2].plane == 2 &&
+        ((is_420 && bits == 8) || (is_444 && (bits == 8 || bits == 10)));
+    if (!is_known) throw Error(ExitCode::kInternal, "frames are not converted to this pixel format");
+    if ((descriptor.flags & AV_PIX_FMT_FLAG_ALPHA) != 0) copy_alpha(image, inside, bits, frame);
     const YuvPlanes planes{{frame.data[0], frame.data[1], frame.data[2]},
                            {frame.linesize[0], frame.linesize[1], frame.linesize[2]}};
-    switch (frame.format) {
-        case AV_PIX_FMT_YUVA420P:
-            copy_alpha(image, inside, 8, frame);
-            [[fallthrough]];
-        case AV_PIX_FMT_YUV420P:
-            return convert_to_yuv420(image, inside, planes);
-        case AV_PIX_FMT_YUV444P:
-            return convert_to_yuv444(image, inside, 8, planes);
-        case AV_PIX_FMT_YUVA444P10LE:
-            copy_alpha(image, inside, 10, frame);
-            [[fallthrough]];
-        case AV_PIX_FMT_YUV444P10LE:
-            return convert_to_yuv444(image, inside, 10, planes);
-        case AV_PIX_FMT_BGR0:
-        case AV_PIX_FMT_BGRA:
-            return copy_bgr(image, inside, frame);
-        case AV_PIX_FMT_ARGB:
-            return copy_argb(image, inside, frame);
-        case AV_PIX_FMT_RGBA:
-            return copy_rgb(image, inside, frame);
-        case AV_PIX_FMT_RGB24:
-            return copy_without_alpha(image, inside, frame);
-        default:
-            throw Error(ExitCode::kInternal, "frames are not converted to this pixel format");
-    }
+    if (is_420) return convert_to_yuv420(image, inside, planes);
+    convert_to_yuv444(image, inside, bits, planes);
 }
 
 bool copy_exact(const AVFrame& frame, Image& picture) {
+    const AVPixFmtDescriptor* const descriptor =
+        av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
+    const auto pixel = descriptor == nullptr ? std::nullopt : packed_pixel(*descriptor);
+    if (!pixel) return false;
     if (picture.width() != frame.width || picture.height() != frame.height)
         picture = Image(frame.width, frame.height);
-    const auto copy = [&](std::ptrdiff_t bytes, int red, int green, int blue, int alpha) {
-        for (int y = 0; y < frame.height; ++y) {
-            const std::uint8_t* from = frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0];
-            std::uint8_t* to = picture.pixel(0, y);
-            for (int x = 0; x < frame.width; ++x, from += bytes, to += 4) {
-                to[0] = from[red];
-                to[1] = from[green];
-                to[2] = from[blue];
-                to[3] = alpha < 0 ? 255 : from[alpha];
-            }
+    for (int y = 0; y < frame.height; ++y) {
+        const std::uint8_t* from = frame.data[0] + std::ptrdiff_t{y} * frame.linesize[0];
+        std::uint8_t* to = picture.pixel(0, y);
+        for (int x = 0; x < frame.width; ++x, from += pixel->bytes, to += 4) {
+            for (int c = 0; c < 3; ++c) to[c] = from[pixel->offset[c]];
+            to[3] = pixel->has_alpha ? from[pixel->offset[3]] : 255;
         }
-        return true;
-    };
-    switch (frame.format) {
-        case AV_PIX_FMT_BGR0:
-            return copy(4, 2, 1, 0, -1);
-        case AV_PIX_FMT_BGRA:
-            return copy(4, 2, 1, 0, 3);
-        case AV_PIX_FMT_ARGB:
-            return copy(4, 1, 2, 3, 0);
-        case AV_PIX_FMT_RGB24:
-            return copy(3, 0, 1, 2, -1);
-        default:
-            return false;
     }
+    return true;
 }
 
 void ShownPictures::convert(const AVFrame& frame, Image& picture) {

@@ -9,11 +9,12 @@
 namespace corda::media {
 
 /// Converts the part of `image` that `part` touches to the pixel format of `frame`, which has the same size
-/// and is writable; the rest of it stays. Takes yuv420p, yuva420p, yuv444p, yuv444p10le, yuva444p10le (see
-/// yuv420.hpp), bgr0, bgra, argb, rgba and rgb24. Alpha stays straight.
+/// and is writable; the rest of it stays. Takes planar Y'CbCr in 4:2:0 of 8 bits or 4:4:4 of 8 or 10 bits
+/// (see yuv420.hpp), with or without alpha, and packed R'G'B' of 8 bits. Alpha stays straight. Throws
+/// corda::Error (kInternal) for other formats.
 void convert_pixels(const Image& image, const PixelRect& part, AVFrame& frame);
 
-/// Copies a frame in bgr0, bgra, argb or rgb24 to a picture, which gets its size; returns false for another
+/// Copies a frame of packed R'G'B' of 8 bits to a picture, which gets its size; returns false for another
 /// pixel format.
 [[nodiscard]] bool copy_exact(const AVFrame& frame, Image& picture);
 

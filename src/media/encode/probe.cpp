@@ -24,20 +24,14 @@ namespace {
 constexpr double kMaxS = 5.0;  // measured 0.01 .. 0.2 s; all cores may be busy with other work
 /// Address space of a drawing thread, measured as 400 to 430 MiB with Mesa 22.3.
 constexpr std::uint64_t kDrawingBytes = std::uint64_t{430} << 20U;
-/// Threads that an encoder starts by itself, at most: measured 11 to 16 of SVT-AV1 and 1 of libx265.
-int threads_of(const Codec& codec) {
-    const std::string_view name = codec.name;
-    return name == "libsvtav1" ? 16 : name == "libx265" ? 2 : 0;
-}
 
 /// Explains that the system starts fewer threads than an encoder waits for; empty if it starts enough.
 std::string lack_of_threads(const Codec& codec) {
-    const int threads = threads_of(codec);
-    if (can_start_threads(threads)) return "";
+    if (can_start_threads(codec.own_threads)) return "";
     return fmt::format(
         "{} starts {} threads, and the system gives fewer: run fewer processes, or raise the limits (ulimit "
         "-u, ulimit -v)",
-        codec.name, threads);
+        codec.name, codec.own_threads);
 }
 
 /// Large enough for the minimum of every encoder, small enough to open at once.
@@ -83,7 +77,7 @@ Trial try_encoders(const Format& format, const VideoDef& video, int jobs, std::u
     if (left) limits.memory_bytes = *left - std::min(*left, kept_bytes * static_cast<std::uint64_t>(jobs));
     const auto work = [&] { return encode_one(format, def, jobs); };
     const auto end = run_in_child(work, limits, on_wait);
-    const auto starts_threads = [&] { return can_start_threads(1 + threads_of(*format.codec)); };
+    const auto starts_threads = [&] { return can_start_threads(1 + format.codec->own_threads); };
     if (!end && starts_threads()) return {};
     if (!end)
         return {
@@ -141,12 +135,14 @@ Trial reason_of(const Ending& ending, const Codec& codec) {
     def.encoder.jobs = 1;
     Trial trial = has_other_threads() ? Trial{encode_one(*format, def, 1)} : try_encoder(*format, def, 0, {});
     if (!trial.failure.empty()) return trial;
-    if (*ending.muxer != '\0' && std::string_view(ending.muxer) != "webp" &&
+    const Codec& finished = format->finished_codec();
+    if (*ending.muxer != '\0' && !finished.is_built_in &&
         av_guess_format(ending.muxer, nullptr, nullptr) == nullptr)
         return {"this libavformat does not write " + std::string(ending.words)};
-    const bool has_codec = ending.kind != FileKind::kAnimation || std::string_view(ending.muxer) == "webp" ||
-                           avcodec_find_encoder_by_name(ending.muxer) != nullptr;
-    return {has_codec ? "" : "this libavcodec was built without " + std::string(ending.muxer)};
+    if (finished.write != nullptr && !finished.is_built_in &&
+        avcodec_find_encoder_by_name(finished.name) == nullptr)
+        return {"this libavcodec was built without " + std::string(finished.name)};
+    return {};
 }
 
 }  // namespace
@@ -166,7 +162,7 @@ std::vector<EncoderProbe> probe_encoders() {
 }
 
 void check_encoder_starts(const Format& format, const VideoDef& def, const OnProgress& on_progress) {
-    if (format.codec->is_hardware || format.codec->origin == EncoderOrigin::kPng) return;
+    if (format.codec->is_hardware || format.codec->is_built_in) return;
     if (has_other_threads()) {
         const std::string lack = lack_of_threads(*format.codec);
         if (lack.empty()) return;

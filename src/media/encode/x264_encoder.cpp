@@ -357,11 +357,8 @@ std::string x264_version() {
     return fmt::format("libx264 {}", X264_BUILD);
 }
 
-bool has_x264() {
-    return true;
-}
-
-std::unique_ptr<Encoder> make_x264_encoder(const Format& format, const VideoDef& def) {
+std::unique_ptr<Encoder> make_x264_encoder(const Format& format, const VideoDef& def,
+                                           std::int64_t /*first_frame*/, const PictureInfo& /*info*/) {
     return std::make_unique<X264Encoder>(format, def);
 }
 

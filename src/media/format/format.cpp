@@ -4,17 +4,37 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/media/encode/encoder.hpp"
 #include "corda/media/libav_handles.hpp"
 
 namespace corda::media {
 namespace {
+
+/// WebP stores each side in 14 bits.
+constexpr int kMaxWebpSidePx = (1 << 14) - 1;
+
+constexpr std::array kEndings{
+    Ending{".mp4",
+           "MP4",
+           FileKind::kVideo,
+           "mp4",
+           "mp4",
+           {"libx264", "libsvtav1", "libx265", "libaom-av1", "h264_nvenc"}},
+    Ending{".webm", "WebM", FileKind::kVideo, "webm", "matroska", {"libvpx-vp9", "libsvtav1", "libaom-av1"}},
+    Ending{".mov", "QuickTime", FileKind::kVideo, "mov", "mov", {"prores_ks"}},
+    Ending{".mkv", "Matroska", FileKind::kVideo, "matroska", "matroska", {"ffv1"}},
+    Ending{".gif", "GIF", FileKind::kAnimation, "gif", "mov", {"qtrle"}},
+    Ending{".apng", "APNG", FileKind::kAnimation, "apng", "mov", {"qtrle"}},
+    Ending{".webp", "WebP", FileKind::kAnimation, "webp", "mov", {"qtrle"}, kMaxWebpSidePx},
+    Ending{"%04d.png", "PNG pictures", FileKind::kPictures, "", "", {"png"}},
+    Ending{"-", "YUV4MPEG2", FileKind::kStream, "", "", {"rawvideo"}},
+};
 
 template <typename... Args>
 [[noreturn]] void fail_usage(fmt::format_string<Args...> text, Args&&... args) {
@@ -34,20 +54,13 @@ void add_new(std::string_view name, std::vector<std::string_view>& names) {
 }
 
 bool is_available(const Codec& codec) {
-    switch (codec.origin) {
-        case EncoderOrigin::kX264:
-            return has_x264();
-        case EncoderOrigin::kPng:
-            return true;
-        case EncoderOrigin::kLibav:
-            break;
-    }
-    return avcodec_find_encoder_by_name(codec.name) != nullptr;
+    if (codec.version != nullptr) return !codec.version().empty();
+    return codec.is_built_in || avcodec_find_encoder_by_name(codec.name) != nullptr;
 }
 
 /// Message for a missing codec.
 std::string missing_text(const Codec& codec) {
-    if (codec.origin == EncoderOrigin::kX264)
+    if (codec.version != nullptr)
         return "this Corda was built without libx264; build it with CORDA_X264, or use --codec libsvtav1";
     return fmt::format(
         "this libavcodec was built without {}; install one that has it (Debian: apt-get install {}), and see "
@@ -166,18 +179,18 @@ void check_size_for(const Format& format, const VideoDef& def) {
             "(render --pad takes the larger ones)",
             def.width_px, def.height_px, codec.standard, even_sides(def.width_px), even_sides(def.height_px));
     }
-    if (std::min(def.width_px, def.height_px) < codec.least_side_px) {
+    if (std::min(def.width_px, def.height_px) < codec.min_side_px) {
         fail_usage("video size {}x{} is too small for {}; use sides of {} or more, or another {}",
-                   def.width_px, def.height_px, codec.name, codec.least_side_px,
+                   def.width_px, def.height_px, codec.name, codec.min_side_px,
                    names_of(ending).size() > 1 ? "codec" : "format");
     }
-    if (def.height_px > codec.most_height_px) {
+    if (def.height_px > codec.max_height_px) {
         fail_usage("video size {}x{} is too tall for {}; use a height of {} or less, or another codec",
-                   def.width_px, def.height_px, codec.name, codec.most_height_px);
+                   def.width_px, def.height_px, codec.name, codec.max_height_px);
     }
-    if (std::max(def.width_px, def.height_px) > ending.most_side_px) {
+    if (std::max(def.width_px, def.height_px) > ending.max_side_px) {
         fail_usage("video size {}x{} is too large for {}; use sides of {} or less, or another format",
-                   def.width_px, def.height_px, ending.words, ending.most_side_px);
+                   def.width_px, def.height_px, ending.words, ending.max_side_px);
     }
 }
 
@@ -245,7 +258,11 @@ std::string Format::words() const {
 }
 
 std::string Format::encoder_name() const {
-    return ending->kind == FileKind::kAnimation ? ending->muxer : codec->name;
+    return finished_codec().name;
+}
+
+const Codec& Format::finished_codec() const {
+    return ending->kind == FileKind::kAnimation ? *find_codec(ending->muxer) : *codec;
 }
 
 std::string Format::library_versions() const {
@@ -254,7 +271,7 @@ std::string Format::library_versions() const {
                            AV_VERSION_MICRO(version));
     };
     const std::string encoder =
-        codec->origin == EncoderOrigin::kX264 ? x264_version() : text("libavcodec", avcodec_version());
+        codec->version != nullptr ? codec->version() : text("libavcodec", avcodec_version());
     return encoder + ", " + text("libavformat", avformat_version());
 }
 
@@ -299,6 +316,16 @@ const Codec* find_codec(std::string_view name) {
         return name == codec.name || name == codec.short_name;
     });
     return row == codecs().end() ? nullptr : &*row;
+}
+
+const Codec* find_stream_codec(std::string_view stream) {
+    const auto row = std::find_if(codecs().begin(), codecs().end(),
+                                  [stream](const Codec& codec) { return stream == codec.stream; });
+    return row == codecs().end() ? nullptr : &*row;
+}
+
+std::span<const Ending> endings() {
+    return kEndings;
 }
 
 const Ending& find_ending(std::string_view path) {

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,46 +14,85 @@
 #include "corda/core/image.hpp"
 #include "corda/media/defs.hpp"
 
+namespace corda {
+class OutputFile;
+}
+
 namespace corda::media {
 
+class Encoder;
+struct AnimationDef;
+struct Ending;
 struct Format;
 
-/// Options of a libav encoder in addition to size, rate, threads and colours.
-struct EncoderSettings {
-    int profile = -99;                                         ///< libav's FF_PROFILE_UNKNOWN
-    std::vector<std::pair<const char*, std::string>> options;  ///< the encoder's own, by libav's names
-    /// How many frames decoding runs ahead of showing, if the encoder does not tell.
-    std::optional<int> reorder_depth;
+/// Options of an encoder of libav by libav's names, besides size, rate, threads and colours.
+using EncoderOptions = std::vector<std::pair<const char*, std::string>>;
+
+/// Metadata of a picture, by its number in the film.
+using PictureInfo = std::function<PngInfo(std::int64_t frame)>;
+
+/// Makes an encoder of libav by Codec::options.
+[[nodiscard]] std::unique_ptr<Encoder> make_libav_encoder(const Format& format, const VideoDef& def,
+                                                          std::int64_t first_frame, const PictureInfo& info);
+
+/// Programs that play a codec of a pixel format in some containers.
+struct Players {
+    std::string_view containers;    ///< words of VerifyReport::container
+    std::string_view pixel_format;  ///< libav's name; empty: any
+    std::string_view words;
 };
 
-/// Whose encoder it is.
-enum class EncoderOrigin { kLibav, kX264, kPng };
+/// Bytes of a frame on the disk per pixel.
+struct DiskBytes {
+    double min = 0.0;    ///< at most half of what two links on a black ground take at 3840x2160
+    double usual = 0.0;  ///< median of the 17 examples at 640x360, which take from 0.4 to 16 times as much
+};
 
-/// An encoder: one row of the table of codecs.
+/// An encoder: one row of the table of codecs. Measured values of libaom-av1 and h264_nvenc are those of
+/// their like, and the least bytes of PNG are those of APNG.
 struct Codec {
     const char* name;        ///< libav's: "libx264"
     const char* short_name;  ///< "h264"
     const char* standard;    ///< in words: "H.264"
-    /// libav's names of the pixel formats that it is given, the preferred ones first.
+    const char* stream;      ///< libav's name of the coded format: "h264"
+    /// libav's names of the pixel formats that it takes, the preferred ones first.
     std::array<const char*, 4> pixel_formats{};
     std::span<const char* const> presets{};  ///< empty: it has none
     const char* default_preset = "";
     std::optional<std::pair<int, int>> crf{};  ///< the least and the largest; empty: it has none
     int default_crf = 0;
-    int least_side_px = 1;
+    int default_crf_of_alpha = 0;  ///< in place of default_crf for transparent videos; 0: the same
+    int min_side_px = 1;
+    int max_height_px = kMaxSidePx;
     /// Most frames of a chunk, for codecs whose frames stand alone; 0: as many as frames_per_chunk() says.
     int chunk_frames = 0;
+    int min_frames = 1;
     bool is_hardware = false;  ///< it may be listed and not work
-    EncoderOrigin origin = EncoderOrigin::kLibav;
-    EncoderSettings (*settings)(const Format& format, const VideoDef& def) = nullptr;  ///< of libav's
-    int most_height_px = kMaxSidePx;
-    int default_crf_of_alpha = 0;  ///< in place of default_crf for transparent videos; 0: the same
+    bool is_built_in = false;  ///< it needs neither libav nor x264
+    bool must_drain = false;   ///< closing it waits forever, unless a stream was begun and ended
+    int own_threads = 0;       ///< threads that it starts by itself, at most
+    /// Memory that a chunk takes while it is encoded, in bytes per pixel, in addition to the 130 MiB of the
+    /// process: the larger of the values measured at 1920x1080 and 3840x2160, plus a reserve.
+    int job_bytes = 240;
+    std::span<const int> preset_job_bytes{};  ///< the same for each of `presets`, if they differ
+    DiskBytes disk_bytes{};
+    bool verifies_all = false;           ///< decoding all frames takes a small part of the time of encoding
+    double tolerance = 0.0;              ///< largest error of a colour patch, in 1/255; 0: patch_tolerance()
+    bool has_coarse_444 = false;         ///< it quantises the colour of 4:4:4 more coarsely
+    std::span<const Players> players{};  ///< of codecs of one stream, the first has them
+    std::unique_ptr<Encoder> (*make)(const Format& format, const VideoDef& def, std::int64_t first_frame,
+                                     const PictureInfo& info) = &make_libav_encoder;
+    EncoderOptions (*options)(const Format& format, const VideoDef& def) = nullptr;  ///< null: none
+    std::string (*version)() = nullptr;  ///< of an encoder that is not libav's; gives "" if it is missing
+    /// Makes an animation of the lossless pictures of a part.
+    void (*write)(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
+                  OutputFile& output) = nullptr;
 };
 
 /// How the packets of a video become files.
 enum class FileKind {
     kVideo,      ///< one file with the packets of the part
-    kAnimation,  ///< one file made from the exact pictures of the part: its encoder needs the whole film
+    kAnimation,  ///< one file made of the lossless pictures of the part: its encoder needs the whole film
     kPictures,   ///< a file for each frame
     kStream,     ///< standard output
 };
@@ -61,12 +102,11 @@ struct Ending {
     const char* text;   ///< ".mp4"; "-" is standard output
     const char* words;  ///< "MP4"
     FileKind kind;
-    const char* muxer;       ///< libav's name
+    const char* muxer;       ///< libav's name; of an animation also its codec's
     const char* part_muxer;  ///< of the file that is written while the video is made
     /// libav's names of the codecs that it takes, the default first; of an animation, what its part holds.
     std::array<const char*, 5> codecs;
-    const char* players;  ///< who shows it
-    int most_side_px = kMaxSidePx;
+    int max_side_px = kMaxSidePx;
 };
 
 /// How many times all frames are gone through: those of an animation are drawn, and encoded afterwards.
@@ -80,6 +120,8 @@ struct Format {
     bool has_alpha = false;
     bool is_fallback = false;  ///< the ending's own codec is missing
 
+    /// The codec of the finished file: of an animation, not that of its part.
+    [[nodiscard]] const Codec& finished_codec() const;
     [[nodiscard]] std::string preset_of(const EncoderDef& def) const;
     [[nodiscard]] int crf_of(const EncoderDef& def) const;
     /// "H.264 in MP4", "GIF".
@@ -102,6 +144,8 @@ struct Format {
 
 /// The codec of this name of either kind; null for none. Of those with one short name it is the first.
 [[nodiscard]] const Codec* find_codec(std::string_view name);
+/// The first codec of a coded format, by libav's name ("h264"); null for none.
+[[nodiscard]] const Codec* find_stream_codec(std::string_view stream);
 
 /// The row for the ending of `path`: of a name with a number in it ("%04d") that ends in .png, the pictures.
 /// Throws corda::Error (kUsage), naming the endings that are known.

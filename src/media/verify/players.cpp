@@ -2,67 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string_view>
 
+#include "corda/media/format/format.hpp"
 #include "corda/media/verify/checks.hpp"
 
 namespace corda::media {
 namespace {
-
-/// Who plays a codec of a pixel format in a container.
-struct Players {
-    std::string_view containers;  ///< words, or all of them
-    std::string_view codec;       ///< libav's name
-    std::string_view pixel_format;
-    std::string_view words;
-};
-
-constexpr std::array kPlayers{
-    Players{"mp4", "h264", "yuv420p",
-            "Chrome, Edge, Firefox, Safari, QuickTime and PowerPoint play it, YouTube takes it"},
-    Players{
-        "mov", "h264", "yuv420p",
-        "QuickTime, Keynote, PowerPoint and Safari play it, YouTube takes it; some browsers do not play it"},
-    Players{"mov", "h264", "yuv444p",
-            "4:4:4, High 4:4:4 Predictive: VLC, mpv and ffmpeg play it; QuickTime, browsers and PowerPoint "
-            "do not"},
-    Players{"mp4", "h264", "yuv444p",
-            "4:4:4, High 4:4:4 Predictive: VLC, mpv and ffmpeg play it; browsers, QuickTime and PowerPoint "
-            "refuse it"},
-    Players{"mp4", "hevc", "yuv420p",
-            "Safari, QuickTime and new PowerPoint play it, YouTube takes it; Firefox and many Chromes do not "
-            "play it"},
-    Players{"mov", "hevc", "yuv420p",
-            "QuickTime, Keynote and Safari play it, YouTube takes it; browsers mostly do not"},
-    Players{"mp4", "hevc", "yuv444p",
-            "4:4:4: VLC, mpv and ffmpeg play it; browsers, QuickTime and PowerPoint mostly refuse it"},
-    Players{"mp4 webm", "av1", "yuv420p",
-            "Chrome, Edge and Firefox play it, Safari on new devices; YouTube takes it; PowerPoint and old "
-            "QuickTime do not"},
-    Players{
-        "mp4 webm", "av1", "yuv444p",
-        "4:4:4: Chrome, Firefox, VLC and mpv play it; hardware decoders, QuickTime and PowerPoint do not"},
-    Players{
-        "webm", "vp9", "yuv420p",
-        "Chrome, Edge, Firefox and new Safari play it, YouTube takes it; PowerPoint and QuickTime do not"},
-    Players{
-        "webm", "vp9", "yuva420p",
-        "Chrome, Edge and Firefox play it with its transparency; Safari, PowerPoint and QuickTime do not"},
-    Players{"webm", "vp9", "yuv444p",
-            "4:4:4: Chrome, Firefox, VLC and mpv play it; Safari and hardware decoders do not"},
-    Players{"mov", "prores", "",
-            "QuickTime, Keynote and video editors play it, YouTube takes it; browsers and PowerPoint on "
-            "Windows do not"},
-    Players{"matroska", "ffv1", "",
-            "VLC, mpv and ffmpeg play it; browsers, QuickTime, PowerPoint and YouTube do not"},
-    Players{"gif", "gif", "",
-            "browsers and PowerPoint play it; QuickTime does not, and YouTube takes no GIF"},
-    Players{"apng", "apng", "",
-            "browsers play it; PowerPoint, QuickTime and YouTube show its first picture or refuse it"},
-    Players{"webp", "webp", "", "browsers play it; PowerPoint, QuickTime and YouTube do not"},
-    Players{"yuv4mpegpipe", "rawvideo", "",
-            "for encoders such as ffmpeg; browsers, QuickTime and PowerPoint do not play it"},
-};
 
 bool holds_word(std::string_view words, std::string_view word) {
     for (std::size_t at = words.find(word); at != std::string_view::npos; at = words.find(word, at + 1)) {
@@ -145,14 +92,17 @@ bool has_odd_profile(const VerifyReport& report) {
     return report.codec == "h264" && !is_playable && !is_444;
 }
 
-const Players* players_of(const VerifyReport& report) {
-    const auto* const row =
-        std::find_if(kPlayers.begin(), kPlayers.end(), [&report](const Players& candidate) {
-            return candidate.codec == report.codec &&
-                   holds_word(candidate.containers, plain(report.container)) &&
-                   (candidate.pixel_format.empty() || candidate.pixel_format == report.pixel_format);
-        });
-    return row == kPlayers.end() ? nullptr : row;
+std::span<const Players> players_of(std::string_view stream) {
+    const Codec* const codec = find_stream_codec(stream);
+    return codec == nullptr ? std::span<const Players>() : codec->players;
+}
+
+bool is_in(const VerifyReport& report, const Players& row) {
+    return holds_word(row.containers, plain(report.container));
+}
+
+bool has_pixels(const VerifyReport& report, const Players& row) {
+    return row.pixel_format.empty() || row.pixel_format == report.pixel_format;
 }
 
 void check_tag(VerifyReport& report, const char* name, const std::string& value, std::string_view wanted,
@@ -178,18 +128,15 @@ std::string VerifyReport::coding() const {
 
 void check_picture_format(const DecodedVideo& video, VerifyReport& report) {
     if (video.frames == 0) return;
-    const auto plays = [&report](const Players& row) { return row.codec == report.codec; };
-    const auto* const usual = std::find_if(kPlayers.begin(), kPlayers.end(), plays);
-    const auto is_in = [&report](const Players& row) {
-        return holds_word(row.containers, plain(report.container));
-    };
+    const std::span<const Players> players = players_of(report.codec);
     const bool is_in_usual_container =
-        std::any_of(usual, kPlayers.end(), [&](const Players& row) { return plays(row) && is_in(row); });
-    if (usual == kPlayers.end()) {
+        std::any_of(players.begin(), players.end(), [&](const Players& row) { return is_in(report, row); });
+    if (players.empty()) {
         problem(report, "the codec is {}; browsers and QuickTime play H.264 everywhere: render with libx264",
                 report.codec);
     } else if (!is_in_usual_container) {
-        const std::string_view container = usual->containers.substr(0, usual->containers.find(' '));
+        const std::string_view all = players.front().containers;
+        const std::string_view container = all.substr(0, all.find(' '));
         // A copy keeps milliseconds, which such clocks cannot count.
         const bool is_uneven = video.is_rounded && report.fps.den != 1 && container != "webm";
         problem(report, "few programs play {} in {}; remedy: {}", report.codec, plain(report.container),
@@ -206,11 +153,10 @@ void check_picture_format(const DecodedVideo& video, VerifyReport& report) {
         problem(report, "H.265 is tagged hev1, which Safari and QuickTime refuse; remedy: {}",
                 copy_command(report, plain(report.container)));
     }
-    const bool is_playable = std::any_of(usual, kPlayers.end(), [&](const Players& row) {
-        return plays(row) && (is_in(row) || !is_in_usual_container) &&
-               (row.pixel_format.empty() || row.pixel_format == report.pixel_format);
+    const bool is_playable = std::any_of(players.begin(), players.end(), [&](const Players& row) {
+        return (is_in(report, row) || !is_in_usual_container) && has_pixels(report, row);
     });
-    if (usual == kPlayers.end() ? report.pixel_format != "yuv420p" : !is_playable) {
+    if (players.empty() ? report.pixel_format != "yuv420p" : !is_playable) {
         problem(report,
                 "the pixel format is {}; only 8-bit yuv420p plays everywhere: encode with -pix_fmt yuv420p",
                 report.pixel_format);
@@ -245,16 +191,18 @@ void check_tags(const DecodedVideo& video, VerifyReport& report) {
 
 void add_notes(const DecodedVideo& video, VerifyDepth depth, VerifyReport& report) {
     const std::string trouble = trouble_of_level(report);
-    const Players* const players = players_of(report);
+    const std::span<const Players> players = players_of(report.codec);
+    const auto row = std::find_if(players.begin(), players.end(), [&](const Players& each) {
+        return is_in(report, each) && has_pixels(report, each);
+    });
     if (!trouble.empty() && !has_odd_profile(report)) {
         report.notes.push_back(fmt::format(
             "{}, {}: {}: VLC, mpv and ffmpeg play it, browsers only without the hardware's decoder; "
             "QuickTime, PowerPoint and phones refuse it; for those, render fewer pixels or frames, "
             "or take H.265 or AV1",
             report.coding(), report.pixel_format, trouble));
-    } else if (players != nullptr && !has_odd_profile(report)) {
-        report.notes.push_back(
-            fmt::format("{}, {}: {}", report.coding(), report.pixel_format, players->words));
+    } else if (row != players.end() && !has_odd_profile(report)) {
+        report.notes.push_back(fmt::format("{}, {}: {}", report.coding(), report.pixel_format, row->words));
     }
     if (!report.ok()) return;
     report.notes.push_back(fmt::format(

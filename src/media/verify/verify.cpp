@@ -10,6 +10,7 @@
 #include "corda/core/file.hpp"
 #include "corda/media/bytes.hpp"
 #include "corda/media/format/file_kind.hpp"
+#include "corda/media/format/format.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/read/color_patch.hpp"
 #include "corda/media/read/containers.hpp"
@@ -58,9 +59,6 @@ void fill_report(const DecodedVideo& video, VerifyReport& report) {
     if (duration) report.duration_s = Rational::reduced(*duration, video.tick.den);
 }
 
-/// The 255 colours of a GIF are shared by all of its frames: a ground from red to blue is up to 11 off.
-constexpr double kGifTolerance = 32.0;
-
 void check_decoding(const DecodedVideo& video, VerifyReport& report) {
     if (video.bad_frames > 0) {
         problem(report,
@@ -91,13 +89,15 @@ void check_stamps(const DecodedVideo& video, VerifyReport& report) {
     }
 }
 
-/// The largest error that a patch of a correct video may have. The rate factors of VP9 and AV1 go up to 63.
+/// The largest error that a patch of a correct video may have.
 double tolerance_of(const DecodedVideo& video) {
-    if (video.codec == "gif") return kGifTolerance;
-    const auto told = std::clamp<std::int64_t>(comment_number(video.comment, "crf").value_or(0), 0, 63);
-    const bool is_x26x = video.codec == "h264" || video.codec == "hevc";
-    const auto crf = static_cast<int>(is_x26x ? std::min<std::int64_t>(told, 51) : told * 51 / 63);
-    return patch_tolerance(crf, is_x26x && video.pixel_format == "yuv444p");
+    const Codec* const codec = find_stream_codec(video.codec);
+    if (codec != nullptr && codec->tolerance > 0.0) return codec->tolerance;
+    // Rate factors go up to 51 for H.264 and H.265, and to 63 for others.
+    const std::int64_t most = codec != nullptr && codec->crf ? codec->crf->second : 63;
+    const auto told = std::clamp<std::int64_t>(comment_number(video.comment, "crf").value_or(0), 0, most);
+    const bool is_coarse = codec != nullptr && codec->has_coarse_444 && video.pixel_format == "yuv444p";
+    return patch_tolerance(static_cast<int>(told * 51 / most), is_coarse);
 }
 
 void check_patches(const DecodedVideo& video, VerifyReport& report) {

@@ -39,7 +39,8 @@ TEST(Formats, AreNamedAsLibavNamesThem) {
             EXPECT_TRUE(codec == nullptr || find_codec(codec) != nullptr) << codec;
     }
     for (const Codec& codec : codecs()) {
-        EXPECT_NE(avcodec_find_encoder_by_name(codec.name), nullptr) << codec.name;
+        EXPECT_TRUE(codec.is_built_in || avcodec_find_encoder_by_name(codec.name) != nullptr) << codec.name;
+        EXPECT_NE(avcodec_descriptor_get_by_name(codec.stream), nullptr) << codec.name;
         for (const char* const format : codec.pixel_formats)
             EXPECT_TRUE(format == nullptr || av_get_pix_fmt(format) != AV_PIX_FMT_NONE) << format;
     }

@@ -1,0 +1,329 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string>
+
+#include "corda/media/animation/animation.hpp"
+#include "corda/media/encode/encoder.hpp"
+#include "corda/media/format/format.hpp"
+#include "corda/media/libav_handles.hpp"
+
+// All that Corda knows of a codec is its row of kCodecs and, for an encoder of libav, its function of
+// options. The bytes of an encoder depend on the definition alone, so it must not choose its number of
+// threads.
+
+namespace corda::media {
+namespace {
+
+constexpr std::array kX26xPresets{"ultrafast", "superfast", "veryfast", "faster",   "fast",
+                                  "medium",    "slow",      "slower",   "veryslow", "placebo"};
+constexpr std::array kNvencPresets{"p1", "p2", "p3", "p4", "p5", "p6", "p7"};
+constexpr std::array kSpeeds{"0", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11", "12", "13"};
+constexpr std::span<const char* const> kSpeedsTo8{kSpeeds.data(), 9};
+
+/// Chunk length of codecs whose frames stand alone: short chunks take less memory and lose less.
+constexpr int kFewFrames = 12;
+/// Chunk length of FFV1, whose encoder clears 148 bytes per pixel when it opens.
+constexpr int kFfv1Frames = 36;
+/// FFV1 splits a picture into 2x2 slices.
+constexpr int kMinFfv1SidePx = 2;
+/// Limit of SVT-AV1; AV1 allows more.
+constexpr int kMaxSvtAv1HeightPx = 8704;
+/// At 32 one clear pixel in 5000 has an alpha over 8, which shows as specks on white; at 20, one in 50 000.
+constexpr int kVp9AlphaCrf = 20;
+/// The 255 colours of a GIF are shared by all of its frames: a ground from red to blue is up to 11 off.
+constexpr double kGifTolerance = 32.0;
+/// Measured at 1280x720 to 3840x2160: ultrafast 13 to 20, veryfast 61 to 77, medium 175 to 220, slow 207 to
+/// 260, veryslow 400 to 470. A preset takes more the further it looks ahead.
+constexpr std::array kX264JobBytes{24, 60, 90, 150, 190, 220, 260, 360, 470, 600};
+
+constexpr std::array kH264Players{
+    Players{"mp4", "yuv420p",
+            "Chrome, Edge, Firefox, Safari, QuickTime and PowerPoint play it, YouTube takes it"},
+    Players{
+        "mov", "yuv420p",
+        "QuickTime, Keynote, PowerPoint and Safari play it, YouTube takes it; some browsers do not play it"},
+    Players{"mov", "yuv444p",
+            "4:4:4, High 4:4:4 Predictive: VLC, mpv and ffmpeg play it; QuickTime, browsers and PowerPoint "
+            "do not"},
+    Players{"mp4", "yuv444p",
+            "4:4:4, High 4:4:4 Predictive: VLC, mpv and ffmpeg play it; browsers, QuickTime and PowerPoint "
+            "refuse it"}};
+constexpr std::array kH265Players{
+    Players{"mp4", "yuv420p",
+            "Safari, QuickTime and new PowerPoint play it, YouTube takes it; Firefox and many Chromes do not "
+            "play it"},
+    Players{"mov", "yuv420p",
+            "QuickTime, Keynote and Safari play it, YouTube takes it; browsers mostly do not"},
+    Players{"mp4", "yuv444p",
+            "4:4:4: VLC, mpv and ffmpeg play it; browsers, QuickTime and PowerPoint mostly refuse it"}};
+constexpr std::array kAv1Players{
+    Players{"mp4 webm", "yuv420p",
+            "Chrome, Edge and Firefox play it, Safari on new devices; YouTube takes it; PowerPoint and old "
+            "QuickTime do not"},
+    Players{
+        "mp4 webm", "yuv444p",
+        "4:4:4: Chrome, Firefox, VLC and mpv play it; hardware decoders, QuickTime and PowerPoint do not"}};
+constexpr std::array kVp9Players{
+    Players{
+        "webm", "yuv420p",
+        "Chrome, Edge, Firefox and new Safari play it, YouTube takes it; PowerPoint and QuickTime do not"},
+    Players{
+        "webm", "yuva420p",
+        "Chrome, Edge and Firefox play it with its transparency; Safari, PowerPoint and QuickTime do not"},
+    Players{"webm", "yuv444p",
+            "4:4:4: Chrome, Firefox, VLC and mpv play it; Safari and hardware decoders do not"}};
+constexpr std::array kProresPlayers{
+    Players{"mov", "",
+            "QuickTime, Keynote and video editors play it, YouTube takes it; browsers and PowerPoint on "
+            "Windows do not"}};
+constexpr std::array kFfv1Players{Players{
+    "matroska", "", "VLC, mpv and ffmpeg play it; browsers, QuickTime, PowerPoint and YouTube do not"}};
+constexpr std::array kRawPlayers{Players{
+    "yuv4mpegpipe", "", "for encoders such as ffmpeg; browsers, QuickTime and PowerPoint do not play it"}};
+constexpr std::array kGifPlayers{
+    Players{"gif", "", "browsers and PowerPoint play it; QuickTime does not, and YouTube takes no GIF"}};
+constexpr std::array kApngPlayers{Players{
+    "apng", "", "browsers play it; PowerPoint, QuickTime and YouTube show its first picture or refuse it"}};
+constexpr std::array kWebpPlayers{
+    Players{"webp", "", "browsers play it; PowerPoint, QuickTime and YouTube do not"}};
+
+EncoderOptions x265_options(const Format& format, const VideoDef& def) {
+    // One frame at a time: the bytes depend on frame-threads, and pools start threads of all cores. B-frames
+    // do not pay: without them a video of `first` takes a third less time for as many bytes and 0.6 dB more.
+    const std::string pools = def.encoder.threads == 1 ? "none" : std::to_string(def.encoder.threads);
+    return {{"preset", format.preset_of(def.encoder)},
+            {"crf", std::to_string(format.crf_of(def.encoder))},
+            {"x265-params",
+             fmt::format("pools={}:frame-threads=1:open-gop=0:info=0:log-level=none:chromaloc=0:bframes=0",
+                         pools)}};
+}
+
+EncoderOptions nvenc_options(const Format& format, const VideoDef& def) {
+    return {{"preset", format.preset_of(def.encoder)},
+            {"rc", "vbr"},
+            {"cq", std::to_string(format.crf_of(def.encoder))},
+            {"b", "0"},
+            {"bf", "0"},
+            {"forced-idr", "1"}};
+}
+
+EncoderOptions svt_av1_options(const Format& format, const VideoDef& def) {
+    return {{"preset", format.preset_of(def.encoder)},
+            {"crf", std::to_string(format.crf_of(def.encoder))},
+            {"svtav1-params", fmt::format("lp={}", def.encoder.threads)}};
+}
+
+EncoderOptions aom_av1_options(const Format& format, const VideoDef& def) {
+    return {{"cpu-used", format.preset_of(def.encoder)},
+            {"crf", std::to_string(format.crf_of(def.encoder))},
+            {"row-mt", "0"}};
+}
+
+EncoderOptions vp9_options(const Format& format, const VideoDef& def) {
+    // libvpx keeps alpha in a second stream, which has no frames that are not shown.
+    return {{"cpu-used", format.preset_of(def.encoder)},
+            {"crf", std::to_string(format.crf_of(def.encoder))},
+            {"b", "0"},
+            {"deadline", "good"},
+            {"row-mt", "0"},
+            {"auto-alt-ref", format.has_alpha ? "0" : "1"}};
+}
+
+EncoderOptions prores_options(const Format& format, const VideoDef& /*def*/) {
+    // The finest quantizer, which prores_ks finds for drawings by itself, trying all in six times the time.
+    constexpr int kQuantizer = 1;
+    return {{"profile", "4444"},
+            {"alpha_bits", format.has_alpha ? "16" : "0"},
+            {"vendor", "apl0"},
+            {"flags", "+qscale"},
+            {"global_quality", std::to_string(kQuantizer * FF_QP2LAMBDA)}};
+}
+
+EncoderOptions ffv1_options(const Format& /*format*/, const VideoDef& def) {
+    // libavcodec limits the pixels of a slice: of R'G'B' with alpha to 3.7 million.
+    constexpr std::int64_t kSlicePixels = 3'500'000;
+    constexpr std::array<int, 5> kSlices{4, 9, 16, 24, 30};
+    const std::int64_t pixels = std::int64_t{def.width_px} * def.height_px;
+    const auto* const slices = std::find_if(kSlices.begin(), kSlices.end() - 1,
+                                            [&](int count) { return pixels <= count * kSlicePixels; });
+    // Version 3, each frame on its own, checksums of every slice.
+    return {
+        {"level", "3"}, {"g", "1"}, {"slices", std::to_string(*slices)}, {"slicecrc", "1"}, {"context", "0"}};
+}
+
+constexpr std::array kCodecs{
+    Codec{.name = "libx264",
+          .short_name = "h264",
+          .standard = "H.264",
+          .stream = "h264",
+          .pixel_formats = {"yuv420p", "yuv444p"},
+          .presets = kX26xPresets,
+          .default_preset = "veryfast",
+          .crf = {{1, 51}},
+          .default_crf = 16,
+          .preset_job_bytes = kX264JobBytes,
+          .disk_bytes = {1e-4, 0.0035},
+          .has_coarse_444 = true,
+          .players = kH264Players,
+          .make = &make_x264_encoder,
+          .version = &x264_version},
+    Codec{.name = "libx265",
+          .short_name = "h265",
+          .standard = "H.265",
+          .stream = "hevc",
+          .pixel_formats = {"yuv420p", "yuv444p"},
+          .presets = kX26xPresets,
+          .default_preset = "medium",
+          .crf = {{1, 51}},
+          .default_crf = 23,
+          .min_side_px = 32,
+          .own_threads = 2,
+          .job_bytes = 210,
+          .disk_bytes = {9e-5, 0.0028},
+          .verifies_all = true,
+          .has_coarse_444 = true,
+          .players = kH265Players,
+          .options = &x265_options},
+    Codec{.name = "libsvtav1",
+          .short_name = "av1",
+          .standard = "AV1",
+          .stream = "av1",
+          .pixel_formats = {"yuv420p"},
+          .presets = kSpeeds,
+          .default_preset = "8",
+          .crf = {{1, 63}},
+          .default_crf = 32,
+          .min_side_px = 64,
+          .max_height_px = kMaxSvtAv1HeightPx,
+          .must_drain = true,
+          .own_threads = 16,
+          .job_bytes = 230,
+          .disk_bytes = {4e-5, 0.0023},
+          .verifies_all = true,
+          .players = kAv1Players,
+          .options = &svt_av1_options},
+    Codec{.name = "libaom-av1",
+          .short_name = "av1",
+          .standard = "AV1",
+          .stream = "av1",
+          .pixel_formats = {"yuv420p", "yuv444p"},
+          .presets = kSpeedsTo8,
+          .default_preset = "6",
+          .crf = {{1, 63}},
+          .default_crf = 20,
+          .min_side_px = 16,
+          .disk_bytes = {4e-5, 0.0023},
+          .verifies_all = true,
+          .options = &aom_av1_options},
+    Codec{.name = "libvpx-vp9",
+          .short_name = "vp9",
+          .standard = "VP9",
+          .stream = "vp9",
+          .pixel_formats = {"yuv420p", "yuva420p", "yuv444p"},
+          .presets = kSpeedsTo8,
+          .default_preset = "4",
+          .crf = {{1, 63}},
+          .default_crf = 32,
+          .default_crf_of_alpha = kVp9AlphaCrf,
+          .job_bytes = 155,
+          .disk_bytes = {4e-5, 0.0026},
+          .verifies_all = true,
+          .players = kVp9Players,
+          .options = &vp9_options},
+    Codec{.name = "h264_nvenc",
+          .short_name = "nvenc",
+          .standard = "H.264",
+          .stream = "h264",
+          .pixel_formats = {"yuv420p", "yuv444p"},
+          .presets = kNvencPresets,
+          .default_preset = "p5",
+          .crf = {{1, 51}},
+          .default_crf = 18,
+          .min_side_px = 160,
+          .is_hardware = true,
+          .disk_bytes = {4e-5, 0.0035},
+          .options = &nvenc_options},
+    Codec{.name = "prores_ks",
+          .short_name = "prores",
+          .standard = "ProRes 4444",
+          .stream = "prores",
+          .pixel_formats = {"yuv444p10le", "yuva444p10le"},
+          .chunk_frames = kFewFrames,
+          .job_bytes = 22,
+          .disk_bytes = {0.01, 0.31},
+          .players = kProresPlayers,
+          .options = &prores_options},
+    Codec{.name = "ffv1",
+          .short_name = "ffv1",
+          .standard = "FFV1",
+          .stream = "ffv1",
+          .pixel_formats = {"bgr0", "bgra"},
+          .min_side_px = kMinFfv1SidePx,
+          .chunk_frames = kFfv1Frames,
+          .job_bytes = 185,
+          .disk_bytes = {0.0015, 0.16},
+          .players = kFfv1Players,
+          .options = &ffv1_options},
+    // Its bytes are those of the animation that is made of it: the first thread of a WebP; a further one
+    // adds 26.
+    Codec{.name = "qtrle",
+          .short_name = "rle",
+          .standard = "QuickTime Animation",
+          .stream = "qtrle",
+          .pixel_formats = {"rgb24", "argb"},
+          .job_bytes = 50},
+    Codec{.name = "png",
+          .short_name = "png",
+          .standard = "PNG",
+          .stream = "png",
+          .pixel_formats = {"rgba"},
+          .chunk_frames = kFewFrames,
+          .is_built_in = true,
+          .job_bytes = 11,
+          .disk_bytes = {0.001, 0.053},
+          .make = &make_png_encoder},
+    Codec{.name = "rawvideo",
+          .short_name = "raw",
+          .standard = "raw pictures",
+          .stream = "rawvideo",
+          .pixel_formats = {"yuv420p", "yuv444p", "rgba"},
+          .chunk_frames = 2,
+          .job_bytes = 18,
+          .players = kRawPlayers},
+    Codec{.name = "gif",
+          .short_name = "gif",
+          .standard = "GIF",
+          .stream = "gif",
+          .pixel_formats = {"pal8"},
+          .disk_bytes = {2e-4, 0.016},
+          .tolerance = kGifTolerance,
+          .players = kGifPlayers,
+          .write = &write_gif},
+    Codec{.name = "apng",
+          .short_name = "apng",
+          .standard = "APNG",
+          .stream = "apng",
+          .disk_bytes = {0.001, 0.034},
+          .players = kApngPlayers,
+          .write = &write_apng},
+    Codec{.name = "webp",
+          .short_name = "webp",
+          .standard = "WebP",
+          .stream = "webp",
+          .min_frames = 2,
+          .is_built_in = true,
+          .disk_bytes = {8e-4, 0.027},
+          .players = kWebpPlayers,
+          .write = &write_webp},
+};
+
+}  // namespace
+
+std::span<const Codec> codecs() {
+    return kCodecs;
+}
+
+}  // namespace corda::media
