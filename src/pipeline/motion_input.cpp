@@ -16,7 +16,6 @@
 #include "corda/sim/defs.hpp"
 #include "corda/sim/solver.hpp"
 #include "corda/sim/system.hpp"
-#include "corda/sim/validate.hpp"
 
 namespace corda::pipeline {
 namespace {

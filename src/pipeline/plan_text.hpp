@@ -10,7 +10,6 @@
 #include "corda/pipeline/film.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/sim/system.hpp"
-#include "corda/sim/validate.hpp"
 
 namespace corda {
 

@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "corda/sim/solver.hpp"
-#include "corda/sim/work.hpp"
 
 namespace corda::scene {
 namespace {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -22,8 +23,14 @@ struct AutoDef {
     double tolerance_px = 0.1;  ///< bound of the displayed position error in pixels; > 0
 };
 
+/// A variant of AutoDef and all alternatives of another variant.
+template <class Methods>
+struct AutoOr;
+template <class... Method>
+struct AutoOr<std::variant<Method...>> : std::type_identity<std::variant<AutoDef, Method...>> {};
+
 /// The solver of a scene: a method, or `auto`, which chooses one.
-using SolverDef = std::variant<AutoDef, ExactDef, RattleDef, RelaxationDef>;
+using SolverDef = AutoOr<MethodDef>::type;
 
 /// Bodies with a method of their own.
 struct BodySolverDef {

@@ -8,8 +8,9 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/cpu.hpp"
+#include "corda/sim/forces/forces.hpp"
+#include "corda/sim/recording.hpp"
 #include "corda/sim/solver.hpp"
-#include "corda/sim/validate.hpp"
 
 namespace corda {
 namespace {
@@ -27,14 +28,22 @@ double max_strain(const System& system, const State& state) {
     double largest = 0.0;
     for (const Body& body : system.bodies) {
         for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k) {
-            const Bar& bar = system.bars[k];
-            const double distance =
-                sim::length(state.x_m[bar.b] - state.x_m[bar.a], state.y_m[bar.b] - state.y_m[bar.a]);
-            const double strain = distance / bar.rest_m - 1.0;
-            largest = std::max(largest, body.material.is_string ? strain : std::abs(strain));
+            const double strain = sim::kind_of(Quantity::kStrain).value(system, body, k, state);
+            largest = std::max(largest, std::abs(strain));
         }
     }
     return largest;
+}
+
+/// Throws corda::Refusal for a field outside the range of its declaration.
+void check(const WorldDef& world) {
+    const auto refuse = [](const char* problem) {
+        throw Refusal(Refusal::Reason::kDefinition, std::string("world: ") + problem);
+    };
+    if (!(world.duration_s > 0.0) || std::isinf(world.duration_s)) refuse("duration_s is not > 0");
+    for (const sim::ForceKind& kind : sim::force_kinds()) {
+        if (const char* const problem = kind.problem(world)) refuse(problem);
+    }
 }
 
 }  // namespace
@@ -46,9 +55,10 @@ Simulation::Simulation(System system, const WorldDef& world, const MethodDef& me
 Simulation::Simulation(System system, const WorldDef& world, std::span<const MethodDef> methods,
                        double frame_interval_s, const GoesOn& goes_on)
     : system_(std::move(system)) {
-    sim::validate(world);
+    check(world);
     for (const MethodDef& method : methods) sim::validate(method);
     solver_ = sim::make_solver(system_, world, methods, frame_interval_s, goes_on);
+    load_meter_ = std::make_unique<sim::LoadMeter>(system_);
     state_ = {0.0, system_.x_m, system_.y_m};
     next_ = state_;
     conserves_energy_ = solver_->conserves_energy();
@@ -98,12 +108,18 @@ void Simulation::read() {
         solver_->velocities(state_.vx_m_s, state_.vy_m_s);
     }
     if (!fields_.tensions) return;
-    state_.tension_n.assign(system_.bars.size(), 0.0);
-    if (!solver_->tensions(state_.tension_n) && !fields_.unknown_tensions) {
+    const bool are_known = find_tensions();
+    state_.tension_n = tension_n_;
+    if (!are_known && !fields_.unknown_tensions) {
         throw Refusal(Refusal::Reason::kUnknownTensions,
                       "tensions are asked for, which the method does not know: relaxation has none, and bars "
                       "that depend on each other share them in any way");
     }
+}
+
+bool Simulation::find_tensions() {
+    tension_n_.assign(system_.bars.size(), 0.0);
+    return solver_->tensions(tension_n_);
 }
 
 void Simulation::observe() {
@@ -112,7 +128,8 @@ void Simulation::observe() {
     figures_.strain = max_strain(system_, state_);
     figures_.energy_change_j = solver_->energy_j() - initial_energy_j_;
     figures_.energy_error = sim::energy_error(energy_change_j(), energy_scale_j_);
-    figures_.loads = solver_->loads();
+    figures_.loads = std::nullopt;
+    if (find_tensions()) figures_.loads = load_meter_->of(system_, state_, tension_n_);
     largest_ = sim::larger_figures(largest_, figures_);
     if (!branched_s_ && solver_->has_branched()) branched_s_ = state_.time_s;
 }

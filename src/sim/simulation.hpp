@@ -10,8 +10,9 @@
 #include "corda/sim/system.hpp"
 
 namespace corda::sim {
+class LoadMeter;
 class Solver;
-}
+}  // namespace corda::sim
 
 #pragma GCC visibility push(default)
 namespace corda {
@@ -82,11 +83,15 @@ class Simulation {
   private:
     void observe();
     void read();
+    /// Writes tension_n_. Returns false if a method does not know them.
+    bool find_tensions();
 
     System system_;
     std::unique_ptr<sim::Solver> solver_;
+    std::unique_ptr<sim::LoadMeter> load_meter_;
     State state_;
-    State next_;  ///< kept for its memory
+    State next_;                     ///< kept for its memory
+    std::vector<double> tension_n_;  ///< scratch
     StateFields fields_;
     bool has_diverged_ = false;
     bool is_stepping_ = false;  ///< still, if an exception ended the steps

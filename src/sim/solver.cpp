@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <string>
 #include <type_traits>
@@ -13,7 +14,7 @@
 #include "corda/sim/exact/exact.hpp"
 #include "corda/sim/rattle/rattle.hpp"
 #include "corda/sim/relaxation/relaxation.hpp"
-#include "corda/sim/validate.hpp"
+#include "corda/sim/system.hpp"
 
 namespace corda::sim {
 namespace {
@@ -24,9 +25,7 @@ namespace {
 //   static const char* problem_of(const Def&);   the parameter that is out of range; nullptr: none
 //   static std::string text_of(const Def&);      see method_text()
 //   static double step_cost_ns(const Def&, const Body&);
-//   static std::optional<double> fixed_step_s(const Def&);
 //   static double expected_steps(const Def&, const Body&, double frequency_1_s, double time_s);
-//   static double relative_step_work(const Def&, const Body&);
 //   static constexpr bool kKnowsTensions;
 template <class Def>
 struct SolverOf;
@@ -62,7 +61,10 @@ std::unique_ptr<Solver> make_solver_of(const System& system, const Forces& force
                                        double frame_interval_s, const GoesOn& goes_on) {
     if (!std::holds_alternative<RelaxationDef>(method)) refuse_bars_without_length(system);
     return with_solver(method, [&]<class S>(const auto& def) -> std::unique_ptr<Solver> {
-        return std::make_unique<S>(system, forces, def, frame_interval_s, goes_on);
+        if constexpr (std::is_same_v<S, Exact>)
+            return S::make(system, forces, def, goes_on);
+        else
+            return std::make_unique<S>(system, forces, def, frame_interval_s, goes_on);
     });
 }
 
@@ -101,7 +103,6 @@ class BodySolvers final : public Solver {
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;
     [[nodiscard]] bool has_branched() const override;
-    [[nodiscard]] std::optional<Loads> loads() const override;
     void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override;
     [[nodiscard]] bool tensions(std::vector<double>& tension_n) override;
     /// The sum over all bodies.
@@ -111,6 +112,25 @@ class BodySolvers final : public Solver {
   private:
     std::vector<Part> parts_;
 };
+
+std::span<const Bar> bars_of(const System& system, const Body& body) {
+    return std::span(system.bars).subspan(body.first_bar, body.bar_count);
+}
+
+/// The free mass in kg that hangs on each bar.
+std::vector<double> carried_kg(const System& system, const Body& body) {
+    double all_kg = 0.0;
+    bool is_pinned_elsewhere = false;
+    for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
+        if (!system.is_pinned(i)) all_kg += system.mass_kg[i];
+        is_pinned_elsewhere = is_pinned_elsewhere || (system.is_pinned(i) && i > body.first_particle);
+    }
+    std::vector<double> carried(body.bar_count, all_kg);
+    if (!body.is_chain || is_pinned_elsewhere || !system.is_pinned(body.first_particle)) return carried;
+    for (std::size_t k = 1; k < body.link_count; ++k)
+        carried[k] = carried[k - 1] - system.mass_kg[body.first_particle + k];
+    return carried;
+}
 
 Loads larger_loads(const Loads& a, const Loads& b) {
     return {std::max(a.pin_force_n, b.pin_force_n), std::max(a.largest_tension_n, b.largest_tension_n)};
@@ -140,12 +160,6 @@ double BodySolvers::energy_j() const {
 bool BodySolvers::has_branched() const {
     return std::any_of(parts_.begin(), parts_.end(),
                        [](const Part& part) { return part.solver->has_branched(); });
-}
-
-std::optional<Loads> BodySolvers::loads() const {
-    std::optional<Loads> largest = Loads{};
-    for (const Part& part : parts_) largest = loads_of_both(largest, part.solver->loads());
-    return largest;
 }
 
 void BodySolvers::velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) {
@@ -224,7 +238,14 @@ double step_cost_ns(const Body& body, const MethodDef& method) {
 }
 
 std::optional<double> fixed_step_s(const MethodDef& method) {
-    return with_solver(method, []<class S>(const auto& def) { return S::fixed_step_s(def); });
+    return std::visit(
+        [](const auto& def) -> std::optional<double> {
+            if constexpr (requires { def.step_s; })
+                return def.step_s;
+            else
+                return std::nullopt;
+        },
+        method);
 }
 
 double expected_steps(const MethodDef& method, const Body& body, double frequency_1_s, double time_s) {
@@ -234,11 +255,89 @@ double expected_steps(const MethodDef& method, const Body& body, double frequenc
 }
 
 double relative_step_work(const MethodDef& method, const Body& body) {
-    return with_solver(method, [&]<class S>(const auto& def) { return S::relative_step_work(def, body); });
+    return step_cost_ns(body, method) / (Exact::kParticleCostNs * static_cast<double>(body.particle_count));
 }
 
 bool knows_tensions(const MethodDef& method) {
     return with_solver(method, []<class S>(const auto&) { return S::kKnowsTensions; });
+}
+
+double vibration_frequency_1_s(const System& system, const Body& body) {
+    return std::sqrt(
+        ElasticForces(system, body.first_particle, body.particle_count).common_square_frequency());
+}
+
+double angular_velocity_1_s(const System& system, const Body& body) {
+    double largest_1_s = 0.0;
+    for (const Bar& bar : bars_of(system, body)) {
+        const double speed_m_s =
+            length(system.vx_m_s[bar.b] - system.vx_m_s[bar.a], system.vy_m_s[bar.b] - system.vy_m_s[bar.a]);
+        largest_1_s = std::max(largest_1_s, speed_m_s / bar.rest_m);
+    }
+    return largest_1_s;
+}
+
+double pendulum_frequency_1_s(const System& system, const Body& body, const Forces& forces) {
+    double shortest_m = std::numeric_limits<double>::infinity();
+    for (const Bar& bar : bars_of(system, body)) shortest_m = std::min(shortest_m, bar.rest_m);
+    return forces.inverse_timescale_1_s(shortest_m, 0.0);
+}
+
+double tension_frequency_1_s(const System& system, const Body& body, const Forces& forces,
+                             bool is_moved_by_rounding) {
+    if (body.material.compliance_1_n > 0.0) return 0.0;
+    const std::span<const Bar> bars = bars_of(system, body);
+    const Vec2 pull_m_s2 = forces.uniform_m_s2();
+    double fastest_m_s2 = 0.0;
+    bool stays = true;  // bars along gravity that do not turn
+    for (const Bar& bar : bars) {
+        const double speed_m_s =
+            length(system.vx_m_s[bar.b] - system.vx_m_s[bar.a], system.vy_m_s[bar.b] - system.vy_m_s[bar.a]);
+        fastest_m_s2 = std::max(fastest_m_s2, speed_m_s * (speed_m_s / bar.rest_m));
+        const double across = (system.x_m[bar.b] - system.x_m[bar.a]) * pull_m_s2.y -
+                              (system.y_m[bar.b] - system.y_m[bar.a]) * pull_m_s2.x;
+        stays = stays && speed_m_s == 0.0 && across == 0.0;
+    }
+    if (stays && !is_moved_by_rounding) return 0.0;
+    const std::vector<double> carried = carried_kg(system, body);
+    std::vector<double> load_n_m(body.particle_count, 0.0);
+    for (std::size_t k = 0; k < bars.size(); ++k) {
+        const double tension_n = carried[k] * (forces.strength_m_s2() + fastest_m_s2);
+        load_n_m[bars[k].a - body.first_particle] += tension_n / bars[k].rest_m;
+        load_n_m[bars[k].b - body.first_particle] += tension_n / bars[k].rest_m;
+    }
+    double largest = 0.0;
+    for (std::size_t i = 0; i < load_n_m.size(); ++i)
+        largest = std::max(largest, 2.0 * system.inverse_mass_1_kg[body.first_particle + i] * load_n_m[i]);
+    return std::sqrt(largest);
+}
+
+LoadMeter::LoadMeter(const System& system) {
+    if (!system.bends.empty()) bends_.emplace(system, 0, system.particle_count());
+}
+
+std::optional<Loads> LoadMeter::of(const System& system, const State& state,
+                                   std::span<const double> tension_n) {
+    Loads loads;
+    fx_n_.assign(system.particle_count(), 0.0);
+    fy_n_.assign(system.particle_count(), 0.0);
+    for (std::size_t k = 0; k < tension_n.size(); ++k) {
+        if (tension_n[k] == 0.0) continue;
+        if (std::isnan(tension_n[k])) return std::nullopt;
+        const auto [a, b, reach, rest_m] = system.bars[k];
+        const Vec2 along{state.x_m[b] - state.x_m[a], state.y_m[b] - state.y_m[a]};
+        const Vec2 pull_n = (tension_n[k] / length(along.x, along.y)) * along;
+        fx_n_[a] += pull_n.x;
+        fy_n_[a] += pull_n.y;
+        fx_n_[b] -= pull_n.x;
+        fy_n_[b] -= pull_n.y;
+        loads.largest_tension_n = std::max(loads.largest_tension_n, std::abs(tension_n[k]));
+    }
+    if (bends_) bends_->add_bend_forces(state.x_m.data(), state.y_m.data(), fx_n_.data(), fy_n_.data());
+    for (std::size_t i = 0; i < system.particle_count(); ++i) {
+        if (system.is_pinned(i)) loads.pin_force_n = std::max(loads.pin_force_n, length(fx_n_[i], fy_n_[i]));
+    }
+    return loads;
 }
 
 Figures larger_figures(const Figures& a, const Figures& b) {

@@ -12,6 +12,7 @@
 
 #include "corda/core/stop_check.hpp"
 #include "corda/sim/defs.hpp"
+#include "corda/sim/forces/elastic_forces.hpp"
 #include "corda/sim/forces/forces.hpp"
 #include "corda/sim/simulation.hpp"
 
@@ -61,9 +62,6 @@ class Solver {
     /// False if damping takes energy on purpose.
     [[nodiscard]] bool conserves_energy() const { return conserves_energy_; }
 
-    /// Loads after the last `advance_to`; std::nullopt if the method does not know them.
-    [[nodiscard]] virtual std::optional<Loads> loads() const { return std::nullopt; }
-
     /// Writes the velocities of the free particles at the last `advance_to`, in m/s, to arrays of all.
     virtual void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) = 0;
 
@@ -81,18 +79,12 @@ class Solver {
     /// with the same bits.
     [[nodiscard]] virtual std::vector<MethodDef> methods() const = 0;
 
-    // Defaults of two facts about methods: an explicit method of high order that chooses its steps.
+    // Default of a fact about methods: an explicit method of high order that chooses its steps.
     template <class Def>
     [[nodiscard]] static double expected_steps(const Def& /*def*/, const Body& /*body*/, double frequency_1_s,
                                                double time_s) {
         constexpr double kFrequencyTimesStep = 5.0;
         return frequency_1_s * time_s / kFrequencyTimesStep;
-    }
-    template <class Def>
-    [[nodiscard]] static double relative_step_work(const Def& /*def*/, const Body& body) {
-        // A rigid string is searched for events in every step.
-        constexpr double kOfAString = 2.5;
-        return body.material.is_string && body.material.compliance_1_n == 0.0 ? kOfAString : 1.0;
     }
 
   protected:
@@ -132,11 +124,46 @@ void validate(const MethodDef& method);
 [[nodiscard]] double expected_steps(const MethodDef& method, const Body& body, double frequency_1_s,
                                     double time_s);
 
-/// The work of a step per particle, relative to a step of `exact` for a rope, which takes 144 ns.
+/// step_cost_ns() per particle, relative to a step of `exact` for a rope.
 [[nodiscard]] double relative_step_work(const MethodDef& method, const Body& body);
 
 /// False if the method never knows the tensions of bars.
 [[nodiscard]] bool knows_tensions(const MethodDef& method);
+
+// Rough estimates of the work for a scene, from its start alone: good enough to tell minutes from days.
+
+/// Bound on the angular frequency in 1/s of vibrations of a body that stretches or resists bending; 0 for any
+/// other body.
+[[nodiscard]] double vibration_frequency_1_s(const System& system, const Body& body);
+
+/// Largest angular velocity of a bar of the body at t = 0, in 1/s.
+[[nodiscard]] double angular_velocity_1_s(const System& system, const Body& body);
+
+/// Angular frequency in 1/s at which the body's shortest bar swings.
+[[nodiscard]] double pendulum_frequency_1_s(const System& system, const Body& body, const Forces& forces);
+
+/// Bound on the angular frequency in 1/s at which the tensions at t = 0 make particles of a body without
+/// compliance swing across the links: Gershgorin's, the largest over all particles of 2 w sum of T / l. T
+/// pulls what hangs on the link, of all free mass unless a rope is pinned at its first particle alone, as
+/// fast as gravity and the link that turns fastest together. 0 if no bar turns or leans, because then none
+/// ever will, unless `is_moved_by_rounding`.
+[[nodiscard]] double tension_frequency_1_s(const System& system, const Body& body, const Forces& forces,
+                                           bool is_moved_by_rounding = false);
+
+/// Computes the loads on pins and links from positions and tensions.
+class LoadMeter {
+  public:
+    explicit LoadMeter(const System& system);
+
+    /// Loads of a state of the system with these tensions, one per bar. std::nullopt if one is NaN.
+    [[nodiscard]] std::optional<Loads> of(const System& system, const State& state,
+                                          std::span<const double> tension_n);
+
+  private:
+    std::optional<ElasticForces> bends_;  ///< empty without bends
+    std::vector<double> fx_n_;            ///< scratch, one entry per particle
+    std::vector<double> fy_n_;
+};
 
 /// The larger of each figure; the known one if only one is known.
 [[nodiscard]] Figures larger_figures(const Figures& a, const Figures& b);

@@ -14,7 +14,7 @@
 #include "corda/core/text.hpp"
 #include "corda/reference/pendulum.hpp"
 #include "corda/reference/ropes.hpp"
-#include "corda/sim/auto/trial.hpp"
+#include "corda/sim/auto/planner.hpp"
 #include "corda/sim/recording.hpp"
 
 namespace corda::study {

@@ -68,7 +68,7 @@ TEST(HeavyElasticRope, StaysInEquilibrium) {
             ASSERT_TRUE(run.go(0.1 * k));
             largest_m = std::max(largest_m, HeavyRope::error_m(run.state()));
         }
-        const Loads loads = *run.solver().loads();
+        const Loads loads = *run.loads();
         std::printf("%s: in equilibrium to %.1e m\n", method_name(def).data(), largest_m);
         EXPECT_LT(largest_m, 3e-13);  // measured: 4.3e-14 (exact), 1.6e-14 (rattle)
         EXPECT_NEAR(loads.largest_tension_n, kGravity * 15.0, 1e-10);
@@ -180,8 +180,8 @@ TEST(ElasticRope, MovesAlikeByExactAndRattle) {
     std::printf("rope: exact and rattle differ by %.1e m\n", largest_m);
     EXPECT_GT(exact.moved_m(), 0.5);
     EXPECT_LT(largest_m, 1e-10);  // measured: 1.4e-11
-    const Loads a = *exact.solver().loads();
-    const Loads b = *rattle.solver().loads();
+    const Loads a = *exact.loads();
+    const Loads b = *rattle.loads();
     EXPECT_NEAR(a.largest_tension_n, b.largest_tension_n, 1e-6);
     EXPECT_NEAR(a.pin_force_n, b.pin_force_n, 1e-6);
 }
@@ -298,7 +298,7 @@ TEST(Bungee, FliesFreeWhileItIsSlack) {
         test::SolverRun run(Bungee::rope(), WorldDef{}, it.def);
         const double top_s = Bungee::rise_s() + 0.5 * Bungee::flight_s();
         ASSERT_TRUE(run.go(top_s));
-        EXPECT_EQ(run.solver().loads()->largest_tension_n, 0.0);
+        EXPECT_EQ(run.loads()->largest_tension_n, 0.0);
         double largest_m = 0.0;
         for (int k = 1; k <= 60; ++k) {
             const double time_s = top_s + 0.05 * k;

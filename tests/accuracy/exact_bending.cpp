@@ -190,7 +190,7 @@ TEST(Cantilever, StaysInEquilibrium) {
     for (const double time_s : {0.0, 0.5, 5.0}) {
         ASSERT_TRUE(run.go(time_s));
         const double moved_m = distance_m(run.state(), start.x_m, start.y_m);
-        const double pin_force_n = run.solver().loads().value().pin_force_n;
+        const double pin_force_n = run.loads().value().pin_force_n;
         std::printf("cantilever at t=%g: moved by %.1e m, force off by %.1e N\n", time_s, moved_m,
                     pin_force_n - (weight_n + 20.0 * moment_n_m));
         EXPECT_LT(moved_m, 1e-11);  // measured 1.7e-14

@@ -161,7 +161,7 @@ TEST(HangingR6, BetweenTwoPinsComesToRestAsACatenary) {
         test::ExactRun run(reference::slack_rope(row.links), 1e-12, WorldDef{{0.0, -9.81}, 40.0, 4.0});
         ASSERT_TRUE(run.go(40.0));
         // Each pin carries half of the weight and the horizontal tension.
-        const double pull = run.solver().loads().value().pin_force_n / 9.81;
+        const double pull = run.loads().value().pin_force_n / 9.81;
         const double half_weight = 0.5 * (row.links - 1);
         const double horizontal = std::sqrt(pull * pull - half_weight * half_weight);
         const double lowest_m = *std::min_element(run.state().y_m.begin(), run.state().y_m.end());

@@ -35,7 +35,7 @@ TEST(PendulumR1, StaysOnTheReferenceFor2000Seconds) {
 TEST(PendulumR1, LargestTensionIsThreeWeights) {
     test::ExactRun run(reference::straight_rope(1, 1.0, 90.0), 1e-12);
     ASSERT_TRUE(run.go(reference::kA01PeriodSeconds / 4.0));
-    const Loads loads = run.solver().loads().value();
+    const Loads loads = run.loads().value();
     EXPECT_NEAR(loads.largest_tension_n, 29.43, 1e-11);
     EXPECT_NEAR(loads.pin_force_n, 29.43, 1e-11);
 }

@@ -20,14 +20,14 @@ TEST(HangingBetweenPinsR6, ComesToTheReferenceShape) {
         test::RattleRun run(reference::slack_rope(row.links), world, 4);
         ASSERT_TRUE(run.go(15.0));
         const double lowest_m = *std::min_element(run.state().y_m.begin(), run.state().y_m.end());
-        const double force_n = run.solver().loads()->pin_force_n;
+        const double force_n = run.loads()->pin_force_n;
         const double half_weight_n = 0.5 * (row.links - 1) * 9.81;
         const double horizontal = std::sqrt(force_n * force_n - half_weight_n * half_weight_n) / 9.81;
         std::printf("N=%d: tension off by %.1e, lowest point by %.1e\n", row.links,
                     horizontal - row.tension_over_weight, lowest_m - row.lowest_m);
         EXPECT_NEAR(horizontal, row.tension_over_weight, 1e-10) << row.links;
         EXPECT_NEAR(lowest_m, row.lowest_m, 1e-10) << row.links;
-        EXPECT_DOUBLE_EQ(run.solver().loads()->largest_tension_n, force_n);
+        EXPECT_DOUBLE_EQ(run.loads()->largest_tension_n, force_n);
     }
 }
 
@@ -66,7 +66,7 @@ TEST(SpinningChainR8, StaysARigidRotation) {
     world.gravity_m_s2 = {};
     test::RattleRun run(reference::spinning_rope(kLinks, 1.0, kOmega), world, 8, 1.0 / 500.0);
     // T_i = m omega^2 a sum of j from i to N; the first is largest.
-    EXPECT_NEAR(run.solver().loads()->largest_tension_n, kOmega * kOmega * 0.1 * 55.0, 1e-11);
+    EXPECT_NEAR(run.loads()->largest_tension_n, kOmega * kOmega * 0.1 * 55.0, 1e-11);
     ASSERT_TRUE(run.go(10.0, 100));
     double error_m = 0.0;
     for (std::size_t i = 0; i <= kLinks; ++i) {
@@ -76,7 +76,7 @@ TEST(SpinningChainR8, StaysARigidRotation) {
     }
     std::printf("spinning: %.1e m, energy %.1e J\n", error_m, run.largest_energy_change_j());
     EXPECT_LT(error_m, 1e-10);
-    EXPECT_NEAR(run.solver().loads()->largest_tension_n, kOmega * kOmega * 0.1 * 55.0, 1e-9);
+    EXPECT_NEAR(run.loads()->largest_tension_n, kOmega * kOmega * 0.1 * 55.0, 1e-9);
 }
 
 TEST(FreeFall, IsExactFromTheFirstStepOn) {
@@ -91,14 +91,14 @@ TEST(FreeFall, IsExactFromTheFirstStepOn) {
             // measured: at most 5.3e-15
             EXPECT_NEAR(run.tip_x(), run.system().x_m.back(), 1e-14) << order;
         }
-        EXPECT_LT(run.solver().loads()->largest_tension_n, 1e-12);
+        EXPECT_LT(run.loads()->largest_tension_n, 1e-12);
     }
 }
 
 TEST(HorizontalRelease, StartsAsFreeFallWithoutTension) {
     test::RattleRun run(reference::straight_rope(20, 1.0, 90.0), WorldDef{}, 4, 1.0 / 1000.0);
     ASSERT_TRUE(run.go(0.0));
-    EXPECT_LT(run.solver().loads()->largest_tension_n, 1e-13);
+    EXPECT_LT(run.loads()->largest_tension_n, 1e-13);
     // x = x0 + a t^2 / 2 + terms of t^6 and up in x, of t^4 in y.
     const double time_s = 1e-4;
     ASSERT_TRUE(run.go(time_s));

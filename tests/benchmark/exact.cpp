@@ -25,15 +25,16 @@ void count_particles(benchmark::State& bench, double times) {
 void exact_step(benchmark::State& bench) {
     const RopeDef rope = reference::straight_rope(static_cast<int>(bench.range(0)), 1.0, 45.0);
     const System system = build_system({&rope, 1});
-    Exact solver(system, WorldDef{}, ExactDef{1e-9});
+    const std::unique_ptr<Exact> solver = Exact::make(system, WorldDef{}, ExactDef{1e-9});
     State state{0.0, system.x_m, system.y_m};
     double time_s = 0.0;
     const double interval_s = 1.0 / static_cast<double>(bench.range(0));
     for (auto _ : bench) {
         time_s += interval_s;
-        if (solver.advance_to(time_s, state, test::unstopped) != Status::kOk) bench.SkipWithError("diverged");
+        if (solver->advance_to(time_s, state, test::unstopped) != Status::kOk)
+            bench.SkipWithError("diverged");
     }
-    count_particles(bench, static_cast<double>(solver.steps() + solver.rejected_steps()));
+    count_particles(bench, static_cast<double>(solver->steps() + solver->rejected_steps()));
     bench.counters["simulated_s/s"] = benchmark::Counter(time_s, benchmark::Counter::kIsRate);
 }
 
@@ -50,16 +51,16 @@ void exact_derivative(benchmark::State& bench) {
     count_particles(bench, static_cast<double>(bench.iterations()));
 }
 
-std::unique_ptr<ExactPart> by_series(const System& system, double tolerance) {
+std::unique_ptr<Exact> by_series(const System& system, double tolerance) {
     return std::make_unique<ChainPart>(system, WorldDef{}, tolerance);
 }
 
-std::unique_ptr<ExactPart> by_dop853(const System& system, double tolerance) {
-    return std::make_unique<OdePart>(std::make_unique<ChainDynamics>(system, system.bodies, WorldDef{}),
-                                     tolerance);
+std::unique_ptr<Exact> by_dop853(const System& system, double tolerance) {
+    return std::make_unique<OdePart>(
+        system, WorldDef{}, std::make_unique<ChainDynamics>(system, system.bodies, WorldDef{}), tolerance);
 }
 
-State swing(ExactPart& part, const System& system) {
+State swing(Exact& part, const System& system) {
     State state{0.0, system.x_m, system.y_m};
     for (int frame = 1; frame <= 120; ++frame) {
         if (part.advance_to(frame / 60.0, state, test::unstopped) != Status::kOk) break;
@@ -68,7 +69,7 @@ State swing(ExactPart& part, const System& system) {
 }
 
 /// Arguments: links, and minus the logarithm of the tolerance.
-void swing_by(benchmark::State& bench, std::unique_ptr<ExactPart> (*make_part)(const System&, double)) {
+void swing_by(benchmark::State& bench, std::unique_ptr<Exact> (*make_part)(const System&, double)) {
     const RopeDef rope = reference::straight_rope(static_cast<int>(bench.range(0)) + 1, 1.0, 45.0);
     const System system = build_system({&rope, 1});
     State state;

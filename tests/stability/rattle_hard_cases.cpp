@@ -150,7 +150,7 @@ TEST(Inverted, ExactlyUprightStays) {
     ASSERT_TRUE(run.go(10.0, 10));
     EXPECT_EQ(run.tip_x(), 0.0);
     EXPECT_NEAR(run.tip_y(), 1.0, 1e-14);
-    EXPECT_NEAR(run.solver().loads()->largest_tension_n, 98.1, 1e-10);
+    EXPECT_NEAR(run.loads()->largest_tension_n, 98.1, 1e-10);
 }
 
 TEST(Steps, ThatAreMuchTooLongAreDivided) {

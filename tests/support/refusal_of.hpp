@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "corda/sim/solver.hpp"
-#include "corda/sim/validate.hpp"
+#include "corda/sim/system.hpp"
 
 namespace corda::test {
 

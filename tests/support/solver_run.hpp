@@ -17,6 +17,13 @@
 
 namespace corda::test {
 
+/// Loads of a state that a solver has just reached; std::nullopt if it does not know the tensions.
+inline std::optional<Loads> loads_of(const System& system, const State& state, sim::Solver& solver) {
+    std::vector<double> tension_n(system.bars.size(), 0.0);
+    if (!solver.tensions(tension_n)) return std::nullopt;
+    return sim::LoadMeter(system).of(system, state, tension_n);
+}
+
 /// Bodies driven without a Simulation, with their observed maxima. `S` is the class of the solver; the
 /// default is chosen by the definition.
 template <class S = sim::Solver>
@@ -79,6 +86,7 @@ class SolverRun {
     [[nodiscard]] const State& state() const { return state_; }
     [[nodiscard]] const System& system() const { return system_; }
     [[nodiscard]] S& solver() { return *solver_; }
+    [[nodiscard]] std::optional<Loads> loads() { return loads_of(system_, state_, *solver_); }
 
   private:
     static std::unique_ptr<S> start(const System& system, const WorldDef& world, const MethodDef& def) {
@@ -86,7 +94,7 @@ class SolverRun {
         if constexpr (std::is_same_v<S, sim::Solver>) {
             return sim::make_solver(system, world, {&def, 1}, kFrameSeconds);
         } else if constexpr (std::is_same_v<S, sim::Exact>) {
-            return std::make_unique<S>(system, world, std::get<ExactDef>(def));
+            return S::make(system, world, std::get<ExactDef>(def));
         } else {
             return std::make_unique<S>(system, world, std::get<RattleDef>(def), kFrameSeconds);
         }

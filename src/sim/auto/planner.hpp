@@ -1,11 +1,100 @@
 #pragma once
 
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <future>
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "corda/sim/auto/trial.hpp"
+#include "corda/core/basics.hpp"
+#include "corda/core/timeline.hpp"
+#include "corda/sim/forces/forces.hpp"
+#include "corda/sim/recording.hpp"
+#include "corda/sim/simulation.hpp"
+#include "corda/sim/system.hpp"
 
 namespace corda::sim {
+
+/// The tolerance of positions in metres, > 0, for a motion with these bounds. It must not fall when the
+/// bounds grow.
+using ToleranceOf = std::function<double(const MotionBounds&)>;
+
+/// Requirements of a plan: positions within a tolerance of the truth at every frame time of the timeline.
+struct PlanDef {
+    ToleranceOf tolerance_m;
+    Timeline timeline;
+    OnProgress on_progress = {};      ///< called for every frame of every trial, and during long ones
+    std::function<double()> clock_s;  ///< measures the stepping of each run; empty: not measured
+};
+
+/// Returns a callback that reports `frames_done` of the timeline to on_progress. Both must outlive it.
+[[nodiscard]] GoesOn reporting(const PlanDef& def, const std::int64_t& frames_done);
+
+/// The place of a trial among those of a plan.
+struct TrialKind {
+    bool is_first = true;  ///< if of `rattle`, it has one check
+    bool is_last = true;   ///< its run will be drawn: it continues to the end without its checks
+};
+
+/// Runs the trial's method and its checks side by side, the checks in turned coordinates, so that their
+/// rounding differs from the start on, and records in `trial` how far they agree. A run whose error is not
+/// far above rounding has three checks, and what these differ by counts twice. `recording` is cleared and
+/// receives the run's states. Once the difference is too large for good, the checks end. Each that begins to
+/// move adds one to `passes`. Throws corda::Refusal, and corda::Error (kInterrupted) if asked to stop.
+void run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial& trial,
+               Recording& recording, int& passes);
+
+/// The reason a method cannot run a system; std::nullopt if it can.
+[[nodiscard]] std::optional<Refusal> refusal(const System& system, const WorldDef& world,
+                                             const MethodDef& method, double frame_interval_s,
+                                             const GoesOn& goes_on = {});
+
+/// The checks of a trial: tighter runs in turned coordinates, which round otherwise than the trial's run, and
+/// than one another, from the start on. Those of large systems advance in threads of their own; positions are
+/// the same either way.
+class Checks {
+  public:
+    static constexpr std::size_t kMaxCount = 3;
+
+    /// `count` of them, 1 to kMaxCount. `goes_on` is asked in the caller's thread alone and must outlive
+    /// this.
+    Checks(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
+           std::size_t count, const GoesOn& goes_on);
+    Checks(const Checks&) = delete;
+    Checks& operator=(const Checks&) = delete;
+    /// Ends what start() has begun.
+    ~Checks();
+
+    [[nodiscard]] std::size_t size() const { return checks_.size(); }
+
+    /// Begins to advance all to a time; the caller may advance the run meanwhile.
+    void start(double time_s);
+    /// Waits until they are there. kDiverged also if one has branched. Throws what Solver::advance_to throws.
+    [[nodiscard]] Status finish();
+
+    /// How far a run is from its checks: the largest distance of a particle from its positions there, and if
+    /// there are several, twice what these differ by. That is rounding; if the run were no better, it could
+    /// be near them by chance and far from the truth. Infinite for a NaN.
+    [[nodiscard]] double difference_m(const State& state) const;
+
+    /// Steps of one check up to the last finish().
+    [[nodiscard]] std::uint64_t steps() const { return steps_; }
+
+  private:
+    class Check;
+
+    const GoesOn& goes_on_;
+    std::atomic<bool> is_abandoned_ = false;
+    GoesOn is_wanted_ = [this] { return !is_abandoned_.load(std::memory_order_relaxed); };
+    bool in_threads_;
+    double time_s_ = 0.0;
+    std::uint64_t steps_ = 0;
+    std::vector<std::unique_ptr<Check>> checks_;
+    std::vector<std::future<Status>> pending_;  ///< declared last: it ends before what it uses does
+};
 
 /// Finds a method whose positions stay within the tolerance for the only body of `system`, and verifies it by
 /// tighter runs. `recording` then holds the states of the verified run, which are drawn.

@@ -35,12 +35,10 @@ void ChainBending::add_bend(const System& system, const Bend& bend, const ChainL
     const auto add_clamp = [&](const ChainLink& link, std::uint32_t near, std::uint32_t far) {
         const Vec2 along{system.x_m[far] - system.x_m[near], system.y_m[far] - system.y_m[near]};
         const double distance_m = length(along.x, along.y);
-        clamps_.push_back({link.index, near, far, (1.0 / distance_m) * along, distance_m,
-                           link.runs_backwards ? -bend.stiffness_n_m : bend.stiffness_n_m, Vec2{}});
+        clamps_.push_back({link.index, (1.0 / distance_m) * along,
+                           link.runs_backwards ? -bend.stiffness_n_m : bend.stiffness_n_m});
         return distance_m;
     };
-    double before_m = 0.0;
-    double after_m = 0.0;
     if (before.moves && after.moves) {
         const bool is_joint = system.is_pinned(bend.b);
         const bool is_turned = before.runs_backwards != after.runs_backwards;
@@ -51,8 +49,8 @@ void ChainBending::add_bend(const System& system, const Bend& bend, const ChainL
             stiffness_n_m_[std::min(before.index, after.index)] = bend.stiffness_n_m;
         }
     }
-    before_m = before.moves ? length_m[before.index] : add_clamp(after, bend.a, bend.b);
-    after_m = after.moves ? length_m[after.index] : add_clamp(before, bend.b, bend.c);
+    const double before_m = before.moves ? length_m[before.index] : add_clamp(after, bend.a, bend.b);
+    const double after_m = after.moves ? length_m[after.index] : add_clamp(before, bend.b, bend.c);
     const double rigidity_n_m2 = bend.stiffness_n_m * 0.5 * (before_m + after_m);
     for (const ChainLink* link : {&before, &after}) {
         if (!link->moves) continue;
@@ -77,9 +75,8 @@ void ChainBending::find_couples(const double* y) {
         couple_n_[joint.a] += torque_n_m * inverse_length_1_m_[joint.a];
         couple_n_[joint.b] -= torque_n_m * inverse_length_1_m_[joint.b];
     }
-    for (Clamp& clamp : clamps_) {
+    for (const Clamp& clamp : clamps_) {
         const double torque_n_m = clamp.stiffness_n_m * dot(left_of(clamp.along), direction(clamp.link));
-        clamp.force_n = (torque_n_m / clamp.length_m) * left_of(clamp.along);
         couple_n_[clamp.link] -= torque_n_m * inverse_length_1_m_[clamp.link];
     }
 }

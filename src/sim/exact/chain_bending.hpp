@@ -26,18 +26,6 @@ struct ChainLink {
 ///   q_i = (k_i S_i - k_{i-1} S_{i-1}) / a_i,   S_i = u_i x u_{i+1},   k_i between links i and i+1.
 class ChainBending {
   public:
-    /// A fixed link between two pins, to which bends hold the adjacent link.
-    struct Clamp {
-        std::size_t link = 0;  ///< index in a state of the link that moves
-        // The link that does not move.
-        std::uint32_t near = 0;  ///< its particles, in the order of the rope
-        std::uint32_t far = 0;
-        Vec2 along;  ///< unit vector from near to far
-        double length_m = 0.0;
-        double stiffness_n_m = 0.0;  ///< with the sign o
-        Vec2 force_n;                ///< of the couple on far; the opposite acts on near
-    };
-
     /// No bends.
     ChainBending() = default;
 
@@ -49,12 +37,11 @@ class ChainBending {
     /// True if there are no bends.
     [[nodiscard]] bool empty() const { return couple_n_.empty(); }
 
-    /// Computes couple_n() and the forces of clamps() in a state of the ChainDynamics.
+    /// Computes couple_n() in a state of the ChainDynamics.
     void find_couples(const double* y);
 
     /// q_i of every link, in newtons.
     [[nodiscard]] const std::vector<double>& couple_n() const { return couple_n_; }
-    [[nodiscard]] const std::vector<Clamp>& clamps() const { return clamps_; }
 
     [[nodiscard]] double energy_j(const double* y) const;
 
@@ -66,6 +53,12 @@ class ChainBending {
     struct Joint {
         std::size_t a = 0;
         std::size_t b = 0;
+        double stiffness_n_m = 0.0;  ///< with the sign o
+    };
+    /// A bend between a link that moves and a link between two pins.
+    struct Clamp {
+        std::size_t link = 0;        ///< the one that moves
+        Vec2 along;                  ///< unit vector of the other, in the order of the rope
         double stiffness_n_m = 0.0;  ///< with the sign o
     };
 

@@ -7,7 +7,7 @@
 
 #include "corda/sim/chain_tensions.hpp"
 #include "corda/sim/defs.hpp"
-#include "corda/sim/validate.hpp"
+#include "corda/sim/system.hpp"
 
 namespace corda::sim {
 namespace {
@@ -94,7 +94,7 @@ void ChainDynamics::add_body(const System& system, const Body& body) {
         add_chain(system, body, body.first_particle, end - 1);
         return;
     }
-    for (const std::size_t i : pinned) pins_.push_back({i, at(system.x_m, system.y_m, i), {}});
+    for (const std::size_t i : pinned) pins_.push_back({i, at(system.x_m, system.y_m, i)});
     if (pinned.front() > body.first_particle) add_chain(system, body, pinned.front(), body.first_particle);
     for (std::size_t k = 1; k < pinned.size(); ++k) add_chain(system, body, pinned[k - 1], pinned[k]);
     if (pinned.back() < end - 1) add_chain(system, body, pinned.back(), end - 1);
@@ -109,12 +109,6 @@ void ChainDynamics::add_chain(const System& system, const Body& body, std::size_
     chain.starts_pinned = system.is_pinned(from);
     chain.ends_pinned = system.is_pinned(to);
     if (chain.starts_pinned && chain.ends_pinned && chain.link_count == 1) return;  // it never moves
-    const auto pin = [&](std::size_t particle) {
-        const auto is_it = [&](const Pin& it) { return it.particle == particle; };
-        return static_cast<std::size_t>(std::find_if(pins_.begin(), pins_.end(), is_it) - pins_.begin());
-    };
-    chain.start_pin = pin(from);
-    chain.end_pin = pin(to);
     chain.start_m = at(system.x_m, system.y_m, from);
     chain.span_m = at(system.x_m, system.y_m, to) - chain.start_m;
     chain.inverse_mass_1_kg = system.inverse_mass_1_kg[from];
@@ -138,6 +132,22 @@ void ChainDynamics::add_chain(const System& system, const Body& body, std::size_
     chain.inverse_timescale_1_s = forces_.inverse_timescale_1_s(chain.length_m, fastest_m_s);
     if (chain.starts_pinned && chain.ends_pinned) refuse_taut(chain.length_m, chain.span_m, from, to);
     chains_.push_back(chain);
+}
+
+void ChainDynamics::add_particle(const System& system, std::size_t particle, double length_m,
+                                 double inverse_timescale_1_s) {
+    Chain chain;
+    chain.first_link = link_count();
+    chain.first_particle = particle;
+    chain.starts_pinned = false;
+    chain.first_extra = initial_state_.size();
+    chain.start_m = at(system.x_m, system.y_m, particle);
+    chain.inverse_mass_1_kg = system.inverse_mass_1_kg[particle];
+    chain.length_m = length_m;
+    chain.inverse_timescale_1_s = inverse_timescale_1_s;
+    chains_.push_back(chain);
+    initial_state_.insert(initial_state_.end(), {0.0, 0.0, system.vx_m_s[particle], system.vy_m_s[particle]});
+    energy_offset_j_ += mass_kg_[particle] * forces_.potential_j_kg(chain.start_m);
 }
 
 void ChainDynamics::refuse_taut(double length_m, Vec2 span_m, std::size_t from, std::size_t to) {
@@ -215,6 +225,7 @@ double ChainDynamics::inverse_timescale_1_s() const {
 
 template <bool kBends>
 void ChainDynamics::find_tensions(const Chain& chain, const double* y) {
+    if (chain.link_count == 0) return;
     measure_joints(chain, y);
     measure_loads(chain, y);
     if constexpr (kBends) add_bending_along(chain);
@@ -324,36 +335,47 @@ void ChainDynamics::evaluate(const double* y, double* slope) {
         slope_s[i] = omega[i] * c[i];
     }
     for (const Chain& chain : chains_) {
-        find_tensions<kBends>(chain, y);
-        const std::size_t first = chain.first_link;
-        const std::size_t last = first + chain.link_count - 1;
-        const auto turn = [&](std::size_t i, double across) {
-            slope_omega[i] = across * inverse_length_1_m_[i] - drag_1_s * omega[i];
-        };
-        const double* const sine = sine_.data();
-        const double* const tension = tension_n_.data();
-        for (std::size_t i = first + 1; i < last; ++i) {
-            turn(i, sine[i] * tension[i + 1] - sine[i - 1] * tension[i - 1]);
+        Vec2 pull_m_s2;
+        if (chain.link_count > 0) {
+            find_tensions<kBends>(chain, y);
+            turn(chain, y, slope_omega);
+            const std::size_t first = chain.first_link;
+            pull_m_s2 = (chain.inverse_mass_1_kg * tension_n_[first]) * Vec2{c[first], s[first]};
         }
-        turn(first, pull_across(chain, 0));
-        turn(last, pull_across(chain, chain.link_count - 1));
-        if (chain.starts_pinned) {
-            slope_omega[first] +=
-                dot(uniform_m_s2, left_of({c[first], s[first]})) * inverse_length_1_m_[first];
-        } else {
-            const double pull = chain.inverse_mass_1_kg * tension[first];
+        if (!chain.starts_pinned) {
             const double* const extra = y + chain.first_extra;
             double* const slope_extra = slope + chain.first_extra;
             slope_extra[0] = extra[2];
             slope_extra[1] = extra[3];
-            slope_extra[2] = uniform_m_s2.x + pull * c[first] - drag_1_s * extra[2];
-            slope_extra[3] = uniform_m_s2.y + pull * s[first] - drag_1_s * extra[3];
-        }
-        if (chain.ends_pinned) {
-            slope_omega[last] -= dot(uniform_m_s2, left_of({c[last], s[last]})) * inverse_length_1_m_[last];
+            slope_extra[2] = uniform_m_s2.x + pull_m_s2.x - drag_1_s * extra[2];
+            slope_extra[3] = uniform_m_s2.y + pull_m_s2.y - drag_1_s * extra[3];
         }
         if constexpr (kBends) add_bending_across(chain, y, slope);
     }
+}
+
+void ChainDynamics::turn(const Chain& chain, const double* y, double* __restrict slope_omega) const {
+    const double* const c = y;
+    const double* const s = y + link_count();
+    const double* const omega = y + 2 * link_count();
+    const double drag_1_s = forces_.drag_1_s();
+    const Vec2 uniform_m_s2 = forces_.uniform_m_s2();
+    const std::size_t first = chain.first_link;
+    const std::size_t last = first + chain.link_count - 1;
+    const auto turn_link = [&](std::size_t i, double across) {
+        slope_omega[i] = across * inverse_length_1_m_[i] - drag_1_s * omega[i];
+    };
+    const double* const sine = sine_.data();
+    const double* const tension = tension_n_.data();
+    for (std::size_t i = first + 1; i < last; ++i) {
+        turn_link(i, sine[i] * tension[i + 1] - sine[i - 1] * tension[i - 1]);
+    }
+    turn_link(first, pull_across(chain, 0));
+    turn_link(last, pull_across(chain, chain.link_count - 1));
+    if (chain.starts_pinned)
+        slope_omega[first] += dot(uniform_m_s2, left_of({c[first], s[first]})) * inverse_length_1_m_[first];
+    if (chain.ends_pinned)
+        slope_omega[last] -= dot(uniform_m_s2, left_of({c[last], s[last]})) * inverse_length_1_m_[last];
 }
 
 void ChainDynamics::project(double* y) {
@@ -395,6 +417,69 @@ void ChainDynamics::close(const Chain& chain, double* y) const {
     const Vec2 multiplier = matrix.solve(open);
     for (std::size_t i = chain.first_link; i < end; ++i) {
         y[2 * links + i] += dot(left_of(direction(i)), multiplier);
+    }
+}
+
+template <class Visit>
+void ChainDynamics::walk(const Chain& chain, const double* y, const Visit& visit) const {
+    const std::size_t links = link_count();
+    Vec2 moved;
+    Vec2 velocity;
+    if (!chain.starts_pinned) {
+        const double* const extra = y + chain.first_extra;
+        moved = {extra[0], extra[1]};
+        velocity = {extra[2], extra[3]};
+        visit(chain.first_particle, moved, velocity);
+    }
+    const std::size_t moving = chain.ends_pinned ? chain.link_count - 1 : chain.link_count;
+    for (std::size_t i = 0; i < moving; ++i) {
+        const std::size_t link = chain.first_link + i;
+        const Vec2 direction{y[link], y[links + link]};
+        moved = moved + length_m_[link] * direction;
+        velocity = velocity + (length_m_[link] * y[2 * links + link]) * left_of(direction);
+        visit(chain.particle(i), moved, velocity);
+    }
+}
+
+void ChainDynamics::positions(const double* y, State& state) const {
+    for (const Pin& pin : pins_) {
+        state.x_m[pin.particle] = pin.position_m.x;
+        state.y_m[pin.particle] = pin.position_m.y;
+    }
+    for (const Chain& chain : chains_) {
+        walk(chain, y, [&](std::size_t particle, Vec2 moved, Vec2 /*velocity*/) {
+            state.x_m[particle] = chain.start_m.x + moved.x;
+            state.y_m[particle] = chain.start_m.y + moved.y;
+        });
+    }
+}
+
+void ChainDynamics::velocities(const double* y, std::vector<double>& vx_m_s,
+                               std::vector<double>& vy_m_s) const {
+    for (const Chain& chain : chains_) {
+        walk(chain, y, [&](std::size_t particle, Vec2 /*moved*/, Vec2 velocity) {
+            vx_m_s[particle] = velocity.x;
+            vy_m_s[particle] = velocity.y;
+        });
+    }
+}
+
+double ChainDynamics::energy_j(const double* y) const {
+    double energy_j = 0.0;
+    for (const Chain& chain : chains_) {
+        walk(chain, y, [&](std::size_t particle, Vec2 moved, Vec2 velocity) {
+            energy_j += mass_kg_[particle] * (0.5 * dot(velocity, velocity) + forces_.potential_j_kg(moved));
+        });
+    }
+    if (bends()) energy_j += bending_.energy_j(y);
+    return energy_offset_j_ + energy_j;
+}
+
+void ChainDynamics::tensions(const double* y, std::vector<double>& tension_n) {
+    find_all_tensions(y);
+    tension_n.assign(links_.size() - 1, 0.0);
+    for (std::size_t i = 0; i < tension_n.size(); ++i) {
+        if (links_[i].moves) tension_n[i] = tension_n_[links_[i].index];
     }
 }
 

@@ -28,9 +28,9 @@ namespace corda::sim {
 /// A state has one array each of c, s and w over the links of all chains, then, for every chain without a
 /// pin, the displacement of its first particle from the start and its velocity (x, y, vx, vy). It does not
 /// depend on where the rope is. A chain with one pin starts at it.
-class ChainDynamics final : public Dynamics {
+class ChainDynamics : public Dynamics {
   public:
-    /// A chain between two pins, a pin and a free end, or two free ends.
+    /// A chain between two pins, a pin and a free end, or two free ends; or one free particle without a link.
     struct Chain {
         std::size_t first_link = 0;
         std::size_t link_count = 0;
@@ -38,8 +38,6 @@ class ChainDynamics final : public Dynamics {
         bool runs_backwards = false;     ///< towards lower indices of particles
         bool starts_pinned = true;
         bool ends_pinned = false;
-        std::size_t start_pin = 0;       ///< index of the start's pin, if it is pinned
-        std::size_t end_pin = 0;         ///< index of the end's pin, if it is pinned
         std::size_t first_extra = 0;     ///< index of x, y, vx, vy in a state, if the start is not pinned
         Vec2 start_m;                    ///< of the first particle
         Vec2 span_m;                     ///< from the first particle to the last at t = 0
@@ -80,7 +78,6 @@ class ChainDynamics final : public Dynamics {
     void velocities(const double* y, std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) const override;
 
     [[nodiscard]] double energy_j(const double* y) const override;
-    [[nodiscard]] Loads loads(const double* y) override;
 
     /// Entry i belongs to the link between particle i of the system and the next one; 0 without a link.
     void tensions(const double* y, std::vector<double>& tension_n) override;
@@ -99,11 +96,16 @@ class ChainDynamics final : public Dynamics {
     /// The link that joins a particle of the system to the next one.
     [[nodiscard]] const ChainLink& link(std::size_t particle) const { return links_[particle]; }
 
+  protected:
+    /// Adds a free particle of the system, with its x, y, vx and vy at the end of a state. Errors of its
+    /// position are measured by `length_m`, those of its velocity by that times `inverse_timescale_1_s`.
+    void add_particle(const System& system, std::size_t particle, double length_m,
+                      double inverse_timescale_1_s);
+
   private:
     struct Pin {
         std::size_t particle = 0;
         Vec2 position_m;
-        Vec2 force_n;  ///< computed by loads()
     };
 
     void add_body(const System& system, const Body& body);
@@ -113,6 +115,8 @@ class ChainDynamics final : public Dynamics {
     // kBends: with the couples of bending, which have been found; a parameter, so that loops have no branch.
     template <bool kBends>
     void evaluate(const double* y, double* slope);
+    /// Writes the angular accelerations of a chain's links, without bending.
+    void turn(const Chain& chain, const double* y, double* slope_omega) const;
     template <bool kBends>
     void find_tensions(const Chain& chain, const double* y);
     void find_all_tensions(const double* y);
@@ -123,7 +127,6 @@ class ChainDynamics final : public Dynamics {
     [[nodiscard]] double pull_across(const Chain& chain, std::size_t link) const;
     void add_bending_along(const Chain& chain);
     void add_bending_across(const Chain& chain, const double* y, double* slope) const;
-    void add_clamp_forces();
     /// Calls visit(particle, displacement from the chain's start, velocity) for each free particle of a
     /// chain.
     template <class Visit>

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "corda/core/cpu.hpp"
-#include "corda/sim/exact/four.hpp"
 #include "corda/sim/exact/series_terms.hpp"
 
 namespace corda::sim {
@@ -320,7 +319,9 @@ double ChainSeries::sum(const Series& series, double t) const {
 }
 
 ChainPart::ChainPart(const System& system, const Forces& forces, double tolerance)
-    : dynamics_(system, system.bodies, forces), state_(dynamics_.initial_state()) {
+    : Exact(system, forces, tolerance),
+      dynamics_(system, system.bodies, forces),
+      state_(dynamics_.initial_state()) {
     output_ = state_;
     movers_.reserve(dynamics_.chains().size());
     for (const ChainDynamics::Chain& chain : dynamics_.chains()) {
@@ -351,7 +352,7 @@ Status ChainPart::step(Mover& mover, StopCheck& stop) {
     return Status::kOk;
 }
 
-Status ChainPart::advance_to(double time_s, State& state, StopCheck& stop) {
+Status ChainPart::reach(double time_s, State& state, StopCheck& stop) {
     if (!std::isfinite(time_s)) return Status::kDiverged;
     for (Mover& mover : movers_) {
         while (mover.end_s < time_s) {

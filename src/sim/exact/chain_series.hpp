@@ -141,12 +141,11 @@ class ChainSeries {
 /// The length of a step follows from the last terms of its series, and the series is the motion at all times
 /// within the step. Steps depend on the start alone, never on the requested times, so the bits are always the
 /// same.
-class ChainPart final : public ExactPart {
+class ChainPart final : public Exact {
   public:
     /// Requires one body, a chain. Throws what ChainDynamics throws.
     ChainPart(const System& system, const Forces& forces, double tolerance);
 
-    Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] std::uint64_t steps() const override;
 
   private:
@@ -160,6 +159,7 @@ class ChainPart final : public ExactPart {
     };
 
     [[nodiscard]] Dynamics& dynamics() const override { return dynamics_; }
+    Status reach(double time_s, State& state, StopCheck& stop) override;
     Status step(Mover& mover, StopCheck& stop);
 
     mutable ChainDynamics dynamics_;  ///< only its scratch memory changes

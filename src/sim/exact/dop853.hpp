@@ -140,9 +140,6 @@ class Dynamics : public Ode {
     /// Writes the tensions of the bars that move, in N, a positive one pulls, to an array of all bars. Not
     /// const: it may use the scratch memory of derivative().
     virtual void tensions(const double* y, std::vector<double>& tension_n) = 0;
-
-    /// Loads on the bars. Not const: it may use the scratch memory of derivative().
-    [[nodiscard]] virtual Loads loads(const double* y) = 0;
 };
 
 }  // namespace corda::sim

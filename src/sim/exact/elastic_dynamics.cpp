@@ -31,8 +31,7 @@ ElasticDynamics::ElasticDynamics(const System& system, const Forces& forces)
       origin_m_{system.x_m.front(), system.y_m.front()},
       forces_(forces),
       elastic_(system, 0, count_),
-      size_m_(size_of(system)),
-      force_n_(2 * count_, 0.0) {
+      size_m_(size_of(system)) {
     assert(system.bodies.size() == 1 && system.bodies.front().material.compliance_1_n > 0.0);
     initial_state_.resize(4 * count_);
     inverse_mass_1_kg_ = system.inverse_mass_1_kg;
@@ -51,13 +50,14 @@ ElasticDynamics::ElasticDynamics(const System& system, const Forces& forces)
 void ElasticDynamics::measure() {
     for (const double mass_kg : mass_kg_) energy_offset_j_ += mass_kg * forces_.potential_j_kg(origin_m_);
     const double* const y = initial_state_.data();
-    frequency_1_s_ = std::sqrt(elastic_.add_forces(y, y + count_, force_n_.data(), force_n_.data() + count_));
+    std::vector<double> force_n(2 * count_, 0.0);
+    frequency_1_s_ = std::sqrt(elastic_.add_forces(y, y + count_, force_n.data(), force_n.data() + count_));
     double fastest_m_s = 0.0;
     double acceleration_m_s2 = 0.0;
     for (std::size_t i = 0; i < count_; ++i) {
         fastest_m_s = std::max(fastest_m_s, length(y[2 * count_ + i], y[3 * count_ + i]));
         acceleration_m_s2 =
-            std::max(acceleration_m_s2, inverse_mass_1_kg_[i] * length(force_n_[i], force_n_[count_ + i]));
+            std::max(acceleration_m_s2, inverse_mass_1_kg_[i] * length(force_n[i], force_n[count_ + i]));
     }
     inverse_timescale_1_s_ = forces_.inverse_timescale_1_s(size_m_, fastest_m_s);
     if (inverse_timescale_1_s_ == 0.0) inverse_timescale_1_s_ = std::sqrt(acceleration_m_s2 / size_m_);
@@ -115,18 +115,6 @@ void ElasticDynamics::velocities(const double* y, std::vector<double>& vx_m_s,
                                  std::vector<double>& vy_m_s) const {
     std::copy_n(y + 2 * count_, count_, vx_m_s.begin());
     std::copy_n(y + 3 * count_, count_, vy_m_s.begin());
-}
-
-Loads ElasticDynamics::loads(const double* y) {
-    Loads loads;
-    loads.largest_tension_n = elastic_.largest_tension_n(y, y + count_);
-    std::fill(force_n_.begin(), force_n_.end(), 0.0);
-    elastic_.add_forces(y, y + count_, force_n_.data(), force_n_.data() + count_);
-    for (const Pin& pin : pins_) {
-        loads.pin_force_n =
-            std::max(loads.pin_force_n, length(force_n_[pin.particle], force_n_[count_ + pin.particle]));
-    }
-    return loads;
 }
 
 }  // namespace corda::sim

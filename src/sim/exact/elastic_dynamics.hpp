@@ -42,7 +42,6 @@ class ElasticDynamics final : public Dynamics {
     void tensions(const double* y, std::vector<double>& tension_n) override {
         elastic_.tensions(y, y + count_, tension_n);
     }
-    [[nodiscard]] Loads loads(const double* y) override;
 
   private:
     struct Pin {
@@ -64,7 +63,6 @@ class ElasticDynamics final : public Dynamics {
     double inverse_timescale_1_s_ = 0.0;  ///< see Forces::inverse_timescale_1_s; of its size
     double frequency_1_s_ = 0.0;          ///< bound on the largest at the start
     double energy_offset_j_ = 0.0;        ///< potential energy of all masses at origin_m_
-    std::vector<double> force_n_;         ///< scratch of loads(): x, then y
 };
 
 }  // namespace corda::sim

@@ -13,7 +13,7 @@
 #include "corda/sim/exact/chain_series.hpp"
 #include "corda/sim/exact/elastic_dynamics.hpp"
 #include "corda/sim/exact/string/part.hpp"
-#include "corda/sim/validate.hpp"
+#include "corda/sim/system.hpp"
 
 namespace corda::sim {
 namespace {
@@ -60,28 +60,6 @@ void refuse_rigid_string_graph(const Body& body) {
                   "method exact moves a string of rigid links only if it is an open chain");
 }
 
-/// Makes the part that moves the only body of a system.
-std::unique_ptr<ExactPart> make_part(const System& system, const Forces& forces, const ExactDef& def,
-                                     const GoesOn& goes_on) {
-    StopCheck stop(goes_on);
-    stop.spend(1 + system.particle_count());
-    const Body& body = system.bodies.front();
-    if (body.material.compliance_1_n > 0.0) {
-        return std::make_unique<OdePart>(std::make_unique<ElasticDynamics>(system, forces), def.tolerance);
-    }
-    if (!body.material.is_string) refuse_rigid_graph(body);
-    refuse_imaginary_bars(system);
-    if (body.material.is_string) {
-        refuse_rigid_string_graph(body);
-        return std::make_unique<StringPart>(system, forces, def.tolerance, stop);
-    }
-    if (body.link_count <= kMaxLinksOfSeries && system.bends.empty()) {
-        return std::make_unique<ChainPart>(system, forces, def.tolerance);
-    }
-    return std::make_unique<OdePart>(std::make_unique<ChainDynamics>(system, system.bodies, forces),
-                                     def.tolerance);
-}
-
 /// Snaps of rigid strings take energy, as drag does.
 bool conserves_energy_in(const System& system, const Forces& forces) {
     const MaterialDef& material = system.bodies.front().material;
@@ -97,13 +75,14 @@ StepControl step_control(double inverse_timescale_1_s, double tolerance) {
             pace * kMaxStep / inverse_timescale_1_s, kMinStep / inverse_timescale_1_s};
 }
 
-OdePart::OdePart(std::unique_ptr<Dynamics> dynamics, double tolerance)
-    : ExactPart(dynamics->initial_state()),
+OdePart::OdePart(const System& system, const Forces& forces, std::unique_ptr<Dynamics> dynamics,
+                 double tolerance)
+    : Exact(system, forces, tolerance, dynamics->initial_state()),
       dynamics_(std::move(dynamics)),
       integrator_(*dynamics_, dynamics_->initial_state(), dynamics_->error_scales(),
                   step_control(dynamics_->inverse_timescale_1_s(), tolerance)) {}
 
-Status OdePart::advance_to(double time_s, State& state, StopCheck& stop) {
+Status OdePart::reach(double time_s, State& state, StopCheck& stop) {
     if (integrator_.advance_to(time_s, stop) == Status::kDiverged) return Status::kDiverged;
     integrator_.interpolate(time_s, output_.data());
     dynamics_->project(output_.data());
@@ -111,12 +90,33 @@ Status OdePart::advance_to(double time_s, State& state, StopCheck& stop) {
     return Status::kOk;
 }
 
-Exact::Exact(const System& system, const Forces& forces, const ExactDef& def, double /*frame_interval_s*/,
-             const GoesOn& goes_on)
+Exact::Exact(const System& system, const Forces& forces, double tolerance, std::vector<double> output)
     : Solver(sim::energy_scale_j(system, forces.on_particles(system)), conserves_energy_in(system, forces)),
-      def_(def),
-      part_(make_part(system, forces, def, goes_on)) {
+      output_(std::move(output)),
+      def_{tolerance} {
     assert(system.bodies.size() == 1);
+}
+
+std::unique_ptr<Exact> Exact::make(const System& system, const Forces& forces, const ExactDef& def,
+                                   const GoesOn& goes_on) {
+    StopCheck stop(goes_on);
+    stop.spend(1 + system.particle_count());
+    const Body& body = system.bodies.front();
+    if (body.material.compliance_1_n > 0.0) {
+        return std::make_unique<OdePart>(system, forces, std::make_unique<ElasticDynamics>(system, forces),
+                                         def.tolerance);
+    }
+    if (!body.material.is_string) refuse_rigid_graph(body);
+    refuse_imaginary_bars(system);
+    if (body.material.is_string) {
+        refuse_rigid_string_graph(body);
+        return std::make_unique<StringPart>(system, forces, def.tolerance, stop);
+    }
+    if (body.link_count <= kMaxLinksOfSeries && system.bends.empty()) {
+        return std::make_unique<ChainPart>(system, forces, def.tolerance);
+    }
+    return std::make_unique<OdePart>(
+        system, forces, std::make_unique<ChainDynamics>(system, system.bodies, forces), def.tolerance);
 }
 
 const char* Exact::problem_of(const ExactDef& def) {
@@ -130,14 +130,16 @@ std::string Exact::text_of(const ExactDef& def) {
 }
 
 double Exact::step_cost_ns(const ExactDef& /*def*/, const Body& body) {
-    constexpr double kPerParticle = 140.0;  // at 20 to 1000 particles
-    return kPerParticle * static_cast<double>(body.particle_count);
+    // A rigid string is searched for events in every step.
+    constexpr double kOfAString = 2.5;
+    const bool is_rigid_string = body.material.is_string && body.material.compliance_1_n == 0.0;
+    return (is_rigid_string ? kOfAString : 1.0) * kParticleCostNs * static_cast<double>(body.particle_count);
 }
 
 Status Exact::advance_to(double time_s, State& state, StopCheck& stop) {
     const FlushDenormals flush;
     state.time_s = time_s;
-    return part_->advance_to(time_s, state, stop);
+    return reach(time_s, state, stop);
 }
 
 }  // namespace corda::sim

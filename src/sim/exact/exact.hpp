@@ -2,9 +2,7 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "corda/sim/exact/dop853.hpp"
@@ -12,51 +10,9 @@
 
 namespace corda::sim {
 
-/// A body that method `exact` integrates with its own steps.
-class ExactPart {
-  public:
-    ExactPart(const ExactPart&) = delete;
-    ExactPart& operator=(const ExactPart&) = delete;
-    virtual ~ExactPart() = default;
-
-    // See Solver.
-    virtual Status advance_to(double time_s, State& state, StopCheck& stop) = 0;
-    [[nodiscard]] virtual double energy_j() const { return dynamics().energy_j(output_.data()); }
-    [[nodiscard]] Loads loads() { return dynamics().loads(output_.data()); }
-    void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) const {
-        dynamics().velocities(output_.data(), vx_m_s, vy_m_s);
-    }
-    void tensions(std::vector<double>& tension_n) { dynamics().tensions(output_.data(), tension_n); }
-    [[nodiscard]] virtual std::uint64_t steps() const = 0;
-    [[nodiscard]] virtual std::uint64_t rejected_steps() const { return 0; }
-
-  protected:
-    explicit ExactPart(std::vector<double> output = {}) : output_(std::move(output)) {}
-    /// The equations of motion at the last requested time.
-    [[nodiscard]] virtual Dynamics& dynamics() const = 0;
-
-    std::vector<double> output_;  ///< state of dynamics() at the last requested time
-};
-
 /// Bounds of the steps for a motion of this inverse time scale (Dynamics::inverse_timescale_1_s) and
 /// ExactDef::tolerance.
 [[nodiscard]] StepControl step_control(double inverse_timescale_1_s, double tolerance);
-
-/// A body whose equations of motion never change, integrated by Dop853.
-class OdePart final : public ExactPart {
-  public:
-    OdePart(std::unique_ptr<Dynamics> dynamics, double tolerance);
-
-    Status advance_to(double time_s, State& state, StopCheck& stop) override;
-    [[nodiscard]] std::uint64_t steps() const override { return integrator_.accepted_steps(); }
-    [[nodiscard]] std::uint64_t rejected_steps() const override { return integrator_.rejected_steps(); }
-
-  private:
-    [[nodiscard]] Dynamics& dynamics() const override { return *dynamics_; }
-
-    std::unique_ptr<Dynamics> dynamics_;
-    Dop853 integrator_;
-};
 
 /// Method `exact`: a body is integrated in the coordinates that suit it.
 ///
@@ -72,40 +28,62 @@ class OdePart final : public ExactPart {
 /// chaotic.
 ///
 /// A rope that stands exactly upright stays so: nothing pushes it off.
-class Exact final : public Solver {
+class Exact : public Solver {
   public:
     /// Requires one body. Throws corda::Refusal for rigid bars that are imaginary or do not form an open
     /// chain, for a rigid rope that is taut between two pins, and for what StringPart refuses; and as a
-    /// StopCheck if `goes_on` ends it. Steps do not depend on the frame interval.
-    Exact(const System& system, const Forces& forces, const ExactDef& def, double frame_interval_s = 0.0,
-          const GoesOn& goes_on = {});
+    /// StopCheck if `goes_on` ends it.
+    [[nodiscard]] static std::unique_ptr<Exact> make(const System& system, const Forces& forces,
+                                                     const ExactDef& def, const GoesOn& goes_on = {});
 
     // Facts about the method: see solver.cpp.
     static constexpr bool kKnowsTensions = true;
+    static constexpr double kParticleCostNs = 140.0;  ///< of a step of a rope, at 20 to 1000 particles
     [[nodiscard]] static const char* problem_of(const ExactDef& def);
     [[nodiscard]] static std::string text_of(const ExactDef& def);
     [[nodiscard]] static double step_cost_ns(const ExactDef& def, const Body& body);
-    [[nodiscard]] static std::optional<double> fixed_step_s(const ExactDef&) { return std::nullopt; }
 
-    Status advance_to(double time_s, State& state, StopCheck& stop) override;
-    [[nodiscard]] double energy_j() const override { return part_->energy_j(); }
-    [[nodiscard]] std::optional<Loads> loads() const override { return part_->loads(); }
+    Status advance_to(double time_s, State& state, StopCheck& stop) final;
+    [[nodiscard]] double energy_j() const override { return dynamics().energy_j(output_.data()); }
     void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override {
-        part_->velocities(vx_m_s, vy_m_s);
+        dynamics().velocities(output_.data(), vx_m_s, vy_m_s);
     }
     [[nodiscard]] bool tensions(std::vector<double>& tension_n) override {
-        part_->tensions(tension_n);
+        dynamics().tensions(output_.data(), tension_n);
         return true;
     }
-    [[nodiscard]] std::uint64_t steps() const override { return part_->steps(); }
     [[nodiscard]] std::vector<MethodDef> methods() const override { return {def_}; }
 
     /// Steps that were tried and were too long.
-    [[nodiscard]] std::uint64_t rejected_steps() const { return part_->rejected_steps(); }
+    [[nodiscard]] virtual std::uint64_t rejected_steps() const { return 0; }
+
+  protected:
+    Exact(const System& system, const Forces& forces, double tolerance, std::vector<double> output = {});
+    /// The equations of motion at the last requested time.
+    [[nodiscard]] virtual Dynamics& dynamics() const = 0;
+    /// Writes the positions at a time, and the state of dynamics() to output_.
+    virtual Status reach(double time_s, State& state, StopCheck& stop) = 0;
+
+    std::vector<double> output_;  ///< state of dynamics() at the last requested time
 
   private:
     ExactDef def_;
-    std::unique_ptr<ExactPart> part_;
+};
+
+/// A body whose equations of motion never change, integrated by Dop853.
+class OdePart final : public Exact {
+  public:
+    OdePart(const System& system, const Forces& forces, std::unique_ptr<Dynamics> dynamics, double tolerance);
+
+    [[nodiscard]] std::uint64_t steps() const override { return integrator_.accepted_steps(); }
+    [[nodiscard]] std::uint64_t rejected_steps() const override { return integrator_.rejected_steps(); }
+
+  private:
+    [[nodiscard]] Dynamics& dynamics() const override { return *dynamics_; }
+    Status reach(double time_s, State& state, StopCheck& stop) override;
+
+    std::unique_ptr<Dynamics> dynamics_;
+    Dop853 integrator_;
 };
 
 }  // namespace corda::sim

@@ -122,6 +122,12 @@ double ElasticForces::add_forces(const double* x_m, const double* y_m, double* f
         fx_n[spring.b] -= tension_n * bar.x;
         fy_n[spring.b] -= tension_n * bar.y;
     }
+    const double push = 1.0 / std::max(shortest, kMinLengthShare) - 1.0;
+    return push * spring_square_frequency_ + add_bend_forces(x_m, y_m, fx_n, fy_n);
+}
+
+double ElasticForces::add_bend_forces(const double* x_m, const double* y_m, double* fx_n,
+                                      double* fy_n) const {
     // The second derivatives of k (1 - cos) are k cos times the squares of the angle's first derivatives and
     // k sin times its second ones, which are no larger; both grow with the inverse square of the lengths.
     double sharpest = 0.0;
@@ -142,8 +148,7 @@ double ElasticForces::add_forces(const double* x_m, const double* y_m, double* f
         fx_n[joint.b] -= a_n * u.y + c_n * v.y;
         fy_n[joint.b] += a_n * u.x + c_n * v.x;
     }
-    const double push = 1.0 / std::max(shortest, kMinLengthShare) - 1.0;
-    return push * spring_square_frequency_ + sharpest * joint_square_frequency_;
+    return sharpest * joint_square_frequency_;
 }
 
 double ElasticForces::common_square_frequency() const {
@@ -168,20 +173,12 @@ double ElasticForces::energy_j(const double* x_m, const double* y_m) const {
     return energy_j;
 }
 
-double ElasticForces::largest_tension_n(const double* x_m, const double* y_m) const {
-    double largest_n = 0.0;
-    for (const Spring& spring : springs_)
-        largest_n = std::max(largest_n, std::abs(tension_n(spring, x_m, y_m)));
-    return largest_n;
-}
-
-void ElasticForces::tensions(const double* x_m, const double* y_m, std::vector<double>& tensions_n) const {
-    for (const Spring& spring : springs_) tensions_n[spring.bar] = tension_n(spring, x_m, y_m);
-}
-
-double ElasticForces::tension_n(const Spring& spring, const double* x_m, const double* y_m) {
-    return spring.stiffness_n_m *
-           std::max(along(x_m, y_m, spring.a, spring.b).length_m - spring.rest_m, spring.least_stretch_m);
+void ElasticForces::tensions(const double* x_m, const double* y_m, std::vector<double>& tension_n) const {
+    for (const Spring& spring : springs_) {
+        tension_n[spring.bar] =
+            spring.stiffness_n_m *
+            std::max(along(x_m, y_m, spring.a, spring.b).length_m - spring.rest_m, spring.least_stretch_m);
+    }
 }
 
 EnergyMeter::EnergyMeter(const System& system, const WorldDef& world, std::span<const MethodDef> methods)

@@ -37,6 +37,8 @@ class ElasticForces {
     /// Gershgorin's, the largest over all particles of the inverse mass times the sum of the stiffnesses that
     /// act on the particle, that of a bar being max(1 / (C l), |T| / d).
     double add_forces(const double* x_m, const double* y_m, double* fx_n, double* fy_n) const;
+    /// The same for the bends alone.
+    double add_bend_forces(const double* x_m, const double* y_m, double* fx_n, double* fy_n) const;
 
     /// The same bound for usual states: bars no shorter than half of their rest lengths, joints bent by up to
     /// 0.2 radians.
@@ -45,9 +47,7 @@ class ElasticForces {
     [[nodiscard]] double energy_j(const double* x_m, const double* y_m) const;
 
     /// Writes the tensions of the bars that stretch, in N, to an array of all bars of the system.
-    void tensions(const double* x_m, const double* y_m, std::vector<double>& tensions_n) const;
-    /// Largest absolute tension of a bar.
-    [[nodiscard]] double largest_tension_n(const double* x_m, const double* y_m) const;
+    void tensions(const double* x_m, const double* y_m, std::vector<double>& tension_n) const;
 
   private:
     struct Spring {
@@ -66,7 +66,6 @@ class ElasticForces {
         double before_m = 0.0;  ///< |ab| at the start
         double after_m = 0.0;   ///< |bc| at the start
     };
-    [[nodiscard]] static double tension_n(const Spring& spring, const double* x_m, const double* y_m);
     void add_springs(const System& system, const Body& body);
     void add_joints(const System& system, std::size_t particle_count);
     void bound_frequencies(const double* inverse_mass_1_kg, std::size_t particle_count);

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "corda/sim/chain_tensions.hpp"
-#include "corda/sim/validate.hpp"
+#include "corda/sim/system.hpp"
 
 namespace corda::sim {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "corda/sim/defs.hpp"
 #include "corda/sim/rattle/constraint_solver.hpp"
-#include "corda/sim/validate.hpp"
+#include "corda/sim/system.hpp"
 
 namespace corda::sim {
 namespace {

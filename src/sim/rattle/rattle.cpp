@@ -12,7 +12,7 @@
 #include "corda/core/cpu.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/solver.hpp"
-#include "corda/sim/validate.hpp"
+#include "corda/sim/system.hpp"
 
 namespace corda::sim {
 namespace {
@@ -94,8 +94,7 @@ Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def,
       mass_kg_(system.mass_kg),
       inverse_mass_1_kg_(constraints_->inverse_mass_1_kg()),
       impulse_(constraints_->links().size(), 0.0),
-      tension_over_length_n_m_(impulse_.size(), 0.0),
-      pin_force_n_(mass_kg_.size()) {
+      tension_over_length_n_m_(impulse_.size(), 0.0) {
     refuse_rigid_strings(system);
     if (constraints_->determines_tensions()) find_bars_of_links(system);
     grid_.motion = Motion::start_of(system);
@@ -139,13 +138,12 @@ std::string Rattle::text_of(const RattleDef& def) {
 }
 
 double Rattle::step_cost_ns(const RattleDef& def, const Body& body) {
-    // Per particle at 20 to 1000 particles, of a chain at orders 2, 4, 6, 8.
-    constexpr std::array<double, RattleDef::kOrders.size()> kChainCosts{45.0, 180.0, 330.0, 600.0};
-    constexpr double kStageCostInAGraph = 500.0;  // the factorisation of a cloth of 40 x 30
-    const auto particles = static_cast<double>(body.particle_count);
-    if (body.is_chain && body.material.compliance_1_n == 0.0)
-        return kChainCosts[static_cast<std::size_t>(def.order / 2 - 1)] * particles;
-    return kStageCostInAGraph * particles * static_cast<double>(composition(def.order).stages.size());
+    // Per particle and stage.
+    constexpr double kUsual = 0.19 * 140.0;  // chains of 300 to 30 000 links
+    constexpr double kRigidGraph = 500.0;    // the factorisation of a cloth of 40 x 30
+    const bool is_rigid_graph = !body.is_chain && body.material.compliance_1_n == 0.0;
+    const auto stages = static_cast<double>(composition(def.order).stages.size());
+    return (is_rigid_graph ? kRigidGraph : kUsual) * stages * static_cast<double>(body.particle_count);
 }
 
 double Rattle::expected_steps(const RattleDef& def, const Body& body, double frequency_1_s, double time_s) {
@@ -155,11 +153,6 @@ double Rattle::expected_steps(const RattleDef& def, const Body& body, double fre
     if (!is_elastic && !body.is_chain) return Solver::expected_steps(def, body, frequency_1_s, time_s);
     const double allowed_1_s = is_elastic ? frequency_1_s : std::sqrt(kLoadFactor) * frequency_1_s;
     return allowed_1_s * time_s / (def.guard * composition(def.order).stable_omega_h);
-}
-
-double Rattle::relative_step_work(const RattleDef& def, const Body& /*body*/) {
-    constexpr double kPerStage = 0.19;  // 27 ns, measured with chains of 300 to 30 000 links
-    return kPerStage * static_cast<double>(composition(def.order).stages.size());
 }
 
 Status Rattle::advance_to(double time_s, State& state, StopCheck& stop) {
@@ -348,7 +341,7 @@ bool Rattle::complete(const Trajectory& trajectory, StopCheck& stop) {
     return true;
 }
 
-bool Rattle::find_tensions(StopCheck& stop) const {
+bool Rattle::find_tensions(StopCheck& stop) {
     // d . (acceleration of b - acceleration of a) + |velocity of b - velocity of a|^2 = 0. Drag does not
     // enter: it is along the velocities, whose differences are across the bars.
     const auto links = constraints_->links();
@@ -375,39 +368,6 @@ bool Rattle::find_tensions(StopCheck& stop) const {
     return constraints_->solve(output_, tension_over_length_n_m_, stop) && constraints_->had_full_rank();
 }
 
-bool Rattle::find_tensions_of_output() const {
-    // Without full rank the matrix would have to be factorised again, which takes long.
-    if (!constraints_->had_full_rank()) return false;
-    StopCheck nobody;
-    return find_tensions(nobody);
-}
-
-std::optional<Loads> Rattle::loads() const {
-    if (!constraints_->determines_tensions() || !find_tensions_of_output()) return std::nullopt;
-    Loads loads;
-    const auto links = constraints_->links();
-    std::fill(pin_force_n_.begin(), pin_force_n_.end(), Vec2{});
-    for (std::size_t k = 0; k < links.size(); ++k) {
-        const auto [a, b, rest_m] = links[k];
-        const Vec2 pull{tension_over_length_n_m_[k] * (output_.x_m[b] - output_.x_m[a]),
-                        tension_over_length_n_m_[k] * (output_.y_m[b] - output_.y_m[a])};
-        loads.largest_tension_n = std::max(loads.largest_tension_n, length(pull.x, pull.y));
-        pin_force_n_[a] = pin_force_n_[a] + pull;
-        pin_force_n_[b] = pin_force_n_[b] - pull;
-    }
-    if (is_elastic()) {
-        loads.largest_tension_n = std::max(
-            loads.largest_tension_n, elastic_.largest_tension_n(output_.x_m.data(), output_.y_m.data()));
-        for (std::size_t i = 0; i < mass_kg_.size(); ++i)
-            pin_force_n_[i] = pin_force_n_[i] + Vec2{force_x_n_[i], force_y_n_[i]};
-    }
-    for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
-        if (inverse_mass_1_kg_[i] == 0.0)
-            loads.pin_force_n = std::max(loads.pin_force_n, length(pin_force_n_[i].x, pin_force_n_[i].y));
-    }
-    return loads;
-}
-
 void Rattle::velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) {
     vx_m_s = output_.vx_m_s;
     vy_m_s = output_.vy_m_s;
@@ -426,7 +386,10 @@ void Rattle::find_bars_of_links(const System& system) {
 
 bool Rattle::tensions(std::vector<double>& tension_n) {
     if (!constraints_->determines_tensions()) return Solver::tensions(tension_n);
-    const bool are_known = find_tensions_of_output();
+    // The factors of complete() serve again. Without full rank the matrix would have to be factorised again,
+    // which takes long.
+    StopCheck nobody;
+    const bool are_known = constraints_->had_full_rank() && find_tensions(nobody);
     for (std::size_t k = 0; k < bar_of_link_.size(); ++k) {
         const auto [a, b, rest_m] = constraints_->links()[k];
         const double length_m = length(output_.x_m[b] - output_.x_m[a], output_.y_m[b] - output_.y_m[a]);

@@ -68,19 +68,15 @@ class Rattle final : public Solver {
     [[nodiscard]] static const char* problem_of(const RattleDef& def);
     [[nodiscard]] static std::string text_of(const RattleDef& def);
     [[nodiscard]] static double step_cost_ns(const RattleDef& def, const Body& body);
-    [[nodiscard]] static std::optional<double> fixed_step_s(const RattleDef& def) { return def.step_s; }
     /// Allows for kLoadFactor times the weight.
     [[nodiscard]] static double expected_steps(const RattleDef& def, const Body& body, double frequency_1_s,
                                                double time_s);
-    [[nodiscard]] static double relative_step_work(const RattleDef& def, const Body& body);
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;
-    /// Computed from the tensions that keep the second derivatives of the rigid bars' lengths 0. std::nullopt
-    /// if bars depend on each other, because the distribution of the load among them is then arbitrary.
-    [[nodiscard]] std::optional<Loads> loads() const override;
     void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override;
-    /// As loads().
+    /// Those that keep the second derivatives of the rigid bars' lengths 0. Unknown if bars depend on each
+    /// other, because the distribution of the load among them is then arbitrary.
     [[nodiscard]] bool tensions(std::vector<double>& tension_n) override;
     [[nodiscard]] std::uint64_t steps() const override { return step_; }
     [[nodiscard]] bool has_branched() const override { return has_branched_; }
@@ -129,9 +125,7 @@ class Rattle final : public Solver {
     [[nodiscard]] bool complete(const Trajectory& trajectory, StopCheck& stop);
     void find_bars_of_links(const System& system);
     /// Of output_. False if bars depend on each other there.
-    [[nodiscard]] bool find_tensions(StopCheck& stop) const;
-    /// The same after complete(), whose factors serve again, so that it takes no longer than reading them.
-    [[nodiscard]] bool find_tensions_of_output() const;
+    [[nodiscard]] bool find_tensions(StopCheck& stop);
 
     int order_;
     double guard_;
@@ -156,10 +150,8 @@ class Rattle final : public Solver {
     // without elastic forces.
     std::vector<double> force_x_n_;
     std::vector<double> force_y_n_;
-    Motion output_;  ///< at the last requested time, with complete velocities
-    // Of output_; scratch of loads().
-    mutable std::vector<double> tension_over_length_n_m_;
-    mutable std::vector<Vec2> pin_force_n_;  ///< one per particle; only those of pinned ones are used
+    Motion output_;                                ///< at the last requested time, with complete velocities
+    std::vector<double> tension_over_length_n_m_;  ///< of output_; scratch
 };
 
 }  // namespace corda::sim

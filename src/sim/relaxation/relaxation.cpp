@@ -9,7 +9,7 @@
 #include "corda/core/cpu.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/solver.hpp"
-#include "corda/sim/validate.hpp"
+#include "corda/sim/system.hpp"
 
 namespace corda::sim {
 namespace {

@@ -40,7 +40,6 @@ class Relaxation final : public Solver {
     [[nodiscard]] static const char* problem_of(const RelaxationDef& def);
     [[nodiscard]] static std::string text_of(const RelaxationDef& def);
     [[nodiscard]] static double step_cost_ns(const RelaxationDef& def, const Body& body);
-    [[nodiscard]] static std::optional<double> fixed_step_s(const RelaxationDef& def) { return def.step_s; }
 
     Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;

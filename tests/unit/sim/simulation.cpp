@@ -1,5 +1,6 @@
 #include "corda/sim/simulation.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -9,6 +10,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/stop_check.hpp"
+#include "support/failure.hpp"
 #include "support/nets.hpp"
 #include "support/random_system.hpp"
 #include "support/simulate.hpp"
@@ -238,6 +240,21 @@ TEST(Simulation, RefusesTensionsThatItsMethodDoesNotKnow) {
     run.set_outputs({.velocities = true});
     EXPECT_NEAR(run.state().vx_m_s[3], 1.5, 1e-12);
     EXPECT_THROW(run.set_outputs({.tensions = true}), Error);
+}
+
+TEST(Simulation, RefusesAWorldOutsideOfItsDeclarations) {
+    const RopeDef rope = reference::straight_rope(3, 1.0, 20.0);
+    const auto check = [&](const WorldDef& world) {
+        return test::failure_of([&] { test::simulate(rope, world, ExactDef{}); }).message;
+    };
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(check({}), "");
+    EXPECT_THAT(check({{0.0, kNaN}}), testing::HasSubstr("gravity_m_s2"));
+    for (const double duration_s : {0.0, -1.0, kInfinity, kNaN})
+        EXPECT_THAT(check({{}, duration_s}), testing::HasSubstr("duration_s")) << duration_s;
+    for (const double drag_1_s : {-1e-3, kInfinity, kNaN})
+        EXPECT_THAT(check({{}, 1.0, drag_1_s}), testing::HasSubstr("drag_1_s")) << drag_1_s;
 }
 
 }  // namespace

@@ -6,11 +6,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/defs.hpp"
+#include "support/failure.hpp"
 
 namespace corda::sim {
 namespace {
@@ -253,6 +257,89 @@ TEST(ABody, ThatIsAloneIsTheSystem) {
         EXPECT_EQ(body.x_m, system.x_m);
         EXPECT_EQ(body.bars.size(), system.bars.size());
     });
+}
+
+/// The message for a valid rope after a change.
+std::string problem_of_rope(const std::function<void(RopeDef&)>& spoil) {
+    RopeDef ropes[] = {reference::straight_rope(3, 1.0, 20.0), reference::straight_rope(3, 1.0, 30.0)};
+    spoil(ropes[1]);
+    return test::failure_of([&] { static_cast<void>(build_system(ropes)); }).message;
+}
+
+/// The message for a valid net of three particles after a change.
+std::string problem_of_net(const std::function<void(NetDef&)>& spoil) {
+    NetDef net;
+    net.points_m = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
+    net.bars = {{0, 1}, {1, 2}, {0, 2, false}};
+    spoil(net);
+    return test::failure_of([&] { static_cast<void>(build_system({}, {&net, 1})); }).message;
+}
+
+TEST(CheckedBodies, TakesSoundOnesAndRefusesNone) {
+    EXPECT_EQ(problem_of_rope([](RopeDef&) {}), "");
+    EXPECT_EQ(problem_of_net([](NetDef&) {}), "");
+    EXPECT_EQ(test::failure_of([] { static_cast<void>(build_system({}, {})); }).message,
+              "scene: there is neither a rope nor a net");
+}
+
+TEST(CheckedBodies, NamesTheRopeAndTheField) {
+    static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    const std::pair<std::function<void(RopeDef&)>, const char*> faults[] = {
+        {[](RopeDef& rope) { rope.points_m.resize(1); }, "points_m has fewer"},
+        {[](RopeDef& rope) { rope.origin_m.x = kInfinity; }, "origin_m"},
+        {[](RopeDef& rope) { rope.points_m[2].y = kNaN; }, "points_m"},
+        {[](RopeDef& rope) { rope.mass_kg.resize(3, 1.0); }, "mass_kg needs one"},
+        {[](RopeDef& rope) { rope.mass_kg.assign(4, 0.0); }, "mass_kg has"},
+        {[](RopeDef& rope) { rope.velocity_m_s.resize(3); }, "velocity_m_s needs"},
+        {[](RopeDef& rope) {
+             rope.velocity_m_s.assign(4, {kNaN, 0.0});
+         },
+         "velocity_m_s has"},
+        {[](RopeDef& rope) {
+             rope.pinned = {0, 4};
+         },
+         "pinned names particle 4 of 4"},
+        {[](RopeDef& rope) { rope.material.compliance_1_n = -1.0; }, "compliance_1_n"},
+        {[](RopeDef& rope) { rope.reach = 0; }, "reach"},
+        {[](RopeDef& rope) { rope.payload_kg = -1.0; }, "payload_kg"},
+        {[](RopeDef& rope) { rope.bending_n_m2 = kInfinity; }, "bending_n_m2"},
+        {[](RopeDef& rope) { rope.rest_m.assign(4, 1.0); }, "rest_m needs"},
+        {[](RopeDef& rope) { rope.rest_m.assign(3, 0.0); }, "rest_m has"},
+        {[](RopeDef& rope) {
+             rope.points_m.resize(2);
+             rope.mass_kg = {};
+             rope.velocity_m_s = {};
+             rope.closed = true;
+         },
+         "closed needs at least 3"},
+    };
+    for (const auto& [spoil, words] : faults) {
+        const std::string problem = problem_of_rope(spoil);
+        EXPECT_THAT(problem, testing::StartsWith("rope 1: "));
+        EXPECT_THAT(problem, testing::HasSubstr(words));
+    }
+    EXPECT_EQ(problem_of_rope([](RopeDef& rope) {
+                  rope.closed = true;
+                  rope.rest_m.assign(4, 1.0);
+              }),
+              "");
+}
+
+TEST(CheckedBodies, NamesTheNetAndTheBar) {
+    EXPECT_THAT(problem_of_net([](NetDef& net) {
+                    net.bars.push_back({0, 3, false});
+                }),
+                testing::AllOf(testing::StartsWith("net 0: "), testing::HasSubstr("(0, 3)")));
+    EXPECT_THAT(problem_of_net([](NetDef& net) {
+                    net.bars.push_back({1, 1, false});
+                }),
+                testing::HasSubstr("(1, 1)"));
+    EXPECT_THAT(problem_of_net([](NetDef& net) {
+                    net.bars.push_back({2, 1});
+                }),
+                testing::HasSubstr("a real bar behind an imaginary one"));
+    EXPECT_THAT(problem_of_net([](NetDef& net) { net.mass_kg = {1.0}; }), testing::HasSubstr("mass_kg"));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "corda/sim/defs.hpp"
-#include "corda/sim/validate.hpp"
+#include "corda/sim/system.hpp"
 
 namespace corda::sim {
 namespace {
@@ -91,7 +91,8 @@ void refuse_taut(const System& string) {
 }  // namespace
 
 StringPart::StringPart(const System& system, const Forces& forces, double tolerance, StopCheck& stop)
-    : forces_(forces),
+    : Exact(system, forces, tolerance),
+      forces_(forces),
       tolerance_(tolerance),
       offset_m_{system.x_m.front(), system.y_m.front()},
       string_(relative_to_first(system)),
@@ -111,7 +112,7 @@ StringPart::StringPart(const System& system, const Forces& forces, double tolera
     local_.y_m = string_.y_m;
 }
 
-Status StringPart::advance_to(double time_s, State& state, StopCheck& stop) {
+Status StringPart::reach(double time_s, State& state, StopCheck& stop) {
     if (!std::isfinite(time_s)) return Status::kDiverged;
     while (known_s_ < time_s) {
         if (!(event_s_ ? pass_event(stop) : take_step(stop))) return Status::kDiverged;

@@ -23,14 +23,13 @@ namespace corda::sim {
 ///
 /// Each step is searched for events when it is taken, and the integration restarts at each event. As in
 /// Dop853, nothing depends on the requested times. Memory is allocated at events only.
-class StringPart final : public ExactPart {
+class StringPart final : public Exact {
   public:
     /// Requires one body, a chain with is_string and without compliance. Throws corda::Refusal if it resists
     /// bending, if a link is longer than its rest length, if it is taut between two pins, or if its start
     /// does not determine which links are taut. `stop` counts the work of finding them.
     StringPart(const System& system, const Forces& forces, double tolerance, StopCheck& stop);
 
-    Status advance_to(double time_s, State& state, StopCheck& stop) override;
     [[nodiscard]] double energy_j() const override;
     [[nodiscard]] std::uint64_t steps() const override;
     [[nodiscard]] std::uint64_t rejected_steps() const override;
@@ -40,6 +39,7 @@ class StringPart final : public ExactPart {
 
   private:
     [[nodiscard]] Dynamics& dynamics() const override { return *dynamics_; }
+    Status reach(double time_s, State& state, StopCheck& stop) override;
     /// Finds the taut links of string_ and starts the motion there, with a first step of at least
     /// `first_step_s` if the tolerance allows. False if the taut links cannot be found.
     [[nodiscard]] bool start(double first_step_s, StopCheck& stop);

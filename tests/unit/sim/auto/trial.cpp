@@ -1,4 +1,4 @@
-#include "corda/sim/auto/trial.hpp"
+#include "corda/sim/auto/planner.hpp"
 
 #include <thread>
 #include <utility>

@@ -68,19 +68,6 @@ TEST(ChainBending, HasNoEnergyAndNoCouplesIfTheRopeIsStraight) {
     EXPECT_NEAR(dynamics.energy_j(dynamics.initial_state().data()), 0.0, 1e-14);
 }
 
-TEST(ChainBending, ClampsALinkBesideOneBetweenTwoPins) {
-    Bent bent({0, 1});
-    ASSERT_EQ(bent.bending.clamps().size(), 1U);
-    const ChainBending::Clamp& clamp = bent.bending.clamps().front();
-    EXPECT_EQ(clamp.near, 0U);
-    EXPECT_EQ(clamp.far, 1U);
-    EXPECT_NEAR(clamp.length_m, std::hypot(0.3, 0.1), 1e-15);
-    bent.bending.find_couples(bent.y.data());
-    // The couple of forces is across the link that stays.
-    EXPECT_NEAR(dot(clamp.force_n, clamp.along), 0.0, 1e-14);
-    EXPECT_GT(std::hypot(clamp.force_n.x, clamp.force_n.y), 0.1);
-}
-
 TEST(ChainBending, IsEmptyIfNothingBends) {
     EXPECT_TRUE(Bent({0}, 0.0).bending.empty());
     EXPECT_TRUE(ChainBending().empty());

@@ -53,9 +53,8 @@ TEST(Exact, MovesBothSidesOfAPinInTheMiddleAlike) {
     ASSERT_TRUE(half.go(0.7));
     EXPECT_NEAR(run.state().x_m[6], half.state().x_m[3], 1e-12);
     EXPECT_NEAR(run.state().y_m[6], half.state().y_m[3], 1e-12);
-    EXPECT_NEAR(run.solver().loads().value().largest_tension_n,
-                half.solver().loads().value().largest_tension_n, 1e-9);
-    EXPECT_LT(run.solver().loads().value().pin_force_n, 2.0 * half.solver().loads().value().pin_force_n);
+    EXPECT_NEAR(run.loads().value().largest_tension_n, half.loads().value().largest_tension_n, 1e-9);
+    EXPECT_LT(run.loads().value().pin_force_n, 2.0 * half.loads().value().pin_force_n);
 }
 
 TEST(Exact, MovesARopePinnedAtItsLastParticleAsItsMirrorImage) {
@@ -105,7 +104,7 @@ TEST(Exact, HangingRopeCarriesItsWeight) {
     rope.payload_kg = 6.0;
     test::ExactRun run(rope);
     ASSERT_TRUE(run.go(1.0));
-    const Loads loads = run.solver().loads().value();
+    const Loads loads = run.loads().value();
     EXPECT_NEAR(loads.pin_force_n, 98.1, 1e-12);
     EXPECT_NEAR(loads.largest_tension_n, 98.1, 1e-12);
     EXPECT_NEAR(run.solver().energy_scale_j(), 98.1, 1e-12);

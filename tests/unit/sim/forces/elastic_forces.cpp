@@ -155,7 +155,11 @@ TEST(ElasticForces, OfASlackStringAreNone) {
     const ElasticState slack = forces_of(elastic, system.x_m, system.y_m);
     // Only the link of 1/3 m whose rest length is 0.3 m pulls, by (d / l - 1) / C.
     const double tension_n = (1.0 / 3.0 / 0.3 - 1.0) / 1e-3;
-    EXPECT_NEAR(elastic.largest_tension_n(system.x_m.data(), system.y_m.data()), tension_n, 1e-11);
+    std::vector<double> tensions_n(3, 0.0);
+    elastic.tensions(system.x_m.data(), system.y_m.data(), tensions_n);
+    EXPECT_EQ(tensions_n[0], 0.0);
+    EXPECT_NEAR(tensions_n[1], tension_n, 1e-11);
+    EXPECT_EQ(tensions_n[2], 0.0);
     EXPECT_NEAR(length(slack.x_n[1], slack.y_n[1]), tension_n, 1e-11);
     EXPECT_EQ(slack.x_n[0], 0.0);
     EXPECT_EQ(slack.y_n[3], 0.0);

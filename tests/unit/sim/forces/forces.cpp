@@ -74,7 +74,7 @@ TEST(Forces, GiveAllMethodsTheSameEnergyScale) {
     rope.payload_kg = 3.0;
     const System system = build_system({&rope, 1});
     const double expected_j = 9.81 * 8.0 * 2.0;
-    EXPECT_DOUBLE_EQ(Exact(system, WorldDef{}, ExactDef{}).energy_scale_j(), expected_j);
+    EXPECT_DOUBLE_EQ(Exact::make(system, WorldDef{}, ExactDef{})->energy_scale_j(), expected_j);
     EXPECT_DOUBLE_EQ(Rattle(system, WorldDef{}, RattleDef{}, 0.01).energy_scale_j(), expected_j);
     EXPECT_DOUBLE_EQ(Relaxation(system, WorldDef{}, RelaxationDef{}, 0.01).energy_scale_j(), expected_j);
     RelaxationDef with_force;

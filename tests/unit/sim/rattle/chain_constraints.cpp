@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "corda/reference/ropes.hpp"
-#include "corda/sim/validate.hpp"
+#include "corda/sim/system.hpp"
 #include "support/constraint_checks.hpp"
 
 namespace corda::sim {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "corda/reference/ropes.hpp"
-#include "corda/sim/validate.hpp"
+#include "corda/sim/system.hpp"
 #include "support/constraint_checks.hpp"
 #include "support/nets.hpp"
 
