@@ -15,9 +15,6 @@
 namespace corda::media {
 namespace {
 
-constexpr std::size_t kChunkHeadBytes = 8;  // of a chunk: length and type
-constexpr std::size_t kChecksumBytes = 4;
-
 std::string chunk(std::string_view type, std::string_view data) {
     std::string bytes;
     bytes += big_endian(data.size(), 4);
@@ -40,14 +37,14 @@ struct ApngFrame {
 ApngFrame encode_apng(const PictureChange& change) {
     ApngFrame frame{change.part, change.is_blended, {}, {}};
     const std::string png = png_bytes(change.picture, {}, {}, true);
-    for (std::size_t at = kPngSignature.size(); at < png.size();) {
-        const std::string_view rest = std::string_view(png).substr(at);
-        const auto length = static_cast<std::size_t>(from_big_endian(rest.substr(0, 4)));
-        if (rest.substr(4, 4) == "IDAT") {
-            if (frame.head.empty()) frame.head = png.substr(0, at);
-            frame.data += rest.substr(kChunkHeadBytes, length);
-        }
-        at += kChunkHeadBytes + length + kChecksumBytes;
+    ByteReader bytes(png);
+    static_cast<void>(bytes.skip(kPngSignature.size()));
+    for (std::uint64_t at = bytes.position(); const auto chunk = next_png_chunk(bytes);
+         at = bytes.position()) {
+        const std::string data = bytes.take(chunk->length);
+        if (chunk->type == "IDAT" && frame.head.empty()) frame.head = png.substr(0, at);
+        if (chunk->type == "IDAT") frame.data += data;
+        static_cast<void>(bytes.skip(PngChunk::kChecksumBytes));
     }
     return frame;
 }
@@ -62,9 +59,7 @@ class ApngFile {
             output_.write(frame.head + chunk("acTL", plays()) + control(frame) + chunk("IDAT", frame.data));
         } else {
             const std::string head = control(frame);
-            std::string data;
-            data += big_endian(sequence_++, 4);
-            output_.write(head + chunk("fdAT", data + frame.data));
+            output_.write(head + chunk("fdAT", big_endian(sequence_++, 4) + frame.data));
         }
     }
     void finish() {
@@ -75,15 +70,11 @@ class ApngFile {
   private:
     /// For ever.
     [[nodiscard]] std::string plays() const {
-        std::string data;
-        data += big_endian(static_cast<std::uint64_t>(frames_), 4);
-        data += big_endian(0, 4);
-        return data;
+        return big_endian(static_cast<std::uint64_t>(frames_), 4) + big_endian(0, 4);
     }
     /// Where and how long a frame is shown; it stays, under the next one.
     std::string control(const ApngFrame& frame) {
-        std::string data;
-        data += big_endian(sequence_++, 4);
+        std::string data = big_endian(sequence_++, 4);
         for (const int side : {frame.part.width(), frame.part.height(), frame.part.x0, frame.part.y0})
             data += big_endian(static_cast<std::uint64_t>(side), 4);
         data += big_endian(static_cast<std::uint64_t>(fps_.den), 2);

@@ -37,19 +37,6 @@ struct Element {
     std::size_t end = 0;
 };
 
-/// The number of bytes of a number of variable length, which its first byte tells; 9: none.
-int bytes_of(char first) {
-    int bytes = 1;
-    while (bytes <= 8 && (static_cast<unsigned char>(first) & (0x100U >> bytes)) == 0) ++bytes;
-    return bytes;
-}
-
-std::uint64_t number(std::string_view bytes) {
-    std::uint64_t value = 0;
-    for (const char byte : bytes) value = value << 8 | static_cast<unsigned char>(byte);
-    return value;
-}
-
 void set_number(std::string& file, std::size_t at, int bytes, std::uint64_t value) {
     for (int i = bytes; i-- > 0; value >>= 8)
         file[at + static_cast<std::size_t>(i)] = static_cast<char>(value);
@@ -58,19 +45,19 @@ void set_number(std::string& file, std::size_t at, int bytes, std::uint64_t valu
 /// The element at a position below `end`; none if it is longer, but for the segment, whose end is not looked
 /// for.
 std::optional<Element> element_at(std::string_view file, std::size_t at, std::size_t end) {
-    Element element{.begin = at};
-    if (at >= end) return std::nullopt;
-    const auto id_bytes = static_cast<std::size_t>(bytes_of(file[at]));
-    element.length_at = at + id_bytes;
-    if (id_bytes > 4 || element.length_at >= end) return std::nullopt;
-    element.id = number(file.substr(at, id_bytes));
-    const auto bytes = static_cast<std::size_t>(bytes_of(file[element.length_at]));
-    element.data = element.length_at + bytes;
-    if (bytes > 8 || element.data > end) return std::nullopt;
-    const std::uint64_t marker = std::uint64_t{1} << (7 * bytes);
-    const std::uint64_t length = number(file.substr(element.length_at, bytes)) ^ marker;
-    if (element.id != kSegment && length > end - element.data) return std::nullopt;
-    element.end = element.id == kSegment ? end : element.data + static_cast<std::size_t>(length);
+    ByteReader bytes(file.substr(0, end));
+    if (!bytes.skip(at)) return std::nullopt;
+    const auto id = next_ebml_number(bytes);
+    const auto length = next_ebml_number(bytes);
+    if (!id || id->bytes > 4 || !length) return std::nullopt;
+    Element element{.id = id->id,
+                    .begin = at,
+                    .length_at = at + id->bytes,
+                    .data = static_cast<std::size_t>(bytes.position()),
+                    .end = end};
+    if (element.id == kSegment) return element;
+    if (length->length > bytes.left()) return std::nullopt;
+    element.end = element.data + static_cast<std::size_t>(length->length);
     return element;
 }
 
@@ -86,8 +73,8 @@ std::optional<Element> child(std::string_view file, const Element& parent, std::
 void lengthen(std::string& file, const std::vector<Element>& elements, int by) {
     for (const Element& element : elements) {
         const auto bytes = static_cast<int>(element.data - element.length_at);
-        const std::uint64_t length =
-            number(std::string_view(file).substr(element.length_at, element.data - element.length_at));
+        const std::uint64_t length = from_big_endian(
+            std::string_view(file).substr(element.length_at, element.data - element.length_at));
         set_number(file, element.length_at, bytes, length + static_cast<std::uint64_t>(by));
     }
 }
@@ -143,7 +130,7 @@ std::string with_new_matroska_header(std::string file) {
         const auto position = seek->id == kSeek ? child(file, *seek, kSeekPosition) : std::nullopt;
         if (!position) continue;
         const std::size_t bytes = position->end - position->data;
-        const std::uint64_t at = number(std::string_view(file).substr(position->data, bytes));
+        const std::uint64_t at = from_big_endian(std::string_view(file).substr(position->data, bytes));
         if (at + segment->data == words[0].begin)
             set_number(made, position->data, static_cast<int>(bytes), at + kTrackRoom.size());
     }

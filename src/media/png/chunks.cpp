@@ -1,13 +1,8 @@
-#include "corda/media/png/png.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -16,158 +11,116 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "corda/core/file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/media/bytes.hpp"
 #include "corda/media/format/file_kind.hpp"
+#include "corda/media/png/png.hpp"
 
 namespace corda::media {
 namespace {
 
-constexpr std::size_t kCrcBytes = 4;
-constexpr std::size_t kBlockBytes = std::size_t{1} << 16;
-
-std::uint32_t number_at(std::span<const unsigned char> bytes, std::size_t at) {
-    const void* const four = &bytes[at];
-    return static_cast<std::uint32_t>(from_big_endian({static_cast<const char*>(four), 4}));
+/// True for chunks that read_png() shows: critical ones have a type that begins with a capital (5.4); of the
+/// others transparency counts.
+bool is_of_pixels(const PngChunk& chunk) {
+    return (chunk.type[0] & 0x20) == 0 || chunk.type == "tRNS";
 }
 
-/// The head of a chunk: its length and its type (PNG specification, third edition, 5.3).
-struct ChunkHead {
-    std::array<unsigned char, 8> bytes{};
-
-    [[nodiscard]] std::size_t length() const { return number_at(bytes, 0); }
-    [[nodiscard]] bool is(std::string_view type) const { return std::memcmp(&bytes[4], type.data(), 4) == 0; }
-    /// Critical chunks have a type that begins with a capital (5.4); of the others transparency counts.
-    [[nodiscard]] bool is_of_pixels() const { return (bytes[4] & 0x20U) == 0 || is("tRNS"); }
-};
-
-/// A file that is being read from its beginning on.
-class ChunkFile {
-  public:
-    explicit ChunkFile(const std::string& path) : path_(path), file_(open_for_reading(path)) {}
-
-    /// Fills `bytes` with the next ones; false if they are not there.
-    [[nodiscard]] bool read(std::span<unsigned char> bytes) const {
-        void* const to = bytes.data();
-        return read_bytes(file_, path_, static_cast<char*>(to), bytes.size()) == bytes.size();
+/// The next chunk of pixels; std::nullopt if there is none.
+std::optional<PngChunk> next_chunk_of_pixels(ByteReader& bytes) {
+    for (auto chunk = next_png_chunk(bytes); chunk; chunk = next_png_chunk(bytes)) {
+        if (is_of_pixels(*chunk)) return chunk;
+        if (!bytes.skip(chunk->length + PngChunk::kChecksumBytes)) return std::nullopt;
     }
+    return std::nullopt;
+}
 
-    [[nodiscard]] bool skip(std::size_t count) const {
-        return std::fseek(file_.get(), static_cast<long>(count), SEEK_CUR) == 0;
-    }
-
-    /// Goes to the next chunk that counts; false if there is none.
-    [[nodiscard]] bool find_chunk(ChunkHead& head) const {
-        while (read(head.bytes)) {
-            if (head.is_of_pixels()) return true;
-            if (!skip(head.length() + kCrcBytes)) return false;
-        }
-        return false;
-    }
-
-  private:
-    std::string path_;
-    FileHandle file_;
-};
-
-/// Whether the next bytes of both files are there and equal.
-bool are_equal(const ChunkFile& a, const ChunkFile& b, std::size_t count) {
-    std::array<unsigned char, kBlockBytes> block_a{};
-    std::array<unsigned char, kBlockBytes> block_b{};
+/// True if the next bytes of both files are there and equal.
+bool are_equal(ByteReader& a, ByteReader& b, std::uint64_t count) {
+    constexpr std::uint64_t kBlockBytes = std::uint64_t{1} << 16;
     while (count > 0) {
-        const std::size_t step = std::min(count, kBlockBytes);
-        if (!a.read(std::span(block_a).first(step)) || !b.read(std::span(block_b).first(step)) ||
-            std::memcmp(block_a.data(), block_b.data(), step) != 0)
-            return false;
+        const std::uint64_t step = std::min(count, kBlockBytes);
+        const std::string bytes = a.take(step);
+        if (bytes.size() < step || bytes != b.take(step)) return false;
         count -= step;
     }
     return true;
 }
 
-constexpr std::size_t kBytesOfSignature = 8;
-
 /// "gAMA (1)"; empty for that of sRGB.
-std::string words_of_gamma(std::span<const unsigned char> bytes) {
-    constexpr std::uint32_t kOfSrgb = 45455;  // 11.3.2.2
-    if (bytes.size() != 4 || number_at(bytes, 0) == kOfSrgb) return "";
-    return fmt::format("gAMA ({:.6g})", number_at(bytes, 0) / 1e5);
+std::string gamma_text(std::string_view bytes) {
+    constexpr std::uint64_t kSrgb = 45455;  // 11.3.2.2
+    const std::uint64_t gamma = from_big_endian(bytes);
+    return bytes.size() != 4 || gamma == kSrgb
+               ? ""
+               : fmt::format("gAMA ({:.6g})", static_cast<double>(gamma) / 1e5);
 }
 
 /// "cHRM"; empty for the white point and the primaries of sRGB.
-std::string words_of_chromaticities(std::span<const unsigned char> bytes) {
-    constexpr std::array<std::uint32_t, 8> kOfSrgb{31270, 32900, 64000, 33000,
-                                                   30000, 60000, 15000, 6000};  // 11.3.2.1
-    bool is_srgb = bytes.size() == 4 * kOfSrgb.size();
-    for (std::size_t i = 0; is_srgb && i < kOfSrgb.size(); ++i)
-        is_srgb = number_at(bytes, 4 * i) == kOfSrgb[i];
-    return is_srgb ? "" : "cHRM";
+std::string chromaticities_text(std::string_view bytes) {
+    constexpr std::array<std::uint64_t, 8> kSrgb{31270, 32900, 64000, 33000,
+                                                 30000, 60000, 15000, 6000};  // 11.3.2.1
+    std::string srgb;
+    for (const std::uint64_t value : kSrgb) srgb += big_endian(value, 4);
+    return bytes == srgb ? "" : "cHRM";
 }
 
 /// "iCCP ('Display P3')": a keyword, a zero and a profile.
-std::string words_of_profile(std::span<const unsigned char> bytes) {
-    std::string name;
-    for (const unsigned char byte : bytes) {
-        if (byte == 0) break;
-        name += static_cast<char>(byte);
-    }
-    return fmt::format("iCCP ('{}')", printable(name));
+std::string profile_text(std::string_view bytes) {
+    return fmt::format("iCCP ('{}')", printable(std::string(bytes.substr(0, bytes.find('\0')))));
 }
 
 /// "cICP (9, 16, 0, 1)": primaries, transfer function, matrix and full range of ITU-T H.273.
-std::string words_of_code_points(std::span<const unsigned char> bytes) {
-    return fmt::format("cICP ({})", fmt::join(bytes, ", "));
+std::string code_points_text(std::string_view bytes) {
+    std::vector<int> numbers;
+    for (const char byte : bytes) numbers.push_back(static_cast<unsigned char>(byte));
+    return fmt::format("cICP ({})", fmt::join(numbers, ", "));
 }
 
-bool is_srgb_by_code_points(std::span<const unsigned char> bytes) {
-    constexpr std::array<unsigned char, 4> kSrgb{1, 13, 0, 1};
-    return std::equal(bytes.begin(), bytes.end(), kSrgb.begin(), kSrgb.end());
+bool is_regular(const std::string& path) {
+    std::error_code none;
+    return std::filesystem::is_regular_file(path, none);
 }
 
 }  // namespace
 
 std::vector<std::string> color_chunks_beside_srgb(const std::string& path) {
     constexpr int kMaxChunks = 1000;  // before the pixels
-    constexpr std::size_t kMaxShownBytes = 80;
-    std::error_code none;
-    if (!std::filesystem::is_regular_file(path, none) || !is_png(path)) return {};
-    const ChunkFile file(path);
-    if (!file.skip(kBytesOfSignature)) return {};
+    constexpr std::uint64_t kMaxShownBytes = 80;
+    constexpr std::string_view kSrgbCodePoints("\1\15\0\1", 4);
+    if (!is_regular(path) || !is_png(path)) return {};
+    ByteReader file = ByteReader::of_file(path);
+    if (!file.skip(kPngSignature.size())) return {};
     std::vector<std::string> found;
     bool is_srgb = false;
     std::optional<bool> is_srgb_for_certain;
-    ChunkHead head;
-    for (int i = 0; i < kMaxChunks && file.read(head.bytes) && !head.is("IDAT"); ++i) {
-        std::array<unsigned char, kMaxShownBytes> block{};
-        const auto bytes = std::span(block).first(std::min(head.length(), kMaxShownBytes));
-        if (!file.read(bytes) || !file.skip(head.length() - bytes.size() + kCrcBytes)) break;
-        std::string words;
-        if (head.is("gAMA")) words = words_of_gamma(bytes);
-        if (head.is("cHRM")) words = words_of_chromaticities(bytes);
-        if (head.is("iCCP")) words = words_of_profile(bytes);
-        if (head.is("sRGB")) is_srgb = true;
-        if (head.is("cICP")) is_srgb_for_certain = is_srgb_by_code_points(bytes);
-        if (head.is("cICP") && !*is_srgb_for_certain) words = words_of_code_points(bytes);
-        if (!words.empty()) found.push_back(words);
+    for (int i = 0; i < kMaxChunks; ++i) {
+        const auto chunk = next_png_chunk(file);
+        if (!chunk || chunk->type == "IDAT") break;
+        const std::string bytes = file.take(std::min(chunk->length, kMaxShownBytes));
+        if (!file.skip(chunk->length - bytes.size() + PngChunk::kChecksumBytes)) break;
+        std::string text;
+        if (chunk->type == "gAMA") text = gamma_text(bytes);
+        if (chunk->type == "cHRM") text = chromaticities_text(bytes);
+        if (chunk->type == "iCCP") text = profile_text(bytes);
+        if (chunk->type == "sRGB") is_srgb = true;
+        if (chunk->type == "cICP") is_srgb_for_certain = bytes == kSrgbCodePoints;
+        if (chunk->type == "cICP" && !*is_srgb_for_certain) text = code_points_text(bytes);
+        if (!text.empty()) found.push_back(text);
     }
     return is_srgb_for_certain.value_or(is_srgb) ? std::vector<std::string>{} : found;
 }
 
-bool have_same_picture_chunks(const std::string& a, const std::string& b) {
-    std::error_code none;
-    if (!std::filesystem::is_regular_file(a, none) || !std::filesystem::is_regular_file(b, none))
-        return false;
-    const ChunkFile of_a(a);
-    const ChunkFile of_b(b);
-    if (!are_equal(of_a, of_b, kBytesOfSignature)) return false;
-    ChunkHead head_a;
-    ChunkHead head_b;
-    while (of_a.find_chunk(head_a) && of_b.find_chunk(head_b)) {
-        if (head_a.bytes != head_b.bytes) return false;
-        if (!are_equal(of_a, of_b, head_a.length() + kCrcBytes)) return false;
-        if (head_a.is("IEND")) return true;
+bool have_same_picture_chunks(const std::string& path_a, const std::string& path_b) {
+    if (!is_regular(path_a) || !is_regular(path_b)) return false;
+    ByteReader a = ByteReader::of_file(path_a);
+    ByteReader b = ByteReader::of_file(path_b);
+    if (!are_equal(a, b, kPngSignature.size())) return false;
+    for (;;) {
+        const auto chunk = next_chunk_of_pixels(a);
+        if (!chunk || chunk != next_chunk_of_pixels(b)) return false;
+        if (!are_equal(a, b, chunk->length + PngChunk::kChecksumBytes)) return false;
+        if (chunk->type == "IEND") return true;
     }
-    return false;
 }
 
 }  // namespace corda::media

@@ -17,7 +17,7 @@ namespace corda::media {
 /// Whether two PNG files have the same chunks, but for those that change no pixel of read_png(): texts,
 /// times, resolutions, colour spaces. Then they show the same, if they can be read. Others may do so too: the
 /// same pixels may be packed in several ways. False for files that are no PNG, or are cut off.
-[[nodiscard]] bool have_same_picture_chunks(const std::string& a, const std::string& b);
+[[nodiscard]] bool have_same_picture_chunks(const std::string& path_a, const std::string& path_b);
 
 /// The chunks of a PNG file that declare colours other than sRGB, which read_png() ignores: gAMA, cHRM, iCCP
 /// and cICP with their values, such as "gAMA (1)". Empty if a chunk of higher precedence declares sRGB (PNG

@@ -1,66 +1,24 @@
-#include <array>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <optional>
 #include <sstream>
 #include <string>
-#include <string_view>
 
-#include "corda/core/file.hpp"
 #include "corda/media/bytes.hpp"
+#include "corda/media/format/file_kind.hpp"
 #include "corda/media/read/containers.hpp"
 
 namespace corda::media {
 namespace {
 
-/// Reads a file from its beginning. What is asked for behind its end is missing.
-class ByteReader {
-  public:
-    explicit ByteReader(const std::string& path)
-        : path_(path), file_(open_for_reading(path)), left_(file_size(path)) {}
-
-    [[nodiscard]] std::optional<unsigned> next() {
-        char byte = 0;
-        if (read_bytes(file_, path_, &byte, 1) == 0) return std::nullopt;
-        left_ -= left_ > 0 ? 1 : 0;
-        return static_cast<unsigned char>(byte);
-    }
-
-    /// A number of some bytes, the largest first.
-    [[nodiscard]] std::optional<std::uint64_t> number(int bytes) {
-        std::uint64_t value = 0;
-        for (int i = 0; i < bytes; ++i) {
-            const auto byte = next();
-            if (!byte) return std::nullopt;
-            value = value << 8 | *byte;
-        }
-        return value;
-    }
-
-    /// Whether there are so many further bytes, which are left out.
-    [[nodiscard]] bool skip(std::uint64_t count) {
-        if (count > left_) return false;
-        left_ -= count;
-        std::array<char, 256> block{};  // of a GIF there are many, so that seeking would take long
-        if (count <= block.size()) return read_bytes(file_, path_, block.data(), count) == count;
-        return ::fseeko(file_.get(), static_cast<off_t>(count), SEEK_CUR) == 0;
-    }
-
-  private:
-    std::string path_;
-    FileHandle file_;
-    std::uintmax_t left_;  ///< bytes to the end
-};
-
 /// The bytes of a GIF's colour table (GIF89a, 18 and 20), of whose flags the last three bits are its size.
-std::uint64_t color_table_bytes(unsigned flags) {
+std::uint64_t color_table_bytes(std::uint64_t flags) {
     return (flags & 0x80U) != 0 ? std::uint64_t{3} << ((flags & 7U) + 1) : 0;
 }
 
 bool skip_sub_blocks(ByteReader& bytes) {
     for (;;) {
-        const auto length = bytes.next();
+        const auto length = bytes.number(1);
         if (!length || !bytes.skip(*length)) return false;
         if (*length == 0) return true;
     }
@@ -68,17 +26,17 @@ bool skip_sub_blocks(ByteReader& bytes) {
 
 bool gif_has_trailer(ByteReader& bytes) {
     if (!bytes.skip(10)) return false;  // signature and size
-    const auto screen = bytes.next();
+    const auto screen = bytes.number(1);
     if (!screen || !bytes.skip(2 + color_table_bytes(*screen))) return false;
     for (;;) {
-        const auto block = bytes.next();
+        const auto block = bytes.number(1);
         if (block == 0x3bU) return true;
         if (block == 0U) continue;  // some writers leave one between blocks
         if (block == 0x21U) {       // an extension; its label comes first
             if (!bytes.skip(1) || !skip_sub_blocks(bytes)) return false;
         } else if (block == 0x2cU) {  // an image: place and size, colours, least code size
             if (!bytes.skip(8)) return false;
-            const auto flags = bytes.next();
+            const auto flags = bytes.number(1);
             if (!flags || !bytes.skip(color_table_bytes(*flags) + 1) || !skip_sub_blocks(bytes)) return false;
         } else {
             return false;
@@ -87,47 +45,31 @@ bool gif_has_trailer(ByteReader& bytes) {
 }
 
 bool png_has_last_chunk(ByteReader& bytes) {
-    if (!bytes.skip(8)) return false;  // signature
-    for (;;) {
-        const auto length = bytes.number(4);
-        const auto name = bytes.number(4);
-        if (!length || !name || !bytes.skip(*length + 4)) return false;
-        if (*name == 0x49454e44U) return true;  // IEND
+    if (!bytes.skip(kPngSignature.size())) return false;
+    for (auto chunk = next_png_chunk(bytes); chunk; chunk = next_png_chunk(bytes)) {
+        if (!bytes.skip(chunk->length + PngChunk::kChecksumBytes)) return false;
+        if (chunk->type == "IEND") return true;
     }
-}
-
-/// A length in EBML (RFC 8794, 4), whose first set bit tells how many bytes it has; none if it is missing,
-/// kUnknownLength if all bits are set.
-constexpr std::uint64_t kUnknownLength = ~std::uint64_t{0};
-
-std::optional<std::uint64_t> ebml_length(ByteReader& bytes) {
-    const auto first = bytes.next();
-    if (!first || *first == 0) return std::nullopt;
-    int more = 0;
-    while ((*first & (0x80U >> more)) == 0) ++more;
-    const auto rest = bytes.number(more);
-    if (!rest) return std::nullopt;
-    const std::uint64_t value = (std::uint64_t{*first & (0x7fU >> more)} << (8 * more)) | *rest;
-    return value + 1 == std::uint64_t{1} << (7 * (more + 1)) ? kUnknownLength : value;
+    return false;
 }
 
 bool matroska_is_whole(ByteReader& bytes) {
     constexpr std::uint64_t kHeadId = 0x1a45dfa3;
     constexpr std::uint64_t kSegmentId = 0x18538067;
     if (bytes.number(4) != kHeadId) return false;
-    const auto head = ebml_length(bytes);
-    if (!head || *head == kUnknownLength || !bytes.skip(*head)) return false;
+    const auto head = next_ebml_number(bytes);
+    if (!head || head->is_unknown || !bytes.skip(head->length)) return false;
     const auto next = bytes.number(4);
     if (!next || *next != kSegmentId) return next.has_value();  // of another element, nothing is known
-    const auto segment = ebml_length(bytes);
-    return segment && (*segment == kUnknownLength || bytes.skip(*segment));
+    const auto segment = next_ebml_number(bytes);
+    return segment && (segment->is_unknown || bytes.skip(segment->length));
 }
 
 /// A line up to its end, which may be missing; empty after the last one.
 std::string next_line(ByteReader& bytes) {
     constexpr std::size_t kLongest = 1024;
     std::string line;
-    for (auto byte = bytes.next(); byte && line.size() < kLongest; byte = bytes.next()) {
+    for (auto byte = bytes.number(1); byte && line.size() < kLongest; byte = bytes.number(1)) {
         line += static_cast<char>(*byte);
         if (*byte == '\n') break;
     }
@@ -167,7 +109,7 @@ bool yuv_is_whole(ByteReader& bytes) {
 }  // namespace
 
 bool is_truncated(const std::string& path, const std::string& kind) {
-    ByteReader bytes(path);
+    ByteReader bytes = ByteReader::of_file(path);
     if (kind == "gif") return !gif_has_trailer(bytes);
     if (kind == "apng") return !png_has_last_chunk(bytes);
     if (kind == "matroska") return !matroska_is_whole(bytes);
@@ -175,34 +117,26 @@ bool is_truncated(const std::string& path, const std::string& kind) {
     return false;
 }
 
-namespace {
-
-constexpr std::int64_t kSignatureBytes = 8;
-constexpr std::int64_t kChunkBytes = 12;  // length, name and checksum
-
-}  // namespace
-
 ApngTimes read_apng_times(const std::string& path) {
-    const FileHandle file = open_for_reading(path);
+    constexpr std::uint64_t kBytesBeforeDelay = 20;  // of an fcTL: its number, size and place
+    ByteReader bytes = ByteReader::of_file(path);
     ApngTimes times;
     std::int64_t frames = 0;
-    // The head of a chunk, and of an fcTL what is up to the delay's denominator, where 0 means 100.
-    std::array<char, 32> head{};
-    const std::string_view bytes(head.data(), head.size());
-    const auto number = [bytes](std::size_t at, std::size_t count) {
-        return static_cast<std::int64_t>(from_big_endian(bytes.substr(at, count)));
-    };
-    std::int64_t offset = kSignatureBytes;
-    while (::fseeko(file.get(), static_cast<off_t>(offset), SEEK_SET) == 0 &&
-           read_bytes(file, path, head.data(), head.size()) == head.size()) {
-        if (bytes.substr(4, 4) == "fcTL") {
-            const std::int64_t den = number(30, 2);
-            const Rational delay = Rational::reduced(number(28, 2), den == 0 ? 100 : den);
+    if (!bytes.skip(kPngSignature.size())) return times;
+    for (auto chunk = next_png_chunk(bytes); chunk; chunk = next_png_chunk(bytes)) {
+        const std::uint64_t end = bytes.position() + chunk->length + PngChunk::kChecksumBytes;
+        if (chunk->type == "fcTL") {
+            if (!bytes.skip(kBytesBeforeDelay)) break;
+            const auto num = bytes.number(2);
+            const auto den = bytes.number(2);
+            if (!num || !den) break;
+            const auto delay = Rational::reduced(static_cast<std::int64_t>(*num),
+                                                 *den == 0 ? 100 : static_cast<std::int64_t>(*den));
             if (frames == 0) times.delay_s = delay;
             if (delay != times.delay_s && times.uneven_at < 0) times.uneven_at = frames;
             ++frames;
         }
-        offset += kChunkBytes + number(0, 4);
+        if (end < bytes.position() || !bytes.skip(end - bytes.position())) break;
     }
     return times;
 }
