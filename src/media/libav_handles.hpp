@@ -14,7 +14,6 @@ extern "C" {
 #include <libavutil/log.h>
 #include <libavutil/mathematics.h>
 #include <libavutil/pixdesc.h>
-#include <libswscale/swscale.h>
 }
 
 #include <cstdint>
@@ -56,7 +55,6 @@ using Packet = std::unique_ptr<AVPacket, PointerPointerDeleter<&av_packet_free>>
 using Frame = std::unique_ptr<AVFrame, PointerPointerDeleter<&av_frame_free>>;
 using InputFormat = std::unique_ptr<AVFormatContext, PointerPointerDeleter<&avformat_close_input>>;
 using CodecParameters = std::unique_ptr<AVCodecParameters, PointerPointerDeleter<&avcodec_parameters_free>>;
-using ScaleContext = std::unique_ptr<SwsContext, PointerDeleter<&sws_freeContext>>;
 using IoContext = std::unique_ptr<AVIOContext, PointerPointerDeleter<&free_io>>;
 using OutputFormat = std::unique_ptr<AVFormatContext, PointerDeleter<&avformat_free_context>>;
 

@@ -41,9 +41,9 @@ Input open_input(const std::string& path) {
     return Input(raw);
 }
 
-media::Yuv420Image picture_of(const AVFrame& frame) {
+Yuv420Image picture_of(const AVFrame& frame) {
     if (frame.format != AV_PIX_FMT_YUV420P) throw std::runtime_error("not yuv420p");
-    media::Yuv420Image picture(frame.width, frame.height);
+    Yuv420Image picture(frame.width, frame.height);
     for (int plane = 0; plane < 3; ++plane) {
         const auto width = static_cast<std::size_t>(picture.plane_width(plane));
         for (int row = 0; row < picture.plane_height(plane); ++row) {

@@ -4,14 +4,14 @@
 #include <string>
 #include <vector>
 
-#include "corda/media/encode/yuv420.hpp"
+#include "support/yuv420_image.hpp"
 
 namespace corda::test {
 
 /// A video as libav decodes it, read independently of corda::media.
 struct DecodedFrames {
     std::vector<std::int64_t> pts;  ///< in ticks of the track
-    std::vector<media::Yuv420Image> pictures;
+    std::vector<Yuv420Image> pictures;
     int tick_num = 0;
     int tick_den = 0;
     std::int64_t stream_duration = 0;        ///< in ticks, from the container

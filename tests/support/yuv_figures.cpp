@@ -13,20 +13,14 @@ constexpr double kGreen = 1.0 - kRed - kBlue;
 
 }  // namespace
 
-std::array<double, 3> rgb_at(const media::Yuv420Image& picture, int x, int y) {
+std::array<double, 3> rgb_at(const Yuv420Image& picture, int x, int y) {
     const auto sample = [&](int plane, int px, int py) {
         return static_cast<double>(picture.plane(plane)[py * picture.plane_width(plane) + px]);
     };
-    const double luma = (sample(0, x, y) - 16.0) / 219.0;
-    const double cb = (sample(1, x / 2, y / 2) - 128.0) / 224.0;
-    const double cr = (sample(2, x / 2, y / 2) - 128.0) / 224.0;
-    const double red = luma + 2.0 * (1.0 - kRed) * cr;
-    const double blue = luma + 2.0 * (1.0 - kBlue) * cb;
-    const double green = (luma - kRed * red - kBlue * blue) / kGreen;
-    return {255.0 * red, 255.0 * green, 255.0 * blue};
+    return media::rgb_from_ycbcr(sample(0, x, y), sample(1, x / 2, y / 2), sample(2, x / 2, y / 2));
 }
 
-double luma_psnr_db(const media::Yuv420Image& decoded, const Image& rendered) {
+double luma_psnr_db(const Yuv420Image& decoded, const Image& rendered) {
     double squares = 0.0;
     for (int y = 0; y < rendered.height(); ++y) {
         for (int x = 0; x < rendered.width(); ++x) {

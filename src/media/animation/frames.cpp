@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "corda/media/animation/animation.hpp"
+#include "corda/media/encode/pixels.hpp"
 
 namespace corda::media {
 namespace {
@@ -28,20 +29,23 @@ PixelRect difference(const Image& a, const Image& b) {
 }  // namespace
 
 LosslessFrames::LosslessFrames(std::string part_path, std::uint64_t bytes)
-    : part_path_(std::move(part_path)), reader_(part_path_, bytes) {}
+    : part_path_(std::move(part_path)), decoder_(part_path_, bytes) {}
 
-void LosslessFrames::read(Image& picture) {
-    if (!reader_.read(picture))
+void LosslessFrames::decode() {
+    if (!decoder_.read())
         throw Error(ExitCode::kIo, fmt::format("'{}' changed while it was read", part_path_));
     ++next_;
 }
 
+void LosslessFrames::read(Image& picture) {
+    decode();
+    if (!copy_exact(decoder_.frame(), picture))
+        throw Error(ExitCode::kIo, fmt::format("'{}' holds no lossless R'G'B'", part_path_));
+}
+
 void LosslessFrames::go_to(std::int64_t k) {
     assert(k >= next_);
-    while (next_ < k - 1) {
-        reader_.skip();
-        ++next_;
-    }
+    while (next_ < k - 1) decode();
     if (next_ < k) read(picture_);
     std::swap(last_, picture_);
     read(picture_);
@@ -51,7 +55,8 @@ PictureChange LosslessFrames::change() const {
     if (next_ == 1) return {picture_.rect(), picture_, false};
     PictureChange change;
     change.part = difference(picture_, last_);
-    change.is_blended = !has_alpha();
+    const auto format = static_cast<AVPixelFormat>(decoder_.frame().format);
+    change.is_blended = (av_pix_fmt_desc_get(format)->flags & AV_PIX_FMT_FLAG_ALPHA) == 0;
     change.picture = Image(change.part.width(), change.part.height());
     for (int y = 0; y < change.part.height(); ++y) {
         const std::uint8_t* const from = picture_.pixel(change.part.x0, change.part.y0 + y);

@@ -11,7 +11,7 @@
 #include "corda/core/image.hpp"
 #include "corda/core/ordered_workers.hpp"
 #include "corda/media/animation/animation.hpp"
-#include "corda/media/read/video_reader.hpp"
+#include "corda/media/read/decoder.hpp"
 
 namespace corda::media {
 
@@ -36,14 +36,14 @@ class LosslessFrames {
     [[nodiscard]] const Image& picture() const { return picture_; }
     /// Of the picture before; of picture 0, all. Opaque pictures are blended.
     [[nodiscard]] PictureChange change() const;
-    /// Whether pictures may be transparent.
-    [[nodiscard]] bool has_alpha() const { return reader_.has_alpha(); }
 
   private:
     void read(Image& picture);
+    void decode();
 
     std::string part_path_;
-    VideoReader reader_;
+    QuietLog quiet_;
+    Decoder decoder_;
     std::int64_t next_ = 0;
     Image picture_;
     Image last_;  ///< the one before

@@ -13,7 +13,7 @@
 #include "corda/media/encode/resources.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/media/libav_handles.hpp"
-#include "corda/media/read/open_video.hpp"
+#include "corda/media/read/decoder.hpp"
 #include "corda/media/read/video_comment.hpp"
 #include "corda/media/verify/verify.hpp"
 

@@ -124,15 +124,6 @@ void number_frames(const std::vector<std::int64_t>& stamps, std::int64_t step, P
     index.frame_of.resize(complete);
 }
 
-}  // namespace
-
-std::string metadata_entry(const AVFormatContext& format, const char* key) {
-    const AVDictionaryEntry* entry = av_dict_get(format.metadata, key, nullptr, 0);
-    return entry == nullptr ? std::string() : std::string(entry->value);
-}
-
-namespace {
-
 /// The rate that the comment tells.
 std::optional<Rational> told_rate_of(const PartInput& input) {
     return comment_rate(metadata_entry(*input.format, "comment"));

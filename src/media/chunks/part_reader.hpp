@@ -10,6 +10,7 @@
 #include "corda/core/rational.hpp"
 #include "corda/media/chunks/track_output.hpp"
 #include "corda/media/libav_handles.hpp"
+#include "corda/media/read/decoder.hpp"
 
 namespace corda::media {
 
@@ -43,9 +44,6 @@ class EmptyPart : public Error {
 /// Reads all packets of a part. Throws EmptyPart (kMismatch), or corda::Error: kMismatch if it has no
 /// constant frame rate, kInterrupted if `on_progress` asks to stop.
 [[nodiscard]] PartIndex index_part(const std::string& path, const OnProgress& on_progress);
-
-/// Metadata of the part, "title" or "comment"; empty if it has none.
-[[nodiscard]] std::string metadata_entry(const AVFormatContext& format, const char* key);
 
 /// Result of checking the checksums of a part.
 struct SoundBytes {

@@ -17,7 +17,7 @@
 #include "corda/media/chunks/finish_part.hpp"
 #include "corda/media/chunks/part_reader.hpp"
 #include "corda/media/format/format.hpp"
-#include "corda/media/read/open_video.hpp"
+#include "corda/media/read/decoder.hpp"
 
 namespace corda::media {
 namespace {

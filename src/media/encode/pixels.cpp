@@ -99,29 +99,6 @@ bool copy_exact(const AVFrame& frame, Image& picture) {
     return true;
 }
 
-void ShownPictures::convert(const AVFrame& frame, Image& picture) {
-    const auto format = static_cast<AVPixelFormat>(frame.format);
-    // Chroma is interpolated, not repeated, and nothing is rounded to the speed of a CPU's instructions.
-    constexpr int kFlags =
-        SWS_BILINEAR | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP | SWS_ACCURATE_RND | SWS_BITEXACT;
-    scaler_.reset(sws_getCachedContext(scaler_.release(), frame.width, frame.height, format, frame.width,
-                                       frame.height, AV_PIX_FMT_RGBA, kFlags, nullptr, nullptr, nullptr));
-    if (!scaler_)
-        throw Error(ExitCode::kIo, fmt::format("pictures of the pixel format {} cannot be converted",
-                                               av_get_pix_fmt_name(format)));
-    const int matrix =
-        frame.colorspace == AVCOL_SPC_UNSPECIFIED ? SWS_CS_ITU709 : static_cast<int>(frame.colorspace);
-    const int* const table = sws_getCoefficients(matrix);
-    const int is_full_range = frame.color_range == AVCOL_RANGE_JPEG ? 1 : 0;
-    constexpr int kOne = 1 << 16;
-    sws_setColorspaceDetails(scaler_.get(), table, is_full_range, table, 1, 0, kOne, kOne);
-    if (picture.width() != frame.width || picture.height() != frame.height)
-        picture = Image(frame.width, frame.height);
-    std::uint8_t* const rows = picture.data();
-    const auto row_bytes = static_cast<int>(picture.row_bytes());
-    sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height, &rows, &row_bytes);
-}
-
 void AlphaBleed::search_row(const Image& image, int y, const PixelRect& grown, Found* row) const {
     const auto shows = [&](int x) { return image.pixel(x, y)[3] >= kMinAlpha; };
     constexpr int kNone = kReachPx + 1;

@@ -18,17 +18,6 @@ void convert_pixels(const Image& image, const PixelRect& part, AVFrame& frame);
 /// pixel format.
 [[nodiscard]] bool copy_exact(const AVFrame& frame, Image& picture);
 
-/// Turns decoded frames of any pixel format into what a player shows: 8-bit RGBA, straight alpha.
-class ShownPictures {
-  public:
-    /// Converts by the frame's own tags, BT.709 in limited range if it has none. Throws corda::Error (kIo)
-    /// for a pixel format that libswscale does not read.
-    void convert(const AVFrame& frame, Image& picture);
-
-  private:
-    ScaleContext scaler_;  ///< of the last frame's size and format
-};
-
 /// Sets the colour tags that a frame or a context of this pixel format gets: BT.709 in limited range with the
 /// sRGB transfer, or sRGB in R'G'B'.
 template <typename Tagged>

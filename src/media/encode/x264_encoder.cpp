@@ -22,6 +22,7 @@ extern "C" {
 #include "corda/core/basics.hpp"
 #include "corda/media/chunks/chunk.hpp"
 #include "corda/media/encode/pixels.hpp"
+#include "corda/media/encode/yuv420.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/read/color_patch.hpp"
 

@@ -178,21 +178,6 @@ void chroma_row(const std::uint8_t* upper, const std::uint8_t* lower, int i0, in
 
 }  // namespace
 
-Yuv420Image::Yuv420Image(int width, int height) : width_(width), height_(height) {
-    assert(width > 0 && height > 0 && width % 2 == 0 && height % 2 == 0);
-    for (int index = 0; index < 3; ++index) {
-        planes_[index].resize(static_cast<std::size_t>(plane_width(index)) *
-                              static_cast<std::size_t>(plane_height(index)));
-    }
-}
-
-void convert_to_yuv420(const Image& rgb, const PixelRect& damage, Yuv420Image& yuv) {
-    assert(rgb.width() == yuv.width() && rgb.height() == yuv.height());
-    convert_to_yuv420(rgb, damage,
-                      {{yuv.plane(0), yuv.plane(1), yuv.plane(2)},
-                       {yuv.plane_width(0), yuv.plane_width(1), yuv.plane_width(2)}});
-}
-
 void convert_to_yuv420(const Image& rgb, const PixelRect& damage, const YuvPlanes& yuv) {
     assert(rgb.width() % 2 == 0 && rgb.height() % 2 == 0);
     const PixelRect touched = damage.intersected(rgb.rect());
@@ -238,6 +223,14 @@ void convert_to_yuv444(const Image& rgb, const PixelRect& damage, int bits, cons
             }
         }
     }
+}
+
+std::array<double, 3> rgb_from_ycbcr(double y, double cb, double cr, bool is_full_range) {
+    const double luma = is_full_range ? y / 255.0 : (y - 16.0) / 219.0;
+    const double blue = (cb - 128.0) / (is_full_range ? 255.0 : 224.0);
+    const double red = (cr - 128.0) / (is_full_range ? 255.0 : 224.0);
+    return {255.0 * (luma + 1.5748 * red), 255.0 * (luma - 0.1873243 * blue - 0.4681243 * red),
+            255.0 * (luma + 1.8556 * blue)};
 }
 
 }  // namespace corda::media

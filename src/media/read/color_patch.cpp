@@ -91,15 +91,6 @@ std::vector<ColorPatch> choose_patches(const Image& frame) {
     return chosen;
 }
 
-std::array<double, 3> rgb_from_ycbcr(double y, double cb, double cr) {
-    const double luma = (y - 16.0) / 219.0;
-    const double blue = (cb - 128.0) / 224.0;
-    const double red = (cr - 128.0) / 224.0;
-    return {255.0 * (luma + 1.5748 * red),
-            255.0 * (luma - 0.2126 / 0.7152 * 1.5748 * red - 0.0722 / 0.7152 * 1.8556 * blue),
-            255.0 * (luma + 1.8556 * blue)};
-}
-
 double patch_error(const ColorPatch& patch, const std::array<double, 3>& shown) {
     double worst = 0.0;
     for (std::size_t c = 0; c < 3; ++c)

@@ -17,10 +17,7 @@ inline constexpr int kPatchSide = 16;
 /// in the centre and at the sides.
 [[nodiscard]] std::vector<ColorPatch> choose_patches(const Image& frame);
 
-/// R'G'B' (0 .. 255, not clipped) of BT.709 limited range Y'CbCr: the inverse of convert_to_yuv420.
-[[nodiscard]] std::array<double, 3> rgb_from_ycbcr(double y, double cb, double cr);
-
-/// Whether all of a patch is within a picture of this size.
+/// True if all of a patch is within a picture of this size.
 [[nodiscard]] constexpr bool is_within(const ColorPatch& patch, int width_px, int height_px) {
     return patch.x >= 0 && patch.y >= 0 && patch.x <= width_px - kPatchSide &&
            patch.y <= height_px - kPatchSide;

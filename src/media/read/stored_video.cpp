@@ -1,50 +1,130 @@
 #include "corda/media/read/stored_video.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/media/encode/yuv420.hpp"
 #include "corda/media/format/file_kind.hpp"
 #include "corda/media/read/containers.hpp"
-#include "corda/media/read/video_reader.hpp"
+#include "corda/media/read/decoder.hpp"
 #include "corda/media/read/webp_reader.hpp"
 
 namespace corda::media {
 
+namespace {
+
+/// Copies the samples of a decoded frame; false for a pixel format that is not read.
+bool copy_samples(const AVFrame& frame, StoredPicture& picture) {
+    const AVPixFmtDescriptor* const format = av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
+    constexpr std::uint64_t kUnread = AV_PIX_FMT_FLAG_PAL | AV_PIX_FMT_FLAG_HWACCEL | AV_PIX_FMT_FLAG_FLOAT |
+                                      AV_PIX_FMT_FLAG_BITSTREAM | AV_PIX_FMT_FLAG_BAYER;
+    const bool is_known = format != nullptr && (format->flags & kUnread) == 0 &&
+                          format->comp[0].depth <= 16 &&
+                          (format->nb_components == 1 || format->nb_components >= 3);
+    if (!is_known || !is_picture_size(frame.width, frame.height)) return false;
+    picture.width_px = frame.width;
+    picture.height_px = frame.height;
+    picture.format = format->name;
+    picture.components = format->nb_components;
+    picture.is_rgb = (format->flags & AV_PIX_FMT_FLAG_RGB) != 0;
+    picture.is_full_range = frame.color_range == AVCOL_RANGE_JPEG;
+    picture.bits = format->comp[0].depth;
+    picture.chroma_shift_x = format->log2_chroma_w;
+    picture.chroma_shift_y = format->log2_chroma_h;
+    const auto pixels = static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height);
+    picture.samples.assign(pixels * static_cast<std::size_t>(picture.components), 0);
+    const std::uint8_t* data[4] = {frame.data[0], frame.data[1], frame.data[2], frame.data[3]};
+    for (int c = 0; c < picture.components; ++c) {
+        const bool is_chroma = !picture.is_rgb && (c == 1 || c == 2);
+        const int width = ceiling_shift(frame.width, is_chroma ? format->log2_chroma_w : 0);
+        const int height = ceiling_shift(frame.height, is_chroma ? format->log2_chroma_h : 0);
+        std::uint16_t* const samples = picture.samples.data() + static_cast<std::size_t>(c) * pixels;
+        for (int y = 0; y < height; ++y)
+            av_read_image_line2(samples + std::ptrdiff_t{y} * width, data, frame.linesize, format, 0, y, c,
+                                width, 0, sizeof(std::uint16_t));
+    }
+    return true;
+}
+
+}  // namespace
+
 /// libav reads all but animated WebP.
 struct StoredVideo::Impl {
+    explicit Impl(const std::string& its_path) : path(its_path) {
+        const std::string kind = file_kind(path);
+        if (is_truncated(path, kind) || (kind == "mov" && !read_mp4_boxes(path).whole))
+            throw Error(ExitCode::kIo,
+                        fmt::format("'{}' breaks off before its end; copy or render it again", path));
+        if (kind == "webp") {
+            webp.emplace(path);
+            if (!webp->is_open())
+                throw Error(ExitCode::kIo, fmt::format("libwebp cannot open '{}' as an animated WebP", path));
+            if (const auto told = rate_of_ms(webp->told_ends_ms())) rate = *told;
+            return;
+        }
+        decoder.emplace(path);
+        const AVRational told = decoder->stream().avg_frame_rate;
+        if (told.den > 0) rate = Rational::reduced(told.num, told.den);
+        if (kind != "apng") return;  // whose delays libav rounds
+        const ApngTimes times = read_apng_times(path);
+        if (times.delay_s.num <= 0) return;
+        rate = {times.delay_s.den, times.delay_s.num};
+        if (times.uneven_at < 0) delay_s = times.delay_s;
+    }
+
+    bool decode(StoredPicture& picture) {
+        if (!decoder->read()) return false;
+        const AVFrame& frame = decoder->frame();
+        if (!copy_samples(frame, picture))
+            throw Error(
+                ExitCode::kIo,
+                fmt::format("{}: is {} of {}x{}; only grey, R'G'B' or Y'CbCr of up to 16 bits is read", path,
+                            av_get_pix_fmt_name(static_cast<AVPixelFormat>(frame.format)), frame.width,
+                            frame.height));
+        const bool has_time = frame.best_effort_timestamp != AV_NOPTS_VALUE;
+        picture.time_s =
+            has_time ? static_cast<double>(frame.best_effort_timestamp) * av_q2d(decoder->stream().time_base)
+                     : 0.0;
+        if (delay_s)  // libav's stamps, of rounded delays, drift
+            picture.time_s = static_cast<double>(frames++ * delay_s->num) / static_cast<double>(delay_s->den);
+        return true;
+    }
+
+    bool decode_webp(StoredPicture& picture) {
+        if (!webp->has_next()) return false;
+        const std::int64_t start_ms = webp->read_ends_ms().empty() ? 0 : webp->read_ends_ms().back();
+        const std::uint8_t* const rgba = webp->read();
+        if (rgba == nullptr) throw Error(ExitCode::kIo, fmt::format("{}: decoding failed", path));
+        picture = StoredPicture{};
+        picture.width_px = webp->width_px();
+        picture.height_px = webp->height_px();
+        picture.format = "rgba";
+        picture.time_s = static_cast<double>(start_ms) / 1000.0;
+        picture.components = 4;
+        picture.is_rgb = true;
+        picture.is_full_range = true;
+        const std::size_t pixels = static_cast<std::size_t>(picture.width_px) * picture.height_px;
+        picture.samples.resize(4 * pixels);
+        for (std::size_t i = 0; i < pixels; ++i)
+            for (std::size_t c = 0; c < 4; ++c) picture.samples[c * pixels + i] = rgba[4 * i + c];
+        return true;
+    }
+
+    QuietLog quiet;
     std::string path;
     Rational rate{0, 1};
-    std::optional<VideoReader> video;
+    std::optional<Decoder> decoder;
     std::optional<WebpReader> webp;
     std::optional<Rational> delay_s;  ///< of every frame of an APNG that has one delay
-    std::int64_t frames = 0;          ///< that were read of it
+    std::int64_t frames = 0;          ///< read so far of that APNG
 };
 
-StoredVideo::StoredVideo(const std::string& path) : impl_(std::make_unique<Impl>()) {
-    impl_->path = path;
-    const std::string kind = file_kind(path);
-    if (is_truncated(path, kind) || (kind == "mov" && !read_mp4_boxes(path).whole))
-        throw Error(ExitCode::kIo,
-                    fmt::format("'{}' breaks off before its end; copy or render it again", path));
-    if (kind == "webp") {
-        impl_->webp.emplace(path);
-        if (!impl_->webp->is_open())
-            throw Error(ExitCode::kIo, fmt::format("libwebp cannot open '{}' as an animated WebP", path));
-        if (const auto rate = rate_of_ms(impl_->webp->told_ends_ms())) impl_->rate = *rate;
-        return;
-    }
-    impl_->video.emplace(path);
-    impl_->rate = impl_->video->rate();
-    if (kind != "apng") return;  // whose delays libav rounds
-    const ApngTimes times = read_apng_times(path);
-    if (times.delay_s.num <= 0) return;
-    impl_->rate = {times.delay_s.den, times.delay_s.num};
-    if (times.uneven_at < 0) impl_->delay_s = times.delay_s;
-}
+StoredVideo::StoredVideo(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
 
 StoredVideo::~StoredVideo() = default;
 
@@ -53,67 +133,36 @@ Rational StoredVideo::rate() const {
 }
 
 bool StoredVideo::read(StoredPicture& picture) {
-    if (impl_->video) {
-        if (!impl_->video->read(picture)) return false;
-        if (const auto& delay = impl_->delay_s)  // libav's stamps, of rounded delays, drift
-            picture.time_s =
-                static_cast<double>(impl_->frames++ * delay->num) / static_cast<double>(delay->den);
-        return true;
-    }
-    WebpReader& webp = *impl_->webp;
-    if (!webp.has_next()) return false;
-    const std::int64_t start_ms = webp.read_ends_ms().empty() ? 0 : webp.read_ends_ms().back();
-    const std::uint8_t* const rgba = webp.read();
-    if (rgba == nullptr) throw Error(ExitCode::kIo, fmt::format("{}: decoding failed", impl_->path));
-    picture = StoredPicture{};
-    picture.width_px = webp.width_px();
-    picture.height_px = webp.height_px();
-    picture.format = "rgba";
-    picture.time_s = static_cast<double>(start_ms) / 1000.0;
-    picture.components = 4;
-    picture.is_rgb = true;
-    picture.is_full_range = true;
-    const std::size_t pixels = static_cast<std::size_t>(picture.width_px) * picture.height_px;
-    picture.samples.resize(4 * pixels);
-    for (std::size_t i = 0; i < pixels; ++i)
-        for (std::size_t c = 0; c < 4; ++c) picture.samples[c * pixels + i] = rgba[4 * i + c];
-    return true;
+    return impl_->decoder ? impl_->decode(picture) : impl_->decode_webp(picture);
 }
 
 Image StoredPicture::rgba() const {
     Image image(width_px, height_px);
     const auto pixels = static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px);
     const double largest = static_cast<double>((1 << bits) - 1);
-    const double step = static_cast<double>(1 << (bits - 8));  // of 8-bit levels
+    const double step = std::ldexp(1.0, bits - 8);  // of 8-bit levels
     const auto byte = [](double value) {
-        return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 1.0) * 255.0));
+        return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
     };
     for (int y = 0; y < height_px; ++y) {
         for (int x = 0; x < width_px; ++x) {
-            const auto sample = [&](int c, int shift_x, int shift_y) -> double {
+            const auto sample = [&](int c, int shift_x = 0, int shift_y = 0) -> double {
                 const std::size_t width = static_cast<std::size_t>(ceiling_shift(width_px, shift_x));
                 return samples[static_cast<std::size_t>(c) * pixels +
                                static_cast<std::size_t>(y >> shift_y) * width +
                                static_cast<std::size_t>(x >> shift_x)];
             };
-            std::uint8_t* const rgba = image.pixel(x, y);
-            rgba[3] = components == 4 ? byte(sample(3, 0, 0) / largest) : 255;
-            if (is_rgb) {
-                for (int c = 0; c < 3; ++c) rgba[c] = byte(sample(c, 0, 0) / largest);
-                continue;
-            }
-            const double luma =
-                is_full_range ? sample(0, 0, 0) / largest : (sample(0, 0, 0) / step - 16.0) / 219.0;
             const auto chroma = [&](int c) {
-                if (components < 3) return 0.0;
-                const double level = sample(c, chroma_shift_x, chroma_shift_y) / step - 128.0;
-                return level / (is_full_range ? 255.0 : 224.0);
+                return components < 3 ? 128.0 : sample(c, chroma_shift_x, chroma_shift_y) / step;
             };
-            const double blue = chroma(1);
-            const double red = chroma(2);
-            rgba[0] = byte(luma + 1.5748 * red);
-            rgba[1] = byte(luma - 0.1873243 * blue - 0.4681243 * red);
-            rgba[2] = byte(luma + 1.8556 * blue);
+            const auto level = [&](int c) { return 255.0 * sample(c) / largest; };
+            const std::array<double, 3> rgb =
+                is_rgb ? std::array{level(0), level(1), level(2)}
+                       : rgb_from_ycbcr(is_full_range ? level(0) : sample(0) / step, chroma(1), chroma(2),
+                                        is_full_range);
+            std::uint8_t* const rgba = image.pixel(x, y);
+            for (std::size_t c = 0; c < 3; ++c) rgba[c] = byte(rgb[c]);
+            rgba[3] = components == 4 ? byte(level(3)) : 255;
         }
     }
     return image;

@@ -7,8 +7,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/child_process.hpp"
-#include "corda/media/chunks/part_reader.hpp"
-#include "corda/media/read/open_video.hpp"
+#include "corda/media/read/decoder.hpp"
 
 namespace corda::media {
 namespace {
@@ -127,8 +126,7 @@ constexpr ChildLimits kCommentLimits{std::uint64_t{4} << 30, 20, 60.0};
 
 std::string read_comment(const std::string& path) {
     try {
-        const OpenVideo file = open_video(path);
-        return metadata_entry(*file.format, "comment");
+        return metadata_entry(Decoder(path).format(), "comment");
     } catch (const Error& error) {
         fail_reading(path, ExitCode::kIo, error.what());
     }

@@ -8,10 +8,11 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/media/bytes.hpp"
+#include "corda/media/encode/yuv420.hpp"
 #include "corda/media/libav_handles.hpp"
 #include "corda/media/read/color_patch.hpp"
 #include "corda/media/read/containers.hpp"
-#include "corda/media/read/open_video.hpp"
+#include "corda/media/read/decoder.hpp"
 #include "corda/media/read/video_comment.hpp"
 #include "corda/media/read/webp_reader.hpp"
 #include "corda/media/verify/checks.hpp"
@@ -74,18 +75,25 @@ class Decoding {
     void run(const std::string& path, const OnProgress& on_progress) {
         if (!open(path)) return;
         video_.opened = true;
-        while (read_packet()) report_progress(on_progress, video_.frames, 0);
-        if (depth_ == VerifyDepth::kAllFrames)
-            receive(nullptr);
-        else
-            take_stamps(0);
-        // libav guesses the duration of the last frame; check_clocks in verify.cpp compares the end with the
+        const auto use = [&](const AVPacket& packet) {
+            report_progress(on_progress, video_.frames, 0);
+            return use_of(packet);
+        };
+        for (int status = 0; status != AVERROR_EOF;) {
+            status = decoder_->next(log_, use);
+            if (status == 0)
+                take_frame(decoder_->frame());
+            else if (status != AVERROR_EOF)
+                note_bad(status);
+        }
+        take_stamps(0);
+        // libav guesses the duration of the last frame; check_clocks in mp4.cpp compares the end with the
         // track's stored duration.
+        const std::int64_t duration = decoder_->stream().duration;
         if (video_.frames == 1 && (rounded_to_ || counts_frames_))
             video_.step = 1;
         else if (video_.frames == 1)
-            video_.step =
-                is_sane_stamp(file_.stream->duration) ? std::max<std::int64_t>(file_.stream->duration, 0) : 0;
+            video_.step = is_sane_stamp(duration) ? std::max<std::int64_t>(duration, 0) : 0;
         video_.end = last_pts_ + video_.step;
         describe();
     }
@@ -93,32 +101,34 @@ class Decoding {
   private:
     bool open(const std::string& path) {
         try {
-            file_ = open_video(path);
+            decoder_.emplace(path);
         } catch (const Error& error) {
             if (error.code() != ExitCode::kIo) throw;
             video_.open_reason = error.what();
             return false;
         }
-        frame_ = check_allocated(Frame(av_frame_alloc()), "a frame");
-        packet_ = check_allocated(Packet(av_packet_alloc()), "a packet");
-        const AVCodecParameters& parameters = *file_.stream->codecpar;
+        const AVStream& stream = decoder_->stream();
+        const AVCodecParameters& parameters = *stream.codecpar;
         video_.container_tags = named(av_color_range_name(parameters.color_range)) + " " +
                                 named(av_color_space_name(parameters.color_space)) + " " +
                                 named(av_color_primaries_name(parameters.color_primaries)) + " " +
                                 named(av_color_transfer_name(parameters.color_trc));
-        const AVDictionaryEntry* comment = av_dict_get(file_.format->metadata, "comment", nullptr, 0);
-        if (comment != nullptr) video_.comment = comment->value;
-        video_.tick = {file_.stream->time_base.num, file_.stream->time_base.den};
+        video_.comment = metadata_entry(decoder_->format(), "comment");
+        video_.tick = {stream.time_base.num, stream.time_base.den};
         find_rounded_rate();
-        if (file_.format->iformat == av_find_input_format("apng")) take_delays(read_apng_times(path));
+        if (is_kind("apng")) take_delays(read_apng_times(path));
         return true;
+    }
+
+    [[nodiscard]] bool is_kind(const char* demuxer) const {
+        return decoder_->format().iformat == av_find_input_format(demuxer);
     }
 
     /// Matroska counts milliseconds: then the rate that the file tells decides what is the nearest stamp.
     void find_rounded_rate() {
-        if (file_.format->iformat != av_find_input_format("matroska")) return;
+        if (!is_kind("matroska")) return;
         const auto told = comment_rate(video_.comment);
-        const AVRational average = file_.stream->avg_frame_rate;
+        const AVRational average = decoder_->stream().avg_frame_rate;
         const Rational rate = told ? *told : Rational{average.num, average.den};
         if (rate.num <= 0 || rate.den <= 0) return;
         rounded_to_ = rate;
@@ -137,12 +147,12 @@ class Decoding {
     /// The number of the frame that a rounded stamp is the nearest to, or one that fits nowhere.
     [[nodiscard]] std::int64_t unrounded(std::int64_t pts) const {
         const AVRational frame = frame_time_base(*rounded_to_);
-        const std::int64_t k = av_rescale_q(pts, file_.stream->time_base, frame);
-        return av_rescale_q(k, frame, file_.stream->time_base) == pts ? k : last_pts_ + kNever;
+        const std::int64_t k = av_rescale_q(pts, decoder_->stream().time_base, frame);
+        return av_rescale_q(k, frame, decoder_->stream().time_base) == pts ? k : last_pts_ + kNever;
     }
 
     void note_bad(int status) {
-        if (status == AVERROR(ENOMEM) || *file_.lacks_memory)
+        if (status == AVERROR(ENOMEM) || decoder_->lacks_memory())
             fail_libav(ExitCode::kTemporary, "decoding", AVERROR(ENOMEM));
         note_bad(log_.text().empty() ? libav_text(status) : log_.text());
     }
@@ -151,37 +161,18 @@ class Decoding {
         if (video_.bad_frames++ == 0) video_.bad_reason = reason;
     }
 
-    bool read_packet() {
-        log_.clear();
-        const int status = av_read_frame(file_.format.get(), packet_.get());
-        if (status < 0) {
-            if (status != AVERROR_EOF) note_bad(status);
-            return false;
-        }
-        if (packet_->stream_index == file_.stream->index) {
-            if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) note_bad(AVERROR_INVALIDDATA);
-            if (depth_ == VerifyDepth::kAllFrames)
-                receive(packet_.get());
-            else
-                read_alone(*packet_);
-        }
-        av_packet_unref(packet_.get());
-        return true;
-    }
-
-    /// Decodes a packet of a key frame, apart from all others, and notes the stamp of any packet. If it is
-    /// known what was rendered, other key frames of that are left out.
-    void read_alone(const AVPacket& packet) {
+    /// All packets are decoded, or each key frame apart from all others; then the stamps of packets count. If
+    /// it is known what was rendered, other key frames of that are left out.
+    Decoder::PacketUse use_of(const AVPacket& packet) {
+        if ((packet.flags & AV_PKT_FLAG_CORRUPT) != 0) note_bad(AVERROR_INVALIDDATA);
+        if (depth_ == VerifyDepth::kAllFrames) return Decoder::PacketUse::kDecode;
         const bool is_wanted = rendered_.empty() || packets_ < rendered_.front().frame ||
                                find_rendered(rendered_, packets_) != nullptr;
-        if (is_wanted && (packet.flags & AV_PKT_FLAG_KEY) != 0) {
-            receive(&packet);
-            receive(nullptr);
-            avcodec_flush_buffers(file_.context.get());
-        }
         stamps_.push(packet.pts);
         ++packets_;
         take_stamps(kMaxReordered);
+        const bool is_key = (packet.flags & AV_PKT_FLAG_KEY) != 0;
+        return is_wanted && is_key ? Decoder::PacketUse::kDecodeAlone : Decoder::PacketUse::kSkip;
     }
 
     /// Takes the stamps of packets in the order in which their frames are shown, but for so many.
@@ -189,36 +180,18 @@ class Decoding {
         for (; stamps_.size() > kept; stamps_.pop()) take_stamp(stamps_.top());
     }
 
-    /// Sends a packet, or the end of the stream if it is null, and takes every frame that is ready.
-    void receive(const AVPacket* packet) {
-        int status = avcodec_send_packet(file_.context.get(), packet);
-        if (status < 0) note_bad(status);
-        for (;;) {
-            status = avcodec_receive_frame(file_.context.get(), frame_.get());
-            if (status == AVERROR(EAGAIN) || status == AVERROR_EOF) return;
-            if (status < 0) {
-                note_bad(status);
-                // While draining, libav reports one error per bad frame and goes on; otherwise the next
-                // packet is due.
-                if (packet != nullptr || video_.bad_frames > kMaxBadFrames) return;
-                continue;
-            }
-            // A wrong checksum of FFV1 is only logged, and the slice concealed.
-            if (file_.context->codec_id == AV_CODEC_ID_FFV1 && !log_.text().empty()) note_bad(log_.text());
-            take_frame();
-            av_frame_unref(frame_.get());
-        }
-    }
-
-    void take_frame() {
-        const AVFrame& frame = *frame_;
+    void take_frame(const AVFrame& frame) {
+        AVCodecContext& context = decoder_->context();
+        // A wrong checksum of FFV1 is only logged, and the slice concealed.
+        if (context.codec_id == AV_CODEC_ID_FFV1 && !log_.text().empty()) note_bad(log_.text());
         if (frame.decode_error_flags != 0 || (frame.flags & AV_FRAME_FLAG_CORRUPT) != 0)
             note_bad(AVERROR_INVALIDDATA);
-        if (!is_described_) describe_first_frame();
+        if (!is_described_) describe_first_frame(frame);
         // Chunks are closed: as many frames are shown before a key frame as packets came before it.
-        if (is_readable_) measure_patches(depth_ == VerifyDepth::kAllFrames ? video_.frames : packets_);
+        if (is_readable_)
+            measure_patches(frame, depth_ == VerifyDepth::kAllFrames ? video_.frames : packets_ - 1);
         // If no further pixels are measured, it is enough that frames decode.
-        if (rendered_.empty()) file_.context->skip_loop_filter = AVDISCARD_ALL;
+        if (rendered_.empty()) context.skip_loop_filter = AVDISCARD_ALL;
         if (depth_ == VerifyDepth::kAllFrames) take_stamp(frame.pts);
     }
 
@@ -240,15 +213,15 @@ class Decoding {
         ++video_.frames;
     }
 
-    void measure_patches(std::int64_t number) {
-        const bool is_gif = file_.context->codec_id == AV_CODEC_ID_GIF;
+    void measure_patches(const AVFrame& frame, std::int64_t number) {
+        const bool is_gif = decoder_->context().codec_id == AV_CODEC_ID_GIF;
         for (const ColorPatch& patch : patches_of(number)) {
             const PixelRect square{patch.x, patch.y, patch.x + kPatchSide, patch.y + kPatchSide};
-            const bool is_inside = is_within(patch, frame_->width, frame_->height);
+            const bool is_inside = is_within(patch, frame.width, frame.height);
             // A GIF has no colour where it is transparent.
-            if (is_gif && is_inside && samples_of(*frame_, 3, square).least < 255) continue;
+            if (is_gif && is_inside && samples_of(frame, 3, square).least < 255) continue;
             ShownPatch& shown = video_.patches.emplace_back(ShownPatch{number, patch, std::nullopt});
-            if (is_inside) shown.rgb = mean_rgb_of(*frame_, square);
+            if (is_inside) shown.rgb = mean_rgb_of(frame, square);
         }
     }
 
@@ -257,9 +230,8 @@ class Decoding {
         return number == 0 ? told_patches(video_.comment) : std::vector<ColorPatch>();
     }
 
-    void describe_first_frame() {
+    void describe_first_frame(const AVFrame& frame) {
         is_described_ = true;
-        const AVFrame& frame = *frame_;
         video_.width_px = frame.width;
         video_.height_px = frame.height;
         video_.pixel_format = named(av_get_pix_fmt_name(static_cast<AVPixelFormat>(frame.format)));
@@ -281,17 +253,16 @@ class Decoding {
     }
 
     void describe() {
-        video_.codec = avcodec_get_name(file_.context->codec_id);
+        const AVCodecContext& context = decoder_->context();
+        video_.codec = avcodec_get_name(context.codec_id);
         std::array<char, AV_FOURCC_MAX_STRING_SIZE> tag{};
-        video_.codec_tag = av_fourcc_make_string(tag.data(), file_.stream->codecpar->codec_tag);
-        const char* const profile = avcodec_profile_name(file_.context->codec_id, file_.context->profile);
+        video_.codec_tag = av_fourcc_make_string(tag.data(), decoder_->stream().codecpar->codec_tag);
+        const char* const profile = avcodec_profile_name(context.codec_id, context.profile);
         video_.profile = profile == nullptr ? "" : profile;
-        if (file_.context->codec_id == AV_CODEC_ID_H264)
-            video_.h264_level = std::max(0, file_.context->level);
+        if (context.codec_id == AV_CODEC_ID_H264) video_.h264_level = std::max(0, context.level);
     }
 
     static constexpr std::int64_t kNever = 1'000'000'000;
-    static constexpr std::int64_t kMaxBadFrames = 1000;
     /// No codec decodes more frames than that ahead of one that is shown before them.
     static constexpr std::size_t kMaxReordered = 32;
 
@@ -299,9 +270,7 @@ class Decoding {
     VerifyDepth depth_;
     const std::vector<FrameColors>& rendered_;
     LogCapture log_;
-    OpenVideo file_;
-    Frame frame_;
-    Packet packet_;
+    std::optional<Decoder> decoder_;
     std::int64_t last_pts_ = 0;
     std::optional<Rational> rounded_to_;
     bool counts_frames_ = false;

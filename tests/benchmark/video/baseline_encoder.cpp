@@ -32,7 +32,7 @@ CodecContext open_x264(const VideoDef& video, int threads) {
 }
 
 /// A frame that refers to a picture, so that libav does not copy it first.
-Frame frame_of(const Yuv420Image& picture) {
+Frame frame_of(const test::Yuv420Image& picture) {
     Frame frame = check_allocated(Frame(av_frame_alloc()), "a frame");
     frame->format = AV_PIX_FMT_YUV420P;
     frame->width = picture.width();

@@ -6,7 +6,7 @@
 
 #include "corda/core/image.hpp"
 #include "corda/media/defs.hpp"
-#include "corda/media/encode/yuv420.hpp"
+#include "support/yuv420_image.hpp"
 
 namespace corda::benchmark {
 
@@ -25,7 +25,7 @@ class BaselineEncoder {
 
   private:
     VideoDef def_;
-    std::vector<media::Yuv420Image> pictures_;
+    std::vector<test::Yuv420Image> pictures_;
 };
 
 }  // namespace corda::benchmark

@@ -1,6 +1,11 @@
 #include "benchmark/video/encodings.hpp"
 
+extern "C" {
+#include <libswscale/swscale.h>
+}
+
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -11,7 +16,7 @@
 #include "corda/core/file.hpp"
 #include "corda/core/temporary_folder.hpp"
 #include "corda/media/format/format.hpp"
-#include "corda/media/read/video_reader.hpp"
+#include "corda/media/read/decoder.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "support/edge_quality.hpp"
 
@@ -23,15 +28,51 @@ using nlohmann::json;
 /// Every tenth frame is compared.
 constexpr std::int64_t kCompared = 10;
 
+/// Converts decoded frames of any pixel format to 8-bit RGBA as a player does, which interpolates chroma.
+class ShownPictures {
+  public:
+    /// Converts by the frame's own tags, BT.709 in limited range if it has none.
+    void convert(const AVFrame& frame, Image& picture);
+
+  private:
+    struct Free {
+        void operator()(SwsContext* context) const { sws_freeContext(context); }
+    };
+    std::unique_ptr<SwsContext, Free> scaler_;  ///< of the last frame's size and format
+};
+
+void ShownPictures::convert(const AVFrame& frame, Image& picture) {
+    const auto format = static_cast<AVPixelFormat>(frame.format);
+    // Chroma is interpolated, not repeated, and nothing is rounded to the speed of a CPU's instructions.
+    constexpr int kFlags =
+        SWS_BILINEAR | SWS_FULL_CHR_H_INT | SWS_FULL_CHR_H_INP | SWS_ACCURATE_RND | SWS_BITEXACT;
+    scaler_.reset(sws_getCachedContext(scaler_.release(), frame.width, frame.height, format, frame.width,
+                                       frame.height, AV_PIX_FMT_RGBA, kFlags, nullptr, nullptr, nullptr));
+    if (!scaler_) throw Error(ExitCode::kIo, "pictures of this pixel format cannot be converted");
+    const int matrix =
+        frame.colorspace == AVCOL_SPC_UNSPECIFIED ? SWS_CS_ITU709 : static_cast<int>(frame.colorspace);
+    const int* const table = sws_getCoefficients(matrix);
+    const int is_full_range = frame.color_range == AVCOL_RANGE_JPEG ? 1 : 0;
+    constexpr int kOne = 1 << 16;
+    sws_setColorspaceDetails(scaler_.get(), table, is_full_range, table, 1, 0, kOne, kOne);
+    if (picture.width() != frame.width || picture.height() != frame.height)
+        picture = Image(frame.width, frame.height);
+    std::uint8_t* const rows = picture.data();
+    const auto row_bytes = static_cast<int>(picture.row_bytes());
+    sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height, &rows, &row_bytes);
+}
+
 /// The quality of the video at `path`.
 json quality_of(Film& film, std::int64_t frames, const std::string& path) {
     FilmRenderer renderer(film);
-    media::VideoReader reader(path);
+    media::Decoder decoder(path);
+    ShownPictures pictures;
     test::EdgeQuality edges;
     Image shown;
     for (std::int64_t k = 0; k < frames; ++k) {
-        if (!reader.read_shown(shown)) throw Error(ExitCode::kEncoder, "the video has too few frames");
+        if (!decoder.read()) throw Error(ExitCode::kEncoder, "the video has too few frames");
         if (k % kCompared != 0) continue;
+        pictures.convert(decoder.frame(), shown);
         static_cast<void>(renderer.draw(film.time_s(k)));
         edges.add(renderer.image(), shown);
     }

@@ -18,9 +18,9 @@
 #include "corda/core/temporary_folder.hpp"
 #include "corda/media/chunks/chunk.hpp"
 #include "corda/media/chunks/video_writer.hpp"
-#include "corda/media/encode/yuv420.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/pipeline/film_renderer.hpp"
+#include "support/yuv420_image.hpp"
 
 namespace corda::benchmark {
 namespace {
@@ -153,11 +153,11 @@ json measure_stages(const BenchDef& def, const std::string& path) {
     });
     clock.measure("open OpenGL", [&] { static_cast<void>(film->gl()); });
     clock.measure("draw", [&] { draw_frames(*film, frames, [](const Image&, const Damage&) {}); });
-    media::Yuv420Image converted(video.width_px, video.height_px);
+    test::Yuv420Image converted(video.width_px, video.height_px);
     media::VideoWriter writer(path, video, {}, {.force = true});
     draw_frames(*film, frames, [&](const Image& picture, const Damage& damage) {
         clock.measure("convert", [&] {
-            for (const PixelRect& part : damage) media::convert_to_yuv420(picture, part, converted);
+            for (const PixelRect& part : damage) convert_to_yuv420(picture, part, converted);
         });
         clock.measure("encode", [&] { writer.write(picture, damage); });
     });

@@ -18,6 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::failure_of;
+using test::Yuv420Image;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -47,12 +48,7 @@ std::array<double, 3> shown_color(const Yuv420Image& picture, const PixelRect& r
             }
         }
     }
-    const double y = (mean[0] - 16) / 219;
-    const double cb = (mean[1] - 128) / 224;
-    const double cr = (mean[2] - 128) / 224;
-    const double r = y + 1.5748 * cr;
-    const double b = y + 1.8556 * cb;
-    return {255 * r, 255 * (y - 0.2126 * r - 0.0722 * b) / 0.7152, 255 * b};
+    return rgb_from_ycbcr(mean[0], mean[1], mean[2]);
 }
 
 class VideoRates : public Video, public testing::WithParamInterface<Rational> {};

@@ -6,10 +6,12 @@
 #include <cstdlib>
 #include <random>
 
-#include "corda/media/encode/yuv420.hpp"
+#include "support/yuv420_image.hpp"
 
 namespace corda::media {
 namespace {
+
+using test::Yuv420Image;
 
 Image random_image(int width, int height, unsigned seed) {
     std::mt19937 random(seed);

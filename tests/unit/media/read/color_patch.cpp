@@ -5,7 +5,7 @@
 
 #include <set>
 
-#include "corda/media/encode/yuv420.hpp"
+#include "support/yuv420_image.hpp"
 
 namespace corda::media {
 namespace {
@@ -65,7 +65,7 @@ TEST(ColorPatches, ComeBackFromTheConversion) {
          std::vector<Rgb>{{0, 0, 0}, {255, 255, 255}, {255, 0, 0}, {0, 255, 0}, {0, 0, 255}, {200, 100, 7}}) {
         Image image(2, 2);
         paint(image, image.rect(), rgb);
-        Yuv420Image yuv(2, 2);
+        test::Yuv420Image yuv(2, 2);
         convert_to_yuv420(image, image.rect(), yuv);
         const auto back = rgb_from_ycbcr(yuv.plane(0)[0], yuv.plane(1)[0], yuv.plane(2)[0]);
         for (std::size_t c = 0; c < 3; ++c) worst = std::max(worst, std::abs(back[c] - rgb[c]));

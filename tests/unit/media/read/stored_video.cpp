@@ -1,4 +1,4 @@
-#include "corda/media/read/video_reader.hpp"
+#include "corda/media/read/stored_video.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,47 +14,56 @@ namespace {
 TEST_F(Video, ReaderGivesThePicturesThatLibavGives) {
     make_video(file("a.mp4"), small_video(), 12);
     const auto expected = test::decode_video(file("a.mp4"));
-    VideoReader reader(file("a.mp4"));
-    Yuv420Image picture;
+    StoredVideo video(file("a.mp4"));
+    EXPECT_EQ(video.rate(), (Rational{60, 1}));
+    StoredPicture picture;
     std::size_t frames = 0;
-    for (; reader.read(picture); ++frames) {
+    for (; video.read(picture); ++frames) {
         ASSERT_LT(frames, expected.pictures.size());
-        EXPECT_EQ(picture, expected.pictures[frames]) << frames;
+        EXPECT_EQ(picture.format, "yuv420p");
+        for (int plane = 0; plane < 3; ++plane) {
+            const test::Yuv420Image& wanted = expected.pictures[frames];
+            const auto count = std::ptrdiff_t{wanted.plane_width(plane)} * wanted.plane_height(plane);
+            EXPECT_TRUE(std::equal(wanted.plane(plane), wanted.plane(plane) + count,
+                                   picture.samples.begin() + std::ptrdiff_t{plane} * kWidth * kHeight))
+                << frames;
+        }
     }
     EXPECT_EQ(frames, 12U);
-    EXPECT_FALSE(reader.read(picture));
+    EXPECT_FALSE(video.read(picture));
 }
 
 TEST_F(Video, ReaderShowsThePicturesOfEveryPixelFormat) {
-    const auto video = [](const char* codec, PixelChoice pix) {
+    const auto def_of = [](const char* codec, PixelChoice pix) {
         VideoDef def = small_video();
         def.encoder.codec = codec;
         def.encoder.pix = pix;
         return def;
     };
     const std::vector<std::pair<std::string, VideoDef>> videos{
-        {file("420.mp4"), video("h264", PixelChoice::k420)},
-        {file("444.mp4"), video("h264", PixelChoice::k444)},
-        {file("10_bits.mov"), video("prores", PixelChoice::kAuto)},
-        {file("exact.mkv"), video("ffv1", PixelChoice::kAuto)}};
+        {file("420.mp4"), def_of("h264", PixelChoice::k420)},
+        {file("444.mp4"), def_of("h264", PixelChoice::k444)},
+        {file("10_bits.mov"), def_of("prores", PixelChoice::kAuto)},
+        {file("exact.mkv"), def_of("ffv1", PixelChoice::kAuto)}};
     for (const auto& [path, def] : videos) {
         make_video(path, def, 3);
-        VideoReader reader(path);
-        Image shown;
-        ASSERT_TRUE(reader.read_shown(shown)) << path;
+        StoredVideo video(path);
+        StoredPicture picture;
+        ASSERT_TRUE(video.read(picture)) << path;
+        const Image shown = picture.rgba();
         for (const Patch& patch : patches) {
             const std::uint8_t* const pixel = shown.pixel(patch.rect.x0 + 24, patch.rect.y0 + 24);
             for (int c = 0; c < 3; ++c) EXPECT_NEAR(pixel[c], patch.rgb[c], 3) << path << ' ' << c;  // 2
             EXPECT_EQ(pixel[3], 255);
         }
-        EXPECT_TRUE(reader.read_shown(shown) && reader.read_shown(shown));
-        EXPECT_FALSE(reader.read_shown(shown)) << path;
+        EXPECT_TRUE(video.read(picture) && video.read(picture));
+        EXPECT_FALSE(video.read(picture)) << path;
     }
 }
 
 TEST_F(Video, ReaderRefusesOtherFiles) {
     const auto failure_at = [](const std::string& path) {
-        return test::failure_of([&path] { const VideoReader reader(path); });
+        return test::failure_of([&path] { const StoredVideo video(path); });
     };
     const test::Failure text = failure_at(folder_.write("a.mp4", "no video"));
     EXPECT_EQ(text.code, ExitCode::kIo);
