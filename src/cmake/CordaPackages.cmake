@@ -46,7 +46,7 @@ with OpenGL on a machine without a screen, the same bytes on every run, and enco
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libcorda-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # The dependencies of a program that links the static library.
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libavcodec-dev, libavformat-dev, libavutil-dev, libswscale-dev, libx264-dev, libcairo2-dev, libegl-dev, \
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libavcodec-dev, libavformat-dev, libavutil-dev, libx264-dev, libcairo2-dev, libegl-dev, \
 libwebp-dev, libegl-mesa0, libgl1-mesa-dri, libeigen3-dev, libepoxy-dev, libfmt-dev, libfreetype-dev, libpng-dev, libtomlplusplus-dev, \
 nlohmann-json3-dev, pkg-config")
 # For golden tests: corda_add_golden_tests, and the matcher of corda/testing.hpp.

@@ -19,7 +19,6 @@ packages=(
     libavcodec-dev          # the encoders and the decoders that check their output
     libavformat-dev         # muxers and demuxers of MP4, WebM, Matroska, GIF, APNG
     libavutil-dev           # frames and error texts of the two above
-    libswscale-dev          # converts decoded pictures like a player, for their comparison
     libx264-dev             # H.264 with hints on unchanged macroblocks, which libavcodec cannot pass on
     libwebp-dev             # animated WebP, which libavcodec does not decode
     libeigen3-dev           # sparse factorisation for nets of bars
@@ -46,6 +45,7 @@ if [[ "${1:-build}" != build ]]; then
         libgtest-dev        # the tests
         libgmock-dev        # its matchers
         libbenchmark-dev    # measured speed
+        libswscale-dev      # shows pictures as a player does, for their measured quality
         clang-format        # the style check
         clang               # the tests under the sanitizers, by a second compiler
         libclang-rt-dev     # its sanitizers

@@ -15,7 +15,7 @@ struct YuvPlanes {
 };
 
 /// Converts the part of `rgb` that `damage` touches to planar Y'CbCr 4:2:0, BT.709 limited range; the rest of
-/// `yuv` stays. Converting only what has changed since the last call gives the same bytes as converting the
+/// `yuv` stays. Converting only the changes since the last call gives the same bytes as converting the
 /// whole picture. Alpha is ignored. The sides of `rgb` are even.
 ///
 /// Y' = 16 + 219 (0.2126 R + 0.7152 G + 0.0722 B), Cb and Cr as in ITU-R BT.709-6, sections 3 and 4.6 (8

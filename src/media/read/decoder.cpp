@@ -121,7 +121,7 @@ int Decoder::next(LogCapture& log, const std::function<PacketUse(const AVPacket&
         if (!has_input_) continue;
         status = avcodec_receive_frame(context_.get(), frame_.get());
         if (status == 0) return 0;
-        // While draining, libav reports one error per bad frame and goes on; otherwise a packet is due.
+        // While draining, each bad frame has an error of its own; otherwise a packet is due.
         if (is_draining_ && status != AVERROR_EOF && ++drain_errors_ <= kMaxDrainErrors) return status;
         if (is_draining_ && !is_alone_) return AVERROR_EOF;
         if (is_draining_) avcodec_flush_buffers(context_.get());

@@ -161,8 +161,8 @@ class Decoding {
         if (video_.bad_frames++ == 0) video_.bad_reason = reason;
     }
 
-    /// All packets are decoded, or each key frame apart from all others; then the stamps of packets count. If
-    /// it is known what was rendered, other key frames of that are left out.
+    /// Decodes all packets, or each key frame alone; then the stamps of packets count. Of frames whose
+    /// rendered colours are known in part, the key frames without known colours are skipped.
     Decoder::PacketUse use_of(const AVPacket& packet) {
         if ((packet.flags & AV_PKT_FLAG_CORRUPT) != 0) note_bad(AVERROR_INVALIDDATA);
         if (depth_ == VerifyDepth::kAllFrames) return Decoder::PacketUse::kDecode;
