@@ -30,9 +30,9 @@ ContextDef def_of(const Platform& platform) {
 
 }  // namespace
 
-struct Context::Impl {
+struct Context::Impl : EglSession {
+    explicit Impl(const Platform& from) : EglSession(from), platform(from.name) {}
     std::string platform;
-    std::unique_ptr<EglSession> session;
 };
 
 ContextDef ContextDef::parse(std::string_view text) {
@@ -64,7 +64,7 @@ ContextDef ContextDef::parse(std::string_view text) {
     return def;
 }
 
-Context::Context(const ContextDef& def) : impl_(std::make_unique<Impl>()) {
+Context::Context(const ContextDef& def) {
     const auto lock = lock_driver();
     require_driver_after_fork();
     prepare_driver();
@@ -72,19 +72,16 @@ Context::Context(const ContextDef& def) : impl_(std::make_unique<Impl>()) {
     bool found_software = false;
     for (const Platform& platform : list_platforms(def)) {
         try {
-            impl_->session = std::make_unique<EglSession>(platform);
+            impl_ = std::make_unique<Impl>(platform);
         } catch (const Error& error) {
             reasons += fmt::format("\n  {}: {}", platform.name, error.what());
             continue;
         }
-        if (!def.require_gpu || !impl_->session->info().software) {
-            impl_->platform = platform.name;
-            return;
-        }
+        if (!def.require_gpu || !impl_->info().software) return;
         found_software = true;
         reasons += fmt::format("\n  {}: {} runs on the CPU and a GPU is required", platform.name,
-                               impl_->session->info().gl_renderer);
-        impl_->session.reset();
+                               impl_->info().gl_renderer);
+        impl_.reset();
     }
     if (reasons.empty()) reasons = "\n  no such EGL device";
     const std::string remedy =
@@ -96,10 +93,7 @@ Context::Context(const ContextDef& def) : impl_(std::make_unique<Impl>()) {
     throw Error(ExitCode::kNoGl, fmt::format("no usable OpenGL. Tried:{}\n{}", reasons, remedy));
 }
 
-Context::Context(const Platform& platform) : impl_(std::make_unique<Impl>()) {
-    impl_->session = std::make_unique<EglSession>(platform);
-    impl_->platform = platform.name;
-}
+Context::Context(const Platform& platform) : impl_(std::make_unique<Impl>(platform)) {}
 
 Context::~Context() {
     const auto lock = lock_driver();
@@ -111,16 +105,16 @@ std::unique_lock<std::recursive_mutex> Context::exclusive() const {
 }
 
 bool Context::is_inherited() const {
-    return impl_->session->is_inherited();
+    return impl_->is_inherited();
 }
 
 void Context::make_current() const {
     const auto lock = exclusive();
-    impl_->session->make_current();
+    impl_->make_current();
 }
 
 const ContextInfo& Context::info() const {
-    return impl_->session->info();
+    return impl_->info();
 }
 
 const std::string& Context::platform() const {

@@ -10,7 +10,7 @@
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/pipeline/film_renderer.hpp"
-#include "corda/render/reference_renderer.hpp"
+#include "corda/render/frame_renderer.hpp"
 #include "corda/render/vector.hpp"
 #include "corda/view/colors.hpp"
 #include "corda/view/font.hpp"

@@ -135,7 +135,7 @@ struct Film::Impl {
         // The start exists even if the first step diverges.
         const sim::Recording& recording = motion.recording();
         return renderer.fit(recording.size() > 0 ? recording.particle_bounds() : bounds_of_start(system),
-                            recording.spread());
+                            recording.histogram());
     }
 
     /// The state of another renderer of this film.

@@ -44,10 +44,10 @@ bool SceneRenderer::needs_motion() const {
            scene_->overlay.plot != LivePlot::kNone;
 }
 
-CameraDef SceneRenderer::fit(std::span<const MotionBounds> motion, const sim::Spread& spread) {
+CameraDef SceneRenderer::fit(std::span<const MotionBounds> motion, const sim::Histogram& histogram) {
     view_.set_motion(motion);
     if (const auto quantity = quantity_of(scene_->style.color_by)) {
-        const view::ColorScale scale = view::scale_of(*quantity, spread, scene_->style);
+        const view::ColorScale scale = view::scale_of(*quantity, histogram, scene_->style);
         view_.set_scale(scale);
         overlay_.set_scale(scale);
     }

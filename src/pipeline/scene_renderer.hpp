@@ -34,10 +34,10 @@ class SceneRenderer {
 
     /// True if pictures depend on the whole motion: the camera, the supports of pins, or a plot does.
     [[nodiscard]] bool needs_motion() const;
-    /// Fits supports, colour scale and camera to the bounds of each particle and the spread of the quantity
-    /// that colours show. Returns the scene's camera with center and height filled in, so that all is in
-    /// view.
-    CameraDef fit(std::span<const MotionBounds> motion, const sim::Spread& spread = {});
+    /// Fits supports, colour scale and camera to the bounds of each particle and the histogram of the
+    /// quantity that colours show. Returns the scene's camera with center and height filled in, so that all
+    /// is in view.
+    CameraDef fit(std::span<const MotionBounds> motion, const sim::Histogram& histogram = {});
     /// Sets the data of the live plot.
     void set_plot(const view::PlotData& data) { overlay_.set_plot(data, view_.body_colors()); }
     /// Lower bound on the scale of the camera that fit() returns for a motion within `bounds`.

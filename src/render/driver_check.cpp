@@ -15,7 +15,6 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/child_process.hpp"
 #include "corda/gl/driver.hpp"
-#include "corda/render/reference_renderer.hpp"
 #include "corda/view/draw_list.hpp"
 
 namespace corda::render {

@@ -350,13 +350,11 @@ std::size_t FrameRenderer::sums_bytes(std::span<const Read> reads) const {
     return tints_ ? pixels_of(reads) * sizeof(TintSums) : 0;
 }
 
-const std::byte* FrameRenderer::wait(gl::PixelBuffer& buffer) const {
-    const auto lock = context_->exclusive();
-    return buffer.wait();
-}
-
 void FrameRenderer::paint(std::span<const Read> reads, const PixelRect& band, gl::PixelBuffer& buffer) {
-    const std::byte* const masks = wait(buffer);
+    const std::byte* const masks = [&] {
+        const auto lock = context_->exclusive();
+        return buffer.wait();
+    }();
     const void* const coverage = masks + sums_bytes(reads);
     const void* const sums = masks;
     std::size_t pixels = 0;

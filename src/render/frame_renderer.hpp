@@ -91,7 +91,6 @@ class FrameRenderer {
     /// then the coverage. The previous call may have drawn the masks of the first read's batch.
     void read_masks(std::span<const Read> reads, const PixelRect& band, gl::PixelBuffer& buffer);
     [[nodiscard]] std::size_t sums_bytes(std::span<const Read> reads) const;
-    [[nodiscard]] const std::byte* wait(gl::PixelBuffer& buffer) const;
     /// Waits for the buffer and paints the layers of its reads.
     void paint(std::span<const Read> reads, const PixelRect& band, gl::PixelBuffer& buffer);
 
@@ -114,6 +113,13 @@ class FrameRenderer {
     std::optional<GroundRows> ground_;
     bool everything_is_stale_ = true;
 };
+
+/// Draws a draw list in plain C++, slowly and simply.
+[[nodiscard]] Image render_reference(const view::DrawList& list);
+
+/// Averages the layers of several lists in linear light below the stamps of `list`, whose own layers are
+/// ignored.
+[[nodiscard]] Image render_reference(std::span<const view::DrawList> exposed, const view::DrawList& list);
 
 /// If the environment has unusual variables (see gl::has_unusual_variables()), with some of which Mesa
 /// crashes, makes a context by `def` and draws in it in a child process, once per process, `def` and

@@ -11,7 +11,6 @@
 #include "corda/render/paint.hpp"
 #include "corda/render/vector.hpp"
 #include "corda/view/font.hpp"
-#include "corda/view/font_data.hpp"
 
 namespace corda::render {
 namespace {

@@ -14,7 +14,7 @@
 namespace corda::sim {
 namespace {
 
-constexpr unsigned kDropped = 48;  // bits of a double
+constexpr unsigned kDropped = 48;  // low bits of a double that a bin ignores
 constexpr std::size_t kBins = std::size_t{1} << (63U - kDropped);
 
 double tension_of_link(const System& /*system*/, const Body& /*body*/, std::size_t k, const State& state) {
@@ -44,7 +44,7 @@ const QuantityKind& kind_of(Quantity quantity) {
     return kQuantities[static_cast<std::size_t>(quantity)];
 }
 
-void Spread::add(double value) {
+void Histogram::add(double value) {
     if (std::isnan(value)) return;
     ++count_;
     least_ = std::min(least_, value);
@@ -53,7 +53,7 @@ void Spread::add(double value) {
     ++counts_[std::bit_cast<std::uint64_t>(std::abs(value)) >> kDropped];
 }
 
-void Spread::add(const Spread& other) {
+void Histogram::add(const Histogram& other) {
     count_ += other.count_;
     least_ = std::min(least_, other.least_);
     largest_ = std::max(largest_, other.largest_);
@@ -62,7 +62,7 @@ void Spread::add(const Spread& other) {
     std::transform(counts_.begin(), counts_.end(), other.counts_.begin(), counts_.begin(), std::plus<>());
 }
 
-double Spread::size_exceeded_by(double share) const {
+double Histogram::size_exceeded_by(double share) const {
     const double all = std::max(std::abs(least_), std::abs(largest_));
     std::uint64_t larger = 0;
     for (std::size_t bin = counts_.size(); bin-- > 0;) {
@@ -105,7 +105,7 @@ void Recording::clear() {
     energy_scale_j_ = 0.0;
     bounds_ = {};
     particle_bounds_.assign(particle_count_, {});
-    spread_ = {};
+    histogram_ = {};
     diagnostics_ = {};
     wall_s_ = 0.0;
     bodies_ = 0;
@@ -123,7 +123,7 @@ Status Recording::advance(Simulation& run, const Timeline& timeline, const std::
         bounds_.include(state);
         for (std::size_t i = 0; i < particle_count_; ++i)
             particle_bounds_[i].include(state.x_m[i], state.y_m[i]);
-        if (quantity_) add_spread(run.system(), state);
+        if (quantity_) add_to_histogram(run.system(), state);
     }
     diagnostics_ = run.diagnostics();
     energy_change_j_.push_back(run.energy_change_j());
@@ -138,10 +138,10 @@ Status Recording::advance(Simulation& run, const Timeline& timeline, const std::
     return status;
 }
 
-void Recording::add_spread(const System& system, const State& state) {
+void Recording::add_to_histogram(const System& system, const State& state) {
     for (const Body& body : system.bodies) {
         for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k)
-            spread_.add(kind_of(*quantity_).value(system, body, k, state));
+            histogram_.add(kind_of(*quantity_).value(system, body, k, state));
     }
 }
 
@@ -156,7 +156,7 @@ void Recording::add_body(const Recording& body, std::size_t first_particle, std:
     figures_.resize(std::min(figures_.size(), body.figures_.size()));
     values_.resize(figures_.size() * state_size_);
     bounds_.include(body.bounds_);
-    spread_.add(body.spread_);
+    histogram_.add(body.histogram_);
     std::copy(body.particle_bounds_.begin(), body.particle_bounds_.end(),
               particle_bounds_.begin() + static_cast<std::ptrdiff_t>(first_particle));
     wall_s_ += body.wall_s_;

@@ -25,10 +25,10 @@ struct QuantityKind {
 [[nodiscard]] const QuantityKind& kind_of(Quantity quantity);
 
 /// Distribution of values: minimum, maximum and a histogram of their sizes. Ignores NaN.
-class Spread {
+class Histogram {
   public:
     void add(double value);
-    void add(const Spread& other);
+    void add(const Histogram& other);
 
     [[nodiscard]] bool empty() const { return count_ == 0; }
     [[nodiscard]] double least() const { return least_; }
@@ -57,7 +57,7 @@ class Recording {
     /// An empty recording of some of the particles and bars with room for as many states.
     [[nodiscard]] Recording for_part(std::size_t particle_count, std::size_t bar_count = 0) const;
 
-    /// Forgets all states.
+    /// Removes all states.
     void clear();
     /// Advances a run to time size() of a timeline and adds its state, unless the run diverges. `clock_s`, if
     /// not empty, measures the stepping. `goes_on`: see Simulation::advance_to.
@@ -82,7 +82,7 @@ class Recording {
     [[nodiscard]] const std::vector<MotionBounds>& particle_bounds() const { return particle_bounds_; }
     /// Distribution of the quantity over all links and all states added at frame times; empty without a
     /// quantity.
-    [[nodiscard]] const Spread& spread() const { return spread_; }
+    [[nodiscard]] const Histogram& histogram() const { return histogram_; }
     /// The fields of its states.
     [[nodiscard]] const StateFields& fields() const { return fields_; }
     /// Diagnostics of the run up to the last state added.
@@ -93,7 +93,7 @@ class Recording {
 
   private:
     void add_figures(const Recording& body);
-    void add_spread(const System& system, const State& state);
+    void add_to_histogram(const System& system, const State& state);
 
     /// One array of a recorded state.
     struct Part {
@@ -114,7 +114,7 @@ class Recording {
     double energy_scale_j_ = 0.0;
     MotionBounds bounds_;
     std::vector<MotionBounds> particle_bounds_;
-    Spread spread_;
+    Histogram histogram_;
     Diagnostics diagnostics_;
     double wall_s_ = 0.0;
     std::size_t bodies_ = 0;  ///< added by add_body()

@@ -94,7 +94,7 @@ class Simulation {
     std::vector<double> tension_n_;  ///< scratch
     StateFields fields_;
     bool has_diverged_ = false;
-    bool is_stepping_ = false;  ///< still, if an exception ended the steps
+    bool is_stepping_ = false;  ///< stays true if an exception ended the steps
     bool conserves_energy_ = true;
     double initial_energy_j_ = 0.0;
     double energy_scale_j_ = 0.0;
@@ -106,13 +106,13 @@ class Simulation {
 /// One trial of a method: its run compared with tighter runs.
 struct Trial {
     MethodDef method;
-    MethodDef check;  ///< of the tighter runs
+    MethodDef check;  ///< method of the tighter runs
     std::uint64_t steps = 0;
-    std::uint64_t check_steps = 0;      ///< of one of them
+    std::uint64_t check_steps = 0;      ///< of one tighter run
     double largest_difference_m = 0.0;  ///< up to `reached_s`
     double error_bound_m = 0.0;         ///< up to `reached_s`
-    double reached_s = 0.0;             ///< the last frame time up to which it was within the tolerance
-    double hundredth_s = 0.0;           ///< the same of a hundredth of the tolerance
+    double reached_s = 0.0;             ///< last frame time up to which the error is within the tolerance
+    double hundredth_s = 0.0;           ///< the same for a hundredth of the tolerance
     bool to_the_end = false;            ///< within the tolerance at all frame times
     bool diverged = false;              ///< the run or a check diverged or branched after `reached_s`
 };
@@ -129,14 +129,14 @@ enum class PlanReason {
 struct BodyPlan {
     MethodDef method;  ///< with every default filled in: given again, it runs with the same bits
     PlanReason reason = PlanReason::kNamed;
-    /// Bound on the error of any of its particles' positions at any frame time up to the horizon.
-    /// std::nullopt if no method can tell the true motion, or if the scene names the method.
+    /// Bound on the error of every position at every frame time up to the horizon. std::nullopt if no method
+    /// can determine the true motion, or if the scene names the method.
     std::optional<double> error_bound_m;
     /// The last frame time at which a run and a much tighter one agree within the tolerance: later positions
     /// are those of one possible motion. std::nullopt if the scene ends before.
     std::optional<double> horizon_s;
     bool diverges = false;      ///< the run ends before the scene does
-    bool stands_still = false;  ///< a net that its bars make a plate, which its pins hold
+    bool stands_still = false;  ///< a net that its bars make rigid and its pins hold
     std::vector<Trial> trials;  ///< all that were run, the chosen one last
     int passes = 0;             ///< number of integrations of the motion, including checks and failed trials
 };

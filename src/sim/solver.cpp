@@ -46,7 +46,7 @@ auto with_solver(const MethodDef& method, const Use& use) {
         method);
 }
 
-/// A bar without length has no direction; `relaxation` alone leaves such bars be.
+/// A bar without length has no direction. Only `relaxation` ignores such bars.
 void refuse_bars_without_length(const System& system) {
     for (const Bar& bar : system.bars) {
         if (bar.rest_m > 0.0) continue;
@@ -56,7 +56,7 @@ void refuse_bars_without_length(const System& system) {
     }
 }
 
-/// Solver of a system that one solver moves.
+/// Makes the one solver of a whole system.
 std::unique_ptr<Solver> make_solver_of(const System& system, const Forces& forces, const MethodDef& method,
                                        double frame_interval_s, const GoesOn& goes_on) {
     if (!std::holds_alternative<RelaxationDef>(method)) refuse_bars_without_length(system);
@@ -68,7 +68,7 @@ std::unique_ptr<Solver> make_solver_of(const System& system, const Forces& force
     });
 }
 
-/// Making a solver takes as long as this many updates of a StopCheck.
+/// Cost of making a solver, in updates of a StopCheck.
 constexpr std::uint64_t kUpdatesPerBody = 20;
 
 /// The solver of one body, and the body's place in the system.

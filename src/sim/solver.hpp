@@ -79,7 +79,7 @@ class Solver {
     /// with the same bits.
     [[nodiscard]] virtual std::vector<MethodDef> methods() const = 0;
 
-    // Default of a fact about methods: an explicit method of high order that chooses its steps.
+    /// Default of expected_steps(): an explicit method of high order that chooses its steps.
     template <class Def>
     [[nodiscard]] static double expected_steps(const Def& /*def*/, const Body& /*body*/, double frequency_1_s,
                                                double time_s) {
@@ -111,11 +111,10 @@ void validate(const MethodDef& method);
 /// The method in words: "rattle of order 4, step 0.01 s".
 [[nodiscard]] std::string method_text(const MethodDef& method);
 
-/// The time that a step takes for a body, in nanoseconds, on the machine on which the constants were
-/// measured: good for a rough forecast.
+/// Rough cost of a step of a body in nanoseconds, on the machine on which the constants were measured.
 [[nodiscard]] double step_cost_ns(const Body& body, const MethodDef& method);
 
-/// The step that the method is given, in s; std::nullopt if it is given none or chooses each step by itself.
+/// The step of the definition in s; std::nullopt if it gives none or the method chooses each step.
 [[nodiscard]] std::optional<double> fixed_step_s(const MethodDef& method);
 
 /// Rough number of steps for `time_s` seconds of a motion of the body with this angular frequency, if the
@@ -130,7 +129,7 @@ void validate(const MethodDef& method);
 /// False if the method never knows the tensions of bars.
 [[nodiscard]] bool knows_tensions(const MethodDef& method);
 
-// Rough estimates of the work for a scene, from its start alone: good enough to tell minutes from days.
+// Rough estimates of the work for a scene from its start, to distinguish minutes from days.
 
 /// Bound on the angular frequency in 1/s of vibrations of a body that stretches or resists bending; 0 for any
 /// other body.

@@ -135,20 +135,20 @@ Color ColorScale::color(double value) const {
     return {mixed(a.r, b.r), mixed(a.g, b.g), mixed(a.b, b.b)};
 }
 
-ColorScale scale_of(Quantity quantity, const sim::Spread& spread, const StyleDef& style) {
+ColorScale scale_of(Quantity quantity, const sim::Histogram& histogram, const StyleDef& style) {
     ColorScale scale;
     scale.quantity = quantity;
     scale.unknown = look_of(style).support;
     double end = 1.0;
     const double smallest = quantity == Quantity::kStrain ? kMinStrain : kMinEnd;
-    if (!spread.empty() && std::max(-spread.least(), spread.largest()) > smallest) {
-        const double largest = std::max(-spread.least(), spread.largest());
-        const double usual = spread.size_exceeded_by(kRare);
+    if (!histogram.empty() && std::max(-histogram.least(), histogram.largest()) > smallest) {
+        const double largest = std::max(-histogram.least(), histogram.largest());
+        const double usual = histogram.size_exceeded_by(kRare);
         scale.is_cut = usual > smallest && largest > kFarBeyond * usual;
         end = std::min(scale.is_cut ? usual : largest, 1e300);
     }
     scale.high = rounded_end(end);
-    const bool is_about_zero = !spread.empty() && spread.least() < -kBelowZero * scale.high;
+    const bool is_about_zero = !histogram.empty() && histogram.least() < -kBelowZero * scale.high;
     if (is_about_zero) scale.low = -scale.high;
     if (is_light(style))
         scale.colors = is_about_zero ? kPaperAboutZero : kPaper;

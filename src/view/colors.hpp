@@ -41,6 +41,6 @@ struct ColorScale {
 /// The scale of a quantity: from 0 to high, or from -high to high through grey if there are values well below
 /// 0. `high` is a round number above the largest value, or above 98 % of the values if that is less than half
 /// of the largest.
-[[nodiscard]] ColorScale scale_of(Quantity quantity, const sim::Spread& spread, const StyleDef& style);
+[[nodiscard]] ColorScale scale_of(Quantity quantity, const sim::Histogram& histogram, const StyleDef& style);
 
 }  // namespace corda::view

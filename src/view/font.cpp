@@ -9,9 +9,10 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <ft2build.h>
+#include FT_FREETYPE_H
 
 #include "corda/core/basics.hpp"
-#include "corda/view/font_data.hpp"
 
 // DejaVu Sans as Debian ships it; its licence (of Bitstream Vera) allows copies as part of programs. The
 // assembler reads the file: as an array it would take the compiler half a minute.

@@ -7,13 +7,31 @@
 #include "corda/core/image.hpp"
 #include "corda/view/draw_list.hpp"
 
+struct FT_LibraryRec_;  // of FreeType
+struct FT_FaceRec_;
+
 namespace corda::view {
 
-/// DejaVu Sans, which the program carries with it. Glyphs stand on whole pixels, each as far from the last
-/// one as its width says: all digits are equally wide.
+/// DejaVu Sans, which is part of the program, as FreeType reads it.
+class FontFile {
+  public:
+    /// Throws corda::Error (kInternal) if it cannot be read.
+    FontFile();
+    FontFile(const FontFile&) = delete;
+    FontFile& operator=(const FontFile&) = delete;
+    ~FontFile();
+
+    [[nodiscard]] FT_FaceRec_* face() const { return face_; }
+
+  private:
+    FT_LibraryRec_* library_ = nullptr;
+    FT_FaceRec_* face_ = nullptr;
+};
+
+/// Draws text in DejaVu Sans. Glyphs stand on whole pixels; all digits are equally wide.
 ///
-/// Text is UTF-8; a character that the font does not have, a control character or a byte that is no character
-/// is shown as a box. Rendered glyphs are kept, so a Font is used by one thread at a time.
+/// Text is UTF-8. A character that the font lacks, a control character or an invalid byte is drawn as a box.
+/// Rendered glyphs are cached, so one thread at a time may use a Font.
 class Font {
   public:
     /// Throws corda::Error (kInternal) if the font cannot be read.
@@ -22,8 +40,7 @@ class Font {
     Font& operator=(Font&&) noexcept;
     ~Font();
 
-    /// The characters of a text that the font does not have, each once and in order, as "U+1F9F6, U+6F22";
-    /// empty if it has all.
+    /// The characters of a text that the font lacks, each once and in order, as "U+1F9F6, U+6F22".
     [[nodiscard]] std::string missing(std::string_view utf8) const;
     /// Advance width of a text, in pixels.
     [[nodiscard]] int width_px(std::string_view utf8, int size_px);
@@ -42,11 +59,11 @@ class Font {
 /// Empty if it can.
 [[nodiscard]] std::string missing_glyph(const std::string& text);
 
-// Sizes of texts, as shares of the em.
+// Sizes of text as shares of the em.
 inline constexpr double kAscent = 0.76;   ///< of DejaVu's capitals
 inline constexpr double kDescent = 0.24;  ///< below the baseline
 inline constexpr double kLine = 1.5;      ///< from a baseline to the next
-inline constexpr double kGap = 0.4;       ///< between a text and what else is drawn
+inline constexpr double kGap = 0.4;       ///< between a text and other items
 
 [[nodiscard]] int rounded(double px);
 /// The em in a frame whose shorter side is `side_px`.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <fmt/format.h>
@@ -41,6 +42,18 @@ std::size_t end_of_character(std::string_view utf8, std::size_t i) {
     return i;
 }
 
+/// A text at the lower edge, to the right of the time.
+struct BottomText {
+    bool (*is_shown)(const OverlayDef& def);
+    std::string (*text)(const Caption& caption, double interval_s);
+};
+constexpr BottomText kBottomTexts[] = {
+    {[](const OverlayDef& def) { return def.energy; },
+     [](const Caption& caption, double /*interval_s*/) {
+         return "energy error " + (caption.energy_error ? power_text(*caption.energy_error) : "not defined");
+     }},
+};
+
 }  // namespace
 
 std::string time_label(const std::string& digits) {
@@ -53,6 +66,7 @@ Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int he
       side_px_(std::min(width, height)),
       em_px_(def.text_px ? rounded(*def.text_px) : em_of(side_px_)),
       edge_px_(edge_of(side_px_, em_px_)),
+      interval_s_(interval_s),
       plot_(style, width, height) {
     const Room room = room_beside(def.plot, width, height);
     width_ = room.width_px;
@@ -67,6 +81,12 @@ Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int he
     color_ = text_color(look);
     while (decimals_ < kMaxDecimals && interval_s * power_of_10(decimals_) < 1.0) ++decimals_;
     time_digits_ = fmt::format("{:.{}f}", std::max(0.0, end_s - interval_s), decimals_).size();
+}
+
+bool Overlay::has_bottom() const {
+    return time_ || scale_bar_ ||
+           std::any_of(std::begin(kBottomTexts), std::end(kBottomTexts),
+                       [this](const BottomText& item) { return item.is_shown(def_); });
 }
 
 int Overlay::title_px() const {
@@ -116,9 +136,9 @@ void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& li
     if (time_ && caption.time_s)
         left_px = write_bottom(padded_time_label(*caption.time_s), left_px, right_px, list);
     if (scale_bar_) right_px = draw_scale_bar(pixels_per_metre, left_px, list);
-    if (def_.energy && caption.time_s) {
-        const std::string error = caption.energy_error ? power_text(*caption.energy_error) : "not defined";
-        write_bottom("energy error " + error, left_px, right_px, list);
+    for (const BottomText& item : kBottomTexts) {
+        if (item.is_shown(def_) && caption.time_s)
+            left_px = write_bottom(item.text(caption, interval_s_), left_px, right_px, list);
     }
     const int end_px = legend_ && scale_ ? draw_legend(list) : width_ - edge_px_;
     write_top(def_.title, " ", end_px, title_baseline_px(), title_px(), color_, list);

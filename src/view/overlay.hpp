@@ -45,7 +45,7 @@ class Overlay {
     void draw(const Caption& caption, double pixels_per_metre, DrawList& list);
 
   private:
-    [[nodiscard]] bool has_bottom() const { return time_ || scale_bar_ || def_.energy; }
+    [[nodiscard]] bool has_bottom() const;
     [[nodiscard]] int title_px() const;
     /// The baselines from the upper edge.
     [[nodiscard]] int title_baseline_px() const;
@@ -79,6 +79,7 @@ class Overlay {
     int side_px_;  ///< the shorter one of the frame
     int em_px_;
     int edge_px_;  ///< from the edges of the frame to the texts
+    double interval_s_;
     int decimals_ = 2;
     std::size_t time_digits_ = 0;  ///< with the decimal point
     Font font_;

@@ -136,7 +136,11 @@ Room room_beside(LivePlot plot, int width_px, int height_px) {
 }
 
 PlotPanel::PlotPanel(const StyleDef& style, int width_px, int height_px)
-    : width_px_(width_px), height_px_(height_px), em_px_(em_of(std::min(width_px, height_px))) {
+    : width_px_(width_px),
+      height_px_(height_px),
+      is_beside_(width_px > height_px),
+      em_px_(em_of(std::min(width_px, height_px))),
+      edge_px_(edge_of(std::min(width_px, height_px), em_px_)) {
     const int side_px = std::min(width_px, height_px);
     line_px_ = std::max(1, rounded(kBoxLineWidth * side_px));
     text_color_ = text_color(look_of(style));
@@ -165,8 +169,8 @@ std::vector<Color> PlotPanel::choose_colors(const PlotData& data, std::span<cons
 
 void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_colors, Font& font) {
     const Room room = room_beside(LivePlot::kEnergy, width_px_, height_px_);
-    const PixelRect panel{width_px_ > height_px_ ? room.width_px : 0,
-                          width_px_ > height_px_ ? 0 : room.height_px, width_px_, height_px_};
+    const PixelRect panel{is_beside_ ? room.width_px : 0, is_beside_ ? 0 : room.height_px, width_px_,
+                          height_px_};
     const bool is_over_time = data.end_s > 0.0;
     const auto start_axis = [](const PlotData::AxisName& name, const ValueRange& range) {
         const NumberTitle title = title_of(name.text, name.unit, range.largest());
@@ -204,8 +208,8 @@ void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_color
 void PlotPanel::place_names(const PixelRect& panel, Font& font) {
     names_.clear();
     name_rows_ = 0;
-    const int begin_px = panel.x0 + edge_of(std::min(width_px_, height_px_), em_px_);
-    const int end_px = panel.x1 - edge_of(std::min(width_px_, height_px_), em_px_);
+    const int begin_px = panel.x0 + edge_px_;
+    const int end_px = panel.x1 - edge_px_;
     int x_px = begin_px;
     for (const PixelCurve& curve : curves_) {
         if (curve.name.empty()) continue;
@@ -221,15 +225,13 @@ void PlotPanel::place_names(const PixelRect& panel, Font& font) {
 }
 
 bool PlotPanel::place_box(const PixelRect& panel, bool is_over_time, Font& font) {
-    const int edge_px = edge_of(std::min(width_px_, height_px_), em_px_);
     const int line_px = rounded(kLine * em_px_);
     const int gap_px = rounded(kGap * em_px_);
     const int above_px = name_rows_ * line_px + rounded((kAscent + kAboveBox) * em_px_);
     const int below_px = rounded(kTickLength * em_px_) + 2 * line_px;
-    const bool is_beside = width_px_ > height_px_;
-    const int top_px = is_beside ? edge_px : gap_px;
-    const int all_px = panel.height() - top_px - edge_px - above_px - below_px;
-    const int most_px = is_beside ? rounded(kHeightPerWidth * panel.width()) : all_px;
+    const int top_px = is_beside_ ? edge_px_ : gap_px;
+    const int all_px = panel.height() - top_px - edge_px_ - above_px - below_px;
+    const int most_px = is_beside_ ? rounded(kHeightPerWidth * panel.width()) : all_px;
     const int height_px = std::min(all_px, most_px);
     const int least_px = rounded(kMinBox * em_px_);
     if (height_px < least_px) return false;
@@ -244,9 +246,9 @@ bool PlotPanel::place_box(const PixelRect& panel, bool is_over_time, Font& font)
     add_labels(y_, y_labels + 1);
     int widest_px = 0;
     for (const Label& label : y_.labels) widest_px = std::max(widest_px, font.width_px(label.text, em_px_));
-    box_.x0 = panel.x0 + edge_px + widest_px + gap_px + rounded(kTickLength * em_px_);
+    box_.x0 = panel.x0 + edge_px_ + widest_px + gap_px + rounded(kTickLength * em_px_);
     // Half of the last label on the x axis.
-    box_.x1 = panel.x1 - edge_px - em_px_;
+    box_.x1 = panel.x1 - edge_px_ - em_px_;
     if (box_.width() < least_px) return false;
     x_.low_px = box_.x0;
     x_.high_px = box_.x1 - 1;

@@ -109,7 +109,9 @@ class PlotPanel {
 
     int width_px_;
     int height_px_;
+    bool is_beside_;  ///< to the right of the picture
     int em_px_;
+    int edge_px_;  ///< from the edges of the frame to texts
     int line_px_;
     Color text_color_;
     std::vector<Color> palette_;

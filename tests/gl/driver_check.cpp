@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include "corda/gl/context.hpp"
-#include "corda/render/reference_renderer.hpp"
 #include "support/draw_lists.hpp"
 #include "support/failure.hpp"
 #include "support/image_matchers.hpp"

@@ -8,7 +8,7 @@
 
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/scene_renderer.hpp"
-#include "corda/render/reference_renderer.hpp"
+#include "corda/render/frame_renderer.hpp"
 #include "support/draw_list_of.hpp"
 #include "support/files.hpp"
 #include "support/image_matchers.hpp"

@@ -9,7 +9,6 @@
 
 #include "corda/gl/context.hpp"
 #include "corda/render/frame_renderer.hpp"
-#include "corda/render/reference_renderer.hpp"
 #include "corda/view/draw_list.hpp"
 #include "corda/view/font.hpp"
 #include "support/draw_lists.hpp"

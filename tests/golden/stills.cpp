@@ -16,7 +16,7 @@
 #include "corda/golden/provenance.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/pipeline/film.hpp"
-#include "corda/render/reference_renderer.hpp"
+#include "corda/render/frame_renderer.hpp"
 #include "corda/testing.hpp"
 #include "support/command.hpp"
 #include "support/draw_list_of.hpp"

@@ -36,7 +36,8 @@ inline std::optional<view::PlotData> plotted_of(Film& film) {
 inline view::DrawList draw_list_of(const Scene& scene, const System& system, const CameraDef& camera,
                                    const State& state, const std::vector<MotionBounds>& motion,
                                    const view::Caption& caption = {},
-                                   std::span<const view::Trail> trails = {}, const sim::Spread& spread = {},
+                                   std::span<const view::Trail> trails = {},
+                                   const sim::Histogram& histogram = {},
                                    const std::optional<view::PlotData>& plot = {}) {
     const int width_px = scene.video.width_px;
     const int height_px = scene.video.height_px;
@@ -46,8 +47,8 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
     view::Overlay overlay(scene.overlay, scene.style, width_px, height_px, scene.video.fps.interval_s(),
                           scene.world.duration_s);
     if (const auto quantity = quantity_of(scene.style.color_by)) {
-        scene_view.set_scale(view::scale_of(*quantity, spread, scene.style));
-        overlay.set_scale(view::scale_of(*quantity, spread, scene.style));
+        scene_view.set_scale(view::scale_of(*quantity, histogram, scene.style));
+        overlay.set_scale(view::scale_of(*quantity, histogram, scene.style));
     }
     view::DrawList list;
     const view::Camera map(camera, system.origin_m, width_px, height_px);
@@ -72,22 +73,22 @@ inline void add_points(Film& film, const State& state, double age_s, std::vector
 }
 
 /// Adds the quantity that a film's colours show to a state.
-inline void add_values(Film& film, const State& state, sim::Spread& spread) {
+inline void add_values(Film& film, const State& state, sim::Histogram& histogram) {
     const auto quantity = quantity_of(film.scene().style.color_by);
     if (!quantity) return;
     for (const Body& body : film.system().bodies) {
         for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k)
-            spread.add(sim::kind_of(*quantity).value(film.system(), body, k, state));
+            histogram.add(sim::kind_of(*quantity).value(film.system(), body, k, state));
     }
 }
 
 /// The draw list of a film at a time.
 inline view::DrawList draw_list_of(Film& film, double time_s) {
     std::vector<MotionBounds> motion;
-    sim::Spread spread;
+    sim::Histogram histogram;
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
         include(film.state(k), motion);
-        add_values(film, film.state(k), spread);
+        add_values(film, film.state(k), histogram);
     }
     std::vector<view::Trail> trails(test::traced(film).size());
     const double trail_s = film.scene().style.trail_s;
@@ -99,7 +100,7 @@ inline view::DrawList draw_list_of(Film& film, double time_s) {
     add_points(film, state, 0.0, trails);
     const view::Caption caption{time_s, film.figures().energy_error,
                                 method_caption(film.plan(), film.error_bound_px())};
-    return draw_list_of(film.scene(), film.system(), film.camera(), state, motion, caption, trails, spread,
+    return draw_list_of(film.scene(), film.system(), film.camera(), state, motion, caption, trails, histogram,
                         plotted_of(film));
 }
 

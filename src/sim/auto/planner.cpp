@@ -17,21 +17,21 @@ constexpr std::array<double, 16> kTolerance{1.0,  1e-1, 1e-2,  1e-3,  1e-4,  1e-
                                             1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15};
 constexpr std::size_t kMaxDigits = 3;
 constexpr std::size_t kNextDigits = 2;  ///< more than the last trial's
-/// A check's over its run's. The run may err far less than its tolerance, by luck along the one direction
-/// that the motion magnifies; its check then errs as much. False claims of 900 random chains: 2 at 2, none at
-/// 3 (worst 0.44 of the bound) and 4 (0.35); of 400 strings that stretch, 9 at 2 and none at 4.
+/// More than the run's. By chance a run may err far less than its tolerance, and its check as much. False
+/// claims of 900 random chains: 2 at 2, none at 3 (worst 0.44 of the bound) and 4 (0.35); of 400 strings that
+/// stretch, 9 at 2 and none at 4.
 constexpr std::size_t kCheckDigits = 4;
 
 /// Rounding moves a chain about as much as a tolerance of 1e-12 (random chains of 2 to 24 links: 0.03 of the
-/// error at 1e-10). A run and a check that both err by rounding may part together and agree by chance; so the
-/// tightest run is one whose check is better.
+/// error at 1e-10). A run and a check that both err by rounding may agree by chance, so the check of the
+/// tightest run must be better.
 struct TightestDigits {
     std::size_t run;
     std::size_t check;
 };
 constexpr TightestDigits kSmooth{10, 12};
-/// Of strings that stretch, whose forces have a kink where they come taut: errors there are far larger than
-/// rounding. (400 that swing and snap: 42 horizons, 73 at 1e-10.)
+/// For strings that stretch: at the kink where they come taut, errors are far larger than rounding (400 that
+/// swing and snap: 42 horizons, 73 at 1e-10).
 constexpr TightestDigits kWithKinks{13, 15};
 
 /// A trial for closed ropes and nets: an order of `rattle` and how often its step is halved. In order of
@@ -41,9 +41,9 @@ struct Rung {
     int halvings;
 };
 constexpr std::array<Rung, 6> kGraphLadder{{{2, 0}, {4, 0}, {4, 1}, {6, 1}, {8, 1}, {8, 2}}};
-/// Of a check's step and guard, as a share of its trial's. `rattle` divides steps by two where bars whip:
-/// with the same guard, run and check may take the same ones whatever their steps are, and both err alike.
-/// False claims of 1000 rings: 20 at 1/2 of the step, 2 (by 1.5 at most) at 1/3.
+/// Step and guard of a check as a share of its trial's. `rattle` halves steps where bars whip: with the same
+/// guard, run and check may take the same steps and have the same errors. False claims of 1000 rings: 20 at
+/// 1/2 of the step, 2 (by 1.5 at most) at 1/3.
 constexpr double kCheckStep = 1.0 / 3.0;
 /// Steps divide this, whatever the video's frame interval is, so that a preview shows the same motion.
 constexpr double kNominalIntervalSeconds = 1.0 / 60.0;
@@ -96,9 +96,9 @@ bool give_up_together(const Trial& a, const Trial& b) {
 /// A horizon before this share of the motion is not worth the tightest method's cost.
 constexpr double kEarly = 0.1;
 
-/// By which factor a trial a hundred times tighter reaches farther, at most, if errors grow exponentially:
-/// how much later the last one came to its tolerance than to a hundredth of it. Infinite if it does not show,
-/// or if even the tightest would end so early that another trial is to tell.
+/// Upper bound of the factor by which a trial a hundred times tighter reaches farther if errors grow
+/// exponentially: the time at which the last trial reached its tolerance over that of a hundredth of it.
+/// Infinite if unknown, or if even the tightest trial would end so early that another one must decide.
 double farther(const System& system, const Trial& last, std::size_t left, double end_s) {
     if (!std::holds_alternative<ExactDef>(last.method) || has_kinks(system) || last.hundredth_s == 0.0)
         return HUGE_VAL;
@@ -108,8 +108,8 @@ double farther(const System& system, const Trial& last, std::size_t left, double
     return tightest_s < kEarly * end_s ? HUGE_VAL : factor;
 }
 
-/// The trial to run after number `failed`; those that would not reach the end either are left out. Errors of
-/// chaotic motions grow exponentially, so that each trial gains about as much time as its predecessor.
+/// The trial to run after number `failed`. Skips those that would not reach the end either: errors of chaotic
+/// motions grow exponentially, so each trial gains about as much time as its predecessor.
 std::size_t next_trial(const System& system, const BodyPlan& plan, std::size_t failed, std::size_t count,
                        double end_s) {
     const std::size_t ran = plan.trials.size();
@@ -123,9 +123,8 @@ std::size_t next_trial(const System& system, const BodyPlan& plan, std::size_t f
     return next;
 }
 
-/// True if even the tightest trial is not expected to predict a tenth of the motion. So early a horizon is
-/// not worth the cost of the tightest method: the failed trial is used, unless it is so loose that its energy
-/// visibly drifts.
+/// True if even the tightest trial is not expected to predict a tenth of the motion and so is not worth its
+/// cost: the failed trial is used, unless it is so loose that its energy visibly drifts.
 bool can_tell_little(const BodyPlan& plan, std::size_t failed, std::size_t count, double end_s) {
     constexpr double kLooseTolerance = 1e-6;
     constexpr std::size_t kRungs = 3;  // of `rattle`: orders 2 and 4 say little of 6 and 8

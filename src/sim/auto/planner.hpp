@@ -65,7 +65,7 @@ class Checks {
            std::size_t count, const GoesOn& goes_on);
     Checks(const Checks&) = delete;
     Checks& operator=(const Checks&) = delete;
-    /// Ends what start() has begun.
+    /// Ends the work of start().
     ~Checks();
 
     [[nodiscard]] std::size_t size() const { return checks_.size(); }
@@ -75,12 +75,12 @@ class Checks {
     /// Waits until they are there. kDiverged also if one has branched. Throws what Solver::advance_to throws.
     [[nodiscard]] Status finish();
 
-    /// How far a run is from its checks: the largest distance of a particle from its positions there, and if
-    /// there are several, twice what these differ by. That is rounding; if the run were no better, it could
-    /// be near them by chance and far from the truth. Infinite for a NaN.
+    /// The largest distance of a particle from its positions in the checks plus, if there are several, twice
+    /// their own differences. These are rounding; a run that is no better could be near the checks by chance
+    /// and far from the truth. Infinite for a NaN.
     [[nodiscard]] double difference_m(const State& state) const;
 
-    /// Steps of one check up to the last finish().
+    /// Steps of the first check up to the last finish().
     [[nodiscard]] std::uint64_t steps() const { return steps_; }
 
   private:

@@ -14,11 +14,11 @@
 namespace corda::sim {
 namespace {
 
-/// From here on a frame of `exact` takes longer than starting a thread, some 30 us.
+/// Number of particles from which a frame of `exact` takes longer than starting a thread (30 us).
 constexpr std::size_t kManyParticles = 100;
 
-/// Moves the free particles of a start by about as much as it is rounded, in directions of no order, others
-/// for each seed. Strings stay: whether a link is taut must not change.
+/// Moves the free particles of a start by about its rounding in pseudorandom directions. Does not move
+/// strings: whether a link is taut must not change.
 void move_by_rounding(System& system, std::uint32_t order) {
     const auto moved = [&order](double x_m, double length_m) {
         order = order * 1664525U + 1013904223U;
@@ -36,8 +36,8 @@ void move_by_rounding(System& system, std::uint32_t order) {
     }
 }
 
-/// Between the bound on an error and the difference from a check. The error may exceed the difference by the
-/// check's own error, little as a rule and a sixth near rounding: 3 leaves room.
+/// Ratio of the bound on an error to the difference from a check. The error may exceed the difference by the
+/// check's own error, a sixth of it near rounding.
 constexpr double kBoundPerDifference = 3.0;
 
 /// The difference of two runs over time. The tolerance follows from the bounds of the whole motion and is

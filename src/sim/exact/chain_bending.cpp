@@ -84,7 +84,7 @@ void ChainBending::find_couples(const double* y) {
 double ChainBending::energy_j(const double* y) const {
     const std::size_t links = couple_n_.size();
     const auto direction = [&](std::size_t link) { return Vec2{y[link], y[links + link]}; };
-    // A negative k o means that one of the two links is to be seen the other way round.
+    // A negative k o means that one of the two links points the other way.
     const auto energy_of = [](double signed_stiffness_n_m, Vec2 a, Vec2 b) {
         return signed_stiffness_n_m < 0.0 ? -signed_stiffness_n_m * one_minus_cosine(a, -1.0 * b)
                                           : signed_stiffness_n_m * one_minus_cosine(a, b);

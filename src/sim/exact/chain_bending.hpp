@@ -57,8 +57,8 @@ class ChainBending {
     };
     /// A bend between a link that moves and a link between two pins.
     struct Clamp {
-        std::size_t link = 0;        ///< the one that moves
-        Vec2 along;                  ///< unit vector of the other, in the order of the rope
+        std::size_t link = 0;        ///< index of the moving link
+        Vec2 along;                  ///< unit vector of the fixed link, in the order of the rope
         double stiffness_n_m = 0.0;  ///< with the sign o
     };
 

@@ -16,8 +16,8 @@ namespace {
 /// are not determined.
 constexpr double kTaut = 1e-12;
 
-/// Newton steps that close a chain between two pins, all with the first one's matrix. Each step multiplies
-/// the gap by about its size relative to the chain, 1e-4 at the largest tolerance.
+/// Newton steps that close a chain between two pins, all with the matrix of the first. Each step multiplies
+/// the gap by about its size relative to the chain, at most 1e-4.
 constexpr int kClosingSteps = 4;
 
 double length_of(Vec2 a) {
@@ -28,8 +28,8 @@ Vec2 at(const std::vector<double>& x, const std::vector<double>& y, std::size_t 
     return {x[i], y[i]};
 }
 
-/// The symmetric 2 x 2 matrix of a chain's closing, sum of a_i p_i p_i^T. A little of the identity is added:
-/// links that all lie in one line cannot move their end along it, and stay as they are.
+/// The symmetric 2 x 2 matrix for closing a chain, the sum of a_i p_i p_i^T, plus a small multiple of the
+/// identity: links in one line cannot move their end along it and must stay unchanged.
 struct ClosingMatrix {
     double xx = 0.0;
     double xy = 0.0;

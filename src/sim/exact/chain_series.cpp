@@ -13,15 +13,15 @@
 namespace corda::sim {
 namespace {
 
-// Functions that work on all links are compiled twice: for every CPU, and for registers of four numbers.
+// Functions that work on all links are compiled twice: for every CPU, and for AVX2.
 
 using series::kLanes;
 
-/// Numbers of a flat array before that of the first link.
+/// Unused numbers of a flat array before the first link.
 constexpr std::size_t kRoom = 2 * kLanes;
 
-/// Number of last coefficients that the length of a step follows from. If a motion is even or odd in time, or
-/// both in two directions at right angles, only every fourth is not zero.
+/// Number of last coefficients that determine the length of a step. If a motion is even or odd in time, or
+/// both in two perpendicular directions, only every fourth is not zero.
 constexpr std::size_t kLastTerms = 4;
 
 using series::Row;
@@ -32,7 +32,7 @@ CORDA_INLINE void write_links(const SeriesArrays& a, std::size_t i, const Four& 
         any_four(to + i).value = x;
         return;
     }
-    // One by one: a loop over lanes would go through memory.
+    // Unrolled, because a loop over lanes would go through memory.
     static_assert(kLanes == 4);
     to[i] = x[0];
     if (i + 1 < a.links) to[i + 1] = x[1];
@@ -169,27 +169,25 @@ double rough_exp2(double x) {
     return std::bit_cast<double>(static_cast<std::int64_t>((x + 1023.0) * 0x1p+52));
 }
 
-/// A step is at most this many times as long as the last one: terms may be small by chance, as at the start
-/// of a release from the horizontal.
+/// Largest ratio of a step to the previous one: terms may be small by chance, as at the start of a release
+/// from the horizontal.
 constexpr double kMaxStepGrowth = 4.0;
 
 /// In parts of the largest step of step_control(): a series of many terms holds for a pendulum's whole swing.
 constexpr double kMaxSeriesStep = 4.0;
 
-/// The share of the tolerance that the last terms of a step may reach. Errors of steps add up and, in a rope,
-/// grow. With this share, positions after some seconds are right to about the tolerance unless the motion is
-/// chaotic (R5: 5e-13 .. 2e-10 at 1e-9), and much better if a rope swings gently.
+/// Share of the tolerance that the last terms of a step may reach: see kShareOfAStep (R5: 5e-13 .. 2e-10 at
+/// 1e-9).
 constexpr double kShareOfASeriesStep = 0.0025;
 
-/// The order that meets a tolerance fastest: fewer terms make steps shorter, more make them dearer. Orders
-/// are multiples of 4, because these damp quick small oscillations that a step does not resolve; others feed
-/// them.
+/// The fastest order for a tolerance: fewer terms shorten the steps, more make them costlier. Orders are
+/// multiples of 4, which damp fast small oscillations that a step does not resolve; others amplify them.
 std::size_t order_for(double tolerance) {
     if (tolerance >= 1e-5) return 12;
     return tolerance >= 1e-12 ? 16 : kMaxSeriesOrder;
 }
 
-/// Work of a step as a StopCheck counts it: its series take as long as this many updates of a particle.
+/// Cost of a step per link, in updates of a StopCheck.
 constexpr std::uint64_t kUpdatesPerLink = 8;
 
 /// Less than a rounding error of the angular velocities, because it bounds the last term alone.

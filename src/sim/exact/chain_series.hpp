@@ -108,8 +108,8 @@ class ChainSeries {
     ChainSeries& operator=(ChainSeries&&) = delete;
     ~ChainSeries() = default;
 
-    /// Expands the motion that starts from the chain's part of the state `y`. `unit_s`: about the time for
-    /// which the series is needed, so that no coefficient leaves the range of double; > 0.
+    /// Expands the motion that starts from the chain's part of the state `y`. `unit_s` (> 0): about the time
+    /// for which the series is needed, so that no coefficient overflows.
     void expand(const double* y, double unit_s);
 
     /// The time after which the last terms exceed `tolerance` of the angular velocity and the inverse of the

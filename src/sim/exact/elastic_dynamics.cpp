@@ -9,9 +9,9 @@
 namespace corda::sim {
 namespace {
 
-/// Dop853 damps an oscillation of angular frequency omega for all omega h up to 5.9: there the modulus of its
-/// stability function on the imaginary axis is at most 1. Nothing else bounds the steps of a motionless body,
-/// and with longer ones rounding would grow until the error control sees it.
+/// Dop853 damps an oscillation of angular frequency omega for all omega h up to 5.9, where the modulus of its
+/// stability function on the imaginary axis is at most 1. Only this bounds the steps of a motionless body;
+/// with longer ones rounding would grow until the error control notices it.
 constexpr double kStableOmegaH = 5.0;
 
 /// The unit of errors of positions: the length of a rope, the diagonal of a net's bounding box.

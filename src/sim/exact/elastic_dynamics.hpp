@@ -18,8 +18,8 @@ namespace corda::sim {
 /// A state has one array each of x, y, vx and vy over all particles of the body, relative to the initial
 /// position of the first one; those of pinned particles never change.
 ///
-/// The force of a string has a kink where it comes taut. There steps get short until their estimated errors
-/// meet the tolerance, but the estimate for a step with a kink is less reliable than others.
+/// The force of a string has a kink where it comes taut. Steps shrink there until their estimated errors meet
+/// the tolerance, but the estimate for a step with a kink is less reliable.
 class ElasticDynamics final : public Dynamics {
   public:
     /// Requires one body, whose material has a compliance.
@@ -31,7 +31,7 @@ class ElasticDynamics final : public Dynamics {
     /// themselves.
     [[nodiscard]] std::vector<ErrorScale> error_scales() const override;
 
-    /// At least so large that no step lets the fastest vibration grow.
+    /// Large enough that no step lets the fastest vibration grow.
     [[nodiscard]] double inverse_timescale_1_s() const override;
 
     void derivative(const double* y, double* slope) override;

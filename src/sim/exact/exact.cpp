@@ -18,24 +18,23 @@
 namespace corda::sim {
 namespace {
 
-// In parts of the time scale. The first two are for a tolerance of 1 and fall with its 16th root: a run and
-// its check at a tolerance a hundred times tighter, whose difference estimates the error, must not take the
-// same steps even if nothing else limits them.
+// Steps as shares of the time scale. The first two are for a tolerance of 1 and shrink with its 16th root, so
+// that a run and its check at a tighter tolerance take different steps even if nothing else limits them.
 constexpr double kFirstStep = 4e-3;
 constexpr double kMaxStep = 1.0;
 constexpr double kMinStep = 1e-14;
 
-/// Errors of steps add up and, in a rope, grow. With this share per step, positions after some seconds are
-/// right to about the tolerance unless the motion is chaotic (R5: 1e-13 .. 6e-10 at 1e-9, R1 after 2000 s:
-/// 1e-6). With a share of 1 the errors would be 5e-8 and 2e-4. Steps get shorter with its eighth root.
+/// Share of the tolerance that one step may use. Errors of steps add up and, in a rope, grow. With this
+/// share, positions after some seconds are correct to about the tolerance unless the motion is chaotic (R5:
+/// 1e-13 .. 6e-10 at 1e-9, R1 after 2000 s: 1e-6; with a share of 1: 5e-8 and 2e-4). Steps shrink with its
+/// eighth root.
 constexpr double kShareOfAStep = 0.01;
 
 /// Share of a step below which the error estimate is rounding alone.
 constexpr double kMinShare = 1e-15;
 
-/// The series of a longer rope do not fit into a processor's own cache, and fetching them costs more than
-/// longer steps save: they take half the time of Dop853 at 1000 links, the same at 3000, 1.6 times as much at
-/// 100 000.
+/// The series of a longer rope exceed a core's cache. Time relative to Dop853: 0.5 at 1000 links, 1 at 3000,
+/// 1.6 at 100 000.
 constexpr std::size_t kMaxLinksOfSeries = 2000;
 
 void refuse_imaginary_bars(const System& system) {
@@ -60,7 +59,7 @@ void refuse_rigid_string_graph(const Body& body) {
                   "method exact moves a string of rigid links only if it is an open chain");
 }
 
-/// Snaps of rigid strings take energy, as drag does.
+/// False with drag, and for rigid strings, whose snaps lose energy.
 bool conserves_energy_in(const System& system, const Forces& forces) {
     const MaterialDef& material = system.bodies.front().material;
     return forces.conserve_energy() && !(material.is_string && material.compliance_1_n == 0.0);

@@ -12,8 +12,8 @@
 namespace corda::sim {
 namespace {
 
-/// A bar shorter than this share of its rest length counts as this long in the bound on the frequency. The
-/// bound would grow without limit when its ends pass each other: a jerk that no step resolves.
+/// Lower limit of a bar's length, as a share of its rest length, in the bound on the frequency. Otherwise the
+/// bound would grow without limit when the bar's ends pass each other, which no step resolves.
 constexpr double kMinLengthShare = 0.01;
 
 /// |cos| + |sin| of 0.2 radians, rounded up.

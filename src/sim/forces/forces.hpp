@@ -21,7 +21,7 @@ struct ForceKind {
     ForceTerm (*term)(const WorldDef&);
     /// The field of the world that is out of its range, as "drag_1_s is not >= 0"; nullptr: none is.
     const char* (*problem)(const WorldDef&);
-    /// The force in words, as in "linear drag of 0.3 1/s, exact"; empty if nothing is to be said of it.
+    /// The force in words, such as "linear drag of 0.3 1/s, exact"; empty to omit it.
     std::string (*text)(const WorldDef&);
 };
 
@@ -45,8 +45,8 @@ class Forces {
     [[nodiscard]] bool conserve_energy() const { return sum_.drag_1_s == 0.0; }
 
     /// Decay factor exp(-drag t) of a velocity after `time_s`; greater than 1 for a negative time. Uses only
-    /// +,
-    /// -, * and /, because the last bit of std::exp differs between C libraries.
+    /// +, -,
+    /// * and /, because the last bit of std::exp differs between C libraries.
     [[nodiscard]] double decay(double time_s) const;
 
     /// Inverse of the time in which a body of this length and speed moves by about its own length, in 1/s; 0

@@ -14,10 +14,10 @@ namespace {
 /// Newton's method stops when the error of every squared length is below this share of it, far below the
 /// rounding of the squares themselves. More than 1e-15 would be seen as strain.
 constexpr double kSquareTolerance = 1e-16;
-/// Two or three are normal. If twenty are not enough, more would not be either.
+/// Two or three steps are normal. Where twenty do not suffice, more do not either.
 constexpr int kMaxNewtonSteps = 20;
-/// A chain between two pins is refused as straight if the last pivot of its matrix is below this share of the
-/// diagonal, which angles of about 1e-6 radians give. A straight chain leaves the square of rounding, 1e-32.
+/// A chain between two pins counts as straight if the last pivot of its matrix is below this share of the
+/// diagonal: angles of about 1e-6 radians. A straight chain leaves the square of rounding, 1e-32.
 constexpr double kStraightPivot = 1e-12;
 
 }  // namespace

@@ -78,10 +78,10 @@ namespace {
 /// A row is straight if its bars are longer than the distance of its ends by no more than this share of it,
 /// which is rounding: sagging by a part in 1e7 would take twice as much.
 constexpr double kSlack = 1e-14;
-/// Of the coordinates and, where a check moves its start by rounding, of all lengths together.
+/// Rounding, as a share of the largest coordinate and, for checks with a moved start, of all lengths
+/// together.
 constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
-/// The sine of the angle by which a bar of a straight row may turn from its predecessor, far above what
-/// kSlack leaves and rounding.
+/// Sine of the largest angle between successive bars of a straight row, far above kSlack and rounding.
 constexpr double kSameDirection = 1e-5;
 
 struct End {
@@ -143,8 +143,8 @@ class Rows {
         return nearest;
     }
 
-    /// True if a row that starts like this is straight and ends at a held particle; row_ are then the ones
-    /// between.
+    /// True if the row that starts with this bar is straight and ends at a held particle. Writes the
+    /// particles between to row_.
     [[nodiscard]] bool find_row(std::uint32_t from, const End& first) {
         row_.clear();
         const Vec2 direction = along(from, first.particle);

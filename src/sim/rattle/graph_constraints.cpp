@@ -10,13 +10,13 @@
 namespace corda::sim {
 namespace {
 
-/// Products that take as long as one update of a StopCheck.
+/// Products per update of a StopCheck.
 constexpr std::uint64_t kProductsPerUpdate = 64;
 
-/// Corrections end when no squared length is off by more than this share of it, a few roundings. Much less is
-/// never reached; more would be seen as strain.
+/// Corrections end when the error of every squared length is below this share of it, a few roundings. Much
+/// less is never reached; more would show as strain.
 constexpr double kExcessTolerance = 4e-15;
-/// Five to ten are normal. If it takes more than forty, the bars turn too far for the matrix.
+/// Five to ten corrections are normal. If forty do not suffice, the bars turn too far for the matrix.
 constexpr int kMaxCorrections = 40;
 /// Bars depend on each other if a pivot is below this share of its diagonal entry. Dependent bars leave 1e-16
 /// to 1e-14; a net that is only just determined, sagging by a part in 1e5, leaves 1e-10.
@@ -27,27 +27,26 @@ constexpr double kDependentPivot = 1e-12;
 /// 3e-9.
 constexpr double kRaise = 1e-14;
 constexpr double kImpliedPivot = 1e-11;
-/// Bars whose smallest pivot is below this share of that at the start are near a line in which they depend on
-/// each other: some hundredth of a radian.
+/// Bars whose smallest pivot is below this share of its initial value are within about a hundredth of a
+/// radian of a line in which they depend on each other.
 constexpr double kNearLine = 1e-3;
-/// From such a start, Newton's method proper converges in five steps or not at all.
+/// From there, the full Newton method converges in five steps or not at all.
 constexpr int kMaxCrossingSteps = 10;
-/// In the line two motions branch off, and the true one keeps its velocities. Those of bars may change in the
-/// stage by this share of the fastest; and Newton's corrections have to shrink by kShrink each, as they do
-/// from a start that is ten times nearer to the one branch than to the other.
+/// At the line two motions branch, and the true one keeps its velocities. In a stage, relative velocities of
+/// bars may change by this share of the fastest, and each Newton correction must shrink by kShrink, as it
+/// does from a start that is ten times nearer to one branch than to the other.
 constexpr double kCrossingChange = 0.05;
 constexpr double kShrink = 0.1;
 constexpr double kRoundedChange = 1e-11;
-/// In a leap, the share by which all diagonal entries are raised, so that what the bars leave undetermined
-/// stays as it is.
+/// In a leap, all diagonal entries are raised by this share, so that undetermined directions do not change.
 constexpr double kLeapRaise = 1e-10;
-/// By how much of its square the length of an implied bar may be off: rounding, magnified by the others.
+/// Largest relative error of an implied bar's squared length: rounding, magnified by the other bars.
 constexpr double kImpliedTolerance = 1e-9;
-/// By how much of the largest squared speed at which a bar turns an implied bar may bend away. Bars that do
-/// not stay implied bend away by a share near 1.
+/// Largest rate at which an implied bar may change its length, as a share of the largest squared speed at
+/// which a bar turns. Bars that do not stay implied have a share near 1.
 constexpr double kBendTolerance = 1e-5;
 
-/// Of a bar: its vector times the difference of its ends' velocities, and the square of that difference.
+/// A bar's vector times the relative velocity of its ends, and the square of that velocity.
 struct Rates {
     double along;
     double square;
@@ -133,7 +132,7 @@ GraphConstraints::GraphConstraints(const System& system, const GoesOn& goes_on)
     analyse();
     StopCheck stop(goes_on);
     bool determined = is_regular(start, stop);
-    // Again without the raise for those with large coefficients, which may hide one another.
+    // Repeat without the raise: bars with large coefficients may hide one another.
     for (const double raise : {kRaise, 0.0, 0.0}) {
         if (determined) break;
         leave_out_implied(start, raise, stop);
@@ -190,8 +189,8 @@ GraphConstraints::Plate GraphConstraints::plate_of(const System& system) const {
 }
 
 bool GraphConstraints::stay_implied(Motion motion, StopCheck& stop) {
-    // What an implied bar bends away in a motion that keeps the others to second order is a square of the
-    // velocities: if it is 0 for velocities in no particular direction, it always is.
+    // The change of an implied bar's length in a motion that keeps the others to second order is a quadratic
+    // form of the velocities: if it is 0 for generic velocities, it is always 0.
     std::uint32_t order = 1;
     const auto any = [&order](double weight) {
         order = order * 1664525U + 1013904223U;

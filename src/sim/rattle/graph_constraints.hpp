@@ -13,7 +13,7 @@
 
 namespace corda::sim {
 
-/// Eigen's sparse LDL', with a factorisation that can be broken off: that of a large net takes seconds.
+/// Eigen's sparse LDL' with a factorisation that can be interrupted: that of a large net takes seconds.
 class StoppableLdlt final : public Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> {
   public:
     /// Factorises the matrix with this lower triangle, whose pattern has been analysed, by the operations of
@@ -66,16 +66,16 @@ class GraphConstraints final : public ConstraintSolver {
         std::uint32_t column = 0;
         double factor = 0.0;  ///< sum of the shared particles' inverse masses, signed
     };
-    /// Of a system that can only move as a rigid body, about its pin or its centre of mass.
+    /// A system that moves only as a rigid body, about its pin or its centre of mass.
     struct Plate {
         double inertia_kg_m2 = 0.0;
         double lever_kg_m = 0.0;  ///< mass times the distance of the centre of mass
     };
     void analyse();
-    /// Makes factors_ those at these positions, the matrix's diagonal entries raised by a share; takes no
-    /// time if they are already. False if it cannot.
+    /// Factorises the matrix at these positions, its diagonal entries raised by a share; does nothing if
+    /// factors_ are already the result. False if it cannot.
     [[nodiscard]] bool factorise(const Motion& motion, double raise, StopCheck& stop);
-    /// Factorises it as it is; false also if bars depend on each other.
+    /// Factorises the matrix without a raise; false also if bars depend on each other.
     [[nodiscard]] bool is_regular(const Motion& motion, StopCheck& stop);
     /// Moves the links that others imply to implied_, as far as a factorisation with this raise shows them.
     void leave_out_implied(const Motion& start, double raise, StopCheck& stop);
@@ -88,10 +88,10 @@ class GraphConstraints final : public ConstraintSolver {
     [[nodiscard]] bool meet_implied(const Motion& motion) const;
     void apply(const double* impulse, Motion& motion) const;
     [[nodiscard]] bool correct(double span_s, const Motion& motion);
-    /// Of the differences of velocities of links' ends, the largest square.
+    /// The largest squared relative velocity of a link's ends.
     [[nodiscard]] double largest_square(const Motion& motion) const;
-    /// Takes the stage after its kick by Newton's method proper, whose matrix follows the bars, on which side
-    /// of their line they may be. False if it does not converge or may have taken the other branch.
+    /// Completes a stage after its kick by the full Newton method, whose matrix follows the bars to either
+    /// side of their line. False if it does not converge or may have taken the other branch.
     [[nodiscard]] bool cross(double span_s, Motion& motion, std::span<double> impulse, StopCheck& stop);
 
     bool holds_rows_;

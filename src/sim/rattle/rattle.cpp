@@ -52,13 +52,13 @@ constexpr std::array<Composition, 4> kCompositions{
     Composition{8, kOrder8, 3.09},
 };
 
-/// Two parts are joined again if the doubled span stays below this share of the guard. Below 1, because
-/// otherwise parts would change with every ripple, and each change costs some energy.
+/// Two parts are joined again if the doubled span stays below this share of the guard. Below 1, because each
+/// change of the parts costs some energy.
 constexpr double kJoinShare = 0.8;
 /// A step is divided into at most 2^24 parts, so that a step of 1 s can follow frequencies of 1e7 / s.
 constexpr int kMaxLevel = 24;
 constexpr std::uint64_t kMinParts = std::uint64_t{1} << kMaxLevel;
-/// A stage whose kick is this much shorter than its span does not determine the tension.
+/// A stage whose kick is below this share of its span does not determine the tension.
 constexpr double kShortKick = 1e-3;
 
 void refuse_rigid_strings(const System& system) {

@@ -110,7 +110,7 @@ class Rattle final : public Solver {
     /// Advances by `span_s` in as many parts as are needed.
     [[nodiscard]] bool advance(double span_s, Trajectory& trajectory, History* history, StopCheck& stop);
     [[nodiscard]] bool take_part(double part_s, Trajectory& trajectory, History* history, StopCheck& stop);
-    /// Takes the rest of a step from where its parts find no way.
+    /// Completes a step whose parts fail.
     [[nodiscard]] bool leap(double span_s, Trajectory& trajectory, StopCheck& stop);
     [[nodiscard]] double* multipliers(History& history, std::size_t stage, int age) const;
     void guess(std::size_t stage, double kick_s, const Trajectory& trajectory, History* history);
@@ -136,7 +136,7 @@ class Rattle final : public Solver {
     double step_s_ = 0.0;
     std::uint64_t step_ = 0;
     std::uint64_t parts_ = 0;
-    bool has_branched_ = false;  ///< before output_
+    bool has_branched_ = false;  ///< at or before output_
     std::vector<double> mass_kg_;
     std::vector<double> inverse_mass_1_kg_;
     /// Empty if the constraints do not determine the tensions.

@@ -41,11 +41,11 @@ void relax(double* a, double* b, double rest_m, double share_a, double share_b) 
 
 #if defined(__x86_64__)
 
-/// Sweeps under way at once. Three hide a bar's latency behind one another if the rope is long enough for so
-/// many; more share what a rope too large for the caches reads from memory.
+/// Number of concurrent sweeps. Three hide a bar's latency if the rope is long enough; more share the memory
+/// reads of a rope too large for the caches.
 constexpr std::size_t kSweepsAtOnce = 6;
 
-/// A sweep under way.
+/// A sweep in progress.
 struct Cursor {
     std::size_t packet = 0;  ///< the next one
     bool updates = false;    ///< this sweep is the first of a step
@@ -187,7 +187,7 @@ CORDA_AVX2 CORDA_INLINE void relax_four(const RelaxationPacket& first, const Rel
                 _mm256_sub_pd(at_b1, _mm256_mul_pd(second_of(share_b), move1)));
 }
 
-/// Runs the next packet of two sweeps. Packets at least `lag` apart have no particle in common.
+/// Runs the next packet of two sweeps, which are at least `lag` apart and so share no particle.
 CORDA_AVX2 CORDA_INLINE void advance_two(const Pointers& p, Cursor& first, Cursor& second) {
     update_before(p, first);
     update_before(p, second);

@@ -28,12 +28,12 @@ void refuse_materials(const System& system) {
 /// a level 2 cache.
 constexpr std::size_t kParticlesTogether = 256;
 
-/// Sweeps run in pieces of this many bars and particles, a few milliseconds, after which a StopCheck hears of
-/// them. Fewer would make the kernel wait more often for the last sweep to end.
+/// Sweeps run in pieces of this many bars and particles, a few milliseconds, between which the StopCheck is
+/// updated. With smaller pieces the kernel would wait more often for the last sweep to end.
 constexpr std::uint64_t kMaxAtOnce = 1'000'000;
-/// But of no fewer sweeps, so that what a rope too large for the caches reads from memory is still shared.
+/// Minimum number of sweeps of a piece, so that the memory reads of a large rope are still shared.
 constexpr std::uint64_t kMinSweeps = 12;
-/// Bars or particles that take as long as one update of a StopCheck.
+/// Bars or particles per update of a StopCheck.
 constexpr std::uint64_t kBarsPerUpdate = 8;
 
 /// The bars among these that can move a particle.
@@ -171,7 +171,7 @@ void Relaxation::advance(std::uint64_t steps, StopCheck& stop) {
         run_in_pieces(sweeps, bars + schedule.updates.size(), stop,
                       [&](const RelaxationSweeps& piece) { run_sweeps(schedule, piece, kernel_, motion_); });
     }
-    // The move takes up what the bars moved. Within several steps the next update does this.
+    // Add what the bars moved to the move, as the next update would.
     for (std::size_t k = 0; k < size; ++k) {
         motion_.move_m[k] += motion_.position_m[k] - motion_.unrelaxed_m[k];
         motion_.unrelaxed_m[k] = motion_.position_m[k];

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "corda/pipeline/film_renderer.hpp"
-#include "corda/render/reference_renderer.hpp"
+#include "corda/render/frame_renderer.hpp"
 #include "corda/scene/scene.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"

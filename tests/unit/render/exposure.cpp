@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "corda/render/reference_renderer.hpp"
+#include "corda/render/frame_renderer.hpp"
 #include "corda/render/tiles.hpp"
 #include "support/draw_lists.hpp"
 #include "support/image_matchers.hpp"

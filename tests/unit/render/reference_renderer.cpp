@@ -1,4 +1,4 @@
-#include "corda/render/reference_renderer.hpp"
+#include "corda/render/frame_renderer.hpp"
 
 #include <gtest/gtest.h>
 

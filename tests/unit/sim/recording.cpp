@@ -95,7 +95,7 @@ TEST(Recording, OfBodiesEndsWithTheFirstThatDiverges) {
     EXPECT_EQ(whole.size(), 0U);
 }
 
-TEST(Recording, KeepsTensionsOfAllBodiesAndTheirSpread) {
+TEST(Recording, KeepsTensionsOfAllBodiesAndTheirHistogram) {
     constexpr std::size_t kBars = kParticles - 1;
     Recording whole(2 * kParticles, 5, 1 << 20, 2 * kBars, Quantity::kTension);
     std::vector<double> expected_n;
@@ -111,10 +111,10 @@ TEST(Recording, KeepsTensionsOfAllBodiesAndTheirSpread) {
     EXPECT_EQ(state.tension_n, expected_n);
     EXPECT_EQ(state.tension_n.size(), 2 * kBars);
     EXPECT_TRUE(state.vx_m_s.empty());
-    EXPECT_GE(whole.spread().largest(), state.tension_n[0]);
-    EXPECT_LT(whole.spread().least(), whole.spread().largest());
+    EXPECT_GE(whole.histogram().largest(), state.tension_n[0]);
+    EXPECT_LT(whole.histogram().least(), whole.histogram().largest());
     whole.clear();
-    EXPECT_TRUE(whole.spread().empty());
+    EXPECT_TRUE(whole.histogram().empty());
 }
 
 TEST(Recording, AddsNoStateOfARunThatDiverges) {
@@ -150,30 +150,30 @@ TEST(Recording, MeasuresTheSteppingAloneAndForgetsItWithTheStates) {
     EXPECT_EQ(recording.diagnostics().steps, 0U);
 }
 
-TEST(Spread, KnowsItsEndsAndWhatFewValuesExceed) {
-    Spread spread;
-    EXPECT_TRUE(spread.empty());
-    for (int i = 0; i < 999; ++i) spread.add(1.0 + i * 0.001);
-    spread.add(-500.0);
-    spread.add(std::nan(""));
-    EXPECT_EQ(spread.least(), -500.0);
-    EXPECT_EQ(spread.largest(), 1.998);
-    EXPECT_EQ(spread.size_exceeded_by(0.0), 500.0);
+TEST(Histogram, KnowsItsEndsAndWhatFewValuesExceed) {
+    Histogram histogram;
+    EXPECT_TRUE(histogram.empty());
+    for (int i = 0; i < 999; ++i) histogram.add(1.0 + i * 0.001);
+    histogram.add(-500.0);
+    histogram.add(std::nan(""));
+    EXPECT_EQ(histogram.least(), -500.0);
+    EXPECT_EQ(histogram.largest(), 1.998);
+    EXPECT_EQ(histogram.size_exceeded_by(0.0), 500.0);
     // The 10 largest of 1000 sizes are 500 and those above 1.989.
-    EXPECT_GE(spread.size_exceeded_by(0.01), 1.989);
-    EXPECT_LE(spread.size_exceeded_by(0.01), 1.989 * 17.0 / 16.0);
+    EXPECT_GE(histogram.size_exceeded_by(0.01), 1.989);
+    EXPECT_LE(histogram.size_exceeded_by(0.01), 1.989 * 17.0 / 16.0);
 }
 
-TEST(Spread, OfTwoIsThatOfAllTheirValues) {
-    Spread all;
-    Spread a;
-    Spread b;
+TEST(Histogram, OfTwoIsThatOfAllTheirValues) {
+    Histogram all;
+    Histogram a;
+    Histogram b;
     for (int i = 0; i < 100; ++i) {
         all.add(i * i);
         (i % 3 == 0 ? a : b).add(i * i);
     }
     a.add(b);
-    a.add(Spread());
+    a.add(Histogram());
     EXPECT_EQ(a.least(), all.least());
     EXPECT_EQ(a.largest(), all.largest());
     for (const double share : {0.0, 0.1, 0.5})

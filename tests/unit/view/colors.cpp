@@ -176,10 +176,10 @@ TEST(Palettes, HaveNotTheColourOfSupports) {
 std::vector<Color> colors_of_scale(Theme theme, bool is_about_zero) {
     StyleDef style;
     style.theme = theme;
-    sim::Spread spread;
-    spread.add(1.0);
-    if (is_about_zero) spread.add(-1.0);
-    const ColorScale scale = scale_of(Quantity::kTension, spread, style);
+    sim::Histogram histogram;
+    histogram.add(1.0);
+    if (is_about_zero) histogram.add(-1.0);
+    const ColorScale scale = scale_of(Quantity::kTension, histogram, style);
     std::vector<Color> colors;
     for (int i = 0; i <= 64; ++i)
         colors.push_back(scale.color(scale.low + i * (scale.high - scale.low) / 64));
@@ -237,17 +237,17 @@ TEST(Looks, OverrideTheThemeByTheStyle) {
     EXPECT_EQ(look.free, look_of_theme(Theme::kPaper).free);
 }
 
-sim::Spread spread_of(std::initializer_list<double> values) {
-    sim::Spread spread;
-    for (const double value : values) spread.add(value);
-    return spread;
+sim::Histogram histogram_of(std::initializer_list<double> values) {
+    sim::Histogram histogram;
+    for (const double value : values) histogram.add(value);
+    return histogram;
 }
 
 ColorScale scale(std::initializer_list<double> values, Theme theme = Theme::kDark,
                  Quantity quantity = Quantity::kTension) {
     StyleDef style;
     style.theme = theme;
-    return scale_of(quantity, spread_of(values), style);
+    return scale_of(quantity, histogram_of(values), style);
 }
 
 TEST(ColorScale, EndsAtARoundNumber) {
@@ -274,10 +274,10 @@ TEST(ColorScale, GoesBelowZeroIfValuesDo) {
 }
 
 TEST(ColorScale, IsCutWhereFewValuesLieFarBeyond) {
-    sim::Spread spread;
-    for (int i = 0; i < 1000; ++i) spread.add(1.0 + 0.001 * i);
-    spread.add(500.0);
-    const ColorScale cut = scale_of(Quantity::kSpeed, spread, {});
+    sim::Histogram histogram;
+    for (int i = 0; i < 1000; ++i) histogram.add(1.0 + 0.001 * i);
+    histogram.add(500.0);
+    const ColorScale cut = scale_of(Quantity::kSpeed, histogram, {});
     EXPECT_TRUE(cut.is_cut);
     EXPECT_LE(cut.high, 3.0);
     EXPECT_EQ(cut.color(500.0), cut.color(cut.high));

@@ -154,10 +154,10 @@ StyleDef by_tension() {
 }
 
 ColorScale kilonewtons(double low = 0.0) {
-    sim::Spread spread;
-    spread.add(20e3);
-    if (low < 0.0) spread.add(low);
-    return scale_of(Quantity::kTension, spread, by_tension());
+    sim::Histogram histogram;
+    histogram.add(20e3);
+    if (low < 0.0) histogram.add(low);
+    return scale_of(Quantity::kTension, histogram, by_tension());
 }
 
 DrawList with_legend(const ColorScale& scale, OverlayDef def, int width, int height) {

@@ -309,9 +309,9 @@ TEST(SceneView, LinksTakeTheColoursOfAScale) {
     DrawList list;
     view.draw(state, camera, list);
     EXPECT_FALSE(list.layers.front().is_tinted);  // before there is a scale
-    sim::Spread spread;
-    spread.add(10.0);
-    const ColorScale scale = scale_of(Quantity::kSpeed, spread, style);
+    sim::Histogram histogram;
+    histogram.add(10.0);
+    const ColorScale scale = scale_of(Quantity::kSpeed, histogram, style);
     view.set_scale(scale);
     view.draw(state, camera, list);
     ASSERT_TRUE(list.layers.front().is_tinted);

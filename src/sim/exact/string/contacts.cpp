@@ -11,31 +11,30 @@ namespace {
 
 using Side = TensionLcp::Side;
 
-/// Events closer than this, in parts of the string's time scale, count as simultaneous. It is more than
-/// errors of integration move an event, so that links that symmetry brings to their rest length together
-/// arrive together, and too little to be seen.
+/// Events closer than this, in parts of the string's time scale, count as simultaneous. Integration errors
+/// move events by less, so links that reach their rest length together by symmetry still do.
 constexpr double kSimultaneous = 1e-11;
 
 /// Rounding of a distance, in units in the last place of the farthest coordinate.
 constexpr double kUlps = 8.0;
 
-/// Speeds and accelerations below this share of the string's own are rounding, and so are impulses and
-/// tensions that cause no more in a link's particles.
+/// Speeds and accelerations below this share of the string's own are rounding, as are impulses and tensions
+/// that change those of a link's particles by less.
 constexpr double kRounding = 1e-12;
 
-/// Rounding of a tension comes from all masses that hang on it, however far away: at least this share of the
-/// whole string's mass counts.
+/// Rounding of a tension comes from all masses that hang on it: at least this share of the string's mass
+/// counts.
 constexpr double kMinShareOfMass = 1e-3;
 
-/// A link that shortens by less than this share of its length and comes back counts as taut all the time: a
-/// share of the tolerance, because a link that does not come back continues from there, and a tighter run
-/// must show it. Within the limits: far above the rounding of lengths, within which a returning link gains
-/// speed, so that bounces might never end, and below any error that could be seen.
+/// A link that shortens by less than this share of its length before it returns counts as taut throughout. It
+/// is a share of the tolerance, because a link that does not return continues from there, and a tighter run
+/// must show it. The limits are far above the rounding of lengths, where bounces might never end, and below
+/// any visible error.
 constexpr double kNoBouncePerTolerance = 1e-2;
 constexpr double kMinNoBounce = 1e-13;
 constexpr double kMaxNoBounce = 1e-10;
 
-/// Tensions accelerate a link by at most this many times what they have to balance.
+/// Tensions accelerate a link by at most this multiple of the acceleration that they balance.
 constexpr double kMaxAcceleration = 100.0;
 
 Vec2 between(const std::vector<double>& x, const std::vector<double>& y, std::size_t link) {

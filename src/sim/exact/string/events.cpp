@@ -32,8 +32,8 @@ std::vector<Body> runs_of(const std::vector<std::uint8_t>& is_taut) {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// The top of a parabola counts as near 0 within this share of its height above the lower outer point: more
-/// than the parabola differs from the margin within parts of a step.
+/// The top of a parabola counts as near 0 within this share of its height above the lower outer point, which
+/// exceeds the difference of parabola and margin within parts of a step.
 constexpr double kNearTop = 0.25;
 /// Points tried to find a top; each adds some 30 % to the number of correct digits.
 constexpr int kTopPoints = 8;

@@ -22,8 +22,8 @@ constexpr double kUlpsAtRest = 8.0;
 /// rounding.
 constexpr double kTooLong = 1e-9;
 
-/// More events per link than this within kBurst of the string's time scale never come to an end. A snap that
-/// runs along the string takes some events per link.
+/// More events per link than this within kBurst of the string's time scale would never end. A snap that runs
+/// along the string takes a few events per link.
 constexpr std::uint64_t kMaxEventsALink = 1000;
 constexpr double kBurst = 1e-6;
 
@@ -39,7 +39,7 @@ System relative_to_first(System string) {
     return string;
 }
 
-/// One entry per link. These links count as taut if their tensions do not tell, as those of a rope that falls
+/// One entry per link. These links count as taut if their tensions do not decide, as in a rope that falls
 /// straight.
 std::vector<std::uint8_t> links_at_rest_length(const System& string) {
     double farthest_m = 0.0;
@@ -71,7 +71,7 @@ void refuse_long_links(const System& string) {
     }
 }
 
-/// A string whose rest length is the distance of two of its pins can only be straight between them.
+/// Refuses a string whose rest length is the distance between two of its pins: it is straight there.
 void refuse_taut(const System& string) {
     std::optional<std::size_t> last;
     double rest_m = 0.0;
@@ -132,7 +132,7 @@ Status StringPart::reach(double time_s, State& state, StopCheck& stop) {
 
 bool StringPart::start(double first_step_s, StopCheck& stop) {
     if (!contacts_.resolve(string_, is_taut_, stop)) return false;
-    // Making each of these takes about as long as some updates of each particle.
+    // Each of these costs about one update per particle.
     const std::size_t updates = 1 + string_.particle_count();
     stop.spend(updates);
     dynamics_ = std::make_unique<StringDynamics>(string_, is_taut_, forces_);

@@ -17,10 +17,10 @@ constexpr int kMaxIterations = 100;
 /// The mean of z w, in parts of its first value, below which either z or w counts as 0.
 constexpr double kEnough = 1e-24;
 
-/// Of the longest step that keeps z and w positive.
+/// Share of the longest step that keeps z and w positive.
 constexpr double kShareOfStep = 0.995;
 
-/// A pivot is at least this share of its row's diagonal entry, of which less is rounding.
+/// Lower bound of a pivot as a share of its row's diagonal entry; less is rounding.
 constexpr double kMinPivot = 1e-15;
 
 class InteriorPoint {
@@ -122,11 +122,11 @@ class InteriorPoint {
     std::vector<double> aim_;
 };
 
-/// Exchanges of whole blocks in a row that may fail to leave fewer wrong signs than ever before; Judice and
-/// Pires recommend 10 or fewer.
+/// Number of consecutive block exchanges that may fail to reduce the fewest wrong signs so far; Judice and
+/// Pires recommend at most 10.
 constexpr int kPatience = 5;
 
-/// Rounds before an interior point makes a new guess, which costs as much as some 200.
+/// Rounds before an interior-point method makes a new guess, which costs about 200 rounds.
 constexpr std::size_t kRoundsBeforeGuess = 50;
 
 }  // namespace
