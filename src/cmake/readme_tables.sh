@@ -6,10 +6,10 @@ study=${1:?usage: readme_tables.sh STUDY}
 page=$(cd "$(dirname "${BASH_SOURCE[0]}")/../study" && pwd)/README.md
 [[ -f "$study/report.md" ]] || { echo "readme_tables.sh: $study/report.md is missing; run corda study -o $study" >&2; exit 2; }
 
-# table TITLE: the first table of that title, without the padding of its cells.
+# table TITLE: the first table whose title begins so, without the padding of its cells.
 table() {
-    awk -v title="**$1**" '
-        $0 == title { found = 1 }
+    awk -v title="**$1" '
+        index($0, title) == 1 { found = 1 }
         found && /^\|/ { rows = 1; gsub(/ +/, " "); if ($0 ~ /^\|[-:|]+$/) gsub(/-+/, "---"); print; next }
         found && rows { exit }' "$study/report.md"
 }

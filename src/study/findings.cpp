@@ -1,20 +1,36 @@
-#include "corda/study/chapters.hpp"
-
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "corda/reference/numbers.hpp"
-#include "corda/study/statements.hpp"
+#include "corda/study/study.hpp"
+#include "corda/study/swings.hpp"
 
 namespace corda::study {
 namespace {
 
 constexpr std::array<double, 3> kMasses{0.1, 1.0, 10.0};
 constexpr int kMaxReach = 10;
+
+/// Times to settle of relaxation and of the true rope with the same drag; std::nullopt: not while watched.
+struct Settling {
+    double delta = 0.0;
+    double step_s = 0.0;
+    double drag_1_s = 0.0;  ///< -ln(1 - delta) / step
+    std::optional<double> relaxation_s;
+    std::optional<double> rope_s;
+};
+
+/// The report's highest update rate and that of this machine.
+struct Rate {
+    int particles = 0;
+    double report_1_s = 0.0;
+    double measured_1_s = 0.0;
+};
 
 struct Findings {
     std::vector<Rate> rates;
@@ -72,7 +88,7 @@ report::Table swings_table(std::string id, std::string title, const std::vector<
     }
     table.note =
         "Two periods of the rigid rod from the report's start, 60 steps per second, a force of (0, -9.8) N "
-        "per particle.";
+        "per particle. With reach 7, each particle has bars to the next 1, 2, ..., 7 particles.";
     return table;
 }
 
@@ -81,7 +97,7 @@ report::Table settling_table(const Findings& findings) {
     table.columns = {{"delta", "delta per step"},
                      {"step_s", "step [s]"},
                      {"drag_1_s", "drag [1/s]"},
-                     {"relaxation_settles_s", "relaxation, 7 n bars [s]"},
+                     {"relaxation_settles_s", "relaxation, reach 7 [s]"},
                      {"rope_settles_s", "true rope with that drag [s]"}};
     for (const Settling& row : findings.settling) {
         table.add({row.delta, row.step_s, row.drag_1_s, report::cell_of(row.relaxation_s),
@@ -94,9 +110,14 @@ report::Table settling_table(const Findings& findings) {
     return table;
 }
 
-report::Plot bars_plot(const Findings& findings, const char* id, const char* title,
+report::Plot bars_plot(const Findings& findings, const char* id, const char* title, const char* caption_start,
                        double SwingFigures::*figure) {
     report::Plot plot{id, title, "reach of the bars", title, false, true, {}};
+    plot.caption = fmt::format(
+        "{} of 40 particles over the reach of the bars: with reach 7, each particle has bars to the next 1, "
+        "2, "
+        "..., 7 particles. One sweep per step.",
+        caption_start);
     for (const double mass_kg : kMasses) {
         report::Series series{fmt::format("{:g} kg, one sweep", mass_kg), {}};
         for (const SwingRow& row : findings.bars) {
@@ -175,27 +196,22 @@ void add_settling(const Shared& findings, std::vector<Job>& jobs) {
 report::Chapter chapter_of(const Findings& findings) {
     report::Chapter chapter;
     chapter.title = "The source report's findings";
-    const char* const setting =
+    chapter.paragraphs = {
         "The report's start and method: bars of reach 7, one sweep per step, a force of 9.8 N per particle. "
         "They are compared with the motion of a true rope, by method exact, and with that of a rigid rod, in "
-        "closed form.";
-    chapter.paragraphs = {setting,
-                          rates_statement(findings.rates),
-                          best_reach_statement(findings.bars),
-                          sweeps_statement(findings.bars),
-                          mass_statement(findings.bars, findings.difference_under_gravity),
-                          speed_statement(findings.bars),
-                          light_statement(findings.bars),
-                          many_particles_statement(findings.sizes),
-                          settling_statement(findings.settling, findings.watched_s)};
-    chapter.summary = sweeps_statement(findings.bars);
+        "closed form.",
+        fmt::format("Mass matters because the force is the same for every mass. Under gravity, which is "
+                    "proportional to mass, the motions of {:g} kg and {:g} kg differ by {:.1g} L.",
+                    kMasses.front(), kMasses.back(), findings.difference_under_gravity)};
     chapter.tables = {rates_table(findings),
                       swings_table("bars", "Quality over bars, sweeps and mass", findings.bars),
                       swings_table("particles", "Quality over the number of particles", findings.sizes),
                       settling_table(findings)};
-    chapter.plots = {
-        bars_plot(findings, "bars_rope_error", "RMS error / L from the true rope", &SwingFigures::rope_error),
-        bars_plot(findings, "bars_strain", "largest strain", &SwingFigures::strain)};
+    chapter.plots = {bars_plot(findings, "bars_rope_error", "RMS error / L from the true rope",
+                               "Distance from the true rope, in lengths (RMS, largest over the frames),",
+                               &SwingFigures::rope_error),
+                     bars_plot(findings, "bars_strain", "largest strain", "Largest strain of a link",
+                               &SwingFigures::strain)};
     return chapter;
 }
 

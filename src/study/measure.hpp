@@ -20,7 +20,7 @@ namespace corda::study {
 /// compared.
 using Reference = std::function<bool(std::int64_t k, State& state)>;
 
-/// What the methods are measured on: a system, its world, the frames at which it is compared, and the truth.
+/// A problem for the methods: a system, its world, the frames at which it is compared, and the truth.
 struct Problem {
     std::string id;     ///< [a-z0-9_]+, part of the names of files
     std::string title;  ///< "The source report's swing, 40 particles"
@@ -39,7 +39,7 @@ struct Problem {
 /// The problem with bars from each particle of its ropes to the next 1..`reach`.
 [[nodiscard]] Problem with_reach(Problem problem, int reach);
 
-/// What one run of a method showed.
+/// Result of one run of a method.
 struct Measurement {
     MethodDef method;
     std::string label;           ///< of the series that it belongs to: "rattle, order 4"
@@ -66,7 +66,7 @@ struct Timing {
 [[nodiscard]] Measurement measure(const Problem& problem, const MethodDef& method, const std::string& label,
                                   double parameter, const Timing& timing);
 
-/// Called many times a second while a study computes. An exception of it ends the study.
+/// Called many times a second while a study computes. An exception that it throws ends the study.
 using OnStep = std::function<void()>;
 
 /// For as long as it lives, check_cancelled() on this thread calls `on_step`, which must outlive it. The runs
@@ -95,16 +95,16 @@ struct Slope {
 /// finite or not above 0 are left out; std::nullopt if fewer than three remain, or if all have the same x.
 [[nodiscard]] std::optional<Slope> fit_slope(std::span<const std::pair<double, double>> points);
 
-/// A run of one rope that can be looked at at any time, and the time that its steps take.
+/// A run of one rope that can be inspected at any time, and the time that its steps take.
 class Probe {
   public:
     /// Throws corda::Error if the method cannot run the rope. `frame_interval_s`: see Simulation.
     Probe(const RopeDef& rope, const WorldDef& world, const MethodDef& method,
           double frame_interval_s = 1.0 / 60.0);
 
-    /// Goes on to a time. Throws corda::Error (kDiverged) if the run diverges.
+    /// Advances to a time. Throws corda::Error (kDiverged) if the run diverges.
     void go(double time_s);
-    /// Goes on to a time in frames, so that the largest figures are those of every frame.
+    /// Advances to a time frame by frame, so that the largest figures are those of every frame.
     void go_by_frames(double time_s, double frames_per_second = 60.0);
 
     [[nodiscard]] const State& state() const { return simulation_.state(); }

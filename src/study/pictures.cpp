@@ -1,5 +1,3 @@
-#include "corda/study/chapters.hpp"
-
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -16,6 +14,7 @@
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/study/measure.hpp"
 #include "corda/study/problems.hpp"
+#include "corda/study/study.hpp"
 
 namespace corda::study {
 namespace {
@@ -68,7 +67,7 @@ FilmDef film_of(const StudyDef& def) {
     return film;
 }
 
-/// What the jobs of the chapter share.
+/// State shared by the jobs of the chapter.
 struct Pictures {
     explicit Pictures(const StudyDef& def)
         : film_def(film_of(def)),
@@ -100,14 +99,13 @@ struct Pictures {
     TemporaryFolder folder;  ///< of trial videos
     report::Table solvers;
     report::Plot plot;
-    std::vector<double> simulating;  ///< its share of the whole render, by each solver
 };
 
 /// Draws and encodes a film, which took `simulate_s` to simulate, and adds the times to `time`.
 void time_film(Film& film, const VideoDef& video, double simulate_s, const std::string& path,
                RenderTime& time) {
     FilmRenderer renderer(film);
-    std::error_code ignored;  // the write below reports what is in the way
+    std::error_code ignored;  // the write below reports why it is still there
     std::filesystem::remove(path, ignored);
     double draw_s = 0.0;
     double encode_s = 0.0;
@@ -168,7 +166,6 @@ void add_solver(const SolverSetting& setting, Pictures& pictures) {
                           time.whole_ms.least(), time.whole_ms.largest(), time.simulate_ms.median(),
                           time.draw_ms.median(), time.encode_ms.median(),
                           1e3 * frames / time.whole_ms.median()});
-    pictures.simulating.push_back(time.simulate_ms.median() / time.whole_ms.median());
     auto& series = pictures.plot.series;
     if (series.empty() || series.back().name != setting.series) series.push_back({setting.series, {}});
     series.back().add(error.value(), time.whole_ms.median(),
@@ -194,13 +191,14 @@ void describe_table(Pictures& pictures) {
         "Times are medians of {} renders, column by column. Simulating includes the plan of auto, and "
         "encoding the check of the finished file. Starting OpenGL is in none of them.",
         pictures.repeats);
-    pictures.plot = {"picture_error",
-                     "Time of the whole render against displayed error",
-                     "largest displayed error [px]",
-                     "whole render [ms]",
-                     true,
-                     true,
-                     {}};
+    pictures.plot.id = "picture_error";
+    pictures.plot.title = "Time of the whole render against displayed error";
+    pictures.plot.x_title = "largest displayed error [px]";
+    pictures.plot.y_title = "whole render [ms]";
+    pictures.plot.caption =
+        "Time of the whole render, from the scene to the verified video, against the largest distance of a "
+        "particle from its true place in the picture. Each point is one setting of a solver; lower left is "
+        "better. Bars span the fastest and the slowest render.";
 }
 
 std::string setting_paragraph(const Pictures& pictures) {
@@ -212,14 +210,6 @@ std::string setting_paragraph(const Pictures& pictures) {
                     video.fps.rational().text(), pictures.gl_renderer, subject.problem.truth);
     if (subject.exact_reference) text += fmt::format("; for exact it is {}", subject.exact_truth);
     return text + ".";
-}
-
-std::string share_paragraph(const std::vector<double>& simulating) {
-    if (simulating.empty()) return "No solver ran the scene.";
-    const auto [least, most] = std::minmax_element(simulating.begin(), simulating.end());
-    return fmt::format(
-        "Simulating takes {:.2g} % to {:.2g} % of the whole render; the rest is drawing and encoding.",
-        100.0 * *least, 100.0 * *most);
 }
 
 }  // namespace
@@ -236,10 +226,9 @@ ChapterWork pictures_work(const StudyDef& def) {
     }
     work.finish = [pictures] {
         return report::Chapter{"Pictures: from a scene to a video",
-                               {setting_paragraph(*pictures), share_paragraph(pictures->simulating)},
+                               {setting_paragraph(*pictures)},
                                {pictures->solvers},
-                               {pictures->plot},
-                               share_paragraph(pictures->simulating)};
+                               {pictures->plot}};
     };
     return work;
 }

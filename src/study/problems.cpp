@@ -20,14 +20,6 @@
 namespace corda::study {
 namespace {
 
-Problem problem_with(RopeDef rope, double duration_s) {
-    Problem problem;
-    problem.length_m = reference::length_m(rope);
-    problem.ropes = {std::move(rope)};
-    problem.world.duration_s = duration_s;
-    return problem;
-}
-
 /// A scene's name as an id, of which names of files are made.
 std::string id_of(std::string_view name) {
     constexpr std::size_t kLongest = 100;
@@ -112,8 +104,16 @@ TightRun tight_rattle(const Problem& problem, double share) {
 
 }  // namespace
 
+Problem problem_of(const RopeDef& rope, double duration_s) {
+    Problem problem;
+    problem.length_m = reference::length_m(rope);
+    problem.ropes = {rope};
+    problem.world.duration_s = duration_s;
+    return problem;
+}
+
 Problem report_swing() {
-    Problem problem = problem_with(reference::report_rope(40), 10.0);
+    Problem problem = problem_of(reference::report_rope(40), 10.0);
     problem.id = "report_swing";
     problem.title = "The source report's swing as a true chain: 40 particles, 10 s";
     problem.world.gravity_m_s2 = {0.0, -9.8};
@@ -121,7 +121,7 @@ Problem report_swing() {
 }
 
 Problem a01_pendulum() {
-    Problem problem = problem_with(reference::straight_rope(1, 1.0, 90.0), 2000.0);
+    Problem problem = problem_of(reference::straight_rope(1, 1.0, 90.0), 2000.0);
     problem.id = "a01_pendulum";
     problem.title = "IFToMM A01: a pendulum from the horizontal, 2000 s";
     problem.truth = "the closed form by Jacobi's elliptic functions";
@@ -137,21 +137,20 @@ Problem a01_pendulum() {
 }
 
 Problem released_chain() {
-    Problem problem = problem_with(reference::straight_rope(20, 1.0, 45.0), 2.0);
+    Problem problem = problem_of(reference::straight_rope(20, 1.0, 45.0), 2.0);
     problem.id = "released_chain";
     problem.title = "20 links released from 45 degrees, 2 s";
     return problem;
 }
 
-Problem spinning_chain() {
-    constexpr double kOmega = 3.0;  // 1/s
-    Problem problem = problem_with(reference::spinning_rope(10, 1.0, kOmega), 10.0);
+Problem spinning_chain(double omega_1_s) {
+    Problem problem = problem_of(reference::spinning_rope(10, 1.0, omega_1_s), 10.0);
     problem.id = "spinning_chain";
     problem.title = "10 links that turn like a rigid rod without gravity, 10 s";
     problem.truth = "the closed form, a rigid rotation";
     problem.world.gravity_m_s2 = {};
-    problem.reference = [fps = problem.fps](std::int64_t k, State& state) {
-        const double angle = kOmega * fps.time_s(k);
+    problem.reference = [fps = problem.fps, omega_1_s](std::int64_t k, State& state) {
+        const double angle = omega_1_s * fps.time_s(k);
         for (std::size_t i = 0; i < state.x_m.size(); ++i) {
             const double radius_m = 0.1 * static_cast<double>(i);
             state.x_m[i] = radius_m * std::cos(angle);
@@ -163,16 +162,19 @@ Problem spinning_chain() {
 }
 
 Problem released_problem(const reference::ReleasedChain& row) {
-    Problem problem = problem_with(reference::released_rope(row), row.time_s);
+    Problem problem = problem_of(reference::released_rope(row), row.time_s);
     problem.truth = "R5";
     problem.reference = [row, last = problem.last_frame()](std::int64_t k, State& state) {
-        if (k != last) return false;
-        std::fill(state.x_m.begin(), state.x_m.end(), std::numeric_limits<double>::quiet_NaN());
-        state.x_m.back() = row.tip_m.x;
-        state.y_m.back() = row.tip_m.y;
-        return true;
+        return k == last && set_tip(row.tip_m, state);
     };
     return problem;
+}
+
+bool set_tip(Vec2 tip_m, State& state) {
+    std::fill(state.x_m.begin(), state.x_m.end(), std::numeric_limits<double>::quiet_NaN());
+    state.x_m.back() = tip_m.x;
+    state.y_m.back() = tip_m.y;
+    return true;
 }
 
 Problem problem_of(const Scene& scene) {

@@ -16,11 +16,16 @@ namespace corda::study {
 /// 20 links from 45 degrees for 2 s (a start of R5).
 [[nodiscard]] Problem released_chain();
 /// A chain that turns like a rigid rod without gravity for 10 s, with its closed form (R8).
-[[nodiscard]] Problem spinning_chain();
+[[nodiscard]] Problem spinning_chain(double omega_1_s = 3.0);
 
 /// A row of R5, whose reference knows only the tip at the row's time.
 [[nodiscard]] Problem released_problem(const reference::ReleasedChain& row);
 
+/// Sets the tip, and NaN for every other particle, which is then not compared. Returns true.
+bool set_tip(Vec2 tip_m, State& state);
+
+/// A rope without a reference.
+[[nodiscard]] Problem problem_of(const RopeDef& rope, double duration_s);
 /// A scene without imaginary bars; its truth is left to find_truth().
 [[nodiscard]] Problem problem_of(const Scene& scene);
 

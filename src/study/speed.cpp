@@ -34,7 +34,7 @@ struct Sweep {
 };
 
 report::Table runs_table(const Sweep& sweep) {
-    report::Table table{"speed_" + sweep.problem().id, sweep.problem().title, {}, {}, {}};
+    report::Table table{"speed_" + sweep.problem().id, "All runs: " + sweep.problem().title, {}, {}, {}};
     table.columns = {{"series", "method"},
                      {"parameter", "step [s] or tolerance"},
                      {"error_largest_over_length", "largest error / L"},
@@ -86,7 +86,7 @@ std::vector<std::string> labels_of(const Sweep& sweep) {
 
 report::Table slopes_table(const Sweep& sweep) {
     report::Table table{"slopes_" + sweep.problem().id,
-                        "How the error falls with the step or the tolerance",
+                        "How the error falls with the step or the tolerance: " + sweep.problem().title,
                         {{"series", "method"}, {"slope", "exponent"}, {"points", "points of the fit"}},
                         {},
                         {}};
@@ -104,7 +104,9 @@ report::Table slopes_table(const Sweep& sweep) {
 }
 
 report::Table fastest_table(const Sweep& sweep) {
-    report::Table table{"fastest_" + sweep.problem().id, "Fastest at each accuracy", {}, {}, {}};
+    report::Table table;
+    table.id = "fastest_" + sweep.problem().id;
+    table.title = "Fastest at each accuracy: " + sweep.problem().title;
     table.columns = {{"error_goal", "RMS error / L at most"},
                      {"series", "method"},
                      {"parameter", "step [s] or tolerance"},
@@ -152,6 +154,11 @@ report::Plot plot_of(const Sweep& sweep) {
     plot.title = sweep.problem().title;
     plot.x_title = "RMS error / L";
     plot.y_title = "ms per simulated second";
+    plot.caption =
+        plot.title +
+        ". Each point is one run: the RMS position error over the length L, and the time per "
+        "simulated second on one thread. Lower left is better. Bars span the fastest and the slowest "
+        "repeat.";
     plot.context_name = "relaxation, other reaches and sweeps";
     for (const std::string& label : labels_of(sweep)) {
         report::Series series{.name = label, .points = {}, .look = look_of(label)};
@@ -182,18 +189,6 @@ std::string truth_paragraph(const Sweep& sweep) {
             *subject.horizon_s, kHorizonDifference);
     }
     return text;
-}
-
-/// What the first problem's fastest runs cost.
-std::string summary_of(const Sweep& sweep) {
-    const Measurement* const coarse = cheapest_within(sweep.results, 1e-4);
-    const Measurement* const fine = cheapest_within(sweep.results, 1e-9);
-    if (coarse == nullptr || fine == nullptr) return {};
-    return fmt::format(
-        "{}: an error of 1e-4 of the length takes {} {:.2g} ms per simulated second, and one of 1e-9 takes "
-        "{} {:.2g} ms.",
-        sweep.problem().title, coarse->label, coarse->ms_per_simulated_s.median(), fine->label,
-        fine->ms_per_simulated_s.median());
 }
 
 std::vector<Problem> problems_of(const StudyDef& def) {
@@ -324,10 +319,8 @@ ChapterWork speed_work(const StudyDef& def) {
         chapter.paragraphs = {
             "Every run computes the positions of all particles at every frame. Its time is that of the "
             "stepping alone, without set-up: the median of its repeats, with the least and the largest. A "
-            "method is compared with another method if another one can run "
-            "the problem."};
+            "method is compared with another method if another one can run the problem."};
         for (const auto& sweep : sweeps) add_sweep(*sweep, chapter);
-        chapter.summary = summary_of(*sweeps.front());
         return chapter;
     };
     return work;

@@ -13,7 +13,6 @@
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
 #include "corda/study/accuracy.hpp"
-#include "corda/study/chapters.hpp"
 #include "corda/study/hard_cases.hpp"
 #include "corda/study/speed.hpp"
 

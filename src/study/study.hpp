@@ -44,6 +44,14 @@ using OnChapter = std::function<void(const report::Chapter&)>;
 /// The names of the chapters, [a-z0-9_]+, in the order of the report.
 [[nodiscard]] std::vector<std::string> chapter_names();
 
+/// The chapter "The source report's findings" (section 1 of src/sim/README.md): a measurement of each.
+[[nodiscard]] ChapterWork findings_work(const StudyDef& def);
+
+/// The chapter "Pictures", on the scene of `def` or on the source report's swing: the time of a whole render
+/// against the displayed error of several methods. Throws corda::Error (kNoGl, kUsage) if OpenGL cannot be
+/// used.
+[[nodiscard]] ChapterWork pictures_work(const StudyDef& def);
+
 /// How a study times its runs.
 [[nodiscard]] Timing study_timing(bool quick);
 
@@ -55,8 +63,8 @@ class Study {
     explicit Study(const StudyDef& def);
 
     /// Measures everything, and adds the chapters to `report` one after the other. Throws corda::Error, e.g.
-    /// kInvalidScene if no method can run the scene, and what the callbacks throw; then `report` has the
-    /// chapters up to there, and says in its setting why it ends and what was not measured.
+    /// kInvalidScene if no method can run the scene, and any exception of a callback; then `report` has the
+    /// chapters up to there, and its setting has the reason and the chapters that were not measured.
     void run(const OnJob& on_job, const OnChapter& on_chapter, report::Report& report);
 
   private:

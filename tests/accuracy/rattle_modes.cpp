@@ -95,44 +95,5 @@ TEST(SmallOscillationsR4, OrderTwoShiftsEveryFrequencyByVerletsSine) {
     }
 }
 
-TEST(SmallOscillationsR4, OrderEightReturnsAfterThePeriod) {
-    for (const reference::SmallOscillation& mode : modes()) {
-        const double amplitude_m = 1e-7;
-        const RopeDef rope = displaced(mode.links, mode.omega_1_s, amplitude_m);
-        const std::size_t i = widest(rope);
-        test::RattleRun run(rope, WorldDef{}, 8, 0.5 / largest_1_s(mode.links));
-        // After a quarter period the position depends most on the frequency.
-        ASSERT_TRUE(run.go(0.25 * 2.0 * std::numbers::pi / mode.omega_1_s));
-        std::printf("N=%d omega=%g: quarter period off by %.1e of the amplitude\n", mode.links,
-                    mode.omega_1_s, run.state().x_m[i] / amplitude_m);
-        EXPECT_NEAR(run.state().x_m[i] / amplitude_m, 0.0, 1e-6) << mode.links << " " << mode.omega_1_s;
-    }
-}
-
-TEST(SmallOscillationsR4, ATipMassSlowsTheFirstModeToTheReference) {
-    // The mode of a chain with a payload by the same recurrence: m_k omega^2 u_k = T differences, from the
-    // tip.
-    for (const auto& [links, mass_kg, omega_1_s] : reference::kSmallOscillations) {
-        if (mass_kg == 1.0) continue;
-        const double link_m = 1.0 / links;
-        RopeDef rope = reference::straight_rope(links, 1.0, 0.0);
-        rope.mass_kg.back() = mass_kg;
-        double u = 1.0;        // of the particle at hand
-        double below_n = 0.0;  // tension over g below it
-        double pull = 0.0;     // (tension / g) (u_below - u) / a
-        for (auto i = static_cast<std::size_t>(links); i > 0; --i) {
-            rope.points_m[i].x = 1e-7 * u;
-            const double mass = rope.mass_kg[i];
-            below_n += mass;
-            pull -= mass * omega_1_s * omega_1_s * u / kGravity;
-            u += pull * link_m / below_n;
-        }
-        test::RattleRun run(rope, WorldDef{}, 8, 1.0 / 4000.0);
-        ASSERT_TRUE(run.go(0.25 * 2.0 * std::numbers::pi / omega_1_s));
-        std::printf("tip mass %g: top %.1e, quarter period off by %.1e\n", mass_kg, u, run.tip_x() / 1e-7);
-        EXPECT_NEAR(run.tip_x() / 1e-7, 0.0, 1e-6) << mass_kg;
-    }
-}
-
 }  // namespace
 }  // namespace corda::sim

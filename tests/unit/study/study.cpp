@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <sstream>
 
 #include "corda/core/basics.hpp"
 #include "own_problems.hpp"
@@ -110,6 +111,21 @@ TEST(Study, NeedsOpenGlForPicturesOnly) {
     EXPECT_NO_THROW(static_cast<void>(Study(def)));
     def.chapters = {"picture"};
     EXPECT_THAT(refusal_of(def), HasSubstr("no such backend"));
+}
+
+TEST(Setting, NamesTheProcessor) {
+    std::istringstream cpuinfo("processor\t: 0\nmodel\t\t: 1\nmodel name\t: Some CPU @ 2.1 GHz\nflags: x\n");
+    EXPECT_EQ(processor_name(cpuinfo), "Some CPU @ 2.1 GHz");
+    std::istringstream other("processor : 0\n");
+    EXPECT_EQ(processor_name(other), "unknown");
+}
+
+TEST(Setting, HasNoEmptyValues) {
+    const auto pairs = setting({7, 0.04});
+    ASSERT_EQ(pairs.size(), 6U);
+    for (const auto& [name, value] : pairs) EXPECT_NE(value, "") << name;
+    EXPECT_THAT(pairs[5].second, HasSubstr("7 repeats of at least 40 ms"));
+    EXPECT_THAT(pairs[3].second, HasSubstr("-ffp-contract=off"));
 }
 
 }  // namespace
