@@ -3,11 +3,14 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json_fwd.hpp>
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "console.hpp"
@@ -21,25 +24,39 @@ namespace corda::app {
 /// The action of the chosen subcommand; set by its `add_...` below once it is parsed.
 using Action = std::function<ExitCode(const Console&)>;
 
-// Each adds one subcommand to `app`; parsing it sets `action`.
-void add_render(CLI::App& app, Action& action);
-void add_still(CLI::App& app, Action& action);
-void add_strobe(CLI::App& app, Action& action);
-void add_sheet(CLI::App& app, Action& action);
-void add_simulate(CLI::App& app, Action& action);
-void add_compare(CLI::App& app, Action& action);
-void add_golden(CLI::App& app, Action& action);
-void add_verify(CLI::App& app, Action& action);
-void add_recover(CLI::App& app, Action& action);
-void add_doctor(CLI::App& app, Action& action);
-void add_plan(CLI::App& app, Action& action);
-void add_report(CLI::App& app, Action& action);
-void add_study(CLI::App& app, Action& action);
-void add_init(CLI::App& app, Action& action);
-void add_examples(CLI::App& app, Action& action);
-void add_schema(CLI::App& app, Action& action);
-void add_completion(CLI::App& app, Action& action);
-void add_help(CLI::App& app, Action& action);
+/// Adds one subcommand to `app`; parsing it sets `action`.
+using AddCommand = void(CLI::App& app, Action& action);
+AddCommand add_render, add_still, add_strobe, add_sheet, add_simulate, add_compare, add_golden, add_verify,
+    add_recover, add_doctor, add_plan, add_report, add_study, add_init, add_examples, add_schema,
+    add_completion, add_help;
+
+/// The subcommands in the order of `corda --help`.
+inline constexpr std::array<AddCommand*, 18> kCommands{
+    add_render, add_still,  add_strobe,   add_sheet,  add_simulate,   add_compare,
+    add_golden, add_verify, add_recover,  add_doctor, add_plan,       add_report,
+    add_study,  add_init,   add_examples, add_schema, add_completion, add_help};
+
+/// A subcommand and the values of its options, which live as long as the program.
+template <class Options>
+struct NewCommand {
+    CLI::App& command;
+    Options& options;
+};
+
+/// Adds a subcommand whose action is `run` with its options, of which `Argument` is a value or a reference.
+/// If they have a function `require`, it is called when they are parsed.
+template <class Argument>
+auto add_command(CLI::App& app, Action& action, const std::string& name, const std::string& help,
+                 ExitCode (*run)(const Console&, Argument)) {
+    using Options = std::remove_cvref_t<Argument>;
+    auto options = std::make_shared<Options>();
+    CLI::App* command = app.add_subcommand(name, help);
+    command->callback([options, run, &action] {
+        if constexpr (requires { options->require(); }) options->require();
+        action = [options, run](const Console& console) { return run(console, *options); };
+    });
+    return NewCommand<Options>{*command, *options};
+}
 
 /// The text of an example that `examples` lists.
 [[nodiscard]] std::string_view example_text(std::string_view name);
@@ -69,6 +86,8 @@ struct SceneOptions {
                       const std::string& help);
     /// `--size WxH` for `--set video.size=[W,H]`.
     void add_size(CLI::App& command);
+    /// `--fps`, whose help is `rate`, and `--duration`.
+    void add_timing(CLI::App& command, const std::string& rate = "frames per second");
     /// `--from FILE`, in place of a scene file.
     void add_from(CLI::App& command);
     /// Throws CLI::RequiredError if there is neither. To be called when the command line is parsed.
@@ -94,6 +113,33 @@ struct SceneOptions {
     std::vector<Setting> of_options_;          ///< those of `settings` that did not come from --set
     mutable std::optional<std::string> text_;  ///< of the scene file, which may be a pipe
     mutable std::optional<Provenance> provenance_;
+};
+
+/// Frames FIRST <= k < END of a video; without an end, up to its last.
+struct FrameRange {
+    std::int64_t first = 0;
+    std::optional<std::int64_t> end;
+};
+
+/// Reads "FIRST:END", either of which may be left out; std::nullopt for any other text.
+[[nodiscard]] std::optional<FrameRange> parse_frame_range(std::string_view text);
+
+/// A moment of the motion that is to be drawn.
+struct RequestedTime {
+    double time_s = 0.0;
+    std::optional<std::int64_t> frame;  ///< if it was asked for by its number
+};
+
+/// Which moments are drawn: `--at` or `--frame`.
+struct TimeOptions {
+    std::vector<double> times_s;
+    std::vector<std::string> frames;
+
+    void add_to(CLI::App& command);
+    /// Throws CLI::RequiredError if neither option was given.
+    void require() const;
+    /// In the order of time. Throws corda::Error (kUsage) for a moment that the scene does not have.
+    [[nodiscard]] std::vector<RequestedTime> list(const Scene& scene) const;
 };
 
 /// "video.size=[640,360]" for "640x360". Throws corda::Error (kUsage).

@@ -1,9 +1,12 @@
 #include "compare.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
+#include <exception>
 #include <filesystem>
-#include <memory>
+#include <map>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,6 +18,7 @@
 #include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
+#include "corda/core/threads.hpp"
 #include "corda/golden/perceived.hpp"
 #include "corda/golden/variant.hpp"
 #include "corda/media/defs.hpp"
@@ -24,7 +28,9 @@
 namespace corda::app {
 namespace {
 
-bool is_png(const std::filesystem::path& path) {
+namespace fs = std::filesystem;
+
+bool is_png(const fs::path& path) {
     return path.extension() == ".png";
 }
 
@@ -42,6 +48,16 @@ Difference difference_of(const std::string& path_a, const Picture& a, const std:
     add_perceived(a.image, b.image, figures, difference, goes_on, mask);
     return difference;
 }
+
+/// A picture against those that it may be equal to.
+struct ComparedPicture {
+    Difference difference;
+    bool passed = false;
+    std::string reference;  ///< the file that the figures are of
+    std::string variant;    ///< the cause of the variant that passed; empty: none, or the first reference
+    std::string words;
+    std::vector<std::string> notes;  ///< on contents of the files that the comparison ignores
+};
 
 std::string words_of(const ComparedPicture& compared, const Image& a, const Image& b) {
     const Difference& difference = compared.difference;
@@ -69,6 +85,47 @@ std::vector<std::string> notes_of(const std::string& a, const std::string& b) {
     return notes;
 }
 
+/// Compares `picture` with `references`: the first that passes counts, or else the first of all. Writes the
+/// picture of the difference to `diff`, if that is not empty. `threads` is for each comparison.
+ComparedPicture compare_picture(const CompareOptions& options, const std::string& picture,
+                                const std::vector<std::string>& references, const std::optional<Image>& mask,
+                                const std::string& diff, int threads) {
+    const OnProgress goes_on = stopping_if_asked();
+    const Picture a = read_picture(picture, goes_on);
+    const Image* const its_mask = mask ? &*mask : nullptr;
+    PerceivedFigures figures = figures_for(options);
+    figures.threads = threads;
+    std::optional<ComparedPicture> chosen;
+    Picture chosen_picture;
+    for (const std::string& path : references) {
+        Picture b;
+        // Small pictures have no SSIM; only an explicit request is refused.
+        const bool is_small = std::min(a.image.width(), a.image.height()) < kMinSsimSidePx;
+        if (is_small && !options.limits.ssim) figures.ssim = false;
+        ComparedPicture compared;
+        compared.difference = difference_of(picture, a, path, b, figures, goes_on, its_mask, !diff.empty());
+        compared.passed = compared.difference.within(options.limits);
+        compared.reference = path;
+        if (compared.passed && path != references.front()) compared.variant = variant_cause(path);
+        compared.words = words_of(compared, a.image, b.image);
+        compared.notes = notes_of(picture, path);
+        if (chosen && !compared.passed) continue;
+        chosen = std::move(compared);
+        chosen_picture = std::move(b);
+        if (chosen->passed) break;
+    }
+    if (!diff.empty())
+        write_png(diff, difference_image(a, chosen_picture, goes_on, its_mask), {},
+                  {.force = options.force, .on_progress = goes_on});
+    return *chosen;
+}
+
+nlohmann::json notes_json(const std::vector<std::string>& notes) {
+    nlohmann::json json = nlohmann::json::array();
+    for (const std::string& note : notes) json.push_back(printable(note));
+    return json;
+}
+
 ExitCode compare_pictures(const Console& console, const CompareOptions& options,
                           const std::optional<Image>& mask) {
     std::vector<std::string> references{options.b};
@@ -89,6 +146,171 @@ ExitCode compare_pictures(const Console& console, const CompareOptions& options,
     return compared.passed ? ExitCode::kOk : ExitCode::kMismatch;
 }
 
+/// The PNG files in a folder and the folders in it, but for `diff`, which may be one of them; by their paths
+/// from the folder on.
+std::set<std::string> pictures_in(const std::string& folder, const std::string& diff) {
+    std::set<std::string> names;
+    std::error_code failure;
+    for (fs::recursive_directory_iterator entry(folder, failure), end; !failure && entry != end;
+         entry.increment(failure)) {
+        std::error_code none;
+        if (!diff.empty() && fs::equivalent(entry->path(), diff, none)) entry.disable_recursion_pending();
+        const std::string extension = entry->path().extension().string();
+        if (extension == ".png" || extension == ".PNG")
+            names.insert(entry->path().lexically_relative(folder).string());
+    }
+    if (failure) fail_file("read", folder, failure.value());
+    return names;
+}
+
+/// The picture of which NAME.CAUSE.png is a variant, in the same folder; empty if it is none by its name.
+std::string base_of(const std::string& name) {
+    const std::string base = base_of_variant(name);
+    return base.empty() ? "" : (fs::path(name).parent_path() / base).string();
+}
+
+/// A name that stands in one of the folders at least.
+struct Pair {
+    std::string name;
+    bool is_in_a = false;
+    bool is_in_b = false;
+    std::vector<std::string> variants;  ///< names in B
+    ComparedPicture compared = {};
+    std::exception_ptr failure = {};
+};
+
+/// NAME.CAUSE.png beside NAME.png in B is a variant of it, unless A has a picture of that name.
+std::vector<Pair> pairs_of(const std::set<std::string>& a, const std::set<std::string>& b) {
+    std::map<std::string, std::vector<std::string>> variants;
+    std::set<std::string> all = a;
+    for (const std::string& name : b) {
+        const std::string base = base_of(name);
+        if (!base.empty() && b.contains(base) && !a.contains(name))
+            variants[base].push_back(name);
+        else
+            all.insert(name);
+    }
+    std::vector<Pair> pairs;
+    for (const std::string& name : all)
+        pairs.push_back({.name = name,
+                         .is_in_a = a.contains(name),
+                         .is_in_b = b.contains(name),
+                         .variants = variants[name]});
+    return pairs;
+}
+
+void compare_pair(const CompareOptions& options, const std::optional<Image>& mask, Pair& pair) {
+    const std::string picture = options.a + "/" + pair.name;
+    std::vector<std::string> references{options.b + "/" + pair.name};
+    for (const std::string& variant : pair.variants) references.push_back(options.b + "/" + variant);
+    pair.compared = compare_picture(options, picture, references, mask, "", 1);
+    if (options.diff.empty() || pair.compared.difference.equal) return;
+    const fs::path diff = fs::path(options.diff) / pair.name;
+    make_folder(diff.parent_path().string());
+    pair.compared = compare_picture(options, picture, references, mask, diff.string(), 1);
+}
+
+/// Two pictures may take 512 MiB.
+constexpr int kMaxThreads = 4;
+
+/// Compares several pairs at a time.
+void compare_all(const CompareOptions& options, const std::optional<Image>& mask, std::vector<Pair>& pairs) {
+    std::atomic<std::size_t> next = 0;
+    std::atomic<bool> stops = false;
+    const auto work = [&] {
+        for (std::size_t i = next++; i < pairs.size() && !stops; i = next++) {
+            if (!pairs[i].is_in_a || !pairs[i].is_in_b) continue;
+            try {
+                compare_pair(options, mask, pairs[i]);
+            } catch (...) {
+                pairs[i].failure = std::current_exception();
+                stops = true;
+            }
+        }
+    };
+    {
+        const auto threads = std::min<std::size_t>(std::min(usable_cores(), kMaxThreads), pairs.size());
+        const auto helpers = start_threads(static_cast<int>(threads) - 1, work);
+        work();
+    }
+    for (const Pair& pair : pairs)
+        if (pair.failure) std::rethrow_exception(pair.failure);
+}
+
+/// Makes the folder of the differences, which must not take the place of what is compared.
+void check_diff_folder(const CompareOptions& options) {
+    if (options.diff.empty()) return;
+    make_folder(options.diff);
+    std::error_code none;
+    for (const std::string& folder : {options.a, options.b})
+        if (fs::equivalent(options.diff, folder, none))
+            throw Error(ExitCode::kUsage, fmt::format("--diff {}: holds the pictures that are compared; name "
+                                                      "another folder",
+                                                      options.diff));
+}
+
+/// The figures of the worst.
+void take_worst(const Difference& difference, Difference& worst) {
+    worst.equal &= difference.equal;
+    worst.same_size &= difference.same_size;
+    worst.max = std::max(worst.max, difference.max);
+    worst.mean = std::max(worst.mean, difference.mean);
+    worst.share = std::max(worst.share, difference.share);
+    if (difference.flip) worst.flip = std::max(worst.flip.value_or(0.0), *difference.flip);
+    if (difference.ssim) worst.ssim = std::min(worst.ssim.value_or(1.0), *difference.ssim);
+}
+
+ExitCode compare_folders(const Console& console, const CompareOptions& options,
+                         const std::optional<Image>& mask) {
+    std::vector<Pair> pairs =
+        pairs_of(pictures_in(options.a, options.diff), pictures_in(options.b, options.diff));
+    if (pairs.empty())
+        throw Error(ExitCode::kUsage,
+                    fmt::format("neither '{}' nor '{}' has a PNG file", options.a, options.b));
+    check_diff_folder(options);
+    compare_all(options, mask, pairs);
+    Difference worst;
+    std::int64_t failed = 0;
+    nlohmann::json files = nlohmann::json::array();
+    std::vector<std::string> notes;
+    for (const Pair& pair : pairs) {
+        nlohmann::json file{{"name", printable(pair.name)}};
+        if (!pair.is_in_a || !pair.is_in_b) {
+            const std::string& where = pair.is_in_a ? options.b : options.a;
+            console.result(fmt::format("{}: missing in {}", pair.name, where));
+            file["missing_in"] = printable(where);
+            file["passed"] = false;
+            worst.equal = false;
+            ++failed;
+            files.push_back(file);
+            continue;
+        }
+        const ComparedPicture& compared = pair.compared;
+        if (!compared.difference.equal || !compared.variant.empty())
+            console.result(fmt::format("{}: {}", pair.name, compared.words));
+        failed += compared.passed ? 0 : 1;
+        take_worst(compared.difference, worst);
+        file.update(figures_json(compared.difference));
+        file["passed"] = compared.passed;
+        file["notes"] = notes_json(compared.notes);
+        notes.insert(notes.end(), compared.notes.begin(), compared.notes.end());
+        file["variant"] =
+            compared.variant.empty() ? nlohmann::json() : nlohmann::json(printable(compared.variant));
+        files.push_back(file);
+    }
+    if (!notes.empty())
+        console.warning(notes.front() +
+                        (notes.size() > 1 ? fmt::format("; and so of {} more", notes.size() - 1) : ""));
+    console.result(fmt::format("{}: {}", counted(std::ssize(pairs), "picture"),
+                               worst.equal   ? "all equal"
+                               : failed == 0 ? "all within the limits"
+                                             : fmt::format("{} failed", failed)));
+    nlohmann::json json = figures_json(worst);
+    json.update({{"schema", 1}, {"passed", failed == 0}, {"files", files}, {"notes", notes_json(notes)}});
+    console.report(json);
+    return failed == 0 ? ExitCode::kOk : ExitCode::kMismatch;
+}
+
 void check_diff(const CompareOptions& options) {
     if (options.diff.empty()) return;
     if (!is_png(options.diff)) {
@@ -105,9 +327,9 @@ ExitCode compare(const Console& console, CompareOptions options) {
     if (!options.mask.empty()) mask = read_png(options.mask, stopping_if_asked());
     std::error_code none;  // the reader reports the problem
     for (const std::string& path : {options.a, options.b})
-        if (!std::filesystem::exists(path, none)) fail_file("read", path, none ? none.value() : ENOENT);
-    const bool is_folder = std::filesystem::is_directory(options.a, none);
-    if (is_folder != std::filesystem::is_directory(options.b, none)) {
+        if (!fs::exists(path, none)) fail_file("read", path, none ? none.value() : ENOENT);
+    const bool is_folder = fs::is_directory(options.a, none);
+    if (is_folder != fs::is_directory(options.b, none)) {
         throw Error(ExitCode::kUsage,
                     fmt::format("'{}' is a folder and '{}' is none; name two pictures, or two folders",
                                 is_folder ? options.a : options.b, is_folder ? options.b : options.a));
@@ -156,90 +378,47 @@ nlohmann::json max_json(const Difference& difference) {
     return difference.max == whole ? nlohmann::json(whole) : nlohmann::json(difference.max);
 }
 
-nlohmann::json notes_json(const std::vector<std::string>& notes) {
-    nlohmann::json json = nlohmann::json::array();
-    for (const std::string& note : notes) json.push_back(printable(note));
-    return json;
-}
-
 PerceivedFigures figures_for(const CompareOptions& options) {
     return {.flip = options.json || options.limits.flip, .ssim = options.json || options.limits.ssim};
 }
 
-ComparedPicture compare_picture(const CompareOptions& options, const std::string& picture,
-                                const std::vector<std::string>& references, const std::optional<Image>& mask,
-                                const std::string& diff, int threads) {
-    const OnProgress goes_on = stopping_if_asked();
-    const Picture a = read_picture(picture, goes_on);
-    const Image* const its_mask = mask ? &*mask : nullptr;
-    PerceivedFigures figures = figures_for(options);
-    figures.threads = threads;
-    std::optional<ComparedPicture> chosen;
-    Picture chosen_picture;
-    for (const std::string& path : references) {
-        Picture b;
-        // Small pictures have no SSIM; only an explicit request is refused.
-        const bool is_small = std::min(a.image.width(), a.image.height()) < kMinSsimSidePx;
-        if (is_small && !options.limits.ssim) figures.ssim = false;
-        ComparedPicture compared;
-        compared.difference = difference_of(picture, a, path, b, figures, goes_on, its_mask, !diff.empty());
-        compared.passed = compared.difference.within(options.limits);
-        compared.reference = path;
-        if (compared.passed && path != references.front()) compared.variant = variant_cause(path);
-        compared.words = words_of(compared, a.image, b.image);
-        compared.notes = notes_of(picture, path);
-        if (chosen && !compared.passed) continue;
-        chosen = std::move(compared);
-        chosen_picture = std::move(b);
-        if (chosen->passed) break;
-    }
-    if (!diff.empty())
-        write_png(diff, difference_image(a, chosen_picture, goes_on, its_mask), {},
-                  {.force = options.force, .on_progress = goes_on});
-    return *chosen;
-}
-
 void add_compare(CLI::App& app, Action& action) {
-    auto options = std::make_shared<CompareOptions>();
-    CLI::App* command = app.add_subcommand(
-        "compare",
+    auto [command, options] = add_command(
+        app, action, "compare",
         "compare two PNG files, those of two folders, or the frames of two videos; exit 7 if they differ (by "
-        "more than the limits). In folders NAME.CAUSE.png beside NAME.png in B may match, too");
-    command->add_option("A", options->a, "PNG file, folder, or video")->required();
-    command->add_option("B", options->b, "PNG file, folder, or video: the reference")->required();
+        "more than the limits). In folders NAME.CAUSE.png beside NAME.png in B may match, too",
+        compare);
+    command.add_option("A", options.a, "PNG file, folder, or video")->required();
+    command.add_option("B", options.b, "PNG file, folder, or video: the reference")->required();
     command
-        ->add_option("--variant", options->variants,
-                     "another reference that may match in place of B, named by its cause: NAME.CAUSE.png")
+        .add_option("--variant", options.variants,
+                    "another reference that may match in place of B, named by its cause: NAME.CAUSE.png")
         ->type_name("FILE")
         ->expected(1)
         ->take_all()
         ->allow_extra_args(false);
     command
-        ->add_option("--max", options->limits.max,
-                     "largest difference of a channel that passes; with no limit only equal pictures pass")
+        .add_option("--max", options.limits.max,
+                    "largest difference of a channel that passes; with no limit only equal pictures pass")
         ->check(within(0.0, 255.0));
-    command->add_option("--mean", options->limits.mean, "mean difference of all channels that passes")
+    command.add_option("--mean", options.limits.mean, "mean difference of all channels that passes")
         ->check(within(0.0, 255.0));
-    command->add_option("--share", options->limits.share, "share of differing pixels that passes")
+    command.add_option("--share", options.limits.share, "share of differing pixels that passes")
         ->check(within(0.0, 1.0));
     command
-        ->add_option("--flip", options->limits.flip,
-                     "mean FLIP, what one sees who flips between both at 67 pixels per degree, that passes")
+        .add_option("--flip", options.limits.flip,
+                    "mean FLIP, what one sees who flips between both at 67 pixels per degree, that passes")
         ->check(within(0.0, 1.0));
     command
-        ->add_option("--ssim", options->limits.ssim,
-                     "least structural similarity that passes; equal pictures have 1")
+        .add_option("--ssim", options.limits.ssim,
+                    "least structural similarity that passes; equal pictures have 1")
         ->check(within(-1.0, 1.0));
-    command->add_option("--mask", options->mask,
-                        "PNG file of the same size: what is black in it is not compared");
-    command->add_option(
-        "--diff", options->diff,
-        "write a picture of the differences to this PNG file, of two videos that of the worst "
-        "frame, or of each pair that differs to this folder");
-    command->add_flag("--force", options->force, "replace existing pictures of differences");
-    command->callback([options, &action] {
-        action = [options](const Console& console) { return compare(console, *options); };
-    });
+    command.add_option("--mask", options.mask,
+                       "PNG file of the same size: what is black in it is not compared");
+    command.add_option("--diff", options.diff,
+                       "write a picture of the differences to this PNG file, of two videos that of the worst "
+                       "frame, or of each pair that differs to this folder");
+    command.add_flag("--force", options.force, "replace existing pictures of differences");
 }
 
 }  // namespace corda::app

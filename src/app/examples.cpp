@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <string_view>
 
@@ -77,14 +76,11 @@ std::string_view example_text(std::string_view name) {
 }
 
 void add_init(CLI::App& app, Action& action) {
-    auto options = std::make_shared<InitOptions>();
-    CLI::App* command = app.add_subcommand("init", "write a commented scene to start from, or an example");
-    command->add_option("NAME", options->name,
-                        "an example, or any other name for the scene to start from; scene if left out");
-    command->add_flag("--force", options->force, "replace an existing file");
-    command->callback([options, &action] {
-        action = [options](const Console& console) { return write_scene(console, *options); };
-    });
+    auto [command, options] =
+        add_command(app, action, "init", "write a commented scene to start from, or an example", write_scene);
+    command.add_option("NAME", options.name,
+                       "an example, or any other name for the scene to start from; scene if left out");
+    command.add_flag("--force", options.force, "replace an existing file");
 }
 
 void add_examples(CLI::App& app, Action& action) {

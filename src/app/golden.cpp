@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <memory>
 #include <string>
 
 #include <fmt/format.h>
@@ -153,30 +152,27 @@ ExitCode run_suite(const Console& console, GoldenOptions options) {
 }  // namespace
 
 void add_golden(CLI::App& app, Action& action) {
-    auto options = std::make_shared<GoldenOptions>();
-    CLI::App* command = app.add_subcommand(
-        "golden", "draw the scenes that have a table [golden] and compare them with kept pictures");
+    auto [command, options] = add_command(
+        app, action, "golden",
+        "draw the scenes that have a table [golden] and compare them with kept pictures", run_suite);
     command
-        ->add_option("SCENE", options->def.paths, "scene files, or folders with them in it or in its folders")
+        .add_option("SCENE", options.def.paths, "scene files, or folders with them in it or in its folders")
         ->required();
-    command->add_option("--dir", options->def.folder, "folder of the kept pictures")->required();
-    command->add_flag("--update", options->def.update,
-                      "write pictures that are missing or differ, and remove stale ones");
-    command->add_flag("--dry-run", options->def.dry_run, "with --update: only say what would change");
-    command->add_flag(
-        "--force", options->def.force,
+    command.add_option("--dir", options.def.folder, "folder of the kept pictures")->required();
+    command.add_flag("--update", options.def.update,
+                     "write pictures that are missing or differ, and remove stale ones");
+    command.add_flag("--dry-run", options.def.dry_run, "with --update: only say what would change");
+    command.add_flag(
+        "--force", options.def.force,
         "with --update: also replace files that are no PNG, and remove pictures without a record");
-    command->add_flag("--replan", options->def.replan,
-                      "with --update: choose all solvers and cameras anew, in place of the kept pictures'");
-    command->add_option("--html", options->html,
-                        "also write a page of the failed pictures: reference, new and difference");
-    command->add_option("--junit", options->junit, "also write the results as JUnit XML to this file");
-    command->add_option("--set", options->def.settings, "key=value in place of what the scenes say")
+    command.add_flag("--replan", options.def.replan,
+                     "with --update: choose all solvers and cameras anew, in place of the kept pictures'");
+    command.add_option("--html", options.html,
+                       "also write a page of the failed pictures: reference, new and difference");
+    command.add_option("--junit", options.junit, "also write the results as JUnit XML to this file");
+    command.add_option("--set", options.def.settings, "key=value in place of what the scenes say")
         ->type_name("KEY=VALUE");
-    options->gl.add_to(*command);
-    command->callback([options, &action] {
-        action = [options](const Console& console) { return run_suite(console, *options); };
-    });
+    options.gl.add_to(command);
 }
 
 }  // namespace corda::app

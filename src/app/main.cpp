@@ -16,7 +16,6 @@
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/output_file.hpp"
-#include "exit_codes.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -135,24 +134,7 @@ int run(int argc, char** argv) {
     app.footer(exit_code_table());
     Action action;
     ConsoleDef console_def;
-    add_render(app, action);
-    add_still(app, action);
-    add_strobe(app, action);
-    add_sheet(app, action);
-    add_simulate(app, action);
-    add_compare(app, action);
-    add_golden(app, action);
-    add_verify(app, action);
-    add_recover(app, action);
-    add_doctor(app, action);
-    add_plan(app, action);
-    add_report(app, action);
-    add_study(app, action);
-    add_init(app, action);
-    add_examples(app, action);
-    add_schema(app, action);
-    add_completion(app, action);
-    add_help(app, action);
+    for (AddCommand* const add : kCommands) add(app, action);
     add_console_flags(app, console_def);
     refuse_empty_values(app);
     take_last_values(app);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include <fmt/format.h>
 
@@ -132,19 +131,14 @@ ExitCode plan(const Console& console, const PlanOptions& options) {
 }  // namespace
 
 void add_plan(CLI::App& app, Action& action) {
-    auto options = std::make_shared<PlanOptions>();
-    CLI::App* command =
-        app.add_subcommand("plan", "show what is modelled and why, by which method, and its error and cost");
-    options->scene.add_to(*command);
-    options->scene.add_size(*command);
-    options->scene.add_shortcut(*command, "--fps", "video.fps", "frames per second");
-    options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
-    command->add_flag("--toml", options->toml,
-                      "print [solver] and [camera] as they were chosen; in place of the scene's own, "
-                      "they freeze it");
-    command->callback([options, &action] {
-        action = [options](const Console& console) { return plan(console, *options); };
-    });
+    auto [command, options] = add_command(
+        app, action, "plan", "show what is modelled and why, by which method, and its error and cost", plan);
+    options.scene.add_to(command);
+    options.scene.add_size(command);
+    options.scene.add_timing(command);
+    command.add_flag("--toml", options.toml,
+                     "print [solver] and [camera] as they were chosen; in place of the scene's own, "
+                     "they freeze it");
 }
 
 }  // namespace corda::app

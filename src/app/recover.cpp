@@ -1,5 +1,4 @@
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <system_error>
 
@@ -68,17 +67,14 @@ ExitCode recover(const Console& console, const RecoverOptions& options) {
 }  // namespace
 
 void add_recover(CLI::App& app, Action& action) {
-    auto options = std::make_shared<RecoverOptions>();
-    CLI::App* command = app.add_subcommand(
-        "recover", "make the part file of an interrupted render a video, without encoding it again");
-    command->add_option("PART", options->part, "part file, such as out.mp4.part")->required();
-    command->add_option(
-        "-o,--output", options->output,
+    auto [command, options] = add_command(
+        app, action, "recover",
+        "make the part file of an interrupted render a video, without encoding it again", recover);
+    command.add_option("PART", options.part, "part file, such as out.mp4.part")->required();
+    command.add_option(
+        "-o,--output", options.output,
         "video file, and the part stays; default: the name without .part, and the part is removed");
-    command->add_flag("--force", options->force, "replace an existing output");
-    command->callback([options, &action] {
-        action = [options](const Console& console) { return recover(console, *options); };
-    });
+    command.add_flag("--force", options.force, "replace an existing output");
 }
 
 }  // namespace corda::app

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <set>
 #include <string_view>
 
@@ -22,7 +21,6 @@
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/view/colors.hpp"
 #include "interrupt.hpp"
-#include "time_options.hpp"
 
 namespace corda::app {
 namespace {
@@ -38,6 +36,8 @@ struct RenderOptions {
     bool force = false;
     bool resume = false;
     bool dry_run = false;
+
+    void require() const { scene.require(); }
 };
 
 /// Puts "FIRST:END" into `def`, either of which may be left out.
@@ -234,45 +234,38 @@ ExitCode render(const Console& console, const RenderOptions& options) {
 }  // namespace
 
 void add_render(CLI::App& app, Action& action) {
-    auto options = std::make_shared<RenderOptions>();
-    CLI::App* command = app.add_subcommand("render", "turn a scene into a video");
-    options->scene.add_to(*command);
-    options->scene.add_from(*command);
-    command->add_option("-o,--output", options->output, "the ending chooses the format: " + endings_text())
+    auto [command, options] = add_command(app, action, "render", "turn a scene into a video", render);
+    options.scene.add_to(command);
+    options.scene.add_from(command);
+    command.add_option("-o,--output", options.output, "the ending chooses the format: " + endings_text())
         ->required();
-    options->scene.add_size(*command);
-    command->add_flag("--pad", options->pad,
-                      "make odd sides even, by a column or a row more, as 4:2:0 needs");
-    options->scene.add_shortcut(*command, "--fps", "video.fps", "frames per second, e.g. 60 or 30000/1001");
-    options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
-    options->scene.add_shortcut(*command, "--crf", "video.crf",
-                                "quality, 1 (best) .. 51 of H.264 and H.265, .. 63 of AV1 and VP9");
-    options->scene.add_shortcut(*command, "--preset", "video.preset",
-                                "speed: ultrafast .. placebo, of AV1 and VP9 0 (slowest) .. 13, .. 8");
-    options->scene.add_shortcut(*command, "--codec", "video.codec", "encoder, if not the ending's default");
-    options->scene.add_shortcut(
-        *command, "--pix", "video.pix",
+    options.scene.add_size(command);
+    command.add_flag("--pad", options.pad, "make odd sides even, by a column or a row more, as 4:2:0 needs");
+    options.scene.add_timing(command, "frames per second, e.g. 60 or 30000/1001");
+    options.scene.add_shortcut(command, "--crf", "video.crf",
+                               "quality, 1 (best) .. 51 of H.264 and H.265, .. 63 of AV1 and VP9");
+    options.scene.add_shortcut(command, "--preset", "video.preset",
+                               "speed: ultrafast .. placebo, of AV1 and VP9 0 (slowest) .. 13, .. 8");
+    options.scene.add_shortcut(command, "--codec", "video.codec", "encoder, if not the ending's default");
+    options.scene.add_shortcut(
+        command, "--pix", "video.pix",
         "pixels: 420, 444 (sharper coloured edges; browsers and QuickTime refuse H.264 "
         "High 4:4:4) or rgba");
-    options->scene.add_shortcut(*command, "--threads", "video.threads", "threads of each encoder");
-    options->scene.add_shortcut(*command, "--jobs", "video.jobs", "chunks made at a time; 0: one per core");
-    command->add_option("--frames", options->frames, "only frames FIRST <= k < END")->type_name("FIRST:END");
+    options.scene.add_shortcut(command, "--threads", "video.threads", "threads of each encoder");
+    options.scene.add_shortcut(command, "--jobs", "video.jobs", "chunks made at a time; 0: one per core");
+    command.add_option("--frames", options.frames, "only frames FIRST <= k < END")->type_name("FIRST:END");
     command
-        ->add_option("--verify", options->verify,
-                     "what of a finished H.264, ProRes or FFV1 video is decoded: key frames (keys), or all "
-                     "(full), as of others")
+        .add_option("--verify", options.verify,
+                    "what of a finished H.264, ProRes or FFV1 video is decoded: key frames (keys), or all "
+                    "(full), as of others")
         ->check(CLI::IsMember({"keys", "full"}))
         ->capture_default_str();
-    options->gl.add_to(*command);
-    options->empty.add_to(*command);
-    command->add_flag("--force", options->force, "replace an existing output");
-    command->add_flag("--resume", options->resume,
-                      "resume what an interrupted render of the same scene has left");
-    command->add_flag("--dry-run", options->dry_run, "check everything but OpenGL, and write nothing");
-    command->callback([options, &action] {
-        options->scene.require();
-        action = [options](const Console& console) { return render(console, *options); };
-    });
+    options.gl.add_to(command);
+    options.empty.add_to(command);
+    command.add_flag("--force", options.force, "replace an existing output");
+    command.add_flag("--resume", options.resume,
+                     "resume what an interrupted render of the same scene has left");
+    command.add_flag("--dry-run", options.dry_run, "check everything but OpenGL, and write nothing");
 }
 
 }  // namespace corda::app

@@ -1,4 +1,3 @@
-#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
@@ -14,7 +13,6 @@
 #include "corda/report/writers.hpp"
 #include "interrupt.hpp"
 #include "page_folder.hpp"
-#include "time_options.hpp"
 
 namespace corda::app {
 namespace {
@@ -101,20 +99,17 @@ ExitCode report_command(const Console& console, const ReportOptions& options) {
 }  // namespace
 
 void add_report(CLI::App& app, Action& action) {
-    auto options = std::make_shared<ReportOptions>();
-    CLI::App* command = app.add_subcommand(
-        "report", "write the figures that a paper needs of a scene, for print, and a page with all of them");
-    options->scene.add_to(*command);
-    command->add_option("-o,--output", options->output, "folder of the report")->required();
-    options->shots.add_to(*command);
-    options->scene.add_shortcut(*command, "--fps", "video.fps", "rows per second");
-    options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
-    options->gl.add_to(*command);
-    add_force(*command, options->force);
-    command->add_flag("--dry-run", options->dry_run, "check everything and write nothing");
-    command->callback([options, &action] {
-        action = [options](const Console& console) { return report_command(console, *options); };
-    });
+    auto [command, options] =
+        add_command(app, action, "report",
+                    "write the figures that a paper needs of a scene, for print, and a page with all of them",
+                    report_command);
+    options.scene.add_to(command);
+    command.add_option("-o,--output", options.output, "folder of the report")->required();
+    options.shots.add_to(command);
+    options.scene.add_timing(command, "rows per second");
+    options.gl.add_to(command);
+    add_force(command, options.force);
+    command.add_flag("--dry-run", options.dry_run, "check everything and write nothing");
 }
 
 }  // namespace corda::app

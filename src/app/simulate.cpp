@@ -225,28 +225,23 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
 }  // namespace
 
 void add_simulate(CLI::App& app, Action& action) {
-    auto options = std::make_shared<SimulateOptions>();
-    CLI::App* command =
-        app.add_subcommand("simulate", "run the simulation alone; positions as CSV, figures as JSON");
-    options->scene.add_to(*command);
-    command->add_option("-o,--output", options->output,
-                        "CSV file, or - for standard output; none: figures only. Its first line names the "
-                        "columns: t in s, x0, y0, ... in m");
-    options->scene.add_shortcut(*command, "--fps", "video.fps", "rows per second");
-    options->scene.add_shortcut(*command, "--duration", "world.duration", "seconds");
-    command->add_flag("--velocity", options->columns.velocities,
-                      "add the velocity of every particle: vx0_m_s, vy0_m_s, ...");
-    command->add_flag("--tension", options->columns.tensions,
-                      "add the tension of every link, positive if it pulls: tension0_n, ...");
-    command->add_flag("--energy", options->columns.energy,
-                      "add the change of kinetic and potential energy since the start: energy_change_j");
-    command->add_flag("--diagnostics", options->columns.diagnostics,
-                      "add energy error, strain, pin force and tension to every row");
-    command->add_flag("--force", options->force, "replace an existing output");
-    command->add_flag("--dry-run", options->dry_run, "check everything and write nothing");
-    command->callback([options, &action] {
-        action = [options](const Console& console) { return simulate(console, *options); };
-    });
+    auto [command, options] = add_command(
+        app, action, "simulate", "run the simulation alone; positions as CSV, figures as JSON", simulate);
+    options.scene.add_to(command);
+    command.add_option("-o,--output", options.output,
+                       "CSV file, or - for standard output; none: figures only. Its first line names the "
+                       "columns: t in s, x0, y0, ... in m");
+    options.scene.add_timing(command, "rows per second");
+    command.add_flag("--velocity", options.columns.velocities,
+                     "add the velocity of every particle: vx0_m_s, vy0_m_s, ...");
+    command.add_flag("--tension", options.columns.tensions,
+                     "add the tension of every link, positive if it pulls: tension0_n, ...");
+    command.add_flag("--energy", options.columns.energy,
+                     "add the change of kinetic and potential energy since the start: energy_change_j");
+    command.add_flag("--diagnostics", options.columns.diagnostics,
+                     "add energy error, strain, pin force and tension to every row");
+    command.add_flag("--force", options.force, "replace an existing output");
+    command.add_flag("--dry-run", options.dry_run, "check everything and write nothing");
 }
 
 }  // namespace corda::app

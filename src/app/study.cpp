@@ -79,22 +79,20 @@ ExitCode study_command(const Console& console, StudyOptions options) {
 }  // namespace
 
 void add_study(CLI::App& app, Action& action) {
-    auto options = std::make_shared<StudyOptions>();
-    CLI::App* command = app.add_subcommand(
-        "study", "measure speed against error of every method, and write a report with tables and plots");
-    options->scene.add_to(*command, SceneOptions::Need::kOptional);
-    command->add_option("-o,--output", options->output, "folder of the report")->required();
-    command->add_flag("--quick", options->def.quick, "fewer and shorter runs, not to quote from");
+    auto [command, options] =
+        add_command(app, action, "study",
+                    "measure speed against error of every method, and write a report with tables and plots",
+                    study_command);
+    options.scene.add_to(command, SceneOptions::Need::kOptional);
+    command.add_option("-o,--output", options.output, "folder of the report")->required();
+    command.add_flag("--quick", options.def.quick, "fewer and shorter runs, not to quote from");
     command
-        ->add_option("--chapter", options->def.chapters,
-                     fmt::format("only these chapters: {}", fmt::join(study::chapter_names(), ", ")))
+        .add_option("--chapter", options.def.chapters,
+                    fmt::format("only these chapters: {}", fmt::join(study::chapter_names(), ", ")))
         ->delimiter(',')
         ->type_name("NAME");
-    options->gl.add_to(*command);
-    add_force(*command, options->force);
-    command->callback([options, &action] {
-        action = [options](const Console& console) { return study_command(console, *options); };
-    });
+    options.gl.add_to(command);
+    add_force(command, options.force);
 }
 
 }  // namespace corda::app

@@ -1,7 +1,5 @@
 #include "corda/media/verify/verify.hpp"
 
-#include <memory>
-
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +9,10 @@
 
 namespace corda::app {
 namespace {
+
+struct VerifyOptions {
+    std::string path;
+};
 
 nlohmann::json to_json(const std::string& path, const media::VerifyReport& report) {
     return {{"schema", 1},
@@ -38,7 +40,8 @@ nlohmann::json to_json(const std::string& path, const media::VerifyReport& repor
             {"alpha", report.alpha}};
 }
 
-ExitCode verify(const Console& console, const std::string& path) {
+ExitCode verify(const Console& console, const VerifyOptions& options) {
+    const std::string& path = options.path;
     const media::VerifyReport report = media::verify_in_child(path, stopping_if_asked());
     if (!report.codec.empty()) {
         console.result(fmt::format(
@@ -56,15 +59,13 @@ ExitCode verify(const Console& console, const std::string& path) {
 }  // namespace
 
 void add_verify(CLI::App& app, Action& action) {
-    auto path = std::make_shared<std::string>();
-    CLI::App* command =
-        app.add_subcommand("verify",
-                           "check the structure of a video of any format that render writes, its times and "
-                           "tags, that every frame decodes, and the colours of the first "
-                           "frame alone; exit 7 on a problem");
-    command->add_option("FILE", *path, "video file")->required();
-    command->callback(
-        [path, &action] { action = [path](const Console& console) { return verify(console, *path); }; });
+    auto [command, options] =
+        add_command(app, action, "verify",
+                    "check the structure of a video of any format that render writes, its times and tags, "
+                    "that every frame "
+                    "decodes, and the colours of the first frame alone; exit 7 on a problem",
+                    verify);
+    command.add_option("FILE", options.path, "video file")->required();
 }
 
 }  // namespace corda::app
