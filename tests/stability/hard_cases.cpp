@@ -1,5 +1,5 @@
-// The hard cases of section 5 of src/sim/README.md, and what cannot be a row of a table. The cases, their
-// bounds and what was measured are in src/study/hard_*.cpp. CORDA_TEST_LONG=1 runs the long ones too.
+// The hard cases of section 5 of src/sim/README.md and tests of bits and denormal numbers. The cases, their
+// bounds and measured values are in src/study/hard_*.cpp. CORDA_TEST_LONG=1 also runs the long ones.
 
 #include <gtest/gtest.h>
 
