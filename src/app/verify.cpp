@@ -59,12 +59,11 @@ ExitCode verify(const Console& console, const VerifyOptions& options) {
 }  // namespace
 
 void add_verify(CLI::App& app, Action& action) {
-    auto [command, options] =
-        add_command(app, action, "verify",
-                    "check the structure of a video of any format that render writes, its times and tags, "
-                    "that every frame "
-                    "decodes, and the colours of the first frame alone; exit 7 on a problem",
-                    verify);
+    auto [command, options] = add_command(
+        app, action, "verify",
+        "check the structure of a video of any format that render writes, its times and tags, that "
+        "every frame decodes, and the colours of the first frame alone; exit 7 on a problem",
+        verify);
     command.add_option("FILE", options.path, "video file")->required();
 }
 

@@ -114,9 +114,8 @@ report::Plot bars_plot(const Findings& findings, const char* id, const char* tit
                        double SwingFigures::*figure) {
     report::Plot plot{id, title, "reach of the bars", title, false, true, {}};
     plot.caption = fmt::format(
-        "{} of 40 particles over the reach of the bars: with reach 7, each particle has bars to the next 1, "
-        "2, "
-        "..., 7 particles. One sweep per step.",
+        "{} of 40 particles over the reach of the bars. With reach 7, each particle has bars to the next "
+        "1, 2, ..., 7 particles. One sweep per step.",
         caption_start);
     for (const double mass_kg : kMasses) {
         report::Series series{fmt::format("{:g} kg, one sweep", mass_kg), {}};
