@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs missing packages, builds Corda with warnings as errors and runs every test with ctest.
-# Usage: tests/run.sh [--preset ci|asan|debug] [--long | --units] [-- CTEST ARGUMENTS]
+# Usage: tests/run.sh [--preset ci|asan|tsan|debug] [--long | --units] [-- CTEST ARGUMENTS]
+#   --preset tsan  only the tests of threads, under ThreadSanitizer
 #   --long   the long form of the slow suites, and tests/platforms.sh
 #   --units  only the tests of unit and fuzz
 set -euo pipefail
@@ -17,10 +18,12 @@ while [[ $# -gt 0 ]]; do
     esac
 done
 
+[[ "$preset" == tsan ]] && target=thread_tests
+
 "$root/src/cmake/setup.sh" test
 cd "$root"
 [[ -f "build/$preset/build.ninja" ]] || cmake --preset "$preset" >/dev/null
 cmake --build "build/$preset" --target "$target"
-[[ "$target" == all ]] || set -- -L 'unit|fuzz' -E fuzz.random_scenes "$@"
+[[ "$target" != unit_tests ]] || set -- -L 'unit|fuzz' -E fuzz.random_scenes "$@"
 ctest --preset "$preset" "$@"
 if [[ -n "${CORDA_TEST_LONG:-}" && "$preset" == ci && $# -eq 0 ]]; then tests/platforms.sh; fi

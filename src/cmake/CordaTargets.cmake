@@ -16,9 +16,11 @@ if(CORDA_WARNINGS_AS_ERRORS)
 endif()
 if(CORDA_SANITIZE)
     target_compile_options(corda_options INTERFACE
-        -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
-    target_link_options(corda_options INTERFACE -fsanitize=address,undefined)
-    target_compile_definitions(corda_options INTERFACE CORDA_SANITIZE)
+        -fsanitize=${CORDA_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(corda_options INTERFACE -fsanitize=${CORDA_SANITIZE})
+    # ThreadSanitizer is not ready when the choice between clones is made.
+    target_compile_definitions(corda_options INTERFACE CORDA_SANITIZE
+        $<$<STREQUAL:${CORDA_SANITIZE},thread>:CORDA_NO_CLONES>)
 endif()
 
 # corda_optimise(<folder>): optimises a folder under CORDA_SANITIZE. Others take longer to optimise than to run.

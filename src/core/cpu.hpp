@@ -9,10 +9,13 @@
 #include <xmmintrin.h>
 /// Compiles a function for AVX2 only; the caller asks the CPU first.
 #define CORDA_AVX2 [[gnu::target("avx2")]]
+#else
+#define CORDA_AVX2
+#endif
+#if defined(__x86_64__) && !defined(CORDA_NO_CLONES)
 /// Compiles a function twice, for every x86-64 CPU and for AVX2, and chooses when the program starts.
 #define CORDA_AVX2_CLONES [[gnu::target_clones("avx2", "default")]]
 #else
-#define CORDA_AVX2
 #define CORDA_AVX2_CLONES
 #endif
 

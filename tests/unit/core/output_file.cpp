@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -30,7 +31,7 @@ int link_errno = 0;
 
 // If set, another process holds the next file's lock and is about to remove the file. It does so once a
 // caller waits for the lock, or else later.
-bool is_locked_to_be_removed = false;
+std::atomic<bool> is_locked_to_be_removed = false;
 
 // True if the last renamed file was locked at that time.
 bool was_held_at_rename = false;
@@ -54,7 +55,7 @@ extern "C" int link(const char* from, const char* to) noexcept {
 }
 
 extern "C" int flock(int file, int operation) noexcept {
-    if (!std::exchange(is_locked_to_be_removed, false))
+    if (!is_locked_to_be_removed.exchange(false))
         return static_cast<int>(::syscall(SYS_flock, file, operation));
     errno = EWOULDBLOCK;
     if ((operation & LOCK_NB) != 0) return -1;
