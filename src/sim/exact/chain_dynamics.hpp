@@ -10,20 +10,12 @@
 
 namespace corda::sim {
 
-/// The motion of ropes of rigid links as a system of ordinary differential equations.
+/// The motion of ropes of rigid links as a system of ordinary differential equations: sections 1 to 3 and 10
+/// of src/sim/exact/README.md.
 ///
 /// A rope is cut at its pinned particles into chains that move independently. Link i of a chain leads from
-/// particle i-1 to i along the unit vector u_i = (c_i, s_i) and turns with the angular velocity w_i, so it
-/// keeps its length a_i whatever the error of its direction is. Let W_i be the inverse mass of particle i,
-/// g_i the uniform acceleration (0 if pinned), c the drag, C_i = u_i . u_{i+1}, S_i = u_i x u_{i+1} and p_i
-/// the vector u_i turned left by a right angle. The tensions T_i solve a tridiagonal system, and the links
-/// turn by what pulls across them:
-///
-///   (W_{i-1} + W_i) T_i - W_{i-1} C_{i-1} T_{i-1} - W_i C_i T_{i+1} = a_i w_i^2 + (g_i - g_{i-1}) . u_i,
-///   a_i w_i' = (g_i - g_{i-1}) . p_i + W_i S_i T_{i+1} - W_{i-1} S_{i-1} T_{i-1} - c a_i w_i.
-///
-/// Sections 1 to 3 and 10 of src/sim/exact/README.md derive the equations, the elimination and the terms of
-/// bending.
+/// particle i-1 to i along the unit vector (c_i, s_i) and turns with the angular velocity w_i. The tensions
+/// solve a tridiagonal system.
 ///
 /// A state has one array each of c, s and w over the links of all chains, then, for every chain without a
 /// pin, the displacement of its first particle from the start and its velocity (x, y, vx, vy). It does not

@@ -84,17 +84,13 @@ enum class SeriesKernel {
 /// The kernels that this CPU can run, the fastest last.
 [[nodiscard]] std::span<const SeriesKernel> series_kernels();
 
-/// The motion of one chain of a ChainDynamics as a power series in time.
-///
-/// The equations of ChainDynamics give the coefficients one after the other, because those of a product are
-/// sums of products of coefficients. Coefficient k of the tensions obeys the tridiagonal system of the joints
-/// at t = 0 whatever k is, so the matrix is factorised once per step, by the recurrence of chain_tensions.hpp
-/// (InverseMassFraction) from both ends. Derivation: sections 3 to 8 of src/sim/exact/README.md.
+/// The motion of one chain of a ChainDynamics as a power series in time: sections 3 to 8 of
+/// src/sim/exact/README.md. The tridiagonal matrix of the tensions is the same for all coefficients and is
+/// factorised once per step, from both ends.
 ///
 /// Source: E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary Differential Equations I, 2nd ed., Springer
-/// 1993, I.8 (recursive computation of coefficients); A. Jorba, M. Zou, A software package for the numerical
-/// integration of ODEs by means of high-order Taylor methods, Experimental Mathematics 14 (2005) 99-117
-/// (steps from the last coefficients).
+/// 1993, I.8 (recursive computation of coefficients); A. Jorba, M. Zou, Experimental Mathematics 14 (2005)
+/// 99-117 (steps from the last coefficients).
 class ChainSeries {
   public:
     /// `order`: of the series of w, 4 .. kMaxSeriesOrder (a ChainPart takes 12 and more). `chain`: one of

@@ -10,10 +10,7 @@
 namespace corda::sim {
 
 /// The motion of one body whose bars stretch, in any graph, as a system of ordinary differential equations in
-/// Cartesian coordinates. For a free particle of inverse mass w, with the uniform acceleration g, the drag c
-/// (Forces) and the forces F of bars and bends (ElasticForces),
-///
-///   x' = v,   v' = g + w F(x) - c v.
+/// Cartesian coordinates (section 3.5 of src/sim/README.md).
 ///
 /// A state has one array each of x, y, vx and vy over all particles of the body, relative to the initial
 /// position of the first one; those of pinned particles never change.

@@ -14,20 +14,12 @@ namespace corda::sim {
 /// ExactDef::tolerance.
 [[nodiscard]] StepControl step_control(double inverse_timescale_1_s, double tolerance);
 
-/// Method `exact`: a body is integrated in the coordinates that suit it.
+/// Method `exact`: a body is integrated in the coordinates that suit it (section 3.5 of src/sim/README.md).
 ///
-/// - Ropes of rigid links in the directions of the links (ChainDynamics), so that lengths are kept whatever
-///   the error is: by Taylor series in time (ChainPart), or by an adaptive Runge-Kutta method of order 8
-///   (Dop853) if they are very long or resist bending.
-/// - Bodies whose bars stretch in the positions of their particles (ElasticDynamics), by Dop853. Their
-///   fastest vibration limits the steps.
+/// - Ropes of rigid links in the directions of the links (ChainDynamics), by Taylor series in time (ChainPart),
+///   or by Dop853 if they are very long or resist bending.
+/// - Bodies whose bars stretch in the positions of their particles (ElasticDynamics), by Dop853.
 /// - Strings of rigid links from event to event (StringPart), by Dop853.
-///
-/// The error of the positions, relative to the rope's length, is about `ExactDef::tolerance` after some
-/// seconds. It grows with the square of the time while a rope swings, and exponentially while its motion is
-/// chaotic.
-///
-/// A rope that stands exactly upright stays so: nothing pushes it off.
 class Exact : public Solver {
   public:
     /// Requires one body. Throws corda::Refusal for rigid bars that are imaginary or do not form an open

@@ -10,17 +10,9 @@
 
 namespace corda::sim {
 
-/// The conservative forces of bars that stretch and of ropes that resist bending, in Cartesian coordinates.
-///
-/// A bar of compliance C and rest length l, whose ends are d apart, pulls them together by the tension
-/// T = (d / l - 1) / C (Hooke's law, E A = 1 / C), a string by max(0, T); its energy is T^2 C l / 2. With the
-/// unit vectors u from a to b and v from b to c, a bend of stiffness k has the energy k (1 - u . v) and, with
-/// s = u x v and the left normals p of u and q of v, the forces
-///
-///   F_a = -(k s / |ab|) p,   F_c = -(k s / |bc|) q,   F_b = -(F_a + F_c),
-///
-/// in which nothing cancels if the rope is nearly straight. A bar of length 0 has no direction: it exerts no
-/// force and no bend acts at its ends.
+/// The conservative forces of bars that stretch and of ropes that resist bending, in Cartesian coordinates
+/// (section 3.2 of src/sim/README.md). A bar of length 0 has no direction: it exerts no force, and no bend
+/// acts at its ends.
 ///
 /// Positions and forces are arrays with one entry per particle, from the first one on.
 class ElasticForces {

@@ -8,11 +8,9 @@
 
 namespace corda::sim {
 
-/// Bars that follow each other along chains. A chain ends at the end of a rope and at every pinned particle,
-/// because the two sides of a pin share no unknown. Newton's matrix is tridiagonal in each chain.
-///
-/// The squared lengths are quadratic in the impulses, so the error that a Newton step leaves is known without
-/// a further evaluation: it is exactly | span du |^2, du being the change of the bar's relative velocity.
+/// Bars along chains, which end at the ends of a rope and at pinned particles. Newton's matrix is
+/// tridiagonal. The squared lengths are quadratic in the impulses, so the error that a Newton step leaves is
+/// exactly | span du |^2, du being the change of the bar's relative velocity.
 class ChainConstraints final : public ConstraintSolver {
   public:
     /// True if all of these bars join a particle i to particle i + 1, in ascending order. True if there are

@@ -32,15 +32,8 @@ class StoppableLdlt final : public Eigen::SimplicialLDLT<Eigen::SparseMatrix<dou
 };
 
 /// Bars in any graph: closed ropes, nets. The matrix G W G' at the start of a stage is factorised once per
-/// stage (Eigen's sparse LDL', its pattern and order analysed once) and used for all corrections of the
-/// stage. This is Newton's method with the matrix of a moment ago: each correction multiplies the error by
-/// about the sine of the angle by which bars turn.
-///
-/// If bars depend on each other at the start, those whose pivots vanish are left to the others, which imply
-/// them: the motion is the same, the matrix smaller and regular, and bars that come into line on the way
-/// still show as a vanishing pivot. A stage fails if an implied bar loses its length. (Least-norm multipliers
-/// of all bars, from a matrix with a raised diagonal, would move the net likewise at two to four times the
-/// cost.)
+/// stage and used for all corrections of the stage: a simplified Newton method. Bars that others imply at the
+/// start are left out; a stage fails if one of them loses its length. See section 3.4 of src/sim/README.md.
 class GraphConstraints final : public ConstraintSolver {
   public:
     /// Throws corda::Refusal for bars that depend on each other at the start and do not stay so. `goes_on`:

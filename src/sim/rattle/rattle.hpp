@@ -26,30 +26,14 @@ struct Composition {
 /// stages). The numbers are those of Hairer, Lubich, Wanner, Geometric Numerical Integration, V.3.2.
 [[nodiscard]] const Composition& composition(int order);
 
-/// Method `rattle`: RATTLE (Andersen 1983; Hairer, Lubich, Wanner, Geometric Numerical Integration, VII.1.4)
-/// composed to order 2, 4, 6 or 8. A stage of span s, which may be negative, is
-///
-///   v <- exp(-c s / 2) v + (s / 2) a(x) - W G(x)' p,    p such that x + s v has rigid bars at their lengths,
-///   x <- x + s v,
-///   v <- exp(-c s / 2) (v + (s / 2) a(x)) - W G(x)' q,  q such that no rigid bar's length changes.
-///
-/// G, W and the impulses p and q are those of ConstraintSolver; positive ones pull. a is the uniform
-/// acceleration (Forces) plus the forces of bars that stretch and ropes that resist bending (ElasticForces)
-/// over the mass; c is the drag, which is split off symmetrically and exact. Without rigid bars this is the
-/// leapfrog. q and the next stage's p lie along the same bars, and p makes up for any q: the solver leaves q
-/// out between stages, merges adjacent half kicks, and computes q only for requested states. The
-/// positions are the same. When a string that stretches comes taut, its force has a kink, and errors are of
-/// order 2 whatever the composition.
+/// Method `rattle`: RATTLE composed to order 2, 4, 6 or 8 (section 3.4 of src/sim/README.md). Between stages
+/// the solver omits the impulses that make velocities consistent and merges adjacent half kicks.
 ///
 /// Grid point n is at n h, h being the step; `steps()` counts grid steps. A time between two grid points is
-/// reached by one shorter step from the grid point before it, on a copy, so that the trajectory does not
-/// depend on the requested times.
-///
-/// A grid step is taken in 2, 4, 8, ... parts if it is unstable (step times a bound on the largest frequency,
-/// some 7 % too large, which follows from the tensions and the elastic stiffness), if a bar turns by more
-/// than about 60 degrees in a stage, or if Newton's method does not converge. If 2^24 parts are not enough,
-/// bars of a net have come into line: the rest of the step is one leap (ConstraintSolver::leap); if there is
-/// none, the run has diverged.
+/// reached by one shorter step on a copy, so the trajectory does not depend on the requested times. A grid
+/// step is divided into 2, 4, 8, ... parts if it is unstable, if a bar turns too far in a stage, or if
+/// Newton's method does not converge. If 2^24 parts are not enough, the rest of the step is one leap
+/// (ConstraintSolver::leap); if there is none, the run has diverged.
 class Rattle final : public Solver {
   public:
     /// A default step stays within the guard under this multiple of the weight below each link: the tension

@@ -21,10 +21,9 @@ struct RelaxationMotion {
 /// Implementations of the sweeps. All kernels give the same bits: they do the same correctly rounded
 /// operations on each particle in the same order.
 ///
-/// kScalar takes the bars one by one in the given order and waits for each: a bar's square root and division
-/// take some 50 cycles, and the next bar of the same reach starts from their result. kSse2 takes packets of
-/// two bars (RelaxationSchedule), and several sweeps at once, each `lag` packets behind its predecessor, so
-/// that they wait for little but the divider's throughput. kAvx2 takes the packets of two sweeps at once.
+/// kScalar takes the bars one by one and waits for the square root and division of each. kSse2 takes packets
+/// of two bars (RelaxationSchedule) and several sweeps at once, each `lag` packets behind its predecessor.
+/// kAvx2 takes the packets of two sweeps at once.
 enum class RelaxationKernel { kScalar, kSse2, kAvx2 };
 
 /// The kernels that this CPU can run, the fastest last.

@@ -8,24 +8,11 @@
 
 namespace corda::sim {
 
-/// The source report's method (section 1 of src/sim/README.md): Verlet's update of every free particle, then
-/// sweeps over all bars in the order of System::bars, each of which moves its two particles along its current
-/// direction until it has its rest length.
+/// The source report's method (sections 1 and 3.3 of src/sim/README.md): Verlet's update of every free
+/// particle in its summed form, then sweeps over all bars in the order of System::bars.
 ///
-///   next = current + (1 - delta) (current - previous) + (h^2 / m) f
-///   adjust = distance - rest length, direction = (p2 - p1) / distance; each of two free particles moves by
-///   adjust / 2 towards the other; a free particle joined to a pinned one takes the whole adjustment.
-///
-/// The update is kept in its summed form: a particle carries its last move d = current - previous, and
-/// d <- (1 - delta) d + (h^2 / m) f, current <- current + d; then d takes up what the bars moved. The numbers
-/// are the same except for rounding, which grows with the number of steps instead of its square (Hairer,
-/// Lubich, Wanner, Geometric Numerical Integration, VIII.5).
-///
-/// The first position is an Euler step, x(h) = x(0) + h v(0), as in the report. The state at n h is therefore
-/// Verlet's after n - 1 updates, and free fall is late by -g h t / 2. A drag c acts as damping too: it
-/// multiplies 1 - delta by exp(-c h).
-///
-/// Times that are no multiple of the step are interpolated by the parabola through the three nearest states.
+/// The first position is an Euler step, so the state at n h is Verlet's after n - 1 updates, and free fall is
+/// late by -g h t / 2. Times between steps are interpolated by the parabola through the three nearest states.
 class Relaxation final : public Solver {
   public:
     /// `default_step_s`: the step if `def` names none. `kernel` changes the time taken, not the bits.

@@ -31,14 +31,10 @@ struct alignas(64) RelaxationPacket {
 
 /// One sweep over the bars of some bodies, in packets for the SIMD kernel (kernels.hpp).
 ///
-/// Two bars depend on each other if they share a particle. Each bar goes into the first packet that has room
-/// and comes after the packets of all earlier bars that it depends on. So every particle meets its bars in
-/// the given order, at most one per packet, and because a bar reads and writes its two particles alone, every
-/// number has the bits of the given order. Along a rope with bars of several reaches the
-/// packets form a wavefront: bar (t, t + 1) of reach 1, and some way behind it one bar of each longer reach.
-///
-/// The same holds from sweep to sweep, and for Verlet's update of a particle, which comes just before the
-/// particle's first packet. A sweep may therefore begin while its predecessor is running, as long as it
+/// Each bar goes into the first packet that has room after the packets of all earlier bars that share a
+/// particle with it. So every particle meets its bars in the given order, at most one per packet, and every
+/// number has the bits of that order. The same holds from sweep to sweep, and for Verlet's update of a
+/// particle just before its first packet: a sweep may begin while its predecessor is running, as long as it
 /// stays `lag` packets behind.
 struct RelaxationSchedule {
     std::vector<RelaxationPacket> packets;

@@ -37,11 +37,9 @@ class StringDynamics final : public ChainDynamics {
 /// by their rounding, and to below 0 at the start, so that a link that has just changed sides does not change
 /// back at once.
 ///
-/// Margins are sampled at the ends of kParts equal parts of a step. A step is no longer than the time in
-/// which any part of the string moves by its own length, and the solution in it is a polynomial of degree 7,
-/// so over two parts of eight a margin is close to a parabola. If the parabola's top lies between the samples
-/// and near 0, the top is sought. Only a link that exceeds its rest length by far less than the tolerance
-/// and returns within a part is missed.
+/// Margins are sampled at the ends of kParts equal parts of a step, in which a margin is close to a parabola.
+/// If the top of a parabola lies between the samples and near 0, the top is sought. Only a link that exceeds
+/// its rest length by far less than the tolerance and returns within a part is missed.
 class StringEvents {
   public:
     static constexpr std::size_t kParts = 8;

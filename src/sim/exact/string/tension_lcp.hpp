@@ -16,13 +16,9 @@ struct TridiagonalLcp {
     std::vector<double> right;     ///< b
 };
 
-/// Guesses which z_k are positive: 1 where they are, 0 where w_k is. Near the guess's own limit, where both
-/// are 0 or almost, an entry may be either.
-///
-/// Pivoting changes one row at a time in the worst case, and each change costs a solution of all rows: the
-/// square of their number. This takes some 30 solutions whatever the number of rows is and at most 100. It is
-/// Mehrotra's predictor-corrector method. Source: S. Wright, Primal-Dual Interior-Point Methods, SIAM 1997,
-/// ch. 8 and 10.
+/// Guesses which z_k are positive: 1 where they are, 0 where w_k is; either where both are almost 0. Takes
+/// about 30 solutions of all rows, whatever their number, and at most 100. Mehrotra's predictor-corrector
+/// method: S. Wright, Primal-Dual Interior-Point Methods, SIAM 1997, ch. 8 and 10.
 [[nodiscard]] std::vector<std::uint8_t> guess_positive(TridiagonalLcp problem, StopCheck& stop);
 
 /// Which links of a chain pull, and how strongly, if a link can pull and never push: a linear complementarity
@@ -35,13 +31,11 @@ struct TridiagonalLcp {
 /// If b is the speeds of separation, z is the impulses of a plastic snap and -w the speeds after it; if b is
 /// the accelerations of separation, z is the tensions.
 ///
-/// A is symmetric and positive definite unless links are straight between two pins, so there is one solution.
-/// It is found by block principal pivoting: all links of wrong sign change sides at once as long as this
-/// leaves fewer and fewer of them; otherwise the last one alone does (Murty), which terminates, but may take
-/// a round per link. After 50 rounds an interior-point method makes a new guess, so that the work grows with
-/// the number of links and not with its square. Sources: J. Judice, F. Pires, Computers and Operations
-/// Research 21 (1994) 587; K. Murty, Linear Complementarity, Linear and Nonlinear Programming, Heldermann
-/// 1988, ch. 4.
+/// A is positive definite unless links are straight between two pins, so there is one solution. It is found
+/// by block principal pivoting: all links of wrong sign change sides at once while this leaves fewer of them,
+/// otherwise the last one alone (Murty), which terminates but may take a round per link. After 50 rounds an
+/// interior-point method makes a new guess. Sources: J. Judice, F. Pires, Computers and Operations Research
+/// 21 (1994) 587; K. Murty, Linear Complementarity, Linear and Nonlinear Programming, Heldermann 1988, ch. 4.
 class TensionLcp {
   public:
     enum class Side : std::uint8_t {
