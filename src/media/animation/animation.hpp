@@ -1,12 +1,20 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/image.hpp"
+#include "corda/core/ordered_workers.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/rational.hpp"
 #include "corda/media/format/format.hpp"
+#include "corda/media/read/decoder.hpp"
 
 namespace corda::media {
 
@@ -39,5 +47,89 @@ void write_apng(const Ending& ending, const AnimationDef& def, const OnProgress&
 /// The same.
 void write_webp(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
                 OutputFile& output);
+
+/// Changes of an animation frame.
+struct PictureChange {
+    /// Where the frame differs from the last one, from even columns and rows on; one pixel if it does not.
+    PixelRect part;
+    /// That part of the frame. If it is to be blended over the last frame, pixels that stay as they are have
+    /// no colour and are transparent, which takes fewer bytes.
+    Image picture;
+    bool is_blended = false;
+};
+
+/// The exact pictures of a part, one after the other, and what each of them changes.
+class LosslessFrames {
+  public:
+    /// Reads the first `bytes` of a part. Throws corda::Error (kIo), like all below.
+    LosslessFrames(std::string part_path, std::uint64_t bytes);
+
+    /// Goes on to picture `k`, which must come after the current one.
+    void go_to(std::int64_t k);
+    [[nodiscard]] const Image& picture() const { return picture_; }
+    /// The change since the picture before; of picture 0, all of it. Opaque pictures are blended.
+    [[nodiscard]] PictureChange change() const;
+
+  private:
+    void read(Image& picture);
+    void decode();
+
+    std::string part_path_;
+    QuietLog quiet_;
+    Decoder decoder_;
+    std::int64_t next_ = 0;
+    Image picture_;
+    Image last_;  ///< the picture before
+};
+
+/// Makes something of the frames first <= k < end. If `all` is stopped, the result is dropped.
+template <class Section>
+using MakeSection =
+    std::function<Section(std::int64_t first, std::int64_t end, const OrderedWorkers<Section>& all)>;
+
+/// Makes something of sections of the frames on the threads of `def`, and takes it in order on this one.
+/// `new_maker` is called as OrderedWorkers does. Throws what they throw, and corda::Error (kInterrupted).
+template <class Section>
+void for_each_section(const AnimationDef& def, const OnProgress& on_progress,
+                      const std::function<MakeSection<Section>()>& new_maker,
+                      const std::function<void(Section)>& take) {
+    constexpr std::int64_t kFrames = 12;
+    const std::int64_t sections = (def.frames + kFrames - 1) / kFrames;
+    const auto threads = static_cast<int>(std::min<std::int64_t>(def.threads, sections));
+    OrderedWorkers<Section> all(0, sections, threads, [&] {
+        return [&def, make = new_maker()](std::int64_t section, const OrderedWorkers<Section>& every) {
+            return make(section * kFrames, std::min(def.frames, (section + 1) * kFrames), every);
+        };
+    });
+    for (std::int64_t taken = 0; taken < sections;) {
+        report_progress(on_progress, taken * kFrames, def.frames);
+        auto section = all.wait();
+        if (!section) continue;
+        take(std::move(*section));
+        ++taken;
+    }
+}
+
+/// Makes something of each frame, and takes it in order.
+template <class Frame>
+void for_each_frame(const AnimationDef& def, const OnProgress& on_progress,
+                    const std::function<Frame(const LosslessFrames&)>& make,
+                    const std::function<void(const Frame&)>& take) {
+    using Section = std::vector<Frame>;
+    const auto new_maker = [&] {
+        const auto pictures = std::make_shared<LosslessFrames>(def.part_path, def.bytes);
+        return [pictures, &make](std::int64_t first, std::int64_t end, const OrderedWorkers<Section>& all) {
+            Section section;
+            for (std::int64_t k = first; k < end && !all.is_stopped(); ++k) {
+                pictures->go_to(k);
+                section.push_back(make(*pictures));
+            }
+            return section;
+        };
+    };
+    for_each_section<Section>(def, on_progress, new_maker, [&take](const Section& section) {
+        for (const Frame& frame : section) take(frame);
+    });
+}
 
 }  // namespace corda::media

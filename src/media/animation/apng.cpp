@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "corda/media/animation/animation.hpp"
-#include "corda/media/animation/frames.hpp"
 #include "corda/media/bytes.hpp"
 #include "corda/media/format/file_kind.hpp"
 #include "corda/media/libav_handles.hpp"

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "corda/media/animation/animation.hpp"
-#include "corda/media/animation/frames.hpp"
 #include "corda/media/animation/palette.hpp"
 #include "corda/media/chunks/track_output.hpp"
 #include "corda/media/encode/encoder.hpp"

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "corda/media/animation/animation.hpp"
-#include "corda/media/animation/frames.hpp"
 
 namespace corda::media {
 namespace {

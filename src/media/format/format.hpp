@@ -42,6 +42,15 @@ struct Players {
     std::string_view words;
 };
 
+/// Limits of a level of a codec, in luma samples or in blocks of them.
+struct Level {
+    int times_10;          ///< 41 is level 4.1
+    std::int64_t picture;  ///< samples of a frame
+    std::int64_t per_s;    ///< samples per second
+    int max_width = 0;     ///< 0: the square root of 8 times `picture`
+    int max_height = 0;    ///< the same
+};
+
 /// Bytes of a frame on the disk per pixel.
 struct DiskBytes {
     double min = 0.0;    ///< at most half of what two links on a black ground take at 3840x2160
@@ -80,6 +89,8 @@ struct Codec {
     double tolerance = 0.0;              ///< largest error of a colour patch, in 1/255; 0: patch_tolerance()
     bool has_coarse_444 = false;         ///< it quantises the colour of 4:4:4 more coarsely
     std::span<const Players> players{};  ///< of codecs of one stream, the first has them
+    std::span<const Level> levels{};     ///< the same, the lowest first
+    int level_block_px = 1;              ///< side of the blocks that `levels` count
     std::unique_ptr<Encoder> (*make)(const Format& format, const VideoDef& def, std::int64_t first_frame,
                                      const PictureInfo& info) = &make_libav_encoder;
     EncoderOptions (*options)(const Format& format, const VideoDef& def) = nullptr;  ///< null: none

@@ -22,20 +22,14 @@ struct ShownPatch {
     std::optional<std::array<double, 3>> rgb;
 };
 
-/// Result of decoding a file.
+/// Result of decoding a file, in addition to what a VerifyReport holds.
 struct DecodedVideo {
     bool opened = false;      ///< the demuxer and a decoder accepted the file
     std::string open_reason;  ///< why it was not opened
-    std::string codec, profile, pixel_format;
-    int h264_level = 0;     ///< ten times the stated level; 0: not H.264, or not stated
-    std::string codec_tag;  ///< four letters in MP4 and QuickTime
-    std::string range, matrix, primaries, transfer, chroma_location;
+    std::string codec_tag;    ///< four letters in MP4 and QuickTime
     /// Range, matrix, primaries and transfer of the colr box, which QuickTime believes.
     std::string container_tags;
-    int width_px = 0;
-    int height_px = 0;
     Rational tick{0, 1};          ///< seconds per tick of the track's clock, as libav sees it
-    std::int64_t frames = 0;      ///< those whose time stamp can be right
     std::int64_t first_pts = 0;   ///< in ticks
     std::int64_t step = 0;        ///< ticks from the first frame to the second, or the only frame's duration
     std::int64_t uneven_at = -1;  ///< index of the first frame that is not one step after the last; -1: none
@@ -44,22 +38,23 @@ struct DecodedVideo {
     std::string bad_reason;       ///< for the first of them, mostly in libav's words
     std::string comment;          ///< the file's comment
     bool is_yuv = false;          ///< not R'G'B'
-    bool has_alpha = false;       ///< the first frame is transparent somewhere
     bool is_rounded = false;      ///< stamps count milliseconds, and each is the nearest to its frame's time
     std::vector<ShownPatch> patches;
 };
 
 /// Decodes the frames of the file at `path`, of a kind that libav demuxes, and measures the patches of
 /// `rendered`, as far as these frames are decoded, and else those that the file's comment tells of the first
-/// one. `on_progress` is called with the frames. Throws corda::Error: kTemporary if there is not enough
-/// memory, kInterrupted if `on_progress` asks to stop; nothing else for a bad file.
+/// one. Fills in the coding, size, colour tags and alpha of `report`, and the number of frames whose time
+/// stamp can be right, with which `on_progress` is called. Throws corda::Error: kTemporary if there is not
+/// enough memory, kInterrupted if `on_progress` asks to stop; nothing else for a bad file.
 [[nodiscard]] DecodedVideo decode(const std::string& path, VerifyDepth depth,
-                                  const std::vector<FrameColors>& rendered, const OnProgress& on_progress);
+                                  const std::vector<FrameColors>& rendered, const OnProgress& on_progress,
+                                  VerifyReport& report);
 
 /// The same for an animated WebP, by libwebp. `told`: see rate_of_ms().
 [[nodiscard]] DecodedVideo decode_webp(const std::string& path, std::optional<Rational> told,
                                        const std::vector<FrameColors>& rendered,
-                                       const OnProgress& on_progress);
+                                       const OnProgress& on_progress, VerifyReport& report);
 
 /// What a frame was rendered as; null if `rendered`, in the order of the frames, does not tell.
 [[nodiscard]] const FrameColors* find_rendered(const std::vector<FrameColors>& rendered, std::int64_t frame);

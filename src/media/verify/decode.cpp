@@ -69,14 +69,15 @@ std::array<double, 3> mean_rgb_of(const AVFrame& frame, const PixelRect& part) {
 /// Decodes one file and fills in a DecodedVideo.
 class Decoding {
   public:
-    Decoding(DecodedVideo& video, VerifyDepth depth, const std::vector<FrameColors>& rendered)
-        : video_(video), depth_(depth), rendered_(rendered) {}
+    Decoding(DecodedVideo& video, VerifyReport& report, VerifyDepth depth,
+             const std::vector<FrameColors>& rendered)
+        : video_(video), report_(report), depth_(depth), rendered_(rendered) {}
 
     void run(const std::string& path, const OnProgress& on_progress) {
         if (!open(path)) return;
         video_.opened = true;
         const auto use = [&](const AVPacket& packet) {
-            report_progress(on_progress, video_.frames, 0);
+            report_progress(on_progress, report_.frames, 0);
             return use_of(packet);
         };
         for (int status = 0; status != AVERROR_EOF;) {
@@ -87,12 +88,12 @@ class Decoding {
                 note_bad(status);
         }
         take_stamps(0);
-        // libav guesses the duration of the last frame; check_clocks in mp4.cpp compares the end with the
+        // libav guesses the duration of the last frame; check_clocks in checks.cpp compares the end with the
         // track's stored duration.
         const std::int64_t duration = decoder_->stream().duration;
-        if (video_.frames == 1 && (rounded_to_ || counts_frames_))
+        if (report_.frames == 1 && (rounded_to_ || counts_frames_))
             video_.step = 1;
-        else if (video_.frames == 1)
+        else if (report_.frames == 1)
             video_.step = is_sane_stamp(duration) ? std::max<std::int64_t>(duration, 0) : 0;
         video_.end = last_pts_ + video_.step;
         describe();
@@ -189,7 +190,7 @@ class Decoding {
         if (!is_described_) describe_first_frame(frame);
         // Chunks are closed: as many frames are shown before a key frame as packets came before it.
         if (is_readable_)
-            measure_patches(frame, depth_ == VerifyDepth::kAllFrames ? video_.frames : packets_ - 1);
+            measure_patches(frame, depth_ == VerifyDepth::kAllFrames ? report_.frames : packets_ - 1);
         // If no further pixels are measured, it is enough that frames decode.
         if (rendered_.empty()) context.skip_loop_filter = AVDISCARD_ALL;
         if (depth_ == VerifyDepth::kAllFrames) take_stamp(frame.pts);
@@ -202,15 +203,15 @@ class Decoding {
             return;
         }
         if (rounded_to_) pts = unrounded(pts);
-        if (counts_frames_) pts = video_.frames;
-        if (video_.frames == 0) {
+        if (counts_frames_) pts = report_.frames;
+        if (report_.frames == 0) {
             video_.first_pts = pts;
         } else {
-            if (video_.frames == 1) video_.step = pts - last_pts_;
-            if (pts - last_pts_ != video_.step && video_.uneven_at < 0) video_.uneven_at = video_.frames;
+            if (report_.frames == 1) video_.step = pts - last_pts_;
+            if (pts - last_pts_ != video_.step && video_.uneven_at < 0) video_.uneven_at = report_.frames;
         }
         last_pts_ = pts;
-        ++video_.frames;
+        ++report_.frames;
     }
 
     void measure_patches(const AVFrame& frame, std::int64_t number) {
@@ -232,14 +233,14 @@ class Decoding {
 
     void describe_first_frame(const AVFrame& frame) {
         is_described_ = true;
-        video_.width_px = frame.width;
-        video_.height_px = frame.height;
-        video_.pixel_format = named(av_get_pix_fmt_name(static_cast<AVPixelFormat>(frame.format)));
-        video_.range = named(av_color_range_name(frame.color_range));
-        video_.matrix = named(av_color_space_name(frame.colorspace));
-        video_.primaries = named(av_color_primaries_name(frame.color_primaries));
-        video_.transfer = named(av_color_transfer_name(frame.color_trc));
-        video_.chroma_location = named(av_chroma_location_name(frame.chroma_location));
+        report_.width_px = frame.width;
+        report_.height_px = frame.height;
+        report_.pixel_format = named(av_get_pix_fmt_name(static_cast<AVPixelFormat>(frame.format)));
+        report_.range = named(av_color_range_name(frame.color_range));
+        report_.matrix = named(av_color_space_name(frame.colorspace));
+        report_.primaries = named(av_color_primaries_name(frame.color_primaries));
+        report_.transfer = named(av_color_transfer_name(frame.color_trc));
+        report_.chroma_location = named(av_chroma_location_name(frame.chroma_location));
         const AVPixFmtDescriptor* const descriptor =
             av_pix_fmt_desc_get(static_cast<AVPixelFormat>(frame.format));
         is_readable_ = descriptor != nullptr && descriptor->nb_components >= 3 &&
@@ -249,17 +250,17 @@ class Decoding {
         if (!is_readable_) return;
         video_.is_yuv = (descriptor->flags & AV_PIX_FMT_FLAG_RGB) == 0;
         if ((descriptor->flags & AV_PIX_FMT_FLAG_ALPHA) != 0)
-            video_.has_alpha = samples_of(frame, 3, {0, 0, frame.width, frame.height}).least < 255;
+            report_.alpha = samples_of(frame, 3, {0, 0, frame.width, frame.height}).least < 255;
     }
 
     void describe() {
         const AVCodecContext& context = decoder_->context();
-        video_.codec = avcodec_get_name(context.codec_id);
+        report_.codec = avcodec_get_name(context.codec_id);
         std::array<char, AV_FOURCC_MAX_STRING_SIZE> tag{};
         video_.codec_tag = av_fourcc_make_string(tag.data(), decoder_->stream().codecpar->codec_tag);
         const char* const profile = avcodec_profile_name(context.codec_id, context.profile);
-        video_.profile = profile == nullptr ? "" : profile;
-        if (context.codec_id == AV_CODEC_ID_H264) video_.h264_level = std::max(0, context.level);
+        report_.profile = profile == nullptr ? "" : profile;
+        if (context.codec_id == AV_CODEC_ID_H264) report_.h264_level = std::max(0, context.level);
     }
 
     static constexpr std::int64_t kNever = 1'000'000'000;
@@ -267,6 +268,7 @@ class Decoding {
     static constexpr std::size_t kMaxReordered = 32;
 
     DecodedVideo& video_;
+    VerifyReport& report_;
     VerifyDepth depth_;
     const std::vector<FrameColors>& rendered_;
     LogCapture log_;
@@ -291,9 +293,9 @@ const FrameColors* find_rendered(const std::vector<FrameColors>& rendered, std::
 }
 
 DecodedVideo decode(const std::string& path, VerifyDepth depth, const std::vector<FrameColors>& rendered,
-                    const OnProgress& on_progress) {
+                    const OnProgress& on_progress, VerifyReport& report) {
     DecodedVideo video;
-    Decoding(video, depth, rendered).run(path, on_progress);
+    Decoding(video, report, depth, rendered).run(path, on_progress);
     return video;
 }
 
@@ -321,7 +323,8 @@ std::array<double, 3> mean_rgb(const std::uint8_t* rgba, int width_px, const Col
 }  // namespace
 
 DecodedVideo decode_webp(const std::string& path, std::optional<Rational> told,
-                         const std::vector<FrameColors>& rendered, const OnProgress& on_progress) {
+                         const std::vector<FrameColors>& rendered, const OnProgress& on_progress,
+                         VerifyReport& report) {
     DecodedVideo video;
     WebpReader reader(path);
     video.opened = reader.is_open();
@@ -329,28 +332,28 @@ DecodedVideo decode_webp(const std::string& path, std::optional<Rational> told,
         video.open_reason = "libwebp does not open the file";
         return video;
     }
-    video.codec = "webp";
-    video.pixel_format = "rgba";
-    video.width_px = reader.width_px();
-    video.height_px = reader.height_px();
+    report.codec = "webp";
+    report.pixel_format = "rgba";
+    report.width_px = reader.width_px();
+    report.height_px = reader.height_px();
     video.is_rounded = true;
-    const std::size_t pixels = static_cast<std::size_t>(video.width_px) * video.height_px;
+    const std::size_t pixels = static_cast<std::size_t>(report.width_px) * report.height_px;
     while (reader.has_next()) {
-        report_progress(on_progress, video.frames, 0);
+        report_progress(on_progress, report.frames, 0);
         const std::uint8_t* const rgba = reader.read();
         if (rgba == nullptr) {
             video.bad_reason = "libwebp does not decode a frame";
             ++video.bad_frames;
             break;
         }
-        if (const FrameColors* const colors = find_rendered(rendered, video.frames))
+        if (const FrameColors* const colors = find_rendered(rendered, report.frames))
             for (const ColorPatch& patch : colors->patches)
-                if (is_within(patch, video.width_px, video.height_px))
-                    video.patches.push_back({video.frames, patch, mean_rgb(rgba, video.width_px, patch)});
-        if (video.frames++ == 0) video.has_alpha = is_see_through(rgba, pixels);
+                if (is_within(patch, report.width_px, report.height_px))
+                    video.patches.push_back({report.frames, patch, mean_rgb(rgba, report.width_px, patch)});
+        if (report.frames++ == 0) report.alpha = is_see_through(rgba, pixels);
     }
     video.step = 1;
-    video.end = video.frames;
+    video.end = report.frames;
     const auto fps = rate_of_ms(reader.read_ends_ms(), told);
     if (fps) {
         video.tick = {fps->den, fps->num};

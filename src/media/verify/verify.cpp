@@ -38,20 +38,8 @@ std::string probed_container(const std::string& path) {
     return format != nullptr && score >= AVPROBE_SCORE_EXTENSION ? format->name : "";
 }
 
-void fill_report(const DecodedVideo& video, VerifyReport& report) {
-    report.codec = video.codec;
-    report.profile = video.profile;
-    report.h264_level = video.h264_level;
-    report.pixel_format = video.pixel_format;
-    report.width_px = video.width_px;
-    report.height_px = video.height_px;
-    report.frames = video.frames;
-    report.range = video.range;
-    report.matrix = video.matrix;
-    report.primaries = video.primaries;
-    report.transfer = video.transfer;
-    report.chroma_location = video.chroma_location;
-    report.alpha = video.has_alpha;
+/// Computes rate and duration.
+void fill_times(const DecodedVideo& video, VerifyReport& report) {
     if (video.tick.den <= 0 || video.tick.num <= 0) return;
     const auto step = checked_multiply(video.step, video.tick.num);
     if (step && *step > 0) report.fps = Rational::reduced(video.tick.den, *step);
@@ -66,13 +54,13 @@ void check_decoding(const DecodedVideo& video, VerifyReport& report) {
                 "it again",
                 video.bad_frames, video.bad_reason);
     }
-    if (video.frames == 0) {
+    if (report.frames == 0) {
         problem(report, "no frame can be decoded; render it again");
     }
 }
 
 void check_stamps(const DecodedVideo& video, VerifyReport& report) {
-    if (video.frames == 0) return;
+    if (report.frames == 0) return;
     if (video.first_pts != 0) {
         problem(
             report,
@@ -90,18 +78,18 @@ void check_stamps(const DecodedVideo& video, VerifyReport& report) {
 }
 
 /// The largest error that a patch of a correct video may have.
-double tolerance_of(const DecodedVideo& video) {
-    const Codec* const codec = find_stream_codec(video.codec);
+double tolerance_of(const DecodedVideo& video, const VerifyReport& report) {
+    const Codec* const codec = find_stream_codec(report.codec);
     if (codec != nullptr && codec->tolerance > 0.0) return codec->tolerance;
     // Rate factors go up to 51 for H.264 and H.265, and to 63 for others.
     const std::int64_t most = codec != nullptr && codec->crf ? codec->crf->second : 63;
     const auto told = std::clamp<std::int64_t>(comment_number(video.comment, "crf").value_or(0), 0, most);
-    const bool is_coarse = codec != nullptr && codec->has_coarse_444 && video.pixel_format == "yuv444p";
+    const bool is_coarse = codec != nullptr && codec->has_coarse_444 && report.pixel_format == "yuv444p";
     return patch_tolerance(static_cast<int>(told * 51 / most), is_coarse);
 }
 
 void check_patches(const DecodedVideo& video, VerifyReport& report) {
-    const double limit = tolerance_of(video);
+    const double limit = tolerance_of(video, report);
     for (const ShownPatch& patch : video.patches) {
         if (!patch.rgb) {
             problem(
@@ -184,13 +172,13 @@ VerifyReport verify(const std::string& path, const OnProgress& on_progress, Veri
     if (is_truncated(path, kind))
         problem(report, "the file breaks off before its end; copy or render it again");
     if (kind.empty() || (kind == "mov" && !boxes.has_index)) return report;
-    const DecodedVideo video = kind == "webp" ? decode_webp(path, fps, rendered, on_progress)
-                                              : decode(path, depth, rendered, on_progress);
+    const DecodedVideo video = kind == "webp" ? decode_webp(path, fps, rendered, on_progress, report)
+                                              : decode(path, depth, rendered, on_progress, report);
     if (!video.opened) {
         problem(report, "{}; the file is damaged: copy or render it again", video.open_reason);
         return report;
     }
-    fill_report(video, report);
+    fill_times(video, report);
     check_decoding(video, report);
     check_stamps(video, report);
     if (!told_origin(video.comment).empty()) {

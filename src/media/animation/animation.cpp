@@ -1,4 +1,4 @@
-#include "corda/media/animation/frames.hpp"
+#include "corda/media/animation/animation.hpp"
 
 #include <fmt/format.h>
 #include <cassert>
@@ -6,7 +6,6 @@
 #include <string_view>
 #include <utility>
 
-#include "corda/media/animation/animation.hpp"
 #include "corda/media/encode/pixels.hpp"
 
 namespace corda::media {

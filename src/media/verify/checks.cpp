@@ -1,14 +1,85 @@
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
-#include <span>
-#include <string_view>
-
-#include "corda/media/format/format.hpp"
 #include "corda/media/verify/checks.hpp"
 
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "corda/media/bytes.hpp"
+#include "corda/media/format/format.hpp"
+
 namespace corda::media {
+
+bool check_boxes(const Mp4Boxes& boxes, VerifyReport& report) {
+    report.container = boxes.is_quicktime ? "mov" : "mp4";
+    if (boxes.fragmented) report.container += " (fragmented)";
+    if (!boxes.has_index) {
+        problem(
+            report,
+            "the index (moov box) is missing: writing was interrupted, or the file was cut; render it again, "
+            "or make its .part file a video by corda recover");
+        return false;
+    }
+    report.faststart = boxes.index_first && !boxes.fragmented;
+    if (!boxes.whole) problem(report, "the file breaks off in the middle of a box; copy or render it again");
+    return true;
+}
+
+std::string copy_command(const VerifyReport& report, std::string_view ending, std::string_view before) {
+    std::string options(before);
+    if (ending == "mp4" || ending == "mov") {
+        if (report.codec == "hevc") options += "-tag:v hvc1 ";
+        if (report.fps.num > 0)
+            options += fmt::format("-video_track_timescale {0} -movie_timescale {0} ", report.fps.num);
+        options += "-movflags +faststart ";
+    }
+    return fmt::format("ffmpeg -i FILE -c copy {}NEW.{}", options, ending);
+}
+
+void check_index(const Mp4Boxes& boxes, VerifyReport& report) {
+    if (report.faststart) return;
+    problem(
+        report, "{}; remedy: {}",
+        boxes.fragmented
+            ? "the file is still in fragments, as a .part file is: it plays, but a browser cannot seek in it"
+            : "the index stands behind the pictures, so a browser must load the whole file before it starts",
+        copy_command(report, boxes.is_quicktime ? "mov" : "mp4"));
+}
+
+void check_clocks(const DecodedVideo& video, const Mp4Boxes& boxes, VerifyReport& report) {
+    if (boxes.fragmented || report.frames == 0 || report.fps.num <= 0 || video.uneven_at >= 0) return;
+    const auto num = static_cast<std::uint64_t>(report.fps.num);
+    const auto exact = checked_multiply(static_cast<std::uint64_t>(report.frames),
+                                        static_cast<std::uint64_t>(report.fps.den));  // ticks of 1/num s
+    // A multiple of the numerator is exact as well.
+    const auto fits = [num](std::uint32_t scale) { return scale > 0 && scale % num == 0; };
+    if (!fits(boxes.track_timescale) || !fits(boxes.movie_timescale)) {
+        problem(
+            report,
+            "the clocks (track 1/{} s, movie 1/{} s) cannot count frames of {} fps without rounding; "
+            "write it again with both time scales = {} (ffmpeg: -video_track_timescale, -movie_timescale)",
+            boxes.track_timescale, boxes.movie_timescale, report.fps.text(), num);
+        return;
+    }
+    const auto movie_ticks = exact ? checked_multiply(*exact, boxes.movie_timescale / num) : std::nullopt;
+    const auto track_ticks = exact ? checked_multiply(*exact, boxes.track_timescale / num) : std::nullopt;
+    std::optional<std::uint64_t> edit_ticks = 0;
+    for (const Mp4Edit& edit : boxes.edits)
+        if (edit_ticks) edit_ticks = checked_add(*edit_ticks, edit.duration);
+    const bool edits_agree = boxes.edits.empty() || edit_ticks == movie_ticks;
+    if (!movie_ticks || boxes.movie_duration != movie_ticks || boxes.track_presentation != movie_ticks ||
+        boxes.track_duration != track_ticks || !edits_agree) {
+        problem(report,
+                "the stored durations (movie {}/{} s, track {}/{} s) are not exactly {} frames at {} fps = "
+                "{}/{} s; joining such files drifts: render it again",
+                boxes.movie_duration, boxes.movie_timescale, boxes.track_duration, boxes.track_timescale,
+                report.frames, report.fps.text(), exact.value_or(0), num);
+    }
+}
+
 namespace {
 
 bool holds_word(std::string_view words, std::string_view word) {
@@ -25,57 +96,45 @@ std::string_view plain(std::string_view container) {
     return container.substr(0, container.find(' '));
 }
 
-/// The limits of a level of H.264, from Table A-1 of Rec. ITU-T H.264 (08/2021).
-struct H264Level {
-    int level_times_10;
-    std::int64_t macroblocks_per_s;
-    std::int64_t macroblocks;  ///< of a frame
-};
+/// The highest level that hardware and the programs of Codec::players decode.
+constexpr int kMaxPlayedLevel = 52;
 
-constexpr std::array kH264Levels{
-    H264Level{10, 1485, 99},        H264Level{11, 3000, 396},       H264Level{12, 6000, 396},
-    H264Level{13, 11880, 396},      H264Level{20, 11880, 396},      H264Level{21, 19800, 792},
-    H264Level{22, 20250, 1620},     H264Level{30, 40500, 1620},     H264Level{31, 108000, 3600},
-    H264Level{32, 216000, 5120},    H264Level{40, 245760, 8192},    H264Level{41, 245760, 8192},
-    H264Level{42, 522240, 8704},    H264Level{50, 589824, 22080},   H264Level{51, 983040, 36864},
-    H264Level{52, 2073600, 36864},  H264Level{60, 4177920, 139264}, H264Level{61, 8355840, 139264},
-    H264Level{62, 16711680, 139264}};
-
-/// The highest that the hardware and the programs of the table of players decode.
-constexpr int kHighestPlayedLevel = 52;
-
-/// The least level for the size and the rate of a video, times 10 (A.3.1, A.3.3); 0: none allows them.
-int least_h264_level(const VerifyReport& report) {
-    const std::int64_t width = (report.width_px + 15) / 16;
-    const std::int64_t height = (report.height_px + 15) / 16;
-    const auto allows = [&](const H264Level& level) {
-        const std::int64_t side_squared = 8 * level.macroblocks;
-        return width * height <= level.macroblocks && width * width <= side_squared &&
-               height * height <= side_squared &&
-               static_cast<double>(width * height) * report.fps.value() <=
-                   static_cast<double>(level.macroblocks_per_s);
+/// The least level for the size and the rate of a video, times 10; 0 if none allows them.
+int least_level(const Codec& codec, const VerifyReport& report) {
+    const auto blocks = [&](int side_px) {
+        return std::int64_t{side_px + codec.level_block_px - 1} / codec.level_block_px;
     };
-    const auto* const least = std::find_if(kH264Levels.begin(), kH264Levels.end(), allows);
-    return least == kH264Levels.end() ? 0 : least->level_times_10;
+    const std::int64_t width = blocks(report.width_px);
+    const std::int64_t height = blocks(report.height_px);
+    const auto allows_side = [](std::int64_t side, int most, const Level& level) {
+        return most > 0 ? side <= most : side * side <= 8 * level.picture;
+    };
+    const auto least = std::find_if(codec.levels.begin(), codec.levels.end(), [&](const Level& level) {
+        return width * height <= level.picture && allows_side(width, level.max_width, level) &&
+               allows_side(height, level.max_height, level) &&
+               static_cast<double>(width * height) * report.fps.value() <= static_cast<double>(level.per_s);
+    });
+    return least == codec.levels.end() ? 0 : least->times_10;
 }
 
-/// Why few play a video that has the right profile; empty if nothing speaks against it.
-std::string trouble_of_level(const VerifyReport& report) {
-    if (report.codec != "h264") return "";
-    const int least = least_h264_level(report);
+/// Why few programs play a video that has the right profile; empty if its level does not matter.
+std::string level_problem(const VerifyReport& report) {
+    const Codec* const codec = find_stream_codec(report.codec);
+    if (codec == nullptr || codec->levels.empty()) return "";
+    const int least = least_level(*codec, report);
     const std::string what =
         fmt::format("{}x{} at {} frames per second", report.width_px, report.height_px, report.fps.text());
-    if (least == 0) return what + " is beyond every level of H.264";
+    if (least == 0) return fmt::format("{} is beyond every level of {}", what, codec->standard);
     const int level = std::max(least, report.h264_level);
-    if (level <= kHighestPlayedLevel) return "";
-    return fmt::format("{} takes level {:.1f}", what, level / 10.0);
+    return level <= kMaxPlayedLevel ? "" : fmt::format("{} takes level {:.1f}", what, level / 10.0);
 }
 
 /// A level that is stated too low.
 void check_level(VerifyReport& report) {
-    const int least = report.codec == "h264" ? least_h264_level(report) : 0;
     constexpr int kLevel1b = 9;  // or 11, and nothing needs it that does not need 1.1
-    if (report.h264_level <= 0 || report.h264_level == kLevel1b || least <= report.h264_level) return;
+    if (report.h264_level <= 0 || report.h264_level == kLevel1b) return;
+    const int least = least_level(*find_stream_codec("h264"), report);
+    if (least <= report.h264_level) return;
     problem(report,
             "the stated H.264 level is {:.1f}, and {}x{} at {} frames per second takes {:.1f}: decoders may "
             "refuse it; remedy: {}",
@@ -127,7 +186,7 @@ std::string VerifyReport::coding() const {
 }
 
 void check_picture_format(const DecodedVideo& video, VerifyReport& report) {
-    if (video.frames == 0) return;
+    if (report.frames == 0) return;
     const std::span<const Players> players = players_of(report.codec);
     const bool is_in_usual_container =
         std::any_of(players.begin(), players.end(), [&](const Players& row) { return is_in(report, row); });
@@ -190,7 +249,7 @@ void check_tags(const DecodedVideo& video, VerifyReport& report) {
 }
 
 void add_notes(const DecodedVideo& video, VerifyDepth depth, VerifyReport& report) {
-    const std::string trouble = trouble_of_level(report);
+    const std::string trouble = level_problem(report);
     const std::span<const Players> players = players_of(report.codec);
     const auto row = std::find_if(players.begin(), players.end(), [&](const Players& each) {
         return is_in(report, each) && has_pixels(report, each);
@@ -198,9 +257,11 @@ void add_notes(const DecodedVideo& video, VerifyDepth depth, VerifyReport& repor
     if (!trouble.empty() && !has_odd_profile(report)) {
         report.notes.push_back(fmt::format(
             "{}, {}: {}: VLC, mpv and ffmpeg play it, browsers only without the hardware's decoder; "
-            "QuickTime, PowerPoint and phones refuse it; for those, render fewer pixels or frames, "
-            "or take H.265 or AV1",
-            report.coding(), report.pixel_format, trouble));
+            "QuickTime, PowerPoint and phones refuse it; for those, render fewer pixels or frames{}",
+            report.coding(), report.pixel_format, trouble,
+            report.codec == "h264" && least_level(*find_stream_codec("av1"), report) > 0
+                ? ", or take H.265 or AV1"
+                : ""));
     } else if (row != players.end() && !has_odd_profile(report)) {
         report.notes.push_back(fmt::format("{}, {}: {}", report.coding(), report.pixel_format, row->words));
     }
