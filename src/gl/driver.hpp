@@ -47,8 +47,8 @@ void note_faulty_driver();
 /// driver is known to crash.
 [[nodiscard]] bool has_unusual_variables();
 
-/// Remedy if no driver gives a context, as a sentence: variables to unset, missing packages, or how to learn
-/// more.
+/// A sentence with the remedy if no driver gives a context: variables to unset, packages to install, or how
+/// to find the cause.
 [[nodiscard]] std::string driver_remedy();
 
 }  // namespace corda::gl

@@ -18,7 +18,7 @@ int tiles_along(int side_px) {
 /// difference. A GPU's driver takes some microseconds per call, in which the bus carries about this number of
 /// pixels.
 constexpr std::size_t kReadPx = 1 << 14;
-/// The same for tinted layers, whose pixels also have sums.
+/// The same for tinted layers, which also have sums.
 constexpr std::size_t kTintedReadPx = kReadPx * 2 / (2 + sizeof(TintSums));
 
 }  // namespace

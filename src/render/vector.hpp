@@ -14,7 +14,7 @@ struct Stroke {
     double width_px = 0.0;
     Color color = {};  ///< opaque: alpha belongs to the layer
     bool is_blunt = false;
-    /// Each has at least two points: a dot has two equal ones, and a closed line ends where it begins.
+    /// Each line has at least two points: a dot has two equal ones, and a closed line ends where it begins.
     std::vector<std::vector<view::PixelPoint>> lines = {};
 };
 

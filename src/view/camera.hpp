@@ -17,8 +17,8 @@ struct Drawn {
     double down_px = 0.0;
 };
 
-/// Minimum free space at the upper and lower edges, and the space that panels take from the frame. Panels
-/// have the camera's margin too.
+/// Minimum free space at the upper and lower edges, and the space that panels take. The camera's margin
+/// applies to panels too.
 struct Insets {
     double top_px = 0.0;
     double bottom_px = 0.0;

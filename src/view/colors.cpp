@@ -26,7 +26,7 @@ Look dark() {
             .imaginary_bar = {0x54, 0xd6, 0xc2, 0xb0}};
 }
 
-/// Those of them that stand out from white, the purple a little darker, black and a grey between them.
+/// Those of the same colours that stand out from white, the purple darkened, with black and a grey.
 Look paper() {
     return {.ground = {{0xff, 0xff, 0xff}, {0xff, 0xff, 0xff}},
             .palette = {{0x00, 0x72, 0xb2},
@@ -72,9 +72,9 @@ constexpr Colors kPaperAboutZero =
 
 constexpr double kRare = 1.0 / 50.0;
 constexpr double kFarBeyond = 2.0;
-/// A scale goes below 0 if values do by more than this share of its end.
+/// A scale extends below 0 if values do by more than this share of its end.
 constexpr double kBelowZero = 0.02;
-/// Less is rounding.
+/// Smallest end of a scale; less is rounding.
 constexpr double kMinEnd = 1e-12;
 constexpr double kMinStrain = 1e-9;
 

@@ -11,7 +11,7 @@
 #pragma GCC visibility push(default)
 namespace corda {
 
-/// The colours that a scene has by default: on a dark ground for screens, or on white paper.
+/// Default colours of a scene: for screens with a dark ground, or for white paper.
 enum class Theme { kDark, kPaper };
 
 /// Background: one colour, or an even gradient from the top of the picture to the bottom.
@@ -56,20 +56,19 @@ enum class ColorBy { kBody, kTension, kSpeed, kStrain, kLink };
 struct StyleDef {
     std::optional<Theme> theme;  ///< default: kDark
     std::optional<Ground> background;
-    /// Colours of the ropes and nets in turn. A body that has its own colour (BodyStyleDef) takes none of
-    /// them. Empty: the theme's.
+    /// Colours of the ropes and nets in turn, except those with a colour of their own (BodyStyleDef). Empty:
+    /// the theme's.
     std::vector<Color> palette;
     ColorBy color_by = ColorBy::kBody;
     std::optional<double> rope_width_px;  ///< 0.1 .. 1000; default: side / 120, at least 2
     std::optional<double> net_width_px;   ///< 0.1 .. 1000; default: half of a rope's, at least 2
-    bool payload = true;   ///< payloads are balls, and so are the masses of ropes of up to 3 links
-    bool supports = true;  ///< pinned particles hang from plates, or rings if something rises above them
-    bool halo = true;      ///< a body leaves a gap in the bodies behind it
-    double trail_s =
-        0.0;  ///< 0 .. 3600: for how long the path of the free end of a rope stays; 0: not at all
+    bool payload = true;   ///< draw payloads, and the masses of ropes of up to 3 links, as balls
+    bool supports = true;  ///< draw plates at pinned particles, or rings if something rises above them
+    bool halo = true;      ///< leave a gap around each body in the bodies behind it
+    double trail_s = 0.0;  ///< 0 .. 3600: how long the path of a rope's free end remains; 0: no trail
     Markers markers = Markers::kNone;
-    std::optional<double>
-        marker_radius_px;  ///< 0.1 .. 1000; default: a little more than half the line's width
+    /// 0.1 .. 1000; default: a little more than half the line's width
+    std::optional<double> marker_radius_px;
     std::optional<Color> pinned_color;
     std::optional<Color> free_color;
     Bars bars = Bars::kNone;
@@ -100,7 +99,7 @@ struct OverlayDef {
     bool energy = false;            ///< the error of the energy (Figures::energy_error)
     bool method = false;            ///< the methods, and the bound of the displayed error
     LivePlot plot = LivePlot::kNone;
-    /// 4 .. 400: the size of the words at the edges; default: grows with the shorter side
+    /// 4 .. 400: the size of the text at the edges; default: grows with the shorter side
     std::optional<double> text_px;
 };
 

@@ -27,7 +27,7 @@ bool cut(double a, double b, double low, double high, double& t0, double& t1) {
     return t0 <= t1;
 }
 
-/// An arc of a few pixels needs few steps.
+/// Number of steps of an arc, which grows with its length.
 int step_count(double length_px) {
     constexpr double kPixelsPerStep = 5.0;
     constexpr int kMaxPairs = (Arc::kMaxPoints - 1) / 2;

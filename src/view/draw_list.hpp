@@ -23,7 +23,7 @@ struct Tint {
     std::uint8_t r = 0;
     std::uint8_t g = 0;
     std::uint8_t b = 0;
-    std::uint8_t weight = 1;  ///< with which it counts where capsules overlap; >= 1
+    std::uint8_t weight = 1;  ///< weight where capsules overlap; >= 1
 
     friend bool operator==(const Tint&, const Tint&) = default;
 };
@@ -40,19 +40,20 @@ struct Capsule {
     float uy = 0;
     float length = 0;
     float radius = 0;
-    /// Within this distance of the segment the ground shows in place of the layers below; 0: they stay.
+    /// Within this distance of the segment the ground replaces the layers below; 0: no halo.
     float halo_radius = 0;
     Tint tint;
 };
 
-/// Capsules of one colour, or each of its own. They are united before they are painted, so that the joints
-/// and crossings of a transparent or smooth-edged line do not darken, and so are their halos.
+/// Capsules of one colour, or each with its own. They and their halos are united before they are painted, so
+/// that joints and crossings of a transparent or smooth-edged line do not darken.
 struct Layer {
     Color color;
     std::size_t first_capsule = 0;
     std::size_t capsule_count = 0;
-    /// Each capsule has its tint, with the alpha of `color`. Where several cover a pixel it gets their mean,
-    /// in which one counts little beyond the ends of its segment: links in line meet at a sharp edge.
+    /// Each capsule has its tint, with the alpha of `color`. A pixel that several cover gets their mean, in
+    /// which a capsule has little weight beyond the ends of its segment: collinear links meet at a sharp
+    /// edge.
     bool is_tinted = false;
     bool is_note = false;  ///< an annotation, not part of the scene
 };
@@ -124,7 +125,7 @@ struct Surroundings {
 };
 [[nodiscard]] Surroundings surroundings(const Capsule& capsule, float extent);
 
-/// The part of the frame that a capsule may touch.
+/// The part of the frame that a capsule may cover.
 [[nodiscard]] PixelRect capsule_bounds(const Capsule& capsule, int width, int height);
 
 /// Points of a curve.
@@ -134,10 +135,10 @@ struct Arc {
     std::size_t count = 0;
 };
 
-/// The shape of a slack line of `length_px` between two points that are closer than that: an arc that hangs
-/// towards `down`, a unit vector. The parabola a + t (b - a) + 4 t (1 - t) s down, 0 <= t <= 1, as equal
-/// steps in t, with the sag s that gives these steps the length. It is symmetric, and it moves steadily if
-/// the ends do: for ends one above the other it is folded. The points include `a` and `b`.
+/// The arc of a slack line of `length_px` between two points that are closer, hanging towards `down`, a unit
+/// vector: the parabola a + t (b - a) + 4 t (1 - t) s down, 0 <= t <= 1, in equal steps of t, with the sag s
+/// that gives them this length. It is symmetric and depends continuously on its ends; for ends above each
+/// other it is folded. The points include `a` and `b`.
 [[nodiscard]] Arc hang_slack(PixelPoint a, PixelPoint b, double length_px, PixelPoint down);
 
 }  // namespace corda::view

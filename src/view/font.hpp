@@ -44,8 +44,7 @@ class Font {
     [[nodiscard]] std::string missing(std::string_view utf8) const;
     /// Advance width of a text, in pixels.
     [[nodiscard]] int width_px(std::string_view utf8, int size_px);
-    /// Bounding box of the pixels that write() paints of a text, not cut off by a frame; empty if there are
-    /// none.
+    /// Bounding box of the pixels that write() would paint in an unlimited frame; may be empty.
     [[nodiscard]] PixelRect ink(const Text& text);
     /// Adds a text on top of the other stamps, cut off at the edges of the frame.
     void write(const Text& text, DrawList& list);

@@ -9,7 +9,7 @@ namespace corda::view {
 /// 10 to that power, rounded once.
 [[nodiscard]] double power_of_10(int exponent);
 
-/// A positive number, rounded up to two digits; another one as it is.
+/// A positive number rounded up to two digits; any other number unchanged.
 [[nodiscard]] double rounded_up(double value);
 
 /// "3.1·10⁻¹²": two digits, rounded up.

@@ -13,7 +13,7 @@
 namespace corda::view {
 namespace {
 
-constexpr double kMaxWidthShare = 0.38;  // where the least is more
+constexpr double kMaxWidthShare = 0.38;  // if the minimum size is larger
 constexpr double kMaxHeightShare = 0.5;
 constexpr double kPanelShare = 0.36;           // of the frame
 constexpr double kHeightPerWidth = 0.8;        // of the box, for a panel at the right
@@ -79,7 +79,7 @@ RoundNumber step_of(double extent, int most_steps) {
     return round_number_above(extent / most_steps);
 }
 
-/// Keeps the first, highest, lowest and last of the points in each column of pixels, which look the same.
+/// Keeps the first, highest, lowest and last point in each column of pixels; the picture is the same.
 void keep_outline(std::vector<PixelPoint>& points, std::vector<double>& times_s) {
     std::size_t kept = 0;
     for (std::size_t first = 0; first < points.size();) {

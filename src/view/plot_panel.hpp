@@ -23,8 +23,9 @@ struct CurvePoint {
 /// Data of a live plot.
 struct PlotData {
     struct Curve {
-        std::string name;                     ///< empty: it needs none
-        std::vector<CurvePoint> points = {};  ///< in order of time, at least one; of the same times for all
+        std::string name;  ///< empty: none is shown
+        std::vector<CurvePoint> points =
+            {};  ///< in order of time, at least one; all curves have the same times
     };
     /// Title of an axis, the unit of its values, which takes a prefix, and the minimum extent.
     struct AxisName {
@@ -42,7 +43,7 @@ struct PlotData {
     std::optional<std::size_t> body = {};
 };
 
-/// The part of a frame, from its upper left corner, that a live plot leaves to the picture.
+/// Size of the upper left part of a frame that a live plot leaves to the picture.
 struct Room {
     int width_px = 0;
     int height_px = 0;
@@ -50,13 +51,13 @@ struct Room {
 [[nodiscard]] Room room_beside(LivePlot plot, int width_px, int height_px);
 
 /// A plot of the whole motion whose curves grow with time: to the right of the picture if the frame is wider
-/// than high, otherwise below. In a frame without room for it, there is none.
+/// than high, otherwise below. Small frames have none.
 class PlotPanel {
   public:
     PlotPanel(const StyleDef& style, int width_px, int height_px);
 
     /// Sets the data and fits the axes to them. Nothing is drawn before the first call. If the data belong to
-    /// a body, the first curve has its colour; other curves have colours of no body.
+    /// a body, the first curve has its colour; the other curves have colours that no body has.
     void set_data(const PlotData& data, std::span<const Color> body_colors, Font& font);
     /// Adds the curves up to a time, between points by straight lines.
     void draw_curves(double time_s, DrawList& list) const;
@@ -85,11 +86,11 @@ class PlotPanel {
     struct PixelCurve {
         std::string name;
         Color color;
-        std::vector<PixelPoint> points;  ///< as many as show
-        std::vector<double> times_s;     ///< of the points
+        std::vector<PixelPoint> points;  ///< without indistinguishable ones
+        std::vector<double> times_s;     ///< times of the points
         std::vector<CurvePoint> samples;
 
-        /// Where it is at a time.
+        /// The point at a time, interpolated.
         [[nodiscard]] CurvePoint at(double time_s) const;
     };
     struct Name {

@@ -11,7 +11,7 @@ namespace {
 constexpr int kSteps = 12;           // of alpha
 constexpr double kYoungAlpha = 0.8;  // of the body's
 constexpr double kOldWidth = 0.4;    // of the young end's
-constexpr int kPieces = 4;           // that a step from one point to the next is drawn as
+constexpr int kPieces = 4;           // between two points
 
 /// A curve through the points of a path as a finer one: cubics that have at each point the slope of the
 /// parabola through it and its neighbours.
@@ -76,10 +76,10 @@ constexpr double kMinBarWidthPx = 1.0;
 /// A ball hides the links that end in it.
 constexpr std::uint8_t kBallWeight = 64;
 
-/// More balls than that have no outlines, which are many capsules each.
+/// Beyond this number balls have no outlines, which take many capsules each.
 constexpr std::size_t kMaxOutlines = 1000;
 
-/// Ropes of so few links are pendulums: their masses are what swings.
+/// Ropes with at most this many links are drawn as pendulums, with balls for their masses.
 constexpr std::size_t kLinksOfPendulum = 3;
 
 /// The cube root of a number from 1 to 1000, by Newton's method: libraries differ in the last bit of cbrt.
@@ -89,7 +89,7 @@ double cube_root(double value) {
     return root;
 }
 
-/// A payload as a ball of even density: its radius grows with the cube root of its mass.
+/// Radius of a payload's ball as a share of the shorter side; it grows with the cube root of the mass.
 double ball_radius(double mass_kg, double rope_kg) {
     constexpr double kMaxRatio = 1000.0;
     const double ratio = std::clamp(mass_kg / rope_kg, 1.0, kMaxRatio);

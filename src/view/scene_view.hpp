@@ -31,12 +31,12 @@ struct FadingPoint {
     double left = 0.0;
 };
 
-/// The free ends of open ropes, one each: the last particle before the first.
+/// One free end per open rope that has one, preferably the last particle.
 [[nodiscard]] std::vector<std::size_t> free_ends(const System& system);
 
-/// Adds a smooth curve through the points of a path, no two of which may have the same age. It fades in alpha
-/// and width. Each of its layers holds the part younger than that of the layer below, so that the layers add
-/// up without a seam where pieces meet or cross. `radius_px` is the radius at the young end.
+/// Adds a smooth curve through the points of a path, which must differ in age. It fades in alpha and width.
+/// Each layer holds only the part that is younger than the layer below, so no seam shows where pieces meet or
+/// cross. `radius_px` is the radius at the young end.
 void add_trail(std::span<const FadingPoint> points, double radius_px, Color color, DrawList& list);
 
 /// Turns states into draw lists. The content and its layers are chosen at construction, positions per frame.
@@ -52,7 +52,7 @@ class SceneView {
 
     /// True if pictures depend on the whole motion, whatever the camera.
     [[nodiscard]] bool needs_motion() const;
-    /// Colours links by a quantity, whose fields the states must have. Links have one colour before the call.
+    /// Colours links by a quantity, whose fields the states must then have.
     void set_scale(const ColorScale& scale) { scale_ = scale; }
     /// Chooses the supports by the bounds of each particle. There are none before the call.
     void set_motion(std::span<const MotionBounds> motion);
@@ -62,8 +62,7 @@ class SceneView {
     /// The colour of each body; of its first link if links differ.
     [[nodiscard]] std::vector<Color> body_colors() const;
 
-    /// The particles whose paths are drawn: the free ends of open ropes, the last before the first. Empty
-    /// without trails.
+    /// The particles whose paths are drawn: free_ends(), or none without trails.
     [[nodiscard]] std::vector<std::size_t> traced() const;
 
     /// Writes the frame of `state` to `list`, with a trail for each of the particles traced(), or none.
@@ -81,7 +80,7 @@ class SceneView {
   private:
     struct Ball {
         std::size_t particle;
-        std::size_t link;  ///< that ends there
+        std::size_t link;  ///< a link that ends there
         double radius_px;
     };
     struct BodyLook {
@@ -111,7 +110,7 @@ class SceneView {
 
     [[nodiscard]] std::vector<Ball> balls_of(const Body& body, double line_px) const;
     [[nodiscard]] double marker_radius_px(std::size_t body, bool pinned) const;
-    /// Adds where slack links of a string may hang.
+    /// Includes the positions that slack links of a string may reach.
     void include_slack(const Body& body, std::span<const MotionBounds> motion, MotionBounds& bounds) const;
     [[nodiscard]] Tint tint_of(std::size_t body, std::size_t link, const State& state) const;
     void draw_body(std::size_t i, const Positions& positions, DrawList& list) const;

@@ -15,15 +15,15 @@ constexpr double kRingRadius = 1.0 / 72.0;
 constexpr double kRingWidth = 1.0 / 270.0;
 constexpr double kMinStrokeWidthPx = 1.0;
 
-constexpr double kMaxPlateWidths = 3.0;  // of these widths
+constexpr double kMaxPlateWidths = 3.0;  // largest width in units of kPlateWidth
 constexpr int kStrokes = 7;              // of one plate, in a frame that is large enough
 constexpr double kStepPerStroke = 3.0;   // at least, so that there are gaps
 constexpr double kRingPerLine = 1.6;     // radius, at least, so that it shows on a wide line
 
-/// More would hide what hangs from them; they are dots.
+/// Beyond this number, supports are dots: plates would hide the bodies.
 constexpr std::size_t kMaxSupports = 1000;
 
-/// How far above a pin a particle may rise, as a share of the length of its body: the plate still hides it.
+/// Height above a pin, as a share of the body's length, that the plate still hides.
 constexpr double kHidden = 0.01;
 
 Vec2 axis_against(Vec2 gravity_m_s2) {

@@ -15,7 +15,6 @@ namespace corda::view {
 /// rings. Touching plates are merged.
 class Supports {
   public:
-    /// None.
     Supports() = default;
     /// `motion`: the bounds of each particle. `side_px`: the shorter side of the frame. `line_px`: the radius
     /// of the lines of each body.
@@ -36,7 +35,7 @@ class Supports {
 
     struct Plate {
         Vec2 pin_m;
-        double width_px;  ///< it hides the round end of a line
+        double width_px;  ///< enough to hide the round end of a line
     };
     struct Ring {
         Vec2 center_m;

@@ -133,30 +133,18 @@ CORDA_INLINE void measure_last_terms(SeriesArrays& a, double inverse_timescale_1
     }
 }
 
-CORDA_AVX2 void expand_wide(SeriesArrays& a, const double* c, const double* s, const double* omega) {
-    series::expand(a, c, s, omega);
-}
-void expand_narrow(SeriesArrays& a, const double* c, const double* s, const double* omega) {
-    series::expand(a, c, s, omega);
-}
-CORDA_AVX2 void evaluate_directions_wide(SeriesArrays& a, double t, double* c, double* s) {
-    evaluate_directions(a, t, c, s);
-}
-void evaluate_directions_narrow(SeriesArrays& a, double t, double* c, double* s) {
-    evaluate_directions(a, t, c, s);
-}
-CORDA_AVX2 void evaluate_omegas_wide(SeriesArrays& a, double t, double* omega) {
-    evaluate_omegas(a, t, omega);
-}
-void evaluate_omegas_narrow(SeriesArrays& a, double t, double* omega) {
-    evaluate_omegas(a, t, omega);
-}
-CORDA_AVX2 void measure_last_terms_wide(SeriesArrays& a, double inverse_timescale_1_s, LastTerms& result) {
-    measure_last_terms(a, inverse_timescale_1_s, result);
-}
-void measure_last_terms_narrow(SeriesArrays& a, double inverse_timescale_1_s, LastTerms& result) {
-    measure_last_terms(a, inverse_timescale_1_s, result);
-}
+/// A function that works on all links, compiled for every CPU and for AVX2.
+template <auto kFunction>
+struct Compiled;
+template <class... Arguments, void (*kFunction)(Arguments...)>
+struct Compiled<kFunction> {
+    static void narrow(Arguments... arguments) { kFunction(arguments...); }
+    CORDA_AVX2 static void wide(Arguments... arguments) { kFunction(arguments...); }
+};
+using Expand = Compiled<series::expand>;
+using EvaluateDirections = Compiled<evaluate_directions>;
+using EvaluateOmegas = Compiled<evaluate_omegas>;
+using MeasureLastTerms = Compiled<measure_last_terms>;
 
 constexpr SeriesKernel kKernels[] = {SeriesKernel::kBaseline, SeriesKernel::kAvx2};
 
@@ -205,17 +193,17 @@ std::span<const SeriesKernel> series_kernels() {
 }
 
 struct ChainSeries::Code {
-    decltype(&expand_wide) expand;
-    decltype(&evaluate_directions_wide) evaluate_directions;
-    decltype(&evaluate_omegas_wide) evaluate_omegas;
-    decltype(&measure_last_terms_wide) measure_last_terms;
+    decltype(&Expand::wide) expand;
+    decltype(&EvaluateDirections::wide) evaluate_directions;
+    decltype(&EvaluateOmegas::wide) evaluate_omegas;
+    decltype(&MeasureLastTerms::wide) measure_last_terms;
 };
 
 const ChainSeries::Code& ChainSeries::code_of(SeriesKernel kernel) {
-    static constexpr Code kBaseline{expand_narrow, evaluate_directions_narrow, evaluate_omegas_narrow,
-                                    measure_last_terms_narrow};
-    static constexpr Code kAvx2{expand_wide, evaluate_directions_wide, evaluate_omegas_wide,
-                                measure_last_terms_wide};
+    static constexpr Code kBaseline{Expand::narrow, EvaluateDirections::narrow, EvaluateOmegas::narrow,
+                                    MeasureLastTerms::narrow};
+    static constexpr Code kAvx2{Expand::wide, EvaluateDirections::wide, EvaluateOmegas::wide,
+                                MeasureLastTerms::wide};
     return kernel == SeriesKernel::kAvx2 ? kAvx2 : kBaseline;
 }
 

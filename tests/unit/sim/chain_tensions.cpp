@@ -98,7 +98,7 @@ class Numbers {
     std::mt19937 random_{1};
 };
 
-TEST(Tridiagonal, SolvesWhatDenseEliminationSolves) {
+TEST(Tridiagonal, MatchesDenseElimination) {
     Numbers draw;
     double largest_error = 0.0;
     for (std::size_t count = 1; count <= 60; ++count) {
@@ -128,7 +128,7 @@ TEST(Tridiagonal, SolvesWhatDenseEliminationSolves) {
     EXPECT_LT(largest_error, 1e-14);  // measured 2.2e-16
 }
 
-TEST(Tridiagonal, ShowsAZeroPivotAsANumberThatIsNotFinite) {
+TEST(Tridiagonal, GivesNumbersThatAreNotFiniteForAZeroPivot) {
     std::vector<double> lower{0.0, 1.0}, diagonal{1.0, 1.0}, upper{1.0, 0.0}, right{1.0, 2.0};
     solve_tridiagonal(2, lower.data(), diagonal.data(), upper.data(), right.data());
     EXPECT_FALSE(std::isfinite(right[0]) && std::isfinite(right[1]));

@@ -60,7 +60,7 @@ TEST(Recording, KeepsTheBoundsOfStatesBeyondItsBudget) {
     EXPECT_EQ(recording.particle_bounds()[0].min_m(), recording.particle_bounds()[0].max_m());  // pinned
 }
 
-TEST(Recording, BoundsFramesAlone) {
+TEST(Recording, BoundsOnlyFrames) {
     // At 1.14 s it is at the other end, at 2 s almost back.
     const Timeline timeline(FrameRate(Rational{1, 2}), 1, {1.14});
     Recording recording(kParticles, timeline.size(), 1 << 20);
@@ -132,7 +132,7 @@ TEST(Recording, AddsNoStateOfARunThatDiverges) {
     EXPECT_EQ(recording.bounds().max_m().x, 0.0);
 }
 
-TEST(Recording, MeasuresTheSteppingAloneAndForgetsItWithTheStates) {
+TEST(Recording, MeasuresOnlySteppingAndClearsItWithTheStates) {
     double now_s = 0.0;
     const auto clock_s = [&now_s] { return now_s += 0.25; };
     Simulation run = swing();
@@ -150,7 +150,7 @@ TEST(Recording, MeasuresTheSteppingAloneAndForgetsItWithTheStates) {
     EXPECT_EQ(recording.diagnostics().steps, 0U);
 }
 
-TEST(Histogram, KnowsItsEndsAndWhatFewValuesExceed) {
+TEST(Histogram, HasEndsAndBoundsOfRareValues) {
     Histogram histogram;
     EXPECT_TRUE(histogram.empty());
     for (int i = 0; i < 999; ++i) histogram.add(1.0 + i * 0.001);
@@ -164,7 +164,7 @@ TEST(Histogram, KnowsItsEndsAndWhatFewValuesExceed) {
     EXPECT_LE(histogram.size_exceeded_by(0.01), 1.989 * 17.0 / 16.0);
 }
 
-TEST(Histogram, OfTwoIsThatOfAllTheirValues) {
+TEST(Histogram, OfTwoEqualsThatOfAllValues) {
     Histogram all;
     Histogram a;
     Histogram b;

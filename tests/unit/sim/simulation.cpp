@@ -108,7 +108,7 @@ std::vector<LongRun> long_runs() {
             {"relaxation of many sweeps", system_with(rope, {}), many_sweeps}};
 }
 
-TEST(Simulation, AsksInEveryMethodWhetherItGoesOn) {
+TEST(Simulation, CallsGoesOnInEveryMethod) {
     for (const LongRun& run : long_runs()) {
         std::uint64_t asked = 0;
         Simulation simulation = run.start();
@@ -132,7 +132,7 @@ TEST(Simulation, AsksInEveryMethodWhetherItGoesOn) {
     }
 }
 
-TEST(Simulation, EndsInEveryMethodOnceItShallNotGoOn) {
+TEST(Simulation, StopsEveryMethodOnRequest) {
     for (const LongRun& run : long_runs()) {
         Simulation simulation = run.start();
         int left = 3;
@@ -153,7 +153,7 @@ TEST(Simulation, EndsInEveryMethodOnceItShallNotGoOn) {
     }
 }
 
-TEST(Simulation, IsNotMadeOfALargeNetOnceItShallNotGoOn) {
+TEST(Simulation, StopsThePreparationOfALargeNet) {
     const NetDef net = test::leaning_net(80, 80, 0.1);
     int left = 2;
     const GoesOn goes_on = [&left] { return --left > 0; };
@@ -161,7 +161,7 @@ TEST(Simulation, IsNotMadeOfALargeNetOnceItShallNotGoOn) {
     EXPECT_EQ(left, 0);
 }
 
-TEST(Simulation, IsNotMadeOfManyBodiesOnceItShallNotGoOn) {
+TEST(Simulation, StopsThePreparationOfManyBodies) {
     const std::vector<RopeDef> ropes(2000, reference::straight_rope(2, 1.0, 30.0));
     int left = 2;
     const GoesOn goes_on = [&left] { return --left > 0; };
@@ -176,7 +176,7 @@ RopeDef plumb_line() {
     return rope;
 }
 
-TEST(Simulation, TellsVelocitiesAndTensionsByEveryMethodThatKnowsThem) {
+TEST(Simulation, GivesVelocitiesAndTensionsOfEveryMethodThatKnowsThem) {
     // It turns as a rod at first: every link carries the weight and the centripetal force of the links below.
     constexpr double kTurn = 1.0;  // 1/s
     RopeDef elastic = plumb_line();
@@ -216,7 +216,7 @@ TEST(Simulation, TellsVelocitiesAndTensionsByEveryMethodThatKnowsThem) {
     }
 }
 
-TEST(Simulation, LeavesOutTensionsThatAMethodDoesNotKnowIfItMay) {
+TEST(Simulation, GivesNaNForUnknownTensionsIfAllowed) {
     RopeDef rope;
     rope.points_m = {{0.0, 0.0}, {0.5, -0.5}, {1.0, -1.5}};
     const std::vector<MethodDef> methods{RelaxationDef{}, ExactDef{}};

@@ -127,7 +127,7 @@ TEST(StepGrid, FindsTimesOnTheGridDespiteTheirRounding) {
     }
 }
 
-TEST(StepGrid, TellsTimesBetweenTwoSteps) {
+TEST(StepGrid, LocatesTimesBetweenSteps) {
     const GridTime at = locate(0.523, 0.1);
     EXPECT_FALSE(at.is_on_grid);
     EXPECT_EQ(at.step, 5U);
@@ -148,7 +148,7 @@ TEST(Methods, HaveACostOfAStepThatGrowsWithOrderAndSweeps) {
     EXPECT_GT(step_cost_ns(chain, ExactDef{}), 0.0);
 }
 
-TEST(Methods, StateTheirWordsStepsAndWhetherTheyKnowTensions) {
+TEST(Methods, DescribeThemselvesAndTheirSteps) {
     const MethodDef stepped = RattleDef{.order = 6, .step_s = 0.01};
     EXPECT_EQ(method_text(stepped), "rattle of order 6, step 0.01 s");
     EXPECT_EQ(method_text(RelaxationDef{}), "relaxation with 1 sweep");
@@ -163,7 +163,7 @@ std::string problem_of(const MethodDef& method) {
     return test::failure_of([&] { validate(method); }).message;
 }
 
-TEST(ValidateMethod, TakesTheEndsOfTheRangesAndNothingBeyond) {
+TEST(ValidateMethod, AcceptsExactlyTheRanges) {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(problem_of(ExactDef{ExactDef::kMinTolerance}), "");
     EXPECT_EQ(problem_of(ExactDef{ExactDef::kMaxTolerance}), "");
@@ -187,7 +187,7 @@ TEST(Work, VibrationsOfOneMassOnASpring) {
     EXPECT_DOUBLE_EQ(vibration_frequency_1_s(system, system.bodies[0]), 1.0 / std::sqrt(0.01 * 0.5 * 4.0));
 }
 
-TEST(Work, VibrationsOfABodyAloneAndOfNoneThatIsRigidAndFlexible) {
+TEST(Work, VibrationsOfOneBodyOnly) {
     RopeDef soft = reference::straight_rope(3, 1.0, 0.0);
     soft.material.compliance_1_n = 1e-2;
     RopeDef stiff = soft;
@@ -250,7 +250,7 @@ TEST(Work, TensionsOfARopeThatHangsStillMoveNothing) {
     EXPECT_EQ(tension_frequency_1_s(system, system.bodies[0], WorldDef{}), 0.0);
 }
 
-TEST(Work, OfABodyIsEstimatedWithoutALookAtAllOthers) {
+TEST(Work, DoesNotGrowWithOtherBodies) {
     RopeDef rope = reference::straight_rope(2, 1.0, 0.0);
     rope.bending_n_m2 = 1.0;
     const System system = build_system(std::vector<RopeDef>(50'000, rope));

@@ -94,7 +94,7 @@ TEST(System, PullsNoLinkBeyondItsLength) {
     }
 }
 
-TEST(System, LeavesRopesWithinTheirLengthAsTheyAre) {
+TEST(System, KeepsRopesWithinTheirLength) {
     RopeDef rope = reference::rope_through({{-0.0, 0}, {0, -1}, {1, -1}});
     rope.material.is_string = true;
     rope.rest_m = {1.0, 2.0};
@@ -250,7 +250,7 @@ TEST(Bodies, AreSystemsOfTheirOwn) {
     EXPECT_EQ(seen, 3U);
 }
 
-TEST(ABody, ThatIsAloneIsTheSystem) {
+TEST(ABody, ThatIsTheOnlyOneIsTheSystem) {
     const RopeDef rope = reference::straight_rope(4, 1.0, 30.0);
     const System system = build_system({&rope, 1});
     for_each_body(system, [&](const System& body, std::size_t) {
@@ -275,14 +275,14 @@ std::string problem_of_net(const std::function<void(NetDef&)>& spoil) {
     return test::failure_of([&] { static_cast<void>(build_system({}, {&net, 1})); }).message;
 }
 
-TEST(CheckedBodies, TakesSoundOnesAndRefusesNone) {
+TEST(CheckedBodies, AcceptValidBodiesAndRefuseAnEmptyScene) {
     EXPECT_EQ(problem_of_rope([](RopeDef&) {}), "");
     EXPECT_EQ(problem_of_net([](NetDef&) {}), "");
     EXPECT_EQ(test::failure_of([] { static_cast<void>(build_system({}, {})); }).message,
               "scene: there is neither a rope nor a net");
 }
 
-TEST(CheckedBodies, NamesTheRopeAndTheField) {
+TEST(CheckedBodies, NameTheRopeAndTheField) {
     static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     static constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const std::pair<std::function<void(RopeDef&)>, const char*> faults[] = {
@@ -326,7 +326,7 @@ TEST(CheckedBodies, NamesTheRopeAndTheField) {
               "");
 }
 
-TEST(CheckedBodies, NamesTheNetAndTheBar) {
+TEST(CheckedBodies, NameTheNetAndTheBar) {
     EXPECT_THAT(problem_of_net([](NetDef& net) {
                     net.bars.push_back({0, 3, false});
                 }),

@@ -68,7 +68,7 @@ TEST(Camera, CentresWhatIsDrawnNotTheMotion) {
     EXPECT_DOUBLE_EQ(upright.y_px(0.0) - 20.0, 1000.0 - (upright.y_px(-2.0) + 50.0));
 }
 
-TEST(Camera, FitsWhatReachesFarthestAtItsOwnScale) {
+TEST(Camera, FitsTheItemThatExtendsFarthest) {
     // At a small scale the ball decides, at a large one the line.
     CameraDef def;
     def.margin = 0.0;

@@ -213,7 +213,7 @@ TEST(ScaleColours, GrowEvenlyInLightnessForAllEyes) {
     }
 }
 
-TEST(ScaleColours, TellSignsApartForAllEyes) {
+TEST(ScaleColours, DistinguishSignsForTheColourBlind) {
     for (const Theme theme : {Theme::kDark, Theme::kPaper}) {
         const std::vector<Color> colors = colors_of_scale(theme, true);
         for (const Matrix& eye : {kNormal, kProtanopia, kDeuteranopia}) {
@@ -284,7 +284,7 @@ TEST(ColorScale, IsCutWhereFewValuesLieFarBeyond) {
     EXPECT_FALSE(scale({1.0, 1.5}).is_cut);
 }
 
-TEST(ColorScale, HasAColourOfItsOwnForWhatIsNotKnown) {
+TEST(ColorScale, HasAColourForUnknownValues) {
     const ColorScale one = scale({1.0});
     EXPECT_EQ(one.color(std::nan("")), look_of({}).support);
     EXPECT_EQ(one.color(-5.0), one.colors.front());
@@ -292,7 +292,7 @@ TEST(ColorScale, HasAColourOfItsOwnForWhatIsNotKnown) {
     EXPECT_EQ(one.color(0.5), one.colors[4]);
 }
 
-TEST(ColorScale, SaysItsUnit) {
+TEST(ColorScale, NamesItsUnit) {
     const auto title = [](std::initializer_list<double> values, Quantity quantity) {
         return title_of(scale(values, Theme::kDark, quantity)).text;
     };

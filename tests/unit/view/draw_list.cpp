@@ -78,13 +78,13 @@ TEST(Capsule, EndsAreSnappedToA1024thOfAPixel) {
     EXPECT_FLOAT_EQ(capsule->length, 20.0F);
 }
 
-TEST(Capsule, OutOfSightIsNone) {
+TEST(Capsule, OutsideTheFrameIsDropped) {
     EXPECT_FALSE(make_capsule({-50.0, 10.0}, {-50.0, 90.0}, 2.0, 100, 100).has_value());
     EXPECT_FALSE(make_capsule({10.0, 1e300}, {20.0, 1e300}, 2.0, 100, 100).has_value());
     EXPECT_TRUE(make_capsule({-1e12, 50.0}, {1e12, 50.0}, 2.0, 100, 100).has_value());
 }
 
-TEST(Capsule, FromAnywhereStaysWithinReachOfTheFrame) {
+TEST(Capsule, FromAnywhereStaysNearTheFrame) {
     const double infinity = std::numeric_limits<double>::infinity();
     const std::array<double, 11> places{0.0,   50.0,   -1e9,  1e9,      1e17,     -1e30,
                                         1e300, -1e300, 1e308, infinity, -infinity};
@@ -105,7 +105,7 @@ TEST(Capsule, FromAnywhereStaysWithinReachOfTheFrame) {
     }
 }
 
-TEST(Capsule, OfWhatIsNoNumberIsNone) {
+TEST(Capsule, WithNaNIsDropped) {
     const double none = std::nan("");
     EXPECT_FALSE(make_capsule({none, 10.0}, {50.0, 90.0}, 2.0, 100, 100).has_value());
     EXPECT_FALSE(make_capsule({10.0, 10.0}, {50.0, none}, 2.0, 100, 100).has_value());

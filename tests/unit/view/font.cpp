@@ -72,7 +72,7 @@ TEST(Fonts, HaveMinusSignsSuperscriptsAndGreekLetters) {
         EXPECT_NE(written(text, 32).coverage, box.coverage) << text;
 }
 
-TEST(Fonts, ShowWhatIsNoCharacterOfTheirsAsABox) {
+TEST(Fonts, ShowUnknownCharactersAsBoxes) {
     const DrawList box = written("\uffff", 32);
     ASSERT_EQ(box.stamps.size(), 1U);
     EXPECT_EQ(written("\U0001f9f6", 32).coverage, box.coverage);  // a ball of yarn
@@ -88,7 +88,7 @@ TEST(Fonts, ShowWhatIsNoCharacterOfTheirsAsABox) {
     EXPECT_EQ(written("\xc3z", 32).coverage, written("\ufffdz", 32).coverage);
 }
 
-TEST(Fonts, CutOffWhatIsOutsideOfTheFrame) {
+TEST(Fonts, ClipTextToTheFrame) {
     Font font;
     DrawList whole = frame_of(400, 100);
     font.write({50, 50, 30, {}, "text"}, whole);

@@ -37,7 +37,7 @@ TEST(LengthText, HasAUnitThatFits) {
         EXPECT_EQ(length_text(digit, exponent), text);
 }
 
-TEST(RoundedUp, LeavesWhatIsNoPositiveNumber) {
+TEST(RoundedUp, KeepsValuesThatAreNotPositive) {
     const double infinite = std::numeric_limits<double>::infinity();
     EXPECT_EQ(rounded_up(infinite), infinite);
     EXPECT_EQ(rounded_up(0.0), 0.0);

@@ -50,7 +50,7 @@ TEST(Overlays, ShowTimeAndScaleByDefaultInFramesThatAreLargeEnough) {
     EXPECT_EQ(words(drawn({}, {}, 640, 360)), Words{"1 m"});  // a caption without a time
 }
 
-TEST(Overlays, HaveWordsOfTheSizeThatWasAskedFor) {
+TEST(Overlays, HaveTextOfTheRequestedSize) {
     OverlayDef def;
     def.text_px = 33.0;
     const DrawList list = drawn(def, {1.2, {}, {}}, 1004, 565);
@@ -59,7 +59,7 @@ TEST(Overlays, HaveWordsOfTheSizeThatWasAskedFor) {
     EXPECT_EQ(drawn({}, {1.2, {}, {}}, 1004, 565).texts[0].size_px, 14);
 }
 
-TEST(Overlays, AreOffOnATransparentGroundUnlessAskedFor) {
+TEST(Overlays, AreOffByDefaultOnATransparentGround) {
     StyleDef style;
     style.background = Ground{{0, 0, 0, 255}, {0, 0, 0, 0}};
     const Caption caption{1.2, {}, {}};
@@ -69,7 +69,7 @@ TEST(Overlays, AreOffOnATransparentGroundUnlessAskedFor) {
     EXPECT_EQ(words(drawn(always, caption, 640, 360, 100.0, 10.0, style)), Words{"1 m"});
 }
 
-TEST(Overlays, HaveATimeWhoseDigitsStay) {
+TEST(Overlays, KeepTheDigitsOfTheTimeInPlace) {
     const auto time = [](double time_s, double end_s) {
         return drawn({}, {time_s, {}, {}}, 640, 360, 100.0, end_s).texts[0].utf8;
     };

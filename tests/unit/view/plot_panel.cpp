@@ -81,7 +81,7 @@ TEST(PlotPanel, KeepsItsTextsApartAndInTheFrame) {
     EXPECT_GE(shown, 100);
 }
 
-TEST(PlotPanel, LeavesNoRoomForAPlotThatIsNotThere) {
+TEST(PlotPanel, TakesNoRoomWithoutAPlot) {
     for (int width = 100; width <= 700; width += 37) {
         for (int height = 100; height <= 700; height += 37) {
             const Room room = room_beside(LivePlot::kEnergy, width, height);
@@ -94,7 +94,7 @@ TEST(PlotPanel, LeavesNoRoomForAPlotThatIsNotThere) {
     }
 }
 
-TEST(PlotPanel, TellsLabelsApartFarFromZero) {
+TEST(PlotPanel, DistinguishesLabelsFarFromZero) {
     for (const double shift : {0.0, 1e3, -1e6, 4e8}) {
         const DrawList list = panel_of(waves(0.5, shift), 1280, 720);
         std::vector<std::string> labels;
@@ -107,11 +107,11 @@ TEST(PlotPanel, TellsLabelsApartFarFromZero) {
     }
 }
 
-TEST(PlotPanel, LeavesOutWhatCannotBeDivided) {
+TEST(PlotPanel, OmitsAxesThatCannotBeDivided) {
     for (const double size : {1e-305, 1e305}) EXPECT_TRUE(panel_of(waves(size), 1280, 720).texts.empty());
 }
 
-TEST(PlotPanel, HasNoRoomInAStamp) {
+TEST(PlotPanel, HasNoRoomInATinyFrame) {
     for (const auto& [width, height] : {std::pair{128, 128}, {64, 64}, {168, 94}, {1, 1}, {16384, 1}}) {
         EXPECT_TRUE(panel_of(waves(), width, height).texts.empty()) << width << "x" << height;
         const Room room = room_beside(LivePlot::kTip, width, height);
@@ -196,7 +196,7 @@ TEST(PlotPanel, HasTheColorOfItsBodyAndNoOthers) {
     }
 }
 
-TEST(PlotPanel, ShowsWhatStandsStillAsALine) {
+TEST(PlotPanel, ShowsConstantValuesAsALine) {
     PlotData data{{"t", "s"}, {"x", "m", 0.5}, 1.0, {{"", {{0, 0, 3.0}, {1, 1, 3.0 + 1e-9}}}}};
     const auto has = [](const DrawList& list, const std::string& label) {
         return std::any_of(list.texts.begin(), list.texts.end(),

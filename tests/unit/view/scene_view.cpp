@@ -323,7 +323,7 @@ TEST(SceneView, LinksTakeTheColoursOfAScale) {
     EXPECT_EQ(color(1), scale.color(7.5));
 }
 
-TEST(Trails, FadeInLayersOfWhatIsYounger) {
+TEST(Trails, FadeInLayers) {
     DrawList list;
     list.width = 400;
     list.height = 100;
@@ -346,7 +346,7 @@ TEST(Trails, FadeInLayersOfWhatIsYounger) {
     EXPECT_NEAR(list.capsules.back().radius, 4.0F, 0.1F);
 }
 
-TEST(Trails, OfATranslucentRopeAreMoreSoThanIt) {
+TEST(Trails, AreMoreTransparentThanATransparentRope) {
     DrawList list;
     list.width = list.height = 400;
     std::vector<FadingPoint> path;

@@ -95,7 +95,7 @@ TEST(Supports, HideTheRoundEndsOfWideLines) {
     EXPECT_GT(test::bounds_of(ring).width(), 120);
 }
 
-TEST(Supports, OfAClampAreOne) {
+TEST(Supports, MergeTheParticlesOfAClamp) {
     const System system = rope_of({{0.0, 0.0}, {0.1, -0.1}, {0.2, -0.5}}, {0, 1});
     EXPECT_EQ(draw(system, {0.0, -9.81}).capsules.size(), kPlateCapsules);
 }
@@ -110,7 +110,7 @@ TEST(Supports, OfThousandsOfPinsAreDots) {
     EXPECT_EQ(draw(build_system({}, {{net}}), {0.0, -9.81}).capsules.size(), 1001U);
 }
 
-TEST(Supports, AreInTheListOfWhatIsDrawn) {
+TEST(Supports, AreListedAsDrawn) {
     const System system = rope_of({{0.0, 0.0}, {0.3, -1.0}}, {0});
     std::vector<MotionBounds> motion;
     test::include({0.0, system.x_m, system.y_m}, motion);

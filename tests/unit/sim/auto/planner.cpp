@@ -94,7 +94,7 @@ TEST(AutoPlan, GivesBarsThatDependOnEachOtherRelaxationWithoutABound) {
     EXPECT_EQ(plan.reason, PlanReason::kDependent);
 }
 
-TEST(AutoPlan, RefusesWhatNoMethodCanTruthfullyRun) {
+TEST(AutoPlan, RefusesBodiesThatNoMethodCanRun) {
     RopeDef taut = reference::straight_rope(4, 1.0, 90.0);
     taut.pinned = {0, 4};
     EXPECT_EQ(refusal_of(build_system({&taut, 1})), Reason::kTautBetweenPins);
@@ -148,7 +148,7 @@ TEST(AutoPlans, ChooseAMethodPerBodyAndRecordWhatTheyMove) {
                 run.diagnostics().largest.energy_error.value(), 1e-15);
 }
 
-TEST(AutoPlans, RunNamedMethodsAsTheyAreAndClaimNoBoundForThem) {
+TEST(AutoPlans, RunNamedMethodsUnchangedWithoutABound) {
     Mixed mixed;
     const NamedMethods named{RelaxationDef{}, std::nullopt};
     const Plan plan = plan_methods(mixed.system, named, WorldDef{}, mixed.def, mixed.recording);
@@ -185,7 +185,7 @@ TEST(AutoPlans, ReportTheProgressOfAllBodies) {
     EXPECT_EQ(last, 61);
 }
 
-TEST(AutoPlans, KnowANetThatItsBarsAndPinsHold) {
+TEST(AutoPlans, RecogniseANetThatIsHeldRigidly) {
     NetDef net = test::cloth(5, 4, 0.1);
     for (const bool is_held : {true, false}) {
         if (!is_held) net.pinned = {0};

@@ -48,7 +48,7 @@ TEST(Trial, ToTheEndIsAPassOfTheRunAndOneOfItsCheck) {
     EXPECT_EQ(outcome.states, 61U);
 }
 
-TEST(Trial, EndsWhereTheTwoPartUnlessItsRunIsWhatWillBeDrawn) {
+TEST(Trial, EndsAtTheFirstLargeDifferenceUnlessItsRunIsDrawn) {
     const RopeDef rope = reference::straight_rope(5, 1.0, 60.0);
     const MethodDef coarse = RattleDef{2, 1.0 / 60.0};
     for (const bool is_last : {false, true}) {
@@ -74,7 +74,7 @@ TEST(Trial, HasThreeChecksWhereRoundingMatters) {
     EXPECT_GT(later.trial.largest_difference_m, first.trial.largest_difference_m);
 }
 
-TEST(Trial, BoundHoldsTheRoundingOfPlacesFarAway) {
+TEST(Trial, BoundIncludesTheRoundingOfFarPositions) {
     RopeDef rope = reference::straight_rope(2, 1.0, 30.0);
     rope.origin_m = {1e8, 0.0};
     const Outcome outcome = outcome_of(rope, ExactDef{1e-8}, ExactDef{1e-10}, 1.0);
@@ -82,7 +82,7 @@ TEST(Trial, BoundHoldsTheRoundingOfPlacesFarAway) {
     EXPECT_LT(outcome.trial.error_bound_m, 1e-7);
 }
 
-TEST(Trial, BoundHoldsWhatVibrationsCanHide) {
+TEST(Trial, BoundIncludesHiddenVibrations) {
     // Two links of 5 cm as stiff as a beam: run and check take the same steps and damp what vibrates.
     RopeDef beam = reference::straight_rope(2, 0.1, 2.0);
     beam.bending_n_m2 = 625.0;
@@ -127,7 +127,7 @@ class ChecksOfARope : public testing::TestWithParam<int> {
     const GoesOn always_ = [] { return true; };
 };
 
-TEST_P(ChecksOfARope, AreWhereALooserRunIsNearly) {
+TEST_P(ChecksOfARope, AreNearALooserRun) {
     Checks checks(system_, WorldDef{}, ExactDef{1e-12}, 1.0 / 60.0, 3, always_);
     Simulation run(system_, WorldDef{}, ExactDef{1e-8});
     for (const double time_s : {0.1, 0.2, 0.3}) {
@@ -140,7 +140,7 @@ TEST_P(ChecksOfARope, AreWhereALooserRunIsNearly) {
     EXPECT_GT(checks.steps(), run.diagnostics().steps);
 }
 
-TEST_P(ChecksOfARope, AskWhetherToGoOnInTheCallersThreadAlone) {
+TEST_P(ChecksOfARope, CallGoesOnOnlyInTheCallersThread) {
     const auto caller = std::this_thread::get_id();
     bool is_asked = false;
     const GoesOn never = [&] {
@@ -158,7 +158,7 @@ TEST_P(ChecksOfARope, AskWhetherToGoOnInTheCallersThreadAlone) {
     }
 }
 
-TEST_P(ChecksOfARope, EndWithWhoeverStartedThem) {
+TEST_P(ChecksOfARope, EndWithTheirOwner) {
     Checks checks(system_, WorldDef{}, ExactDef{1e-12}, 1.0 / 60.0, 3, always_);
     checks.start(1e6);
     EXPECT_EQ(checks.steps(), 0U);  // of the last finish(), whatever a thread has done since

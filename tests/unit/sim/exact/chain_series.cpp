@@ -90,7 +90,7 @@ double largest_distance_m(const State& a, const State& b) {
     return largest_m;
 }
 
-TEST(ChainPart, GivesTheSameBitsWhateverTimesAreAskedFor) {
+TEST(ChainPart, GivesTheSameBitsForAnyRequestedTimes) {
     for (const test::Pins pins : {test::Pins::kNone, test::Pins::kStart, test::Pins::kBoth}) {
         const System system = test::chain(pins);
         ChainPart direct(system, WorldDef{}, 1e-9);
@@ -107,7 +107,7 @@ TEST(ChainPart, GivesTheSameBitsWhateverTimesAreAskedFor) {
     }
 }
 
-TEST(ChainPart, ComesNearerToTheTruthByMoreSteps) {
+TEST(ChainPart, IsMoreAccurateWithMoreSteps) {
     const System system = test::chain(test::Pins::kStart);
     const auto run = [&](double tolerance) {
         ChainPart part(system, WorldDef{}, tolerance);
@@ -143,7 +143,7 @@ TEST(ChainPart, LetsEachChainTakeStepsOfItsOwn) {
     EXPECT_GT(two.steps(), 5U * one.steps());
 }
 
-TEST(ChainPart, CannotReachATimeThatIsNone) {
+TEST(ChainPart, DivergesAtATimeThatIsNotFinite) {
     const System system = test::chain(test::Pins::kStart);
     ChainPart part(system, WorldDef{}, 1e-9);
     State state = start_of(system);

@@ -91,7 +91,7 @@ TEST(SeveralBodies, ARigidRopeMovesAsIfItWereAlone) {
     }
 }
 
-TEST(ElasticRope, GivesTheSameBitsWhateverTimesAreAskedFor) {
+TEST(ElasticRope, GivesTheSameBitsForAnyRequestedTimes) {
     RopeDef rope = reference::straight_rope(8, 1.0, 60.0);
     rope.material.compliance_1_n = 1e-3;
     rope.bending_n_m2 = 0.1;

@@ -28,7 +28,7 @@ TEST(ExactRefuses, ARopeTautBetweenTwoPins) {
     EXPECT_EQ(test::refusal_of(build_system({&rope, 1}), ExactDef{}), std::nullopt);
 }
 
-TEST(Exact, LeavesARopeWithEveryParticlePinnedAlone) {
+TEST(Exact, DoesNotMoveAFullyPinnedRope) {
     RopeDef rope = reference::straight_rope(2, 1.0, 90.0);
     rope.pinned = {0, 1, 2};
     test::ExactRun run(rope);

@@ -113,7 +113,7 @@ TEST(ElasticForces, BoundTheLargestFrequency) {
         expect_bound(test::random_ring(0.5, seed), 0.05, "random ring");
 }
 
-TEST(ElasticForces, BoundThatOfAStraightRopeClosely) {
+TEST(ElasticForces, BoundTheFrequencyOfAStraightRopeClosely) {
     for (const bool bends : {false, true}) {
         RopeDef rope = reference::straight_rope(20, 2.0, 90.0);
         rope.material.compliance_1_n = bends ? 1e9 : 1e-3;
@@ -131,7 +131,7 @@ TEST(ElasticForces, OfOneMassOnASpringBoundItsFrequencyExactly) {
     EXPECT_DOUBLE_EQ(forces_of(elastic, system.x_m, system.y_m).square_frequency, 1.0 / (0.01 * 0.5 * 4.0));
 }
 
-TEST(ElasticForces, OfEndsInOnePlaceAreFinite) {
+TEST(ElasticForces, AreFiniteForCoincidentEnds) {
     System system = test::random_ring(0.0, 1);
     const ElasticForces elastic(system, 0, 8);
     system.x_m[3] = system.x_m[2];
@@ -146,7 +146,7 @@ TEST(ElasticForces, OfEndsInOnePlaceAreFinite) {
     EXPECT_TRUE(std::isfinite(elastic.energy_j(system.x_m.data(), system.y_m.data())));
 }
 
-TEST(ElasticForces, OfASlackStringAreNone) {
+TEST(ElasticForces, AreZeroForASlackString) {
     RopeDef rope = reference::straight_rope(3, 1.0, 30.0);
     rope.rest_m = {0.4, 0.3, 0.5};
     rope.material = {1e-3, true};

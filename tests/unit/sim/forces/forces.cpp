@@ -27,7 +27,7 @@ TEST(Forces, AreTheSumOfGravityAndDrag) {
     EXPECT_EQ(forces.inverse_timescale_1_s(0.2, 2.0), 10.0);
 }
 
-TEST(Forces, SayWhatTheyDoAndWhichParameterIsOutOfRange) {
+TEST(Forces, DescribeThemselvesAndNameParametersOutOfRange) {
     WorldDef world;
     std::vector<std::string> texts;
     for (const ForceKind& kind : force_kinds()) {

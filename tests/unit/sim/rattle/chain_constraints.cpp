@@ -59,7 +59,7 @@ TEST(ChainConstraints, GiveUpIfABarWouldTurnTooFar) {
     test::expect_to_give_up(constraints, system);
 }
 
-TEST(ChainConstraints, BoundTheFrequencyByWhatPullsAtAParticle) {
+TEST(ChainConstraints, BoundTheFrequencyByThePullOnAParticle) {
     const RopeDef rope = zigzag(3, {0});  // masses 0.75, 1 and 1.25 kg after the pin
     const System system = build_system({&rope, 1});
     const ChainConstraints constraints(system);

@@ -87,7 +87,7 @@ TEST(TautRows, HoldWhatHeldRowsHold) {
     EXPECT_EQ(held(net), 35);
 }
 
-TEST(TautRows, HoldFarAwayAndInAStartThatIsMovedByRounding) {
+TEST(TautRows, HoldFarFromTheOriginAndAfterRounding) {
     NetDef net = test::cloth(30, 30, 0.1);
     net.pinned = {0, 29, 885};
     const std::ptrdiff_t here = held(net);

@@ -39,7 +39,7 @@ TEST(GraphConstraints, GiveUpIfABarWouldTurnTooFar) {
     test::expect_to_give_up(constraints, system);
 }
 
-TEST(GraphConstraints, BoundTheFrequencyByWhatPullsAtAParticle) {
+TEST(GraphConstraints, BoundTheFrequencyByThePullOnAParticle) {
     const System system = net_and_ring();
     const GraphConstraints constraints(system);
     std::vector<double> multiplier(constraints.links().size(), 0.0);
@@ -109,7 +109,7 @@ Eigen::SparseMatrix<double> grid_matrix(int n) {
     return matrix;
 }
 
-TEST(StoppableLdlt, HasTheBitsOfEigens) {
+TEST(StoppableLdlt, HasTheBitsOfEigen) {
     for (const int n : {1, 2, 7, 30}) {
         const Eigen::SparseMatrix<double> matrix = grid_matrix(n);
         Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> eigens;
@@ -134,7 +134,7 @@ TEST(StoppableLdlt, FindsAPivotOfZero) {
     EXPECT_FALSE(own.factorize(matrix, nobody));
 }
 
-TEST(StoppableLdlt, IsBrokenOffAndCanBeginAnew) {
+TEST(StoppableLdlt, CanBeInterruptedAndRepeated) {
     const Eigen::SparseMatrix<double> matrix = grid_matrix(120);
     StoppableLdlt own;
     own.analyzePattern(matrix);

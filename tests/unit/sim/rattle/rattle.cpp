@@ -15,7 +15,7 @@
 namespace corda::sim {
 namespace {
 
-TEST(Grid, GivesTheSameBitsWhateverTimesAreAskedFor) {
+TEST(Grid, GivesTheSameBitsForAnyRequestedTimes) {
     for (const double drag_1_s : {0.0, 0.3}) {
         WorldDef world;
         world.drag_1_s = drag_1_s;
@@ -34,7 +34,7 @@ TEST(Grid, GivesTheSameBitsWhateverTimesAreAskedFor) {
     }
 }
 
-TEST(Grid, TimesBetweenItsPointsAreAsGoodAsThePoints) {
+TEST(Grid, IsAsAccurateBetweenItsPoints) {
     test::RattleRun fine(reference::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 640.0);
     test::RattleRun coarse(reference::straight_rope(20, 1.0, 45.0), WorldDef{}, 8, 1.0 / 333.0);
     ASSERT_TRUE(fine.go(1.0));
@@ -46,7 +46,7 @@ TEST(Grid, TimesBetweenItsPointsAreAsGoodAsThePoints) {
     EXPECT_LT(between.tip_error_m({fine.tip_x(), fine.tip_y()}), 1e-12);
 }
 
-TEST(Step, DividesTheFrameIfNoneIsGiven) {
+TEST(Step, DividesTheFrameByDefault) {
     test::RattleRun run(reference::straight_rope(20, 1.0, 45.0), WorldDef{}, 4);
     const double parts = 1.0 / 60.0 / run.solver().step_s();
     EXPECT_DOUBLE_EQ(parts, std::round(parts));

@@ -117,7 +117,7 @@ TEST_P(RelaxationKernels, GiveTheSameBitsInPiecesOfSweeps) {
     }
 }
 
-TEST_P(RelaxationKernels, LeaveAFoldedRopeAloneWhoseBarsHaveNoLength) {
+TEST_P(RelaxationKernels, DoNotMoveAFoldedRopeOfBarsWithoutLength) {
     // Particles in turn in two places, weightless and motionless: bars of even reach have no length, ever.
     RopeDef rope = reference::report_rope(50);
     for (std::size_t i = 0; i < rope.points_m.size(); ++i) rope.points_m[i] = {0.0, i % 2 == 0 ? 0.0 : -1.0};

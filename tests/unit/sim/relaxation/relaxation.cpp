@@ -74,7 +74,7 @@ TEST(RelaxationOfABar, SurvivesAZeroLengthMetAtRunTime) {
     EXPECT_EQ(run.state().x_m[1], -2.0);
 }
 
-TEST(VerletUpdate, IsWorkedOutByHand) {
+TEST(VerletUpdate, MatchesAHandCalculation) {
     // One free particle of mass 2 falls beside its pin with a bar too slack to act: reach 1, and the bar's
     // length is restored only along x, which a fall from straight below the pin never leaves. h = 1/2, delta
     // = 1/4, f = (0, -8): push = (1/4 / 2)(-8) = -1. Euler start without velocity: y1 = y0. Then the bar
@@ -115,7 +115,7 @@ TEST(RelaxationTimes, BetweenTwoStepsLieOnTheParabola) {
     EXPECT_NEAR(run.state().y_m[0], n * 0.2 - 0.1 * n * (n - 1.0) / 2.0, 1e-14);  // measured 2e-16
 }
 
-TEST(RelaxationTimes, DoNotDependOnTheTimesAskedForOnTheWay) {
+TEST(RelaxationTimes, DoNotDependOnEarlierRequestedTimes) {
     RelaxationDef solver = with_step(0.003);
     Simulation straight = test::simulate(test::report_rope(20), WorldDef{}, solver);
     Simulation stopping = test::simulate(test::report_rope(20), WorldDef{}, solver);

@@ -25,7 +25,7 @@ TEST(StringContacts, ShareASnapAmongTautNeighbours) {
     EXPECT_EQ(is_taut, std::vector<std::uint8_t>({1, 1, 1}));
 }
 
-TEST(StringContacts, LetGoWhatASnapSendsInwards) {
+TEST(StringContacts, ReleaseLinksThatASnapShortens) {
     // Link 1 lies back on link 0, both taut; the particle between them is pulled by link 1 alone.
     RopeDef rope = test::string_of({{0.0, 0.0}, {1.0, 0.0}, {0.0, 0.0}}, {});
     rope.velocity_m_s[2] = {-4.0, 0.0};
@@ -50,7 +50,7 @@ bool stays_taut(double speed_m_s, double tolerance) {
     return is_taut[1] == 1;
 }
 
-TEST(StringContacts, LetGoOfMoreIfTheToleranceIsTighter) {
+TEST(StringContacts, ReleaseMoreLinksAtATighterTolerance) {
     // Back after 4e-6 s at an acceleration of about 9 m/s^2: shorter by 4e-11 m meanwhile.
     EXPECT_TRUE(stays_taut(2e-5, 1e-8));
     EXPECT_FALSE(stays_taut(2e-5, 1e-10));

@@ -55,7 +55,7 @@ TEST(StringEvents, FindTheTimeOfFirstContactOfAFall) {
     EXPECT_NEAR(event->state.y_m[1], -0.8, 1e-13);  // measured 1.5e-14
 }
 
-TEST(StringEvents, FindAContactThatLastsAMoment) {
+TEST(StringEvents, FindABriefContact) {
     // Thrown up from 0.2 m above the pin, the particle passes the length of 1 m by 1e-6 m for a millisecond:
     // in the middle of steps a hundred times as long.
     constexpr double kOvershoot = 1e-6;
@@ -94,7 +94,7 @@ TEST(StringEvents, FindTheTimeAtWhichATautLinkGoesSlack) {
     EXPECT_NEAR(event->state.x_m[1], std::sqrt(0.75), 1e-10);
 }
 
-TEST(StringEvents, AreNoneWhileNothingChanges) {
+TEST(StringEvents, AreAbsentWhileNothingChanges) {
     RopeDef rope = test::string_of({{0.0, 0.0}, {0.3, -std::sqrt(0.91)}}, {1.0});
     EXPECT_FALSE(first_event(rope, {1}, 1e-9, 5.0).has_value());
 }
@@ -170,7 +170,7 @@ TEST(StringDynamics, MeasuresErrorsOfEveryNumberOfAState) {
     EXPECT_EQ(measured, std::vector<int>(measured.size(), 1));
 }
 
-TEST(StringDynamics, HasATimeScaleThatASlackLinkCannotOutrun) {
+TEST(StringDynamics, HasTheTimeScaleOfTheFastestSlackLink) {
     // Two particles of a slack link of 0.1 m that part at 20 m/s: faster than gravity alone would make them.
     RopeDef rope = reference::rope_through({{0.0, 0.0}, {0.05, 0.0}});
     rope.pinned = {};

@@ -52,7 +52,7 @@ TEST(ExactRefusesAString, ThatIsClosed) {
     EXPECT_EQ(refusal_of(rope), Reason::kRigidStringGraph);
 }
 
-TEST(LongString, AsksWhetherToGoOnWhileItsFirstContactsAreFound) {
+TEST(LongString, CanBeStoppedWhileItsFirstContactsAreFound) {
     RopeDef rope = reference::straight_rope(20'000, 3.0, 45.0);
     rope.material.is_string = true;
     const System system = build_system({&rope, 1});
@@ -64,7 +64,7 @@ TEST(LongString, AsksWhetherToGoOnWhileItsFirstContactsAreFound) {
     }
 }
 
-TEST(LongString, StartsTautAtOnceWhereItsLinksAreShortByTheRoundingOfTheirEnds) {
+TEST(LongString, StartsTautDespiteTheRoundingOfItsEnds) {
     constexpr int kLinks = 30'000;
     RopeDef rope = reference::straight_rope(kLinks, 3.0, 40.0);
     rope.material.is_string = true;
