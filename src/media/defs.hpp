@@ -30,7 +30,7 @@ struct EncoderDef {
     std::string preset;      ///< a word or a number of the encoder; empty: its default
     std::optional<int> crf;  ///< the encoder's constant rate factor, 1 .. kMaxCrf; empty: its default
     PixelChoice pix = PixelChoice::kAuto;
-    /// Threads of each encoder, 1 .. kMaxThreads. Fixed, never "as many as there are cores": x264's bytes
+    /// Threads of each encoder, 1 .. kMaxThreads. Fixed, never the number of cores: x264's bytes
     /// depend on it.
     int threads = 1;
     /// How many chunks of a video are drawn and encoded at a time, 0 .. kMaxThreads; 0: one per core. The
@@ -46,7 +46,7 @@ struct VideoDef {
     int height_px = 1080;
     FrameRate fps{Rational{60, 1}};
     /// The share of the interval between frames in which the shutter is open, 0 .. 1: motion is blurred. 0:
-    /// not at all. It is open for as long before a frame's time as after, so that the frame shows on average
+    /// no blur. It is open for as long before a frame's time as after, so that the frame shows on average
     /// where things are at its time; not before the motion's start, nor after its end.
     double shutter = 0.0;
     int subframes = 16;  ///< 2 .. kMaxSubframes: of how many pictures a blurred one is the mean

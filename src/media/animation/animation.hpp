@@ -30,8 +30,8 @@ struct AnimationDef {
 /// Refuses an animation of one frame that would be a picture. Throws corda::Error (kUsage).
 void check_animation_frames(const Ending& ending, std::int64_t frames);
 
-/// Makes an animation of an ending. A few pictures per thread are in memory at a time, and of a .webp what is
-/// encoded. Throws corda::Error: kIo, kEncoder, kInterrupted if `on_progress` asks to stop.
+/// Makes an animation of an ending. A few pictures per thread are in memory at a time, and all encoded frames
+/// of a .webp. Throws corda::Error: kIo, kEncoder, kInterrupted if `on_progress` asks to stop.
 void write_animation(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
                      OutputFile& output);
 

@@ -59,7 +59,7 @@ class SectionEncoder {
                                              const OrderedWorkers<std::vector<Packet>>& all) {
         std::vector<Packet> packets;
         std::unique_ptr<LibavEncoder> encoder;
-        // A frame is encoded as what it changes of the one before.
+        // A frame is encoded as its changes since the frame before.
         for (std::int64_t k = std::max<std::int64_t>(first - 1, 0); k < end && !all.is_stopped(); ++k) {
             if (k != last_) pictures_.go_to(k);
             last_ = k;

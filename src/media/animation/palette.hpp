@@ -22,7 +22,8 @@ class Palette {
     /// Blue, green, red and alpha of an entry; black if it is not used.
     [[nodiscard]] std::array<std::uint8_t, 4> bgra(std::size_t index) const;
 
-    /// The nearest entry of each of `count` RGBA pixels; what is less than half opaque is transparent.
+    /// The nearest entry of each of `count` RGBA pixels; pixels that are less than half opaque are
+    /// transparent.
     void map(const std::uint8_t* rgba, int count, std::uint8_t* indices);
 
   private:

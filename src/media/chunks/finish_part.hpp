@@ -14,7 +14,7 @@ namespace corda::media {
 /// Result of finishing a part file.
 struct RemuxResult {
     std::int64_t frames = 0;  ///< frames in the finished video
-    bool truncated = false;   ///< the part breaks off in a chunk, or is damaged: what follows was left out
+    bool truncated = false;   ///< the part breaks off in a chunk, or is damaged: the rest was left out
     bool damaged = false;     ///< it has changed since it was written
     bool removed = false;     ///< the part is gone
 };

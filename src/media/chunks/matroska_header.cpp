@@ -42,8 +42,8 @@ void set_number(std::string& file, std::size_t at, int bytes, std::uint64_t valu
         file[at + static_cast<std::size_t>(i)] = static_cast<char>(value);
 }
 
-/// The element at a position below `end`; none if it is longer, but for the segment, whose end is not looked
-/// for.
+/// The element at a position below `end`; none if it ends behind that. The segment, whose length is not read,
+/// ends there.
 std::optional<Element> element_at(std::string_view file, std::size_t at, std::size_t end) {
     ByteReader bytes(file.substr(0, end));
     if (!bytes.skip(at)) return std::nullopt;
@@ -69,7 +69,7 @@ std::optional<Element> child(std::string_view file, const Element& parent, std::
     return found;
 }
 
-/// Makes the elements, from the outermost to the innermost, longer by so many bytes.
+/// Makes the elements, from the outermost to the innermost, longer by `by` bytes.
 void lengthen(std::string& file, const std::vector<Element>& elements, int by) {
     for (const Element& element : elements) {
         const auto bytes = static_cast<int>(element.data - element.length_at);

@@ -21,7 +21,7 @@ namespace corda::media {
 SoundBytes sound_bytes_of(const std::string& path, PartExtent extent, const OnProgress& on_progress) {
     const FileHandle file = open_for_reading(path);
     std::array<char, 1 << 16> block{};
-    std::string ahead;  // what was read and not counted
+    std::string ahead;  // bytes that are read and not yet counted
     std::uint64_t counted = 0;
     SoundBytes sound;
     PartChecksum checksum;

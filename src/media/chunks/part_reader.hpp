@@ -29,7 +29,7 @@ struct PartIndex {
     AVCodecID codec = AV_CODEC_ID_NONE;
     std::uint64_t bytes = 0;  ///< length of the prefix whose checksums match
     bool is_cut = false;      ///< there is more in the file
-    bool is_damaged = false;  ///< what follows is not a chunk that broke off, but has changed
+    bool is_damaged = false;  ///< the rest is not a chunk that broke off: it has changed
 };
 
 /// A part without a whole chunk: nothing of it can be used.

@@ -48,7 +48,7 @@ void set_options(std::string_view container, TrackLayout layout, Rational fps, O
     }
 }
 
-/// What stands before a checksum: the head of a free box (ISO/IEC 14496-12, 8.1.2), or of a Void element (RFC
+/// Head of a checksum: that of a free box (ISO/IEC 14496-12, 8.1.2), or of a Void element (RFC
 /// 8794, 11.3.2).
 std::string checksum_head(std::string_view container) {
     constexpr std::size_t kBytes = PartChecksum::kRecordBytes;

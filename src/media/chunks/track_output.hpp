@@ -15,7 +15,7 @@ namespace corda::media {
 /// previous one.
 class PartChecksum {
   public:
-    /// What a record begins with: 16 bytes that no text holds, as \xc3 and a letter are no UTF-8.
+    /// Start of a record: 16 bytes that no text holds, as \xc3 and a letter are no UTF-8.
     static constexpr std::string_view kMark =
         "\xc3"
         "corda checksum\n";

@@ -78,7 +78,7 @@ class PartSink : public VideoSink {
     }
     PartSink(const PartSink&) = delete;
     PartSink& operator=(const PartSink&) = delete;
-    /// A part without a chunk is of no use, and would be in the way of the next render.
+    /// Removes a part without a chunk, which is of no use and would make the next render fail.
     ~PartSink() override {
         if (!has_chunk_) part_.remove();
     }

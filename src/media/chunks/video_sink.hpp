@@ -12,8 +12,8 @@
 
 namespace corda::media {
 
-/// Where the packets of a video go, whose time stamps count frames from the first one. All throw corda::Error
-/// (kIo), and what is said.
+/// Destination of the packets of a video, whose time stamps count frames from the first one. All functions
+/// throw corda::Error (kIo).
 class VideoSink {
   public:
     VideoSink() = default;

@@ -51,7 +51,7 @@ bool are_of_one_video(const AVCodecParameters& a, const AVCodecParameters& b) {
                       b.extradata + b.extradata_size);
 }
 
-/// The parameters of a chunk for a muxer: libaom tells its header with the first packet, not before.
+/// The parameters of a chunk for a muxer: libaom gives its header with the first packet, not before.
 CodecParameters with_header(const Chunk& chunk) {
     CodecParameters parameters =
         check_allocated(CodecParameters(avcodec_parameters_alloc()), "codec parameters");

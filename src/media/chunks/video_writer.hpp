@@ -69,11 +69,11 @@ class VideoWriter {
 
     /// Adds the next frame, of the size of `def`. `damage` is what may differ from the previous frame (the
     /// first is taken whole). With `is_last`, the frame's colours are verified too, as the first frame's are.
-    /// Throws kEncoder or kIo; ReaderLeft (see output_file.hpp) if whoever reads standard output closed it.
+    /// Throws kEncoder or kIo; ReaderLeft (see output_file.hpp) if the reader of standard output closed it.
     /// After a failure only abandon() is of use.
     void write(const Image& frame, const Damage& damage, bool is_last = false);
 
-    /// Adds a chunk that was encoded elsewhere, and forces it onto the disk. All of the frames so far are in
+    /// Adds a chunk that was encoded elsewhere, and flushes it to disk. All of the frames so far are in
     /// chunks then, each of which ends where frames_per_chunk() says. Throws kIo, and kInternal if it is no
     /// part of this video.
     void append(Chunk chunk);

@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
-#include <span>
-#include <string_view>
-#include <utility>
+#include <optional>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/machine.hpp"
@@ -16,6 +13,18 @@ namespace corda::media {
 namespace {
 
 constexpr double kMegabyte = 1e6;
+
+/// Free bytes on the disk of an output; std::nullopt if the system does not state them.
+std::optional<std::uint64_t> free_disk_bytes(const std::string& path) {
+    std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    std::error_code failure;
+    // One that is still to be made is on the disk of the folder above it.
+    while (!folder.empty() && !std::filesystem::exists(folder, failure)) folder = folder.parent_path();
+    const std::filesystem::space_info space = std::filesystem::space(folder.empty() ? "." : folder, failure);
+    // Some file systems that are no disks state 0 bytes.
+    if (failure || space.capacity == 0) return std::nullopt;
+    return space.available;
+}
 
 }  // namespace
 
@@ -51,17 +60,6 @@ DiskNeed disk_need(const Format& format, const VideoDef& def, std::int64_t frame
             static_cast<std::uint64_t>(pictures * bytes.usual * usual_pixels)};
 }
 
-std::optional<std::uint64_t> free_disk_bytes(const std::string& path) {
-    std::filesystem::path folder = std::filesystem::path(path).parent_path();
-    std::error_code failure;
-    // One that is still to be made is on the disk of the folder above it.
-    while (!folder.empty() && !std::filesystem::exists(folder, failure)) folder = folder.parent_path();
-    const std::filesystem::space_info space = std::filesystem::space(folder.empty() ? "." : folder, failure);
-    // Some file systems that are no disks tell 0 of all.
-    if (failure || space.capacity == 0) return std::nullopt;
-    return space.available;
-}
-
 void check_disk_space(const Format& format, const std::string& path, const VideoDef& def, std::int64_t frames,
                       std::uint64_t there) {
     const DiskNeed need = disk_need(format, def, frames);
@@ -69,7 +67,7 @@ void check_disk_space(const Format& format, const std::string& path, const Video
     if (!free || need.least <= *free + there) return;
     throw Error(
         ExitCode::kIo,
-        fmt::format("'{}' does not fit onto its disk: {} frames of {}x{} as {} take {:.3g} MB at least "
+        fmt::format("'{}' does not fit on its disk: {} frames of {}x{} as {} take {:.3g} MB at least "
                     "while it is made, and {:.3g} are free; free some space, or write to another disk",
                     path, frames, def.width_px, def.height_px, format.words(),
                     static_cast<double>(need.least) / kMegabyte, static_cast<double>(*free) / kMegabyte));
@@ -81,7 +79,7 @@ std::string disk_warning(const Format& format, const std::string& path, const Vi
     const auto free = free_disk_bytes(path);
     if (!free || need.usual <= *free) return {};
     return fmt::format(
-        "{} may not fit onto its disk: such videos take some {:.3g} MB while they are made, and "
+        "{} may not fit on its disk: such videos take some {:.3g} MB while they are made, and "
         "{:.3g} are free",
         path, static_cast<double>(need.usual) / kMegabyte, static_cast<double>(*free) / kMegabyte);
 }

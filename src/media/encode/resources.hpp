@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 
 #include "corda/media/defs.hpp"
@@ -9,35 +8,33 @@
 
 namespace corda::media {
 
-/// Some bytes of memory that a chunk takes while it is drawn and encoded, beside the rest of the program: a
-/// measured figure per pixel, which for x264 follows from how many frames its preset looks ahead.
+/// Bytes of memory that a chunk takes while it is drawn and encoded, in addition to the rest of the program,
+/// by the measured bytes per pixel of the codec.
 [[nodiscard]] std::uint64_t bytes_per_job(const Format& format, const VideoDef& def);
 
-/// How many jobs that is: as many as were asked for; for 0, one per core.
+/// The number of jobs: as asked for; for 0, one per core.
 [[nodiscard]] int jobs_of(int asked);
 
-/// How many of `wanted` jobs, of so many bytes each, fit into the memory that is free.
+/// The number of jobs, at most `wanted`, that fit into free memory if each takes `bytes`.
 [[nodiscard]] int jobs_that_fit(int wanted, std::uint64_t bytes);
 
-/// How many bytes of a disk a video takes while it is made: with its part, which the finished file stands
-/// beside.
+/// Bytes of a disk that a video takes while it is made, with its part, which exists until the file is
+/// finished.
 struct DiskNeed {
     std::uint64_t least = 0;  ///< of a drawing of a few lines
-    std::uint64_t usual = 0;  ///< of half of the examples; what moves all over takes ten times as much
+    std::uint64_t usual =
+        0;  ///< of half of the examples; motion all over the picture takes ten times as much
 };
 
-/// The need of so many frames, by measured bytes per pixel; 0 for standard output.
+/// The need of `frames` frames, by the measured bytes per pixel of the codec; 0 for standard output.
 [[nodiscard]] DiskNeed disk_need(const Format& format, const VideoDef& def, std::int64_t frames);
 
-/// How many bytes are free on the disk of an output; std::nullopt if the system does not tell.
-[[nodiscard]] std::optional<std::uint64_t> free_disk_bytes(const std::string& path);
-
-/// Refuses a video that cannot fit onto its disk, of which `there` bytes stand already. Throws corda::Error
+/// Refuses a video that cannot fit on its disk, of which `there` bytes exist already. Throws corda::Error
 /// (kIo).
 void check_disk_space(const Format& format, const std::string& path, const VideoDef& def, std::int64_t frames,
                       std::uint64_t there);
 
-/// A warning if the usual need is more than what is free; empty otherwise.
+/// A warning if the usual need exceeds the free space; empty otherwise.
 [[nodiscard]] std::string disk_warning(const Format& format, const std::string& path, const VideoDef& def,
                                        std::int64_t frames);
 

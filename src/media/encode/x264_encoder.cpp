@@ -42,7 +42,7 @@ void on_x264_log(void* /*unused*/, int level, const char* format, va_list argume
     if (level == X264_LOG_ERROR) av_vlog(nullptr, AV_LOG_ERROR, format, arguments);
 }
 
-/// Whether x264 (164) weighs macroblocks by memory that nobody wrote: with AVX-512 its macroblock tree takes
+/// True if x264 (164) weighs macroblocks by uninitialized memory: with AVX-512 its macroblock tree takes
 /// eight at a time, also at the end of a row. One in a hundred videos of 480 columns had other bytes. Without
 /// AVX-512 it gives the same bytes as with it when all goes well, and takes a sixth more time.
 bool reads_beyond_its_rows(int width_px) {
@@ -52,7 +52,7 @@ bool reads_beyond_its_rows(int width_px) {
 
 /// The constant rate factor; of a preset that spreads no bits over a frame, a constant quantizer in its
 /// place. For the former x264 looks at each frame once more to know how much moves in it: two fifths of the
-/// time of ultrafast, which has no other use for it, and macroblocks that stand still are encoded anew
+/// time of ultrafast, which has no other use for it, and macroblocks that stand still are encoded again
 /// whenever the quantizer falls. Bytes at the same PSNR are the same. Four below the factor, bytes and PSNR
 /// are those of the factor where little moves (first at 18: 499 kB, 60.8 dB for 493 kB, 60.7 dB); where much
 /// does, the quality stays (cloth: 6.9 MB, 54.6 dB for 4.5 MB, 48.5 dB).
@@ -91,7 +91,7 @@ x264_param_t make_params(const Format& format, const VideoDef& def) {
     params.i_keyint_max = static_cast<int>(frames_per_chunk(format, def.fps));
     params.b_repeat_headers = 0;
     set_rate(params, format.crf_of(def.encoder));
-    // B-frames do not pay for what moves before a ground that stands still: without them a video takes a
+    // B-frames do not pay for motion before a ground that stands still: without them a video takes a
     // quarter less time and 2 to 18 % more bytes at the same PSNR (first 2, cloth 3, whip 10, bridge 18).
     // Frames are stored as they are shown, and the flags of macroblocks mean the frame that x264 refers to.
     params.i_bframe = 0;
@@ -305,7 +305,7 @@ class X264Encoder : public Encoder {
         sink(*packet_);
     }
 
-    /// That a decoder will show what was drawn: x264 gives the picture as it has decoded it.
+    /// Checks that a decoder will show the drawn colours: x264 gives the picture as it has decoded it.
     void compare(const x264_image_t& shown) const {
         for (const ColorPatch& patch : expected_.patches) {
             const std::array<double, 3> rgb = mean_rgb(shown, patch);

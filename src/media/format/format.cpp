@@ -219,7 +219,7 @@ void check_crf(const Format& format, const EncoderDef& def) {
 /// Of what counts milliseconds.
 constexpr double kMaxMsRate = 1000.0;
 
-/// The pauses of a GIF are whole hundredths of a second, and what is shorter than two plays slowly.
+/// The pauses of a GIF are whole hundredths of a second, and pauses shorter than two play slowly.
 void check_gif_rate(Rational fps) {
     const Rational hundredths = Rational::reduced(100 * fps.den, fps.num);
     if (hundredths.den == 1 && hundredths.num >= 2 && hundredths.num <= 65535) return;

@@ -153,7 +153,7 @@ struct Format {
 /// The presets of all codecs, each once.
 [[nodiscard]] std::vector<std::string_view> preset_names();
 
-/// The codec of this name of either kind; null for none. Of those with one short name it is the first.
+/// The first codec of this name or short name; null for none.
 [[nodiscard]] const Codec* find_codec(std::string_view name);
 /// The first codec of a coded format, by libav's name ("h264"); null for none.
 [[nodiscard]] const Codec* find_stream_codec(std::string_view stream);

@@ -14,7 +14,7 @@ namespace corda::media {
 [[nodiscard]] std::string png_bytes(const Image& image, const PngInfo& info,
                                     const OnProgress& on_progress = {}, bool keeps_alpha = false);
 
-/// Whether two PNG files have the same chunks, but for those that change no pixel of read_png(): texts,
+/// True if two PNG files have the same chunks, except those that change no pixel of read_png(): texts,
 /// times, resolutions, colour spaces. Then they show the same, if they can be read. Others may do so too: the
 /// same pixels may be packed in several ways. False for files that are no PNG, or are cut off.
 [[nodiscard]] bool have_same_picture_chunks(const std::string& path_a, const std::string& path_b);

@@ -22,7 +22,7 @@ namespace {
 // Deflate shrinks by at most 1032 to 1, so a file that promises more is not whole.
 constexpr double kMaxRatio = 1032.0;
 
-// What all texts together may take: libpng leaves out those that are larger, and those after so many.
+// Limits of texts: libpng leaves out larger ones, and those behind the last.
 constexpr png_uint_32 kMaxTexts = 32;
 constexpr png_alloc_size_t kMaxTextBytes = png_alloc_size_t{64} << 10;
 
@@ -57,7 +57,7 @@ void on_read_error(png_structp png, png_const_charp message) {
 
 void on_read_warning(png_structp, png_const_charp) {}
 
-/// Asks on_progress; false if it wants to stop. Never throws: libpng's functions are in between.
+/// Calls on_progress; returns false if it asks to stop. Never throws: libpng's functions are in between.
 bool goes_on(ReadJob& job) noexcept {
     try {
         report_progress(job.on_progress, job.done, job.total);

@@ -34,17 +34,6 @@ bool is_even(const Image& frame, int x, int y) {
     return true;
 }
 
-std::array<std::uint8_t, 3> mean_rgb(const Image& frame, int x, int y) {
-    constexpr int kPixels = kPatchSide * kPatchSide;
-    std::array<int, 3> sums{};
-    for (int i = 0; i < kPixels; ++i) {
-        const std::uint8_t* pixel = frame.pixel(x + i % kPatchSide, y + i / kPatchSide);
-        for (std::size_t c = 0; c < sums.size(); ++c) sums[c] += pixel[c];
-    }
-    const auto mean = [](int sum) { return static_cast<std::uint8_t>((sum + kPixels / 2) / kPixels); };
-    return {mean(sums[0]), mean(sums[1]), mean(sums[2])};
-}
-
 /// Block-aligned positions, those most likely to differ in colour first: corners, centre, middles of the
 /// edges, then all, row by row.
 std::vector<std::array<int, 2>> positions(const Image& frame) {
@@ -76,11 +65,24 @@ bool has_place(const std::vector<ColorPatch>& patches, const ColorPatch& patch) 
 
 }  // namespace
 
+std::array<double, 3> mean_rgb(const Image& frame, int x, int y) {
+    constexpr int kPixels = kPatchSide * kPatchSide;
+    std::array<double, 3> mean{};
+    for (int i = 0; i < kPixels; ++i) {
+        const std::uint8_t* const pixel = frame.pixel(x + i % kPatchSide, y + i / kPatchSide);
+        for (std::size_t c = 0; c < mean.size(); ++c) mean[c] += pixel[c];
+    }
+    for (double& channel : mean) channel /= kPixels;
+    return mean;
+}
+
 std::vector<ColorPatch> choose_patches(const Image& frame) {
     std::vector<ColorPatch> chosen;
     std::vector<ColorPatch> spare;  // further places with a colour that is already chosen
     for (const auto& [x, y] : positions(frame)) {
-        const ColorPatch patch{x, y, mean_rgb(frame, x, y)};
+        const auto [r, g, b] = mean_rgb(frame, x, y);
+        const auto rounded = [](double level) { return static_cast<std::uint8_t>(std::lround(level)); };
+        const ColorPatch patch{x, y, {rounded(r), rounded(g), rounded(b)}};
         const bool new_color = !has_color(chosen, patch);
         if (!new_color && spare.size() >= kPatchCount) continue;
         if (has_place(chosen, patch) || has_place(spare, patch) || !is_even(frame, x, y)) continue;

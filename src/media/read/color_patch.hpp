@@ -17,13 +17,16 @@ inline constexpr int kPatchSide = 16;
 /// in the centre and at the sides.
 [[nodiscard]] std::vector<ColorPatch> choose_patches(const Image& frame);
 
+/// Mean R'G'B' of the block at (x, y), which lies within the frame.
+[[nodiscard]] std::array<double, 3> mean_rgb(const Image& frame, int x, int y);
+
 /// True if all of a patch is within a picture of this size.
 [[nodiscard]] constexpr bool is_within(const ColorPatch& patch, int width_px, int height_px) {
     return patch.x >= 0 && patch.y >= 0 && patch.x <= width_px - kPatchSide &&
            patch.y <= height_px - kPatchSide;
 }
 
-/// How far a shown R'G'B' is from a patch: the largest of the three differences, in 1/255.
+/// The largest difference of a channel between shown R'G'B' and a patch, in 1/255.
 [[nodiscard]] double patch_error(const ColorPatch& patch, const std::array<double, 3>& shown);
 
 /// The largest error that a patch of a correct video may have at this x264 rate factor; more with chroma in

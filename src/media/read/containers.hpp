@@ -29,7 +29,7 @@ struct Mp4Boxes {
     // Of the first track:
     std::uint32_t track_timescale = 0;
     std::uint64_t track_duration = 0;      ///< mdhd: of the stored pictures, in track ticks
-    std::uint64_t track_presentation = 0;  ///< tkhd: of what is shown, in movie ticks
+    std::uint64_t track_presentation = 0;  ///< tkhd: of the shown pictures, in movie ticks
     std::vector<Mp4Edit> edits;
 };
 
@@ -37,7 +37,7 @@ struct Mp4Boxes {
 /// (kIo) if the file cannot be opened for reading.
 [[nodiscard]] Mp4Boxes read_mp4_boxes(const std::string& path);
 
-/// Whether a file of a kind that file_kind() names is shorter than it claims to be: a GIF without its
+/// True if a file of a kind that file_kind() names is shorter than it claims to be: a GIF without its
 /// trailer, a PNG without its last chunk, YUV4MPEG2 that ends in a frame, Matroska of a length that is not
 /// there. Decoders take what there is and do not tell. False for other kinds. Throws corda::Error (kIo) if it
 /// cannot be opened for reading.

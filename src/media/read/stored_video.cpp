@@ -98,20 +98,19 @@ struct StoredVideo::Impl {
     bool decode_webp(StoredPicture& picture) {
         if (!webp->has_next()) return false;
         const std::int64_t start_ms = webp->read_ends_ms().empty() ? 0 : webp->read_ends_ms().back();
-        const std::uint8_t* const rgba = webp->read();
-        if (rgba == nullptr) throw Error(ExitCode::kIo, fmt::format("{}: decoding failed", path));
+        if (!webp->read(shown)) throw Error(ExitCode::kIo, fmt::format("{}: decoding failed", path));
         picture = StoredPicture{};
-        picture.width_px = webp->width_px();
-        picture.height_px = webp->height_px();
+        picture.width_px = shown.width();
+        picture.height_px = shown.height();
         picture.format = "rgba";
         picture.time_s = static_cast<double>(start_ms) / 1000.0;
         picture.components = 4;
         picture.is_rgb = true;
         picture.is_full_range = true;
-        const std::size_t pixels = static_cast<std::size_t>(picture.width_px) * picture.height_px;
-        picture.samples.resize(4 * pixels);
-        for (std::size_t i = 0; i < pixels; ++i)
-            for (std::size_t c = 0; c < 4; ++c) picture.samples[c * pixels + i] = rgba[4 * i + c];
+        picture.samples.resize(shown.size_bytes());
+        const std::size_t pixels = shown.size_bytes() / 4;
+        for (std::size_t i = 0; i < shown.size_bytes(); ++i)
+            picture.samples[i % 4 * pixels + i / 4] = shown.data()[i];
         return true;
     }
 
@@ -120,6 +119,7 @@ struct StoredVideo::Impl {
     Rational rate{0, 1};
     std::optional<Decoder> decoder;
     std::optional<WebpReader> webp;
+    Image shown;                      ///< by webp
     std::optional<Rational> delay_s;  ///< of every frame of an APNG that has one delay
     std::int64_t frames = 0;          ///< read so far of that APNG
 };

@@ -39,7 +39,7 @@ inline constexpr int kDeepestJsonLevel = 16;
 [[nodiscard]] std::optional<std::int64_t> comment_number(const std::string& comment, const char* key);
 /// The colour patches of the first frame.
 [[nodiscard]] std::vector<ColorPatch> told_patches(const std::string& comment);
-/// What the comment of a part tells of what it was made from, by keys; empty if it does not.
+/// The origin of a part as its comment states it, by keys; empty if there is none.
 [[nodiscard]] std::map<std::string, std::string> told_origin(const std::string& comment);
 /// The comment of a finished video, with the number of its frames and without its origin; unchanged if it is
 /// no JSON object.

@@ -9,7 +9,6 @@
 #include <cstdio>
 
 #include "corda/core/file.hpp"
-#include "corda/core/image.hpp"
 
 namespace corda::media {
 namespace {
@@ -56,68 +55,43 @@ std::optional<Rational> simplest_rate(const std::vector<std::int64_t>& ends_ms) 
 
 }  // namespace
 
-struct WebpReader::Impl {
-    explicit Impl(const std::string& path) : bytes(all_of(path)) {
-        WebPAnimDecoderOptions options{};
-        WebPAnimDecoderOptionsInit(&options);
-        options.color_mode = MODE_RGBA;
-        const WebPData data{reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
-        decoder.reset(WebPAnimDecoderNew(&data, &options));
-        WebPAnimInfo info{};
-        const bool is_sound = decoder && WebPAnimDecoderGetInfo(decoder.get(), &info) != 0 &&
-                              is_picture_size(info.canvas_width, info.canvas_height);
-        if (!is_sound) {
-            decoder.reset();
-            return;
-        }
-        width_px = static_cast<int>(info.canvas_width);
-        height_px = static_cast<int>(info.canvas_height);
-    }
-
-    std::string bytes;
-    std::unique_ptr<WebPAnimDecoder, decltype(&WebPAnimDecoderDelete)> decoder{nullptr,
-                                                                               &WebPAnimDecoderDelete};
-    int width_px = 0;
-    int height_px = 0;
-    std::vector<std::int64_t> ends_ms;
-};
-
-WebpReader::WebpReader(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
-
-WebpReader::~WebpReader() = default;
-
-bool WebpReader::is_open() const {
-    return impl_->decoder != nullptr;
+void WebpReader::Free::operator()(WebPAnimDecoder* decoder) const {
+    WebPAnimDecoderDelete(decoder);
 }
 
-int WebpReader::width_px() const {
-    return impl_->width_px;
-}
-
-int WebpReader::height_px() const {
-    return impl_->height_px;
+WebpReader::WebpReader(const std::string& path) : bytes_(all_of(path)) {
+    WebPAnimDecoderOptions options{};
+    WebPAnimDecoderOptionsInit(&options);
+    options.color_mode = MODE_RGBA;
+    const WebPData data{reinterpret_cast<const std::uint8_t*>(bytes_.data()), bytes_.size()};
+    decoder_.reset(WebPAnimDecoderNew(&data, &options));
+    WebPAnimInfo info{};
+    const bool is_sound = decoder_ && WebPAnimDecoderGetInfo(decoder_.get(), &info) != 0 &&
+                          is_picture_size(info.canvas_width, info.canvas_height);
+    if (!is_sound) decoder_.reset();
+    width_px_ = static_cast<int>(info.canvas_width);
+    height_px_ = static_cast<int>(info.canvas_height);
 }
 
 bool WebpReader::has_next() const {
-    return is_open() && WebPAnimDecoderHasMoreFrames(impl_->decoder.get()) != 0;
+    return is_open() && WebPAnimDecoderHasMoreFrames(decoder_.get()) != 0;
 }
 
-const std::uint8_t* WebpReader::read() {
+bool WebpReader::read(Image& picture) {
     std::uint8_t* rgba = nullptr;
     int end_ms = 0;
-    if (!has_next() || WebPAnimDecoderGetNext(impl_->decoder.get(), &rgba, &end_ms) == 0) return nullptr;
-    impl_->ends_ms.push_back(end_ms);
-    return rgba;
-}
-
-const std::vector<std::int64_t>& WebpReader::read_ends_ms() const {
-    return impl_->ends_ms;
+    if (!has_next() || WebPAnimDecoderGetNext(decoder_.get(), &rgba, &end_ms) == 0) return false;
+    ends_ms_.push_back(end_ms);
+    if (picture.width() != width_px_ || picture.height() != height_px_)
+        picture = Image(width_px_, height_px_);
+    std::copy_n(rgba, picture.size_bytes(), picture.data());
+    return true;
 }
 
 std::vector<std::int64_t> WebpReader::told_ends_ms() const {
     std::vector<std::int64_t> ends_ms;
     if (!is_open()) return ends_ms;
-    const WebPDemuxer* const demuxer = WebPAnimDecoderGetDemuxer(impl_->decoder.get());
+    const WebPDemuxer* const demuxer = WebPAnimDecoderGetDemuxer(decoder_.get());
     WebPIterator each{};
     std::int64_t end_ms = 0;
     for (int more = WebPDemuxGetFrame(demuxer, 1, &each); more != 0; more = WebPDemuxNextFrame(&each)) {

@@ -6,7 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "corda/core/image.hpp"
 #include "corda/core/rational.hpp"
+
+struct WebPAnimDecoder;
 
 namespace corda::media {
 
@@ -17,25 +20,30 @@ class WebpReader {
     explicit WebpReader(const std::string& path);
     WebpReader(const WebpReader&) = delete;
     WebpReader& operator=(const WebpReader&) = delete;
-    ~WebpReader();
 
-    /// Whether libwebp accepts the file; if not, there is nothing to read.
-    [[nodiscard]] bool is_open() const;
-    [[nodiscard]] int width_px() const;
-    [[nodiscard]] int height_px() const;
-
-    /// Whether there are further pictures.
+    /// True if libwebp accepts the file; if not, there is nothing to read.
+    [[nodiscard]] bool is_open() const { return decoder_ != nullptr; }
+    [[nodiscard]] int width_px() const { return width_px_; }
+    [[nodiscard]] int height_px() const { return height_px_; }
+    /// True if there are further pictures.
     [[nodiscard]] bool has_next() const;
-    /// The next picture: RGBA, straight alpha, row 0 on top, until the next call. Null if it does not decode.
-    [[nodiscard]] const std::uint8_t* read();
+    /// Puts the next picture into `picture`, which gets its size; returns false if it does not decode.
+    [[nodiscard]] bool read(Image& picture);
 
-    /// When the pictures end, in ms: as far as they were read, or all by the file's own account.
-    [[nodiscard]] const std::vector<std::int64_t>& read_ends_ms() const;
+    /// Ends of the pictures in ms: of those that were read, or of all as the file states them.
+    [[nodiscard]] const std::vector<std::int64_t>& read_ends_ms() const { return ends_ms_; }
     [[nodiscard]] std::vector<std::int64_t> told_ends_ms() const;
 
   private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    struct Free {
+        void operator()(WebPAnimDecoder* decoder) const;
+    };
+
+    std::string bytes_;
+    std::unique_ptr<WebPAnimDecoder, Free> decoder_;
+    int width_px_ = 0;
+    int height_px_ = 0;
+    std::vector<std::int64_t> ends_ms_;
 };
 
 /// The rate whose frames, rounded to milliseconds, end at these times: of several `told`, a usual one, or the

@@ -241,7 +241,7 @@ void check_tags(const DecodedVideo& video, VerifyReport& report) {
     check_tag(report, "primaries", report.primaries, "bt709", "wide-gamut screens may over-saturate");
     check_tag(report, "transfer", report.transfer, "iec61966-2-1",
               "Safari and QuickTime change the brightness");
-    // VP9 and AV1 tell no siting, or not this one.
+    // VP9 and AV1 state no siting, or another one.
     if ((report.codec == "h264" || report.codec == "hevc") && report.pixel_format == "yuv420p") {
         check_tag(report, "chroma location", report.chroma_location, "left",
                   "coloured edges shift by half a pixel");

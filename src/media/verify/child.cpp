@@ -36,7 +36,7 @@ ChildLimits limits_for(const std::string& path) {
     constexpr std::int64_t kMinS = 20;
     constexpr std::int64_t kBytesPerS = 1000;
     constexpr double kWallPerCpu = 3.0;  // the machine may be busy
-    std::error_code none;                // for what is no regular file
+    std::error_code none;                // if it is no regular file
     const std::uintmax_t size = std::filesystem::file_size(path, none);
     const std::int64_t bytes = none ? 0 : static_cast<std::int64_t>(size);
     const std::int64_t cpu_s = kMinS + bytes / kBytesPerS;

@@ -25,7 +25,7 @@ std::string named(const char* name) {
 }
 
 /// The samples of one component in a square of a frame, of any pixel format, as a mean in 0 .. 255 (of more
-/// bits, in quarters and so on), and the least of them.
+/// bits, in quarters and so on), and their minimum.
 struct Samples {
     double mean = 0.0;
     int least = 255;
@@ -125,7 +125,7 @@ class Decoding {
         return decoder_->format().iformat == av_find_input_format(demuxer);
     }
 
-    /// Matroska counts milliseconds: then the rate that the file tells decides what is the nearest stamp.
+    /// Matroska counts milliseconds: then the rate that the file states gives the nearest stamp.
     void find_rounded_rate() {
         if (!is_kind("matroska")) return;
         const auto told = comment_rate(video_.comment);
@@ -176,7 +176,7 @@ class Decoding {
         return is_wanted && is_key ? Decoder::PacketUse::kDecodeAlone : Decoder::PacketUse::kSkip;
     }
 
-    /// Takes the stamps of packets in the order in which their frames are shown, but for so many.
+    /// Takes the stamps of packets in the order in which their frames are shown, except the last `kept`.
     void take_stamps(std::size_t kept) {
         for (; stamps_.size() > kept; stamps_.pop()) take_stamp(stamps_.top());
     }
@@ -299,29 +299,6 @@ DecodedVideo decode(const std::string& path, VerifyDepth depth, const std::vecto
     return video;
 }
 
-namespace {
-
-bool is_see_through(const std::uint8_t* rgba, std::size_t pixels) {
-    for (std::size_t i = 0; i < pixels; ++i)
-        if (rgba[4 * i + 3] < 255) return true;
-    return false;
-}
-
-/// Mean R'G'B' of a patch that lies within a picture of RGBA.
-std::array<double, 3> mean_rgb(const std::uint8_t* rgba, int width_px, const ColorPatch& patch) {
-    std::array<double, 3> mean{};
-    for (int i = 0; i < kPatchSide * kPatchSide; ++i) {
-        const int x = patch.x + i % kPatchSide;
-        const int y = patch.y + i / kPatchSide;
-        const std::uint8_t* const pixel = rgba + 4 * (std::ptrdiff_t{y} * width_px + x);
-        for (std::size_t c = 0; c < mean.size(); ++c) mean[c] += pixel[c];
-    }
-    for (double& channel : mean) channel /= kPatchSide * kPatchSide;
-    return mean;
-}
-
-}  // namespace
-
 DecodedVideo decode_webp(const std::string& path, std::optional<Rational> told,
                          const std::vector<FrameColors>& rendered, const OnProgress& on_progress,
                          VerifyReport& report) {
@@ -337,20 +314,20 @@ DecodedVideo decode_webp(const std::string& path, std::optional<Rational> told,
     report.width_px = reader.width_px();
     report.height_px = reader.height_px();
     video.is_rounded = true;
-    const std::size_t pixels = static_cast<std::size_t>(report.width_px) * report.height_px;
-    while (reader.has_next()) {
+    for (Image picture; reader.has_next(); ++report.frames) {
         report_progress(on_progress, report.frames, 0);
-        const std::uint8_t* const rgba = reader.read();
-        if (rgba == nullptr) {
+        if (!reader.read(picture)) {
             video.bad_reason = "libwebp does not decode a frame";
             ++video.bad_frames;
             break;
         }
         if (const FrameColors* const colors = find_rendered(rendered, report.frames))
             for (const ColorPatch& patch : colors->patches)
-                if (is_within(patch, report.width_px, report.height_px))
-                    video.patches.push_back({report.frames, patch, mean_rgb(rgba, report.width_px, patch)});
-        if (report.frames++ == 0) report.alpha = is_see_through(rgba, pixels);
+                if (is_within(patch, picture.width(), picture.height()))
+                    video.patches.push_back({report.frames, patch, mean_rgb(picture, patch.x, patch.y)});
+        if (report.frames > 0) continue;
+        for (std::size_t i = 3; i < picture.size_bytes() && !report.alpha; i += 4)
+            report.alpha = picture.data()[i] < 255;
     }
     video.step = 1;
     video.end = report.frames;

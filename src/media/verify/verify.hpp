@@ -57,10 +57,10 @@ enum class VerifyDepth { kKeyFrames, kAllFrames };
 /// that its time stamps have a constant step from 0 (of a file that counts milliseconds, are the rounded
 /// ones) and its clocks an exact duration, profile, pixel format and colour tags, and that every frame
 /// decodes that is to be decoded. If the file's comment says that corda made it, also frame count, rate and
-/// some colours of the first frame against what was rendered; whoever rendered it can tell more of them in
-/// `rendered`, in the order of the frames, and in `fps` the rate, which a WebP of a few frames does not show.
-/// The part of an interrupted render is a problem by itself. What the other frames show is not compared with
-/// anything: a change that still decodes is not found.
+/// some colours of the first frame against what was rendered; a caller that rendered it can pass more of
+/// them in `rendered`, in the order of the frames, and in `fps` the rate, which a WebP of a few frames does
+/// not show. The part of an interrupted render is a problem by itself. What the other frames show is not
+/// compared with anything: a change that still decodes is not found.
 ///
 /// Throws corda::Error: kIo if the file cannot be opened for reading (one that is not a video gives a report
 /// with a problem), kInterrupted if `on_progress`, called with the frames, asks to stop. libav ends the

@@ -50,7 +50,7 @@ Frame frame_of(const test::Yuv420Image& picture) {
     return frame;
 }
 
-/// Sends a frame, or the end if it is null; returns the bytes of what comes.
+/// Sends a frame, or the end if it is null; returns the bytes of the packets.
 std::int64_t send(AVCodecContext& context, const AVFrame* frame, AVPacket& packet) {
     check_libav(avcodec_send_frame(&context, frame), ExitCode::kEncoder, "libx264 takes no frame");
     std::int64_t bytes = 0;

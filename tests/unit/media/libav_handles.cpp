@@ -15,7 +15,7 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// What an error that the host application reports by libav prints on stderr.
+/// Output on stderr of an error that the host application reports by libav.
 std::string printed() {
     testing::internal::CaptureStderr();
     av_log(nullptr, AV_LOG_ERROR, "trouble of the host\n");

@@ -36,7 +36,7 @@ class PartOf : public Video, public testing::WithParamInterface<const char*> {
         }
     }
 
-    /// The frames of the chunks that end within so many bytes.
+    /// The number of frames in the chunks that end within the first `bytes`.
     [[nodiscard]] std::int64_t frames_within(std::size_t bytes) const {
         const auto whole =
             std::count_if(ends_.begin(), ends_.end(), [&](std::size_t end) { return end <= bytes; });

@@ -263,7 +263,7 @@ TEST_F(Video, HasEveryChunkOnTheDiskOnceItIsWhole) {
         const std::int64_t chunk = writer.frames_per_chunk();
         for (int chunks = 1; chunks <= 2; ++chunks) {
             write_frames(writer, chunk);
-            // As after a kill: what is in the file now.
+            // The file as a kill would leave it now.
             std::filesystem::copy_file(part, file("copy.part"),
                                        std::filesystem::copy_options::overwrite_existing);
             EXPECT_EQ(

@@ -30,12 +30,11 @@ TEST_F(Video, ThatCannotFitOntoItsDiskIsRefused) {
         const Format format = find_format(path, def);
         check_disk_space(format, path, def, 20, 0);
         EXPECT_EQ(disk_warning(format, path, def, 20), "");
-        EXPECT_THAT(disk_warning(format, path, def, kTooMany),
-                    testing::HasSubstr("may not fit onto its disk"));
+        EXPECT_THAT(disk_warning(format, path, def, kTooMany), testing::HasSubstr("may not fit on its disk"));
         const test::Failure failure =
             test::failure_of([&] { check_disk_space(format, path, def, kTooMany, 0); });
         EXPECT_EQ(failure.code, ExitCode::kIo);
-        EXPECT_THAT(failure.message, testing::HasSubstr("does not fit onto its disk"));
+        EXPECT_THAT(failure.message, testing::HasSubstr("does not fit on its disk"));
         // What stands already counts.
         check_disk_space(format, path, def, kTooMany, disk_need(format, def, kTooMany).least);
     }

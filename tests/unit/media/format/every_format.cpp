@@ -27,7 +27,7 @@ struct Variant {
     PixelChoice pix;
     bool is_transparent;
     /// The least PSNR of the decoded frames, alpha included, over black and over white; 0: they are equal.
-    /// The measured one is beside it.
+    /// A comment has the measured one.
     double psnr_db;
 };
 

@@ -233,7 +233,7 @@ TEST_F(Png, StopsIfItIsAsked) {
 }
 
 TEST_F(Png, AFailedReadIsNoEndOfTheFile) {
-    const char* const kFails = "/proc/self/mem";  // an ordinary file whose first bytes nobody can read
+    const char* const kFails = "/proc/self/mem";  // an ordinary file whose first bytes cannot be read
     write_png(file("a.png"), random_image(4, 4, true));
     const std::vector<std::function<void()>> reads{
         [&] { static_cast<void>(read_png(kFails)); },
@@ -318,7 +318,7 @@ TEST_F(Png, SamePictureChunksAreThoseOfTheSamePixels) {
         EXPECT_FALSE(have_same_picture_chunks(file("a.png"), file("c.png"))) << size;
         EXPECT_FALSE(have_same_picture_chunks(file("c.png"), file("c.png"))) << size;
     }
-    // Of a length that no file has.
+    // A length that no file has.
     test::write_file(file("c.png"), whole.substr(0, 8) + std::string("\x7f\xff\xff\xfftEXt", 8));
     EXPECT_FALSE(have_same_picture_chunks(file("c.png"), file("c.png")));
     EXPECT_FALSE(have_same_picture_chunks(file("a.png"), file("no.png")));

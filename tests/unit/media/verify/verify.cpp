@@ -162,7 +162,7 @@ TEST_F(Video, VerifyFindsTheSameByKeyFrames) {
             VerifyReport all = verify(name);
             VerifyReport keys = verify(name, {}, VerifyDepth::kKeyFrames);
             EXPECT_TRUE(keys.ok()) << (keys.problems.empty() ? "" : keys.problems.front());
-            EXPECT_NE(all.notes, keys.notes);  // which say what was decoded
+            EXPECT_NE(all.notes, keys.notes);  // which name the decoded frames
             all.notes.clear();
             keys.notes.clear();
             EXPECT_EQ(all, keys) << frames;
