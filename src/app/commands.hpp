@@ -163,8 +163,8 @@ void report_plan(const Console& console, Film& film);
 /// Warns if a method that the scene names took one of several ways. To be called when the motion is known.
 void warn_of_branch(const Console& console, const Film& film);
 
-/// What every report on a film begins with: method, size, proof, camera and passes; null for what a film does
-/// not have. Simulates what has not been yet.
+/// The keys that every JSON result about a film has: method, sizes, error bound, camera, passes; null for
+/// unknown values. Simulates the film if necessary.
 [[nodiscard]] nlohmann::json film_json(Film& film);
 
 /// Pictures in which nothing is in view.

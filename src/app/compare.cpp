@@ -146,8 +146,7 @@ ExitCode compare_pictures(const Console& console, const CompareOptions& options,
     return compared.passed ? ExitCode::kOk : ExitCode::kMismatch;
 }
 
-/// The PNG files in a folder and the folders in it, but for `diff`, which may be one of them; by their paths
-/// from the folder on.
+/// The PNG files in a folder and its subfolders except `diff`, by their paths relative to the folder.
 std::set<std::string> pictures_in(const std::string& folder, const std::string& diff) {
     std::set<std::string> names;
     std::error_code failure;
@@ -237,7 +236,7 @@ void compare_all(const CompareOptions& options, const std::optional<Image>& mask
         if (pair.failure) std::rethrow_exception(pair.failure);
 }
 
-/// Makes the folder of the differences, which must not take the place of what is compared.
+/// Makes the folder of the differences, which must not be one of the compared folders.
 void check_diff_folder(const CompareOptions& options) {
     if (options.diff.empty()) return;
     make_folder(options.diff);
@@ -414,7 +413,7 @@ void add_compare(CLI::App& app, Action& action) {
                     "least structural similarity that passes; equal pictures have 1")
         ->check(within(-1.0, 1.0));
     command.add_option("--mask", options.mask,
-                       "PNG file of the same size: what is black in it is not compared");
+                       "PNG file of the same size: its black pixels are not compared");
     command.add_option("--diff", options.diff,
                        "write a picture of the differences to this PNG file, of two videos that of the worst "
                        "frame, or of each pair that differs to this folder");

@@ -41,7 +41,7 @@ struct VideoDifference {
     std::array<Image, 2> worst_pictures;
 };
 
-/// Also if a file does not tell its rate, as a GIF: the times of its frames are compared.
+/// True as well if a file has no rate, such as a GIF: the times of its frames are compared.
 bool are_same_rate(const std::array<Rational, 2>& rates) {
     return rates[0] == rates[1] || rates[0].num == 0 || rates[1].num == 0 ||
            std::abs(rates[0].value() - rates[1].value()) <= kSameRate * rates[0].value();
@@ -64,7 +64,7 @@ void take_frames(const CompareOptions& options, const std::array<media::StoredPi
     const Image* const its_mask = mask ? &*mask : nullptr;
     Difference difference = compare(images[0], images[1], {}, its_mask);
     add_perceived(images[0], images[1], figures, difference, {}, its_mask);
-    // Of one format, other samples can have the same bytes of colour; a mask tells no samples apart.
+    // In one format, different samples can give the same colours; with a mask, only colours are compared.
     if (is_stored_alike && !mask) difference.equal = false;
     if (difference.equal) return;
     const bool has_failed = !difference.within(options.limits);
@@ -97,7 +97,7 @@ VideoDifference compare_all_frames(const CompareOptions& options, const std::str
         if (!has_a && !has_b) break;
         result.frames[0] += has_a ? 1 : 0;
         result.frames[1] += has_b ? 1 : 0;
-        // Sizes may change amid a video; the first that differ are told.
+        // Sizes may change within a video; the first that differ are reported.
         for (std::size_t i = 0; i < 2 && result.worst.same_size; ++i)
             result.sizes[i] = {pictures[i].width_px, pictures[i].height_px};
         if (has_a && has_b) take_frames(options, pictures, mask, result);

@@ -15,7 +15,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/clock.hpp"
 #include "corda/core/text.hpp"
-#include "corda/report/utf8_json.hpp"
+#include "corda/report/writers.hpp"
 
 namespace corda::app {
 namespace {

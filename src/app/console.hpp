@@ -95,9 +95,9 @@ inline constexpr std::array<ExitCodeText, 13> kExitCodes{{
     {ExitCode::kMismatch, "compare, golden or verify found a difference or a problem"},
     {ExitCode::kDiverged, "the simulation diverged"},
     {ExitCode::kTemporary, "out of memory, or another temporary failure: try again"},
-    {ExitCode::kHungUp, "hung up (SIGHUP): the terminal closed; what was done is kept"},
-    {ExitCode::kInterrupted, "interrupted (SIGINT); what was done is kept"},
-    {ExitCode::kTerminated, "terminated (SIGTERM); what was done is kept"},
+    {ExitCode::kHungUp, "hung up (SIGHUP): the terminal closed; finished work is kept"},
+    {ExitCode::kInterrupted, "interrupted (SIGINT); finished work is kept"},
+    {ExitCode::kTerminated, "terminated (SIGTERM); finished work is kept"},
 }};
 
 }  // namespace corda::app

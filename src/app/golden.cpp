@@ -115,7 +115,7 @@ void tell(const Console& console, const GoldenOptions& options, const golden::Su
     if (missing > 0 && !std::filesystem::exists(options.def.folder, none))
         console.warning(fmt::format("there is no folder '{}'; --update makes it", options.def.folder));
     else if (missing > 0)
-        console.info("--update draws what is missing, and keeps it");
+        console.info("--update draws the missing pictures and keeps them");
     nlohmann::json json = {{"schema", 1},         {"passed", passed},        {"failed", failed},
                            {"missing", missing},  {"stale", stale},          {"invalid", invalid},
                            {"changed", changed},  {"frozen", result.frozen}, {"notes", result.notes},
@@ -166,7 +166,7 @@ void add_golden(CLI::App& app, Action& action) {
         "--force", options.def.force,
         "with --update: also replace files that are no PNG, and remove pictures without a record");
     command.add_flag("--replan", options.def.replan,
-                     "with --update: choose all solvers and cameras anew, in place of the kept pictures'");
+                     "with --update: choose new solvers and cameras instead of those of the kept pictures");
     command.add_option("--html", options.html,
                        "also write a page of the failed pictures: reference, new and difference");
     command.add_option("--junit", options.junit, "also write the results as JUnit XML to this file");

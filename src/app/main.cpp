@@ -36,8 +36,8 @@ void add_console_flags(CLI::App& app, ConsoleDef& def) {
     }
 }
 
-/// An empty value is a variable of a script that is not set, and must not count as an option that was left
-/// out.
+/// Refuses empty values: they come from variables of a script that are not set, and must not count as options
+/// that were left out.
 void refuse_empty_values(CLI::App& app) {
     const auto check = [](const std::string& value) {
         return value.empty() ? std::string("the value is empty; give one, or leave it out") : std::string();
@@ -48,7 +48,7 @@ void refuse_empty_values(CLI::App& app) {
     }
 }
 
-/// Of an option that stands twice the last one counts, so that a script's can be overridden; of lists, all.
+/// The last value of a repeated option counts, so that a script's can be overridden; lists take all values.
 void take_last_values(CLI::App& app) {
     for (CLI::App* command : app.get_subcommands({})) {
         for (CLI::Option* option : command->get_options()) {
@@ -96,7 +96,7 @@ int fail(const Console& console, ExitCode code, const std::string& text) {
     return static_cast<int>(code);
 }
 
-/// Does what the options say.
+/// Runs the action, and turns exceptions into exit codes.
 int act(const Console& console, const Action& action) {
     try {
         install_signal_handlers(console.json());

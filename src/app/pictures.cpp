@@ -49,9 +49,9 @@ struct FigureOptions {
     [[nodiscard]] Scene load(const Console& console) const;
     /// Throws CLI::RequiredError if there is no scene, or no moment that is not that of `--from`.
     void require() const;
-    /// What the file of `--from`, made by `command`, tells in place of what the command line does not.
+    /// Takes the options that the command line does not give from the file of `--from`, made by `command`.
     void take_origin(const Console& console, std::string_view command);
-    /// The times beside those of frames that the film of these shots records.
+    /// The times that the film of these shots records in addition to those of frames.
     [[nodiscard]] std::vector<double> film_times(const std::vector<RequestedTime>& some) const;
     [[nodiscard]] Film film_of(const Console& console, const Scene& scene,
                                const std::vector<RequestedTime>& some) const;
@@ -97,9 +97,8 @@ void FigureOptions::take_origin(const Console& console, std::string_view command
     if (!scene.is_from() || !shots.times_s.empty() || !shots.frames.empty()) return;
     const std::optional<PictureOrigin>& picture = scene.provenance(console).picture;
     if (!picture) {
-        throw Error(
-            ExitCode::kUsage,
-            fmt::format("'{}' does not tell which moment it shows; give --at or --frame", scene.input()));
+        throw Error(ExitCode::kUsage,
+                    fmt::format("'{}' has no record of its time; give --at or --frame", scene.input()));
     }
     const bool is_frame = picture->command == "frame" && command == "still";
     if (picture->command != command && !is_frame) {
@@ -183,7 +182,7 @@ PngInfo FigureOptions::png_info(const Scene& loaded, const std::vector<Requested
     if (ppi != kScreenPpi) origin.pixels_per_inch = ppi;
     if (!made_) made_ = provenance_of(loaded);
     Provenance made = *made_;
-    // A still of a frame has the bytes of the frame, which tells its number elsewhere.
+    // A still of a frame has the bytes of the frame, whose number is elsewhere in the record.
     const bool is_frame = origin.command == "still" && origin.times.front().frame &&
                           origin.shutter == loaded.video.shutter && origin.film_times_s.empty() &&
                           !origin.pixels_per_inch;
@@ -239,7 +238,7 @@ bool is_directory(const std::string& path) {
     return std::filesystem::is_directory(path, none);
 }
 
-/// Whether the output is one picture. A name with an ending is meant as a file; folders have none, or exist,
+/// Whether the output is one picture. A name with an ending is that of a file; folders have none, or exist,
 /// or end with a slash.
 bool is_picture(const std::string& output) {
     const std::filesystem::path path(output);
@@ -252,8 +251,8 @@ bool is_picture(const std::string& output) {
                             output));
 }
 
-/// What a folder calls it: names that sort by time, with one dot, so that no program takes a part of the
-/// time for the ending.
+/// Its name in a folder: names sort by time and have one dot, so that no program takes a part of the time for
+/// the ending.
 std::string name_of(const RequestedTime& shot, const Scene& scene) {
     std::string name = shot.frame ? fmt::format("{}_f{:06}", scene.name, *shot.frame)
                                   : fmt::format("{}_t{:011.6f}", scene.name, shot.time_s);

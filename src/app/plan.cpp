@@ -22,8 +22,8 @@ struct Cost {
     double time_s = 0.0;
 };
 
-/// Of the run alone: its steps are those of the proved run, or the duration over the step; std::nullopt if
-/// only a run can tell.
+/// Cost of one run: the steps of the verified trial, or the duration over the step; std::nullopt if only a
+/// run can show it.
 std::optional<Cost> cost_of(const Film& film) {
     const double duration_s = film.scene().world.duration_s;
     Cost cost;
@@ -66,7 +66,7 @@ nlohmann::json to_json(const Film& film, std::size_t i) {
     return json;
 }
 
-/// The methods, and of each what was tried for the first of its bodies.
+/// The methods, each with the trials for the first of its bodies.
 void report_methods(const Console& console, const Film& film) {
     const std::vector<MethodGroup> groups = groups_of(film.plan());
     const bool is_one = film.plan().bodies.size() == 1;
@@ -131,8 +131,9 @@ ExitCode plan(const Console& console, const PlanOptions& options) {
 }  // namespace
 
 void add_plan(CLI::App& app, Action& action) {
-    auto [command, options] = add_command(
-        app, action, "plan", "show what is modelled and why, by which method, and its error and cost", plan);
+    auto [command, options] =
+        add_command(app, action, "plan",
+                    "show the model, the method and the reason for it, its error and its cost", plan);
     options.scene.add_to(command);
     options.scene.add_size(command);
     options.scene.add_timing(command);

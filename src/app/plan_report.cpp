@@ -41,7 +41,7 @@ void warn_of_unbounded(const Console& console, const Film& film) {
     }
 }
 
-/// Says of which nets the pictures are all the same, which their author will not have meant.
+/// Warns of nets that stand still, probably by mistake.
 void warn_of_plates(const Console& console, const Film& film) {
     for (std::size_t i = 0; i < film.plan().bodies.size(); ++i) {
         if (!film.plan().bodies[i].stands_still) continue;
@@ -99,11 +99,11 @@ void warn_of_branch(const Console& console, const Film& film) {
             return body.reason == PlanReason::kNamed;  // a bound says it of the others
         });
     if (!branched_s || !is_named) return;
-    console.warning(fmt::format(
-        "before {:.6g} s bars of a net lay in line, from where it could go on in several ways; what is drawn "
-        "after it is one of them; another solver.step may pass, and method auto says how far its own is "
-        "right",
-        *branched_s));
+    console.warning(
+        fmt::format("before {:.6g} s bars of a net lay in line, from where several motions are possible; the "
+                    "pictures show one of them; another solver.step may avoid that, and method auto finds "
+                    "how far its own motion is right",
+                    *branched_s));
 }
 
 void EmptyPictures::add_to(CLI::App& command) {

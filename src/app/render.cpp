@@ -126,7 +126,7 @@ void report_format(const Console& console, const Scene& scene, const CheckedOutp
     const bool is_opaque = view::look_of(scene.style).ground.is_opaque();
     const media::Format& format = output.video().format;
     if (format.is_fallback) {
-        console.warning(fmt::format("{}, the default of {}, is not here: encoding with {} ({})",
+        console.warning(fmt::format("{}, the default of {}, is not available: encoding with {} ({})",
                                     format.ending->codecs.front(), format.ending->text, format.codec->name,
                                     format.codec->standard));
     }
@@ -187,7 +187,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     def.verify_all = options.verify == "full";
     parse_range(range_of(console, options), def);
     check_standard_output(console, options.output);
-    def.on_progress = stopping_if_asked();  // what stands under the name of a part may be large
+    def.on_progress = stopping_if_asked();  // a file under the name of a part may be large
     const CheckedOutput output = check_render(scene, options.output, def, options.scene.input());
     report_format(console, scene, output);
     OnProgress on_progress = show_progress(console, "simulate");
@@ -211,7 +211,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
 
     const GlInfo gl = film.gl();
     report_gl(console, gl);
-    on_progress = stopping_if_asked();  // what is simulated from now on shows as frames that are drawn
+    on_progress = stopping_if_asked();  // from now on, simulation shows as frames that are drawn
     Progress progress(console, "render", count);
     if (is_one_file(options.output)) keep_words_of_part(part_path(options.output));
     const Rendered rendered = render_video(film, output, [&](std::int64_t done, std::int64_t total) {
@@ -256,8 +256,8 @@ void add_render(CLI::App& app, Action& action) {
     command.add_option("--frames", options.frames, "only frames FIRST <= k < END")->type_name("FIRST:END");
     command
         .add_option("--verify", options.verify,
-                    "what of a finished H.264, ProRes or FFV1 video is decoded: key frames (keys), or all "
-                    "(full), as of others")
+                    "frames of a finished H.264, ProRes or FFV1 video to decode: key frames (keys) or all "
+                    "(full); of other videos all")
         ->check(CLI::IsMember({"keys", "full"}))
         ->capture_default_str();
     options.gl.add_to(command);

@@ -67,7 +67,7 @@ nlohmann::json bodies_json(const System& system) {
     return bodies;
 }
 
-/// The same in words, if there are several bodies.
+/// The columns of each body, for people.
 std::string columns_text(const System& system) {
     std::string text;
     for (const nlohmann::json& body : bodies_json(system)) {
@@ -125,8 +125,7 @@ nlohmann::json report(Film& film) {
     return json;
 }
 
-/// What the run cost; where all bodies take the same steps, in the unit in which the method's cost is counted
-/// too.
+/// Cost of the run, also in the unit of the method if all bodies take the same steps.
 std::string cost_text(const Film& film) {
     const System& system = film.system();
     const auto steps = static_cast<double>(film.diagnostics().steps);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "corda/figures/figure_times.hpp"
+#include "corda/figures/drawings.hpp"
 #include "corda/figures/motion_summary.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/report/report.hpp"
@@ -15,7 +15,7 @@ namespace corda::figures {
 using WritePoses =
     std::function<void(const std::string& path, double width_mm, const std::vector<double>& times_s)>;
 
-/// What is modelled, by which method and how well, and how it looks: a strobe, stills and the largest
+/// Model, method and its error, and pictures: a strobe, stills and the largest
 /// figures.
 [[nodiscard]] report::Chapter motion_chapter(Film& film, const MotionSummary& reading,
                                              const FigureTimes& moments, const WritePoses& write);

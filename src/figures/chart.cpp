@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "corda/figures/paper.hpp"
+#include "corda/report/writers.hpp"
 #include "corda/view/number_text.hpp"
 
 namespace corda::figures {
@@ -30,6 +31,21 @@ view::NumberTitle title_of_axis(const AxisDef& axis, double size) {
 }
 
 }  // namespace
+
+std::string quantity_text(double value, const std::string& unit) {
+    constexpr double kMinPlain = 1e-3;
+    if (unit.empty()) {
+        const bool is_plain = value == 0.0 || std::abs(value) >= kMinPlain || !std::isfinite(value);
+        return is_plain ? report::short_number(value) : view::power_text(value);
+    }
+    // " (kN)"
+    const view::NumberTitle title = view::title_of("", unit, std::abs(value));
+    return report::short_number(value / title.unit) + " " + title.text.substr(2, title.text.size() - 3);
+}
+
+std::string time_text(double time_s) {
+    return fmt::format("{:.4g} s", time_s);
+}
 
 report::Plot make_plot(const std::string& id, const std::string& title, const AxisDef& x, const AxisDef& y,
                        const std::vector<Curve>& curves) {
@@ -98,8 +114,8 @@ void fit_height(report::Plot& plot) {
 std::string thinning_text(const MotionSummary& reading) {
     if (reading.rows <= Thinner::kMaxPoints) return {};
     return fmt::format(
-        " Of the {} rows, {} points at most are drawn: of each of the blocks that they are divided into, the "
-        "first, the last and the extremes. The CSV has all rows.",
+        " At most {1} points of the {0} rows are drawn: the first, the last and the extremes of each block "
+        "of rows. The CSV has all rows.",
         reading.rows, Thinner::kMaxPoints);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,7 +18,7 @@ constexpr double kLetterPt = 8.0;
 constexpr double kPointsPerInch = 72.0;
 constexpr double kThinnestPx = 0.1;  // that a width may have, and kThickestPx
 constexpr double kThickestPx = 1000.0;
-// Of the height over the width: what is beyond fits no page.
+// Limits of height over width, so that a picture fits a page.
 constexpr double kFlattest = 0.2;
 constexpr double kTallest = 1.4;
 
@@ -25,7 +26,62 @@ void scale(std::optional<double>& width_px, double factor) {
     if (width_px) width_px = std::clamp(*width_px * factor, kThinnestPx, kThickestPx);
 }
 
+constexpr int kPoses = 6;
+constexpr int kStills = 5;
+
+/// When a path first turns back in x; std::nullopt if it never does.
+std::optional<double> first_turn_s(const std::vector<CurvePoint>& path) {
+    constexpr double kFarEnough = 0.25;
+    if (path.size() < 3) return std::nullopt;
+    const auto by_x = [](const CurvePoint& a, const CurvePoint& b) { return a.x < b.x; };
+    const auto [left, right] = std::minmax_element(path.begin(), path.end(), by_x);
+    const double enough_m = kFarEnough * (right->x - left->x);
+    for (std::size_t i = 1; i + 1 < path.size(); ++i) {
+        const double before = path[i].x - path[i - 1].x;
+        const double after = path[i + 1].x - path[i].x;
+        const bool turns = before * after < 0.0 || (before != 0.0 && after == 0.0);
+        if (turns && std::abs(path[i].x - path.front().x) >= enough_m && enough_m > 0.0)
+            return path[i].time_s;
+    }
+    return std::nullopt;
+}
+
+/// So many frame times from 0 to a frame, evenly spread, each once.
+std::vector<double> spread(const Film& film, std::int64_t last, int count) {
+    std::vector<double> times_s;
+    for (int i = 0; i < count; ++i) {
+        const double time_s = film.time_s(std::llround(static_cast<double>(last) * i / (count - 1)));
+        if (times_s.empty() || time_s > times_s.back()) times_s.push_back(time_s);
+    }
+    return times_s;
+}
+
 }  // namespace
+
+FigureTimes find_figure_times(const Film& film, const MotionSummary& reading,
+                              const std::vector<double>& asked_s) {
+    FigureTimes moments;
+    if (!asked_s.empty()) {
+        moments.are_chosen = true;
+        const double end_s = reading.failure ? reading.end_s : film.scene().world.duration_s;
+        for (const double time_s : asked_s)
+            if (time_s <= end_s) moments.stills_s.push_back(time_s);
+        std::sort(moments.stills_s.begin(), moments.stills_s.end());
+        moments.strobe_s = moments.stills_s;
+        return moments;
+    }
+    const std::int64_t last = reading.rows - 1;
+    std::int64_t end = last;
+    if (!reading.bodies.empty()) {
+        if (const auto turn_s = first_turn_s(reading.bodies.front().path.points())) {
+            moments.is_swing = true;
+            end = std::min(last, film.scene().video.fps.last_frame_within(*turn_s));
+        }
+    }
+    moments.strobe_s = spread(film, end, kPoses);
+    moments.stills_s = spread(film, last, kStills);
+    return moments;
+}
 
 Scene look_in_print(const Scene& scene, double width_mm) {
     Scene look = scene;

@@ -24,9 +24,9 @@ struct SceneReportDef {
 };
 
 /// Writes the report of a film, whose states have needed_readings(), into a folder: CSVs with a row per frame
-/// time, figures, and the pages. A motion that diverges gives a report of what comes before, and its error is
-/// returned. If it is asked to stop, the pages have what was drawn. Throws corda::Error: kIo, kNoGl,
-/// kDiverged if there is no state at all, kInterrupted.
+/// time, figures, and the pages. If a motion diverges, the report shows the part before that, and the error
+/// is returned. If `on_progress` asks to stop, the pages have the figures that are drawn. Throws
+/// corda::Error: kIo, kNoGl, kDiverged if there is no state at all, kInterrupted.
 [[nodiscard]] std::optional<Error> write_scene_report(Film& film, const SceneReportDef& def,
                                                       report::ReportFolder& folder);
 

@@ -10,12 +10,11 @@ namespace corda::figures {
 
 using view::CurvePoint;
 
-/// Keeps few points of a long curve, and none of its extremes is lost: rows are taken in blocks of equal
-/// length, of each of which stay the first, the last, and those where x or y is least or largest. Memory does
-/// not grow with the number of rows.
+/// Keeps few points of a long curve, with all its extremes: of each block of rows of equal length, the first,
+/// the last, and those with the extremes of x and y. Memory does not grow with the number of rows.
 ///
-/// A path, which is not over time, cannot be told by its turns if blocks are long: lines between them would
-/// cross what it goes around. Of it then stay the first row of each block, as dots, and the extremes of all.
+/// A path is not a function of time: if blocks are long, lines between its extremes would cross the area that
+/// it goes around. Then only the first row of each block is kept, as a dot, and the extremes of all rows.
 class Thinner {
   public:
     enum class Kind { kOverTime, kPath };

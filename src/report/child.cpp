@@ -47,9 +47,9 @@ std::string contents(const FileHandle& file) {
                          pid_t parent, int report) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);  // no orphan, whatever ends corda
     if (getppid() != parent) _exit(EXIT_FAILURE);
-    // In a process group of its own: Ctrl-C at a terminal asks corda alone, which still needs what is drawn.
+    // In a process group of its own: Ctrl-C at a terminal reaches corda alone, which still needs the picture.
     setpgid(0, 0);
-    // What corda handles or ignores (SIGPIPE) a program is to find as any other does.
+    // The program starts with the default actions of signals that corda ignores.
     for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_DFL);
     int failure = 0;
     for (int stream = 0; stream < 3; ++stream)

@@ -9,10 +9,10 @@
 
 namespace corda::report {
 
-/// Writes a report into a folder chapter by chapter, so that what was measured for hours is not lost with
-/// what comes after it. Files of other names stay. All functions throw corda::Error (kIo), and kInternal for
-/// a report that breaks the rules of report.hpp (check_report); a file has its name only if it is complete
-/// (see OutputFile).
+/// Writes a report into a folder chapter by chapter, so that a failure keeps the chapters that were measured
+/// before. Files of other names stay. All functions throw corda::Error (kIo), and kInternal for a report that
+/// breaks the rules of report.hpp (check_report); a file has its name only if it is complete (see
+/// OutputFile).
 class ReportFolder {
   public:
     /// Makes the folder if it is missing. `options.on_progress` is asked between pictures. `widths_mm`: see

@@ -13,7 +13,6 @@
 #include "corda/core/image.hpp"
 #include "corda/core/text.hpp"
 #include "corda/report/child.hpp"
-#include "corda/report/pdf_time.hpp"
 #include "corda/report/writers.hpp"
 
 namespace corda::report {
@@ -151,7 +150,7 @@ std::vector<std::string> plot_items(const Plot& plot) {
     return items;
 }
 
-/// Of a plot that is so wide in print: all lengths are points, of which the letters have 8.
+/// Terminal of a plot of that width in print. All lengths are in points; letters have 8.
 std::string print_terminal(const Plot& plot, PlotFormat format, int width_mm) {
     const double width_in = width_mm / kMmPerInch;
     const double height_in = width_in * plot.height_per_width;
@@ -219,8 +218,8 @@ void add_size(const Plot& plot, int width_mm, std::string& svg) {
         at, fmt::format(" width=\"{}mm\" height=\"{:.6g}mm\"", width_mm, width_mm * plot.height_per_width));
 }
 
-/// Says of a PNG that it has kPrintPpi: the chunk pHYs of 11811 pixels per metre, with its check sum, behind
-/// the chunk IHDR.
+/// Sets the resolution of a PNG to kPrintPpi: the chunk pHYs of 11811 pixels per metre, with its check sum,
+/// behind the chunk IHDR.
 void add_resolution(std::string& png) {
     constexpr std::string_view kChunk("\0\0\0\x09pHYs\0\0\x2e\x23\0\0\x2e\x23\x01\x78\xa5\x3f\x76", 21);
     constexpr std::size_t kEndOfHeader = 33;

@@ -7,24 +7,25 @@
 #include <string_view>
 #include <vector>
 
+#include "corda/core/text.hpp"
 #include "corda/report/report.hpp"
 
 namespace corda::report {
 
 // The forms of a report. Each is a function of the report alone: the same report gives the same bytes
-// (pictures: with the same version of gnuplot). Texts may be any bytes: where nothing else is said, a control
-// character and what is not UTF-8 become the numbers of their bytes (see core/text.hpp).
+// (pictures: with the same version of gnuplot). Texts may be any bytes: where nothing else is said, control
+// characters and bytes that are not UTF-8 become their numbers (see core/text.hpp).
 
 /// A table as CSV: a row of column keys, then the rows. Quoted as in section 2 of RFC 4180, but with LF, and
 /// in UTF-8 (see core/text.hpp); a number has 17 significant digits, so that reading it gives the same bits.
 [[nodiscard]] std::string csv_text(const Table& table);
 
 /// The whole report as JSON, "schema": 1. A row is an object by column key; an empty cell is null, and so
-/// is a number that JSON does not have (infinite, NaN). Only what is not UTF-8 becomes numbers.
+/// is a number that JSON does not have (infinite, NaN). Only bytes that are not UTF-8 become numbers.
 [[nodiscard]] std::string json_text(const Report& report);
 
 /// The whole report as GitHub-flavoured Markdown with aligned tables and short numbers; a failed row says so
-/// in its failure column. Figures are linked as files beside it.
+/// in its failure column. Figures are linked as files in the same folder.
 [[nodiscard]] std::string markdown_text(const Report& report);
 
 /// Gives the SVG of a plot or a picture by its id.
@@ -76,5 +77,19 @@ void replace_all(std::string& text, std::string_view from, std::string_view to);
 /// A number for people: three significant digits, e.g. "1.23e-5" or "1230"; whole numbers below a million in
 /// full.
 [[nodiscard]] std::string short_number(double value);
+
+/// Puts a fixed time in the place of that at which cairo made a PDF, so that it has the same bytes at any
+/// time. What cairo 1.18 compresses, the date among it, becomes plain: compressed, its length would depend on
+/// the date.
+void forget_time(std::string& pdf);
+
+/// Makes every text in a value of nlohmann's JSON UTF-8 (see core/text.hpp), which is all that JSON can hold:
+/// names of files can have any bytes.
+template <typename Json>
+void make_utf8(Json& json) {
+    if (json.is_string()) json = utf8(json.template get_ref<const std::string&>());
+    if (!json.is_structured()) return;
+    for (Json& value : json) make_utf8(value);
+}
 
 }  // namespace corda::report

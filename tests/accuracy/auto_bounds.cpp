@@ -38,7 +38,7 @@ Range wanted_scenes() {
     return {0, range.first};
 }
 
-/// What became of the claims of a family.
+/// Results of the claims of a family.
 class Row {
   public:
     void add(const Verdict& verdict) {

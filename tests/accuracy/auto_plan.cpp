@@ -116,7 +116,7 @@ TEST(AutoPlan, BoundIsTrueOfStiffBodies) {
 }
 
 TEST(AutoPlan, FindsNoHorizonWithinTheRegularRowsOfR5) {
-    // At a thousandth of the length every row of R5 can be predicted but for one: N = 10 at 90 degrees is
+    // At a thousandth of the length every row of R5 can be predicted except one: N = 10 at 90 degrees is
     // chaotic past 2 s.
     for (const reference::ReleasedChain& chain : reference::kReleasedChains) {
         const RopeDef rope = reference::released_rope(chain);

@@ -170,7 +170,7 @@ TEST_F(FormatsOfRender, WithoutX264AnotherEncoderIsUsedAndNamed) {
     const auto result = run("render " + scene_ + " -o " + video + " --json");
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_THAT(result.err,
-                HasSubstr("libx264, the default of .mp4, is not here: encoding with libsvtav1 (AV1)"));
+                HasSubstr("libx264, the default of .mp4, is not available: encoding with libsvtav1 (AV1)"));
     EXPECT_EQ(json::parse(result.out)["encoder"], "libsvtav1");
     EXPECT_EQ(json::parse(run_corda({"verify", video, "--json"}).out)["codec"], "av1");
 

@@ -131,7 +131,8 @@ TEST_F(SceneReport, CoversADivergingMotionUntilItDiverges) {
     EXPECT_EQ(result.exit_code, 8) << result.err;
     EXPECT_THAT(result.err, HasSubstr("the simulation diverged before t = 0.16 s"));
     EXPECT_THAT(result.err, HasSubstr("files are written, the last of them is " + out("report.html")));
-    EXPECT_THAT(read("report.html"), HasSubstr("It diverges after 0.14 s; this is what comes before."));
+    EXPECT_THAT(read("report.html"),
+                HasSubstr("It diverges after 0.14 s; the figures show the motion before that."));
     EXPECT_TRUE(fs::exists(out("still_1_85mm.png")));
     EXPECT_FALSE(fs::exists(out("still_2_85mm.png")));  // at 0.5 s there is nothing
 }

@@ -48,7 +48,7 @@ TEST_P(EveryMethod, NeverWorksOnDenormalNumbersWhileAMotionDiesDown) {
         const test::DenormalTrap trap;
         for (int k = 1; k <= 2000; ++k) ASSERT_EQ(run.advance_to(k), Status::kOk);
     }
-    // Measured: exactly 0 but for exact, 7e-27, whose steps follow its tolerance.
+    // Measured: exactly 0 except for exact, 7e-27, whose steps follow its tolerance.
     EXPECT_NEAR(run.state().x_m.back(), 0.0, std::holds_alternative<ExactDef>(method) ? 1e-20 : 1e-100);
     // With one sweep per step relaxation is 7.5 mm too long.
     EXPECT_NEAR(run.state().y_m.back(), -1.0, std::holds_alternative<RelaxationDef>(method) ? 0.01 : 1e-13);

@@ -172,7 +172,7 @@ const std::map<std::string, std::uint64_t> kHashes{
     {"blur_clear by rattle", 0x2d329ad4f18fbb0cU},
 };
 
-/// What a method refuses, with the reason in the message.
+/// Scenes that a method refuses, with a part of the message.
 const std::map<std::string, std::string> kRefused{
     {"materials by rattle", "use method auto"},  // its string
     {"slack by rattle", "use method auto"},

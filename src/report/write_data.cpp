@@ -1,6 +1,6 @@
 #include <nlohmann/json.hpp>
 
-#include "corda/report/utf8_json.hpp"
+#include "corda/core/csv.hpp"
 #include "corda/report/writers.hpp"
 
 namespace corda::report {
@@ -54,6 +54,24 @@ Json to_json(const Chapter& chapter) {
 }
 
 }  // namespace
+
+std::string csv_text(const Table& table) {
+    CsvLine line;
+    for (const Column& column : table.columns) line.add(column.key);
+    std::string text(line.end());
+    for (const auto& row : table.rows) {
+        for (const Cell& cell : row) {
+            if (const auto* number = std::get_if<double>(&cell))
+                line.add(*number);
+            else if (const auto* words = std::get_if<std::string>(&cell))
+                line.add(*words);
+            else
+                line.add(std::string_view());
+        }
+        text += line.end();
+    }
+    return text;
+}
 
 std::string json_text(const Report& report) {
     Json setting = Json::array();

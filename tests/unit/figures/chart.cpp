@@ -1,4 +1,4 @@
-#include "corda/figures/quantity_text.hpp"
+#include "corda/figures/chart.hpp"
 
 #include <gtest/gtest.h>
 

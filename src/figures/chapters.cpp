@@ -1,0 +1,369 @@
+#include "corda/figures/chapters.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "corda/core/text.hpp"
+#include "corda/figures/chart.hpp"
+#include "corda/pipeline/plan_text.hpp"
+#include "corda/sim/solver.hpp"
+
+namespace corda::figures {
+namespace {
+
+/// Adds a plot whose numbers are in a file of that name.
+void add_plot(report::Plot plot, const char* data, report::Chapter& chapter) {
+    plot.data = data;
+    chapter.plots.push_back(std::move(plot));
+}
+
+std::string model_text(const Film& film) {
+    const std::vector<std::string> terms = modelled_terms(film.scene(), film.plan());
+    return fmt::format("Modelled: {}; {}.", system_text(film.system()), fmt::join(terms, "; "));
+}
+
+std::string method_text(Film& film) {
+    const Plan& plan = film.plan();
+    std::string text = fmt::format("Method: {}", plan_text(film.system(), plan));
+    const std::vector<MethodGroup> groups = groups_of(plan);
+    if (groups.size() == 1) text += ", because " + reason_text(plan.bodies[groups.front().bodies.front()]);
+    text += ". ";
+    if (const auto bound = bound_text(film)) {
+        text += fmt::format(
+            "The error of the displayed positions is at most {}{}.", *bound,
+            plan.horizon_s
+                ? "; after that the motion cannot be predicted, and the figures show one possible motion"
+                : ", shown by tighter runs");
+    } else if (plan.horizon_s) {
+        text += "The motion cannot be predicted: the figures show one possible motion.";
+    } else {
+        text += "There is no bound of its error.";
+    }
+    return text;
+}
+
+std::string place_of(const Film& film, const Extreme& extreme, const char* what) {
+    return fmt::format("{} {} of {}", what, extreme.index, body_name(film.system(), extreme.body));
+}
+
+report::Table largest_table(const Film& film, const MotionSummary& reading) {
+    report::Table table{
+        "largest",
+        "Largest figures, at frame times",
+        {{"quantity", "quantity"}, {"size", "size"}, {"unit", "unit"}, {"t_s", "t [s]"}, {"where", "where"}},
+        {},
+        "Links and particles are numbered from 0 within their bodies."};
+    const auto add = [&](const char* name, const char* unit, const Extreme& extreme, const char* what) {
+        if (!extreme.is_known) return;
+        table.add({name, extreme.size, unit, extreme.time_s, place_of(film, extreme, what)});
+    };
+    add("speed", "m/s", reading.speed, "particle");
+    add("tension", "N", reading.tension, "link");
+    add("strain", "", reading.strain, "link");
+    const Figures& largest = film.diagnostics().largest;
+    if (largest.loads) table.add({"force on a pin", largest.loads->pin_force_n, "N", {}, {}});
+    if (largest.energy_error) table.add({"energy error", *largest.energy_error, "", {}, {}});
+    return table;
+}
+
+std::string times_text(const std::vector<double>& times_s) {
+    std::string text;
+    for (std::size_t i = 0; i < times_s.size(); ++i)
+        text += fmt::format("{}{:.4g}", i == 0 ? "" : i + 1 == times_s.size() ? " and " : ", ", times_s[i]);
+    return text + " s";
+}
+
+void add_pictures(const Film& film, const FigureTimes& moments, const WritePoses& write,
+                  report::Chapter& chapter) {
+    const std::string name = printable(film.scene().name);
+    if (moments.strobe_s.size() > 1) {
+        const std::vector<double> times_s = moments.strobe_s;
+        const std::string poses = fmt::format("poses at t = {}", times_text(times_s));
+        chapter.pictures.push_back(
+            {"strobe", fmt::format("{}, {}", name, poses),
+             fmt::format("Strobe: {}, the fainter the earlier{}.", poses,
+                         moments.is_swing ? "; the last is where the first swing ends" : ""),
+             [write, times_s](const std::string& path, double width_mm) { write(path, width_mm, times_s); }});
+    }
+    std::size_t number = 1;
+    for (const double time_s : moments.stills_s) {
+        const std::string at = "at t = " + time_text(time_s);
+        chapter.pictures.push_back(
+            {fmt::format("still_{}", number++), fmt::format("{} {}", name, at),
+             fmt::format("The scene {}.", at),
+             [write, time_s](const std::string& path, double width_mm) { write(path, width_mm, {time_s}); },
+             moments.stills_s.size() > 1});
+    }
+}
+
+constexpr const char* kTipData = "tip.csv";
+
+std::vector<pipeline::TrackedParticle> followed_of(const MotionSummary& reading) {
+    std::vector<pipeline::TrackedParticle> followed;
+    for (const BodyCurves& body : reading.bodies) followed.push_back(body.followed);
+    return followed;
+}
+
+/// Curves that are not over time: dots where lines would be misleading.
+std::vector<Curve> tip_curves(const Film& film, const MotionSummary& reading, Thinner BodyCurves::*curve) {
+    std::vector<Curve> curves = curves_of(film.scene(), film.system(), reading, curve);
+    for (std::size_t i = 0; i < curves.size(); ++i)
+        curves[i].is_joined = (reading.bodies[i].*curve).is_joined();
+    return curves;
+}
+
+/// As thinning_text().
+std::string path_thinning_text(const MotionSummary& reading) {
+    if (reading.bodies.front().path.is_joined()) return thinning_text(reading);
+    return fmt::format(
+        " At most {1} of the {0} rows are drawn, as dots: evenly spread ones, the last one, and the extremes "
+        "of x and y. The CSV has all rows.",
+        reading.rows, Thinner::kMaxPoints);
+}
+
+/// Whether all bodies turn about their pins: near a point, the angle about it has no meaning.
+bool all_turn(const System& system, const MotionSummary& reading) {
+    constexpr double kNear = 0.1;
+    return std::all_of(reading.bodies.begin(), reading.bodies.end(), [&](const BodyCurves& body) {
+        const double length_m = links_length_m(system, system.bodies[body.followed.body]);
+        return body.followed.pin && body.followed.is_free_end && body.nearest_m >= kNear * length_m;
+    });
+}
+
+/// The size of the area in which the paths are.
+double extent_m(const std::vector<Curve>& curves) {
+    double low_x = HUGE_VAL;
+    double high_x = -HUGE_VAL;
+    double low_y = HUGE_VAL;
+    double high_y = -HUGE_VAL;
+    for (const Curve& curve : curves) {
+        for (const CurvePoint& point : curve.points) {
+            low_x = std::min(low_x, point.x);
+            high_x = std::max(high_x, point.x);
+            low_y = std::min(low_y, point.y);
+            high_y = std::max(high_y, point.y);
+        }
+    }
+    return std::max(high_x - low_x, high_y - low_y);
+}
+
+/// "link 3 of rope 0 (between its particles 3 and 4)"
+std::string link_text(const System& system, const Extreme& extreme) {
+    const Body& body = system.bodies[extreme.body];
+    const Bar& bar = system.bars[body.first_bar + extreme.index];
+    return fmt::format("link {} of {}, between its particles {} and {}", extreme.index,
+                       body_name(system, extreme.body), bar.a - body.first_particle,
+                       bar.b - body.first_particle);
+}
+
+/// Why the tensions of some bodies are not known.
+std::string unknown_text(const Film& film, const MotionSummary& reading) {
+    const auto relaxes = [&](std::size_t b) { return !sim::knows_tensions(film.plan().bodies[b].method); };
+    const auto& bodies = reading.unknown_tensions;
+    const std::string names = bodies_text(film.system(), bodies);
+    if (std::all_of(bodies.begin(), bodies.end(), relaxes)) {
+        return fmt::format(
+            "Tensions of {} are not known: method relaxation moves particles until bars have "
+            "their lengths, without forces in them.",
+            names);
+    }
+    return fmt::format(
+        "Tensions of {} are not known: bars that depend on each other share them in any way{}.", names,
+        std::any_of(bodies.begin(), bodies.end(), relaxes) ? ", and method relaxation knows no forces in bars"
+                                                           : "");
+}
+
+/// The tensions of the links of a chain or a ring when the largest of all is reached.
+void add_tensions_along(const Film& film, const MotionSummary& reading, report::Chapter& chapter) {
+    const System& system = film.system();
+    const Body& body = system.bodies[reading.tension.body];
+    constexpr std::size_t kMinLinks = 3;
+    if (body.is_net || body.link_count < kMinLinks) return;
+    Thinner thinner(static_cast<std::int64_t>(body.link_count));
+    double at_m = 0.0;
+    for (std::size_t k = 0; k < body.link_count; ++k) {
+        const double rest_m = system.bars[body.first_bar + k].rest_m;
+        const double middle_m = at_m + 0.5 * rest_m;
+        thinner.add({middle_m, middle_m, reading.tensions_n[k]});
+        at_m += rest_m;
+    }
+    const std::string name = body_name(system, reading.tension.body);
+    report::Plot plot = make_plot("tension_along", "Tension along the rope", {"distance along the rope", "m"},
+                                  {"tension", "N"}, {{"", thinner.points()}});
+    plot.caption = fmt::format(
+        "Tension of the links of {} at {}, when that of one is largest, against the "
+        "distance of their middles from particle 0 along the rope at rest.",
+        name, time_text(reading.tension.time_s));
+    add_plot(std::move(plot), "tension_along.csv", chapter);
+}
+
+}  // namespace
+
+report::Chapter motion_chapter(Film& film, const MotionSummary& reading, const FigureTimes& moments,
+                               const WritePoses& write) {
+    report::Chapter chapter;
+    chapter.title = "Motion";
+    chapter.summary = model_text(film) + " " + method_text(film);
+    const Rational fps = film.scene().video.fps.rational();
+    chapter.paragraphs.push_back(
+        fmt::format("All figures are at frame times, {} per second: {} of them, from 0 to {}.", fps.text(),
+                    reading.rows, time_text(reading.end_s)));
+    if (reading.failure) {
+        chapter.paragraphs.push_back(
+            fmt::format("The motion ends early: {}. The figures show the motion before that.",
+                        printable(reading.failure->what())));
+        chapter.summary += fmt::format(" It diverges after {}; the figures show the motion before that.",
+                                       time_text(reading.end_s));
+    }
+    if (const auto branched_s = film.diagnostics().branched_s) {
+        chapter.paragraphs.push_back(
+            fmt::format("Before {} bars of a net lay in line, from where several motions were possible; the "
+                        "figures show one of them.",
+                        time_text(*branched_s)));
+    }
+    chapter.tables.push_back(largest_table(film, reading));
+    add_pictures(film, moments, write, chapter);
+    return chapter;
+}
+
+report::Chapter path_chapter(const Film& film, const MotionSummary& reading) {
+    report::Chapter chapter;
+    chapter.title = "Path";
+    if (reading.bodies.empty()) {
+        chapter.paragraphs.emplace_back("All particles are pinned: nothing moves.");
+        return chapter;
+    }
+    const System& system = film.system();
+    const Extreme& speed = reading.speed;
+    if (speed.is_known) {
+        chapter.summary = fmt::format("The largest speed is {} at {} (particle {} of {}).",
+                                      quantity_text(speed.size, "m/s"), time_text(speed.time_s), speed.index,
+                                      body_name(system, speed.body));
+    }
+    std::vector<Curve> curves = tip_curves(film, reading, &BodyCurves::path);
+    // Axes far from 0 would have the same number at each tick.
+    constexpr double kFar = 1e3;
+    const Vec2 origin_m = system.origin_m;
+    const bool is_far = std::max(std::abs(origin_m.x), std::abs(origin_m.y)) > kFar * extent_m(curves);
+    for (Curve& curve : curves) {
+        for (CurvePoint& point : curve.points) {
+            if (is_far) break;
+            point.x += origin_m.x;
+            point.y += origin_m.y;
+        }
+    }
+    report::Plot plot = make_plot("path", "Path of the tip", {"x", "m"}, {"y", "m"}, curves);
+    plot.has_equal_scales = true;
+    fit_height(plot);
+    plot.caption = fmt::format("Path of {}.{}{}{}", pipeline::particles_text(system, followed_of(reading)),
+                               is_far ? fmt::format(" Counted from ({}, {}) m.", origin_m.x, origin_m.y) : "",
+                               left_out_text(system, reading), path_thinning_text(reading));
+    add_plot(std::move(plot), kTipData, chapter);
+    return chapter;
+}
+
+report::Chapter phase_chapter(const Film& film, const MotionSummary& reading) {
+    report::Chapter chapter;
+    chapter.title = "Phase portrait";
+    if (reading.bodies.empty()) return chapter;
+    const System& system = film.system();
+    const bool turns = all_turn(system, reading);
+    const auto curve = turns ? &BodyCurves::turning : &BodyCurves::phase;
+    const std::vector<Curve> curves = tip_curves(film, reading, curve);
+    report::Plot plot =
+        turns ? make_plot("phase", "Phase portrait", {"angle", "rad"}, {"angular velocity", "rad/s"}, curves)
+              : make_plot("phase", "Phase portrait", {"x", "m"}, {"vx", "m/s"}, curves);
+    plot.caption = turns ? fmt::format(
+                               "Phase portrait: the angle of the line from the pin to {}, from straight "
+                               "down, positive towards +x, turns counted on, and its rate of change.",
+                               pipeline::particles_text(system, followed_of(reading)))
+                         : fmt::format(
+                               "Phase portrait: the horizontal position of {}, counted from the pin of "
+                               "its body or, if that has none or several, from the start, and the "
+                               "horizontal velocity.",
+                               pipeline::particles_text(system, followed_of(reading)));
+    plot.caption += left_out_text(system, reading) + path_thinning_text(reading);
+    add_plot(std::move(plot), kTipData, chapter);
+    return chapter;
+}
+
+report::Chapter energy_chapter(const Film& film, const MotionSummary& reading) {
+    report::Chapter chapter;
+    chapter.title = "Energy";
+    const auto error = film.diagnostics().largest.energy_error;
+    chapter.summary = error ? fmt::format(
+                                  "The energy error, | E - E(0) | over the sum of weight times length of all "
+                                  "bodies, or over E(0) without a force, is at most {}.",
+                                  quantity_text(*error, ""))
+                            : "Damping takes energy on purpose, so there is no energy error to tell.";
+    std::vector<Curve> curves{{"kinetic", reading.kinetic.points()}, {"weight", reading.weight.points()}};
+    if (reading.is_elastic) curves.push_back({"elastic", reading.elastic.points()});
+    curves.push_back({"total", reading.total.points(), "#000000"});
+    report::Plot plot = make_plot("energy", "Energy over time", {"t", "s"}, {"energy", "J"}, curves);
+    plot.caption = fmt::format(
+        "Energy of all free particles over time: kinetic, that of the weight since the "
+        "start{}, and their sum.{}",
+        reading.is_elastic ? ", elastic" : "", thinning_text(reading));
+    add_plot(std::move(plot), "energy.csv", chapter);
+    return chapter;
+}
+
+report::Chapter tension_chapter(const Film& film, const MotionSummary& reading) {
+    report::Chapter chapter;
+    chapter.title = "Tension";
+    if (!reading.unknown_tensions.empty()) chapter.paragraphs.push_back(unknown_text(film, reading));
+    const Extreme& largest = reading.tension;
+    if (!largest.is_known) {
+        if (!chapter.paragraphs.empty()) chapter.summary = chapter.paragraphs.front();
+        return chapter;
+    }
+    const System& system = film.system();
+    chapter.summary = fmt::format("The largest tension is {} at {} ({}).", quantity_text(largest.size, "N"),
+                                  time_text(largest.time_s), link_text(system, largest));
+    std::vector<Curve> curves = curves_of(film.scene(), system, reading, &BodyCurves::tension);
+    std::erase_if(curves, [](const Curve& curve) {
+        return std::all_of(curve.points.begin(), curve.points.end(),
+                           [](const CurvePoint& point) { return std::isnan(point.y); });
+    });
+    if (!curves.empty()) {
+        report::Plot plot =
+            make_plot("tension", "Largest tension over time", {"t", "s"}, {"largest tension", "N"}, curves);
+        plot.caption = fmt::format(
+            "Largest tension of a link{} over time; one that pushes counts by the size "
+            "of its force.{}{}",
+            curves.size() > 1 ? " of each body" : "", left_out_text(system, reading), thinning_text(reading));
+        add_plot(std::move(plot), "tension.csv", chapter);
+    }
+    add_tensions_along(film, reading, chapter);
+    return chapter;
+}
+
+report::Chapter strain_chapter(const Film& film, const MotionSummary& reading) {
+    report::Chapter chapter;
+    chapter.title = "Strain";
+    const System& system = film.system();
+    const Extreme& largest = reading.strain;
+    const bool stretches = std::any_of(system.bodies.begin(), system.bodies.end(),
+                                       [](const Body& body) { return body.material.compliance_1_n > 0.0; });
+    if (largest.is_known) {
+        chapter.summary = fmt::format(
+            "The largest strain, | length / rest length - 1 |, is {} at {} ({}){}.",
+            quantity_text(largest.size, ""), time_text(largest.time_s), link_text(system, largest),
+            stretches ? "" : ": an error of the method, for the links are not to stretch");
+    }
+    const std::vector<Curve> curves = curves_of(film.scene(), system, reading, &BodyCurves::strain);
+    if (curves.empty()) return chapter;
+    report::Plot plot =
+        make_plot("strain", "Largest strain over time", {"t", "s"}, {"largest strain", ""}, curves);
+    plot.caption = fmt::format(
+        "Largest strain of a link{} over time; a slack link of a string counts as 0.{}{}",
+        curves.size() > 1 ? " of each body" : "", left_out_text(system, reading), thinning_text(reading));
+    add_plot(std::move(plot), "strain.csv", chapter);
+    return chapter;
+}
+
+}  // namespace corda::figures
