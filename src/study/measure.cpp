@@ -88,6 +88,16 @@ thread_local const OnStep* heard_by = nullptr;
 
 }  // namespace
 
+double rms_m(const State& a, const State& b) {
+    double sum_m2 = 0.0;
+    for (std::size_t i = 0; i < a.x_m.size(); ++i) {
+        const double dx = a.x_m[i] - b.x_m[i];
+        const double dy = a.y_m[i] - b.y_m[i];
+        sum_m2 += dx * dx + dy * dy;
+    }
+    return std::sqrt(sum_m2 / static_cast<double>(a.x_m.size()));
+}
+
 Problem with_reach(Problem problem, int reach) {
     for (RopeDef& rope : problem.ropes) rope.reach = reach;
     return problem;

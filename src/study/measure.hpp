@@ -53,6 +53,9 @@ struct Measurement {
     std::string failure;  ///< why it failed; empty if it did not. A failed run is shown, never dropped.
 };
 
+/// RMS distance of the particles of two states, in metres.
+[[nodiscard]] double rms_m(const State& a, const State& b);
+
 /// How a run is timed.
 struct Timing {
     int repeats = 5;           ///< 0: not timed

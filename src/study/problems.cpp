@@ -60,16 +60,6 @@ Reference as_reference(SharedRecording frames, std::size_t count) {
     };
 }
 
-double rms_m(const State& a, const State& b) {
-    double sum_m2 = 0.0;
-    for (std::size_t i = 0; i < a.x_m.size(); ++i) {
-        const double dx = a.x_m[i] - b.x_m[i];
-        const double dy = a.y_m[i] - b.y_m[i];
-        sum_m2 += dx * dx + dy * dy;
-    }
-    return std::sqrt(sum_m2 / static_cast<double>(a.x_m.size()));
-}
-
 /// The number of frames before the horizon. Notes the horizon and the difference up to it.
 std::size_t find_horizon(const sim::Recording& first, const sim::Recording& second, Subject& subject) {
     State a;

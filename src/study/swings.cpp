@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "corda/core/basics.hpp"
 #include "corda/reference/pendulum.hpp"
@@ -39,20 +38,11 @@ RelaxationDef method_of(const SwingDef& def) {
     return method;
 }
 
-/// RMS distance of the particles from `place(i)`, in metres.
-double rms_m(const State& state, const std::function<Vec2(std::size_t)>& place) {
-    double sum_m2 = 0.0;
-    for (std::size_t i = 0; i < state.x_m.size(); ++i) {
-        const Vec2 apart_m = Vec2{state.x_m[i], state.y_m[i]} - place(i);
-        sum_m2 += apart_m.x * apart_m.x + apart_m.y * apart_m.y;
-    }
-    return std::sqrt(sum_m2 / static_cast<double>(state.x_m.size()));
-}
-
 void watch(Probe& probe, const SwingDef& def, const std::vector<State>& truth, SwingFigures& figures) {
     const reference::Pendulum rod = rod_of(def.particles, def.mass_kg);
     const double total_m = length_m(def.particles);
     Vec2 last_tip_m = probe.tip_m();
+    State on_rod = probe.state();
     for (const State& rope : truth) {
         probe.go(rope.time_s);
         const Vec2 moved_m = probe.tip_m() - last_tip_m;
@@ -60,11 +50,12 @@ void watch(Probe& probe, const SwingDef& def, const std::vector<State>& truth, S
         figures.tip_speed_m_s =
             std::max(figures.tip_speed_m_s, sim::length(moved_m.x, moved_m.y) / kStepSeconds);
         const Vec2 along = rod.direction(rope.time_s);
-        const auto on_rope = [&](std::size_t i) { return Vec2{rope.x_m[i], rope.y_m[i]}; };
-        const auto on_rod = [&](std::size_t i) {
-            return total_m * static_cast<double>(i) / (def.particles - 1) * along;
-        };
-        figures.rope_error = std::max(figures.rope_error, rms_m(probe.state(), on_rope) / total_m);
+        for (std::size_t i = 0; i < on_rod.x_m.size(); ++i) {
+            const double radius_m = total_m * static_cast<double>(i) / (def.particles - 1);
+            on_rod.x_m[i] = radius_m * along.x;
+            on_rod.y_m[i] = radius_m * along.y;
+        }
+        figures.rope_error = std::max(figures.rope_error, rms_m(probe.state(), rope) / total_m);
         figures.rod_error = std::max(figures.rod_error, rms_m(probe.state(), on_rod) / total_m);
     }
     const Figures largest = probe.diagnostics().largest;
@@ -122,8 +113,7 @@ double difference_under_gravity(double mass_kg, double other_mass_kg) {
     for (int k = 1; k <= kFrames; ++k) {
         probe.go(k * kStepSeconds);
         other.go(k * kStepSeconds);
-        const auto of_other = [&](std::size_t i) { return Vec2{other.state().x_m[i], other.state().y_m[i]}; };
-        largest_m = std::max(largest_m, rms_m(probe.state(), of_other));
+        largest_m = std::max(largest_m, rms_m(probe.state(), other.state()));
     }
     return largest_m / length_m(def.particles);
 }

@@ -27,12 +27,6 @@ struct SwingFigures {
     std::string failure;  ///< empty if the run went through
 };
 
-/// A swing and its figures.
-struct SwingRow {
-    SwingDef def;
-    SwingFigures figures;
-};
-
 /// The true rope at the frames 1, 2, ... of a swing, 1/60 s apart.
 [[nodiscard]] std::vector<State> true_swing(int particles, double mass_kg);
 
