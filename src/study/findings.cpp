@@ -33,9 +33,8 @@ struct Findings {
 report::Plot bars_plot(const char* id, const char* title, const char* caption_start) {
     report::Plot plot{id, title, "reach of the bars", title, false, true, {}};
     plot.caption = fmt::format(
-        "{} of 40 particles over the reach of the bars. With reach 7, each particle has bars to the next 1, "
-        "2, "
-        "..., 7 particles. One sweep per step.",
+        "{} of 40 particles over the reach of the bars. With reach 7, each particle has bars to the next "
+        "1, 2, ..., 7 particles. One sweep per step.",
         caption_start);
     for (const double mass_kg : kMasses)
         plot.series.push_back({fmt::format("{:g} kg, one sweep", mass_kg), {}});
