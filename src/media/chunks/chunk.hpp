@@ -21,7 +21,7 @@ struct Chunk {
     /// In the order of decoding. Their stamps and durations count frames from the first one of the chunk.
     std::vector<Packet> packets;
     CodecParameters parameters;       ///< the same for all chunks of a video; null without a frame
-    std::vector<FrameColors> colors;  ///< of the first frame and of the one that was said to be the last
+    std::vector<FrameColors> colors;  ///< of the first frame and the one marked as last
 };
 
 /// Frames per chunk, except in the last chunk of a video: 60, but at least as many as a second has and

@@ -168,7 +168,7 @@ struct Format {
 [[nodiscard]] Format find_format(std::string_view path, const VideoDef& def, bool is_transparent = false);
 
 /// Checks the fields that mean the same for every format. Throws corda::Error (kUsage), naming the field, the
-/// value and what is allowed.
+/// value and the range.
 void check_video_def(const VideoDef& def);
 
 /// Debian's package of the libavcodec that this program uses: "libavcodec59" in Debian 12.
