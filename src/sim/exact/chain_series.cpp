@@ -146,8 +146,6 @@ using EvaluateDirections = Compiled<evaluate_directions>;
 using EvaluateOmegas = Compiled<evaluate_omegas>;
 using MeasureLastTerms = Compiled<measure_last_terms>;
 
-constexpr SeriesKernel kKernels[] = {SeriesKernel::kBaseline, SeriesKernel::kAvx2};
-
 /// Logarithm to base 2 of x > 0, to 0.09, and its inverse, to 6 %, from the bits of the numbers: the same on
 /// every machine.
 double rough_log2(double x) {
@@ -183,13 +181,13 @@ constexpr double kMinTerm = 1e-18;
 
 }  // namespace
 
-std::span<const SeriesKernel> series_kernels() {
+bool has_wide_series() {
 #if defined(__x86_64__)
-    static const std::size_t count = __builtin_cpu_supports("avx2") ? 2 : 1;
+    static const bool has = __builtin_cpu_supports("avx2") != 0;
+    return has;
 #else
-    constexpr std::size_t count = 1;
+    return false;
 #endif
-    return {kKernels, count};
 }
 
 struct ChainSeries::Code {
@@ -199,17 +197,17 @@ struct ChainSeries::Code {
     decltype(&MeasureLastTerms::wide) measure_last_terms;
 };
 
-const ChainSeries::Code& ChainSeries::code_of(SeriesKernel kernel) {
-    static constexpr Code kBaseline{Expand::narrow, EvaluateDirections::narrow, EvaluateOmegas::narrow,
-                                    MeasureLastTerms::narrow};
-    static constexpr Code kAvx2{Expand::wide, EvaluateDirections::wide, EvaluateOmegas::wide,
+const ChainSeries::Code& ChainSeries::code_of(bool is_wide) {
+    static constexpr Code kNarrow{Expand::narrow, EvaluateDirections::narrow, EvaluateOmegas::narrow,
+                                  MeasureLastTerms::narrow};
+    static constexpr Code kWide{Expand::wide, EvaluateDirections::wide, EvaluateOmegas::wide,
                                 MeasureLastTerms::wide};
-    return kernel == SeriesKernel::kAvx2 ? kAvx2 : kBaseline;
+    return is_wide ? kWide : kNarrow;
 }
 
 ChainSeries::ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Chain& chain, std::size_t order,
-                         SeriesKernel kernel)
-    : code_(&code_of(kernel)),
+                         bool is_wide)
+    : code_(&code_of(is_wide)),
       first_link_(chain.first_link),
       link_stride_(dynamics.link_count()),
       first_extra_(chain.first_extra),

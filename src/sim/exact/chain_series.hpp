@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "corda/sim/exact/chain_dynamics.hpp"
@@ -74,15 +73,9 @@ struct SeriesArrays {
     }
 };
 
-/// Code that works on a series. Both kernels give the same bits: they do the same correctly rounded
-/// operations on each link in the same order.
-enum class SeriesKernel {
-    kBaseline,  ///< every CPU
-    kAvx2,      ///< four links per instruction
-};
-
-/// The kernels that this CPU can run, the fastest last.
-[[nodiscard]] std::span<const SeriesKernel> series_kernels();
+/// True if this CPU has AVX2, for which a series is compiled too: four links per instruction, and the same
+/// bits.
+[[nodiscard]] bool has_wide_series();
 
 /// The motion of one chain of a ChainDynamics as a power series in time: sections 3 to 8 of
 /// src/sim/exact/README.md. The tridiagonal matrix of the tensions is the same for all coefficients and is
@@ -96,7 +89,7 @@ class ChainSeries {
     /// `order`: of the series of w, 4 .. kMaxSeriesOrder (a ChainPart takes 12 and more). `chain`: one of
     /// `dynamics`.
     ChainSeries(const ChainDynamics& dynamics, const ChainDynamics::Chain& chain, std::size_t order,
-                SeriesKernel kernel = series_kernels().back());
+                bool is_wide = has_wide_series());
     // Pointers lead into the arrays' own memory: it can be moved, but a copy would not be independent.
     ChainSeries(const ChainSeries&) = delete;
     ChainSeries& operator=(const ChainSeries&) = delete;
@@ -116,8 +109,8 @@ class ChainSeries {
     void evaluate(double time_s, double* y);
 
   private:
-    struct Code;  ///< a kernel's functions
-    static const Code& code_of(SeriesKernel kernel);
+    struct Code;  ///< the functions of a width
+    static const Code& code_of(bool is_wide);
     /// The value of a series at the time `t` in units of unit_s.
     [[nodiscard]] double sum(const Series& series, double t) const;
 
