@@ -282,7 +282,7 @@ void TimeOptions::require() const {
 }
 
 std::vector<RequestedTime> TimeOptions::list(const Scene& scene) const {
-    std::vector<RequestedTime> shots;
+    std::vector<RequestedTime> times;
     for (const double time_s : times_s) {
         const auto within_s = time_within(time_s, scene.world.duration_s);
         if (!within_s) {
@@ -290,22 +290,22 @@ std::vector<RequestedTime> TimeOptions::list(const Scene& scene) const {
                         fmt::format("--at {}: is not within 0 .. {} s; world.duration sets the end", time_s,
                                     scene.world.duration_s));
         }
-        shots.push_back({*within_s, std::nullopt});
+        times.push_back({*within_s, std::nullopt});
     }
     for (const std::string& word : frames) {
         const FrameRange range = frames_of(word, scene);
-        const auto count = static_cast<std::int64_t>(shots.size()) + *range.end - range.first;
+        const auto count = static_cast<std::int64_t>(times.size()) + *range.end - range.first;
         if (count > kMaxTimes) {
             throw Error(ExitCode::kUsage, fmt::format("--frame {}: are {} pictures or more, over the limit "
                                                       "of {}; `corda render` makes a video of them",
                                                       word, count, kMaxTimes));
         }
         for (std::int64_t k = range.first; k < *range.end; ++k)
-            shots.push_back({scene.video.fps.time_s(k), k});
+            times.push_back({scene.video.fps.time_s(k), k});
     }
-    std::stable_sort(shots.begin(), shots.end(),
+    std::stable_sort(times.begin(), times.end(),
                      [](const RequestedTime& a, const RequestedTime& b) { return a.time_s < b.time_s; });
-    return shots;
+    return times;
 }
 
 }  // namespace corda::app

@@ -32,7 +32,7 @@ struct FigureOptions {
     SceneOptions scene;
     GlOptions gl;
     EmptyPictures empty;
-    TimeOptions shots;
+    TimeOptions times;
     std::string output;
     std::optional<double> width_mm;
     std::optional<double> pixels_per_inch;
@@ -51,7 +51,7 @@ struct FigureOptions {
     void require() const;
     /// Takes the options that the command line does not give from the file of `--from`, made by `command`.
     void take_origin(const Console& console, std::string_view command);
-    /// The times that the film of these shots records in addition to those of frames.
+    /// The times that the film records in addition to those of frames.
     [[nodiscard]] std::vector<double> film_times(const std::vector<RequestedTime>& some) const;
     [[nodiscard]] Film film_of(const Console& console, const Scene& scene,
                                const std::vector<RequestedTime>& some) const;
@@ -70,7 +70,7 @@ struct FigureOptions {
 void FigureOptions::add_to(CLI::App& command, const std::string& output_help) {
     scene.add_to(command);
     scene.add_from(command);
-    shots.add_to(command);
+    times.add_to(command);
     command.add_option("-o,--output", output, output_help)->required();
     scene.add_size(command);
     scene.add_shortcut(command, "--fps", "video.fps", "frames per second");
@@ -90,11 +90,11 @@ void FigureOptions::add_to(CLI::App& command, const std::string& output_help) {
 
 void FigureOptions::require() const {
     scene.require();
-    if (!scene.is_from()) shots.require();
+    if (!scene.is_from()) times.require();
 }
 
 void FigureOptions::take_origin(const Console& console, std::string_view command) {
-    if (!scene.is_from() || !shots.times_s.empty() || !shots.frames.empty()) return;
+    if (!scene.is_from() || !times.times_s.empty() || !times.frames.empty()) return;
     const std::optional<PictureOrigin>& picture = scene.provenance(console).picture;
     if (!picture) {
         throw Error(ExitCode::kUsage,
@@ -108,9 +108,9 @@ void FigureOptions::take_origin(const Console& console, std::string_view command
     }
     for (const PictureTime& time : picture->times) {
         if (time.frame)
-            shots.frames.push_back(std::to_string(*time.frame));
+            times.frames.push_back(std::to_string(*time.frame));
         else
-            shots.times_s.push_back(time.time_s);
+            times.times_s.push_back(time.time_s);
     }
     film_times_of_origin = picture->film_times_s;
     columns_of_origin = picture->columns;
@@ -142,7 +142,7 @@ Film FigureOptions::film_of(const Console& console, const Scene& loaded,
                             const std::vector<RequestedTime>& some) const {
     FilmDef def;
     def.on_progress = show_progress(console, "simulate");
-    for (const RequestedTime& shot : some) def.stills_s.push_back(shot.time_s);
+    for (const RequestedTime& time : some) def.stills_s.push_back(time.time_s);
     for (const double time_s : film_times_of_origin)
         if (time_s <= loaded.world.duration_s) def.stills_s.push_back(time_s);
     gl.apply_to(def);
@@ -155,8 +155,8 @@ Film FigureOptions::film_of(const Console& console, const Scene& loaded,
 
 std::vector<double> FigureOptions::film_times(const std::vector<RequestedTime>& some) const {
     std::vector<double> times_s = film_times_of_origin;
-    for (const RequestedTime& shot : some)
-        if (!shot.frame) times_s.push_back(shot.time_s);
+    for (const RequestedTime& time : some)
+        if (!time.frame) times_s.push_back(time.time_s);
     std::sort(times_s.begin(), times_s.end());
     times_s.erase(std::unique(times_s.begin(), times_s.end()), times_s.end());
     return times_s;
@@ -164,16 +164,16 @@ std::vector<double> FigureOptions::film_times(const std::vector<RequestedTime>& 
 
 PngInfo FigureOptions::png_info(const Scene& loaded, const std::vector<RequestedTime>& some,
                                 PictureOrigin origin, const std::vector<double>& all_s) const {
-    std::string times;
+    std::string times_text;
     std::string frames;
-    for (const RequestedTime& shot : some) {
-        times += fmt::format("{}{}", times.empty() ? "" : ", ", shot.time_s);
-        if (shot.frame) frames += fmt::format("{}{}", frames.empty() ? "" : ", ", *shot.frame);
+    for (const RequestedTime& time : some) {
+        times_text += fmt::format("{}{}", times_text.empty() ? "" : ", ", time.time_s);
+        if (time.frame) frames += fmt::format("{}{}", frames.empty() ? "" : ", ", *time.frame);
     }
     const double ppi =
         width_mm ? loaded.video.width_px * kMmPerInch / *width_mm : pixels_per_inch.value_or(kScreenPpi);
-    for (const RequestedTime& shot : some)
-        origin.times.push_back({shot.frame, shot.frame ? 0.0 : shot.time_s});
+    for (const RequestedTime& time : some)
+        origin.times.push_back({time.frame, time.frame ? 0.0 : time.time_s});
     const bool are_its_own = std::all_of(all_s.begin(), all_s.end(), [&](double time_s) {
         return std::any_of(origin.times.begin(), origin.times.end(),
                            [&](const PictureTime& its) { return !its.frame && its.time_s == time_s; });
@@ -187,7 +187,7 @@ PngInfo FigureOptions::png_info(const Scene& loaded, const std::vector<Requested
                           origin.shutter == loaded.video.shutter && origin.film_times_s.empty() &&
                           !origin.pixels_per_inch;
     if (!is_frame) made.picture = std::move(origin);
-    PngInfo info = picture_info(loaded.name, times, frames, provenance_text(std::move(made)));
+    PngInfo info = picture_info(loaded.name, times_text, frames, provenance_text(std::move(made)));
     info.pixels_per_inch = ppi;
     return info;
 }
@@ -253,16 +253,16 @@ bool is_picture(const std::string& output) {
 
 /// Its name in a folder: names sort by time and have one dot, so that no program takes a part of the time for
 /// the ending.
-std::string name_of(const RequestedTime& shot, const Scene& scene) {
-    std::string name = shot.frame ? fmt::format("{}_f{:06}", scene.name, *shot.frame)
-                                  : fmt::format("{}_t{:011.6f}", scene.name, shot.time_s);
+std::string name_of(const RequestedTime& time, const Scene& scene) {
+    std::string name = time.frame ? fmt::format("{}_f{:06}", scene.name, *time.frame)
+                                  : fmt::format("{}_t{:011.6f}", scene.name, time.time_s);
     std::replace(name.begin(), name.end(), '.', '_');
     return name + ".png";
 }
 
-std::vector<Still> list_stills(const std::vector<RequestedTime>& shots, const Scene& scene) {
+std::vector<Still> list_stills(const std::vector<RequestedTime>& times, const Scene& scene) {
     std::vector<Still> stills;
-    for (const RequestedTime& shot : shots) stills.push_back({shot, name_of(shot, scene)});
+    for (const RequestedTime& time : times) stills.push_back({time, name_of(time, scene)});
     const auto same = std::adjacent_find(stills.begin(), stills.end(),
                                          [](const Still& a, const Still& b) { return a.path == b.path; });
     if (same != stills.end()) {
@@ -319,10 +319,10 @@ void write_each(const std::vector<Still>& stills, const FigureOptions& options, 
 ExitCode write_stills(const Console& console, FigureOptions options) {
     options.take_origin(console, "still");
     const Scene scene = options.load(console);
-    const std::vector<RequestedTime> shots = options.shots.list(scene);
-    std::vector<Still> stills = list_stills(shots, scene);
+    const std::vector<RequestedTime> times = options.times.list(scene);
+    std::vector<Still> stills = list_stills(times, scene);
     set_paths(options, stills);
-    Film film = options.film_of(console, scene, shots);
+    Film film = options.film_of(console, scene, times);
     EmptyPictures empty = options.empty;
     if (!options.dry_run) {
         if (stills.front().path.ends_with(".png")) report_gl(console, film.gl());
@@ -346,10 +346,10 @@ ExitCode write_stills(const Console& console, FigureOptions options) {
 ExitCode write_strobe(const Console& console, FigureOptions options) {
     options.take_origin(console, "strobe");
     const Scene scene = options.load(console);
-    const std::vector<RequestedTime> shots = options.shots.list(scene);
+    const std::vector<RequestedTime> times = options.times.list(scene);
     FigureDef def;
-    for (const RequestedTime& shot : shots) def.times_s.push_back(shot.time_s);
-    return options.write_one(console, scene, shots, def);
+    for (const RequestedTime& time : times) def.times_s.push_back(time.time_s);
+    return options.write_one(console, scene, times, def);
 }
 
 struct SheetOptions : FigureOptions {
@@ -360,11 +360,11 @@ ExitCode write_sheet(const Console& console, SheetOptions options) {
     options.take_origin(console, "sheet");
     if (options.columns == 0) options.columns = options.columns_of_origin;
     Scene scene = options.load(console);
-    const std::vector<RequestedTime> shots = options.shots.list(scene);
+    const std::vector<RequestedTime> times = options.times.list(scene);
     std::vector<double> times_s;
-    for (const RequestedTime& shot : shots) times_s.push_back(shot.time_s);
+    for (const RequestedTime& time : times) times_s.push_back(time.time_s);
     const FigureDef def = contact_sheet(scene, times_s, options.columns);
-    return options.write_one(console, scene, shots, def);
+    return options.write_one(console, scene, times, def);
 }
 
 }  // namespace

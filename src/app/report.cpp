@@ -20,7 +20,7 @@ namespace {
 struct ReportOptions {
     SceneOptions scene;
     GlOptions gl;
-    TimeOptions shots;
+    TimeOptions times;
     std::string output;
     bool force = false;
     bool dry_run = false;
@@ -45,11 +45,11 @@ class Parts {
 };
 
 /// Writes the report; returns why the motion ended early, if it did.
-std::optional<Error> write_report(const Console& console, Film& film, const std::vector<RequestedTime>& shots,
+std::optional<Error> write_report(const Console& console, Film& film, const std::vector<RequestedTime>& times,
                                   const ReportOptions& options, report::ReportFolder& folder) {
     Parts parts(console);
     figures::SceneReportDef def;
-    for (const RequestedTime& shot : shots) def.at_s.push_back(shot.time_s);
+    for (const RequestedTime& time : times) def.at_s.push_back(time.time_s);
     def.output = {.force = options.force, .on_progress = stopping_if_asked(kSomethingWritten)};
     def.on_part = [&](const std::string& part, std::int64_t done, std::int64_t total) {
         stop_if_asked(kSomethingWritten);
@@ -67,14 +67,14 @@ ExitCode report_command(const Console& console, const ReportOptions& options) {
     const double start_s = now_s();
     Scene scene = options.scene.load(console);
     figures::prefer_paper(scene);
-    const std::vector<RequestedTime> shots = options.shots.list(scene);
+    const std::vector<RequestedTime> times = options.times.list(scene);
     report::check_gnuplot();
     prepare_page_folder(options.output, options.force, options.dry_run);
     OnProgress on_progress = show_progress(console, "simulate");
     FilmDef def;
     def.on_progress = [&on_progress](std::int64_t done, std::int64_t all) { return on_progress(done, all); };
     def.readings = figures::needed_readings();
-    for (const RequestedTime& shot : shots) def.stills_s.push_back(shot.time_s);
+    for (const RequestedTime& time : times) def.stills_s.push_back(time.time_s);
     options.gl.apply_to(def);
     Film film(scene, def);
     report_plan(console, film);
@@ -87,7 +87,7 @@ ExitCode report_command(const Console& console, const ReportOptions& options) {
     report::ReportFolder folder(options.output,
                                 {.force = options.force, .on_progress = stopping_if_asked(kSomethingWritten)},
                                 {figures::kColumnMm, figures::kPageMm});
-    const std::optional<Error> failure = write_report(console, film, shots, options, folder);
+    const std::optional<Error> failure = write_report(console, film, times, options, folder);
     warn_of_branch(console, film);
     if (failure) throw with_files(*failure, folder);
     nlohmann::json json = film_json(film);
@@ -105,7 +105,7 @@ void add_report(CLI::App& app, Action& action) {
                     report_command);
     options.scene.add_to(command);
     command.add_option("-o,--output", options.output, "folder of the report")->required();
-    options.shots.add_to(command);
+    options.times.add_to(command);
     options.scene.add_timing(command, "rows per second");
     options.gl.add_to(command);
     add_force(command, options.force);

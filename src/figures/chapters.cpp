@@ -50,7 +50,7 @@ std::string place_of(const Film& film, const Extreme& extreme, const char* what)
     return fmt::format("{} {} of {}", what, extreme.index, body_name(film.system(), extreme.body));
 }
 
-report::Table largest_table(const Film& film, const MotionSummary& reading) {
+report::Table largest_table(const Film& film, const MotionSummary& motion) {
     report::Table table{
         "largest",
         "Largest figures, at frame times",
@@ -61,9 +61,9 @@ report::Table largest_table(const Film& film, const MotionSummary& reading) {
         if (!extreme.is_known) return;
         table.add({name, extreme.size, unit, extreme.time_s, place_of(film, extreme, what)});
     };
-    add("speed", "m/s", reading.speed, "particle");
-    add("tension", "N", reading.tension, "link");
-    add("strain", "", reading.strain, "link");
+    add("speed", "m/s", motion.speed, "particle");
+    add("tension", "N", motion.tension, "link");
+    add("strain", "", motion.strain, "link");
     const Figures& largest = film.diagnostics().largest;
     if (largest.loads) table.add({"force on a pin", largest.loads->pin_force_n, "N", {}, {}});
     if (largest.energy_error) table.add({"energy error", *largest.energy_error, "", {}, {}});
@@ -77,58 +77,58 @@ std::string times_text(const std::vector<double>& times_s) {
     return text + " s";
 }
 
-void add_pictures(const Film& film, const FigureTimes& moments, const WritePoses& write,
+void add_pictures(const Film& film, const FigureTimes& times, const WritePoses& write,
                   report::Chapter& chapter) {
     const std::string name = printable(film.scene().name);
-    if (moments.strobe_s.size() > 1) {
-        const std::vector<double> times_s = moments.strobe_s;
+    if (times.strobe_s.size() > 1) {
+        const std::vector<double> times_s = times.strobe_s;
         const std::string poses = fmt::format("poses at t = {}", times_text(times_s));
         chapter.pictures.push_back(
             {"strobe", fmt::format("{}, {}", name, poses),
              fmt::format("Strobe: {}, the fainter the earlier{}.", poses,
-                         moments.is_swing ? "; the last is where the first swing ends" : ""),
+                         times.is_swing ? "; the last is where the first swing ends" : ""),
              [write, times_s](const std::string& path, double width_mm) { write(path, width_mm, times_s); }});
     }
     std::size_t number = 1;
-    for (const double time_s : moments.stills_s) {
+    for (const double time_s : times.stills_s) {
         const std::string at = "at t = " + time_text(time_s);
         chapter.pictures.push_back(
             {fmt::format("still_{}", number++), fmt::format("{} {}", name, at),
              fmt::format("The scene {}.", at),
              [write, time_s](const std::string& path, double width_mm) { write(path, width_mm, {time_s}); },
-             moments.stills_s.size() > 1});
+             times.stills_s.size() > 1});
     }
 }
 
 constexpr const char* kTipData = "tip.csv";
 
-std::vector<pipeline::TrackedParticle> followed_of(const MotionSummary& reading) {
+std::vector<pipeline::TrackedParticle> followed_of(const MotionSummary& motion) {
     std::vector<pipeline::TrackedParticle> followed;
-    for (const BodyCurves& body : reading.bodies) followed.push_back(body.followed);
+    for (const BodyCurves& body : motion.bodies) followed.push_back(body.followed);
     return followed;
 }
 
 /// Curves that are not over time: dots where lines would be misleading.
-std::vector<Curve> tip_curves(const Film& film, const MotionSummary& reading, Thinner BodyCurves::*curve) {
-    std::vector<Curve> curves = curves_of(film.scene(), film.system(), reading, curve);
+std::vector<Curve> tip_curves(const Film& film, const MotionSummary& motion, Thinner BodyCurves::*curve) {
+    std::vector<Curve> curves = curves_of(film.scene(), film.system(), motion, curve);
     for (std::size_t i = 0; i < curves.size(); ++i)
-        curves[i].is_joined = (reading.bodies[i].*curve).is_joined();
+        curves[i].is_joined = (motion.bodies[i].*curve).is_joined();
     return curves;
 }
 
 /// As thinning_text().
-std::string path_thinning_text(const MotionSummary& reading) {
-    if (reading.bodies.front().path.is_joined()) return thinning_text(reading);
+std::string path_thinning_text(const MotionSummary& motion) {
+    if (motion.bodies.front().path.is_joined()) return thinning_text(motion);
     return fmt::format(
         " At most {1} of the {0} rows are drawn, as dots: evenly spread ones, the last one, and the extremes "
         "of x and y. The CSV has all rows.",
-        reading.rows, Thinner::kMaxPoints);
+        motion.rows, Thinner::kMaxPoints);
 }
 
 /// Whether all bodies turn about their pins: near a point, the angle about it has no meaning.
-bool all_turn(const System& system, const MotionSummary& reading) {
+bool all_turn(const System& system, const MotionSummary& motion) {
     constexpr double kNear = 0.1;
-    return std::all_of(reading.bodies.begin(), reading.bodies.end(), [&](const BodyCurves& body) {
+    return std::all_of(motion.bodies.begin(), motion.bodies.end(), [&](const BodyCurves& body) {
         const double length_m = links_length_m(system, system.bodies[body.followed.body]);
         return body.followed.pin && body.followed.is_free_end && body.nearest_m >= kNear * length_m;
     });
@@ -161,9 +161,9 @@ std::string link_text(const System& system, const Extreme& extreme) {
 }
 
 /// Why the tensions of some bodies are not known.
-std::string unknown_text(const Film& film, const MotionSummary& reading) {
+std::string unknown_text(const Film& film, const MotionSummary& motion) {
     const auto relaxes = [&](std::size_t b) { return !sim::knows_tensions(film.plan().bodies[b].method); };
-    const auto& bodies = reading.unknown_tensions;
+    const auto& bodies = motion.unknown_tensions;
     const std::string names = bodies_text(film.system(), bodies);
     if (std::all_of(bodies.begin(), bodies.end(), relaxes)) {
         return fmt::format(
@@ -178,9 +178,9 @@ std::string unknown_text(const Film& film, const MotionSummary& reading) {
 }
 
 /// The tensions of the links of a chain or a ring when the largest of all is reached.
-void add_tensions_along(const Film& film, const MotionSummary& reading, report::Chapter& chapter) {
+void add_tensions_along(const Film& film, const MotionSummary& motion, report::Chapter& chapter) {
     const System& system = film.system();
-    const Body& body = system.bodies[reading.tension.body];
+    const Body& body = system.bodies[motion.tension.body];
     constexpr std::size_t kMinLinks = 3;
     if (body.is_net || body.link_count < kMinLinks) return;
     Thinner thinner(static_cast<std::int64_t>(body.link_count));
@@ -188,22 +188,22 @@ void add_tensions_along(const Film& film, const MotionSummary& reading, report::
     for (std::size_t k = 0; k < body.link_count; ++k) {
         const double rest_m = system.bars[body.first_bar + k].rest_m;
         const double middle_m = at_m + 0.5 * rest_m;
-        thinner.add({middle_m, middle_m, reading.tensions_n[k]});
+        thinner.add({middle_m, middle_m, motion.tensions_n[k]});
         at_m += rest_m;
     }
-    const std::string name = body_name(system, reading.tension.body);
+    const std::string name = body_name(system, motion.tension.body);
     report::Plot plot = make_plot("tension_along", "Tension along the rope", {"distance along the rope", "m"},
                                   {"tension", "N"}, {{"", thinner.points()}});
     plot.caption = fmt::format(
         "Tension of the links of {} at {}, when that of one is largest, against the "
         "distance of their middles from particle 0 along the rope at rest.",
-        name, time_text(reading.tension.time_s));
+        name, time_text(motion.tension.time_s));
     add_plot(std::move(plot), "tension_along.csv", chapter);
 }
 
 }  // namespace
 
-report::Chapter motion_chapter(Film& film, const MotionSummary& reading, const FigureTimes& moments,
+report::Chapter motion_chapter(Film& film, const MotionSummary& motion, const FigureTimes& times,
                                const WritePoses& write) {
     report::Chapter chapter;
     chapter.title = "Motion";
@@ -211,13 +211,13 @@ report::Chapter motion_chapter(Film& film, const MotionSummary& reading, const F
     const Rational fps = film.scene().video.fps.rational();
     chapter.paragraphs.push_back(
         fmt::format("All figures are at frame times, {} per second: {} of them, from 0 to {}.", fps.text(),
-                    reading.rows, time_text(reading.end_s)));
-    if (reading.failure) {
+                    motion.rows, time_text(motion.end_s)));
+    if (motion.failure) {
         chapter.paragraphs.push_back(
             fmt::format("The motion ends early: {}. The figures show the motion before that.",
-                        printable(reading.failure->what())));
+                        printable(motion.failure->what())));
         chapter.summary += fmt::format(" It diverges after {}; the figures show the motion before that.",
-                                       time_text(reading.end_s));
+                                       time_text(motion.end_s));
     }
     if (const auto branched_s = film.diagnostics().branched_s) {
         chapter.paragraphs.push_back(
@@ -225,26 +225,26 @@ report::Chapter motion_chapter(Film& film, const MotionSummary& reading, const F
                         "figures show one of them.",
                         time_text(*branched_s)));
     }
-    chapter.tables.push_back(largest_table(film, reading));
-    add_pictures(film, moments, write, chapter);
+    chapter.tables.push_back(largest_table(film, motion));
+    add_pictures(film, times, write, chapter);
     return chapter;
 }
 
-report::Chapter path_chapter(const Film& film, const MotionSummary& reading) {
+report::Chapter path_chapter(const Film& film, const MotionSummary& motion) {
     report::Chapter chapter;
     chapter.title = "Path";
-    if (reading.bodies.empty()) {
+    if (motion.bodies.empty()) {
         chapter.paragraphs.emplace_back("All particles are pinned: nothing moves.");
         return chapter;
     }
     const System& system = film.system();
-    const Extreme& speed = reading.speed;
+    const Extreme& speed = motion.speed;
     if (speed.is_known) {
         chapter.summary = fmt::format("The largest speed is {} at {} (particle {} of {}).",
                                       quantity_text(speed.size, "m/s"), time_text(speed.time_s), speed.index,
                                       body_name(system, speed.body));
     }
-    std::vector<Curve> curves = tip_curves(film, reading, &BodyCurves::path);
+    std::vector<Curve> curves = tip_curves(film, motion, &BodyCurves::path);
     // Axes far from 0 would have the same number at each tick.
     constexpr double kFar = 1e3;
     const Vec2 origin_m = system.origin_m;
@@ -259,39 +259,39 @@ report::Chapter path_chapter(const Film& film, const MotionSummary& reading) {
     report::Plot plot = make_plot("path", "Path of the tip", {"x", "m"}, {"y", "m"}, curves);
     plot.has_equal_scales = true;
     fit_height(plot);
-    plot.caption = fmt::format("Path of {}.{}{}{}", pipeline::particles_text(system, followed_of(reading)),
+    plot.caption = fmt::format("Path of {}.{}{}{}", pipeline::particles_text(system, followed_of(motion)),
                                is_far ? fmt::format(" Counted from ({}, {}) m.", origin_m.x, origin_m.y) : "",
-                               left_out_text(system, reading), path_thinning_text(reading));
+                               left_out_text(system, motion), path_thinning_text(motion));
     add_plot(std::move(plot), kTipData, chapter);
     return chapter;
 }
 
-report::Chapter phase_chapter(const Film& film, const MotionSummary& reading) {
+report::Chapter phase_chapter(const Film& film, const MotionSummary& motion) {
     report::Chapter chapter;
     chapter.title = "Phase portrait";
-    if (reading.bodies.empty()) return chapter;
+    if (motion.bodies.empty()) return chapter;
     const System& system = film.system();
-    const bool turns = all_turn(system, reading);
+    const bool turns = all_turn(system, motion);
     const auto curve = turns ? &BodyCurves::turning : &BodyCurves::phase;
-    const std::vector<Curve> curves = tip_curves(film, reading, curve);
+    const std::vector<Curve> curves = tip_curves(film, motion, curve);
     report::Plot plot =
         turns ? make_plot("phase", "Phase portrait", {"angle", "rad"}, {"angular velocity", "rad/s"}, curves)
               : make_plot("phase", "Phase portrait", {"x", "m"}, {"vx", "m/s"}, curves);
     plot.caption = turns ? fmt::format(
                                "Phase portrait: the angle of the line from the pin to {}, from straight "
                                "down, positive towards +x, turns counted on, and its rate of change.",
-                               pipeline::particles_text(system, followed_of(reading)))
+                               pipeline::particles_text(system, followed_of(motion)))
                          : fmt::format(
                                "Phase portrait: the horizontal position of {}, counted from the pin of "
                                "its body or, if that has none or several, from the start, and the "
                                "horizontal velocity.",
-                               pipeline::particles_text(system, followed_of(reading)));
-    plot.caption += left_out_text(system, reading) + path_thinning_text(reading);
+                               pipeline::particles_text(system, followed_of(motion)));
+    plot.caption += left_out_text(system, motion) + path_thinning_text(motion);
     add_plot(std::move(plot), kTipData, chapter);
     return chapter;
 }
 
-report::Chapter energy_chapter(const Film& film, const MotionSummary& reading) {
+report::Chapter energy_chapter(const Film& film, const MotionSummary& motion) {
     report::Chapter chapter;
     chapter.title = "Energy";
     const auto error = film.diagnostics().largest.energy_error;
@@ -300,23 +300,23 @@ report::Chapter energy_chapter(const Film& film, const MotionSummary& reading) {
                                   "bodies, or over E(0) without a force, is at most {}.",
                                   quantity_text(*error, ""))
                             : "Damping takes energy on purpose, so there is no energy error to tell.";
-    std::vector<Curve> curves{{"kinetic", reading.kinetic.points()}, {"weight", reading.weight.points()}};
-    if (reading.is_elastic) curves.push_back({"elastic", reading.elastic.points()});
-    curves.push_back({"total", reading.total.points(), "#000000"});
+    std::vector<Curve> curves{{"kinetic", motion.kinetic.points()}, {"weight", motion.weight.points()}};
+    if (motion.is_elastic) curves.push_back({"elastic", motion.elastic.points()});
+    curves.push_back({"total", motion.total.points(), "#000000"});
     report::Plot plot = make_plot("energy", "Energy over time", {"t", "s"}, {"energy", "J"}, curves);
     plot.caption = fmt::format(
         "Energy of all free particles over time: kinetic, that of the weight since the "
         "start{}, and their sum.{}",
-        reading.is_elastic ? ", elastic" : "", thinning_text(reading));
+        motion.is_elastic ? ", elastic" : "", thinning_text(motion));
     add_plot(std::move(plot), "energy.csv", chapter);
     return chapter;
 }
 
-report::Chapter tension_chapter(const Film& film, const MotionSummary& reading) {
+report::Chapter tension_chapter(const Film& film, const MotionSummary& motion) {
     report::Chapter chapter;
     chapter.title = "Tension";
-    if (!reading.unknown_tensions.empty()) chapter.paragraphs.push_back(unknown_text(film, reading));
-    const Extreme& largest = reading.tension;
+    if (!motion.unknown_tensions.empty()) chapter.paragraphs.push_back(unknown_text(film, motion));
+    const Extreme& largest = motion.tension;
     if (!largest.is_known) {
         if (!chapter.paragraphs.empty()) chapter.summary = chapter.paragraphs.front();
         return chapter;
@@ -324,7 +324,7 @@ report::Chapter tension_chapter(const Film& film, const MotionSummary& reading) 
     const System& system = film.system();
     chapter.summary = fmt::format("The largest tension is {} at {} ({}).", quantity_text(largest.size, "N"),
                                   time_text(largest.time_s), link_text(system, largest));
-    std::vector<Curve> curves = curves_of(film.scene(), system, reading, &BodyCurves::tension);
+    std::vector<Curve> curves = curves_of(film.scene(), system, motion, &BodyCurves::tension);
     std::erase_if(curves, [](const Curve& curve) {
         return std::all_of(curve.points.begin(), curve.points.end(),
                            [](const CurvePoint& point) { return std::isnan(point.y); });
@@ -335,18 +335,18 @@ report::Chapter tension_chapter(const Film& film, const MotionSummary& reading) 
         plot.caption = fmt::format(
             "Largest tension of a link{} over time; one that pushes counts by the size "
             "of its force.{}{}",
-            curves.size() > 1 ? " of each body" : "", left_out_text(system, reading), thinning_text(reading));
+            curves.size() > 1 ? " of each body" : "", left_out_text(system, motion), thinning_text(motion));
         add_plot(std::move(plot), "tension.csv", chapter);
     }
-    add_tensions_along(film, reading, chapter);
+    add_tensions_along(film, motion, chapter);
     return chapter;
 }
 
-report::Chapter strain_chapter(const Film& film, const MotionSummary& reading) {
+report::Chapter strain_chapter(const Film& film, const MotionSummary& motion) {
     report::Chapter chapter;
     chapter.title = "Strain";
     const System& system = film.system();
-    const Extreme& largest = reading.strain;
+    const Extreme& largest = motion.strain;
     const bool stretches = std::any_of(system.bodies.begin(), system.bodies.end(),
                                        [](const Body& body) { return body.material.compliance_1_n > 0.0; });
     if (largest.is_known) {
@@ -355,13 +355,13 @@ report::Chapter strain_chapter(const Film& film, const MotionSummary& reading) {
             quantity_text(largest.size, ""), time_text(largest.time_s), link_text(system, largest),
             stretches ? "" : ": an error of the method, for the links are not to stretch");
     }
-    const std::vector<Curve> curves = curves_of(film.scene(), system, reading, &BodyCurves::strain);
+    const std::vector<Curve> curves = curves_of(film.scene(), system, motion, &BodyCurves::strain);
     if (curves.empty()) return chapter;
     report::Plot plot =
         make_plot("strain", "Largest strain over time", {"t", "s"}, {"largest strain", ""}, curves);
     plot.caption = fmt::format(
         "Largest strain of a link{} over time; a slack link of a string counts as 0.{}{}",
-        curves.size() > 1 ? " of each body" : "", left_out_text(system, reading), thinning_text(reading));
+        curves.size() > 1 ? " of each body" : "", left_out_text(system, motion), thinning_text(motion));
     add_plot(std::move(plot), "strain.csv", chapter);
     return chapter;
 }

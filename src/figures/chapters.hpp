@@ -17,16 +17,16 @@ using WritePoses =
 
 /// Model, method and its error, and pictures: a strobe, stills and the largest
 /// figures.
-[[nodiscard]] report::Chapter motion_chapter(Film& film, const MotionSummary& reading,
-                                             const FigureTimes& moments, const WritePoses& write);
+[[nodiscard]] report::Chapter motion_chapter(Film& film, const MotionSummary& motion,
+                                             const FigureTimes& times, const WritePoses& write);
 /// The paths of the followed particles.
-[[nodiscard]] report::Chapter path_chapter(const Film& film, const MotionSummary& reading);
+[[nodiscard]] report::Chapter path_chapter(const Film& film, const MotionSummary& motion);
 /// Their phase portraits: angle and angular velocity about the pin if each has one and keeps away from it,
 /// else x and vx.
-[[nodiscard]] report::Chapter phase_chapter(const Film& film, const MotionSummary& reading);
-[[nodiscard]] report::Chapter energy_chapter(const Film& film, const MotionSummary& reading);
+[[nodiscard]] report::Chapter phase_chapter(const Film& film, const MotionSummary& motion);
+[[nodiscard]] report::Chapter energy_chapter(const Film& film, const MotionSummary& motion);
 /// The largest tension over time, and that along the rope when it is largest of all; or why it is not known.
-[[nodiscard]] report::Chapter tension_chapter(const Film& film, const MotionSummary& reading);
-[[nodiscard]] report::Chapter strain_chapter(const Film& film, const MotionSummary& reading);
+[[nodiscard]] report::Chapter tension_chapter(const Film& film, const MotionSummary& motion);
+[[nodiscard]] report::Chapter strain_chapter(const Film& film, const MotionSummary& motion);
 
 }  // namespace corda::figures

@@ -78,15 +78,15 @@ report::Plot make_plot(const std::string& id, const std::string& title, const Ax
     return plot;
 }
 
-std::vector<Curve> curves_of(const Scene& scene, const System& system, const MotionSummary& reading,
+std::vector<Curve> curves_of(const Scene& scene, const System& system, const MotionSummary& motion,
                              Thinner BodyCurves::*curve) {
     std::vector<std::size_t> bodies;
-    for (const BodyCurves& body : reading.bodies) bodies.push_back(body.followed.body);
+    for (const BodyCurves& body : motion.bodies) bodies.push_back(body.followed.body);
     const std::vector<std::string> colors = curve_colors(scene, bodies);
     std::vector<Curve> curves;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
         const std::string name = bodies.size() == 1 ? "" : body_name(system, bodies[i]);
-        curves.push_back({name, (reading.bodies[i].*curve).points(), colors[i]});
+        curves.push_back({name, (motion.bodies[i].*curve).points(), colors[i]});
     }
     return curves;
 }
@@ -111,18 +111,18 @@ void fit_height(report::Plot& plot) {
     plot.height_per_width = std::clamp(kBox * (y.high - y.low) / width + kLetters + key, kFlattest, kTallest);
 }
 
-std::string thinning_text(const MotionSummary& reading) {
-    if (reading.rows <= Thinner::kMaxPoints) return {};
+std::string thinning_text(const MotionSummary& motion) {
+    if (motion.rows <= Thinner::kMaxPoints) return {};
     return fmt::format(
         " At most {1} points of the {0} rows are drawn: the first, the last and the extremes of each block "
         "of rows. The CSV has all rows.",
-        reading.rows, Thinner::kMaxPoints);
+        motion.rows, Thinner::kMaxPoints);
 }
 
-std::string left_out_text(const System& system, const MotionSummary& reading) {
+std::string left_out_text(const System& system, const MotionSummary& motion) {
     const std::size_t moving = pipeline::moving_count(system);
-    if (moving <= reading.bodies.size()) return {};
-    const std::size_t count = moving - reading.bodies.size();
+    if (moving <= motion.bodies.size()) return {};
+    const std::size_t count = moving - motion.bodies.size();
     return fmt::format(" {} more bod{} not shown.", count, count == 1 ? "y is" : "ies are");
 }
 

@@ -32,16 +32,16 @@ struct AxisDef {
 
 /// A curve per body, of the colour that it has in pictures; the only one needs no name.
 [[nodiscard]] std::vector<Curve> curves_of(const Scene& scene, const System& system,
-                                           const MotionSummary& reading, Thinner BodyCurves::*curve);
+                                           const MotionSummary& motion, Thinner BodyCurves::*curve);
 
 /// Gives a plot of paths as high a picture as they are, within what fits a page.
 void fit_height(report::Plot& plot);
 
 /// " Of 36001 rows it keeps ...", a sentence for the caption of a curve that was thinned; empty otherwise.
-[[nodiscard]] std::string thinning_text(const MotionSummary& reading);
+[[nodiscard]] std::string thinning_text(const MotionSummary& motion);
 
 /// "4 more bodies are not shown." as a sentence; empty if all are.
-[[nodiscard]] std::string left_out_text(const System& system, const MotionSummary& reading);
+[[nodiscard]] std::string left_out_text(const System& system, const MotionSummary& motion);
 
 /// "1.23 kN", "0.345 m/s": three digits, and a prefix if the number is large or small. `unit` takes one;
 /// without a unit: "0.012", "3.1·10⁻¹²".

@@ -58,29 +58,29 @@ std::vector<double> spread(const Film& film, std::int64_t last, int count) {
 
 }  // namespace
 
-FigureTimes find_figure_times(const Film& film, const MotionSummary& reading,
+FigureTimes find_figure_times(const Film& film, const MotionSummary& motion,
                               const std::vector<double>& asked_s) {
-    FigureTimes moments;
+    FigureTimes times;
     if (!asked_s.empty()) {
-        moments.are_chosen = true;
-        const double end_s = reading.failure ? reading.end_s : film.scene().world.duration_s;
+        times.are_chosen = true;
+        const double end_s = motion.failure ? motion.end_s : film.scene().world.duration_s;
         for (const double time_s : asked_s)
-            if (time_s <= end_s) moments.stills_s.push_back(time_s);
-        std::sort(moments.stills_s.begin(), moments.stills_s.end());
-        moments.strobe_s = moments.stills_s;
-        return moments;
+            if (time_s <= end_s) times.stills_s.push_back(time_s);
+        std::sort(times.stills_s.begin(), times.stills_s.end());
+        times.strobe_s = times.stills_s;
+        return times;
     }
-    const std::int64_t last = reading.rows - 1;
+    const std::int64_t last = motion.rows - 1;
     std::int64_t end = last;
-    if (!reading.bodies.empty()) {
-        if (const auto turn_s = first_turn_s(reading.bodies.front().path.points())) {
-            moments.is_swing = true;
+    if (!motion.bodies.empty()) {
+        if (const auto turn_s = first_turn_s(motion.bodies.front().path.points())) {
+            times.is_swing = true;
             end = std::min(last, film.scene().video.fps.last_frame_within(*turn_s));
         }
     }
-    moments.strobe_s = spread(film, end, kPoses);
-    moments.stills_s = spread(film, last, kStills);
-    return moments;
+    times.strobe_s = spread(film, end, kPoses);
+    times.stills_s = spread(film, last, kStills);
+    return times;
 }
 
 Scene look_in_print(const Scene& scene, double width_mm) {

@@ -22,7 +22,7 @@ struct FigureTimes {
 /// the start to where the first followed particle first turns back in x, having moved a quarter of the way
 /// that it does in all, or else to the end; and the stills are five from the start to the end. All of these
 /// are frame times.
-[[nodiscard]] FigureTimes find_figure_times(const Film& film, const MotionSummary& reading,
+[[nodiscard]] FigureTimes find_figure_times(const Film& film, const MotionSummary& motion,
                                             const std::vector<double>& asked_s);
 
 /// The look of a scene in print: its shape, a width in millimetres at report::kPrintPpi, letters of

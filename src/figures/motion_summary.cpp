@@ -28,14 +28,14 @@ class Reader {
         : film_(film),
           system_(film.system()),
           meter_(system_, film.scene().world, methods_of(film)),
-          reading_(film.last_frame() + 1) {
+          motion_(film.last_frame() + 1) {
         for (const pipeline::TrackedParticle& followed : pipeline::tracked_particles(system_))
-            reading_.bodies.emplace_back(followed, film.last_frame() + 1);
-        angles_.resize(reading_.bodies.size());
-        rates_.resize(reading_.bodies.size());
+            motion_.bodies.emplace_back(followed, film.last_frame() + 1);
+        angles_.resize(motion_.bodies.size());
+        rates_.resize(motion_.bodies.size());
         tells_tension_.resize(system_.bodies.size());
         const auto stretches = [](const Body& body) { return body.material.compliance_1_n > 0.0; };
-        reading_.is_elastic =
+        motion_.is_elastic =
             !system_.bends.empty() || std::any_of(system_.bodies.begin(), system_.bodies.end(), stretches);
         open_rows(open);
     }
@@ -46,15 +46,14 @@ class Reader {
         add_energy(state);
         add_links(state);
         add_speeds(state);
-        ++reading_.rows;
-        reading_.end_s = state.time_s;
+        ++motion_.rows;
+        motion_.end_s = state.time_s;
     }
 
     [[nodiscard]] MotionSummary take() {
         for (std::size_t b = 0; b < tells_tension_.size(); ++b)
-            if (!tells_tension_[b] && system_.bodies[b].link_count > 0)
-                reading_.unknown_tensions.push_back(b);
-        return std::move(reading_);
+            if (!tells_tension_[b] && system_.bodies[b].link_count > 0) motion_.unknown_tensions.push_back(b);
+        return std::move(motion_);
     }
 
   private:
@@ -68,7 +67,7 @@ class Reader {
         std::vector<std::string> tip{"t_s"};
         std::vector<std::string> tension{"t_s"};
         std::vector<std::string> strain{"t_s", "largest"};
-        for (const BodyCurves& body : reading_.bodies) {
+        for (const BodyCurves& body : motion_.bodies) {
             const std::string key = key_of(system_, body.followed.body);
             for (const char* what : {"x_m", "y_m", "vx_m_s", "vy_m_s"}) tip.push_back(key + "_" + what);
             if (body.followed.pin) {
@@ -90,8 +89,8 @@ class Reader {
     void add_tips(const State& state) {
         const double t = state.time_s;
         row_.assign(1, t);
-        for (std::size_t b = 0; b < reading_.bodies.size(); ++b) {
-            BodyCurves& body = reading_.bodies[b];
+        for (std::size_t b = 0; b < motion_.bodies.size(); ++b) {
+            BodyCurves& body = motion_.bodies[b];
             const std::size_t i = body.followed.particle;
             const double x_m = state.x_m[i];
             const double y_m = state.y_m[i];
@@ -109,7 +108,7 @@ class Reader {
     /// Between two rows a fast one may turn by more than half a turn, so the turns are counted by the rate.
     void add_turning(const State& state, std::size_t b) {
         constexpr double kTurn = 2.0 * std::numbers::pi;
-        BodyCurves& body = reading_.bodies[b];
+        BodyCurves& body = motion_.bodies[b];
         const std::size_t i = body.followed.particle;
         const std::size_t pin = body.followed.pin.value();
         const double dx_m = state.x_m[i] - state.x_m[pin];
@@ -117,8 +116,8 @@ class Reader {
         const double square_m2 = dx_m * dx_m + dy_m * dy_m;
         const double rate = (dx_m * state.vy_m_s[i] - dy_m * state.vx_m_s[i]) / square_m2;
         double angle = std::atan2(dx_m, -dy_m);
-        if (reading_.rows > 0) {
-            const double expected = angles_[b] + 0.5 * (rates_[b] + rate) * (state.time_s - reading_.end_s);
+        if (motion_.rows > 0) {
+            const double expected = angles_[b] + 0.5 * (rates_[b] + rate) * (state.time_s - motion_.end_s);
             if (std::isfinite(expected)) angle += kTurn * std::round((expected - angle) / kTurn);
         }
         angles_[b] = angle;
@@ -130,13 +129,13 @@ class Reader {
     void add_energy(const State& state) {
         const double t = state.time_s;
         const sim::Energy energy = meter_.of(state);
-        if (reading_.rows == 0) weight_at_start_j_ = energy.weight_j;
+        if (motion_.rows == 0) weight_at_start_j_ = energy.weight_j;
         const double weight_j = energy.weight_j - weight_at_start_j_;
         const double total_j = energy.kinetic_j + weight_j + energy.elastic_j;
-        reading_.kinetic.add({t, t, energy.kinetic_j});
-        reading_.weight.add({t, t, weight_j});
-        reading_.elastic.add({t, t, energy.elastic_j});
-        reading_.total.add({t, t, total_j});
+        motion_.kinetic.add({t, t, energy.kinetic_j});
+        motion_.weight.add({t, t, weight_j});
+        motion_.elastic.add({t, t, energy.elastic_j});
+        motion_.total.add({t, t, total_j});
         row_.assign({t, energy.kinetic_j, weight_j, energy.elastic_j, total_j,
                      film_.figures().energy_error.value_or(kUnknown)});
         energy_(row_);
@@ -162,13 +161,13 @@ class Reader {
         for (std::size_t b = 0; b < system_.bodies.size(); ++b) {
             const Extreme tension = largest_of(Quantity::kTension, b, state);
             const Extreme own_strain = largest_of(Quantity::kStrain, b, state);
-            if (tension.is_known && (!reading_.tension.is_known || tension.size > reading_.tension.size))
+            if (tension.is_known && (!motion_.tension.is_known || tension.size > motion_.tension.size))
                 keep_tensions(b, state);
             tells_tension_[b] = tells_tension_[b] || tension.is_known;
-            reading_.tension.include(tension);
+            motion_.tension.include(tension);
             strain.include(own_strain);
-            if (curve == reading_.bodies.size() || reading_.bodies[curve].followed.body != b) continue;
-            BodyCurves& body = reading_.bodies[curve++];
+            if (curve == motion_.bodies.size() || motion_.bodies[curve].followed.body != b) continue;
+            BodyCurves& body = motion_.bodies[curve++];
             const double tension_n = tension.is_known ? tension.size : kUnknown;
             const double link = tension.is_known ? static_cast<double>(tension.index) : kUnknown;
             body.tension.add({t, t, tension_n});
@@ -176,7 +175,7 @@ class Reader {
             row_.insert(row_.end(), {tension_n, link});
             strains_.insert(strains_.end(), {own_strain.size, static_cast<double>(own_strain.index)});
         }
-        reading_.strain.include(strain);
+        motion_.strain.include(strain);
         strains_[1] = strain.size;
         tension_(row_);
         strain_(strains_);
@@ -185,7 +184,7 @@ class Reader {
     void keep_tensions(std::size_t b, const State& state) {
         const Body& body = system_.bodies[b];
         const auto first = state.tension_n.begin() + static_cast<std::ptrdiff_t>(body.first_bar);
-        reading_.tensions_n.assign(first, first + static_cast<std::ptrdiff_t>(body.link_count));
+        motion_.tensions_n.assign(first, first + static_cast<std::ptrdiff_t>(body.link_count));
     }
 
     void add_speeds(const State& state) {
@@ -193,7 +192,7 @@ class Reader {
             const Body& body = system_.bodies[b];
             for (std::size_t k = 0; k < body.particle_count; ++k) {
                 const std::size_t i = body.first_particle + k;
-                reading_.speed.include(
+                motion_.speed.include(
                     std::sqrt(state.vx_m_s[i] * state.vx_m_s[i] + state.vy_m_s[i] * state.vy_m_s[i]),
                     state.time_s, b, k);
             }
@@ -203,7 +202,7 @@ class Reader {
     Film& film_;
     const System& system_;
     sim::EnergyMeter meter_;
-    MotionSummary reading_;
+    MotionSummary motion_;
     OnRow tip_;
     OnRow energy_;
     OnRow tension_;
@@ -246,9 +245,9 @@ MotionSummary read_motion(Film& film, const OpenRows& open, const OnProgress& on
             break;
         }
     }
-    MotionSummary reading = reader.take();
-    reading.failure = failure;
-    return reading;
+    MotionSummary motion = reader.take();
+    motion.failure = failure;
+    return motion;
 }
 
 }  // namespace corda::figures

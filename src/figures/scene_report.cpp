@@ -29,38 +29,38 @@ MotionSummary read_into(Film& film, const SceneReportDef& def, report::ReportFol
         if (def.on_part) def.on_part("read", done, total);
         return !def.output.on_progress || def.output.on_progress(done, total);
     };
-    MotionSummary reading = read_motion(film, open, on_progress);
+    MotionSummary motion = read_motion(film, open, on_progress);
     for (const auto& [path, file] : files) {
         file->commit();
         folder.note(path);
     }
-    return reading;
+    return motion;
 }
 
 /// The numbers of the figure of the tensions along a rope.
-void write_tensions_along(const Film& film, const MotionSummary& reading, const OutputOptions& options,
+void write_tensions_along(const Film& film, const MotionSummary& motion, const OutputOptions& options,
                           report::ReportFolder& folder) {
     const std::string path = folder.path_of("tension_along.csv");
     CsvFile file(path, options, {"link", "rest_length_m", "tension_n"});
-    const Body& body = film.system().bodies[reading.tension.body];
+    const Body& body = film.system().bodies[motion.tension.body];
     for (std::size_t k = 0; k < body.link_count; ++k) {
         const double values[] = {static_cast<double>(k), film.system().bars[body.first_bar + k].rest_m,
-                                 reading.tensions_n[k]};
+                                 motion.tensions_n[k]};
         file.add_row(values);
     }
     file.commit();
     folder.note(path);
 }
 
-std::vector<report::Chapter> list_chapters(Film& film, const MotionSummary& reading,
-                                           const FigureTimes& moments, const WritePoses& write) {
+std::vector<report::Chapter> list_chapters(Film& film, const MotionSummary& motion, const FigureTimes& times,
+                                           const WritePoses& write) {
     std::vector<report::Chapter> chapters;
-    chapters.push_back(motion_chapter(film, reading, moments, write));
-    chapters.push_back(path_chapter(film, reading));
-    chapters.push_back(phase_chapter(film, reading));
-    chapters.push_back(energy_chapter(film, reading));
-    chapters.push_back(tension_chapter(film, reading));
-    chapters.push_back(strain_chapter(film, reading));
+    chapters.push_back(motion_chapter(film, motion, times, write));
+    chapters.push_back(path_chapter(film, motion));
+    chapters.push_back(phase_chapter(film, motion));
+    chapters.push_back(energy_chapter(film, motion));
+    chapters.push_back(tension_chapter(film, motion));
+    chapters.push_back(strain_chapter(film, motion));
     std::erase_if(chapters, [](const report::Chapter& chapter) {
         return chapter.paragraphs.empty() && chapter.plots.empty() && chapter.summary.empty();
     });
@@ -85,17 +85,17 @@ report::Report page_of(const Film& film, std::vector<report::Chapter> chapters) 
 std::optional<Error> write_scene_report(Film& film, const SceneReportDef& def, report::ReportFolder& folder) {
     Drawings drawings(film);
     static_cast<void>(drawings.gl(kColumnMm));  // before anything is simulated, if the method is named
-    const MotionSummary reading = read_into(film, def, folder);
-    if (reading.tension.is_known) write_tensions_along(film, reading, def.output, folder);
-    const FigureTimes moments = find_figure_times(film, reading, def.at_s);
-    std::vector<double> drawn_s = moments.strobe_s;
-    drawn_s.insert(drawn_s.end(), moments.stills_s.begin(), moments.stills_s.end());
+    const MotionSummary motion = read_into(film, def, folder);
+    if (motion.tension.is_known) write_tensions_along(film, motion, def.output, folder);
+    const FigureTimes times = find_figure_times(film, motion, def.at_s);
+    std::vector<double> drawn_s = times.strobe_s;
+    drawn_s.insert(drawn_s.end(), times.stills_s.begin(), times.stills_s.end());
     std::sort(drawn_s.begin(), drawn_s.end());
     FilmRenderer::keep(film, drawn_s);
     const auto write = [&](const std::string& path, double width_mm, const std::vector<double>& times_s) {
         drawings.write(path, width_mm, times_s, def.output);
     };
-    report::Report page = page_of(film, list_chapters(film, reading, moments, write));
+    report::Report page = page_of(film, list_chapters(film, motion, times, write));
     std::optional<Error> stopped;
     std::int64_t done = 0;
     try {
@@ -109,7 +109,7 @@ std::optional<Error> write_scene_report(Film& film, const SceneReportDef& def, r
     }
     folder.finish(std::move(page));
     if (stopped) throw Error(*stopped);
-    return reading.failure;
+    return motion.failure;
 }
 
 }  // namespace corda::figures

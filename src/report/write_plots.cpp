@@ -203,8 +203,8 @@ bool is_whole(std::string_view picture, PlotFormat format) {
 
 /// The end of gnuplot's messages, which has the reason.
 std::string last_words(const std::string& text) {
-    constexpr std::size_t kMost = 400;
-    std::string words = text.substr(text.size() > kMost ? text.size() - kMost : 0);
+    constexpr std::size_t kMaxBytes = 400;
+    std::string words = text.substr(text.size() > kMaxBytes ? text.size() - kMaxBytes : 0);
     while (!words.empty() && (words.back() == '\n' || words.back() == ' ')) words.pop_back();
     words.erase(0, words.find_first_not_of(" \n"));
     return words.empty() ? "without a message" : words;

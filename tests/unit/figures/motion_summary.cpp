@@ -16,7 +16,7 @@ constexpr double kWeightN = 2.0 * 9.81;
 
 TEST(MotionSummary, HasTheEnergyAndTheTensionOfAPendulum) {
     ReadScene scene(pendulum_toml());
-    ASSERT_EQ(scene.reading.rows, 201);
+    ASSERT_EQ(scene.motion.rows, 201);
     const auto y = scene.column("tip.csv", "rope_0_y_m");
     const auto kinetic = scene.column("energy.csv", "kinetic_j");
     const auto weight = scene.column("energy.csv", "weight_since_start_j");
@@ -33,14 +33,14 @@ TEST(MotionSummary, HasTheEnergyAndTheTensionOfAPendulum) {
     }
     // At the lowest point T = m g + m v^2 / L = 2 m g. The nearest row is at most half a step of 5 ms away,
     // at 3.13 m/s.
-    EXPECT_NEAR(scene.reading.tension.size, 2.0 * kWeightN, 3e-3);
-    EXPECT_EQ(scene.reading.tension.index, 0U);
-    EXPECT_NEAR(scene.reading.speed.size, std::sqrt(9.81), 1e-4);
+    EXPECT_NEAR(scene.motion.tension.size, 2.0 * kWeightN, 3e-3);
+    EXPECT_EQ(scene.motion.tension.index, 0U);
+    EXPECT_NEAR(scene.motion.speed.size, std::sqrt(9.81), 1e-4);
     // A quarter of the period at 60 degrees, 1.07318 times that of small swings (R2).
-    EXPECT_NEAR(scene.reading.speed.time_s, 1.07318 * 0.5 * std::numbers::pi / std::sqrt(9.81), 3e-3);
-    EXPECT_LT(scene.reading.strain.size, 1e-12);
-    EXPECT_FALSE(scene.reading.is_elastic);
-    EXPECT_FALSE(scene.reading.failure);
+    EXPECT_NEAR(scene.motion.speed.time_s, 1.07318 * 0.5 * std::numbers::pi / std::sqrt(9.81), 3e-3);
+    EXPECT_LT(scene.motion.strain.size, 1e-12);
+    EXPECT_FALSE(scene.motion.is_elastic);
+    EXPECT_FALSE(scene.motion.failure);
 }
 
 TEST(MotionSummary, CountsTheAngleFromStraightDown) {
@@ -78,14 +78,14 @@ TEST(MotionSummary, IncludesTheEnergyOfASpring) {
     ReadScene scene(
         "[world]\nduration = 1.0\n[[rope]]\npoints = [[0.0, 0.0], [0.0, -1.0]]\ncompliance = "
         "0.01\n[video]\nfps = 500\n");
-    EXPECT_TRUE(scene.reading.is_elastic);
+    EXPECT_TRUE(scene.motion.is_elastic);
     const auto elastic = scene.column("energy.csv", "elastic_j");
     const auto total = scene.column("energy.csv", "total_since_start_j");
     const double lowest_m = 2.0 * 9.81 / 100.0;
     EXPECT_NEAR(*std::max_element(elastic.begin(), elastic.end()), 0.5 * 100.0 * lowest_m * lowest_m, 1e-3);
     for (const double energy_j : total) EXPECT_NEAR(energy_j, 0.0, 1e-4);
-    EXPECT_NEAR(scene.reading.strain.size, lowest_m, 1e-4);
-    EXPECT_NEAR(scene.reading.tension.size, 2.0 * 9.81, 1e-2);
+    EXPECT_NEAR(scene.motion.strain.size, lowest_m, 1e-4);
+    EXPECT_NEAR(scene.motion.tension.size, 2.0 * 9.81, 1e-2);
 }
 
 TEST(MotionSummary, OmitsUnknownTensions) {
@@ -93,24 +93,24 @@ TEST(MotionSummary, OmitsUnknownTensions) {
         "[world]\nduration = 0.1\n[[rope]]\nhang = { links = 3, length = 1.0, angle_deg = 9.0 "
         "}\n[[rope]]\nhang = { links = 3, length = 1.0, angle_deg = 9.0 }\n[[solver.bodies]]\nropes = "
         "[0]\nmethod = \"relaxation\"\n[[solver.bodies]]\nropes = [1]\nmethod = \"exact\"\n");
-    EXPECT_EQ(scene.reading.unknown_tensions, std::vector<std::size_t>{0});
-    EXPECT_EQ(scene.reading.tension.body, 1U);
+    EXPECT_EQ(scene.motion.unknown_tensions, std::vector<std::size_t>{0});
+    EXPECT_EQ(scene.motion.tension.body, 1U);
     for (const auto& row : scene.rows.at("tension.csv")) {
         EXPECT_TRUE(std::isnan(row[1]));
         EXPECT_GT(row[3], 0.0);
     }
-    EXPECT_EQ(scene.reading.tensions_n.size(), 3U);
+    EXPECT_EQ(scene.motion.tensions_n.size(), 3U);
 }
 
 TEST(MotionSummary, EndsWhereTheMotionDiverges) {
     ReadScene scene(
         "[world]\nduration = 1.0\ngravity = [1e14, 0.0]\n[[rope]]\npoints = [[0.0, 0.0], [1.0, 0.0]]\npinned "
         "= []\n[solver]\nmethod = \"relaxation\"\n[video]\nfps = 50\n");
-    ASSERT_TRUE(scene.reading.failure);
-    EXPECT_EQ(scene.reading.failure->code(), ExitCode::kDiverged);
+    ASSERT_TRUE(scene.motion.failure);
+    EXPECT_EQ(scene.motion.failure->code(), ExitCode::kDiverged);
     // The motion exceeds the limit of 1e12 m after sqrt(2e-2) s = 0.141 s.
-    EXPECT_EQ(scene.reading.end_s, 0.14);
-    EXPECT_EQ(scene.reading.rows, 8);
+    EXPECT_EQ(scene.motion.end_s, 0.14);
+    EXPECT_EQ(scene.motion.rows, 8);
     EXPECT_EQ(scene.rows.at("tip.csv").size(), 8U);
 }
 

@@ -19,14 +19,14 @@ inline FilmDef def_of(std::vector<double> stills_s = {}) {
 struct ReadScene {
     explicit ReadScene(const std::string& toml, std::vector<double> stills_s = {})
         : film(parse_scene("schema = 1\n" + toml, "scene.toml"), def_of(std::move(stills_s))),
-          reading(read_motion(film,
-                              [this](const std::string& name, const std::vector<std::string>& keys) -> OnRow {
-                                  columns[name] = keys;
-                                  return [&all = rows[name]](std::span<const double> values) {
-                                      all.emplace_back(values.begin(), values.end());
-                                  };
-                              },
-                              {})) {}
+          motion(read_motion(film,
+                             [this](const std::string& name, const std::vector<std::string>& keys) -> OnRow {
+                                 columns[name] = keys;
+                                 return [&all = rows[name]](std::span<const double> values) {
+                                     all.emplace_back(values.begin(), values.end());
+                                 };
+                             },
+                             {})) {}
 
     /// Column `key` of a file.
     [[nodiscard]] std::vector<double> column(const std::string& name, const std::string& key) const {
@@ -41,7 +41,7 @@ struct ReadScene {
     std::map<std::string, std::vector<std::string>> columns;
     std::map<std::string, std::vector<std::vector<double>>> rows;
     Film film;
-    MotionSummary reading;
+    MotionSummary motion;
 };
 
 /// A pendulum of 2 kg on a link of 1 m, released from 60 degrees.
