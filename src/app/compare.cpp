@@ -36,16 +36,15 @@ bool is_png(const fs::path& path) {
 
 /// Compares two pictures of files, the first of which is decoded. `keeps_b`: `b` is wanted in any case.
 Difference difference_of(const std::string& path_a, const Picture& a, const std::string& path_b, Picture& b,
-                         const PerceivedFigures& figures, const OnProgress& goes_on, const Image* mask,
-                         bool keeps_b) {
+                         const PerceivedFigures& figures, const Image* mask, bool keeps_b) {
     Difference difference;
     if (mask == nullptr && media::have_same_picture_chunks(path_a, path_b)) {
         if (keeps_b) b = a;
     } else {
-        b = read_picture(path_b, goes_on);
-        difference = compare(a, b, goes_on, mask);
+        b = read_picture(path_b);
+        difference = compare(a, b, mask);
     }
-    add_perceived(a.image, b.image, figures, difference, goes_on, mask);
+    add_perceived(a.image, b.image, figures, difference, mask);
     return difference;
 }
 
@@ -90,8 +89,7 @@ std::vector<std::string> notes_of(const std::string& a, const std::string& b) {
 ComparedPicture compare_picture(const CompareOptions& options, const std::string& picture,
                                 const std::vector<std::string>& references, const std::optional<Image>& mask,
                                 const std::string& diff, int threads) {
-    const OnProgress goes_on = stopping_if_asked();
-    const Picture a = read_picture(picture, goes_on);
+    const Picture a = read_picture(picture);
     const Image* const its_mask = mask ? &*mask : nullptr;
     PerceivedFigures figures = figures_for(options);
     figures.threads = threads;
@@ -103,7 +101,7 @@ ComparedPicture compare_picture(const CompareOptions& options, const std::string
         const bool is_small = std::min(a.image.width(), a.image.height()) < kMinSsimSidePx;
         if (is_small && !options.limits.ssim) figures.ssim = false;
         ComparedPicture compared;
-        compared.difference = difference_of(picture, a, path, b, figures, goes_on, its_mask, !diff.empty());
+        compared.difference = difference_of(picture, a, path, b, figures, its_mask, !diff.empty());
         compared.passed = compared.difference.within(options.limits);
         compared.reference = path;
         if (compared.passed && path != references.front()) compared.variant = variant_cause(path);
@@ -115,8 +113,7 @@ ComparedPicture compare_picture(const CompareOptions& options, const std::string
         if (chosen->passed) break;
     }
     if (!diff.empty())
-        write_png(diff, difference_image(a, chosen_picture, goes_on, its_mask), {},
-                  {.force = options.force, .on_progress = goes_on});
+        write_png(diff, difference_image(a, chosen_picture, its_mask), {}, {.force = options.force});
     return *chosen;
 }
 
@@ -323,7 +320,7 @@ void check_diff(const CompareOptions& options) {
 ExitCode compare(const Console& console, CompareOptions options) {
     options.json = console.json();
     std::optional<Image> mask;
-    if (!options.mask.empty()) mask = read_png(options.mask, stopping_if_asked());
+    if (!options.mask.empty()) mask = read_png(options.mask);
     std::error_code none;  // the reader reports the problem
     for (const std::string& path : {options.a, options.b})
         if (!fs::exists(path, none)) fail_file("read", path, none ? none.value() : ENOENT);

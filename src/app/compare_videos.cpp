@@ -62,8 +62,8 @@ void take_frames(const CompareOptions& options, const std::array<media::StoredPi
     figures.flip = options.limits.flip.has_value();
     figures.ssim = options.limits.ssim.has_value();
     const Image* const its_mask = mask ? &*mask : nullptr;
-    Difference difference = compare(images[0], images[1], {}, its_mask);
-    add_perceived(images[0], images[1], figures, difference, {}, its_mask);
+    Difference difference = compare(images[0], images[1], its_mask);
+    add_perceived(images[0], images[1], figures, difference, its_mask);
     // In one format, different samples can give the same colours; with a mask, only colours are compared.
     if (is_stored_alike && !mask) difference.equal = false;
     if (difference.equal) return;
@@ -105,7 +105,7 @@ VideoDifference compare_all_frames(const CompareOptions& options, const std::str
     PerceivedFigures figures = figures_for(options);
     figures.threads = 1;
     if (result.differing > 0 && options.json)
-        add_perceived(result.worst_pictures[0], result.worst_pictures[1], figures, result.worst, {},
+        add_perceived(result.worst_pictures[0], result.worst_pictures[1], figures, result.worst,
                       mask ? &*mask : nullptr);
     return result;
 }
@@ -162,7 +162,7 @@ std::string compared(const CompareOptions& options, const std::string& path_b,
     Json json = json_of(found);
     std::string pixels;
     if (!options.diff.empty() && found.differing > 0) {
-        const Image picture = difference_image(found.worst_pictures[0], found.worst_pictures[1], {},
+        const Image picture = difference_image(found.worst_pictures[0], found.worst_pictures[1],
                                                mask && found.worst.same_size ? &*mask : nullptr);
         json["picture"] = {picture.width(), picture.height()};
         pixels.assign(reinterpret_cast<const char*>(picture.data()), picture.size_bytes());
@@ -186,8 +186,8 @@ ChildLimits limits_of_videos(const std::string& a, const std::string& b) {
 /// The report of the child; writes the picture of the differences.
 Json compare_two(const CompareOptions& options, const std::string& path_b, const std::optional<Image>& mask,
                  std::string& pixels) {
-    const auto end = run_in_child([&] { return compared(options, path_b, mask); },
-                                  limits_of_videos(options.a, path_b), [] { stop_if_asked(); });
+    const auto end =
+        run_in_child([&] { return compared(options, path_b, mask); }, limits_of_videos(options.a, path_b));
     if (end && end->outcome == ChildEnd::Outcome::kOutOfMemory)
         throw Error(ExitCode::kIo, "a video asks for more memory than it may have");
     if (end && !end->finished()) {
@@ -205,7 +205,7 @@ Json compare_two(const CompareOptions& options, const std::string& path_b, const
 void write_difference(const CompareOptions& options, const Json& json, const std::string& pixels) {
     Image picture(json["picture"][0].get<int>(), json["picture"][1].get<int>());
     std::memcpy(picture.data(), pixels.data(), std::min(picture.size_bytes(), pixels.size()));
-    write_png(options.diff, picture, {}, {.force = options.force, .on_progress = stopping_if_asked()});
+    write_png(options.diff, picture, {}, {.force = options.force});
 }
 
 }  // namespace

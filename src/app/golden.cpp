@@ -137,8 +137,9 @@ ExitCode run_suite(const Console& console, GoldenOptions options) {
         if (!path.empty()) check_output(path, "", true);
     if (!options.html.empty()) options.def.most_drawn = kMaxOnPage;
     options.gl.apply_to(options.def.film);
-    options.def.film.on_progress = stopping_if_asked(kSomethingWritten);
-    options.def.on_progress = stopping_if_asked(kSomethingWritten);
+    set_interruption_message(kSomethingWritten);
+    options.def.film.on_progress = stopping_if_asked();
+    options.def.on_progress = stopping_if_asked();
     const golden::SuiteResult result = golden::run(options.def);
     if (!options.junit.empty()) write_text(options.junit, golden::junit_xml(result));
     if (!options.html.empty()) write_text(options.html, golden::page_html(result, options.def.folder));

@@ -68,6 +68,7 @@ std::atomic<int> asked_to_stop_by{0};
 std::atomic<std::int64_t> asked_at_ns{0};
 std::atomic<std::int64_t> asked_at_processor_ns{0};
 std::atomic<int> exit_code_of_ended_work{-1};
+std::atomic<const char*> interruption_message{kNothingWritten};
 std::atomic<const LastWords*> last_words{nullptr};
 bool reports_json = false;
 static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
@@ -219,13 +220,17 @@ ExitCode interruption() {
     }
 }
 
-void stop_if_asked(const char* message) {
-    if (interruption() != ExitCode::kOk) throw Error(interruption(), message);
+void set_interruption_message(const char* message) {
+    interruption_message = message;
 }
 
-OnProgress stopping_if_asked(const char* message) {
-    return [message](std::int64_t, std::int64_t) {
-        stop_if_asked(message);
+void stop_if_asked() {
+    if (interruption() != ExitCode::kOk) throw Error(interruption(), interruption_message.load());
+}
+
+OnProgress stopping_if_asked() {
+    return [](std::int64_t, std::int64_t) {
+        stop_if_asked();
         return true;
     };
 }

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 
 namespace corda::app {
 
@@ -33,10 +34,12 @@ void keep_standard_streams();
 inline constexpr const char* kNothingWritten = "interrupted; nothing was written";
 inline constexpr const char* kSomethingWritten = "interrupted";
 
-/// Throws corda::Error of that status once a signal has asked to stop.
-void stop_if_asked(const char* message = kNothingWritten);
+/// Sets the message of stop_if_asked(), kNothingWritten at first.
+void set_interruption_message(const char* message);
 
-/// The same as a callback for work that reports its progress.
-[[nodiscard]] OnProgress stopping_if_asked(const char* message = kNothingWritten);
+/// Throws corda::Error of that status once a signal has asked to stop. check_cancelled() on the main thread
+/// calls it; work on other threads takes stopping_if_asked().
+void stop_if_asked();
+[[nodiscard]] OnProgress stopping_if_asked();
 
 }  // namespace corda::app

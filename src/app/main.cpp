@@ -15,6 +15,7 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/output_file.hpp"
 #include "interrupt.hpp"
 
@@ -100,6 +101,10 @@ int fail(const Console& console, ExitCode code, const std::string& text) {
 int act(const Console& console, const Action& action) {
     try {
         install_signal_handlers(console.json());
+        const CancelScope stopping([] {
+            stop_if_asked();
+            return true;
+        });
         return static_cast<int>(action(console));
     } catch (const ReaderLeft&) {
         return static_cast<int>(ExitCode::kOk);

@@ -147,7 +147,7 @@ void SceneOptions::require() const {
 
 const Provenance& SceneOptions::provenance(const Console& console) const {
     if (provenance_) return *provenance_;
-    provenance_ = read_provenance(from_, stopping_if_asked());
+    provenance_ = read_provenance(from_);
     if (provenance_->corda != version())
         console.warning(fmt::format("{} was made by corda {}, this is {}: pixels may differ", from_,
                                     provenance_->corda, version()));

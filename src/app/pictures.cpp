@@ -211,7 +211,7 @@ ExitCode FigureOptions::write_one(const Console& console, const Scene& loaded,
     if (!dry_run) {
         if (output.ends_with(".png")) report_gl(console, film.gl());
         const auto empty_s = write_figure(output, film, def, png_info(whole, some, origin, film_times(some)),
-                                          {.force = force, .on_progress = stopping_if_asked()});
+                                          {.force = force});
         empties.count = static_cast<std::int64_t>(empty_s.size());
         if (!empty_s.empty()) empties.first_s = empty_s.front();
         warn_of_branch(console, film);
@@ -305,7 +305,7 @@ void write_each(const std::vector<Still>& stills, const FigureOptions& options, 
                 write_figure(still.path, film, def,
                              options.png_info(film.scene(), {still},
                                               {.command = "still", .shutter = options.shutter}, stills_s),
-                             {.force = options.force, .on_progress = stopping_if_asked()});
+                             {.force = options.force});
             ++written;
             if (!empty_s.empty() && empty.count++ == 0) empty.first_s = still.time_s;
         }

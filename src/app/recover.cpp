@@ -42,9 +42,8 @@ ExitCode recover(const Console& console, const RecoverOptions& options) {
     }
     const std::string output = options.output.empty() ? name : options.output;
     check_output(output, options.part, options.force);
-    const media::RemuxResult result = media::recover_part(
-        options.part, output, {.force = options.force, .on_progress = stopping_if_asked()},
-        !options.output.empty());
+    const media::RemuxResult result =
+        media::recover_part(options.part, output, {.force = options.force}, !options.output.empty());
     const std::string frames = counted(result.frames, "frame");
     if (result.damaged) {
         console.warning(fmt::format("{} is damaged after {}, which were recovered", options.part, frames));

@@ -50,9 +50,9 @@ std::optional<Error> write_report(const Console& console, Film& film, const std:
     Parts parts(console);
     figures::SceneReportDef def;
     for (const RequestedTime& time : times) def.at_s.push_back(time.time_s);
-    def.output = {.force = options.force, .on_progress = stopping_if_asked(kSomethingWritten)};
+    def.output = {.force = options.force};
     def.on_part = [&](const std::string& part, std::int64_t done, std::int64_t total) {
-        stop_if_asked(kSomethingWritten);
+        stop_if_asked();
         parts.show(part, done, total);
     };
     try {
@@ -83,9 +83,9 @@ ExitCode report_command(const Console& console, const ReportOptions& options) {
         console.report(film_json(film));
         return ExitCode::kOk;
     }
-    on_progress = stopping_if_asked(kSomethingWritten);
-    report::ReportFolder folder(options.output,
-                                {.force = options.force, .on_progress = stopping_if_asked(kSomethingWritten)},
+    set_interruption_message(kSomethingWritten);
+    on_progress = stopping_if_asked();
+    report::ReportFolder folder(options.output, {.force = options.force},
                                 {figures::kColumnMm, figures::kPageMm});
     const std::optional<Error> failure = write_report(console, film, times, options, folder);
     warn_of_branch(console, film);

@@ -149,7 +149,7 @@ void write_states(const Console& console, Film& film, const Columns& columns, Ou
     Progress progress(console, "simulate", film.last_frame() + 1);
     CsvLine line;
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
-        stop_if_asked(kSomethingWritten);
+        stop_if_asked();
         const State& state = film.state(k);
         if (csv != nullptr) {
             add_row(film, state, columns, line);
@@ -193,11 +193,11 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
         return ExitCode::kOk;
     }
 
-    on_progress = stopping_if_asked(kSomethingWritten);
+    set_interruption_message(kSomethingWritten);
+    on_progress = stopping_if_asked();
     std::unique_ptr<OutputFile> csv;
     if (!options.output.empty()) {
-        csv = std::make_unique<OutputFile>(options.output,
-                                           OutputOptions{.force = options.force, .on_progress = on_progress});
+        csv = std::make_unique<OutputFile>(options.output, OutputOptions{.force = options.force});
         csv->write(csv_header(film.system(), options.columns));
         constexpr std::size_t kMaxToldBodies = 20;
         const std::size_t bodies = film.system().bodies.size();

@@ -63,14 +63,11 @@ ExitCode study_command(const Console& console, StudyOptions options) {
         throw Error(ExitCode::kUsage, "--set changes a scene; name its file");
     }
     options.gl.apply_to(options.def.film);
-    bool has_folder = false;
-    options.def.on_step = [&has_folder] { stop_if_asked(has_folder ? kSomethingWritten : kNothingWritten); };
     study::Study study(options.def);
     prepare_page_folder(options.output, options.force);
     report::check_gnuplot();
-    report::ReportFolder folder(
-        options.output, {.force = options.force, .on_progress = stopping_if_asked(kSomethingWritten)});
-    has_folder = true;
+    set_interruption_message(kSomethingWritten);
+    report::ReportFolder folder(options.output, {.force = options.force});
     measure(console, study, folder);
     report_files(console, folder, {{"schema", 1}, {"folder", options.output}}, now_s() - start_s);
     return ExitCode::kOk;

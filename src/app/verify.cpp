@@ -42,7 +42,7 @@ nlohmann::json to_json(const std::string& path, const media::VerifyReport& repor
 
 ExitCode verify(const Console& console, const VerifyOptions& options) {
     const std::string& path = options.path;
-    const media::VerifyReport report = media::verify_in_child(path, stopping_if_asked());
+    const media::VerifyReport report = media::verify_in_child(path);
     if (!report.codec.empty()) {
         console.result(fmt::format(
             "{}: {}{} {}x{}, {} at {} per second, {:.6g} s", path,

@@ -47,24 +47,9 @@ class Error : public std::runtime_error {
 /// May be empty.
 using OnProgress = std::function<bool(std::int64_t done, std::int64_t total)>;
 
-/// Asked again and again by work that reports no progress: whether it is to go on. Returning false stops it.
-/// May be empty.
-using GoesOn = std::function<bool()>;
-
-/// Throws corda::Error (kInterrupted) for the answer false of an OnProgress or a GoesOn.
-inline void require_going_on(bool goes_on) {
-    if (!goes_on) throw Error(ExitCode::kInterrupted, "stopped by the caller");
-}
-
-/// Calls `on_progress`. Throws corda::Error (kInterrupted) if it asks to stop.
-inline void report_progress(const OnProgress& on_progress, std::int64_t done, std::int64_t total) {
-    if (on_progress) require_going_on(on_progress(done, total));
-}
-
 /// How a file is written.
 struct OutputOptions {
-    bool force = false;        ///< replace an existing file, and keep its permissions
-    OnProgress on_progress{};  ///< asked often by what takes long; false ends it with kInterrupted
+    bool force = false;  ///< replace an existing file, and keep its permissions
 };
 
 }  // namespace corda

@@ -19,6 +19,7 @@
 #include <system_error>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/machine.hpp"
 
@@ -70,6 +71,7 @@ void lower_limit(decltype(RLIMIT_AS) resource, rlim_t value) {
 /// copy of.
 [[noreturn]] void be_child(const std::function<std::string()>& work, const ChildLimits& limits,
                            const Descriptor& out) {
+    const CancelScope shield({}, CancelScope::Outer::kIgnored);
     for (const int signal : {SIGINT, SIGTERM, SIGALRM, SIGXCPU}) std::signal(signal, SIG_DFL);
     struct sigaction hangup = {};
     if (sigaction(SIGHUP, nullptr, &hangup) == 0 && hangup.sa_handler != SIG_IGN)
@@ -100,11 +102,11 @@ ChildEnd end_of(const std::string& answer) {
 }
 
 /// Appends what the child writes until it closes its end; false if that takes longer than `wall_s`.
-bool receive(const Descriptor& in, double wall_s, const std::function<void()>& on_wait, std::string& text) {
+bool receive(const Descriptor& in, double wall_s, std::string& text) {
     std::array<char, 4096> block{};
     // Waits are counted rather than read off a clock, which goes on while a shell has stopped both processes.
     for (double waited_s = 0.0; waited_s < wall_s;) {
-        if (on_wait) on_wait();
+        check_cancelled();
         pollfd ready{in.get(), POLLIN, 0};
         const int count = poll(&ready, 1, kWaitMs);
         if (count == 0) waited_s += kWaitMs / 1000.0;
@@ -141,8 +143,7 @@ bool has_other_threads() {
     return failure || std::distance(tasks, {}) > 1;
 }
 
-std::optional<ChildEnd> run_in_child(const std::function<std::string()>& work, const ChildLimits& limits,
-                                     const std::function<void()>& on_wait) {
+std::optional<ChildEnd> run_in_child(const std::function<std::string()>& work, const ChildLimits& limits) {
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) fail_file("make a pipe for", "a child process", errno);
     const Descriptor in(ends[0]);
@@ -158,7 +159,7 @@ std::optional<ChildEnd> run_in_child(const std::function<std::string()>& work, c
     Child child(pid);
     static_cast<void>(out.close());
     std::string answer;
-    if (!receive(in, limits.wall_s, on_wait, answer)) {
+    if (!receive(in, limits.wall_s, answer)) {
         child.kill();
         std::array<char, 32> seconds{};
         const auto [stop, status] = std::to_chars(seconds.begin(), seconds.end(), limits.wall_s);
@@ -166,7 +167,7 @@ std::optional<ChildEnd> run_in_child(const std::function<std::string()>& work, c
                         "did not end within " + std::string(seconds.begin(), stop) + " s"};
     }
     const int status = child.wait();
-    if (on_wait) on_wait();  // a signal that ended the child may have been meant for both
+    check_cancelled();  // a signal to the process group may have ended the child
     return status == 0 && !answer.empty() ? end_of(answer) : end_without_answer(status, limits);
 }
 

@@ -28,14 +28,14 @@ struct ChildEnd {
 [[nodiscard]] bool has_other_threads();
 
 /// Runs `work` in a copy of this process within `limits`, and waits for it; std::nullopt if the system starts
-/// no further process. A corda::Error that `work` throws is thrown here. `on_wait` is called at least ten
-/// times a second, and may throw: then the child is killed first. No child outlives the call, or this thread.
+/// no further process. A corda::Error that `work` throws is thrown here. Calls check_cancelled() at
+/// least ten times a second; if that throws, the child is killed first. No child outlives the call, or this
+/// thread.
 ///
 /// The child is a fork without an exec: a lock that another thread of this process holds stays locked in the
 /// child, which then waits until `limits` end it. So there should be no other thread (has_other_threads()).
 /// Throws corda::Error (kTemporary) if the child was killed by someone else.
 [[nodiscard]] std::optional<ChildEnd> run_in_child(const std::function<std::string()>& work,
-                                                   const ChildLimits& limits,
-                                                   const std::function<void()>& on_wait = {});
+                                                   const ChildLimits& limits);
 
 }  // namespace corda

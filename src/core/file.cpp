@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/text.hpp"
 
 namespace corda {
@@ -63,10 +64,11 @@ Descriptor create_new(const std::string& path, unsigned mode) noexcept {
     return Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode));
 }
 
-int write_all(int descriptor, std::string_view bytes, const OnProgress& on_wait) {
+int write_all(int descriptor, std::string_view bytes) {
     while (!bytes.empty()) {
         const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
-        if (count < 0 && (errno != EINTR || (on_wait && !on_wait(0, 0)))) return errno;
+        if (count < 0 && errno != EINTR) return errno;
+        if (count < 0) check_cancelled();
         if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
     }
     return 0;

@@ -61,9 +61,9 @@ class Descriptor {
 /// leads nowhere. Sets errno if it fails.
 [[nodiscard]] Descriptor create_new(const std::string& path, unsigned mode) noexcept;
 
-/// Writes all of `bytes` to an open descriptor. A signal that breaks off the wait for the reader of a pipe
-/// asks `on_wait`, and what that throws is thrown. Returns 0 or an errno value: EINTR if it asks to stop.
-[[nodiscard]] int write_all(int descriptor, std::string_view bytes, const OnProgress& on_wait = {});
+/// Writes all of `bytes` to an open descriptor. Calls check_cancelled() if a signal interrupts the wait
+/// for the reader of a pipe. Returns 0 or an errno value.
+[[nodiscard]] int write_all(int descriptor, std::string_view bytes);
 
 /// Throws corda::Error (kIo; kInterrupted for EINTR): "cannot ACTION 'PATH': REASON; HINT", with the reason
 /// and the hint for `error_number`. The hint assumes that the file was to be written, unless ACTION is

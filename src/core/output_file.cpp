@@ -229,13 +229,13 @@ void OutputFile::write(std::string_view bytes) {
     if (buffer_.size() + bytes.size() > kBufferBytes) flush();
     if (bytes.size() < kBufferBytes) {
         buffer_ += bytes;
-    } else if (const int status = write_all(descriptor_.get(), bytes, options_.on_progress); status != 0) {
+    } else if (const int status = write_all(descriptor_.get(), bytes); status != 0) {
         fail_write(status);
     }
 }
 
 void OutputFile::flush() {
-    const int status = write_all(descriptor_.get(), buffer_, options_.on_progress);
+    const int status = write_all(descriptor_.get(), buffer_);
     buffer_.clear();
     if (status != 0) fail_write(status);
 }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "corda/core/cancel.hpp"
 #include "corda/sim/forces/elastic_forces.hpp"
 #include "corda/sim/recording.hpp"
 

@@ -79,7 +79,7 @@ using OpenRows = std::function<OnRow(const std::string& name, const std::vector<
 
 /// Reads the states at all frame times once, and hands all rows of tip.csv, energy.csv, tension.csv and
 /// strain.csv to `open`. A motion that diverges ends the reading early. Throws corda::Error: kInterrupted if
-/// `on_progress` asks to stop, kDiverged if there is not even a start, and what `open` throws.
+/// cancelled, kDiverged if there is not even a start, and what `open` throws.
 [[nodiscard]] MotionSummary read_motion(Film& film, const OpenRows& open, const OnProgress& on_progress);
 
 }  // namespace corda::figures

@@ -18,7 +18,7 @@ inline constexpr int kPageMm = 170;
 /// How a report of a scene is made.
 struct SceneReportDef {
     std::vector<double> at_s;  ///< times of its strobe and stills, increasing; empty: see find_figure_times()
-    OutputOptions output;      ///< `on_progress` is asked during all of it
+    OutputOptions output;
     /// Told which part is next, and what there is to do in it. May be empty.
     std::function<void(const std::string& part, std::int64_t done, std::int64_t total)> on_part;
 };

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "corda/core/cancel.hpp"
 #include "corda/golden/perceived.hpp"
 
 namespace corda {
@@ -64,8 +65,7 @@ bool is_left_out(const Image* mask, int x, int y) {
 }
 
 template <class Sample>
-Difference compare_samples(const BasicImage<Sample>& a, const BasicImage<Sample>& b,
-                           const OnProgress& on_progress, const Image* mask) {
+Difference compare_samples(const BasicImage<Sample>& a, const BasicImage<Sample>& b, const Image* mask) {
     Difference result;
     if (a.rect() != b.rect()) {
         result.same_size = false;
@@ -78,7 +78,7 @@ Difference compare_samples(const BasicImage<Sample>& a, const BasicImage<Sample>
     std::uint64_t differing = 0;
     std::uint64_t pixels = 0;
     for (int y = 0; y < a.height(); ++y) {
-        report_progress(on_progress, y, a.height());
+        check_cancelled();
         // Most rows of most pictures are equal, and this finds it a hundred times faster.
         if (mask == nullptr && std::memcmp(a.pixel(0, y), b.pixel(0, y), a.row_bytes()) == 0) {
             pixels += static_cast<std::uint64_t>(a.width());
@@ -109,14 +109,14 @@ Difference compare_samples(const BasicImage<Sample>& a, const BasicImage<Sample>
 /// `shown` is `a` at 8 bits.
 template <class Sample>
 Image image_of_differences(const Image& shown, const BasicImage<Sample>& a, const BasicImage<Sample>& b,
-                           const OnProgress& on_progress, const Image* mask) {
+                           const Image* mask) {
     constexpr std::array<std::uint8_t, kChannels> kOfOne{0, 0, 255, 255};
     constexpr int kUnit = kSamplesPerUnit<Sample>;
     if (mask != nullptr && a.rect() == b.rect()) check_mask(a.rect(), *mask);
     Image result(std::max(a.width(), b.width()), std::max(a.height(), b.height()));
     const PixelRect both = a.rect().intersected(b.rect());
     for (int y = 0; y < result.height(); ++y) {
-        report_progress(on_progress, y, result.height());
+        check_cancelled();
         for (int x = 0; x < result.width(); ++x) {
             std::array<std::uint8_t, kChannels> rgba = kOfOne;
             if (x < both.x1 && y < both.y1) {
@@ -161,19 +161,19 @@ std::string figures_text(const Difference& difference) {
     return text;
 }
 
-Difference compare(const Image& a, const Image& b, const OnProgress& on_progress, const Image* mask) {
-    return compare_samples(a, b, on_progress, mask);
+Difference compare(const Image& a, const Image& b, const Image* mask) {
+    return compare_samples(a, b, mask);
 }
 
-Difference compare(const Picture& a, const Picture& b, const OnProgress& on_progress, const Image* mask) {
-    if (!a.deep && !b.deep) return compare_samples(a.image, b.image, on_progress, mask);
+Difference compare(const Picture& a, const Picture& b, const Image* mask) {
+    if (!a.deep && !b.deep) return compare_samples(a.image, b.image, mask);
     DeepImage of_a;
     DeepImage of_b;
-    return compare_samples(deep_of(a, of_a), deep_of(b, of_b), on_progress, mask);
+    return compare_samples(deep_of(a, of_a), deep_of(b, of_b), mask);
 }
 
 void add_perceived(const Image& a, const Image& b, const PerceivedFigures& figures, Difference& difference,
-                   const OnProgress& on_progress, const Image* mask) {
+                   const Image* mask) {
     if (!difference.same_size) return;
     if (difference.equal) {
         if (figures.flip) difference.flip = 0.0;
@@ -189,19 +189,19 @@ void add_perceived(const Image& a, const Image& b, const PerceivedFigures& figur
                 if (is_left_out(mask, x, y)) std::copy_n(a.pixel(x, y), kChannels, masked.pixel(x, y));
     }
     const Image& other = mask == nullptr ? b : masked;
-    if (figures.flip) difference.flip = flip(a, other, on_progress, figures.threads);
-    if (figures.ssim) difference.ssim = ssim(a, other, on_progress);
+    if (figures.flip) difference.flip = flip(a, other, figures.threads);
+    if (figures.ssim) difference.ssim = ssim(a, other);
 }
 
-Image difference_image(const Picture& a, const Picture& b, const OnProgress& on_progress, const Image* mask) {
-    if (!a.deep && !b.deep) return difference_image(a.image, b.image, on_progress, mask);
+Image difference_image(const Picture& a, const Picture& b, const Image* mask) {
+    if (!a.deep && !b.deep) return difference_image(a.image, b.image, mask);
     DeepImage of_a;
     DeepImage of_b;
-    return image_of_differences(a.image, deep_of(a, of_a), deep_of(b, of_b), on_progress, mask);
+    return image_of_differences(a.image, deep_of(a, of_a), deep_of(b, of_b), mask);
 }
 
-Image difference_image(const Image& a, const Image& b, const OnProgress& on_progress, const Image* mask) {
-    return image_of_differences(a, a, b, on_progress, mask);
+Image difference_image(const Image& a, const Image& b, const Image* mask) {
+    return image_of_differences(a, a, b, mask);
 }
 
 }  // namespace corda

@@ -39,13 +39,11 @@ struct Difference {
 
 /// Compares all channels of all pixels of two pictures; with a `mask` of their size, of those that are not
 /// black in it. Throws corda::Error: kUsage for a mask of another size or without a pixel to compare,
-/// kInterrupted if `on_progress`, called with the rows, asks to stop.
-[[nodiscard]] Difference compare(const Image& a, const Image& b, const OnProgress& on_progress = {},
-                                 const Image* mask = nullptr);
+/// kInterrupted if cancelled.
+[[nodiscard]] Difference compare(const Image& a, const Image& b, const Image* mask = nullptr);
 
 /// As above, at 16 bits if one of them has as many. A difference of 1 in 65535 is then one of 1/257.
-[[nodiscard]] Difference compare(const Picture& a, const Picture& b, const OnProgress& on_progress = {},
-                                 const Image* mask = nullptr);
+[[nodiscard]] Difference compare(const Picture& a, const Picture& b, const Image* mask = nullptr);
 
 /// Which figures that take long add_perceived() computes.
 struct PerceivedFigures {
@@ -57,15 +55,13 @@ struct PerceivedFigures {
 /// Adds figures to what compare() has found, at 8 bits. Throws kUsage for an ssim() of pictures that are too
 /// small and differ, kInterrupted as compare().
 void add_perceived(const Image& a, const Image& b, const PerceivedFigures& figures, Difference& difference,
-                   const OnProgress& on_progress = {}, const Image* mask = nullptr);
+                   const Image* mask = nullptr);
 
 /// A picture of where two pictures differ. Equal pixels are a dim grey copy of `a`, and so are those that the
 /// mask leaves out. Others go from red to yellow with the size of the difference; even the smallest, at 16
 /// bits, too, is bright enough to be seen. What only one of them has is blue. Throws as compare().
-[[nodiscard]] Image difference_image(const Picture& a, const Picture& b, const OnProgress& on_progress = {},
-                                     const Image* mask = nullptr);
-[[nodiscard]] Image difference_image(const Image& a, const Image& b, const OnProgress& on_progress = {},
-                                     const Image* mask = nullptr);
+[[nodiscard]] Image difference_image(const Picture& a, const Picture& b, const Image* mask = nullptr);
+[[nodiscard]] Image difference_image(const Image& a, const Image& b, const Image* mask = nullptr);
 
 }  // namespace corda
 #pragma GCC visibility pop

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "corda/core/cancel.hpp"
 #include "corda/core/cpu.hpp"
 #include "corda/core/threads.hpp"
 #include "corda/golden/perceived.hpp"
@@ -409,25 +410,25 @@ double stripe_sum(const Constants& constants, const Image& a, const Image& b, in
     return sum;
 }
 
-double opaque_flip(const Image& a, const Image& b, const OnProgress& on_progress, int threads, double ppd) {
+double opaque_flip(const Image& a, const Image& b, int threads, double ppd) {
     Constants constants{.filters = make_filters(ppd)};
     constants.reach = std::max(constants.filters.radius, constants.filters.feature_radius);
     const int stripes = (a.height() + kStripeRows - 1) / kStripeRows;
     std::vector<double> sums(static_cast<std::size_t>(stripes));
     std::atomic<int> next = 0;
     std::atomic<bool> stops = false;
-    const auto work = [&](const OnProgress& ask) {
+    const auto work = [&] {
         for (int i = next++; i < stripes && !stops; i = next++) {
-            report_progress(ask, i, stripes);
+            check_cancelled();
             const int y0 = i * kStripeRows;
             sums[static_cast<std::size_t>(i)] =
                 stripe_sum(constants, a, b, y0, std::min(y0 + kStripeRows, a.height()));
         }
     };
     {
-        const auto helpers = start_threads(std::min(threads, stripes) - 1, [&] { work({}); });
+        const auto helpers = start_threads(std::min(threads, stripes) - 1, work);
         try {
-            work(on_progress);
+            work();
         } catch (...) {
             stops = true;
             throw;
@@ -457,15 +458,14 @@ Image laid_over(Image image, int level) {
 
 }  // namespace
 
-double flip(const Image& a, const Image& b, const OnProgress& on_progress, int threads,
-            double pixels_per_degree) {
+double flip(const Image& a, const Image& b, int threads, double pixels_per_degree) {
     if (a.rect() != b.rect()) throw Error(ExitCode::kUsage, "FLIP is of two pictures of one size");
     if (a.size_bytes() == 0) return 0.0;
-    if (is_opaque(a) && is_opaque(b)) return opaque_flip(a, b, on_progress, threads, pixels_per_degree);
+    if (is_opaque(a) && is_opaque(b)) return opaque_flip(a, b, threads, pixels_per_degree);
     double largest = 0.0;
     for (const int level : {0, 255})
-        largest = std::max(largest, opaque_flip(laid_over(a, level), laid_over(b, level), on_progress,
-                                                threads, pixels_per_degree));
+        largest = std::max(largest,
+                           opaque_flip(laid_over(a, level), laid_over(b, level), threads, pixels_per_degree));
     return largest;
 }
 

@@ -21,8 +21,8 @@ inline constexpr int kMinSsimSidePx = 11;
 ///
 /// P. Andersson, J. Nilsson, T. Akenine-Moller, M. Oskarsson, K. Astrom, M. D. Fairchild: FLIP: A difference
 /// evaluator for alternating images. Proceedings of the ACM on Computer Graphics and Interactive Techniques
-/// 3(2), 2020. Throws corda::Error: kUsage for different sizes, kInterrupted if `on_progress` asks to stop.
-[[nodiscard]] double flip(const Image& a, const Image& b, const OnProgress& on_progress = {}, int threads = 1,
+/// 3(2), 2020. Throws corda::Error: kUsage for different sizes, kInterrupted if cancelled.
+[[nodiscard]] double flip(const Image& a, const Image& b, int threads = 1,
                           double pixels_per_degree = kFlipPixelsPerDegree);
 
 /// Mean structural similarity of the luma 0.299 R + 0.587 G + 0.114 B of two pictures of one size, over
@@ -32,7 +32,7 @@ inline constexpr int kMinSsimSidePx = 11;
 /// Z. Wang, A. C. Bovik, H. R. Sheikh, E. P. Simoncelli: Image quality assessment: from error visibility to
 /// structural similarity. IEEE Transactions on Image Processing 13(4), 2004, pages 600-612. Throws
 /// corda::Error: kUsage for different sizes, and a side below kMinSsimSidePx; kInterrupted.
-[[nodiscard]] double ssim(const Image& a, const Image& b, const OnProgress& on_progress = {});
+[[nodiscard]] double ssim(const Image& a, const Image& b);
 
 /// Structural similarity of two windows of samples 0 .. 255 by their means, variances and covariance:
 ///

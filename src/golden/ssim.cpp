@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "corda/core/cancel.hpp"
 #include "corda/golden/perceived.hpp"
 
 namespace corda {
@@ -92,7 +93,7 @@ class Rows {
 
 }  // namespace
 
-double ssim(const Image& a, const Image& b, const OnProgress& on_progress) {
+double ssim(const Image& a, const Image& b) {
     if (a.rect() != b.rect()) throw Error(ExitCode::kUsage, "SSIM is of two pictures of one size");
     if (std::min(a.width(), a.height()) < kMinSsimSidePx) {
         throw Error(ExitCode::kUsage,
@@ -101,7 +102,7 @@ double ssim(const Image& a, const Image& b, const OnProgress& on_progress) {
     Rows rows(a.width());
     double sum = 0.0;
     for (int y = 0; y < a.height(); ++y) {
-        report_progress(on_progress, y, a.height());
+        check_cancelled();
         rows.add(a, b, y);
         if (y + 1 >= kTaps) sum += rows.sum(y);
     }

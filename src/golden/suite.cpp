@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 
+#include "corda/core/cancel.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/golden/cases.hpp"
 #include "corda/golden/provenance.hpp"

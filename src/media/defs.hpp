@@ -64,21 +64,21 @@ struct PngInfo {
 /// Writes `image` as 8-bit PNG with an sRGB and a pHYs chunk; opaque pictures are stored as RGB. The bytes
 /// depend on nothing but the arguments. The file gets its name when it is complete. Throws
 /// corda::Error: kIo, also if `path` exists and `options` do not say to replace it; kInterrupted if
-/// they ask to stop.
+/// cancelled.
 void write_png(const std::string& path, const Image& image, const PngInfo& info = {},
                const OutputOptions& options = {});
 
 /// Reads any PNG of a size that is_picture_size() as 8-bit RGBA. Throws corda::Error: kIo if it is larger,
 /// before memory is taken, or if the file cannot be read or is not a complete PNG, kInterrupted if
-/// `on_progress`, called with its rows, asks to stop.
-[[nodiscard]] Image read_png(const std::string& path, const OnProgress& on_progress = {});
+/// cancelled.
+[[nodiscard]] Image read_png(const std::string& path);
 
 /// As read_png(), with all 16 bits if the file has as many per channel, which takes three times its memory.
-[[nodiscard]] Picture read_picture(const std::string& path, const OnProgress& on_progress = {});
+[[nodiscard]] Picture read_picture(const std::string& path);
 
 /// The texts of a PNG: of the first 30 in it (tEXt, zTXt and iTXt) those of at most 64 KiB. Throws
 /// as read_png.
-[[nodiscard]] PngInfo read_png_info(const std::string& path, const OnProgress& on_progress = {});
+[[nodiscard]] PngInfo read_png_info(const std::string& path);
 
 }  // namespace corda
 #pragma GCC visibility pop

@@ -185,11 +185,10 @@ void for_each_cell(const Film& film, const FigureDef& def,
         visit(def.times_s[i], sheet.x_px(i, video.width_px), sheet.y_px(i, video.height_px));
 }
 
-Image draw_sheet(Film& film, const FigureDef& def, const OnProgress& on_progress,
-                 std::vector<double>& empty_s) {
+Image draw_sheet(Film& film, const FigureDef& def, std::vector<double>& empty_s) {
     Image image = render::render_reference(list_captions(film, def));
     for_each_cell(film, def, [&](double time_s, int x, int y) {
-        const Image cell = film.still(time_s, on_progress);
+        const Image cell = film.still(time_s);
         if (film.shows_nothing()) empty_s.push_back(time_s);
         for (int row = 0; row < cell.height(); ++row)
             std::copy_n(cell.pixel(0, row), cell.row_bytes(), image.pixel(x, y + row));
@@ -197,15 +196,15 @@ Image draw_sheet(Film& film, const FigureDef& def, const OnProgress& on_progress
     return image;
 }
 
-Image draw(Film& film, const FigureDef& def, const OnProgress& on_progress, std::vector<double>& empty_s) {
+Image draw(Film& film, const FigureDef& def, std::vector<double>& empty_s) {
     check(film, def);
-    if (def.columns > 0) return draw_sheet(film, def, on_progress, empty_s);
+    if (def.columns > 0) return draw_sheet(film, def, empty_s);
     if (def.shutter != 0.0) {
-        Image image = film.still(def.times_s.front(), on_progress, def.shutter);
+        Image image = film.still(def.times_s.front(), def.shutter);
         if (film.shows_nothing()) empty_s.push_back(def.times_s.front());
         return image;
     }
-    Image image = FilmRenderer::draw_poses(film, def.times_s, on_progress);
+    Image image = FilmRenderer::draw_poses(film, def.times_s);
     if (film.shows_nothing()) empty_s.push_back(def.times_s.front());
     return image;
 }
@@ -216,7 +215,7 @@ std::string ending_of(const std::string& path) {
 
 /// The bytes of an SVG or a PDF.
 std::string vector_bytes(const std::string& ending, Film& film, const FigureDef& def, const PngInfo& info,
-                         const OnProgress& on_progress, std::vector<double>& empty_s) {
+                         std::vector<double>& empty_s) {
     check(film, def);
     if (def.shutter != 0.0) {
         throw Error(ExitCode::kUsage,
@@ -226,14 +225,13 @@ std::string vector_bytes(const std::string& ending, Film& film, const FigureDef&
     const bool is_sheet = def.columns > 0;
     render::PageDef page_def{.width_px = is_sheet ? def.width_px : video.width_px,
                              .height_px = is_sheet ? def.height_px : video.height_px};
-    page_def.on_progress = on_progress;
     page_def.width_mm = page_def.width_px * kMmPerInch / info.pixels_per_inch;
     for (const auto& [keyword, text] : info.text) {
         if (keyword == "Title") page_def.title = utf8(text);
     }
     const auto page = ending == ".svg" ? render::make_svg(page_def) : render::make_pdf(page_def);
     const auto add = [&](std::span<const double> times_s, int x, int y) {
-        const view::DrawList list = FilmRenderer::list_poses(film, times_s, on_progress);
+        const view::DrawList list = FilmRenderer::list_poses(film, times_s);
         if (list.shows_nothing()) empty_s.push_back(times_s.front());
         page->draw(list, x, y);
     };
@@ -267,9 +265,9 @@ FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns) 
     return def;
 }
 
-Image draw_figure(Film& film, const FigureDef& def, const OnProgress& on_progress) {
+Image draw_figure(Film& film, const FigureDef& def) {
     std::vector<double> ignored;
-    return draw(film, def, on_progress, ignored);
+    return draw(film, def, ignored);
 }
 
 bool is_figure_path(const std::string& path) {
@@ -286,10 +284,10 @@ std::vector<double> write_figure(const std::string& path, Film& film, const Figu
     std::vector<double> empty_s;
     const std::string ending = ending_of(path);
     if (ending == ".png") {
-        write_png(path, draw(film, def, options.on_progress, empty_s), info, options);
+        write_png(path, draw(film, def, empty_s), info, options);
         return empty_s;
     }
-    const std::string bytes = vector_bytes(ending, film, def, info, options.on_progress, empty_s);
+    const std::string bytes = vector_bytes(ending, film, def, info, empty_s);
     OutputFile file(path, options);
     file.write(bytes);
     file.commit();

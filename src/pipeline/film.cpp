@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "corda/core/cancel.hpp"
 #include "corda/core/clock.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "corda/pipeline/live_plot_data.hpp"
@@ -35,18 +36,16 @@ double pose_opacity(std::size_t k, std::size_t count) {
 
 struct Film::Impl {
     using DrawContext = pipeline::DrawContext;
+    using Use = pipeline::SharedMotion::Use;
 
     Impl(const Scene& given, FilmDef options)
         : scene(given),
           def(std::move(options)),
           run(std::make_shared<pipeline::SharedMotion>(scene)),
           system(run->system),
-          on_progress(run->guarded(def.on_progress)),
           drawing(scene, system, def),
           plot_data(scene, system),
-          motion(run->motion.emplace(system, scene.world, pipeline::if_all_named(run->named), timeline(),
-                                     def.motion_budget_bytes, on_progress, quantity_of(scene.style.color_by),
-                                     def.readings.with(plot_data.readings()))),
+          motion(start_motion()),
           plan(run->plan) {
         if (motion.methods().empty()) {
             plan = motion.record([&](const Timeline& timeline, sim::Recording& recording) {
@@ -55,11 +54,27 @@ struct Film::Impl {
         } else {
             for (const MethodDef& method : motion.methods()) plan.bodies.emplace_back().method = method;
         }
-        plan.notes = pipeline::input_notes(scene, system, plan, [this] {
-            report_progress(on_progress, 0, pipeline::last_frame_of(scene) + 1);
+        const CancelScope starting = reporting_start();
+        plan.notes = pipeline::input_notes(scene, system, plan);
+    }
+
+    /// Calls on_progress, with nothing done, until the simulation starts.
+    CancelScope reporting_start() const {
+        return CancelScope([this] {
+            report_progress(def.on_progress, 0, pipeline::last_frame_of(scene) + 1);
             return true;
         });
     }
+
+    pipeline::Motion& start_motion() const {
+        const CancelScope starting = reporting_start();
+        return run->motion.emplace(system, scene.world, pipeline::if_all_named(run->named), timeline(),
+                                   def.motion_budget_bytes, quantity_of(scene.style.color_by),
+                                   def.readings.with(plot_data.readings()));
+    }
+
+    /// Required while the motion is read.
+    Use reading() const { return {*run, def.on_progress}; }
 
     /// The times to record, including those within exposures if memory suffices.
     Timeline timeline() const {
@@ -94,7 +109,6 @@ struct Film::Impl {
           def(other.def),
           run(other.run),
           system(run->system),
-          on_progress(run->guarded(def.on_progress)),
           drawing(scene, system, def),
           plot_data(scene, system),
           motion(*run->motion),
@@ -105,25 +119,24 @@ struct Film::Impl {
         const auto tolerance_m = [&](const MotionBounds& bounds) {
             return tolerance_px / drawing.renderer.largest_pixels_per_metre(bounds);
         };
-        return sim::plan_methods(system, run->named, scene.world, {tolerance_m, timeline, on_progress, now_s},
-                                 recording);
+        return sim::plan_methods(system, run->named, scene.world,
+                                 {tolerance_m, timeline, def.on_progress, now_s}, recording);
     }
 
     /// The camera, fitted to the motion if it depends on it.
     const CameraDef& find_camera() {
-        const auto lock = run->lock();
+        const Use use = reading();
         return find_camera_locked();
     }
 
     const CameraDef& find_camera_locked() {
         if (camera) return *camera;
-        if (drawing.renderer.needs_motion()) motion.run_to_end(on_progress);
+        if (drawing.renderer.needs_motion()) motion.run_to_end();
         if (scene.overlay.plot != LivePlot::kNone) {
             const std::vector<MethodDef> methods =
                 motion.methods();  // a copy: reading may restart the motion
-            plot = plot_data.read(methods, last_s_locked(), [this](double time_s) -> const State& {
-                return motion.at(time_s, on_progress);
-            });
+            plot = plot_data.read(methods, last_s_locked(),
+                                  [this](double time_s) -> const State& { return motion.at(time_s); });
         }
         camera = fit_locked(drawing.renderer);
         return *camera;
@@ -140,7 +153,7 @@ struct Film::Impl {
 
     /// The state of another renderer of this film.
     std::unique_ptr<DrawContext> make_context() {
-        const auto lock = run->lock();
+        const Use use = reading();
         static_cast<void>(find_camera_locked());
         auto made = std::make_unique<DrawContext>(scene, system, def);
         static_cast<void>(fit_locked(made->renderer));
@@ -157,8 +170,8 @@ struct Film::Impl {
 
     const State& at(double time_s) {
         time_s = checked_s(time_s);
-        const auto lock = run->lock();
-        asked = motion.at(time_s, on_progress);
+        const Use use = reading();
+        asked = motion.at(time_s);
         figures = motion.figures();
         return asked;
     }
@@ -167,14 +180,14 @@ struct Film::Impl {
     /// each with its own context.
     const State& read(double time_s, DrawContext& by) {
         time_s = checked_s(time_s);
-        const auto lock = run->lock();
-        by.trails.read(motion, time_s, on_progress);
-        by.state = motion.at(time_s, on_progress);
+        const Use use = reading();
+        by.trails.read(motion, time_s);
+        by.state = motion.at(time_s);
         by.figures = motion.figures();
         return by.state;
     }
 
-    view::DrawList list_poses(std::span<const double> times_s, const OnProgress& ask) {
+    view::DrawList list_poses(std::span<const double> times_s) {
         pipeline::SceneRenderer& renderer = drawing.renderer;
         const view::Camera map = renderer.map_of(find_camera());
         const view::SceneView& view = renderer.view();
@@ -182,7 +195,7 @@ struct Film::Impl {
         view.start(list);
         view.draw_trails(drawing.trails.to(read(times_s.back(), drawing)), map, list);
         for (std::size_t k = 0; k < times_s.size(); ++k) {
-            report_progress(ask, static_cast<std::int64_t>(k), static_cast<std::int64_t>(times_s.size()));
+            check_cancelled();
             const std::size_t first_layer = list.layers.size();
             view.draw_pose(read(times_s[k], drawing), map, list);
             const double opacity = pose_opacity(k, times_s.size());
@@ -216,34 +229,33 @@ struct Film::Impl {
     }
 
     /// Requires a Use of the context's renderer. `camera_def`: as find_camera() returns it.
-    Damage draw(double time_s, double shutter, const CameraDef& camera_def, const OnProgress& ask,
-                DrawContext& by) {
+    Damage draw(double time_s, double shutter, const CameraDef& camera_def, DrawContext& by) {
+        const pipeline::SharedMotion::Activity drawing_it(*run);
         time_s = checked_s(time_s);
         if (!(shutter >= 0.0 && shutter <= 1.0))
             throw Error(ExitCode::kUsage, fmt::format("a shutter of {} is not within 0 .. 1", shutter));
         const view::Camera map = by.renderer.map_of(camera_def);
-        if (shutter > 0.0) return expose(time_s, shutter, map, ask, by);
+        if (shutter > 0.0) return expose(time_s, shutter, map, by);
         const State& state = read(time_s, by);
-        return by.renderer.draw(state, map, caption_of(by, map), {by.trails.to(state), state.time_s}, ask);
+        return by.renderer.draw(state, map, caption_of(by, map), {by.trails.to(state), state.time_s});
     }
 
     /// The end of the motion: that of the scene, or the last recorded state if the motion diverges. Simulates
     /// it to its end.
     double last_s() {
-        const auto lock = run->lock();
+        const Use use = reading();
         return last_s_locked();
     }
 
     double last_s_locked() {
-        motion.run_to_end(on_progress);
+        motion.run_to_end();
         const std::size_t states = motion.recording().size();
         return motion.diverges() && states > 0 ? motion.timeline().time_s(states - 1)
                                                : scene.world.duration_s;
     }
 
     /// Reads the states in order of time, so that those that are not recorded take one simulation.
-    Damage expose(double time_s, double shutter, const view::Camera& map, const OnProgress& ask,
-                  DrawContext& by) {
+    Damage expose(double time_s, double shutter, const view::Camera& map, DrawContext& by) {
         const double end_s = last_s();
         by.renderer.begin_exposure();
         std::optional<view::Caption> caption;
@@ -255,7 +267,7 @@ struct Film::Impl {
             const double at_s = subframe_s(time_s, shutter, end_s, i);
             if (!caption && at_s >= time_s) note();
             const State& state = read(at_s, by);
-            by.renderer.expose(state, map, {by.trails.to(state), time_s}, ask);
+            by.renderer.expose(state, map, {by.trails.to(state), time_s});
         }
         if (!caption) note();
         return by.renderer.develop(*caption, map);
@@ -278,7 +290,7 @@ struct Film::Impl {
 
     /// True if frames before `end` can be drawn in any order without another simulation.
     bool holds(std::int64_t end) {
-        const auto lock = run->lock();
+        const Use use = reading();
         const VideoDef& video = scene.video;
         const double last_frame_s = video.fps.time_s(end - 1);
         const double needed_s = video.shutter > 0.0
@@ -288,7 +300,7 @@ struct Film::Impl {
         const auto last = motion.timeline().find(needed_s);
         if (!last) return false;
         try {
-            if (motion.recording().size() <= *last) static_cast<void>(motion.at(needed_s, on_progress));
+            if (motion.recording().size() <= *last) static_cast<void>(motion.at(needed_s));
         } catch (const Error& error) {
             if (error.code() != ExitCode::kDiverged) throw;
         }
@@ -299,8 +311,7 @@ struct Film::Impl {
     FilmDef def;
     std::shared_ptr<pipeline::SharedMotion> run;
     const System& system;
-    OnProgress on_progress;  ///< that of `def`, guarded
-    DrawContext drawing;     ///< of frames and stills
+    DrawContext drawing;  ///< of frames and stills
     pipeline::LivePlotData plot_data;
     pipeline::Motion& motion;
     Plan& plan;
@@ -384,14 +395,14 @@ double Film::stepping_s() const {
     return impl_->motion.recording().wall_s();
 }
 
-Image Film::frame(std::int64_t k, const OnProgress& on_progress) {
-    return still(time_s(k), on_progress, scene().video.shutter);
+Image Film::frame(std::int64_t k) {
+    return still(time_s(k), scene().video.shutter);
 }
 
-Image Film::still(double time_s, const OnProgress& on_progress, double shutter) {
+Image Film::still(double time_s, double shutter) {
     const pipeline::SceneRenderer::Use use(impl_->drawing.renderer);
     const CameraDef& camera = impl_->find_camera();
-    impl_->draw(time_s, shutter, camera, impl_->run->guarded(on_progress), impl_->drawing);
+    impl_->draw(time_s, shutter, camera, impl_->drawing);
     return impl_->drawing.renderer.image();
 }
 
@@ -418,26 +429,25 @@ bool FilmRenderer::can_draw_in_any_order(Film& film, std::int64_t end) {
     return film.impl_->holds(end);
 }
 
-Damage FilmRenderer::draw(double time_s, const OnProgress& on_progress) {
+Damage FilmRenderer::draw(double time_s) {
     Film::Impl& impl = *film_->impl_;
-    return impl.draw(time_s, impl.scene.video.shutter, camera_, impl.run->guarded(on_progress), *context_);
+    return impl.draw(time_s, impl.scene.video.shutter, camera_, *context_);
 }
 
-view::DrawList FilmRenderer::list_poses(Film& film, std::span<const double> times_s,
-                                        const OnProgress& on_progress) {
-    return film.impl_->list_poses(times_s, film.impl_->run->guarded(on_progress));
+view::DrawList FilmRenderer::list_poses(Film& film, std::span<const double> times_s) {
+    return film.impl_->list_poses(times_s);
 }
 
-Image FilmRenderer::draw_poses(Film& film, std::span<const double> times_s, const OnProgress& on_progress) {
+Image FilmRenderer::draw_poses(Film& film, std::span<const double> times_s) {
     pipeline::SceneRenderer& renderer = film.impl_->drawing.renderer;
     const pipeline::SceneRenderer::Use use(renderer);
-    const OnProgress ask = film.impl_->run->guarded(on_progress);
-    renderer.draw(film.impl_->list_poses(times_s, ask), ask);
+    const pipeline::SharedMotion::Activity drawing(*film.impl_->run);
+    renderer.draw(film.impl_->list_poses(times_s));
     return renderer.image();
 }
 
-OnProgress FilmRenderer::guarded(const Film& film, const OnProgress& on_progress) {
-    return film.impl_->run->guarded(on_progress);
+pipeline::SharedMotion& FilmRenderer::motion_of(Film& film) {
+    return *film.impl_->run;
 }
 
 Film FilmRenderer::another_look(const Film& film, const Scene& look) {
@@ -451,8 +461,8 @@ Film FilmRenderer::another_look(const Film& film, const Scene& look) {
 void FilmRenderer::keep(Film& film, std::span<const double> times_s) {
     std::vector<double> checked_s;
     for (const double time_s : times_s) checked_s.push_back(film.impl_->checked_s(time_s));
-    const auto lock = film.impl_->run->lock();
-    film.impl_->motion.keep(checked_s, film.impl_->on_progress);
+    const pipeline::SharedMotion::Use use = film.impl_->reading();
+    film.impl_->motion.keep(checked_s);
 }
 
 bool FilmRenderer::is_empty(Film& film, double time_s) {

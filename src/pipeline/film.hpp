@@ -48,14 +48,15 @@ struct GlInfo {
 /// any order. The same scene gives the same bytes.
 ///
 /// Any thread may use a film, but only one at a time, except for the `const` functions. Several films may be
-/// used at once. A film must not be used inside of its own progress callbacks, whether given here or to one
-/// of its functions: reading or drawing it there throws corda::Error (kUsage).
+/// used at once. A CancelScope of the calling thread can end any call. A film must not be used inside of a
+/// callback of a CancelScope or of progress that it calls: reading or drawing it there throws corda::Error
+/// (kUsage).
 class Film {
   public:
     /// Plans a scene with method `auto`, which simulates it. Other scenes are simulated on demand, for
     /// pictures usually to the end. Throws corda::Error: kInvalidScene if no method can run the scene or
     /// provide its tensions, or if a field is outside of its declared range, kUsage for an unknown backend or
-    /// a still outside of the scene, kInterrupted if on_progress asks to stop.
+    /// a still outside of the scene, kInterrupted if cancelled or if on_progress returns false.
     explicit Film(const Scene& scene, FilmDef def = {});
     Film(Film&&) noexcept;
     Film& operator=(Film&&) noexcept;
@@ -83,7 +84,7 @@ class Film {
 
     /// Positions at frame `k`, 0 .. last_frame(), or at a time in 0 .. world.duration_s. The reference holds
     /// until the next call. Throws corda::Error: kUsage out of range, kDiverged if the motion ends before,
-    /// kInterrupted if on_progress asks to stop.
+    /// kInterrupted if cancelled or if on_progress returns false.
     [[nodiscard]] const State& state(std::int64_t k);
     [[nodiscard]] const State& state_at(double time_s);
     /// Figures of the state that state() or state_at() returned last.
@@ -98,10 +99,9 @@ class Film {
     /// row 0 on top. States within exposures are recorded if they fit into half of the budget; otherwise
     /// frames in order of time take one more simulation in total, in any other order up to one each. A
     /// blurred picture first simulates the whole motion, because exposures are clipped to its end. Calls
-    /// `on_progress` repeatedly if the picture is large or blurred. Throws as state(), and kNoGl,
-    /// kInterrupted.
-    [[nodiscard]] Image frame(std::int64_t k, const OnProgress& on_progress = {});
-    [[nodiscard]] Image still(double time_s, const OnProgress& on_progress = {}, double shutter = 0.0);
+    /// check_cancelled() repeatedly if the picture is large or blurred. Throws as state(), and kNoGl.
+    [[nodiscard]] Image frame(std::int64_t k);
+    [[nodiscard]] Image still(double time_s, double shutter = 0.0);
     /// True if the last picture was empty.
     [[nodiscard]] bool shows_nothing() const;
     /// The OpenGL driver. Throws kNoGl.
@@ -167,7 +167,7 @@ struct Rendered {
     std::int64_t frames = 0;
     std::int64_t resumed_frames = 0;  ///< number of these that an interrupted render had made
     bool was_part_damaged = false;    ///< the part of that render was damaged after these
-    bool complete = true;             ///< false if on_progress asked to stop
+    bool complete = true;             ///< false if it was cancelled or on_progress returned false
     std::string kept_part;     ///< the file with the frames so far if incomplete; empty if there are none
     bool reader_left = false;  ///< standard output was closed by its reader, which ends the video early
     std::string encoder;       ///< libav's name
@@ -236,7 +236,7 @@ struct FigureDef {
 [[nodiscard]] FigureDef contact_sheet(Scene& scene, std::vector<double> times_s, int columns = 0);
 
 /// Throws corda::Error as Film::still(), and kUsage for an invalid definition or poses with too many lines.
-[[nodiscard]] Image draw_figure(Film& film, const FigureDef& def, const OnProgress& on_progress = {});
+[[nodiscard]] Image draw_figure(Film& film, const FigureDef& def);
 
 /// True if `path` ends with .png, .svg or .pdf.
 [[nodiscard]] bool is_figure_path(const std::string& path);

@@ -36,9 +36,8 @@ class FilmRenderer {
     FilmRenderer& operator=(const FilmRenderer&) = delete;
     ~FilmRenderer();
 
-    /// Draws the frame at a time; returns what may differ from the last one. Calls `on_progress` and throws
-    /// like Film::still().
-    Damage draw(double time_s, const OnProgress& on_progress = {});
+    /// Draws the frame at a time; returns what may differ from the last one. Throws as Film::still().
+    Damage draw(double time_s);
     /// The last frame.
     [[nodiscard]] const Image& image() const;
     /// True if the last frame was empty.
@@ -51,13 +50,11 @@ class FilmRenderer {
     /// as far as they need it.
     [[nodiscard]] static bool can_draw_in_any_order(Film& film, std::int64_t end);
     /// The poses at one or more times in one picture: earlier ones fainter, the last one opaque and on top.
-    /// Needs no OpenGL. Calls `on_progress` for each. Throws corda::Error as Film::state_at(), kInterrupted,
+    /// Needs no OpenGL. Throws corda::Error as Film::state_at(), kInterrupted,
     /// and kUsage for poses with too many lines in total.
-    [[nodiscard]] static view::DrawList list_poses(Film& film, std::span<const double> times_s,
-                                                   const OnProgress& on_progress = {});
+    [[nodiscard]] static view::DrawList list_poses(Film& film, std::span<const double> times_s);
     /// Draws list_poses() with the film's own context.
-    [[nodiscard]] static Image draw_poses(Film& film, std::span<const double> times_s,
-                                          const OnProgress& on_progress = {});
+    [[nodiscard]] static Image draw_poses(Film& film, std::span<const double> times_s);
     /// The same motion in pictures of another size, style or overlay, without a plot and without another
     /// simulation. `look` has the bodies, the world and the colouring of the film's scene. Throws
     /// corda::Error (kInternal) for another colouring or a plot.
@@ -67,9 +64,8 @@ class FilmRenderer {
     static void keep(Film& film, std::span<const double> times_s);
     /// True if the frame at a time would be empty. Needs no OpenGL. Throws as Film::state_at().
     [[nodiscard]] static bool is_empty(Film& film, double time_s);
-    /// A callback, which must outlive the result, such that using the film inside of it throws corda::Error
-    /// (kUsage).
-    [[nodiscard]] static OnProgress guarded(const Film& film, const OnProgress& on_progress);
+
+    [[nodiscard]] static pipeline::SharedMotion& motion_of(Film& film);
 
   private:
     Film* film_;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/clock.hpp"
 #include "corda/pipeline/motion_input.hpp"
 
@@ -20,38 +21,19 @@ constexpr double kMaxPoints = 400.0;
 /// A point closer to the end, in frame intervals, gives its segment no direction.
 constexpr double kTooClose = 1e-6;
 
-/// A progress callback that this thread is running for a motion. Callbacks nest if one draws another film.
-class Callback {
-  public:
-    explicit Callback(const SharedMotion* motion) : motion_(motion), outer_(std::exchange(innermost, this)) {}
-    Callback(const Callback&) = delete;
-    Callback& operator=(const Callback&) = delete;
-    ~Callback() { innermost = outer_; }
-
-    [[nodiscard]] static bool is_running_for(const SharedMotion* motion) {
-        const Callback* callback = innermost;
-        while (callback != nullptr && callback->motion_ != motion) callback = callback->outer_;
-        return callback != nullptr;
-    }
-
-  private:
-    inline static thread_local const Callback* innermost = nullptr;
-    const SharedMotion* motion_;
-    const Callback* outer_;
-};
+thread_local const SharedMotion::Activity* innermost = nullptr;  ///< of this thread
 
 }  // namespace
 
 Motion::Motion(const System& system, const WorldDef& world, std::vector<MethodDef> methods, Timeline timeline,
-               std::size_t budget_bytes, const OnProgress& on_progress, std::optional<Quantity> quantity,
-               const StateFields& readings)
+               std::size_t budget_bytes, std::optional<Quantity> quantity, const StateFields& readings)
     : system_(&system),
       world_(world),
       methods_(std::move(methods)),
       timeline_(std::move(timeline)),
       recording_(system.particle_count(), timeline_.size(), budget_bytes, system.bars.size(), quantity,
                  readings) {
-    if (!methods_.empty()) start(on_progress);
+    if (!methods_.empty()) start();
 }
 
 Plan Motion::record(const std::function<Plan(const Timeline&, sim::Recording&)>& plan) {
@@ -61,38 +43,28 @@ Plan Motion::record(const std::function<Plan(const Timeline&, sim::Recording&)>&
     return made;
 }
 
-void Motion::start(const OnProgress& on_progress) {
+void Motion::start() {
     next_ = 0;
     run_.reset();
-    run_.emplace(*system_, world_, methods_, timeline_.fps().interval_s(), asking(on_progress));
+    run_.emplace(*system_, world_, methods_, timeline_.fps().interval_s());
     run_->set_outputs(recording_.fields());
     methods_ = run_->methods();
 }
 
-GoesOn Motion::asking(const OnProgress& on_progress) const {
-    return [this, &on_progress] {
-        report_progress(on_progress, static_cast<std::int64_t>(next_),
-                        static_cast<std::int64_t>(timeline_.size()));
-        return true;
-    };
-}
-
-Status Motion::advance_to(double time_s, bool is_new, const OnProgress& on_progress) {
-    const GoesOn goes_on = asking(on_progress);
+Status Motion::advance_to(double time_s, bool is_new) {
     try {
-        return is_new ? recording_.advance(*run_, timeline_, now_s, goes_on)
-                      : run_->advance_to(time_s, goes_on);
+        return is_new ? recording_.advance(*run_, timeline_, now_s) : run_->advance_to(time_s);
     } catch (...) {
         run_.reset();  // it cannot be used any more; the next call starts again
         throw;
     }
 }
 
-bool Motion::step(const OnProgress& on_progress) {
+bool Motion::step() {
     if (next_ == 0) ++passes_;
     const double time_s = timeline_.time_s(next_);
     const bool is_new = next_ == recording_.size();
-    if (advance_to(time_s, is_new, on_progress) == Status::kDiverged) {
+    if (advance_to(time_s, is_new) == Status::kDiverged) {
         diverges_ = true;
         run_.reset();
         return false;
@@ -101,16 +73,15 @@ bool Motion::step(const OnProgress& on_progress) {
     return true;
 }
 
-void Motion::run_to_end(const OnProgress& on_progress) {
-    const auto total = static_cast<std::int64_t>(timeline_.size());
+void Motion::run_to_end() {
     while (recording_.size() < timeline_.size() && !diverges_) {
-        if (!run_ || next_ > recording_.size()) start(on_progress);
-        report_progress(on_progress, static_cast<std::int64_t>(next_), total);
-        static_cast<void>(step(on_progress));
+        if (!run_ || next_ > recording_.size()) start();
+        check_cancelled();
+        static_cast<void>(step());
     }
 }
 
-const State& Motion::at(double time_s, const OnProgress& on_progress) {
+const State& Motion::at(double time_s) {
     const auto index = timeline_.find(time_s);
     if (index && recording_.holds(*index)) {
         recording_.read(*index, state_);
@@ -122,11 +93,11 @@ const State& Motion::at(double time_s, const OnProgress& on_progress) {
         return kept->second.state;
     }
     if (index && diverges_ && *index >= recording_.size()) fail_diverged(time_s);
-    if (!run_ || run_->state().time_s > time_s) start(on_progress);
+    if (!run_ || run_->state().time_s > time_s) start();
     while (next_ < timeline_.size() && timeline_.time_s(next_) <= time_s) {
-        if (!step(on_progress)) fail_diverged(time_s);
+        if (!step()) fail_diverged(time_s);
     }
-    if (run_->state().time_s < time_s && advance_to(time_s, false, on_progress) == Status::kDiverged) {
+    if (run_->state().time_s < time_s && advance_to(time_s, false) == Status::kDiverged) {
         run_.reset();
         fail_diverged(time_s);
     }
@@ -134,11 +105,11 @@ const State& Motion::at(double time_s, const OnProgress& on_progress) {
     return run_->state();
 }
 
-void Motion::keep(std::span<const double> times_s, const OnProgress& on_progress) {
+void Motion::keep(std::span<const double> times_s) {
     for (const double time_s : times_s) {
         const auto index = timeline_.find(time_s);
         if (index && recording_.holds(*index)) continue;
-        const State& state = at(time_s, on_progress);
+        const State& state = at(time_s);
         kept_.try_emplace(time_s, Kept{state, figures_});
     }
 }
@@ -156,22 +127,30 @@ void Motion::fail_diverged(double time_s) const {
 
 SharedMotion::SharedMotion(const Scene& scene) : system(system_of(scene)), named(named_methods(scene)) {}
 
-std::unique_lock<std::mutex> SharedMotion::lock() {
-    if (Callback::is_running_for(this)) {
-        throw Error(ExitCode::kUsage,
-                    "on_progress used the film whose progress it reports; draw and read the film after the "
-                    "call that reports progress, or make another Film");
+SharedMotion::Activity::Activity(const SharedMotion& motion)
+    : motion_(&motion), callback_depth_(callback_depth()), outer_(innermost) {
+    for (const Activity* other = innermost; other != nullptr; other = other->outer_) {
+        if (other->motion_ == motion_ && other->callback_depth_ < callback_depth_) {
+            throw Error(
+                ExitCode::kUsage,
+                "on_progress used the film whose progress it reports; draw and read the film after the "
+                "call that reports progress, or make another Film");
+        }
     }
-    return std::unique_lock(mutex_);
+    innermost = this;
 }
 
-OnProgress SharedMotion::guarded(const OnProgress& on_progress) const {
-    if (!on_progress) return {};
-    return [this, &on_progress](std::int64_t done, std::int64_t total) {
-        const Callback callback(this);
-        return on_progress(done, total);
-    };
+SharedMotion::Activity::~Activity() {
+    innermost = outer_;
 }
+
+SharedMotion::Use::Use(SharedMotion& motion, const OnProgress& on_progress)
+    : activity_(motion), lock_(motion.mutex_), progress_([&] {
+          const Motion& its = *motion.motion;
+          report_progress(on_progress, static_cast<std::int64_t>(its.next()),
+                          static_cast<std::int64_t>(its.timeline().size()));
+          return true;
+      }) {}
 
 TrailRecorder::TrailRecorder(std::vector<std::size_t> particles, double trail_s, FrameRate fps)
     : particles_(std::move(particles)),
@@ -180,10 +159,10 @@ TrailRecorder::TrailRecorder(std::vector<std::size_t> particles, double trail_s,
       stride_(std::max<std::int64_t>(1, std::llround(std::ceil(trail_s / fps.interval_s() / kMaxPoints)))),
       trails_(particles_.size()) {}
 
-void TrailRecorder::read(Motion& motion, double end_s, const OnProgress& on_progress) {
+void TrailRecorder::read(Motion& motion, double end_s) {
     if (particles_.empty()) return;
     for (; time_s(points_) <= end_s; ++points_) {
-        const State& state = motion.at(time_s(points_), on_progress);
+        const State& state = motion.at(time_s(points_));
         for (const std::size_t i : particles_) at_m_.push_back({state.x_m[i], state.y_m[i]});
     }
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/rational.hpp"
 #include "corda/core/timeline.hpp"
 #include "corda/scene/scene.hpp"
@@ -26,10 +27,9 @@ class Motion {
   public:
     /// A motion that has not started, with one method per body or, if `methods` is empty, those that record()
     /// will find. `quantity` and `readings`: see sim::Recording. `system` must outlive it. Throws
-    /// corda::Refusal if a method cannot run its body, and corda::Error (kInterrupted) if asked to stop.
+    /// corda::Refusal if a method cannot run its body.
     Motion(const System& system, const WorldDef& world, std::vector<MethodDef> methods, Timeline timeline,
-           std::size_t budget_bytes, const OnProgress& on_progress = {},
-           std::optional<Quantity> quantity = {}, const StateFields& readings = {});
+           std::size_t budget_bytes, std::optional<Quantity> quantity = {}, const StateFields& readings = {});
     Motion(const Motion&) = delete;
     Motion& operator=(const Motion&) = delete;
 
@@ -38,15 +38,15 @@ class Motion {
 
     /// Simulates the motion to its end. A run that diverges ends it early, which is no error. Throws as at(),
     /// except kDiverged.
-    void run_to_end(const OnProgress& on_progress);
+    void run_to_end();
 
     /// The state at a time of the timeline, or at any other time between 0 and its end. The reference holds
-    /// until the next call. Calls `on_progress` during steps that take long; it must not use the motion.
-    /// Throws corda::Error: kDiverged if the motion ends before, kInterrupted if asked to stop.
-    const State& at(double time_s, const OnProgress& on_progress = {});
+    /// until the next call. Throws corda::Error: kDiverged if the motion ends before, kInterrupted if
+    /// cancelled.
+    const State& at(double time_s);
     /// Keeps the states at these increasing times in addition to the recording, whatever the budget is.
     /// Throws as at().
-    void keep(std::span<const double> times_s, const OnProgress& on_progress);
+    void keep(std::span<const double> times_s);
     /// Figures of the last state that at() returned.
     [[nodiscard]] const Figures& figures() const { return figures_; }
 
@@ -54,6 +54,8 @@ class Motion {
     [[nodiscard]] const sim::Recording& recording() const { return recording_; }
     /// One per body, with every default filled in.
     [[nodiscard]] const std::vector<MethodDef>& methods() const { return methods_; }
+    /// Index of the time that the run advances to next.
+    [[nodiscard]] std::size_t next() const { return next_; }
     /// Number of simulations that this object has started to step.
     [[nodiscard]] int passes() const { return passes_; }
     /// True if the run is known to end before the timeline.
@@ -65,13 +67,11 @@ class Motion {
         Figures figures;
     };
 
-    void start(const OnProgress& on_progress);
-    /// Reports the time that run_ advances to to `on_progress`, which must outlive the result.
-    [[nodiscard]] GoesOn asking(const OnProgress& on_progress) const;
+    void start();
     /// Advances to the next time of the timeline; false if the run diverges there.
-    [[nodiscard]] bool step(const OnProgress& on_progress);
+    [[nodiscard]] bool step();
     /// Advances run_, and records the state if it is new.
-    Status advance_to(double time_s, bool is_new, const OnProgress& on_progress);
+    Status advance_to(double time_s, bool is_new);
     [[noreturn]] void fail_diverged(double time_s) const;
 
     const System* system_;
@@ -94,10 +94,32 @@ class SharedMotion {
   public:
     explicit SharedMotion(const Scene& scene);
 
-    /// Required to read the motion. Throws corda::Error (kUsage) inside of a guarded() callback.
-    [[nodiscard]] std::unique_lock<std::mutex> lock();
-    /// The callback, which must outlive the result, such that lock() refuses calls from inside of it.
-    [[nodiscard]] OnProgress guarded(const OnProgress& on_progress) const;
+    /// A call, on this thread, that uses the motion or draws it.
+    class Activity {
+      public:
+        /// Throws corda::Error (kUsage) inside of a callback of another activity with this motion.
+        explicit Activity(const SharedMotion& motion);
+        Activity(const Activity&) = delete;
+        Activity& operator=(const Activity&) = delete;
+        ~Activity();
+
+      private:
+        const SharedMotion* motion_;
+        int callback_depth_;
+        const Activity* outer_;
+    };
+
+    /// Exclusive use of the motion, required to read it. Progress of the simulation is reported meanwhile.
+    class Use {
+      public:
+        /// Throws as Activity. `on_progress` must outlive it.
+        Use(SharedMotion& motion, const OnProgress& on_progress);
+
+      private:
+        Activity activity_;
+        std::unique_lock<std::mutex> lock_;
+        CancelScope progress_;
+    };
 
     System system;
     sim::NamedMethods named;
@@ -116,7 +138,7 @@ class TrailRecorder {
     TrailRecorder(std::vector<std::size_t> particles, double trail_s, FrameRate fps);
 
     /// Reads the motion as far as trails at this time need it. Throws as Motion::at().
-    void read(Motion& motion, double time_s, const OnProgress& on_progress);
+    void read(Motion& motion, double time_s);
     /// The trails that end at a state, one per particle. Requires read() up to its time.
     [[nodiscard]] const std::vector<view::Trail>& to(const State& state);
 

@@ -67,14 +67,14 @@ bool has_velocity_along_bars(const System& body) {
 
 /// The kinetic energy in J after projecting the velocities; std::nullopt if the method cannot run the body.
 std::optional<double> kinetic_after_j(const System& body, const WorldDef& world, const MethodDef& method,
-                                      double frame_interval_s, const GoesOn& goes_on) {
+                                      double frame_interval_s) {
     // Relaxation uses the velocities unchanged. Its first steps remove those along a rope's links like
     // `rattle`, but let a net stretch.
     const bool is_relaxed = std::holds_alternative<RelaxationDef>(method);
     if (is_relaxed && body.bars.size() != body.bodies.front().link_count) return std::nullopt;
     const MethodDef projecting = is_relaxed ? RattleDef{} : method;
     try {
-        const auto solver = sim::make_solver(body, world, {&projecting, 1}, frame_interval_s, goes_on);
+        const auto solver = sim::make_solver(body, world, {&projecting, 1}, frame_interval_s);
         std::vector<double> vx_m_s(body.particle_count());
         std::vector<double> vy_m_s(body.particle_count());
         solver->velocities(vx_m_s, vy_m_s);
@@ -84,7 +84,7 @@ std::optional<double> kinetic_after_j(const System& body, const WorldDef& world,
     }
 }
 
-void add_lost_velocity(const Scene& scene, const System& system, const Plan& plan, const GoesOn& goes_on,
+void add_lost_velocity(const Scene& scene, const System& system, const Plan& plan,
                        std::vector<std::string>& notes) {
     const auto is_zero = [](double v) { return v == 0.0; };
     if (std::all_of(system.vx_m_s.begin(), system.vx_m_s.end(), is_zero) &&
@@ -94,7 +94,7 @@ void add_lost_velocity(const Scene& scene, const System& system, const Plan& pla
         if (!has_velocity_along_bars(body)) return;
         const double before_j = kinetic_j(body, body.vx_m_s, body.vy_m_s);
         const auto after_j =
-            kinetic_after_j(body, scene.world, plan.bodies[i].method, scene.video.fps.interval_s(), goes_on);
+            kinetic_after_j(body, scene.world, plan.bodies[i].method, scene.video.fps.interval_s());
         if (!after_j || !(before_j - *after_j > kRounding * before_j)) return;
         const bool is_string = body.bodies.front().material.is_string;
         notes.push_back(fmt::format(
@@ -223,10 +223,9 @@ void validate(const Scene& scene, std::span<const double> stills_s) {
     }
 }
 
-std::vector<std::string> input_notes(const Scene& scene, const System& system, const Plan& plan,
-                                     const GoesOn& goes_on) {
+std::vector<std::string> input_notes(const Scene& scene, const System& system, const Plan& plan) {
     std::vector<std::string> notes;
-    add_lost_velocity(scene, system, plan, goes_on, notes);
+    add_lost_velocity(scene, system, plan, notes);
     for (std::size_t i = 0; i < scene.ropes.size(); ++i)
         add_rope_notes(body_name(system, i), scene.ropes[i], notes);
     for (std::size_t i = 0; i < scene.nets.size(); ++i) {

@@ -32,8 +32,8 @@ void validate(const Scene& scene, std::span<const double> stills_s);
 /// Notes, each a sentence with a remedy, on values of a scene that its motion changes or ignores: velocities
 /// along rigid bars, distances that a string cannot span, velocities of pinned particles, a payload on a
 /// pinned particle, the bending stiffness of a rope without a joint, colours beyond the last link. `plan` has
-/// the method of every body. Throws corda::Error (kInterrupted) if `goes_on` returns false.
-[[nodiscard]] std::vector<std::string> input_notes(const Scene& scene, const System& system, const Plan& plan,
-                                                   const GoesOn& goes_on = {});
+/// the method of every body.
+[[nodiscard]] std::vector<std::string> input_notes(const Scene& scene, const System& system,
+                                                   const Plan& plan);
 
 }  // namespace corda::pipeline

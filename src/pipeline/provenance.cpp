@@ -95,9 +95,9 @@ struct PngTexts {
     std::string frame;       ///< its number, in words
 };
 
-PngTexts texts_in_png(const std::string& path, const OnProgress& on_progress) {
+PngTexts texts_in_png(const std::string& path) {
     PngTexts texts;
-    for (const auto& [keyword, text] : read_png_info(path, on_progress).text) {
+    for (const auto& [keyword, text] : read_png_info(path).text) {
         if (keyword == kProvenanceKeyword) texts.provenance = text;
         if (keyword == "Frame") texts.frame = text;
     }
@@ -112,8 +112,8 @@ std::optional<PictureOrigin> frame_of_sequence(const std::string& number) {
     return PictureOrigin{.command = "frame", .times = {{frame, 0.0}}};
 }
 
-std::string text_in_video(const std::string& path, const OnProgress& on_progress) {
-    const std::string text = media::comment_in_child(path, on_progress);
+std::string text_in_video(const std::string& path) {
+    const std::string text = media::comment_in_child(path);
     Json comment = Json::parse(text, nullptr, false);  // its size and depth were checked
     if (!comment.is_object() || !comment.contains(kProvenanceKey)) return {};
     Json& provenance = comment[kProvenanceKey];
@@ -173,7 +173,7 @@ std::string provenance_text(Provenance provenance) {
     return text_of();
 }
 
-Provenance read_provenance(const std::string& path, const OnProgress& on_progress) {
+Provenance read_provenance(const std::string& path) {
     if (path.ends_with(".toml"))
         throw Error(ExitCode::kUsage, fmt::format("'{}' is a scene file; give it without --from", path));
     const std::string kind = media::file_kind(path);
@@ -181,9 +181,9 @@ Provenance read_provenance(const std::string& path, const OnProgress& on_progres
         fail_at(path, "is a GIF, an APNG or a WebP, none of which tells what it was made from");
     PngTexts png;
     if (media::is_png(path))
-        png = texts_in_png(path, on_progress);
+        png = texts_in_png(path);
     else
-        png.provenance = text_in_video(path, on_progress);
+        png.provenance = text_in_video(path);
     const std::string& text = png.provenance;
     if (text.empty()) fail_at(path, "does not tell what it was made from");
     if (text.size() > 2 * Provenance::kMaxBytes) fail_at(path, "tells more than corda writes");

@@ -55,9 +55,9 @@ inline constexpr const char* kProvenanceKey = "provenance";
 [[nodiscard]] std::string provenance_text(Provenance provenance);
 
 /// Reads what a PNG or a video carries; a video in a child process (see core/child_process.hpp), and
-/// `on_progress` is asked meanwhile. Throws corda::Error: kIo if the file cannot be read, kUsage if it
+/// Throws corda::Error: kIo if the file cannot be read, kUsage if it
 /// carries nothing or no scene, or what it carries is damaged.
-[[nodiscard]] Provenance read_provenance(const std::string& path, const OnProgress& on_progress = {});
+[[nodiscard]] Provenance read_provenance(const std::string& path);
 
 /// The scene of a file, with `settings` in place of what it says; messages name the file.
 [[nodiscard]] Scene scene_of(const Provenance& provenance, const std::string& path,

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "corda/core/cancel.hpp"
 #include "corda/core/clock.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/ordered_workers.hpp"
@@ -36,6 +37,9 @@ namespace {
 
 constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
 
+/// Time that the encoders may take, after a request to stop, to encode the frames that they hold back.
+constexpr double kMomentS = 0.4;
+
 /// Everything that determines the bytes of a video, by key.
 std::map<std::string, std::string> origin_of(const Scene& scene, const media::Format& format,
                                              std::int64_t first, std::int64_t end) {
@@ -48,8 +52,7 @@ std::map<std::string, std::string> origin_of(const Scene& scene, const media::Fo
 }
 
 /// Refuses to resume a part of another render, or a file that is not a part.
-void check_part(const std::string& path, const std::map<std::string, std::string>& origin,
-                const OnProgress& on_progress) {
+void check_part(const std::string& path, const std::map<std::string, std::string>& origin) {
     const std::string part = part_path(path);
     std::error_code ignored;
     const auto bytes = std::filesystem::file_size(part, ignored);
@@ -61,8 +64,8 @@ void check_part(const std::string& path, const std::map<std::string, std::string
                         "again (--force without --resume)",
                         part, problem, other));
     };
-    media::check_part_in_child(part, false, on_progress);
-    const media::PartComment comment = media::part_comment(part, on_progress);
+    media::check_part_in_child(part, false);
+    const media::PartComment comment = media::part_comment(part);
     if (comment.is_damaged) fail("is damaged in its first chunk", "move it away");
     if (!comment.text) {
         // A part of this render that was interrupted in its first chunk has no frames to lose.
@@ -173,14 +176,14 @@ class ChunkMaker {
     /// Makes a chunk, or as much of it as is drawn when all threads are stopped.
     Made make(std::int64_t number, const OrderedWorkers<Made>& all, FilmRenderer& renderer) {
         Made made;
-        const OnProgress goes_on = [&all](std::int64_t, std::int64_t) { return !all.is_stopped(); };
+        const CancelScope running([&all] { return !all.is_stopped(); });
         const std::int64_t first = std::max(from_, number * length_);
         const std::int64_t end = std::min(end_, (number + 1) * length_);
         media::ChunkEncoder encoder = writer_->chunk_encoder(first);
         for (std::int64_t k = first; k < end && !all.is_stopped(); ++k) {
             const double time_s = film_->time_s(k);
             try {
-                const Damage damage = renderer.draw(time_s, goes_on);
+                const Damage damage = renderer.draw(time_s);
                 if (renderer.shows_nothing()) note_empty(time_s, made);
                 encoder.encode(renderer.image(), damage, k + 1 == end);
             } catch (const Error& error) {
@@ -197,12 +200,15 @@ class ChunkMaker {
 
     /// Flushes the encoder; once all threads are stopped, only for a moment.
     static void finish(media::ChunkEncoder& encoder, const OrderedWorkers<Made>& all, Made& made) {
-        std::optional<GoesOn> moment;
+        std::optional<double> end_s;
+        const CancelScope moment(
+            [&] {
+                if (all.is_stopped() && !end_s) end_s = now_s() + kMomentS;
+                return !end_s || now_s() < *end_s;
+            },
+            CancelScope::Outer::kIgnored);
         try {
-            made.chunk = encoder.finish([&] {
-                if (all.is_stopped() && !moment) moment = for_a_moment();
-                return !moment || (*moment)();
-            });
+            made.chunk = encoder.finish();
         } catch (const Error& error) {
             if (error.code() != ExitCode::kInterrupted) throw;
             made.is_whole = false;
@@ -281,16 +287,17 @@ void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProg
     if (result.jobs > 1 && render_chunks(film, first, end, result.jobs, on_progress, writer, result)) return;
     result.jobs = 1;
     FilmRenderer renderer(film);
-    const OnProgress ask = [&](std::int64_t, std::int64_t) {
-        return !on_progress || on_progress(k - first, end - first);
-    };
-    for (; k < end; ++k) {
+    const CancelScope progress([&] {
         report_progress(on_progress, k - first, end - first);
-        const Damage damage = renderer.draw(film.time_s(k), ask);
+        return true;
+    });
+    for (; k < end; ++k) {
+        check_cancelled();
+        const Damage damage = renderer.draw(film.time_s(k));
         if (renderer.shows_nothing()) note_empty(film.time_s(k), result);
         writer.write(renderer.image(), damage, k + 1 == end);
     }
-    report_progress(on_progress, end - first, end - first);
+    check_cancelled();
 }
 
 /// Refuses a transparent ground in a format without alpha, which would show it black.
@@ -308,10 +315,9 @@ void check_ground(const Scene& scene, const media::Format& format) {
                               : "draw stills as .png, or a video as " + media::endings_with_alpha()));
 }
 
-/// The output of frames first <= k < end with everything checked but the encoder's start. `starting`: called
-/// while a part is read.
+/// The output of frames first <= k < end with everything checked but the encoder's start.
 media::CheckedVideo check_video(const Scene& scene, const std::string& path, const RenderDef& def,
-                                const std::string& input, std::int64_t end, const OnProgress& starting) {
+                                const std::string& input, std::int64_t end) {
     media::CheckedVideo video =
         media::check_video_output(path, scene.video, input, def.force,
                                   !view::look_of(scene.style).ground.is_opaque(), def.first, end, def.resume);
@@ -320,7 +326,7 @@ media::CheckedVideo check_video(const Scene& scene, const std::string& path, con
     std::error_code none;
     const auto part_bytes = def.resume ? std::filesystem::file_size(part_path(path), none) : 0;
     media::check_disk_space(video.format, path, scene.video, end - def.first, none ? 0 : part_bytes);
-    if (def.resume) check_part(path, origin_of(scene, video.format, def.first, end), starting);
+    if (def.resume) check_part(path, origin_of(scene, video.format, def.first, end));
     return video;
 }
 
@@ -353,12 +359,13 @@ CheckedOutput check_render(const Scene& scene, const std::string& path, const Re
                         def.first, end, count));
     }
     std::int64_t total = end - def.first;
-    const OnProgress starting = [&](std::int64_t, std::int64_t) {
-        return !def.on_progress || def.on_progress(0, total);
-    };
-    media::CheckedVideo video = check_video(scene, path, def, input, end, starting);
+    const CancelScope starting([&] {
+        report_progress(def.on_progress, 0, total);
+        return true;
+    });
+    media::CheckedVideo video = check_video(scene, path, def, input, end);
     total *= media::passes(*video.format.ending);
-    media::check_encoder_starts(video.format, scene.video, starting);
+    media::check_encoder_starts(video.format, scene.video);
     return {std::move(video), def.verify_all};
 }
 
@@ -374,16 +381,19 @@ Rendered render_video(Film& film, const CheckedOutput& output, const OnProgress&
                         video.path, video.def.width_px, video.def.height_px, video.def.fps.rational().text(),
                         shown.width_px, shown.height_px, shown.fps.rational().text()));
     }
-    const OnProgress guarded = FilmRenderer::guarded(film, on_progress);
+    const pipeline::SharedMotion::Activity rendering(FilmRenderer::motion_of(film));
+    const std::int64_t passes = media::passes(*video.format.ending);
     static_cast<void>(film.camera());  // may fail, which is to happen before a file is made
     static_cast<void>(film.gl());
-    media::VideoWriter writer(
-        video,
-        metadata(film, video.first, video.end, origin_of(film.scene(), video.format, video.first, video.end)),
-        guarded);
-    const OnProgress drawn = [&guarded, passes = media::passes(*video.format.ending)](std::int64_t k,
-                                                                                      std::int64_t all) {
-        return !guarded || guarded(k, passes * all);
+    std::optional<CancelScope> resuming(std::in_place, [&] {
+        report_progress(on_progress, 0, passes * (video.end - video.first));
+        return true;
+    });
+    media::VideoWriter writer(video, metadata(film, video.first, video.end,
+                                              origin_of(film.scene(), video.format, video.first, video.end)));
+    resuming.reset();
+    const OnProgress drawn = [&on_progress, passes](std::int64_t k, std::int64_t all) {
+        return !on_progress || on_progress(k, passes * all);
     };
     Rendered result;
     result.resumed_frames = writer.frames();
@@ -391,15 +401,17 @@ Rendered render_video(Film& film, const CheckedOutput& output, const OnProgress&
     result.encoder = video.format.encoder_name();
     try {
         write_frames(film, video.first, video.end, drawn, writer, result);
-        writer.finish(output.verifies_all() ? media::VerifyDepth::kAllFrames
-                                            : media::VerifyDepth::kKeyFrames);
+        writer.finish(output.verifies_all() ? media::VerifyDepth::kAllFrames : media::VerifyDepth::kKeyFrames,
+                      on_progress);
     } catch (const ReaderLeft&) {
         result.reader_left = true;
     } catch (const Error& error) {
         if (error.code() == ExitCode::kDiverged) keep_diverged(error, video.path, video.first, writer);
         if (!is_interruption(error.code())) throw;
         result.complete = false;
-        result.kept_part = writer.abandon(for_a_moment());
+        const CancelScope moment([end_s = now_s() + kMomentS] { return now_s() < end_s; },
+                                 CancelScope::Outer::kIgnored);
+        result.kept_part = writer.abandon();
     }
     result.frames = writer.frames();
     return result;

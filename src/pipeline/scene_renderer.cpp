@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/render/frame_renderer.hpp"
@@ -87,10 +88,10 @@ void SceneRenderer::open(Needs needs) {
 }
 
 Damage SceneRenderer::draw(const State& state, const view::Camera& map, const view::Caption& caption,
-                           const Traces& traces, const OnProgress& on_progress) {
+                           const Traces& traces) {
     list(state, map, traces);
     annotate(caption, map, list_);
-    return paint(on_progress);
+    return paint();
 }
 
 void SceneRenderer::list(const State& state, const view::Camera& map, const Traces& traces) {
@@ -103,9 +104,9 @@ bool SceneRenderer::would_show_nothing(const State& state, const view::Camera& m
     return list_.shows_nothing();
 }
 
-Damage SceneRenderer::draw(view::DrawList list, const OnProgress& on_progress) {
+Damage SceneRenderer::draw(view::DrawList list) {
     list_ = std::move(list);
-    return paint(on_progress);
+    return paint();
 }
 
 void SceneRenderer::begin_exposure() {
@@ -113,15 +114,14 @@ void SceneRenderer::begin_exposure() {
     canvas_->renderer->begin_exposure();
 }
 
-void SceneRenderer::expose(const State& state, const view::Camera& map, const Traces& traces,
-                           const OnProgress& on_progress) {
+void SceneRenderer::expose(const State& state, const view::Camera& map, const Traces& traces) {
     canvas_->context.make_current();
     list(state, map, traces);
     shows_nothing_ = list_.shows_nothing() && shows_nothing_;
     check_tints();
-    const OnProgress ask = asking(on_progress);
-    report_progress(ask, 0, 1);
-    canvas_->renderer->expose(list_, ask);
+    const CancelScope current = keep_current();
+    check_cancelled();
+    canvas_->renderer->expose(list_);
 }
 
 Damage SceneRenderer::develop(const view::Caption& caption, const view::Camera& map) {
@@ -131,11 +131,12 @@ Damage SceneRenderer::develop(const view::Caption& caption, const view::Camera& 
     return canvas_->renderer->develop(list_);
 }
 
-Damage SceneRenderer::paint(const OnProgress& on_progress) {
+Damage SceneRenderer::paint() {
     canvas_->context.make_current();  // the host may have made another one current since open()
     shows_nothing_ = list_.shows_nothing();
     check_tints();
-    return canvas_->renderer->render(list_, asking(on_progress));
+    const CancelScope current = keep_current();
+    return canvas_->renderer->render(list_);
 }
 
 void SceneRenderer::check_tints() {
@@ -144,13 +145,11 @@ void SceneRenderer::check_tints() {
     canvas_->has_checked_tints = true;
 }
 
-OnProgress SceneRenderer::asking(const OnProgress& on_progress) {
-    if (!on_progress) return {};
-    return [this, &on_progress](std::int64_t done, std::int64_t total) {
-        if (!on_progress(done, total)) return false;
+CancelScope SceneRenderer::keep_current() {
+    return CancelScope([this] {
         canvas_->context.make_current();
         return true;
-    };
+    });
 }
 
 }  // namespace corda::pipeline

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/gl/context.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/scene/scene.hpp"
@@ -60,21 +61,19 @@ class SceneRenderer {
     /// See view::SceneView::traced().
     [[nodiscard]] std::vector<std::size_t> traced() const { return view_.traced(); }
     /// Draws a state with its caption and the traces to it; returns what may differ from the last picture.
-    /// Calls `on_progress` repeatedly if the picture is large; it must not use this renderer. Throws
-    /// corda::Error: kNoGl, kInterrupted. Requires a Use.
+    /// Throws corda::Error: kNoGl, kInterrupted if cancelled. Requires a Use.
     Damage draw(const State& state, const view::Camera& map, const view::Caption& caption = {},
-                const Traces& traces = {}, const OnProgress& on_progress = {});
+                const Traces& traces = {});
     /// True if a picture of a state would show only the ground. Draws nothing.
     [[nodiscard]] bool would_show_nothing(const State& state, const view::Camera& map, const Traces& traces);
     /// Starts an exposure; discards an unfinished one. Requires a Use.
     void begin_exposure();
-    /// Adds a state to the exposure. Calls `on_progress` and throws like draw().
-    void expose(const State& state, const view::Camera& map, const Traces& traces,
-                const OnProgress& on_progress = {});
+    /// Adds a state to the exposure. Throws as draw().
+    void expose(const State& state, const view::Camera& map, const Traces& traces);
     /// Turns the exposure into a picture with a caption; returns what may differ from the last picture.
     Damage develop(const view::Caption& caption, const view::Camera& map);
     /// Draws a list of this renderer's size like draw().
-    Damage draw(view::DrawList list, const OnProgress& on_progress = {});
+    Damage draw(view::DrawList list);
     /// Adds the overlay to a list, without the curves of the plot.
     void annotate(const view::Caption& caption, const view::Camera& map, view::DrawList& list) {
         overlay_.draw(caption, map.pixels_per_metre(), list);
@@ -100,9 +99,10 @@ class SceneRenderer {
     void open(Needs needs);
     /// Fills list_ with a state and its traces, without the caption.
     void list(const State& state, const view::Camera& map, const Traces& traces);
-    /// `on_progress` such that the context is current again after each call: the host may leave another one.
-    [[nodiscard]] OnProgress asking(const OnProgress& on_progress);
-    Damage paint(const OnProgress& on_progress);
+    /// While it lives, the context is current again after check_cancelled(): a callback may leave another
+    /// one.
+    [[nodiscard]] CancelScope keep_current();
+    Damage paint();
     /// Checks the driver's tinted layers if the list is the first one that has some.
     void check_tints();
 

@@ -163,24 +163,15 @@ class Asking {
   public:
     explicit Asking(py::object on_progress = py::none()) : on_progress_(std::move(on_progress)) {}
 
+    /// An OnProgress, at most every 50 ms and for the last frame.
     bool operator()(std::int64_t done, std::int64_t total) {
-        constexpr std::chrono::milliseconds kPause{50};
-        const auto now = std::chrono::steady_clock::now();
-        const bool is_last = total > 0 && done == total && !std::exchange(has_told_last_, true);
-        if (Calls::has_ended()) return false;
-        if (raised_ || (now - last_ < kPause && !is_last)) return !raised_;
-        last_ = now;
-        const py::gil_scoped_acquire hold;
-        try {
-            if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-            if (on_progress_.is_none() || total <= 0) return true;
+        const bool is_last = done == total && !std::exchange(has_told_last_, true);
+        if (on_progress_.is_none() || !(is_last || is_due(told_))) return true;
+        const auto ask = [&] {
             const py::object answer = on_progress_(done, total);
-            last_ = std::chrono::steady_clock::now();  // a callback that takes long has its pause, too
             return !(py::isinstance<py::bool_>(answer) && !answer.cast<bool>());
-        } catch (py::error_already_set&) {
-            raised_ = std::current_exception();
-            return false;
-        }
+        };
+        return hold_and_ask(ask, told_);
     }
 
     /// To be called with the lock.
@@ -188,23 +179,51 @@ class Asking {
         if (raised_) std::rethrow_exception(raised_);
     }
 
+    /// Calls `work`, which signals can cancel.
     template <class Work>
     auto run(const Work& work) {
         try {
             const Calls::Scope call;
-            return work([this](std::int64_t done, std::int64_t total) { return (*this)(done, total); });
+            const corda::CancelScope signals([this] {
+                if (raised_ || Calls::has_ended()) return false;
+                return !is_due(checked_) || hold_and_ask(check_signals, checked_);
+            });
+            return work();
         } catch (const corda::Error& error) {
             raise();
-            const bool is_ctrl_c = error.code() == corda::ExitCode::kInterrupted && PyErr_CheckSignals() != 0;
-            if (is_ctrl_c) throw py::error_already_set();
+            if (error.code() == corda::ExitCode::kInterrupted) check_signals();
             throw;
         }
     }
 
   private:
+    using Time = std::chrono::steady_clock::time_point;
+
+    static bool is_due(Time last) {
+        return std::chrono::steady_clock::now() - last >= std::chrono::milliseconds(50);
+    }
+
+    static bool check_signals() { return PyErr_CheckSignals() == 0 ? true : throw py::error_already_set(); }
+
+    /// Calls `ask` with the interpreter's lock. False if that raises, too.
+    template <class Ask>
+    bool hold_and_ask(const Ask& ask, Time& last) {
+        if (raised_ || Calls::has_ended()) return false;
+        const py::gil_scoped_acquire hold;
+        try {
+            const bool goes_on = ask();
+            last = std::chrono::steady_clock::now();  // a callback that takes long has its pause, too
+            return goes_on;
+        } catch (py::error_already_set&) {
+            raised_ = std::current_exception();
+            return false;
+        }
+    }
+
     py::object on_progress_;
     bool has_told_last_ = false;
-    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+    Time told_ = std::chrono::steady_clock::now();
+    Time checked_ = told_;
     std::exception_ptr raised_;
 };
 
@@ -212,18 +231,8 @@ class Asking {
 class PyFilm {
   public:
     PyFilm(const corda::Scene& scene, const std::string& backend, bool require_gpu) {
-        corda::FilmDef def;
-        def.backend = backend;
-        def.require_gpu = require_gpu;
-        def.on_progress = [this](std::int64_t done, std::int64_t total) {
-            return !ask_ || ask_(done, total);
-        };
-        Asking asking;
-        asking.run([&](const corda::OnProgress& ask) {
-            ask_ = ask;
-            film_ = std::make_unique<corda::Film>(scene, def);
-            ask_ = {};
-        });
+        const corda::FilmDef def{.backend = backend, .require_gpu = require_gpu};
+        Asking().run([&] { film_ = std::make_unique<corda::Film>(scene, def); });
     }
     PyFilm(const PyFilm&) = delete;
     PyFilm& operator=(const PyFilm&) = delete;
@@ -238,36 +247,41 @@ class PyFilm {
     /// For `const` functions, which several threads may call at once.
     [[nodiscard]] const corda::Film& constant() const { return *film_; }
 
-    /// Calls `work` with the film and a callback that asks Python whether to continue. Throws corda::Error
-    /// (kUsage) inside of such a callback.
+    /// Calls `work` with the film; Python can cancel it. Throws corda::Error (kUsage) inside of a callback of
+    /// another call.
     template <class Work>
-    auto with_film(const Work& work, py::object on_progress = py::none()) {
+    auto with_film(const Work& work) {
+        Asking asking;
+        return with_film(work, asking);
+    }
+
+    template <class Work>
+    auto with_film(const Work& work, Asking& asking) {
         if (is_cut_off()) {
             throw corda::Error(corda::ExitCode::kUsage,
                                "the parent process was using this film when it forked, so its state is "
                                "unfinished here; make another Film, or start processes by spawn");
         }
         if (thread_ == std::this_thread::get_id()) {
-            throw corda::Error(corda::ExitCode::kUsage,
-                               "on_progress used the film whose progress it reports; draw and read the film "
-                               "after the call that reports progress, or make another Film");
+            throw corda::Error(
+                corda::ExitCode::kUsage,
+                "on_progress used the film whose progress it reports; "
+                "draw and read the film after the call that reports progress, or make another Film");
         }
-        Asking asking(std::move(on_progress));
-        auto result = asking.run([&](const corda::OnProgress& ask) {
+        auto result = asking.run([&] {
             const std::lock_guard lock(mutex_);
-            const Use use(*this, ask);
-            return work(*film_, ask);
+            const Use use(*this);
+            return work(*film_);
         });
         asking.raise();
         return result;
     }
 
   private:
-    /// Marks the film as used by this thread, and gives simulations the callback of the current call.
+    /// Marks the film as used by this thread.
     class Use {
       public:
-        Use(PyFilm& film, const corda::OnProgress& ask) : film_(&film) {
-            film.ask_ = ask;
+        explicit Use(PyFilm& film) : film_(&film) {
             film.process_ = getpid();
             film.thread_ = std::this_thread::get_id();
         }
@@ -276,7 +290,6 @@ class PyFilm {
         ~Use() {
             film_->thread_ = std::thread::id();
             film_->process_ = 0;
-            film_->ask_ = {};
         }
 
       private:
@@ -293,7 +306,6 @@ class PyFilm {
     std::mutex mutex_;
     std::atomic<pid_t> process_ = 0;         ///< the process that is using the film; 0: none
     std::atomic<std::thread::id> thread_{};  ///< the thread that is using the film
-    corda::OnProgress ask_;
     std::unique_ptr<corda::Film> film_;
 };
 
@@ -303,10 +315,10 @@ py::array_t<double> positions(PyFilm& film) {
     py::array_t<double> all(
         {static_cast<py::ssize_t>(frames), static_cast<py::ssize_t>(particles), py::ssize_t{2}});
     double* to = all.mutable_data();
-    film.with_film([&](corda::Film& its, const corda::OnProgress& ask) {
+    film.with_film([&](corda::Film& its) {
         const corda::Vec2 origin_m = its.system().origin_m;
         for (std::int64_t k = 0; k < frames; ++k) {
-            corda::report_progress(ask, k, frames);
+            corda::check_cancelled();
             const corda::State& state = its.state(k);
             for (std::size_t i = 0; i < particles; ++i) {
                 *to++ = origin_m.x + state.x_m[i];
@@ -326,7 +338,7 @@ py::array_t<double> times(const PyFilm& film) {
 }
 
 py::dict plan(PyFilm& film) {
-    return film.with_film([](corda::Film& its, const corda::OnProgress&) {
+    return film.with_film([](corda::Film& its) {
         const corda::Plan& chosen = its.plan();
         const auto bound_px = its.error_bound_px();
         const py::gil_scoped_acquire hold;
@@ -344,7 +356,7 @@ py::dict plan(PyFilm& film) {
 }
 
 py::dict camera(PyFilm& film) {
-    return film.with_film([](corda::Film& its, const corda::OnProgress&) {
+    return film.with_film([](corda::Film& its) {
         const corda::CameraDef& def = its.camera();
         const py::gil_scoped_acquire hold;
         py::dict all;
@@ -356,12 +368,11 @@ py::dict camera(PyFilm& film) {
 }
 
 std::int64_t save(PyFilm& film, const std::string& path, bool force, bool resume, py::object on_progress) {
-    const corda::Rendered rendered = film.with_film(
-        [&](corda::Film& its, const corda::OnProgress& ask) {
-            return corda::render_video(its, path,
-                                       {.force = force, .resume = resume, .end = {}, .on_progress = ask});
-        },
-        std::move(on_progress));
+    Asking asking(std::move(on_progress));
+    corda::RenderDef def{.force = force, .resume = resume};
+    def.on_progress = [&](std::int64_t done, std::int64_t total) { return asking(done, total); };
+    const corda::Rendered rendered =
+        film.with_film([&](corda::Film& its) { return corda::render_video(its, path, def); }, asking);
     if (!rendered.complete) {
         throw corda::Error(corda::ExitCode::kInterrupted,
                            rendered.kept_part.empty() ? "stopped by on_progress; there is no frame yet"
@@ -409,16 +420,14 @@ void add_errors(py::module_& module) {
 
 void add_film(py::module_& module) {
     using corda::Film;
-    using corda::OnProgress;
     py::class_<PyFilm>(module, "Film")
         .def(py::init([](const std::string& text, const std::string& source, bool is_path,
                          const std::vector<std::string>& settings, const std::string& backend,
                          bool require_gpu) {
-            const auto [scene, notice] = Asking().run([&](const corda::OnProgress& ask) {
-                corda::Scene read = is_path ? corda::load_scene(source, settings, ask)
-                                            : corda::parse_scene(text, source, settings, ask);
+            const auto [scene, notice] = Asking().run([&] {
+                corda::Scene read = is_path ? corda::load_scene(source, settings)
+                                            : corda::parse_scene(text, source, settings);
                 std::string cost = corda::cost_notice(read);
-                corda::report_progress(ask, 1, 1);
                 return std::pair(std::move(read), std::move(cost));
             });
             if (!notice.empty() && PyErr_WarnEx(PyExc_UserWarning, notice.c_str(), 2) != 0)
@@ -438,13 +447,11 @@ void add_film(py::module_& module) {
              })
         .def("frame",
              [](PyFilm& film, std::int64_t k) {
-                 return to_array(
-                     film.with_film([k](Film& its, const OnProgress& ask) { return its.frame(k, ask); }));
+                 return to_array(film.with_film([k](Film& its) { return its.frame(k); }));
              })
         .def("still",
              [](PyFilm& film, double time_s, double shutter) {
-                 return to_array(film.with_film(
-                     [=](Film& its, const OnProgress& ask) { return its.still(time_s, ask, shutter); }));
+                 return to_array(film.with_film([=](Film& its) { return its.still(time_s, shutter); }));
              })
         .def("for_browser", &for_browser)
         .def("positions", &positions)
@@ -465,33 +472,27 @@ PYBIND11_MODULE(_corda, module) {
     module.def("compare", [](const py::object& a, const py::object& b) {
         const auto picture_of = [](const py::object& given) {
             if (!py::isinstance<py::bytes>(given)) return corda::Picture{.image = to_image(given)};
-            return Asking().run([path = given.cast<std::string>()](const corda::OnProgress& ask) {
-                return corda::read_picture(path, ask);
-            });
+            return Asking().run([path = given.cast<std::string>()] { return corda::read_picture(path); });
         };
         const std::pair pictures(picture_of(a), picture_of(b));
-        const corda::Difference found = Asking().run([&](const corda::OnProgress& ask) {
-            return corda::compare(pictures.first, pictures.second, ask);
-        });
+        const corda::Difference found =
+            Asking().run([&] { return corda::compare(pictures.first, pictures.second); });
         return py::make_tuple(found.same_size, found.equal, found.max, found.mean, found.share);
     });
     module.def("write_png", [](const std::string& path, const py::object& picture, bool force) {
-        Asking().run([&, image = to_image(picture)](const corda::OnProgress& ask) {
-            corda::write_png(path, image, {}, {.force = force, .on_progress = ask});
-        });
+        Asking().run([&, image = to_image(picture)] { corda::write_png(path, image, {}, {.force = force}); });
     });
-    module.def(
-        "check_golden", [](const py::object& picture, const std::string& name, const std::string& folder,
-                           const std::array<std::optional<double>, 5>& limits) {
-            const corda::testing::GoldenOptions options{
-                .folder = folder, .limits = {limits[0], limits[1], limits[2], limits[3], limits[4]}};
-            const auto outcome = Asking().run([&, image = to_image(picture)](const corda::OnProgress&) {
-                return corda::testing::check_golden(image, name, options);
-            });
-            return std::tuple(outcome.matches, outcome.written, outcome.message);
-        });
+    module.def("check_golden",
+               [](const py::object& picture, const std::string& name, const std::string& folder,
+                  const std::array<std::optional<double>, 5>& limits) {
+                   const corda::testing::GoldenOptions options{
+                       .folder = folder, .limits = {limits[0], limits[1], limits[2], limits[3], limits[4]}};
+                   const auto outcome = Asking().run([&, image = to_image(picture)] {
+                       return corda::testing::check_golden(image, name, options);
+                   });
+                   return std::tuple(outcome.matches, outcome.written, outcome.message);
+               });
     module.def("read_png", [](const std::string& path) {
-        return to_array(
-            Asking().run([&](const corda::OnProgress& ask) { return corda::read_png(path, ask); }));
+        return to_array(Asking().run([&] { return corda::read_png(path); }));
     });
 }

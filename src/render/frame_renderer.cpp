@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/gl/object.hpp"
 #include "corda/render/paint.hpp"
@@ -192,23 +193,23 @@ Damage FrameRenderer::stale_parts(const view::DrawList& list) const {
     return rects_of(tiles, image_.width(), image_.height());
 }
 
-Damage FrameRenderer::render(const view::DrawList& list, const OnProgress& on_progress) {
+Damage FrameRenderer::render(const view::DrawList& list) {
     exposure_.clear();
     begin(list);
     tiles_.plan(list);
     touch(tiles_.touched());
     Damage damage = stale_parts(list);
-    draw(list, damage, on_progress);
+    draw(list, damage);
     finish(list, tiles_.touched(), damage);
     return damage;
 }
 
-void FrameRenderer::expose(const view::DrawList& list, const OnProgress& on_progress) {
+void FrameRenderer::expose(const view::DrawList& list) {
     try {
         begin(list);
         tiles_.plan(list);
         touch(tiles_.touched());
-        draw(list, rects_of(tiles_.touched(), list.width, list.height), on_progress);
+        draw(list, rects_of(tiles_.touched(), list.width, list.height));
     } catch (...) {
         exposure_.clear();
         throw;
@@ -258,15 +259,15 @@ void FrameRenderer::begin(const view::DrawList& list) {
     everything_is_stale_ = true;
 }
 
-void FrameRenderer::draw(const view::DrawList& list, const Damage& parts, const OnProgress& on_progress) {
+void FrameRenderer::draw(const view::DrawList& list, const Damage& parts) {
     PixelRect all;
     for (const PixelRect& part : parts) all = all.united(part);
     if (all.empty()) return;
     const bool was_stale = std::exchange(everything_is_stale_, true);  // in case drawing fails
     upload(list);
-    const int rows = on_progress ? band_rows(all, list, tiles_) : kMaxSidePx;
+    const int rows = band_rows(all, list, tiles_);
     for (PixelRect band = all; band.y0 < all.y1; band.y0 = band.y1) {
-        if (band.y0 > all.y0) report_progress(on_progress, band.y0 - all.y0, all.height());
+        if (band.y0 > all.y0) check_cancelled();
         band.y1 = std::min((band.y0 + rows) / kLlvmpipeTilePx * kLlvmpipeTilePx, all.y1);
         draw_band(band, parts);
     }

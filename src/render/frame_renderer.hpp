@@ -36,16 +36,16 @@ class FrameRenderer {
     FrameRenderer(const FrameRenderer& other, int width, int height);
 
     /// Draws the next frame; `list` has this renderer's size. Returns what may differ from the last frame.
-    /// Draws a large frame in bands and calls `on_progress` between them. Throws corda::Error: kNoGl,
+    /// Draws a large frame in bands and can be cancelled between them. Throws corda::Error: kNoGl,
     /// kInterrupted; the next frame is then drawn whole.
-    Damage render(const view::DrawList& list, const OnProgress& on_progress = {});
+    Damage render(const view::DrawList& list);
 
     /// Discards lists that were exposed but not developed.
     void begin_exposure() { exposure_.clear(); }
     /// Adds the layers of a list to the frame that develop() will finish; all lists have the same ground.
-    /// image() is no frame until then. Calls `on_progress` and throws like render(), and then discards the
+    /// image() is no frame until then. Throws as render(), and then discards the
     /// exposure, as render() does.
-    void expose(const view::DrawList& list, const OnProgress& on_progress = {});
+    void expose(const view::DrawList& list);
     /// Makes the next frame: the mean of the lists exposed since the last one, at least one, below the stamps
     /// of `list`, whose own layers are ignored. Returns what may differ from the last frame.
     Damage develop(const view::DrawList& list);
@@ -76,7 +76,7 @@ class FrameRenderer {
     /// Prepares for drawing on a ground.
     void begin(const view::DrawList& list);
     /// Draws the layers on the ground of `parts`, which contain all tiles that the layers touch.
-    void draw(const view::DrawList& list, const Damage& parts, const OnProgress& on_progress);
+    void draw(const view::DrawList& list, const Damage& parts);
     /// Adds tiles to last_touched_.
     void touch(const std::vector<std::uint8_t>& tiles);
     /// Rectangles, without overlap, that have to be redrawn below the stamps of `list`.

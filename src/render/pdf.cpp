@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/text.hpp"
 #include "corda/render/paint.hpp"
 #include "corda/render/vector.hpp"
@@ -73,7 +74,7 @@ FontFace make_font_face() {
 
 class Pdf : public VectorPage {
   public:
-    explicit Pdf(const PageDef& def) : on_progress_(def.on_progress) {
+    explicit Pdf(const PageDef& def) {
         const double width_pt = def.width_mm * kPointsPerMm;
         const double scale = width_pt / def.width_px;
         surface_.reset(
@@ -103,8 +104,7 @@ class Pdf : public VectorPage {
         const bool is_opaque = list.ground.is_opaque();
         if (!is_opaque) cairo_push_group(cairo);
         for (std::size_t l = 0; l < list.layers.size(); ++l) {
-            report_progress(on_progress_, static_cast<std::int64_t>(l),
-                            static_cast<std::int64_t>(list.layers.size()));
+            check_cancelled();
             const view::Layer& layer = list.layers[l];
             const LayerStrokes strokes = strokes_of(list, layer);
             if (is_opaque)
@@ -213,7 +213,6 @@ class Pdf : public VectorPage {
         cairo_restore(cairo);
     }
 
-    OnProgress on_progress_;
     view::Font font_;
     FontFace font_face_ = make_font_face();
     // The surface writes to bytes_ until it is destroyed.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/markup.hpp"
 #include "corda/core/text.hpp"
 #include "corda/render/paint.hpp"
@@ -72,8 +73,7 @@ class Svg : public VectorPage {
         const std::string ground = draw_ground(list);
         std::vector<LayerText> layers;
         for (std::size_t l = 0; l < list.layers.size(); ++l) {
-            report_progress(def_.on_progress, static_cast<std::int64_t>(l),
-                            static_cast<std::int64_t>(list.layers.size()));
+            check_cancelled();
             layers.push_back(text_of(list, list.layers[l], ground));
         }
         append_layers(layers, list);

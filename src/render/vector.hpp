@@ -38,8 +38,7 @@ struct PageDef {
     int width_px = 0;
     int height_px = 0;
     double width_mm = 0.0;
-    std::string title = {};       ///< UTF-8; control characters are escaped
-    OnProgress on_progress = {};  ///< called for each layer
+    std::string title = {};  ///< UTF-8; control characters are escaped
 };
 
 /// A page of vector graphics. The same calls give the same bytes.
@@ -51,7 +50,7 @@ class VectorPage {
     virtual ~VectorPage() = default;
 
     /// Draws a list with its ground, clipped to its size, with the top left corner at (x_px, y_px). Throws
-    /// corda::Error (kInterrupted) if on_progress asks to stop.
+    /// corda::Error (kInterrupted) if cancelled.
     virtual void draw(const view::DrawList& list, int x_px, int y_px) = 0;
     /// Ends the page; returns the bytes of the file.
     [[nodiscard]] virtual std::string finish() = 0;

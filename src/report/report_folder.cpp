@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "corda/core/cancel.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/report/writers.hpp"
@@ -40,16 +41,11 @@ void ReportFolder::write(const std::string& name, const std::string& bytes) {
     note(path);
 }
 
-void ReportFolder::ask() {
-    const std::int64_t drawn = std::ssize(svgs_);
-    report_progress(options_.on_progress, drawn, drawn + 1);
-}
-
 void ReportFolder::add_picture(const Picture& picture) {
     if (widths_mm_.empty()) throw Error(ExitCode::kInternal, "a report with pictures needs widths in print");
     for (const int width_mm : widths_mm_) {
         for (const PlotFormat format : {PlotFormat::kSvg, PlotFormat::kPng, PlotFormat::kPdf}) {
-            ask();
+            check_cancelled();
             const std::string path = path_of(file_stem(picture.id, width_mm) + "." + ending(format));
             picture.write(path, width_mm);
             note(path);
@@ -66,7 +62,7 @@ void ReportFolder::add_plot(const Plot& plot) {
     if (widths_mm.empty()) widths_mm.emplace_back();
     for (const std::optional<int>& width_mm : widths_mm) {
         for (const PlotFormat format : {PlotFormat::kSvg, PlotFormat::kPng, PlotFormat::kPdf}) {
-            ask();
+            check_cancelled();
             const std::string picture = draw_plot(plot, format, width_mm);
             write(file_stem(plot.id, width_mm) + "." + ending(format), picture);
             if (format == PlotFormat::kSvg) svgs_[plot.id] = picture;

@@ -15,7 +15,7 @@ namespace corda::report {
 /// OutputFile).
 class ReportFolder {
   public:
-    /// Makes the folder if it is missing. `options.on_progress` is asked between pictures. `widths_mm`: see
+    /// Makes the folder if it is missing. `widths_mm`: see
     /// Report, of which it becomes that.
     explicit ReportFolder(std::string path, OutputOptions options = {}, std::vector<int> widths_mm = {});
 
@@ -39,8 +39,6 @@ class ReportFolder {
     void write(const std::string& name, const std::string& bytes);
     void add_picture(const Picture& picture);
     void add_plot(const Plot& plot);
-    /// Reports the start of the next picture.
-    void ask();
 
     std::string path_;
     OutputOptions options_;

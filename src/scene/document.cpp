@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/scene/read_file.hpp"
 
 namespace corda::scene {
@@ -34,27 +35,24 @@ std::size_t skip_string(std::string_view text, std::size_t begin) {
     return text.size();
 }
 
-/// Text for the parser that calls `on_progress` at every block. The parser turns any exception into an error
-/// of its own, so a request to stop ends the text, and check() throws it.
-class AskingBuffer : public std::streambuf {
+/// Text for the parser that can be cancelled at every block. The parser turns any exception into an error of
+/// its own, so a cancellation ends the text, and check() throws it.
+class CancellableBuffer : public std::streambuf {
   public:
-    AskingBuffer(std::string_view text, const OnProgress& on_progress)
-        : text_(text), on_progress_(&on_progress) {
-        set_place(0);
-    }
+    explicit CancellableBuffer(std::string_view text) : text_(text) { set_place(0); }
 
     void check() const {
-        if (stop_) std::rethrow_exception(stop_);
+        if (cancellation_) std::rethrow_exception(cancellation_);
     }
 
   protected:
     int_type underflow() override {
         constexpr std::size_t kBlock = 65536;
-        if (stop_ || end_ == text_.size()) return traits_type::eof();
+        if (cancellation_ || end_ == text_.size()) return traits_type::eof();
         try {
-            report_progress(*on_progress_, 0, 0);
+            check_cancelled();
         } catch (...) {
-            stop_ = std::current_exception();
+            cancellation_ = std::current_exception();
             return traits_type::eof();
         }
         const std::size_t begin = std::exchange(end_, std::min(end_ + kBlock, text_.size()));
@@ -76,8 +74,7 @@ class AskingBuffer : public std::streambuf {
     void set_place(std::size_t place) { setg(text_.data(), text_.data() + place, text_.data() + end_); }
 
     std::string text_;  // std::streambuf takes no pointer to const
-    const OnProgress* on_progress_;
-    std::exception_ptr stop_;
+    std::exception_ptr cancellation_;
     std::size_t end_ = 0;
 };
 
@@ -115,8 +112,7 @@ std::size_t find_deep_key(std::string_view text) {
     return std::string_view::npos;
 }
 
-toml::table parse_document(std::string_view text, const std::string& source_name,
-                           const OnProgress& on_progress) {
+toml::table parse_document(std::string_view text, const std::string& source_name) {
     check_file_bytes(source_name, text.size());
     const std::size_t deep = find_deep_key(text);
     if (deep != std::string_view::npos) {
@@ -128,7 +124,7 @@ toml::table parse_document(std::string_view text, const std::string& source_name
                     fmt::format("{}:{}:{}: a key of more than {} parts; give a key of the scene format",
                                 source_name, line, column, kKeyParts));
     }
-    AskingBuffer buffer(text, on_progress);
+    CancellableBuffer buffer(text);
     std::istream stream(&buffer);
     try {
         toml::table document = toml::parse(stream, std::string_view(source_name));

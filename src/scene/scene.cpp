@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/scene/check_limits.hpp"
 #include "corda/scene/document.hpp"
 #include "corda/scene/field.hpp"
@@ -59,19 +60,17 @@ void read_bodies(const Sections& sections, const SceneSize& size, const SolverSe
 
 }  // namespace
 
-Scene load_scene(const std::string& path, const std::vector<Setting>& settings,
-                 const OnProgress& on_progress) {
-    return parse_scene(read_file(path), source_name(path), settings, on_progress);
+Scene load_scene(const std::string& path, const std::vector<Setting>& settings) {
+    return parse_scene(read_file(path), source_name(path), settings);
 }
 
-Scene parse_scene(std::string_view toml, const std::string& source_name, const std::vector<Setting>& settings,
-                  const OnProgress& on_progress) {
-    const auto ask = [&on_progress] { report_progress(on_progress, 0, 0); };
-    toml::table document = parse_document(toml, source_name, on_progress);
+Scene parse_scene(std::string_view toml, const std::string& source_name,
+                  const std::vector<Setting>& settings) {
+    toml::table document = parse_document(toml, source_name);
     Problems problems(source_name, document);
     for (const Setting& setting : settings) apply_setting(document, setting, problems);
     check_document(document, problems);
-    ask();
+    check_cancelled();
     const Sections sections = sections_of(document, problems);
 
     Scene scene;
@@ -87,10 +86,10 @@ Scene parse_scene(std::string_view toml, const std::string& source_name, const s
     const SceneSize size = count_bodies(sections, solver, scene);
     check_work(sections, solver, size, scene);
     check_color_by(sections, solver, scene.style);
-    ask();
+    check_cancelled();
     if (size.fits) read_bodies(sections, size, solver, scene);
     problems.throw_if_any();
-    ask();
+    check_cancelled();
     check_motion(sections, scene);
     problems.throw_if_any();
     return scene;

@@ -122,15 +122,13 @@ using Setting = std::string;
 
 /// Reads a scene file, or standard input for "-", with `settings` in place of what it says. Throws
 /// corda::Error: kIo if the file cannot be read, kInvalidScene with all that is wrong in it, one problem per
-/// line, kUsage for a setting that is not key=value, kInterrupted if `on_progress` asks to stop; it is asked
-/// some ten times a second in a scene of a million particles, without a total.
-[[nodiscard]] Scene load_scene(const std::string& path, const std::vector<Setting>& settings = {},
-                               const OnProgress& on_progress = {});
+/// line, kUsage for a setting that is not key=value, kInterrupted if cancelled:
+/// check_cancelled() is called some ten times a second in a scene of a million particles.
+[[nodiscard]] Scene load_scene(const std::string& path, const std::vector<Setting>& settings = {});
 
 /// The same for TOML text; `source_name` stands in the messages in place of the path.
 [[nodiscard]] Scene parse_scene(std::string_view toml, const std::string& source_name,
-                                const std::vector<Setting>& settings = {},
-                                const OnProgress& on_progress = {});
+                                const std::vector<Setting>& settings = {});
 
 /// About how long computing the motion of a scene once may take and why, with a remedy, if that is more than
 /// a few seconds; otherwise empty. An upper estimate from the start alone.

@@ -111,11 +111,10 @@ void Recording::clear() {
     bodies_ = 0;
 }
 
-Status Recording::advance(Simulation& run, const Timeline& timeline, const std::function<double()>& clock_s,
-                          const GoesOn& goes_on) {
+Status Recording::advance(Simulation& run, const Timeline& timeline, const std::function<double()>& clock_s) {
     run.set_outputs(fields_);
     const double start_s = clock_s ? clock_s() : 0.0;
-    const Status status = run.advance_to(timeline.time_s(size()), goes_on);
+    const Status status = run.advance_to(timeline.time_s(size()));
     if (clock_s) wall_s_ += clock_s() - start_s;
     if (status == Status::kDiverged) return status;
     const State& state = run.state();

@@ -60,9 +60,8 @@ class Recording {
     /// Removes all states.
     void clear();
     /// Advances a run to time size() of a timeline and adds its state, unless the run diverges. `clock_s`, if
-    /// not empty, measures the stepping. `goes_on`: see Simulation::advance_to.
-    Status advance(Simulation& run, const Timeline& timeline, const std::function<double()>& clock_s,
-                   const GoesOn& goes_on = {});
+    /// not empty, measures the stepping.
+    Status advance(Simulation& run, const Timeline& timeline, const std::function<double()>& clock_s);
     /// Adds the recording of a body, made by for_part(), whose particles start at `first_particle` and bars
     /// at `first_bar`. Keeps the states that all bodies added so far have.
     void add_body(const Recording& body, std::size_t first_particle, std::size_t first_bar = 0);

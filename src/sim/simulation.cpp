@@ -48,16 +48,15 @@ void check(const WorldDef& world) {
 
 }  // namespace
 
-Simulation::Simulation(System system, const WorldDef& world, const MethodDef& method, double frame_interval_s,
-                       const GoesOn& goes_on)
-    : Simulation(std::move(system), world, std::span(&method, 1), frame_interval_s, goes_on) {}
+Simulation::Simulation(System system, const WorldDef& world, const MethodDef& method, double frame_interval_s)
+    : Simulation(std::move(system), world, std::span(&method, 1), frame_interval_s) {}
 
 Simulation::Simulation(System system, const WorldDef& world, std::span<const MethodDef> methods,
-                       double frame_interval_s, const GoesOn& goes_on)
+                       double frame_interval_s)
     : system_(std::move(system)) {
     check(world);
     for (const MethodDef& method : methods) sim::validate(method);
-    solver_ = sim::make_solver(system_, world, methods, frame_interval_s, goes_on);
+    solver_ = sim::make_solver(system_, world, methods, frame_interval_s);
     load_meter_ = std::make_unique<sim::LoadMeter>(system_);
     state_ = {0.0, system_.x_m, system_.y_m};
     next_ = state_;
@@ -71,7 +70,7 @@ Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
-Status Simulation::advance_to(double time_s, const GoesOn& goes_on) {
+Status Simulation::advance_to(double time_s) {
     if (is_stepping_) {
         throw Error(ExitCode::kUsage, "advance_to(" + std::to_string(time_s) +
                                           "): the simulation was interrupted; make a new Simulation");
@@ -81,9 +80,8 @@ Status Simulation::advance_to(double time_s, const GoesOn& goes_on) {
                                           std::to_string(state_.time_s) + " s; make a new Simulation");
     }
     if (has_diverged_) return Status::kDiverged;
-    StopCheck stop(goes_on);
     is_stepping_ = true;
-    has_diverged_ = solver_->advance_to(time_s, next_, stop) == Status::kDiverged || !is_sound(next_);
+    has_diverged_ = solver_->advance_to(time_s, next_) == Status::kDiverged || !is_sound(next_);
     is_stepping_ = false;
     if (has_diverged_) return Status::kDiverged;
     std::swap(state_, next_);

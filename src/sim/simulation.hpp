@@ -43,23 +43,22 @@ class Simulation {
   public:
     /// `frame_interval_s`: default from which a method with a fixed step derives its step. Throws
     /// corda::Error (kInvalidScene) if the method cannot run the system, or for a field outside the range of
-    /// its declaration. `goes_on` is called, as by advance_to(), while a large system is prepared.
+    /// its declaration. Preparing a large system can be cancelled.
     Simulation(System system, const WorldDef& world, const MethodDef& method,
-               double frame_interval_s = 1.0 / 60.0, const GoesOn& goes_on = {});
+               double frame_interval_s = 1.0 / 60.0);
     /// `methods`: one per body, or one for all. Throws corda::Error (kUsage) for another number of them.
     Simulation(System system, const WorldDef& world, std::span<const MethodDef> methods,
-               double frame_interval_s = 1.0 / 60.0, const GoesOn& goes_on = {});
+               double frame_interval_s = 1.0 / 60.0);
 
     Simulation(Simulation&&) noexcept;
     Simulation& operator=(Simulation&&) noexcept;
     ~Simulation();
 
     /// Advances to exactly `time_s` seconds; the state has the same bits whatever times were requested on the
-    /// way. A run that diverges keeps its last good state. `goes_on` is called about every millisecond; if it
-    /// ends the run, the last state stays and this simulation cannot be advanced further. Throws
-    /// corda::Error: kUsage if `time_s` is before the state's time or not finite, or after an interruption;
-    /// kInterrupted if `goes_on` returned false; and whatever `goes_on` throws.
-    Status advance_to(double time_s, const GoesOn& goes_on = {});
+    /// way. A run that diverges keeps its last good state. Calls check_cancelled() about every millisecond;
+    /// if that throws, the last state stays and this simulation cannot be advanced further. Throws
+    /// corda::Error: kUsage if `time_s` is before the state's time or not finite, or after a cancellation.
+    Status advance_to(double time_s);
 
     /// Sets the fields of all states from now on. Throws corda::Error (kInvalidScene) if tensions are
     /// requested that a method does not know (`relaxation`, or `rattle` if bars depend on each other), unless

@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "corda/core/cancel.hpp"
 #include "corda/sim/exact/exact.hpp"
 #include "corda/sim/rattle/rattle.hpp"
 #include "corda/sim/relaxation/relaxation.hpp"
@@ -58,17 +59,17 @@ void refuse_bars_without_length(const System& system) {
 
 /// Makes the one solver of a whole system.
 std::unique_ptr<Solver> make_solver_of(const System& system, const Forces& forces, const MethodDef& method,
-                                       double frame_interval_s, const GoesOn& goes_on) {
+                                       double frame_interval_s) {
     if (!std::holds_alternative<RelaxationDef>(method)) refuse_bars_without_length(system);
     return with_solver(method, [&]<class S>(const auto& def) -> std::unique_ptr<Solver> {
         if constexpr (std::is_same_v<S, Exact>)
-            return S::make(system, forces, def, goes_on);
+            return S::make(system, forces, def);
         else
-            return std::make_unique<S>(system, forces, def, frame_interval_s, goes_on);
+            return std::make_unique<S>(system, forces, def, frame_interval_s);
     });
 }
 
-/// Cost of making a solver, in updates of a StopCheck.
+/// Cost of making a solver, in updates of count_work().
 constexpr std::uint64_t kUpdatesPerBody = 20;
 
 /// The solver of one body, and the body's place in the system.
@@ -100,7 +101,7 @@ class BodySolvers final : public Solver {
     /// `parts`: one per body, in order.
     explicit BodySolvers(std::vector<Part> parts);
 
-    Status advance_to(double time_s, State& state, StopCheck& stop) override;
+    Status advance_to(double time_s, State& state) override;
     [[nodiscard]] double energy_j() const override;
     [[nodiscard]] bool has_branched() const override;
     void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override;
@@ -141,9 +142,9 @@ Loads larger_loads(const Loads& a, const Loads& b) {
 BodySolvers::BodySolvers(std::vector<Part> parts)
     : Solver(sum_of_scales_j(parts), all_conserve_energy(parts)), parts_(std::move(parts)) {}
 
-Status BodySolvers::advance_to(double time_s, State& state, StopCheck& stop) {
+Status BodySolvers::advance_to(double time_s, State& state) {
     for (Part& part : parts_) {
-        if (part.solver->advance_to(time_s, part.state, stop) == Status::kDiverged) return Status::kDiverged;
+        if (part.solver->advance_to(time_s, part.state) == Status::kDiverged) return Status::kDiverged;
         put(part.state.x_m, part.first_particle, state.x_m);
         put(part.state.y_m, part.first_particle, state.y_m);
     }
@@ -194,8 +195,7 @@ std::vector<MethodDef> BodySolvers::methods() const {
 }
 
 std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces,
-                                    std::span<const MethodDef> methods, double frame_interval_s,
-                                    const GoesOn& goes_on) {
+                                    std::span<const MethodDef> methods, double frame_interval_s) {
     const std::size_t count = system.bodies.size();
     if (methods.size() != 1 && methods.size() != count) {
         throw Error(ExitCode::kUsage, std::to_string(methods.size()) + " methods for the " +
@@ -206,16 +206,14 @@ std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces,
     const bool relaxes_all = std::all_of(methods.begin(), methods.end(), [&](const MethodDef& method) {
         return std::holds_alternative<RelaxationDef>(method) && method == methods.front();
     });
-    if (count == 1 || relaxes_all)
-        return make_solver_of(system, forces, methods.front(), frame_interval_s, goes_on);
-    StopCheck stop(goes_on);
+    if (count == 1 || relaxes_all) return make_solver_of(system, forces, methods.front(), frame_interval_s);
     std::vector<Part> parts;
     for_each_body(system, [&](const System& body, std::size_t i) {
-        stop.spend(kUpdatesPerBody + body.particle_count());
+        count_work(kUpdatesPerBody + body.particle_count());
         const MethodDef& method = methods.size() == 1 ? methods.front() : methods[i];
         parts.push_back({system.bodies[i].first_particle,
                          system.bodies[i].first_bar,
-                         make_solver_of(body, forces, method, frame_interval_s, goes_on),
+                         make_solver_of(body, forces, method, frame_interval_s),
                          {0.0, body.x_m, body.y_m}});
         parts.back().state.tension_n.resize(body.bars.size());
     });

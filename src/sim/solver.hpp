@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "corda/core/stop_check.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/forces/elastic_forces.hpp"
 #include "corda/sim/forces/forces.hpp"
@@ -47,8 +46,8 @@ class Solver {
     /// Writes the positions at exactly `time_s` to `state`, which has room for all particles. Times must not
     /// decrease. Returns kDiverged if the method fails (no convergence, a step too small, numbers that are
     /// not finite); `state` is then undefined, and the solver must not be used further. The same holds if
-    /// `stop`, which counts all steps, throws.
-    virtual Status advance_to(double time_s, State& state, StopCheck& stop) = 0;
+    /// check_cancelled() throws: steps are counted as work.
+    virtual Status advance_to(double time_s, State& state) = 0;
 
     /// Kinetic plus potential energy in joules at the solver's own time nearest to the last `advance_to`.
     [[nodiscard]] virtual double energy_j() const = 0;
@@ -97,11 +96,11 @@ class Solver {
 };
 
 /// Makes the solver of a system: `methods` has one method per body, or one for all. A method without a step
-/// derives it from `frame_interval_s`. Throws corda::Refusal if a method cannot run its body, and as
-/// StopCheck does if `goes_on` ends it: preparing a large net takes seconds.
+/// derives it from `frame_interval_s`. Throws corda::Refusal if a method cannot run its body.
+/// Preparing a large net takes seconds and can be cancelled.
 [[nodiscard]] std::unique_ptr<Solver> make_solver(const System& system, const Forces& forces,
-                                                  std::span<const MethodDef> methods, double frame_interval_s,
-                                                  const GoesOn& goes_on = {});
+                                                  std::span<const MethodDef> methods,
+                                                  double frame_interval_s);
 
 // Facts about methods. Each follows from the static members of the method's solver: see solver.cpp.
 

@@ -114,12 +114,7 @@ AccuracyRow run_auto(const AccuracyCase& given, const Timing& timing) {
     sim::Recording unread(system.particle_count(), 1, 0);
     const auto tolerance_m = [&](const MotionBounds&) { return kTolerance * problem.length_m; };
     const Timeline timeline(problem.fps, problem.last_frame());
-    const OnProgress on_frame = [](std::int64_t, std::int64_t) {
-        check_cancelled();
-        return true;
-    };
-    const BodyPlan plan =
-        sim::plan_body(system, problem.world, {tolerance_m, timeline, on_frame, {}}, unread);
+    const BodyPlan plan = sim::plan_body(system, problem.world, {tolerance_m, timeline, {}, {}}, unread);
     AccuracyRow row = compare_with_reference(given, {"auto", plan.method}, timing);
     row.title += fmt::format(" (auto chose {})", method_name(plan.method));
     row.bound = plan.error_bound_m.value_or(0.0) / problem.length_m + kReferenceError;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/clock.hpp"
 #include "corda/sim/solver.hpp"
 
@@ -41,7 +42,7 @@ void watch(const Problem& problem, std::span<const MethodDef> methods, Measureme
     for (std::int64_t k = 1; k <= problem.last_frame(); ++k) {
         const double time_s = problem.fps.time_s(k);
         check_cancelled();
-        if (run.advance_to(time_s, check_cancelled) == Status::kDiverged) {
+        if (run.advance_to(time_s) == Status::kDiverged) {
             result.failure = fmt::format("diverged before {:.6g} s", time_s);
             return;
         }
@@ -61,8 +62,6 @@ void watch(const Problem& problem, std::span<const MethodDef> methods, Measureme
 report::Times stepping_s(const Problem& problem, const MethodDef& method, const Timing& timing) {
     const System system = problem.system();
     const std::int64_t last_frame = problem.last_frame();
-    const GoesOn goes_on = check_cancelled;
-    StopCheck stop(goes_on);
     report::Times times_s;
     for (int repeat = 0; repeat < timing.repeats; ++repeat) {
         double sum_s = 0.0;
@@ -74,7 +73,7 @@ report::Times stepping_s(const Problem& problem, const MethodDef& method, const 
             State state{0.0, system.x_m, system.y_m};
             const double from_s = now_s();
             for (std::int64_t k = 1; k <= last_frame; ++k) {
-                if (solver->advance_to(problem.fps.time_s(k), state, stop) == Status::kDiverged) break;
+                if (solver->advance_to(problem.fps.time_s(k), state) == Status::kDiverged) break;
             }
             sum_s += now_s() - from_s;
             ++runs;
@@ -83,8 +82,6 @@ report::Times stepping_s(const Problem& problem, const MethodDef& method, const 
     }
     return times_s;
 }
-
-thread_local const OnStep* heard_by = nullptr;
 
 }  // namespace
 
@@ -126,17 +123,6 @@ Measurement measure(const Problem& problem, const MethodDef& method, const std::
     return result;
 }
 
-CancelScope::CancelScope(const OnStep& on_step) : outer_(std::exchange(heard_by, &on_step)) {}
-
-CancelScope::~CancelScope() {
-    heard_by = outer_;
-}
-
-bool check_cancelled() {
-    if (heard_by != nullptr && *heard_by) (*heard_by)();
-    return true;
-}
-
 std::optional<Slope> fit_slope(std::span<const std::pair<double, double>> points) {
     std::vector<std::pair<double, double>> logs;
     double mean_x = 0.0;
@@ -167,7 +153,7 @@ Probe::Probe(const RopeDef& rope, const WorldDef& world, const MethodDef& method
 void Probe::go(double time_s) {
     check_cancelled();
     const double from_s = now_s();
-    const Status status = simulation_.advance_to(time_s, check_cancelled);
+    const Status status = simulation_.advance_to(time_s);
     wall_s_ += now_s() - from_s;
     if (status == Status::kDiverged)
         throw Error(ExitCode::kDiverged, fmt::format("diverged before {:.6g} s", time_s));

@@ -69,25 +69,6 @@ struct Timing {
 [[nodiscard]] Measurement measure(const Problem& problem, const MethodDef& method, const std::string& label,
                                   double parameter, const Timing& timing);
 
-/// Called many times a second while a study computes. An exception that it throws ends the study.
-using OnStep = std::function<void()>;
-
-/// For as long as it lives, check_cancelled() on this thread calls `on_step`, which must outlive it. The runs
-/// of a study are far below its chapters: a parameter would pass through all of them.
-class CancelScope {
-  public:
-    explicit CancelScope(const OnStep& on_step);
-    CancelScope(const CancelScope&) = delete;
-    CancelScope& operator=(const CancelScope&) = delete;
-    ~CancelScope();
-
-  private:
-    const OnStep* outer_;
-};
-
-/// Calls the `on_step` of this thread, if there is one. Returns true, so that it is a GoesOn.
-bool check_cancelled();
-
 /// The exponent of a power law fitted to points.
 struct Slope {
     double exponent = 0.0;

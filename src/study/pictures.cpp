@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/clock.hpp"
 #include "corda/core/temporary_folder.hpp"
 #include "corda/media/chunks/video_writer.hpp"

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/text.hpp"
 #include "corda/reference/pendulum.hpp"
 #include "corda/reference/ropes.hpp"
@@ -45,7 +46,7 @@ SharedRecording record(const Problem& problem, const MethodDef& method) {
     auto frames = std::make_shared<sim::Recording>(run.system().particle_count(), timeline.size(), kNoBudget);
     while (frames->size() < timeline.size()) {
         check_cancelled();
-        if (frames->advance(run, timeline, {}, check_cancelled) == Status::kDiverged) break;
+        if (frames->advance(run, timeline, {}) == Status::kDiverged) break;
     }
     return frames;
 }
@@ -232,8 +233,7 @@ double rattle_step_s(const Problem& problem, int order) {
 }
 
 std::string refusal(const Problem& problem, const MethodDef& method) {
-    const auto refused =
-        sim::refusal(problem.system(), problem.world, method, problem.fps.interval_s(), check_cancelled);
+    const auto refused = sim::refusal(problem.system(), problem.world, method, problem.fps.interval_s());
     return refused ? refused->what() : "";
 }
 

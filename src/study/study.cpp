@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
@@ -76,10 +77,8 @@ Timing study_timing(bool quick) {
 
 Study::Study(const StudyDef& def)
     : title_("Corda: study of " + (def.scene ? printable(def.scene->name) : "its methods")),
-      timing_(study_timing(def.quick)),
-      on_step_(def.on_step) {
+      timing_(study_timing(def.quick)) {
     check_chapters(def);
-    const CancelScope hear(on_step_);
     if (def.quick) title_ += " (quick: not to quote from)";
     for (const ChapterKind& kind : kChapters) {
         if (!is_wanted(kind, def)) continue;
@@ -90,7 +89,6 @@ Study::Study(const StudyDef& def)
 
 void Study::run(const OnJob& on_job, const OnChapter& on_chapter, report::Report& report) {
     report = {title_, setting(timing_), {}};
-    const CancelScope hear(on_step_);
     try {
         measure(on_job, on_chapter, report);
     } catch (const Error& error) {

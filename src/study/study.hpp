@@ -19,7 +19,6 @@ struct StudyDef {
     std::optional<Scene> scene;         ///< studied instead of the built-in problems
     std::vector<std::string> chapters;  ///< some of chapter_names(); empty: all that apply
     FilmDef film;                       ///< how chapter "picture" gets to OpenGL
-    OnStep on_step;                     ///< may be empty
 };
 
 /// A run of a chapter, or several that belong together.
@@ -62,9 +61,10 @@ class Study {
     /// chapter "picture" is wanted and cannot be drawn.
     explicit Study(const StudyDef& def);
 
-    /// Measures everything, and adds the chapters to `report` one after the other. Throws corda::Error, e.g.
-    /// kInvalidScene if no method can run the scene, and any exception of a callback; then `report` has the
-    /// chapters up to there, and its setting has the reason and the chapters that were not measured.
+    /// Measures everything in this thread, which can cancel it, and adds the chapters to `report` one after
+    /// the other. Throws corda::Error, e.g. kInvalidScene if no method can run the scene, and any exception
+    /// of a callback; then `report` has the chapters up to there, and its setting has the reason and the
+    /// chapters that were not measured.
     void run(const OnJob& on_job, const OnChapter& on_chapter, report::Report& report);
 
   private:
@@ -72,7 +72,6 @@ class Study {
 
     std::string title_;
     Timing timing_;
-    OnStep on_step_;
     std::vector<ChapterWork> works_;
     std::vector<std::string> names_;  ///< of the chapters of works_
 };

@@ -14,7 +14,6 @@
 #include "support/root.hpp"
 #include "support/solver_run.hpp"
 #include "support/strings.hpp"
-#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -26,7 +25,7 @@ class StringRun {
   public:
     explicit StringRun(const RopeDef& rope, double tolerance = 1e-9, const WorldDef& world = {})
         : system(build_system({&rope, 1})),
-          part(system, world, tolerance, test::unstopped),
+          part(system, world, tolerance),
           state{0.0, system.x_m, system.y_m} {}
 
     Loads loads() {
@@ -34,7 +33,7 @@ class StringRun {
         EXPECT_TRUE(part.tensions(tension_n));
         return LoadMeter(system).of(system, state, tension_n).value();
     }
-    bool advance_to(double time_s) { return part.advance_to(time_s, state, test::unstopped) == Status::kOk; }
+    bool advance_to(double time_s) { return part.advance_to(time_s, state) == Status::kOk; }
 
     System system;
     StringPart part;

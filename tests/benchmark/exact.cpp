@@ -11,7 +11,6 @@
 #include "corda/sim/exact/chain_dynamics.hpp"
 #include "corda/sim/exact/chain_series.hpp"
 #include "corda/sim/exact/exact.hpp"
-#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -31,8 +30,7 @@ void exact_step(benchmark::State& bench) {
     const double interval_s = 1.0 / static_cast<double>(bench.range(0));
     for (auto _ : bench) {
         time_s += interval_s;
-        if (solver->advance_to(time_s, state, test::unstopped) != Status::kOk)
-            bench.SkipWithError("diverged");
+        if (solver->advance_to(time_s, state) != Status::kOk) bench.SkipWithError("diverged");
     }
     count_particles(bench, static_cast<double>(solver->steps() + solver->rejected_steps()));
     bench.counters["simulated_s/s"] = benchmark::Counter(time_s, benchmark::Counter::kIsRate);
@@ -63,7 +61,7 @@ std::unique_ptr<Exact> by_dop853(const System& system, double tolerance) {
 State swing(Exact& part, const System& system) {
     State state{0.0, system.x_m, system.y_m};
     for (int frame = 1; frame <= 120; ++frame) {
-        if (part.advance_to(frame / 60.0, state, test::unstopped) != Status::kOk) break;
+        if (part.advance_to(frame / 60.0, state) != Status::kOk) break;
     }
     return state;
 }

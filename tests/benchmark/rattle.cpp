@@ -6,7 +6,6 @@
 
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/rattle/rattle.hpp"
-#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -23,8 +22,7 @@ void rattle_step(benchmark::State& bench) {
     int k = 0;
     for (auto _ : bench) {
         k += steps;
-        if (solver.advance_to(k * step_s, state, test::unstopped) != Status::kOk)
-            bench.SkipWithError("diverged");
+        if (solver.advance_to(k * step_s, state) != Status::kOk) bench.SkipWithError("diverged");
         benchmark::DoNotOptimize(state.x_m.data());
     }
     const double taken = static_cast<double>(bench.iterations()) * steps;

@@ -13,7 +13,6 @@
 
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/relaxation/relaxation.hpp"
-#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -49,7 +48,7 @@ class TimedRun {
         const std::clock_t start = std::clock();
         for (int taken = 0; taken < steps_; taken += steps_at_once_) {
             step_ += steps_at_once_;
-            benchmark::DoNotOptimize(solver_->advance_to(step_ / 60.0, state_, test::unstopped));
+            benchmark::DoNotOptimize(solver_->advance_to(step_ / 60.0, state_));
         }
         const auto ticks = static_cast<double>(std::clock() - start);
         slices_s_.push_back(ticks / CLOCKS_PER_SEC);

@@ -61,7 +61,7 @@ TEST_P(GoldenStill, IsUnchanged) {
     const auto made = golden::from_png_info(read_png_info(folder + "/" + name));
     for (const Setting& frozen : golden::freezing(scene, made)) settings.push_back(frozen);
     Film film(load_scene(GetParam(), settings));
-    const Image drawn = film.still(kTimeSeconds, {}, film.scene().video.shutter);
+    const Image drawn = film.still(kTimeSeconds, film.scene().video.shutter);
     EXPECT_THAT(drawn, corda::testing::MatchesGolden(name, {.folder = folder}));
     EXPECT_THAT(reference_of(film), corda::testing::MatchesGolden(name, {.folder = folder}));
 }
@@ -70,7 +70,7 @@ TEST_P(GoldenStill, IsUnchangedAt1080p) {
     const std::string path =
         std::string(CORDA_GOLDENS) + "/stills_1080p/" + test::test_name(GetParam()) + ".txt";
     Film film(load_scene(GetParam(), {"video.size=[1920,1080]", "world.duration=1.0"}));
-    const std::string hash = hash_of(film.still(kTimeSeconds, {}, film.scene().video.shutter));
+    const std::string hash = hash_of(film.still(kTimeSeconds, film.scene().video.shutter));
     if (std::getenv("CORDA_UPDATE_GOLDENS") != nullptr) std::ofstream(path) << hash;
     EXPECT_EQ(test::read_file(path), hash) << path;
 }

@@ -13,7 +13,6 @@
 #include "corda/sim/defs.hpp"
 #include "corda/sim/exact/string/part.hpp"
 #include "support/strings.hpp"
-#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -23,7 +22,7 @@ class WatchedString {
   public:
     explicit WatchedString(const RopeDef& rope, double tolerance = 1e-9, const WorldDef& world = {})
         : system_(build_system({&rope, 1})),
-          part_(system_, world, tolerance, test::unstopped),
+          part_(system_, world, tolerance),
           state_{0.0, system_.x_m, system_.y_m},
           energy_j_(part_.energy_j()) {
         const double scale_j = energy_scale_j(system_, Forces(world).on_particles(system_));
@@ -34,8 +33,7 @@ class WatchedString {
     bool run(double duration_s, int frames_per_second = 60) {
         const auto frames = static_cast<int>(std::lround(duration_s * frames_per_second));
         for (int k = 1; k <= frames; ++k) {
-            if (part_.advance_to(static_cast<double>(k) / frames_per_second, state_, test::unstopped) ==
-                Status::kDiverged)
+            if (part_.advance_to(static_cast<double>(k) / frames_per_second, state_) == Status::kDiverged)
                 return false;
             for (const Bar& bar : system_.bars) {
                 const double distance_m =

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "corda/sim/rattle/constraint_solver.hpp"
-#include "support/unstopped.hpp"
 
 // Checks of every ConstraintSolver, with dense matrices.
 namespace corda::test {
@@ -48,7 +47,7 @@ inline double error_of_solution(sim::ConstraintSolver& constraints, const System
     const Eigen::Map<const Eigen::VectorXd> dense_right(right.data(), static_cast<Eigen::Index>(count));
     const Eigen::VectorXd expected =
         (g * inverse_masses(system) * g.transpose()).fullPivLu().solve(dense_right);
-    EXPECT_TRUE(constraints.solve(sim::Motion::start_of(system), right, unstopped));
+    EXPECT_TRUE(constraints.solve(sim::Motion::start_of(system), right));
     double largest_error = 0.0;
     for (std::size_t k = 0; k < count; ++k) {
         const double error = std::abs(right[k] - expected(static_cast<Eigen::Index>(k)));
@@ -64,7 +63,7 @@ inline void expect_impulses_along_the_bars(sim::ConstraintSolver& constraints, c
     sim::Motion motion = sim::Motion::start_of(system);
     std::vector<double> impulse(count, 0.0);
     const sim::Stage stage{0.01, 0.9, {0.02, -0.05}};
-    ASSERT_TRUE(constraints.move(stage, motion, impulse, unstopped));
+    ASSERT_TRUE(constraints.move(stage, motion, impulse));
     for (const sim::Link& link : constraints.links()) {
         const double length_m =
             std::hypot(motion.x_m[link.b] - motion.x_m[link.a], motion.y_m[link.b] - motion.y_m[link.a]);
@@ -87,7 +86,7 @@ inline void expect_impulses_along_the_bars(sim::ConstraintSolver& constraints, c
 inline void expect_to_give_up(sim::ConstraintSolver& constraints, const System& system) {
     sim::Motion motion = sim::Motion::start_of(system);
     std::vector<double> impulse(constraints.links().size(), 0.0);
-    EXPECT_FALSE(constraints.move({1.0, 1.0, {0.0, -10.0}}, motion, impulse, unstopped));
+    EXPECT_FALSE(constraints.move({1.0, 1.0, {0.0, -10.0}}, motion, impulse));
 }
 
 }  // namespace corda::test

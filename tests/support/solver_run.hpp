@@ -13,7 +13,6 @@
 #include "corda/sim/exact/exact.hpp"
 #include "corda/sim/rattle/rattle.hpp"
 #include "corda/sim/solver.hpp"
-#include "support/unstopped.hpp"
 
 namespace corda::test {
 
@@ -44,7 +43,7 @@ class SolverRun {
 
     /// Advances to a time and observes the state; false if the solver gives up.
     [[nodiscard]] bool go(double time_s) {
-        if (solver_->advance_to(time_s, state_, unstopped) != Status::kOk) return false;
+        if (solver_->advance_to(time_s, state_) != Status::kOk) return false;
         keep_largest(largest_change_j_, solver_->energy_j() - start_energy_j_);
         keep_largest(largest_move_m_, largest_distance_m(system_.x_m, system_.y_m));
         for (const Bar& bar : system_.bars) {

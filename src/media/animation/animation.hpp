@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/image.hpp"
 #include "corda/core/ordered_workers.hpp"
 #include "corda/core/output_file.hpp"
@@ -31,7 +32,7 @@ struct AnimationDef {
 void check_animation_frames(const Ending& ending, std::int64_t frames);
 
 /// Makes an animation of an ending. A few pictures per thread are in memory at a time, and all encoded frames
-/// of a .webp. Throws corda::Error: kIo, kEncoder, kInterrupted if `on_progress` asks to stop.
+/// of a .webp. Throws corda::Error: kIo, kEncoder, kInterrupted if cancelled.
 void write_animation(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
                      OutputFile& output);
 

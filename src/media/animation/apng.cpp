@@ -35,7 +35,7 @@ struct ApngFrame {
 
 ApngFrame encode_apng(const PictureChange& change) {
     ApngFrame frame{change.part, change.is_blended, {}, {}};
-    const std::string png = png_bytes(change.picture, {}, {}, true);
+    const std::string png = png_bytes(change.picture, {}, true);
     ByteReader bytes(png);
     static_cast<void>(bytes.skip(kPngSignature.size()));
     for (std::uint64_t at = bytes.position(); const auto chunk = next_png_chunk(bytes);

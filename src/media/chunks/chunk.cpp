@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "corda/core/cancel.hpp"
 #include "corda/media/read/color_patch.hpp"
 
 namespace corda::media {
@@ -36,11 +37,11 @@ void ChunkEncoder::encode(const Image& frame, const Damage& damage, bool is_last
     ++chunk_.frames;
 }
 
-Chunk ChunkEncoder::finish(const GoesOn& goes_on) {
+Chunk ChunkEncoder::finish() {
     assert(encoder_);
     if (chunk_.frames > 0) {
         encoder_->drain([&](AVPacket& packet) {
-            require_going_on(!goes_on || goes_on());
+            check_cancelled();
             keep(packet);
         });
         chunk_.parameters = check_allocated(CodecParameters(avcodec_parameters_alloc()), "codec parameters");

@@ -41,9 +41,9 @@ class ChunkEncoder {
     /// first is taken whole).
     void encode(const Image& frame, const Damage& damage, bool is_last = false);
     [[nodiscard]] std::int64_t frames() const { return chunk_.frames; }
-    /// Drains the encoder. Nothing can be added afterwards. `goes_on` is asked at each frame that the encoder
-    /// has held back; false drops the chunk: kInterrupted.
-    [[nodiscard]] Chunk finish(const GoesOn& goes_on = {});
+    /// Drains the encoder. Nothing can be added afterwards. Calls check_cancelled() at each frame that the
+    /// encoder has held back; if that throws, the chunk is dropped.
+    [[nodiscard]] Chunk finish();
 
   private:
     /// Moves a packet to the chunk.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/media/animation/animation.hpp"
 #include "corda/media/chunks/part_reader.hpp"
@@ -28,8 +29,7 @@ std::string listed(const std::vector<std::string>& lines) {
 
 /// Copies the indexed packets into `output`, with time stamps computed from frame numbers and the frame
 /// count in the comment.
-void remux(const PartIndex& index, const std::string& part_path, const Ending& ending,
-           const OnProgress& on_progress, OutputFile& output) {
+void remux(const PartIndex& index, const std::string& part_path, const Ending& ending, OutputFile& output) {
     const PartInput input = open_part(part_path, index.bytes);
     TrackOutput track(output.descriptor(), output.temporary_path(), TrackLayout::kFinal);
     track.begin(ending.muxer, *input.stream->codecpar,
@@ -37,7 +37,7 @@ void remux(const PartIndex& index, const std::string& part_path, const Ending& e
                  .title = metadata_entry(*input.format, "title"),
                  .comment = finished_comment(metadata_entry(*input.format, "comment"), index.frame_of.size()),
                  .has_alpha = is_marked_as_alpha(*input.stream)});
-    PacketCopy(part_path, input, index).copy_to(index.frame_of.size(), track, on_progress);
+    PacketCopy(part_path, input, index).copy_to(index.frame_of.size(), track);
     track.finish();
 }
 
@@ -83,11 +83,12 @@ RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOpt
     const Ending& ending = find_ending(path);
     const std::int64_t total = passes(ending) * def.frames.value_or(0);
     std::int64_t done = def.frames.value_or(0);
-    const OnProgress still_done = [&](std::int64_t, std::int64_t) {
-        return !options.on_progress || options.on_progress(done, total);
-    };
-    if (def.is_untrusted) check_part_in_child(part.path(), ending.kind == FileKind::kAnimation, still_done);
-    const PartIndex index = index_part(part.path(), still_done);
+    const CancelScope progress([&] {
+        report_progress(def.on_progress, done, total);
+        return true;
+    });
+    if (def.is_untrusted) check_part_in_child(part.path(), ending.kind == FileKind::kAnimation);
+    const PartIndex index = index_part(part.path());
     RemuxResult result{static_cast<std::int64_t>(index.frame_of.size()), index.is_cut || index.is_damaged,
                        index.is_damaged};
     if (def.frames && *def.frames != result.frames) {
@@ -100,18 +101,19 @@ RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOpt
     if (ending.kind == FileKind::kAnimation) {
         const OnProgress encoded = [&](std::int64_t frame, std::int64_t) {
             if (def.frames) done = result.frames + frame;
-            return still_done(0, 0);
+            check_cancelled();
+            return true;
         };
         const int threads = animation_threads(def.jobs, ending, open_part(part.path(), index.bytes));
         write_animation(ending, {part.path(), index.bytes, result.frames, index.fps, threads}, encoded,
                         output);
     } else {
-        remux(index, part.path(), ending, still_done, output);
+        remux(index, part.path(), ending, output);
     }
     done = total;
-    VerifyReport report =
-        def.is_untrusted ? verify_in_child(output.temporary_path(), still_done, index.fps)
-                         : verify(output.temporary_path(), still_done, def.depth, def.rendered, index.fps);
+    VerifyReport report = def.is_untrusted
+                              ? verify_in_child(output.temporary_path(), index.fps)
+                              : verify(output.temporary_path(), def.depth, def.rendered, index.fps);
     check_animation(index, ending, report);
     if (!report.ok()) {
         throw Error(ExitCode::kMismatch,

@@ -26,7 +26,7 @@ struct RemuxResult {
 /// part as it is: kIo if a file cannot be read or written, or if `path` exists and is not to be replaced;
 /// kUsage if the ending of `path` is not that of what the part holds; kMismatch if the part holds no whole
 /// chunk, has no constant frame rate, or gives a video that fails its check; kInterrupted if
-/// `options.on_progress` asks to stop.
+/// cancelled.
 RemuxResult recover_part(const std::string& part_path, const std::string& path,
                          const OutputOptions& options = {}, bool keep_part = false);
 
@@ -38,11 +38,13 @@ struct FinishDef {
     int jobs = 0;                       ///< threads that encode an animation; 0: one per core
     bool keep_part = false;
     bool is_untrusted = false;  ///< its origin is unknown: it is read and decoded in a child process first
+    /// Called while the part is read and the video verified, with all frames done; of an animation, with as
+    /// many as passes() says, and with those that are encoded.
+    OnProgress on_progress = {};
 };
 
 /// As recover_part, for a part that this process holds. Also throws kMismatch if it has another number of
-/// frames than it is to have. `options.on_progress` hears that all of them are done; of an animation,
-/// that they are as far as passes() says, and how far they are encoded.
+/// frames than it is to have.
 RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOptions& options,
                         const FinishDef& def);
 

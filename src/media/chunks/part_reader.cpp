@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "corda/core/cancel.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/image.hpp"
 #include "corda/core/part_file.hpp"
@@ -18,7 +19,7 @@
 
 namespace corda::media {
 
-SoundBytes sound_bytes_of(const std::string& path, PartExtent extent, const OnProgress& on_progress) {
+SoundBytes sound_bytes_of(const std::string& path, PartExtent extent) {
     const FileHandle file = open_for_reading(path);
     std::array<char, 1 << 16> block{};
     std::string ahead;  // bytes that are read and not yet counted
@@ -44,7 +45,7 @@ SoundBytes sound_bytes_of(const std::string& path, PartExtent extent, const OnPr
         }
         count(ahead.size() -
               std::min(ahead.size(), PartChecksum::kRecordBytes - 1));  // the rest may begin a record
-        report_progress(on_progress, 0, 0);
+        check_cancelled();
         const std::size_t read = read_bytes(file, path, block.data(), block.size());
         if (read == 0) break;
         ahead.append(block.data(), read);
@@ -159,9 +160,9 @@ Rational rate_of(const std::string& path, const PartInput& input, std::int64_t p
 
 }  // namespace
 
-PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
+PartIndex index_part(const std::string& path) {
     PartIndex index;
-    const SoundBytes sound = sound_bytes_of(path, PartExtent::kAll, on_progress);
+    const SoundBytes sound = sound_bytes_of(path, PartExtent::kAll);
     if (sound.count == 0 && file_size(path) == 0)
         throw EmptyPart(
             ExitCode::kMismatch,
@@ -180,7 +181,7 @@ PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
     bool has_bad_stamp = false;
     bool is_broken = false;
     while (read_packet(input, *packet, &is_broken)) {
-        report_progress(on_progress, std::ssize(stamps), 0);
+        check_cancelled();
         has_bad_stamp = !is_sane_stamp(packet->pts);
         if (has_bad_stamp) break;
         packet_duration = packet->duration;
@@ -201,9 +202,9 @@ PartIndex index_part(const std::string& path, const OnProgress& on_progress) {
     return index;
 }
 
-PartComment part_comment(const std::string& path, const OnProgress& on_progress) {
+PartComment part_comment(const std::string& path) {
     const LogCapture log;
-    const SoundBytes sound = sound_bytes_of(path, PartExtent::kFirstChunk, on_progress);
+    const SoundBytes sound = sound_bytes_of(path, PartExtent::kFirstChunk);
     if (sound.count == 0) return {std::nullopt, sound.is_damaged};
     return {metadata_entry(*open_part(path, sound.count).format, "comment"), false};
 }
@@ -228,12 +229,12 @@ void remove_part_copy(const std::string& part) noexcept {
     }
 }
 
-void PacketCopy::copy_to(std::size_t end, TrackOutput& output, const OnProgress& on_progress) {
+void PacketCopy::copy_to(std::size_t end, TrackOutput& output) {
     const Packet packet = check_allocated(Packet(av_packet_alloc()), "a packet");
     for (; next_ < end; ++next_) {
         if (!read_packet(*input_, *packet))
             throw Error(ExitCode::kIo, fmt::format("'{}' changed while it was read", *path_));
-        report_progress(on_progress, static_cast<std::int64_t>(next_), std::ssize(index_->frame_of));
+        check_cancelled();
         packet->pts = index_->frame_of[next_];
         packet->dts = static_cast<std::int64_t>(next_) - index_->reorder_depth;
         packet->duration = 1;

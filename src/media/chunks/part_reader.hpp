@@ -42,8 +42,8 @@ class EmptyPart : public Error {
 [[nodiscard]] PartInput open_part(const std::string& path, std::uint64_t bytes);
 
 /// Reads all packets of a part. Throws EmptyPart (kMismatch), or corda::Error: kMismatch if it has no
-/// constant frame rate, kInterrupted if `on_progress` asks to stop.
-[[nodiscard]] PartIndex index_part(const std::string& path, const OnProgress& on_progress);
+/// constant frame rate, kInterrupted if cancelled.
+[[nodiscard]] PartIndex index_part(const std::string& path);
 
 /// Result of checking the checksums of a part.
 struct SoundBytes {
@@ -58,8 +58,7 @@ enum class PartExtent { kAll, kFirstChunk };
 
 /// Compares the checksums of a part with its bytes. Throws corda::Error: kIo if the file cannot be read,
 /// kInterrupted.
-[[nodiscard]] SoundBytes sound_bytes_of(const std::string& path, PartExtent extent,
-                                        const OnProgress& on_progress = {});
+[[nodiscard]] SoundBytes sound_bytes_of(const std::string& path, PartExtent extent);
 
 /// Metadata in the first chunk of a part.
 struct PartComment {
@@ -68,7 +67,7 @@ struct PartComment {
 };
 
 /// The comment of a part. Throws as open_part, and corda::Error: kIo, kInterrupted.
-[[nodiscard]] PartComment part_comment(const std::string& path, const OnProgress& on_progress = {});
+[[nodiscard]] PartComment part_comment(const std::string& path);
 
 /// Whether a text is among the first bytes of a file, where a part has its comment: also one that breaks off
 /// in its first chunk. Throws corda::Error (kIo).
@@ -86,7 +85,7 @@ class PacketCopy {
         : path_(&path), input_(&input), index_(&index) {}
 
     /// Copies the packets up to the one of number `end`. Throws corda::Error: kIo, kInterrupted.
-    void copy_to(std::size_t end, TrackOutput& output, const OnProgress& on_progress);
+    void copy_to(std::size_t end, TrackOutput& output);
 
   private:
     const std::string* path_;

@@ -7,6 +7,7 @@
 #include <cerrno>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/file.hpp"
 #include "corda/media/bytes.hpp"
 
@@ -78,6 +79,7 @@ std::string PartChecksum::element(std::string_view container) const {
 int TrackOutput::write_bytes(void* output, const std::uint8_t* bytes, int count) {
     TrackOutput& track = *static_cast<TrackOutput*>(output);
     const std::string_view data(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(count));
+    const CancelScope uncancelled({}, CancelScope::Outer::kIgnored);  // libav is between here and the caller
     const int status = write_all(track.descriptor_, data);
     if (status != 0) return AVERROR(status);
     if (track.layout_ == TrackLayout::kPart) track.checksum_.add(data);

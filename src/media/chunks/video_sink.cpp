@@ -60,12 +60,8 @@ class PartSink : public VideoSink {
     PartSink(const Format& format, const std::string& path, const OutputOptions& options, PartFile old,
              const FrameRange& frames)
         : PartSink(format, path, options, create_copy(part_path(path))) {
-        // Copying is no progress of the frames that are still to be drawn.
-        const OnProgress nothing_done = [&](std::int64_t, std::int64_t) {
-            return !options.on_progress || options.on_progress(0, frames.end - frames.first);
-        };
         try {
-            resumed_ = copy_chunks(old.path(), frames, nothing_done);
+            resumed_ = copy_chunks(old.path(), frames);
             if (resumed_ > 0) part_.sync();
         } catch (const Error& error) {
             if (error.code() != ExitCode::kIo) throw;
@@ -152,12 +148,11 @@ class PartSink : public VideoSink {
     }
 
     /// Copies the whole chunks of an earlier part; returns their frames.
-    std::int64_t copy_chunks(const std::string& old, const FrameRange& frames,
-                             const OnProgress& on_progress) {
+    std::int64_t copy_chunks(const std::string& old, const FrameRange& frames) {
         const LogCapture log;
         PartIndex index;
         try {
-            index = index_part(old, on_progress);
+            index = index_part(old);
         } catch (const EmptyPart&) {
             return 0;
         }
@@ -181,7 +176,7 @@ class PartSink : public VideoSink {
         PacketCopy copy(old, input, index);
         for (std::int64_t count = 1; count <= whole; ++count) {
             if (!is_whole(count)) continue;
-            copy.copy_to(static_cast<std::size_t>(count), track_, on_progress);
+            copy.copy_to(static_cast<std::size_t>(count), track_);
             track_.flush();
         }
         return whole;
@@ -233,7 +228,7 @@ class PictureSink : public VideoSink {
 /// Standard output: YUV4MPEG2, or pixels without a header.
 class StreamSink : public VideoSink {
   public:
-    StreamSink(const Format& format, OutputOptions options) : format_(format), options_(std::move(options)) {}
+    explicit StreamSink(const Format& format) : format_(format) {}
 
     void begin(const AVCodecParameters& parameters, const TrackInfo& info) override {
         has_headers_ = std::string_view(format_.pixel_format) != "rgba";
@@ -257,13 +252,12 @@ class StreamSink : public VideoSink {
 
   private:
     void put(std::string_view bytes) const {
-        const int status = write_all(STDOUT_FILENO, bytes, options_.on_progress);
+        const int status = write_all(STDOUT_FILENO, bytes);
         if (status == EPIPE) throw ReaderLeft();
         if (status != 0) fail_file("write to", "standard output", status);
     }
 
     Format format_;
-    OutputOptions options_;
     bool has_headers_ = true;
     bool is_cut_ = false;  ///< the last frame, or that may be
 };
@@ -276,7 +270,7 @@ std::unique_ptr<VideoSink> make_sink(const Format& format, const std::string& pa
         case FileKind::kPictures:
             return std::make_unique<PictureSink>(path, options, frames);
         case FileKind::kStream:
-            return std::make_unique<StreamSink>(format, options);
+            return std::make_unique<StreamSink>(format);
         case FileKind::kVideo:
         case FileKind::kAnimation:
             break;

@@ -106,14 +106,14 @@ CheckedVideo check_video_output(const std::string& path, const VideoDef& def, co
 }
 
 struct VideoWriter::Impl {
-    Impl(const CheckedVideo& output, VideoMetadata meta, OnProgress on_progress)
+    Impl(const CheckedVideo& output, VideoMetadata meta)
         : path(output.path),
           def(output.def),
           metadata(std::move(meta)),
           format(output.format),
           comment(parsed_comment(metadata.comment_json)),
           first_frame(output.first),
-          sink(make_sink(format, path, {.force = output.force, .on_progress = std::move(on_progress)},
+          sink(make_sink(format, path, {.force = output.force},
                          {output.first, output.end, media::frames_per_chunk(format, def.fps)},
                          output.resume)),
           written(sink->resumed_frames()) {
@@ -177,9 +177,9 @@ struct VideoWriter::Impl {
     }
 
     /// Ends the chunk that write() has begun.
-    void end_chunk(const GoesOn& goes_on = {}) {
+    void end_chunk() {
         const auto ended = std::exchange(encoder, nullptr);
-        if (ended && ended->frames() > 0) append(ended->finish(goes_on));
+        if (ended && ended->frames() > 0) append(ended->finish());
     }
 
     [[nodiscard]] std::int64_t frames() const { return written + (encoder ? encoder->frames() : 0); }
@@ -188,12 +188,12 @@ struct VideoWriter::Impl {
     [[nodiscard]] std::int64_t next_frame() const { return first_frame + frames(); }
 
     /// Ends the stream; behind a chunk that could not be written nothing goes.
-    void drain(const GoesOn& goes_on = {}) {
+    void drain() {
         if (is_broken) {
             encoder.reset();
         } else {
             try {
-                end_chunk(goes_on);
+                end_chunk();
             } catch (const Error& error) {
                 if (error.code() != ExitCode::kInterrupted) throw;
             }
@@ -217,13 +217,12 @@ struct VideoWriter::Impl {
     bool is_broken = false;  ///< a chunk could not be written, or not all of it
 };
 
-VideoWriter::VideoWriter(const CheckedVideo& output, VideoMetadata metadata, OnProgress on_progress)
-    : impl_(std::make_unique<Impl>(output, std::move(metadata), std::move(on_progress))) {}
+VideoWriter::VideoWriter(const CheckedVideo& output, VideoMetadata metadata)
+    : impl_(std::make_unique<Impl>(output, std::move(metadata))) {}
 
 VideoWriter::VideoWriter(const std::string& path, const VideoDef& def, const VideoMetadata& metadata,
                          const OutputOptions& options)
-    : VideoWriter(check_video_output(path, def, "", options.force, metadata.is_transparent), metadata,
-                  options.on_progress) {}
+    : VideoWriter(check_video_output(path, def, "", options.force, metadata.is_transparent), metadata) {}
 
 VideoWriter::VideoWriter(VideoWriter&&) noexcept = default;
 VideoWriter::~VideoWriter() = default;
@@ -269,7 +268,7 @@ std::int64_t VideoWriter::frames() const {
     return impl_->frames();
 }
 
-void VideoWriter::finish(VerifyDepth depth) {
+void VideoWriter::finish(VerifyDepth depth, const OnProgress& on_progress) {
     Impl& impl = *impl_;
     impl.check_goes_on();
     if (frames() == 0) {
@@ -280,11 +279,15 @@ void VideoWriter::finish(VerifyDepth depth) {
     impl.drain();
     const bool takes_all = depth == VerifyDepth::kKeyFrames && impl.format.codec->verifies_all;
     if (takes_all) depth = VerifyDepth::kAllFrames;
-    impl.sink->finish({frames(), depth, impl.colors, impl.def.encoder.jobs});
+    impl.sink->finish({.frames = frames(),
+                       .depth = depth,
+                       .rendered = impl.colors,
+                       .jobs = impl.def.encoder.jobs,
+                       .on_progress = on_progress});
 }
 
-std::string VideoWriter::abandon(const GoesOn& goes_on) {
-    if (!impl_->drained) impl_->drain(goes_on);
+std::string VideoWriter::abandon() {
+    if (!impl_->drained) impl_->drain();
     if (frames() == 0) {
         impl_->sink->remove();
         return {};

@@ -57,7 +57,7 @@ class VideoWriter {
     /// number of frames in it, and the video will have the bytes of an uninterrupted render. Throws
     /// corda::Error: kIo if the file cannot be created or another render is writing it, kMismatch for a part
     /// that cannot be read. An encoder that does not open fails with the first frame.
-    VideoWriter(const CheckedVideo& output, VideoMetadata metadata, OnProgress on_progress = {});
+    VideoWriter(const CheckedVideo& output, VideoMetadata metadata);
     /// Checks the output first, and throws as check_video_output() too.
     VideoWriter(const std::string& path, const VideoDef& def, const VideoMetadata& metadata,
                 const OutputOptions& options = {});
@@ -95,14 +95,14 @@ class VideoWriter {
 
     /// Ends the last chunk, copies, verifies, and gives the video its name. Of codecs that take much longer
     /// to encode than to decode (AV1, VP9, H.265) all frames are verified in any case. Needs at least one
-    /// frame. Throws kEncoder, kIo, kMismatch (the check found a problem), or kInterrupted if the options'
-    /// `on_progress` asks to stop; then the frames stay in `PATH.part`.
-    void finish(VerifyDepth depth = VerifyDepth::kKeyFrames);
+    /// frame. Throws kEncoder, kIo, kMismatch (the check found a problem), or kInterrupted if
+    /// cancelled; then the frames stay in `PATH.part`. `on_progress`: see FinishDef.
+    void finish(VerifyDepth depth = VerifyDepth::kKeyFrames, const OnProgress& on_progress = {});
 
     /// Drains and ends the part file unless `finish` has, so that it stays as a playable `PATH.part`, and
-    /// returns its path. Without any frame the part is removed, and the path is empty. `goes_on` is asked
-    /// while frames are encoded that the encoder has held back; false drops the chunk that they belong to.
-    std::string abandon(const GoesOn& goes_on = {});
+    /// returns its path. Without any frame the part is removed, and the path is empty. Cancelling it while
+    /// the encoder is drained drops the chunk that it drains.
+    std::string abandon();
 
   private:
     struct Impl;

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/media/chunks/chunk.hpp"
 #include "corda/media/encode/pixels.hpp"
 #include "corda/media/png/png.hpp"
@@ -147,6 +148,7 @@ class PictureEncoder : public Encoder {
     }
 
     void encode(const Image& frame, const Damage& /*damage*/, const PacketSink& sink) override {
+        const CancelScope whole({}, CancelScope::Outer::kIgnored);  // half a frame is of no use
         const std::string bytes = png_bytes(frame, info_ ? info_(first_frame_ + frames_) : PngInfo{});
         check_libav(av_new_packet(packet_.get(), static_cast<int>(bytes.size())), ExitCode::kTemporary,
                     "cannot make a packet");

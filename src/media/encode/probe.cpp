@@ -68,15 +68,14 @@ struct Trial {
 
 /// Tries an encoder in a child process with a time limit, which other threads rule out: see run_in_child.
 /// With a limited address space the encoders have what drawing will leave of it, and their own size.
-Trial try_encoders(const Format& format, const VideoDef& video, int jobs, std::uint64_t kept_bytes,
-                   const std::function<void()>& on_wait) {
+Trial try_encoders(const Format& format, const VideoDef& video, int jobs, std::uint64_t kept_bytes) {
     const auto left = address_space_left();  // first, as threads leave some of it to the allocator
     if (std::string lack = lack_of_threads(*format.codec); !lack.empty()) return {std::move(lack), true};
     const VideoDef def = left ? video : small_video(video);
     ChildLimits limits{std::uint64_t{1} << 46U, std::int64_t{60}, kMaxS};
     if (left) limits.memory_bytes = *left - std::min(*left, kept_bytes * static_cast<std::uint64_t>(jobs));
     const auto work = [&] { return encode_one(format, def, jobs); };
-    const auto end = run_in_child(work, limits, on_wait);
+    const auto end = run_in_child(work, limits);
     const auto starts_threads = [&] { return can_start_threads(1 + format.codec->own_threads); };
     if (!end && starts_threads()) return {};
     if (!end)
@@ -112,11 +111,10 @@ Trial try_encoders(const Format& format, const VideoDef& video, int jobs, std::u
 }
 
 /// As try_encoders(). A render takes as few jobs as its memory asks for, so one that encodes is enough.
-Trial try_encoder(const Format& format, const VideoDef& video, std::uint64_t kept_bytes,
-                  const std::function<void()>& on_wait) {
+Trial try_encoder(const Format& format, const VideoDef& video, std::uint64_t kept_bytes) {
     const int jobs = address_space_left() ? jobs_of(video.encoder.jobs) : 1;
-    Trial trial = try_encoders(format, video, jobs, kept_bytes, on_wait);
-    if (!trial.failure.empty() && jobs > 1) trial = try_encoders(format, video, 1, kept_bytes, on_wait);
+    Trial trial = try_encoders(format, video, jobs, kept_bytes);
+    if (!trial.failure.empty() && jobs > 1) trial = try_encoders(format, video, 1, kept_bytes);
     return trial;
 }
 
@@ -133,7 +131,7 @@ Trial reason_of(const Ending& ending, const Codec& codec) {
         return {error.what(), false};
     }
     def.encoder.jobs = 1;
-    Trial trial = has_other_threads() ? Trial{encode_one(*format, def, 1)} : try_encoder(*format, def, 0, {});
+    Trial trial = has_other_threads() ? Trial{encode_one(*format, def, 1)} : try_encoder(*format, def, 0);
     if (!trial.failure.empty()) return trial;
     const Codec& finished = format->finished_codec();
     if (*ending.muxer != '\0' && !finished.is_built_in &&
@@ -161,14 +159,14 @@ std::vector<EncoderProbe> probe_encoders() {
     return probes;
 }
 
-void check_encoder_starts(const Format& format, const VideoDef& def, const OnProgress& on_progress) {
+void check_encoder_starts(const Format& format, const VideoDef& def) {
     if (format.codec->is_hardware || format.codec->is_built_in) return;
     if (has_other_threads()) {
         const std::string lack = lack_of_threads(*format.codec);
         if (lack.empty()) return;
         throw Error(ExitCode::kTemporary, lack);
     }
-    const Trial trial = try_encoder(format, def, kDrawingBytes, [&] { report_progress(on_progress, 0, 0); });
+    const Trial trial = try_encoder(format, def, kDrawingBytes);
     if (trial.failure.empty()) return;
     throw Error(trial.is_temporary ? ExitCode::kTemporary : ExitCode::kEncoder, trial.failure);
 }

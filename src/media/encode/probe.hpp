@@ -25,7 +25,7 @@ struct EncoderProbe {
 /// Encodes a picture in a child process that may take 5 s: some encoders wait for ever, or crash, if they
 /// lack threads or memory. If this process has other threads, which rule that out, checks that the system
 /// starts threads for the encoder. Throws corda::Error: kEncoder if it fails; kTemporary if it hangs or lacks
-/// memory or threads; kInterrupted if `on_progress`, which is called ten times a second, asks to stop.
-void check_encoder_starts(const Format& format, const VideoDef& def, const OnProgress& on_progress = {});
+/// memory or threads; kInterrupted if cancelled.
+void check_encoder_starts(const Format& format, const VideoDef& def);
 
 }  // namespace corda::media

@@ -11,8 +11,7 @@ namespace corda::media {
 
 /// The bytes of the file that write_png() writes; with `keeps_alpha`, an opaque picture has alpha, too.
 /// Throws corda::Error (kIo, kInterrupted) as that does.
-[[nodiscard]] std::string png_bytes(const Image& image, const PngInfo& info,
-                                    const OnProgress& on_progress = {}, bool keeps_alpha = false);
+[[nodiscard]] std::string png_bytes(const Image& image, const PngInfo& info, bool keeps_alpha = false);
 
 /// True if two PNG files have the same chunks, except those that change no pixel of read_png(): texts,
 /// times, resolutions, colour spaces. Then they show the same, if they can be read. Others may do so too: the

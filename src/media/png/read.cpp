@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/file.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/media/format/file_kind.hpp"
@@ -34,16 +35,15 @@ struct ReadJob {
     png_structp png = nullptr;
     png_infop info = nullptr;
     std::FILE* file = nullptr;
-    const OnProgress& on_progress;
     Wanted wanted;
     std::int64_t done = 0;  ///< rows
     std::int64_t total = 0;
-    std::size_t unasked_bytes = 0;    ///< read since on_progress was asked
-    std::exception_ptr interruption;  ///< what asking on_progress threw
+    std::size_t unasked_bytes = 0;    ///< read since check_cancelled()
+    std::exception_ptr interruption;  ///< what check_cancelled() threw
     int read_errno = 0;               ///< of the file; 0: it is not to blame
     char message[160] = "out of memory";
 
-    ReadJob(const OnProgress& progress, Wanted what) : on_progress(progress), wanted(what) {}
+    explicit ReadJob(Wanted what) : wanted(what) {}
     ReadJob(const ReadJob&) = delete;
     ReadJob& operator=(const ReadJob&) = delete;
     ~ReadJob() { png_destroy_read_struct(&png, &info, nullptr); }
@@ -57,10 +57,10 @@ void on_read_error(png_structp png, png_const_charp message) {
 
 void on_read_warning(png_structp, png_const_charp) {}
 
-/// Calls on_progress; returns false if it asks to stop. Never throws: libpng's functions are in between.
+/// False if cancelled. Never throws: libpng's functions are in between.
 bool goes_on(ReadJob& job) noexcept {
     try {
-        report_progress(job.on_progress, job.done, job.total);
+        check_cancelled();
         return true;
     } catch (...) {
         job.interruption = std::current_exception();
@@ -68,7 +68,7 @@ bool goes_on(ReadJob& job) noexcept {
     }
 }
 
-/// Reads for libpng, and asks on_progress now and then: chunks that are skipped may be long, too.
+/// Reads for libpng, and can be cancelled now and then: chunks that are skipped may be long, too.
 void on_read(png_structp png, png_bytep bytes, std::size_t count) {
     constexpr std::size_t kAskEveryBytes = std::size_t{1} << 18;
     auto* job = static_cast<ReadJob*>(png_get_io_ptr(png));
@@ -248,21 +248,21 @@ PngInfo collect_info(const ReadJob& job) {
 
 }  // namespace
 
-Picture read_picture(const std::string& path, const OnProgress& on_progress) {
+Picture read_picture(const std::string& path) {
     const FileHandle file = open_for_reading(path);
-    ReadJob job(on_progress, Wanted::kPixels);
+    ReadJob job(Wanted::kPixels);
     job.file = file.get();
     open_job(job, path);
     return read_pixels(job, path);
 }
 
-Image read_png(const std::string& path, const OnProgress& on_progress) {
-    return read_picture(path, on_progress).image;
+Image read_png(const std::string& path) {
+    return read_picture(path).image;
 }
 
-PngInfo read_png_info(const std::string& path, const OnProgress& on_progress) {
+PngInfo read_png_info(const std::string& path) {
     const FileHandle file = open_for_reading(path);
-    ReadJob job(on_progress, Wanted::kTexts);
+    ReadJob job(Wanted::kTexts);
     job.file = file.get();
     open_job(job, path);
     // Text may stand after the pixels, so the whole file is read.

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/media/defs.hpp"
@@ -95,7 +96,7 @@ void on_flush(png_structp) {}
 /// Writes the picture; false, and job.message, on failure. No object with a destructor lives here, because
 /// libpng leaves by longjmp.
 bool write_picture(WriteJob& job, const Image& image, bool opaque, png_uint_32 pixels_per_metre,
-                   png_textp text, int text_count, const OnProgress& on_progress) {
+                   png_textp text, int text_count) {
     if (setjmp(png_jmpbuf(job.png)) != 0) return false;
     png_set_write_fn(job.png, &job, on_write, on_flush);
     png_set_user_limits(job.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
@@ -111,7 +112,7 @@ bool write_picture(WriteJob& job, const Image& image, bool opaque, png_uint_32 p
     png_write_info(job.png, job.info);
     if (opaque) png_set_filler(job.png, 0, PNG_FILLER_AFTER);
     for (int y = 0; y < image.height(); ++y) {
-        report_progress(on_progress, y, image.height());
+        check_cancelled();
         png_write_row(job.png, image.pixel(0, y));
     }
     png_write_end(job.png, nullptr);
@@ -150,7 +151,7 @@ std::vector<png_text> libpng_texts(const PngInfo& info, std::vector<std::string>
 
 /// Encodes to a sink; `name` is for messages.
 void encode(const std::string& name, const Image& image, bool has_alpha, const PngInfo& info,
-            const OnProgress& on_progress, std::function<void(std::string_view)> sink) {
+            std::function<void(std::string_view)> sink) {
     std::vector<std::string> storage;
     std::vector<png_text> texts = libpng_texts(info, storage);
     WriteJob job;
@@ -159,9 +160,8 @@ void encode(const std::string& name, const Image& image, bool has_alpha, const P
     if (job.png != nullptr) job.info = png_create_info_struct(job.png);
     const auto pixels_per_metre =
         static_cast<png_uint_32>(std::lround(info.pixels_per_inch * kInchesPerMetre));
-    const bool written =
-        job.info != nullptr && write_picture(job, image, !has_alpha, pixels_per_metre, texts.data(),
-                                             static_cast<int>(texts.size()), on_progress);
+    const bool written = job.info != nullptr && write_picture(job, image, !has_alpha, pixels_per_metre,
+                                                              texts.data(), static_cast<int>(texts.size()));
     if (job.write_error) std::rethrow_exception(job.write_error);
     if (!written) {
         throw Error(ExitCode::kIo, fmt::format("cannot write PNG '{}': libpng says: {}", name, job.message));
@@ -178,15 +178,13 @@ void write_png(const std::string& path, const Image& image, const PngInfo& info,
     std::vector<std::string> storage;
     static_cast<void>(libpng_texts(info, storage));  // a wrong text is refused before a file is made
     OutputFile file(path, options);
-    encode(path, image, !is_opaque(image), info, options.on_progress,
-           [&file](std::string_view bytes) { file.write(bytes); });
+    encode(path, image, !is_opaque(image), info, [&file](std::string_view bytes) { file.write(bytes); });
     file.commit();
 }
 
-std::string media::png_bytes(const Image& image, const PngInfo& info, const OnProgress& on_progress,
-                             bool keeps_alpha) {
+std::string media::png_bytes(const Image& image, const PngInfo& info, bool keeps_alpha) {
     std::string all;
-    encode("frame", image, keeps_alpha || !is_opaque(image), info, on_progress,
+    encode("frame", image, keeps_alpha || !is_opaque(image), info,
            [&all](std::string_view bytes) { all += bytes; });
     return all;
 }

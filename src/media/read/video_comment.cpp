@@ -134,10 +134,9 @@ std::string read_comment(const std::string& path) {
 
 }  // namespace
 
-std::string comment_in_child(const std::string& path, const OnProgress& on_progress) {
+std::string comment_in_child(const std::string& path) {
     const QuietLog quiet;
-    const auto end = run_in_child([&] { return read_comment(path); }, kCommentLimits,
-                                  [&] { report_progress(on_progress, 0, 0); });
+    const auto end = run_in_child([&] { return read_comment(path); }, kCommentLimits);
     if (end && !end->finished()) fail_reading(path, ExitCode::kIo, "it " + end->text);
     std::string comment = end ? end->text : read_comment(path);
     if (const std::string problem = comment_problem(comment); !problem.empty())

@@ -46,9 +46,9 @@ inline constexpr int kDeepestJsonLevel = 16;
 [[nodiscard]] std::string finished_comment(const std::string& comment, std::size_t frames);
 
 /// The comment of a video of any origin, read in a child process with limits on memory and time; empty if it
-/// has none. `on_progress` is asked at least ten times a second. Throws corda::Error: kIo if the file cannot
+/// has none. Throws corda::Error: kIo if the file cannot
 /// be read or is no video, kUsage if its comment has a comment_problem(), and what run_in_child throws, which
 /// also says why this process must have no other thread.
-[[nodiscard]] std::string comment_in_child(const std::string& path, const OnProgress& on_progress = {});
+[[nodiscard]] std::string comment_in_child(const std::string& path);
 
 }  // namespace corda::media

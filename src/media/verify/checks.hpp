@@ -45,16 +45,14 @@ struct DecodedVideo {
 /// Decodes the frames of the file at `path`, of a kind that libav demuxes, and measures the patches of
 /// `rendered`, as far as these frames are decoded, and else those that the file's comment states for the
 /// first one. Fills in the coding, size, colour tags and alpha of `report`, and the number of frames whose
-/// time stamp can be right, with which `on_progress` is called. Throws corda::Error: kTemporary if there is
-/// not enough memory, kInterrupted if `on_progress` asks to stop; nothing else for a bad file.
+/// time stamp can be right. Throws corda::Error: kTemporary if there is
+/// not enough memory, kInterrupted if cancelled; nothing else for a bad file.
 [[nodiscard]] DecodedVideo decode(const std::string& path, VerifyDepth depth,
-                                  const std::vector<FrameColors>& rendered, const OnProgress& on_progress,
-                                  VerifyReport& report);
+                                  const std::vector<FrameColors>& rendered, VerifyReport& report);
 
 /// The same for an animated WebP, by libwebp. `told`: see rate_of_ms().
 [[nodiscard]] DecodedVideo decode_webp(const std::string& path, std::optional<Rational> told,
-                                       const std::vector<FrameColors>& rendered,
-                                       const OnProgress& on_progress, VerifyReport& report);
+                                       const std::vector<FrameColors>& rendered, VerifyReport& report);
 
 /// Rendered colours of a frame; null if `rendered`, in the order of the frames, has none.
 [[nodiscard]] const FrameColors* find_rendered(const std::vector<FrameColors>& rendered, std::int64_t frame);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/child_process.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/media/chunks/part_reader.hpp"
@@ -91,7 +92,7 @@ std::string report_bytes(const std::string& path, bool has_little, std::optional
             return damaged(fmt::format("asks for more memory than it may have ({} GiB)", kMemoryGib));
         };
         try {
-            return verify(path, {}, VerifyDepth::kAllFrames, {}, fps);
+            return verify(path, VerifyDepth::kAllFrames, {}, fps);
         } catch (const std::bad_alloc&) {
             if (has_little) throw Error(ExitCode::kTemporary, "out of memory");
             return out_of_memory();
@@ -107,13 +108,10 @@ std::string report_bytes(const std::string& path, bool has_little, std::optional
 
 }  // namespace
 
-VerifyReport verify_in_child(const std::string& path, const OnProgress& on_progress,
-                             std::optional<Rational> fps) {
+VerifyReport verify_in_child(const std::string& path, std::optional<Rational> fps) {
     const bool has_little = has_little_memory();
-    const auto on_wait = [&] { report_progress(on_progress, 0, 0); };
-    const auto end =
-        run_in_child([&] { return report_bytes(path, has_little, fps); }, limits_for(path), on_wait);
-    if (!end) return verify(path, on_progress, VerifyDepth::kAllFrames, {}, fps);
+    const auto end = run_in_child([&] { return report_bytes(path, has_little, fps); }, limits_for(path));
+    if (!end) return verify(path, VerifyDepth::kAllFrames, {}, fps);
     if (!end->finished()) {
         throw_if_memory_may_lack(path, *end);
         return damaged(end->text);
@@ -123,19 +121,19 @@ VerifyReport verify_in_child(const std::string& path, const OnProgress& on_progr
     return report;
 }
 
-void check_part_in_child(const std::string& path, bool decodes, const OnProgress& on_progress) {
+void check_part_in_child(const std::string& path, bool decodes) {
     if (has_other_threads()) return;  // see run_in_child
     const QuietLog quiet;
     const auto read = [&]() -> std::string {
         try {
-            static_cast<void>(index_part(path, {}));
+            static_cast<void>(index_part(path));
             if (decodes) static_cast<void>(verify(path));
         } catch (const std::exception&) {
             // This process comes to the same point, and reports it.
         }
         return {};
     };
-    const auto end = run_in_child(read, limits_for(path), [&] { report_progress(on_progress, 0, 0); });
+    const auto end = run_in_child(read, limits_for(path));
     if (!end || end->finished()) return;
     throw_if_memory_may_lack(path, *end);
     throw Error(ExitCode::kMismatch,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/media/bytes.hpp"
 #include "corda/media/encode/yuv420.hpp"
 #include "corda/media/libav_handles.hpp"
@@ -73,11 +74,11 @@ class Decoding {
              const std::vector<FrameColors>& rendered)
         : video_(video), report_(report), depth_(depth), rendered_(rendered) {}
 
-    void run(const std::string& path, const OnProgress& on_progress) {
+    void run(const std::string& path) {
         if (!open(path)) return;
         video_.opened = true;
         const auto use = [&](const AVPacket& packet) {
-            report_progress(on_progress, report_.frames, 0);
+            check_cancelled();
             return use_of(packet);
         };
         for (int status = 0; status != AVERROR_EOF;) {
@@ -293,15 +294,14 @@ const FrameColors* find_rendered(const std::vector<FrameColors>& rendered, std::
 }
 
 DecodedVideo decode(const std::string& path, VerifyDepth depth, const std::vector<FrameColors>& rendered,
-                    const OnProgress& on_progress, VerifyReport& report) {
+                    VerifyReport& report) {
     DecodedVideo video;
-    Decoding(video, report, depth, rendered).run(path, on_progress);
+    Decoding(video, report, depth, rendered).run(path);
     return video;
 }
 
 DecodedVideo decode_webp(const std::string& path, std::optional<Rational> told,
-                         const std::vector<FrameColors>& rendered, const OnProgress& on_progress,
-                         VerifyReport& report) {
+                         const std::vector<FrameColors>& rendered, VerifyReport& report) {
     DecodedVideo video;
     WebpReader reader(path);
     video.opened = reader.is_open();
@@ -315,7 +315,7 @@ DecodedVideo decode_webp(const std::string& path, std::optional<Rational> told,
     report.height_px = reader.height_px();
     video.is_rounded = true;
     for (Image picture; reader.has_next(); ++report.frames) {
-        report_progress(on_progress, report.frames, 0);
+        check_cancelled();
         if (!reader.read(picture)) {
             video.bad_reason = "libwebp does not decode a frame";
             ++video.bad_frames;

@@ -160,8 +160,8 @@ void refuse(const std::string& path, VerifyReport& report) {
 
 }  // namespace
 
-VerifyReport verify(const std::string& path, const OnProgress& on_progress, VerifyDepth depth,
-                    const std::vector<FrameColors>& rendered, std::optional<Rational> fps) {
+VerifyReport verify(const std::string& path, VerifyDepth depth, const std::vector<FrameColors>& rendered,
+                    std::optional<Rational> fps) {
     const LogCapture log;
     VerifyReport report;
     const std::string kind = file_kind(path);
@@ -172,8 +172,8 @@ VerifyReport verify(const std::string& path, const OnProgress& on_progress, Veri
     if (is_truncated(path, kind))
         problem(report, "the file breaks off before its end; copy or render it again");
     if (kind.empty() || (kind == "mov" && !boxes.has_index)) return report;
-    const DecodedVideo video = kind == "webp" ? decode_webp(path, fps, rendered, on_progress, report)
-                                              : decode(path, depth, rendered, on_progress, report);
+    const DecodedVideo video =
+        kind == "webp" ? decode_webp(path, fps, rendered, report) : decode(path, depth, rendered, report);
     if (!video.opened) {
         problem(report, "{}; the file is damaged: copy or render it again", video.open_reason);
         return report;

@@ -63,23 +63,21 @@ enum class VerifyDepth { kKeyFrames, kAllFrames };
 /// compared with anything: a change that still decodes is not found.
 ///
 /// Throws corda::Error: kIo if the file cannot be opened for reading (one that is not a video gives a report
-/// with a problem), kInterrupted if `on_progress`, called with the frames, asks to stop. libav ends the
+/// with a problem), kInterrupted if cancelled. libav ends the
 /// process at some damaged files: one of unknown origin is for verify_in_child.
-[[nodiscard]] VerifyReport verify(const std::string& path, const OnProgress& on_progress = {},
-                                  VerifyDepth depth = VerifyDepth::kAllFrames,
+[[nodiscard]] VerifyReport verify(const std::string& path, VerifyDepth depth = VerifyDepth::kAllFrames,
                                   const std::vector<FrameColors>& rendered = {},
                                   std::optional<Rational> fps = {});
 
 /// As `verify` with all frames, in a child process with limits on memory and time. If that crashes or exceeds
 /// a limit, the file is damaged: a report with a problem. If the system starts no further process, it
-/// verifies in this one. `on_progress` is asked at least ten times a second. See run_in_child for what else
+/// verifies in this one. See run_in_child for what else
 /// it throws, and why this process must have no other thread.
-[[nodiscard]] VerifyReport verify_in_child(const std::string& path, const OnProgress& on_progress = {},
-                                           std::optional<Rational> fps = {});
+[[nodiscard]] VerifyReport verify_in_child(const std::string& path, std::optional<Rational> fps = {});
 
 /// Reads a part of unknown origin in such a child, as index_part() does, and decodes it if `decodes`. After
 /// that this process can read it. Throws corda::Error: kMismatch if the child crashes or exceeds a limit, and
 /// what run_in_child throws. Says nothing of other damage, nor if the system starts no further process.
-void check_part_in_child(const std::string& path, bool decodes, const OnProgress& on_progress);
+void check_part_in_child(const std::string& path, bool decodes);
 
 }  // namespace corda::media

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "corda/core/cancel.hpp"
 #include "corda/sim/rattle/rattle.hpp"
 #include "corda/sim/system.hpp"
 
@@ -70,14 +71,14 @@ std::vector<Trial> exact_trials(const System& system, double tolerance_m) {
 }
 
 /// Trials of `rattle` for a graph, each checked by the next order (8 by 8) at kCheckStep of its step.
-std::vector<Trial> graph_trials(const System& system, const WorldDef& world, const GoesOn& goes_on) {
+std::vector<Trial> graph_trials(const System& system, const WorldDef& world) {
     std::vector<Trial> trials;
     int order = 0;
     double stable_s = 0.0;
     for (const Rung& rung : kGraphLadder) {
         if (rung.order != order) {  // a large net takes seconds to prepare
             order = rung.order;
-            stable_s = Rattle(system, world, RattleDef{order}, kNominalIntervalSeconds, goes_on).step_s();
+            stable_s = Rattle(system, world, RattleDef{order}, kNominalIntervalSeconds).step_s();
         }
         const double step_s = stable_s / static_cast<double>(1 << rung.halvings);
         Trial& trial = trials.emplace_back();
@@ -142,14 +143,14 @@ void record(const System& system, const WorldDef& world, const PlanDef& def, Bod
             Recording& recording) {
     const auto total = static_cast<std::int64_t>(def.timeline.size());
     std::int64_t i = 0;
-    const GoesOn goes_on = reporting(def, i);
-    Simulation run(system, world, plan.method, def.timeline.fps().interval_s(), goes_on);
+    const CancelScope progress = report_frames(def, i);
+    Simulation run(system, world, plan.method, def.timeline.fps().interval_s());
     plan.method = run.methods().front();
     recording.clear();
     ++plan.passes;
     for (; i < total; ++i) {
-        goes_on();
-        if (recording.advance(run, def.timeline, def.clock_s, goes_on) == Status::kDiverged) return;
+        check_cancelled();
+        if (recording.advance(run, def.timeline, def.clock_s) == Status::kDiverged) return;
     }
 }
 
@@ -241,9 +242,9 @@ void sum_up(const System& system, Plan& plan) {
 BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& def, Recording& recording) {
     const double interval_s = def.timeline.fps().interval_s();
     const std::int64_t none_done = 0;
-    const GoesOn goes_on = reporting(def, none_done);
+    const CancelScope progress = report_frames(def, none_done);
     BodyPlan plan;
-    const auto exact_refusal = refusal(system, world, ExactDef{kTolerance[kMaxDigits]}, interval_s, goes_on);
+    const auto exact_refusal = refusal(system, world, ExactDef{kTolerance[kMaxDigits]}, interval_s);
     if (!exact_refusal) {
         plan.reason = PlanReason::kExact;
         MotionBounds start;
@@ -255,15 +256,15 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
     if (is_rigid_chain(system.bodies.front()) ||
         exact_refusal->reason() == Refusal::Reason::kBarWithoutLength)
         throw Refusal(*exact_refusal);
-    const bool can_fall_back = !refusal(system, world, RelaxationDef{}, interval_s, goes_on);
-    if (const auto rattle_refusal = refusal(system, world, RattleDef{}, interval_s, goes_on)) {
+    const bool can_fall_back = !refusal(system, world, RelaxationDef{}, interval_s);
+    if (const auto rattle_refusal = refusal(system, world, RattleDef{}, interval_s)) {
         if (!can_fall_back) throw Refusal(*rattle_refusal);
         fall_back(system, world, def, plan, recording);
         return plan;
     }
     plan.reason = PlanReason::kGraph;
     try {
-        run_until_one_holds(system, world, def, graph_trials(system, world, goes_on), plan, recording);
+        run_until_one_holds(system, world, def, graph_trials(system, world), plan, recording);
     } catch (const Refusal&) {
         // A check, whose start is turned, may take bars to depend on each other that the run does not.
         if (!can_fall_back) throw;

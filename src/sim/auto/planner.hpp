@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/timeline.hpp"
 #include "corda/sim/forces/forces.hpp"
 #include "corda/sim/recording.hpp"
@@ -30,8 +31,9 @@ struct PlanDef {
     std::function<double()> clock_s;  ///< measures the stepping of each run; empty: not measured
 };
 
-/// Returns a callback that reports `frames_done` of the timeline to on_progress. Both must outlive it.
-[[nodiscard]] GoesOn reporting(const PlanDef& def, const std::int64_t& frames_done);
+/// While it lives, check_cancelled() reports `frames_done` of the timeline to on_progress. Both must outlive
+/// it.
+[[nodiscard]] CancelScope report_frames(const PlanDef& def, const std::int64_t& frames_done);
 
 /// The place of a trial among those of a plan.
 struct TrialKind {
@@ -43,14 +45,13 @@ struct TrialKind {
 /// rounding differs from the start on, and records in `trial` how far they agree. A run whose error is not
 /// far above rounding has three checks, and what these differ by counts twice. `recording` is cleared and
 /// receives the run's states. Once the difference is too large for good, the checks end. Each that begins to
-/// move adds one to `passes`. Throws corda::Refusal, and corda::Error (kInterrupted) if asked to stop.
+/// move adds one to `passes`. Throws corda::Refusal.
 void run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial& trial,
                Recording& recording, int& passes);
 
 /// The reason a method cannot run a system; std::nullopt if it can.
 [[nodiscard]] std::optional<Refusal> refusal(const System& system, const WorldDef& world,
-                                             const MethodDef& method, double frame_interval_s,
-                                             const GoesOn& goes_on = {});
+                                             const MethodDef& method, double frame_interval_s);
 
 /// The checks of a trial: tighter runs in turned coordinates, which round otherwise than the trial's run, and
 /// than one another, from the start on. Those of large systems advance in threads of their own; positions are
@@ -59,10 +60,9 @@ class Checks {
   public:
     static constexpr std::size_t kMaxCount = 3;
 
-    /// `count` of them, 1 to kMaxCount. `goes_on` is asked in the caller's thread alone and must outlive
-    /// this.
+    /// `count` of them, 1 to kMaxCount.
     Checks(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
-           std::size_t count, const GoesOn& goes_on);
+           std::size_t count);
     Checks(const Checks&) = delete;
     Checks& operator=(const Checks&) = delete;
     /// Ends the work of start().
@@ -86,9 +86,7 @@ class Checks {
   private:
     class Check;
 
-    const GoesOn& goes_on_;
     std::atomic<bool> is_abandoned_ = false;
-    GoesOn is_wanted_ = [this] { return !is_abandoned_.load(std::memory_order_relaxed); };
     bool in_threads_;
     double time_s_ = 0.0;
     std::uint64_t steps_ = 0;
@@ -100,7 +98,7 @@ class Checks {
 /// tighter runs (section 3.6 of src/sim/README.md). `recording` then holds the states of the verified run,
 /// which are drawn. If no trial stays within the tolerance to the end, the tightest is taken, with a horizon.
 /// Decisions depend on counts and positions, never on a clock. Throws corda::Refusal if no method can run the
-/// body, and corda::Error (kInterrupted) if asked to stop.
+/// body.
 [[nodiscard]] BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& def,
                                  Recording& recording);
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "corda/core/cancel.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/solver.hpp"
 
@@ -129,7 +130,7 @@ double rounding_m(const System& system, const MotionBounds& bounds) {
 class Checks::Check {
   public:
     Check(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
-          std::size_t number, const GoesOn& goes_on)
+          std::size_t number)
         : turn_(turn(number)), system_(system) {
         if (number > 0) move_by_rounding(system_, static_cast<std::uint32_t>(number));
         for (std::size_t i = 0; i < system.particle_count(); ++i) {
@@ -141,16 +142,15 @@ class Checks::Check {
             system_.vy_m_s[i] = velocity.y;
         }
         solver_ = make_solver(system_, Forces(ForceTerm{turn_.of(forces.uniform_m_s2()), forces.drag_1_s()}),
-                              {&method, 1}, frame_interval_s, goes_on);
+                              {&method, 1}, frame_interval_s);
         state_ = {0.0, system_.x_m, system_.y_m};
     }
     Check(const Check&) = delete;
     Check& operator=(const Check&) = delete;
 
     /// kDiverged also if it has branched.
-    Status advance_to(double time_s, const GoesOn& goes_on) {
-        StopCheck stop(goes_on);
-        const Status status = solver_->advance_to(time_s, state_, stop);
+    Status advance_to(double time_s) {
+        const Status status = solver_->advance_to(time_s, state_);
         return solver_->has_branched() ? Status::kDiverged : status;
     }
     [[nodiscard]] std::uint64_t steps() const { return solver_->steps(); }
@@ -179,10 +179,10 @@ class Checks::Check {
 };
 
 Checks::Checks(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
-               std::size_t count, const GoesOn& goes_on)
-    : goes_on_(goes_on), in_threads_(system.particle_count() >= kManyParticles) {
+               std::size_t count)
+    : in_threads_(system.particle_count() >= kManyParticles) {
     for (std::size_t number = 0; number < count; ++number)
-        checks_.push_back(std::make_unique<Check>(system, forces, method, frame_interval_s, number, goes_on));
+        checks_.push_back(std::make_unique<Check>(system, forces, method, frame_interval_s, number));
 }
 
 Checks::~Checks() {
@@ -195,8 +195,10 @@ void Checks::start(double time_s) {
     // In this thread, by finish(), if the system has none to give.
     constexpr auto kPolicy = std::launch::async | std::launch::deferred;
     for (const auto& check : checks_) {
-        pending_.push_back(
-            std::async(kPolicy, [this, &check, time_s] { return check->advance_to(time_s, is_wanted_); }));
+        pending_.push_back(std::async(kPolicy, [this, &check, time_s] {
+            const CancelScope wanted([this] { return !is_abandoned_.load(std::memory_order_relaxed); });
+            return check->advance_to(time_s);
+        }));
     }
 }
 
@@ -207,9 +209,8 @@ Status Checks::finish() {
     for (std::size_t i = 0; i < checks_.size(); ++i) {
         auto waited = std::future_status::deferred;
         while (in_threads_ && (waited = pending_[i].wait_for(kPatience)) == std::future_status::timeout)
-            require_going_on(!goes_on_ || goes_on_());
-        add(waited == std::future_status::deferred ? checks_[i]->advance_to(time_s_, goes_on_)
-                                                   : pending_[i].get());
+            check_cancelled();
+        add(waited == std::future_status::deferred ? checks_[i]->advance_to(time_s_) : pending_[i].get());
     }
     pending_.clear();
     steps_ = checks_.front()->steps();
@@ -237,11 +238,11 @@ double Checks::difference_m(const State& state) const {
     return largest_m;
 }
 
-GoesOn reporting(const PlanDef& def, const std::int64_t& frames_done) {
-    return [&def, &frames_done] {
+CancelScope report_frames(const PlanDef& def, const std::int64_t& frames_done) {
+    return CancelScope([&def, &frames_done] {
         report_progress(def.on_progress, frames_done, static_cast<std::int64_t>(def.timeline.size()));
         return true;
-    };
+    });
 }
 
 void run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial& trial,
@@ -249,20 +250,20 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
     const double interval_s = def.timeline.fps().interval_s();
     const auto total = static_cast<std::int64_t>(def.timeline.size());
     std::int64_t i = 0;
-    const GoesOn goes_on = reporting(def, i);
-    Simulation run(system, world, trial.method, interval_s, goes_on);
+    const CancelScope progress = report_frames(def, i);
+    Simulation run(system, world, trial.method, interval_s);
     const bool has_one = is_far_from_rounding(trial.method) ||
                          (kind.is_first && std::holds_alternative<RattleDef>(trial.method));
-    Checks checks(system, world, trial.check, interval_s, has_one ? 1 : Checks::kMaxCount, goes_on);
+    Checks checks(system, world, trial.check, interval_s, has_one ? 1 : Checks::kMaxCount);
     Comparison comparison(def.tolerance_m);
     recording.clear();
     bool is_checked = true;
     for (; i < total && (is_checked || kind.is_last); ++i) {
-        goes_on();
+        check_cancelled();
         const bool compares = is_checked && def.timeline.is_frame(static_cast<std::size_t>(i));
         if (i == 0) ++passes;
         if (compares) checks.start(def.timeline.time_s(static_cast<std::size_t>(i)));
-        if (recording.advance(run, def.timeline, def.clock_s, goes_on) == Status::kDiverged) {
+        if (recording.advance(run, def.timeline, def.clock_s) == Status::kDiverged) {
             trial.diverged = trial.diverged || is_checked;
             break;
         }
@@ -283,9 +284,9 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
 }
 
 std::optional<Refusal> refusal(const System& system, const WorldDef& world, const MethodDef& method,
-                               double frame_interval_s, const GoesOn& goes_on) {
+                               double frame_interval_s) {
     try {
-        static_cast<void>(make_solver(system, world, {&method, 1}, frame_interval_s, goes_on));
+        static_cast<void>(make_solver(system, world, {&method, 1}, frame_interval_s));
     } catch (const Refusal& refused) {
         return refused;
     }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "corda/core/cancel.hpp"
 #include "corda/core/cpu.hpp"
 #include "corda/sim/exact/series_terms.hpp"
 
@@ -173,7 +174,7 @@ std::size_t order_for(double tolerance) {
     return tolerance >= 1e-12 ? 16 : kMaxSeriesOrder;
 }
 
-/// Cost of a step per link, in updates of a StopCheck.
+/// Cost of a step per link, in updates of count_work().
 constexpr std::uint64_t kUpdatesPerLink = 8;
 
 /// Less than a rounding error of the angular velocities, because it bounds the last term alone.
@@ -316,8 +317,8 @@ ChainPart::ChainPart(const System& system, const Forces& forces, double toleranc
     }
 }
 
-Status ChainPart::step(Mover& mover, StopCheck& stop) {
-    stop.spend(1 + kUpdatesPerLink * mover.chain.link_count);
+Status ChainPart::step(Mover& mover) {
+    count_work(1 + kUpdatesPerLink * mover.chain.link_count);
     const StepControl& control = mover.control;
     const double last_s = mover.end_s - mover.start_s;
     const double unit_s = last_s > 0.0 ? last_s : control.first_s;
@@ -336,11 +337,11 @@ Status ChainPart::step(Mover& mover, StopCheck& stop) {
     return Status::kOk;
 }
 
-Status ChainPart::reach(double time_s, State& state, StopCheck& stop) {
+Status ChainPart::reach(double time_s, State& state) {
     if (!std::isfinite(time_s)) return Status::kDiverged;
     for (Mover& mover : movers_) {
         while (mover.end_s < time_s) {
-            if (step(mover, stop) == Status::kDiverged) return Status::kDiverged;
+            if (step(mover) == Status::kDiverged) return Status::kDiverged;
         }
         if (mover.steps == 0) continue;  // output_ is the start
         mover.series.evaluate(time_s - mover.start_s, output_.data());

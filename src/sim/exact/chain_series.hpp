@@ -148,8 +148,8 @@ class ChainPart final : public Exact {
     };
 
     [[nodiscard]] Dynamics& dynamics() const override { return dynamics_; }
-    Status reach(double time_s, State& state, StopCheck& stop) override;
-    Status step(Mover& mover, StopCheck& stop);
+    Status reach(double time_s, State& state) override;
+    Status step(Mover& mover);
 
     mutable ChainDynamics dynamics_;  ///< only its scratch memory changes
     std::vector<double> state_;       ///< each chain at the end of its last step

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "corda/core/cancel.hpp"
+
 /// The coefficients of DOP853 as printed in E. Hairer, S. P. Norsett, G. Wanner, Solving Ordinary
 /// Differential Equations I, 2nd ed., Springer 1993, appendix (30 digits; the order conditions hold to
 /// 1e-28).
@@ -217,10 +219,10 @@ Dop853::Dop853(Ode& ode, std::vector<double> start, std::vector<ErrorScale> scal
     ode_.derivative(y_.data(), slope_[dop853::k13].data());
 }
 
-Status Dop853::advance_to(double time_s, StopCheck& stop) {
+Status Dop853::advance_to(double time_s) {
     if (!std::isfinite(time_s)) return Status::kDiverged;
     while (time_s_ < time_s) {
-        if (step(stop) == Status::kDiverged) return Status::kDiverged;
+        if (step() == Status::kDiverged) return Status::kDiverged;
     }
     return Status::kOk;
 }
@@ -232,7 +234,7 @@ void Dop853::evaluate(const dop853::Row<Count>& row, double step_s, const std::v
     ode_.derivative(scratch.data(), slope_[slot].data());
 }
 
-Status Dop853::step(StopCheck& stop) {
+Status Dop853::step() {
     std::swap(slope_[dop853::k1], slope_[dop853::k13]);
     double largest_growth = kMaxGrowth;
     while (accepted_ + rejected_ < StepControl::kMaxSteps) {
@@ -240,7 +242,7 @@ Status Dop853::step(StopCheck& stop) {
         const double end_s = time_s_ + next_step_s_;
         const double step_s = end_s - time_s_;
         if (!(step_s > control_.smallest_s)) return Status::kDiverged;
-        stop.spend(1 + y_.size());
+        count_work(1 + y_.size());
         evaluate_stages(step_s);
         const double step_error = error(step_s);
         const double factor = step_error < kInfinity

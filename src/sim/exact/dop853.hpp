@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "corda/core/stop_check.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::sim {
@@ -66,10 +65,10 @@ class Dop853 {
     Dop853(Ode& ode, std::vector<double> start, std::vector<ErrorScale> scales, const StepControl& control);
 
     /// Steps until time_s() >= `time_s`.
-    Status advance_to(double time_s, StopCheck& stop);
+    Status advance_to(double time_s);
 
     /// Takes one step.
-    Status step(StopCheck& stop);
+    Status step();
 
     /// Writes the solution at `time_s`, within the last step (or at 0 before the first), to `y`; not
     /// projected. The first call in a step costs three evaluations of f.

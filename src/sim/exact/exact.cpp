@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "corda/core/cancel.hpp"
 #include "corda/core/cpu.hpp"
 #include "corda/sim/exact/chain_dynamics.hpp"
 #include "corda/sim/exact/chain_series.hpp"
@@ -81,8 +82,8 @@ OdePart::OdePart(const System& system, const Forces& forces, std::unique_ptr<Dyn
       integrator_(*dynamics_, dynamics_->initial_state(), dynamics_->error_scales(),
                   step_control(dynamics_->inverse_timescale_1_s(), tolerance)) {}
 
-Status OdePart::reach(double time_s, State& state, StopCheck& stop) {
-    if (integrator_.advance_to(time_s, stop) == Status::kDiverged) return Status::kDiverged;
+Status OdePart::reach(double time_s, State& state) {
+    if (integrator_.advance_to(time_s) == Status::kDiverged) return Status::kDiverged;
     integrator_.interpolate(time_s, output_.data());
     dynamics_->project(output_.data());
     dynamics_->positions(output_.data(), state);
@@ -96,10 +97,8 @@ Exact::Exact(const System& system, const Forces& forces, double tolerance, std::
     assert(system.bodies.size() == 1);
 }
 
-std::unique_ptr<Exact> Exact::make(const System& system, const Forces& forces, const ExactDef& def,
-                                   const GoesOn& goes_on) {
-    StopCheck stop(goes_on);
-    stop.spend(1 + system.particle_count());
+std::unique_ptr<Exact> Exact::make(const System& system, const Forces& forces, const ExactDef& def) {
+    count_work(1 + system.particle_count());
     const Body& body = system.bodies.front();
     if (body.material.compliance_1_n > 0.0) {
         return std::make_unique<OdePart>(system, forces, std::make_unique<ElasticDynamics>(system, forces),
@@ -109,7 +108,7 @@ std::unique_ptr<Exact> Exact::make(const System& system, const Forces& forces, c
     refuse_imaginary_bars(system);
     if (body.material.is_string) {
         refuse_rigid_string_graph(body);
-        return std::make_unique<StringPart>(system, forces, def.tolerance, stop);
+        return std::make_unique<StringPart>(system, forces, def.tolerance);
     }
     if (body.link_count <= kMaxLinksOfSeries && system.bends.empty()) {
         return std::make_unique<ChainPart>(system, forces, def.tolerance);
@@ -135,10 +134,10 @@ double Exact::step_cost_ns(const ExactDef& /*def*/, const Body& body) {
     return (is_rigid_string ? kOfAString : 1.0) * kParticleCostNs * static_cast<double>(body.particle_count);
 }
 
-Status Exact::advance_to(double time_s, State& state, StopCheck& stop) {
+Status Exact::advance_to(double time_s, State& state) {
     const FlushDenormals flush;
     state.time_s = time_s;
-    return reach(time_s, state, stop);
+    return reach(time_s, state);
 }
 
 }  // namespace corda::sim

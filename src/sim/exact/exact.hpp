@@ -23,10 +23,9 @@ namespace corda::sim {
 class Exact : public Solver {
   public:
     /// Requires one body. Throws corda::Refusal for rigid bars that are imaginary or do not form an open
-    /// chain, for a rigid rope that is taut between two pins, and for what StringPart refuses; and as a
-    /// StopCheck if `goes_on` ends it.
+    /// chain, for a rigid rope that is taut between two pins, and for what StringPart refuses.
     [[nodiscard]] static std::unique_ptr<Exact> make(const System& system, const Forces& forces,
-                                                     const ExactDef& def, const GoesOn& goes_on = {});
+                                                     const ExactDef& def);
 
     // Facts about the method: see solver.cpp.
     static constexpr bool kKnowsTensions = true;
@@ -35,7 +34,7 @@ class Exact : public Solver {
     [[nodiscard]] static std::string text_of(const ExactDef& def);
     [[nodiscard]] static double step_cost_ns(const ExactDef& def, const Body& body);
 
-    Status advance_to(double time_s, State& state, StopCheck& stop) final;
+    Status advance_to(double time_s, State& state) final;
     [[nodiscard]] double energy_j() const override { return dynamics().energy_j(output_.data()); }
     void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override {
         dynamics().velocities(output_.data(), vx_m_s, vy_m_s);
@@ -54,7 +53,7 @@ class Exact : public Solver {
     /// The equations of motion at the last requested time.
     [[nodiscard]] virtual Dynamics& dynamics() const = 0;
     /// Writes the positions at a time, and the state of dynamics() to output_.
-    virtual Status reach(double time_s, State& state, StopCheck& stop) = 0;
+    virtual Status reach(double time_s, State& state) = 0;
 
     std::vector<double> output_;  ///< state of dynamics() at the last requested time
 
@@ -72,7 +71,7 @@ class OdePart final : public Exact {
 
   private:
     [[nodiscard]] Dynamics& dynamics() const override { return *dynamics_; }
-    Status reach(double time_s, State& state, StopCheck& stop) override;
+    Status reach(double time_s, State& state) override;
 
     std::unique_ptr<Dynamics> dynamics_;
     Dop853 integrator_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "corda/core/cancel.hpp"
 #include "corda/sim/chain_tensions.hpp"
 #include "corda/sim/system.hpp"
 
@@ -186,9 +187,9 @@ void ChainConstraints::add_total(const Chain& chain, Motion& motion) const {
     }
 }
 
-bool ChainConstraints::move(const Stage& stage, Motion& motion, std::span<double> impulse, StopCheck& stop) {
+bool ChainConstraints::move(const Stage& stage, Motion& motion, std::span<double> impulse) {
     kick(stage, motion);
-    stop.spend(1 + motion.x_m.size());
+    count_work(1 + motion.x_m.size());
     for (const Chain& chain : chains_) {
         if (!meet_lengths(chain, stage.span_s, motion, impulse.data() + chain.first_link)) return false;
     }
@@ -196,8 +197,8 @@ bool ChainConstraints::move(const Stage& stage, Motion& motion, std::span<double
     return true;
 }
 
-bool ChainConstraints::solve(const Motion& motion, std::span<double> right, StopCheck& stop) {
-    stop.spend(1 + motion.x_m.size());
+bool ChainConstraints::solve(const Motion& motion, std::span<double> right) {
+    count_work(1 + motion.x_m.size());
     bool is_finite = true;
     for (const Chain& chain : chains_) {
         const double* const w = inverse_mass_1_kg_.data() + chain.first_particle;

@@ -20,9 +20,8 @@ class ChainConstraints final : public ConstraintSolver {
     /// Requires rigid bars that suit. Throws corda::Refusal for a chain that is straight between two pins.
     explicit ChainConstraints(const System& system);
 
-    [[nodiscard]] bool move(const Stage& stage, Motion& motion, std::span<double> impulse,
-                            StopCheck& stop) override;
-    [[nodiscard]] bool solve(const Motion& motion, std::span<double> right, StopCheck& stop) override;
+    [[nodiscard]] bool move(const Stage& stage, Motion& motion, std::span<double> impulse) override;
+    [[nodiscard]] bool solve(const Motion& motion, std::span<double> right) override;
     [[nodiscard]] double square_frequency(std::span<const double> multiplier) const override;
     [[nodiscard]] std::vector<double> carried_mass(std::span<const double> mass_kg) const override;
 

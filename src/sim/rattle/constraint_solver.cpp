@@ -68,9 +68,9 @@ void ConstraintSolver::drift(double span_s, Motion& motion) {
     }
 }
 
-std::unique_ptr<ConstraintSolver> make_constraint_solver(const System& system, const GoesOn& goes_on) {
+std::unique_ptr<ConstraintSolver> make_constraint_solver(const System& system) {
     if (ChainConstraints::suits(rigid_bars(system))) return std::make_unique<ChainConstraints>(system);
-    return std::make_unique<GraphConstraints>(system, goes_on);
+    return std::make_unique<GraphConstraints>(system);
 }
 
 namespace {

@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "corda/core/stop_check.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/system.hpp"
 
@@ -67,8 +66,7 @@ class ConstraintSolver {
 
     /// Takes one stage. `impulse` has one entry per link: on entry a guess, on return the impulses. False if
     /// Newton's method does not converge; `motion` and `impulse` are then undefined.
-    [[nodiscard]] virtual bool move(const Stage& stage, Motion& motion, std::span<double> impulse,
-                                    StopCheck& stop) = 0;
+    [[nodiscard]] virtual bool move(const Stage& stage, Motion& motion, std::span<double> impulse) = 0;
 
     /// True if the impulses of the last move() determine the tensions. For bars close to a line in which they
     /// depend on each other, the impulses are differences of second order over the angle to it.
@@ -78,15 +76,15 @@ class ConstraintSolver {
     /// the positions nearest to x + span v, weighted with the masses, at which the bars have their lengths,
     /// and with the part of v that turns no bar into its length there. Of first order. False if there are
     /// none near.
-    [[nodiscard]] virtual bool leap(double span_s, Motion& motion, StopCheck& stop) {
-        static_cast<void>(span_s), static_cast<void>(motion), static_cast<void>(stop);
+    [[nodiscard]] virtual bool leap(double span_s, Motion& motion) {
+        static_cast<void>(span_s), static_cast<void>(motion);
         return false;
     }
 
     /// Solves (G W G') z = right in place, where G has the rows d_k . (v_b - v_a) at these positions and W is
     /// the inverse masses. If bars depend on each other there, of least size in the directions left open.
     /// False if it cannot.
-    [[nodiscard]] virtual bool solve(const Motion& motion, std::span<double> right, StopCheck& stop) = 0;
+    [[nodiscard]] virtual bool solve(const Motion& motion, std::span<double> right) = 0;
 
     /// True if the bars of the last solve() did not depend on each other, so that it was of full rank.
     [[nodiscard]] virtual bool had_full_rank() const { return true; }
@@ -130,9 +128,8 @@ class ConstraintSolver {
 
 /// The solver that suits the rigid bars of a system: ChainConstraints if every bar joins a particle to the
 /// next one, or if there is none; otherwise GraphConstraints. Throws corda::Refusal if the lengths do not
-/// determine the motion. `goes_on`: see Rattle.
-[[nodiscard]] std::unique_ptr<ConstraintSolver> make_constraint_solver(const System& system,
-                                                                       const GoesOn& goes_on = {});
+/// determine the motion.
+[[nodiscard]] std::unique_ptr<ConstraintSolver> make_constraint_solver(const System& system);
 
 /// The inverse masses of a system, 0 also for particles that can never move because they lie on a row of
 /// rigid bars that is straight between two that cannot: the top row of a net between its pinned corners. To

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "corda/core/cancel.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/rattle/constraint_solver.hpp"
 #include "corda/sim/system.hpp"
@@ -10,7 +11,7 @@
 namespace corda::sim {
 namespace {
 
-/// Products per update of a StopCheck.
+/// Products per update of count_work().
 constexpr std::uint64_t kProductsPerUpdate = 64;
 
 /// Corrections end when the error of every squared length is below this share of it, a few roundings. Much
@@ -84,7 +85,7 @@ int StoppableLdlt::scatter(const Eigen::SparseMatrix<double>& upper, int k) {
     return top;
 }
 
-bool StoppableLdlt::factorize(const Eigen::SparseMatrix<double>& lower, StopCheck& stop) {
+bool StoppableLdlt::factorize(const Eigen::SparseMatrix<double>& lower) {
     const int size = static_cast<int>(lower.cols());
     Eigen::SparseMatrix<double> upper(size, size);
     upper.selfadjointView<Eigen::Upper>() = lower.selfadjointView<Eigen::Lower>().twistedBy(m_P);
@@ -117,26 +118,25 @@ bool StoppableLdlt::factorize(const Eigen::SparseMatrix<double>& lower, StopChec
         }
         m_diag[k] = pivot;
         if (pivot == 0.0) return false;
-        stop.spend(1 + products / kProductsPerUpdate);
+        count_work(1 + products / kProductsPerUpdate);
     }
     m_info = Eigen::Success;
     m_factorizationIsOk = true;
     return true;
 }
 
-GraphConstraints::GraphConstraints(const System& system, const GoesOn& goes_on)
+GraphConstraints::GraphConstraints(const System& system)
     : ConstraintSolver(system, inverse_masses_with_taut_rows_held(system)),
       holds_rows_(inverse_mass_1_kg_ != system.inverse_mass_1_kg) {
     load_.assign(system.particle_count(), 0.0);
     const Motion start = Motion::start_of(system);
     analyse();
-    StopCheck stop(goes_on);
-    bool determined = is_regular(start, stop);
+    bool determined = is_regular(start);
     // Repeat without the raise: bars with large coefficients may hide one another.
     for (const double raise : {kRaise, 0.0, 0.0}) {
         if (determined) break;
-        leave_out_implied(start, raise, stop);
-        determined = is_regular(start, stop) && (is_rigid() || stay_implied(start, stop));
+        leave_out_implied(start, raise);
+        determined = is_regular(start) && (is_rigid() || stay_implied(start));
     }
     if (determined) {
         near_line_ = kNearLine * smallest_pivot_;
@@ -148,8 +148,8 @@ GraphConstraints::GraphConstraints(const System& system, const GoesOn& goes_on)
                   "follows");
 }
 
-void GraphConstraints::leave_out_implied(const Motion& start, double raise, StopCheck& stop) {
-    if (!factorise(start, raise, stop)) return;
+void GraphConstraints::leave_out_implied(const Motion& start, double raise) {
+    if (!factorise(start, raise)) return;
     const auto& order = factors_.permutationP().indices();
     const auto pivots = factors_.vectorD();
     std::vector<Link> kept;
@@ -188,7 +188,7 @@ GraphConstraints::Plate GraphConstraints::plate_of(const System& system) const {
     return plate;
 }
 
-bool GraphConstraints::stay_implied(Motion motion, StopCheck& stop) {
+bool GraphConstraints::stay_implied(Motion motion) {
     // The change of an implied bar's length in a motion that keeps the others to second order is a quadratic
     // form of the velocities: if it is 0 for generic velocities, it is always 0.
     std::uint32_t order = 1;
@@ -208,7 +208,7 @@ bool GraphConstraints::stay_implied(Motion motion, StopCheck& stop) {
         for (int i = 0; i < 2; ++i) {
             for (std::size_t k = 0; k < links_.size(); ++k)
                 pull[k] = rates(links_[k], motion).along - along[k];
-            if (!solve(motion, pull, stop)) return false;
+            if (!solve(motion, pull)) return false;
             apply(pull.data(), motion);
         }
         return true;
@@ -276,7 +276,7 @@ void GraphConstraints::analyse() {
     crossing_.resize(0, 0);
 }
 
-bool GraphConstraints::factorise(const Motion& motion, double raise, StopCheck& stop) {
+bool GraphConstraints::factorise(const Motion& motion, double raise) {
     bool is_new = !is_factorised_ || raise != raise_;
     for (std::size_t k = 0; k < links_.size(); ++k) {
         const auto [a, b, rest_m] = links_[k];
@@ -294,15 +294,15 @@ bool GraphConstraints::factorise(const Motion& motion, double raise, StopCheck& 
         values[e] = factor * (dx_m_[row] * dx_m_[column] + dy_m_[row] * dy_m_[column]);
     }
     if (raise > 0.0) matrix_.diagonal() *= 1.0 + raise;
-    if (!factors_.factorize(matrix_, stop)) return false;
+    if (!factors_.factorize(matrix_)) return false;
     is_factorised_ = true;
     raise_ = raise;
     return true;
 }
 
-bool GraphConstraints::is_regular(const Motion& motion, StopCheck& stop) {
+bool GraphConstraints::is_regular(const Motion& motion) {
     smallest_pivot_ = 0.0;
-    if (!factorise(motion, 0.0, stop)) return false;
+    if (!factorise(motion, 0.0)) return false;
     const auto& order = factors_.permutationP().indices();
     const auto pivots = factors_.vectorD();
     double smallest = 1.0;
@@ -342,10 +342,10 @@ bool GraphConstraints::correct(double span_s, const Motion& motion) {
     return met;
 }
 
-bool GraphConstraints::move(const Stage& stage, Motion& motion, std::span<double> impulse, StopCheck& stop) {
+bool GraphConstraints::move(const Stage& stage, Motion& motion, std::span<double> impulse) {
     kick(stage, motion);
-    if (!is_regular(motion, stop) || smallest_pivot_ < near_line_) {
-        if (!cross(stage.span_s, motion, impulse, stop)) return false;
+    if (!is_regular(motion) || smallest_pivot_ < near_line_) {
+        if (!cross(stage.span_s, motion, impulse)) return false;
     } else {
         apply(impulse.data(), motion);
         bool met = correct(stage.span_s, motion);
@@ -366,7 +366,7 @@ bool GraphConstraints::tells_tensions() const {
     return smallest_pivot_ >= near_line_;
 }
 
-bool GraphConstraints::cross(double span_s, Motion& motion, std::span<double> impulse, StopCheck& stop) {
+bool GraphConstraints::cross(double span_s, Motion& motion, std::span<double> impulse) {
     std::fill(impulse.begin(), impulse.end(), 0.0);
     if (crossing_.rows() == 0) {
         crossing_ = matrix_.selfadjointView<Eigen::Lower>();
@@ -383,7 +383,7 @@ bool GraphConstraints::cross(double span_s, Motion& motion, std::span<double> im
     double last_change = kCrossingChange / kShrink * fastest;
     bool met = correct(span_s, motion);
     for (int i = 0; i < kMaxCrossingSteps && !met; ++i) {
-        stop.spend(StopCheck::kUpdates);
+        count_work(kUpdatesPerCheck);
         for (const auto& [row, column, factor] : entries_) {
             couple(row, column, factor);
             if (row != column) couple(column, row, factor);
@@ -407,12 +407,12 @@ bool GraphConstraints::cross(double span_s, Motion& motion, std::span<double> im
     return met;
 }
 
-bool GraphConstraints::leap(double span_s, Motion& motion, StopCheck& stop) {
+bool GraphConstraints::leap(double span_s, Motion& motion) {
     drift(span_s, motion);
     const Motion ahead = motion;
     double largest = HUGE_VAL;
     for (int i = 0; i < kMaxCorrections && largest > kExcessTolerance; ++i) {
-        if (!factorise(motion, kLeapRaise, stop)) return false;
+        if (!factorise(motion, kLeapRaise)) return false;
         largest = 0.0;
         for (std::size_t k = 0; k < links_.size(); ++k) {
             const double square = links_[k].rest_m * links_[k].rest_m;
@@ -430,7 +430,7 @@ bool GraphConstraints::leap(double span_s, Motion& motion, StopCheck& stop) {
     motion.vy_m_s = ahead.vy_m_s;
     motion.vx_lost_m_s = ahead.vx_lost_m_s;
     motion.vy_lost_m_s = ahead.vy_lost_m_s;
-    if (!factorise(motion, kLeapRaise, stop)) return false;
+    if (!factorise(motion, kLeapRaise)) return false;
     for (std::size_t k = 0; k < links_.size(); ++k)
         right_[static_cast<Eigen::Index>(k)] = rates(links_[k], motion).along;
     right_ = factors_.solve(right_);
@@ -444,8 +444,8 @@ double GraphConstraints::largest_square(const Motion& motion) const {
     return largest;
 }
 
-bool GraphConstraints::solve(const Motion& motion, std::span<double> right, StopCheck& stop) {
-    if (!is_regular(motion, stop) && !factorise(motion, kLeapRaise, stop)) return false;
+bool GraphConstraints::solve(const Motion& motion, std::span<double> right) {
+    if (!is_regular(motion) && !factorise(motion, kLeapRaise)) return false;
     std::copy(right.begin(), right.end(), right_.data());
     right_ = factors_.solve(right_);
     std::copy_n(right_.data(), right.size(), right.begin());

@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "corda/core/stop_check.hpp"
 #include "corda/sim/rattle/constraint_solver.hpp"
 
 namespace corda::sim {
@@ -18,8 +17,8 @@ class StoppableLdlt final : public Eigen::SimplicialLDLT<Eigen::SparseMatrix<dou
   public:
     /// Factorises the matrix with this lower triangle, whose pattern has been analysed, by the operations of
     /// Eigen's factorize() in their order (T. Davis, Algorithm 849, ACM Transactions on Mathematical Software
-    /// 31 (2005) 587). False if a pivot is 0. If `stop` throws, there are no factors.
-    [[nodiscard]] bool factorize(const Eigen::SparseMatrix<double>& lower, StopCheck& stop);
+    /// 31 (2005) 587). False if a pivot is 0. If it is cancelled, there are no factors.
+    [[nodiscard]] bool factorize(const Eigen::SparseMatrix<double>& lower);
 
   private:
     /// Writes the columns of the pattern of row k of L to the end of pattern_, and that row of the matrix to
@@ -36,15 +35,13 @@ class StoppableLdlt final : public Eigen::SimplicialLDLT<Eigen::SparseMatrix<dou
 /// start are left out; a stage fails if one of them loses its length. See section 3.4 of src/sim/README.md.
 class GraphConstraints final : public ConstraintSolver {
   public:
-    /// Throws corda::Refusal for bars that depend on each other at the start and do not stay so. `goes_on`:
-    /// see Rattle.
-    explicit GraphConstraints(const System& system, const GoesOn& goes_on = {});
+    /// Throws corda::Refusal for bars that depend on each other at the start and do not stay so.
+    explicit GraphConstraints(const System& system);
 
-    [[nodiscard]] bool move(const Stage& stage, Motion& motion, std::span<double> impulse,
-                            StopCheck& stop) override;
+    [[nodiscard]] bool move(const Stage& stage, Motion& motion, std::span<double> impulse) override;
     [[nodiscard]] bool tells_tensions() const override;
-    [[nodiscard]] bool leap(double span_s, Motion& motion, StopCheck& stop) override;
-    [[nodiscard]] bool solve(const Motion& motion, std::span<double> right, StopCheck& stop) override;
+    [[nodiscard]] bool leap(double span_s, Motion& motion) override;
+    [[nodiscard]] bool solve(const Motion& motion, std::span<double> right) override;
     [[nodiscard]] bool had_full_rank() const override { return smallest_pivot_ > 0.0; }
     [[nodiscard]] double square_frequency(std::span<const double> multiplier) const override;
     [[nodiscard]] double expected_square_frequency(const System& system, double acceleration_m_s2,
@@ -67,17 +64,17 @@ class GraphConstraints final : public ConstraintSolver {
     void analyse();
     /// Factorises the matrix at these positions, its diagonal entries raised by a share; does nothing if
     /// factors_ are already the result. False if it cannot.
-    [[nodiscard]] bool factorise(const Motion& motion, double raise, StopCheck& stop);
+    [[nodiscard]] bool factorise(const Motion& motion, double raise);
     /// Factorises the matrix without a raise; false also if bars depend on each other.
-    [[nodiscard]] bool is_regular(const Motion& motion, StopCheck& stop);
+    [[nodiscard]] bool is_regular(const Motion& motion);
     /// Moves the links that others imply to implied_, as far as a factorisation with this raise shows them.
-    void leave_out_implied(const Motion& start, double raise, StopCheck& stop);
+    void leave_out_implied(const Motion& start, double raise);
     /// True if regular links leave only the motions of a rigid body.
     [[nodiscard]] bool is_rigid() const;
     [[nodiscard]] Plate plate_of(const System& system) const;
     /// True if every motion from these positions that keeps the links' lengths keeps those of the implied
     /// bars, to second order.
-    [[nodiscard]] bool stay_implied(Motion motion, StopCheck& stop);
+    [[nodiscard]] bool stay_implied(Motion motion);
     [[nodiscard]] bool meet_implied(const Motion& motion) const;
     void apply(const double* impulse, Motion& motion) const;
     [[nodiscard]] bool correct(double span_s, const Motion& motion);
@@ -85,7 +82,7 @@ class GraphConstraints final : public ConstraintSolver {
     [[nodiscard]] double largest_square(const Motion& motion) const;
     /// Completes a stage after its kick by the full Newton method, whose matrix follows the bars to either
     /// side of their line. False if it does not converge or may have taken the other branch.
-    [[nodiscard]] bool cross(double span_s, Motion& motion, std::span<double> impulse, StopCheck& stop);
+    [[nodiscard]] bool cross(double span_s, Motion& motion, std::span<double> impulse);
 
     bool holds_rows_;
     std::optional<Plate> plate_;

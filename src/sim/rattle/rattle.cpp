@@ -82,13 +82,12 @@ const Composition& composition(int order) {
     return kCompositions[static_cast<std::size_t>(order / 2 - 1)];
 }
 
-Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def, double frame_interval_s,
-               const GoesOn& goes_on)
+Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def, double frame_interval_s)
     : Solver(sim::energy_scale_j(system, forces.on_particles(system)), forces.conserve_energy()),
       order_(def.order),
       guard_(def.guard),
       composition_(composition(def.order)),
-      constraints_(make_constraint_solver(system, goes_on)),
+      constraints_(make_constraint_solver(system)),
       forces_(forces),
       elastic_(system, 0, system.particle_count()),
       mass_kg_(system.mass_kg),
@@ -103,8 +102,7 @@ Rattle::Rattle(const System& system, const Forces& forces, const RattleDef& def,
         force_y_n_.assign(mass_kg_.size(), 0.0);
     }
     history_.multipliers.assign(kHistory * composition_.stages.size() * impulse_.size(), 0.0);
-    StopCheck stop(goes_on);
-    if (!complete(grid_, stop) || !find_tensions(stop)) {
+    if (!complete(grid_) || !find_tensions()) {
         throw Refusal(Refusal::Reason::kDependentBars,
                       "the rigid bars do not determine their tensions at the start");
     }
@@ -155,21 +153,21 @@ double Rattle::expected_steps(const RattleDef& def, const Body& body, double fre
     return allowed_1_s * time_s / (def.guard * composition(def.order).stable_omega_h);
 }
 
-Status Rattle::advance_to(double time_s, State& state, StopCheck& stop) {
+Status Rattle::advance_to(double time_s, State& state) {
     const FlushDenormals flush;
     const GridTime target = locate(time_s, step_s_);
     assert(step_ <= target.step);
     while (step_ < target.step) {
-        if (!advance(step_s_, grid_, &history_, stop)) return Status::kDiverged;
+        if (!advance(step_s_, grid_, &history_)) return Status::kDiverged;
         ++step_;
     }
     if (!target.is_on_grid) {
         between_ = grid_;
-        if (!advance(time_s - static_cast<double>(step_) * step_s_, between_, nullptr, stop))
+        if (!advance(time_s - static_cast<double>(step_) * step_s_, between_, nullptr))
             return Status::kDiverged;
     }
     const Trajectory& reached = target.is_on_grid ? grid_ : between_;
-    if (!complete(reached, stop)) return Status::kDiverged;
+    if (!complete(reached)) return Status::kDiverged;
     has_branched_ = reached.has_leapt;
     state.time_s = time_s;
     state.x_m = output_.x_m;
@@ -177,7 +175,7 @@ Status Rattle::advance_to(double time_s, State& state, StopCheck& stop) {
     return Status::kOk;
 }
 
-bool Rattle::advance(double span_s, Trajectory& trajectory, History* history, StopCheck& stop) {
+bool Rattle::advance(double span_s, Trajectory& trajectory, History* history) {
     const double limit = guard_ * composition_.stable_omega_h;
     std::uint64_t done = 0;
     while (done < kMinParts) {
@@ -185,7 +183,7 @@ bool Rattle::advance(double span_s, Trajectory& trajectory, History* history, St
         const double part_s = span_s * power_of_half(trajectory.level);
         const bool stable = trajectory.frequency_1_s * part_s <= limit;
         if (stable) part_start_ = trajectory;
-        if (stable && take_part(part_s, trajectory, history, stop)) {
+        if (stable && take_part(part_s, trajectory, history)) {
             done += part;
             if (history != nullptr) ++parts_;
             const bool joins = trajectory.level > 0 && done % (2 * part) == 0 &&
@@ -196,7 +194,7 @@ bool Rattle::advance(double span_s, Trajectory& trajectory, History* history, St
             if (stable) std::swap(trajectory, part_start_);
             if (trajectory.level == kMaxLevel) {
                 const auto rest = static_cast<double>(kMinParts - done);
-                if (!leap(span_s * power_of_half(kMaxLevel) * rest, trajectory, stop)) return false;
+                if (!leap(span_s * power_of_half(kMaxLevel) * rest, trajectory)) return false;
                 done = kMinParts;
             } else {
                 ++trajectory.level;
@@ -207,7 +205,7 @@ bool Rattle::advance(double span_s, Trajectory& trajectory, History* history, St
     return true;
 }
 
-bool Rattle::take_part(double part_s, Trajectory& trajectory, History* history, StopCheck& stop) {
+bool Rattle::take_part(double part_s, Trajectory& trajectory, History* history) {
     if (history != nullptr) history->newest = (history->newest + 1) % kHistory;
     for (std::size_t i = 0; i < composition_.stages.size(); ++i) {
         const double span_s = composition_.stages[i] * part_s;
@@ -216,7 +214,7 @@ bool Rattle::take_part(double part_s, Trajectory& trajectory, History* history, 
         guess(i, kick_s, trajectory, history);
         Stage stage{span_s, decay, kick_s * forces_.uniform_m_s2()};
         const double elastic_square = is_elastic() ? push(kick_s, stage, trajectory.motion) : 0.0;
-        if (!constraints_->move(stage, trajectory.motion, impulse_, stop)) return false;
+        if (!constraints_->move(stage, trajectory.motion, impulse_)) return false;
         trajectory.last_span_s = span_s;
         if (std::abs(kick_s) < kShortKick * std::abs(span_s)) continue;
         if (constraints_->tells_tensions()) {
@@ -234,8 +232,8 @@ bool Rattle::take_part(double part_s, Trajectory& trajectory, History* history, 
     return true;
 }
 
-bool Rattle::leap(double span_s, Trajectory& trajectory, StopCheck& stop) {
-    if (!complete(trajectory, stop)) return false;
+bool Rattle::leap(double span_s, Trajectory& trajectory) {
+    if (!complete(trajectory)) return false;
     const double decay = forces_.decay(span_s);
     for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
         if (inverse_mass_1_kg_[i] == 0.0) continue;
@@ -245,9 +243,9 @@ bool Rattle::leap(double span_s, Trajectory& trajectory, StopCheck& stop) {
         output_.vx_m_s[i] = decay * (output_.vx_m_s[i] + push_m_s.x);
         output_.vy_m_s[i] = decay * (output_.vy_m_s[i] + push_m_s.y);
     }
-    if (!constraints_->leap(span_s, output_, stop)) return false;
+    if (!constraints_->leap(span_s, output_)) return false;
     const double elastic_square = is_elastic() ? find_forces(output_) : 0.0;
-    if (find_tensions(stop)) trajectory.multiplier = tension_over_length_n_m_;
+    if (find_tensions()) trajectory.multiplier = tension_over_length_n_m_;
     trajectory.motion = output_;
     trajectory.last_span_s = 0.0;
     trajectory.level = 0;
@@ -302,7 +300,7 @@ void Rattle::guess(std::size_t stage, double kick_s, const Trajectory& trajector
     for (std::size_t k = 0; k < count; ++k) impulse_[k] = kick_s * (3.0 * (last[k] - second[k]) + third[k]);
 }
 
-bool Rattle::complete(const Trajectory& trajectory, StopCheck& stop) {
+bool Rattle::complete(const Trajectory& trajectory) {
     output_ = trajectory.motion;
     const double half_s = 0.5 * trajectory.last_span_s;
     const double decay = forces_.decay(half_s);
@@ -329,7 +327,7 @@ bool Rattle::complete(const Trajectory& trajectory, StopCheck& stop) {
         impulse_[k] = d.x * (output_.vx_m_s[link.b] - output_.vx_m_s[link.a]) +
                       d.y * (output_.vy_m_s[link.b] - output_.vy_m_s[link.a]);
     }
-    if (!constraints_->solve(output_, impulse_, stop)) return false;
+    if (!constraints_->solve(output_, impulse_)) return false;
     for (std::size_t k = 0; k < links.size(); ++k) {
         const Link& link = links[k];
         const Vec2 pull = impulse_[k] * along(link);
@@ -341,7 +339,7 @@ bool Rattle::complete(const Trajectory& trajectory, StopCheck& stop) {
     return true;
 }
 
-bool Rattle::find_tensions(StopCheck& stop) {
+bool Rattle::find_tensions() {
     // d . (acceleration of b - acceleration of a) + |velocity of b - velocity of a|^2 = 0. Drag does not
     // enter: it is along the velocities, whose differences are across the bars.
     const auto links = constraints_->links();
@@ -365,7 +363,7 @@ bool Rattle::find_tensions(StopCheck& stop) {
                 (output_.y_m[b] - output_.y_m[a]) * (wb * force_y_n_[b] - wa * force_y_n_[a]);
         }
     }
-    return constraints_->solve(output_, tension_over_length_n_m_, stop) && constraints_->had_full_rank();
+    return constraints_->solve(output_, tension_over_length_n_m_) && constraints_->had_full_rank();
 }
 
 void Rattle::velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) {
@@ -388,8 +386,7 @@ bool Rattle::tensions(std::vector<double>& tension_n) {
     if (!constraints_->determines_tensions()) return Solver::tensions(tension_n);
     // The factors of complete() serve again. Without full rank the matrix would have to be factorised again,
     // which takes long.
-    StopCheck nobody;
-    const bool are_known = constraints_->had_full_rank() && find_tensions(nobody);
+    const bool are_known = constraints_->had_full_rank() && find_tensions();
     for (std::size_t k = 0; k < bar_of_link_.size(); ++k) {
         const auto [a, b, rest_m] = constraints_->links()[k];
         const double length_m = length(output_.x_m[b] - output_.x_m[a], output_.y_m[b] - output_.y_m[a]);

@@ -42,10 +42,9 @@ class Rattle final : public Solver {
 
     /// If `def` names no step, `frame_interval_s` is divided by the smallest whole number that makes a stable
     /// step. Throws corda::Refusal for a rigid rope that is straight between two pins, for rigid bars that
-    /// depend on each other at the start but not in the motion that follows, and for rigid strings. `goes_on`
-    /// can end it: factorising the matrix of a large net takes seconds.
-    Rattle(const System& system, const Forces& forces, const RattleDef& def, double frame_interval_s,
-           const GoesOn& goes_on = {});
+    /// depend on each other at the start but not in the motion that follows, and for rigid strings.
+    /// Factorising the matrix of a large net takes seconds and can be cancelled.
+    Rattle(const System& system, const Forces& forces, const RattleDef& def, double frame_interval_s);
 
     // Facts about the method: see solver.cpp.
     static constexpr bool kKnowsTensions = true;
@@ -56,7 +55,7 @@ class Rattle final : public Solver {
     [[nodiscard]] static double expected_steps(const RattleDef& def, const Body& body, double frequency_1_s,
                                                double time_s);
 
-    Status advance_to(double time_s, State& state, StopCheck& stop) override;
+    Status advance_to(double time_s, State& state) override;
     [[nodiscard]] double energy_j() const override;
     void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override;
     /// Those that keep the second derivatives of the rigid bars' lengths 0. Unknown if bars depend on each
@@ -92,10 +91,10 @@ class Rattle final : public Solver {
     static constexpr int kHistory = 3;
 
     /// Advances by `span_s` in as many parts as are needed.
-    [[nodiscard]] bool advance(double span_s, Trajectory& trajectory, History* history, StopCheck& stop);
-    [[nodiscard]] bool take_part(double part_s, Trajectory& trajectory, History* history, StopCheck& stop);
+    [[nodiscard]] bool advance(double span_s, Trajectory& trajectory, History* history);
+    [[nodiscard]] bool take_part(double part_s, Trajectory& trajectory, History* history);
     /// Completes a step whose parts fail.
-    [[nodiscard]] bool leap(double span_s, Trajectory& trajectory, StopCheck& stop);
+    [[nodiscard]] bool leap(double span_s, Trajectory& trajectory);
     [[nodiscard]] double* multipliers(History& history, std::size_t stage, int age) const;
     void guess(std::size_t stage, double kick_s, const Trajectory& trajectory, History* history);
     [[nodiscard]] bool is_elastic() const { return !elastic_.empty(); }
@@ -106,10 +105,10 @@ class Rattle final : public Solver {
     /// Returns what find_forces() returns.
     double push(double kick_s, Stage& stage, Motion& motion);
     /// Writes a trajectory's state with complete velocities to output_.
-    [[nodiscard]] bool complete(const Trajectory& trajectory, StopCheck& stop);
+    [[nodiscard]] bool complete(const Trajectory& trajectory);
     void find_bars_of_links(const System& system);
     /// Of output_. False if bars depend on each other there.
-    [[nodiscard]] bool find_tensions(StopCheck& stop);
+    [[nodiscard]] bool find_tensions();
 
     int order_;
     double guard_;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "corda/core/cancel.hpp"
 #include "corda/core/cpu.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/solver.hpp"
@@ -28,12 +29,12 @@ void refuse_materials(const System& system) {
 /// a level 2 cache.
 constexpr std::size_t kParticlesTogether = 256;
 
-/// Sweeps run in pieces of this many bars and particles, a few milliseconds, between which the StopCheck is
-/// updated. With smaller pieces the kernel would wait more often for the last sweep to end.
+/// Sweeps run in pieces of this many bars and particles, a few milliseconds, which are
+/// counted as work. With smaller pieces the kernel would wait more often for the last sweep to end.
 constexpr std::uint64_t kMaxAtOnce = 1'000'000;
 /// Minimum number of sweeps of a piece, so that the memory reads of a large rope are still shared.
 constexpr std::uint64_t kMinSweeps = 12;
-/// Bars or particles per update of a StopCheck.
+/// Bars or particles per update of count_work().
 constexpr std::uint64_t kBarsPerUpdate = 8;
 
 /// The bars among these that can move a particle.
@@ -74,15 +75,15 @@ std::vector<Vec2> forces_on_particles(const System& system, const Forces& forces
     return force_n;
 }
 
-/// Runs sweeps over `size` bars and particles, and asks after each piece of them whether to stop.
+/// Runs sweeps over `size` bars and particles, and counts each piece of them as work.
 template <class Run>
-void run_in_pieces(RelaxationSweeps sweeps, std::size_t size, StopCheck& stop, const Run& run) {
+void run_in_pieces(RelaxationSweeps sweeps, std::size_t size, const Run& run) {
     const std::uint64_t at_once = std::max<std::uint64_t>(kMinSweeps, kMaxAtOnce / (1 + size));
     const std::uint64_t end = sweeps.end;
     for (; sweeps.begin < end; sweeps.begin = sweeps.end) {
         sweeps.end = sweeps.begin + std::min(at_once, end - sweeps.begin);
         run(sweeps);
-        stop.spend(1 + (sweeps.end - sweeps.begin) * size / kBarsPerUpdate);
+        count_work(1 + (sweeps.end - sweeps.begin) * size / kBarsPerUpdate);
     }
 }
 
@@ -135,12 +136,12 @@ double Relaxation::step_cost_ns(const RelaxationDef& def, const Body& body) {
     return kPerBarAndSweep * static_cast<double>(body.bar_count) * def.sweeps;
 }
 
-Status Relaxation::advance_to(double time_s, State& state, StopCheck& stop) {
+Status Relaxation::advance_to(double time_s, State& state) {
     const FlushDenormals flush;
     const GridTime at = locate(time_s, step_s_);
     const std::uint64_t target = at.is_on_grid ? at.step : at.step + 1;  // interpolation looks back
     assert(step_ <= target);
-    if (step_ < target) advance(target - step_, stop);
+    if (step_ < target) advance(target - step_);
     state.time_s = time_s;
     if (at.is_on_grid) {
         for (std::size_t i = 0; i < state.x_m.size(); ++i) {
@@ -153,7 +154,7 @@ Status Relaxation::advance_to(double time_s, State& state, StopCheck& stop) {
     return Status::kOk;
 }
 
-void Relaxation::advance(std::uint64_t steps, StopCheck& stop) {
+void Relaxation::advance(std::uint64_t steps) {
     const std::size_t size = motion_.position_m.size();
     // The first step is Euler's: its move, h v(0), is known from the start.
     const bool starts_updated = step_ == 0;
@@ -163,12 +164,12 @@ void Relaxation::advance(std::uint64_t steps, StopCheck& stop) {
     }
     const RelaxationSweeps sweeps{0, steps * sweeps_, sweeps_, starts_updated};
     if (kernel_ == RelaxationKernel::kScalar) {
-        run_in_pieces(sweeps, bars_.size() + size / 2, stop,
+        run_in_pieces(sweeps, bars_.size() + size / 2,
                       [this](const RelaxationSweeps& piece) { run_sweeps(bars_, piece, motion_); });
     }
     for (const RelaxationSchedule& schedule : schedules_) {
         const std::size_t bars = RelaxationPacket::kLanes * schedule.packets.size();
-        run_in_pieces(sweeps, bars + schedule.updates.size(), stop,
+        run_in_pieces(sweeps, bars + schedule.updates.size(),
                       [&](const RelaxationSweeps& piece) { run_sweeps(schedule, piece, kernel_, motion_); });
     }
     // Add what the bars moved to the move, as the next update would.

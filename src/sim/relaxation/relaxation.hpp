@@ -18,9 +18,6 @@ class Relaxation final : public Solver {
     /// `default_step_s`: the step if `def` names none. `kernel` changes the time taken, not the bits.
     Relaxation(const System& system, const Forces& forces, const RelaxationDef& def, double default_step_s,
                RelaxationKernel kernel = relaxation_kernels().back());
-    Relaxation(const System& system, const Forces& forces, const RelaxationDef& def, double default_step_s,
-               const GoesOn& /*goes_on*/)
-        : Relaxation(system, forces, def, default_step_s) {}
 
     // Facts about the method: see solver.cpp.
     static constexpr bool kKnowsTensions = false;
@@ -28,7 +25,7 @@ class Relaxation final : public Solver {
     [[nodiscard]] static std::string text_of(const RelaxationDef& def);
     [[nodiscard]] static double step_cost_ns(const RelaxationDef& def, const Body& body);
 
-    Status advance_to(double time_s, State& state, StopCheck& stop) override;
+    Status advance_to(double time_s, State& state) override;
     [[nodiscard]] double energy_j() const override;
     /// The last move over the step.
     void velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) override;
@@ -36,7 +33,7 @@ class Relaxation final : public Solver {
     [[nodiscard]] std::vector<MethodDef> methods() const override { return {def_}; }
 
   private:
-    void advance(std::uint64_t steps, StopCheck& stop);
+    void advance(std::uint64_t steps);
     void interpolate(double fraction, State& state) const;
 
     RelaxationDef def_;  ///< with its step

@@ -122,7 +122,7 @@ MeasuredEncoding measure_encoding(const EncodingDef& def) {
     if (format.codec->crf) measured.crf = format.crf_of(video.encoder);
     measured.pixels = format.pixel_format;
     measured.frames = std::min(def.frames, video.fps.frame_count(def.scene.world.duration_s));
-    const json result = in_child(def.on_wait, [&] { return render_and_compare(def, measured.frames); });
+    const json result = in_child([&] { return render_and_compare(def, measured.frames); });
     measured.wall_s = result["wall_s"].get<double>();
     measured.bytes = result["bytes"].get<std::uintmax_t>();
     measured.edge_psnr_db = result["edge_psnr_db"].get<double>();

@@ -26,8 +26,6 @@ struct EncodingDef {
     FilmDef film;               ///< which OpenGL draws
     std::string ending;         ///< of the file
     std::int64_t frames = 240;  ///< of the video, if the scene has as many; >= 1
-    /// Called at least ten times a second; what it throws ends the measurement.
-    std::function<void()> on_wait;
 };
 
 /// What was measured of a video.

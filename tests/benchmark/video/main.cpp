@@ -14,6 +14,7 @@
 #include "benchmark/video/encodings.hpp"
 #include "benchmark/video/measure.hpp"
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/text.hpp"
 #include "corda/media/format/format.hpp"
 
@@ -42,10 +43,6 @@ struct Options {
 };
 
 volatile std::sig_atomic_t stop_signal = 0;
-
-void stop_if_asked() {
-    if (stop_signal != 0) throw Error(ExitCode::kInterrupted, "interrupted; nothing was kept");
-}
 
 nlohmann::json spread_json(const report::Times& times) {
     return {{"median", times.median()}, {"least", times.least()}, {"largest", times.largest()}};
@@ -121,7 +118,7 @@ nlohmann::json measure_all(const Options& options) {
         }
     nlohmann::json cases = nlohmann::json::array();
     for (const Scene& scene : scenes) {
-        const Measured measured = measure({scene, {}, options.frames, options.repeats, stop_if_asked});
+        const Measured measured = measure({scene, {}, options.frames, options.repeats});
         if (!options.json) print(scene.video, measured);
         cases.push_back(to_json(scene.video, measured));
     }
@@ -148,8 +145,7 @@ nlohmann::json measure_encodings(const Options& options) {
     for (const Encoding& encoding : usual_encodings()) {
         const Scene scene = options.scene_of(options.sizes.front(), encoding.settings);
         try {
-            const MeasuredEncoding measured =
-                measure_encoding({scene, {}, encoding.ending, options.frames, stop_if_asked});
+            const MeasuredEncoding measured = measure_encoding({scene, {}, encoding.ending, options.frames});
             rows.push_back(to_json(measured));
             if (options.json) continue;
             const double duration_s = scene.video.fps.time_s(measured.frames);
@@ -192,6 +188,10 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
     for (const int signal : {SIGINT, SIGTERM})
         std::signal(signal, [](int number) { corda::benchmark::stop_signal = number; });
+    const corda::CancelScope stopping([] {
+        if (corda::benchmark::stop_signal == 0) return true;
+        throw corda::Error(corda::ExitCode::kInterrupted, "interrupted; nothing was kept");
+    });
     try {
         return corda::benchmark::run(argc, argv);
     } catch (const corda::Error& error) {

@@ -167,10 +167,10 @@ json measure_stages(const BenchDef& def, const std::string& path) {
 
 }  // namespace
 
-json in_child(const std::function<void()>& on_wait, const std::function<json()>& work) {
+json in_child(const std::function<json()>& work) {
     constexpr double kMaxS = 86'400.0;
     const ChildLimits limits{std::uint64_t{1} << 46U, static_cast<std::int64_t>(kMaxS), kMaxS};
-    const auto end = run_in_child([&work] { return work().dump(); }, limits, on_wait);
+    const auto end = run_in_child([&work] { return work().dump(); }, limits);
     if (!end) throw Error(ExitCode::kTemporary, "the system starts no further process; try again");
     if (!end->finished()) throw Error(ExitCode::kTemporary, "the process that measures " + end->text);
     return json::parse(end->text);
@@ -183,9 +183,8 @@ Measured measure(const BenchDef& def) {
     measured.frames = frames_of(def);
     measured.pictures = std::min(measured.frames, max_pictures(def.scene.video));
     for (int i = 0; i < def.repeats; ++i) {
-        const json rendered =
-            in_child(def.on_wait, [&] { return render(def, def.scene.video.encoder.jobs, path); });
-        const json encoded = in_child(def.on_wait, [&] { return encode_alone(def); });
+        const json rendered = in_child([&] { return render(def, def.scene.video.encoder.jobs, path); });
+        const json encoded = in_child([&] { return encode_alone(def); });
         const auto render_s = rendered["wall_s"].get<double>();
         const auto encoder_s = encoded["wall_s"].get<double>();
         measured.render_s.add(render_s);
@@ -199,12 +198,12 @@ Measured measure(const BenchDef& def) {
             std::max(measured.encoder_rss_mib, encoded["encoder_rss_mib"].get<double>());
     }
     if (measured.jobs > 1) {
-        const json one = in_child(def.on_wait, [&] { return render(def, 1, path); });
+        const json one = in_child([&] { return render(def, 1, path); });
         const double added_mib = measured.peak_rss_mib - one["peak_rss_mib"].get<double>();
         const double per_job_mib = added_mib / (measured.jobs - 1) - measured.encoder_rss_mib;
         if (per_job_mib > 0.0) measured.rss_per_job_mib = per_job_mib;
     }
-    for (const json& stage : in_child(def.on_wait, [&] { return measure_stages(def, path); }))
+    for (const json& stage : in_child([&] { return measure_stages(def, path); }))
         measured.stages.push_back(
             {stage["name"].get<std::string>(), stage["wall_s"].get<double>(), stage["cpu_s"].get<double>()});
     return measured;

@@ -20,8 +20,6 @@ struct BenchDef {
     FilmDef film;               ///< which OpenGL draws
     std::int64_t frames = 600;  ///< of each video, if the scene has as many; >= 1
     int repeats = 3;            ///< of each measurement, in turn; >= 1
-    /// Called at least ten times a second; what it throws ends the measurement.
-    std::function<void()> on_wait;
 };
 
 /// A part of the work on a video, measured by itself in one thread: simulate, open OpenGL, draw, convert (to
@@ -53,10 +51,8 @@ struct Measured {
 /// a child cannot be started or is ended from outside.
 [[nodiscard]] Measured measure(const BenchDef& def);
 
-/// The result of `work` from a child process, which has a peak of memory of its own. `on_wait` is called at
-/// least ten times a second; an exception of it ends the child. Throws corda::Error: what `work` throws;
-/// kTemporary if the child cannot be started or is ended from outside.
-[[nodiscard]] nlohmann::json in_child(const std::function<void()>& on_wait,
-                                      const std::function<nlohmann::json()>& work);
+/// The result of `work` from a child process, which has a peak of memory of its own. Throws corda::Error:
+/// what `work` throws; kTemporary if the child cannot be started or is ended from outside.
+[[nodiscard]] nlohmann::json in_child(const std::function<nlohmann::json()>& work);
 
 }  // namespace corda::benchmark

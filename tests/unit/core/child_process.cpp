@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "corda/core/clock.hpp"
+#include "support/cancel.hpp"
 #include "support/failure.hpp"
 
 namespace corda {
@@ -87,13 +88,14 @@ TEST(ChildProcess, IsLimitedInTime) {
     EXPECT_LT(now_s() - start_s, 10.0);
 }
 
-TEST(ChildProcess, IsKilledIfTheWaitIsStopped) {
+TEST(ChildProcess, IsKilledIfTheWaitIsCancelled) {
     const double start_s = now_s();
     const auto sleep = [] { return std::to_string(::sleep(60)); };
-    const auto stop = [&] {
+    const CancelScope stop([&] {
         if (now_s() > start_s + 0.2) throw Error(ExitCode::kTerminated, "stopped");
-    };
-    EXPECT_EQ(test::code_of([&] { (void)run_in_child(sleep, kLimits, stop); }), ExitCode::kTerminated);
+        return true;
+    });
+    EXPECT_EQ(test::code_of([&] { (void)run_in_child(sleep, kLimits); }), ExitCode::kTerminated);
     EXPECT_FALSE(has_child());
     EXPECT_LT(now_s() - start_s, 10.0);
 }
@@ -107,11 +109,9 @@ TEST(ChildProcess, KilledFromOutsideIsNotACrash) {
         EXPECT_THAT(failure.message, HasSubstr("ended from outside"));
     }
     // A signal to the process group reaches both.
-    const auto stop = [calls = 0]() mutable {
-        if (++calls > 1) throw Error(ExitCode::kInterrupted, "stopped");
-    };
+    const CancelScope stop = test::cancel_after(1);
     const auto work = [] { return std::to_string(std::raise(SIGINT)); };
-    EXPECT_EQ(test::code_of([&] { (void)run_in_child(work, kLimits, stop); }), ExitCode::kInterrupted);
+    EXPECT_EQ(test::code_of([&] { (void)run_in_child(work, kLimits); }), ExitCode::kInterrupted);
 }
 
 }  // namespace

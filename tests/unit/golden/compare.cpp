@@ -5,6 +5,7 @@
 #include <array>
 
 #include "corda/golden/compare.hpp"
+#include "support/cancel.hpp"
 #include "support/failure.hpp"
 
 namespace corda {
@@ -57,17 +58,17 @@ TEST(Compare, IgnoresBlackPixelsOfTheMask) {
     b.pixel(1, 1)[1] = 103;
     Image mask = grey(5, 4, 255);
     std::fill(mask.pixel(4, 3), mask.pixel(4, 3) + 3, std::uint8_t{0});
-    const Difference result = compare(grey(5, 4), b, {}, &mask);
+    const Difference result = compare(grey(5, 4), b, &mask);
     EXPECT_EQ(result.max, 3);
     EXPECT_EQ(result.mean, 3.0 / 76.0);
     EXPECT_EQ(result.share, 1.0 / 19.0);
-    const Image shown = difference_image(grey(5, 4), b, {}, &mask);
+    const Image shown = difference_image(grey(5, 4), b, &mask);
     EXPECT_EQ(pixel(shown, 4, 3), pixel(shown, 0, 0));
     EXPECT_NE(pixel(shown, 1, 1), pixel(shown, 0, 0));
     const Image small = grey(4, 4, 255);
-    EXPECT_EQ(test::code_of([&] { static_cast<void>(compare(b, b, {}, &small)); }), ExitCode::kUsage);
+    EXPECT_EQ(test::code_of([&] { static_cast<void>(compare(b, b, &small)); }), ExitCode::kUsage);
     const Image nothing = grey(5, 4, 0);
-    EXPECT_EQ(test::code_of([&] { static_cast<void>(compare(b, b, {}, &nothing)); }), ExitCode::kUsage);
+    EXPECT_EQ(test::code_of([&] { static_cast<void>(compare(b, b, &nothing)); }), ExitCode::kUsage);
 }
 
 TEST(Compare, ShowsPixelsOfOnlyOnePicture) {
@@ -79,13 +80,15 @@ TEST(Compare, ShowsPixelsOfOnlyOnePicture) {
         for (int x = 0; x < 5; ++x) EXPECT_EQ(pixel(shown, x, y) == blue, x >= 3 || y >= 2) << x << " " << y;
 }
 
-TEST(Compare, StopsOnRequest) {
+TEST(Compare, CanBeCancelled) {
     const Image a = grey(5, 4);
     for (const std::int64_t last : {0, 3}) {
-        const OnProgress stop = [last](std::int64_t row, std::int64_t) { return row < last; };
-        EXPECT_EQ(test::code_of([&] { static_cast<void>(compare(a, a, stop)); }), ExitCode::kInterrupted);
-        EXPECT_EQ(test::code_of([&] { static_cast<void>(difference_image(a, a, stop)); }),
-                  ExitCode::kInterrupted);
+        const auto code_of = [last](const auto& work) {
+            const CancelScope scope = test::cancel_after(last);
+            return test::code_of(work);
+        };
+        EXPECT_EQ(code_of([&] { static_cast<void>(compare(a, a)); }), ExitCode::kInterrupted);
+        EXPECT_EQ(code_of([&] { static_cast<void>(difference_image(a, a)); }), ExitCode::kInterrupted);
     }
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "support/cancel.hpp"
 #include "support/failure.hpp"
 
 namespace corda {
@@ -67,7 +68,7 @@ TEST(Flip, OfUniformPicturesIsThatOfTheirColors) {
 TEST(Flip, OfPicturesWithEdgesIsThatOfTheAuthorsProgram) {
     EXPECT_NEAR(flip(pattern(0), pattern(1)), 0.36631644, 1e-6);
     EXPECT_NEAR(flip(box(20), box(21)), 0.03757543, 1e-6);
-    EXPECT_NEAR(flip(box(20), box(21), {}, 1, 30.0), 0.02736959, 1e-6);
+    EXPECT_NEAR(flip(box(20), box(21), 1, 30.0), 0.02736959, 1e-6);
 }
 
 TEST(Flip, IsSymmetricAndZeroOnlyForEqualPictures) {
@@ -83,7 +84,7 @@ TEST(Flip, IsSymmetricAndZeroOnlyForEqualPictures) {
 TEST(Flip, DoesNotDependOnThreads) {
     const Image a = pattern(0, 90, 300);
     const Image b = pattern(1, 90, 300);
-    EXPECT_EQ(flip(a, b, {}, 1), flip(a, b, {}, 3));
+    EXPECT_EQ(flip(a, b, 1), flip(a, b, 3));
 }
 
 TEST(Flip, SeesWhatIsBehindTransparentPictures) {
@@ -94,9 +95,8 @@ TEST(Flip, SeesWhatIsBehindTransparentPictures) {
 
 TEST(Flip, RefusesOtherSizesAndStops) {
     EXPECT_EQ(test::code_of([] { static_cast<void>(flip(box(1), pattern(0, 60, 41))); }), ExitCode::kUsage);
-    const OnProgress stop = [](std::int64_t, std::int64_t) { return false; };
-    EXPECT_EQ(test::code_of([&] { static_cast<void>(flip(box(1), box(2), stop, 2)); }),
-              ExitCode::kInterrupted);
+    const CancelScope stop = test::cancel_after(0);
+    EXPECT_EQ(test::code_of([&] { static_cast<void>(flip(box(1), box(2), 2)); }), ExitCode::kInterrupted);
 }
 
 // skimage.metrics.structural_similarity (0.19.3) of the luma, with gaussian_weights=True, sigma=1.5,
@@ -117,8 +117,8 @@ TEST(Ssim, RefusesSmallPicturesAndOtherSizes) {
     EXPECT_EQ(test::code_of([] { static_cast<void>(ssim(pattern(0, 10, 40), pattern(0, 10, 40))); }),
               ExitCode::kUsage);
     EXPECT_EQ(test::code_of([] { static_cast<void>(ssim(box(1), pattern(0, 60, 41))); }), ExitCode::kUsage);
-    const OnProgress stop = [](std::int64_t row, std::int64_t) { return row < 20; };
-    EXPECT_EQ(test::code_of([&] { static_cast<void>(ssim(box(1), box(1), stop)); }), ExitCode::kInterrupted);
+    const CancelScope stop = test::cancel_after(20);
+    EXPECT_EQ(test::code_of([&] { static_cast<void>(ssim(box(1), box(1))); }), ExitCode::kInterrupted);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "support/failure.hpp"
 #include "support/image_matchers.hpp"
@@ -245,7 +246,7 @@ void expect_refusals(Film& film) {
         EXPECT_THAT(failure.message, HasSubstr("on_progress used the film whose progress it reports"));
     };
     expect_refused([&] { return film.frame(0); });
-    expect_refused([&] { return film.still(0.5, {}, 0.5); });
+    expect_refused([&] { return film.still(0.5, 0.5); });
     expect_refused([&] { return film.state(0).time_s; });
     expect_refused([&] { return film.camera().margin; });
     expect_refused([&] { return FilmRenderer(film).image(); });
@@ -279,14 +280,18 @@ TEST(FilmProgress, CannotUseTheFilmFromTheCallbackOfAnotherOneThatItDraws) {
     int calls = 0;
     const Image alone = film.frame(3);
     const FigureDef poses{.times_s = {0.1, 0.2}};
-    static_cast<void>(draw_figure(film, poses, [&](std::int64_t, std::int64_t) {
-        static_cast<void>(draw_figure(other, poses, [&](std::int64_t, std::int64_t) {
-            expect_refusals(film);
-            return ++calls > 0;
-        }));
-        EXPECT_TRUE(equal_images(other.frame(3), alone));
-        return true;
-    }));
+    {
+        const CancelScope drawing_other([&] {
+            const CancelScope using_film([&] {
+                expect_refusals(film);
+                return ++calls > 0;
+            });
+            static_cast<void>(draw_figure(other, poses));
+            EXPECT_TRUE(equal_images(other.frame(3), alone));
+            return true;
+        });
+        static_cast<void>(draw_figure(film, poses));
+    }
     EXPECT_GT(calls, 0);
     EXPECT_TRUE(equal_images(film.frame(3), alone));
 }

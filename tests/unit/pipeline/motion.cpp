@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "support/cancel.hpp"
 #include "support/failure.hpp"
 
 namespace corda::pipeline {
@@ -87,17 +88,18 @@ TEST(Motions, BeyondTheirBudgetAreSimulatedAgain) {
     EXPECT_EQ(small.motion.recording().bounds().min_m(), whole.motion.recording().bounds().min_m());
 }
 
-TEST(Motions, ReportTheirProgressAndCanBeStopped) {
+TEST(Motions, CanBeCancelledAndContinue) {
     Swing swing;
-    std::int64_t heard = -1;
-    const OnProgress stop = [&](std::int64_t done, std::int64_t total) {
-        EXPECT_EQ(total, 22);
-        EXPECT_EQ(done, ++heard);
-        return done < 5;
-    };
-    EXPECT_EQ(failure_of([&] { swing.motion.run_to_end(stop); }).code, ExitCode::kInterrupted);
+    {
+        std::size_t checks = 0;
+        const CancelScope stop([&] {
+            EXPECT_EQ(swing.motion.next(), checks);
+            return checks++ < 5;
+        });
+        EXPECT_EQ(failure_of([&] { swing.motion.run_to_end(); }).code, ExitCode::kInterrupted);
+    }
     EXPECT_EQ(swing.motion.recording().size(), 5U);
-    swing.motion.run_to_end({});  // continues
+    swing.motion.run_to_end();  // continues
     EXPECT_EQ(swing.motion.recording().size(), 22U);
     EXPECT_EQ(swing.motion.passes(), 1);
     EXPECT_FALSE(swing.motion.diverges());
@@ -105,7 +107,7 @@ TEST(Motions, ReportTheirProgressAndCanBeStopped) {
 
 TEST(Motions, ThatDivergeEndEarly) {
     Swing swing(wild());
-    swing.motion.run_to_end({});
+    swing.motion.run_to_end();
     EXPECT_TRUE(swing.motion.diverges());
     const std::size_t good = swing.motion.recording().size();
     ASSERT_GE(good, 1U);
@@ -136,19 +138,17 @@ TEST(Motions, ReuseTheRunThatAPlannerRecords) {
     EXPECT_FALSE(motion.diverges());
 }
 
-TEST(Motions, ReportDuringLongStepsAndRestartAfterAnInterruption) {
+TEST(Motions, CanBeCancelledDuringLongStepsAndRestarted) {
     const System system = system_of_a_rope();
     const MethodDef method = RelaxationDef{1e-5, 8};
     Motion motion(system, WorldDef{}, {method}, Timeline(kFps, 3), kMuch);
     static_cast<void>(motion.at(kFps.time_s(1)));
-    std::int64_t asked_at = 0;
-    const OnProgress stop = [&asked_at](std::int64_t done, std::int64_t) {
-        asked_at = done;
-        return false;
-    };
-    const test::Failure failure = failure_of([&] { static_cast<void>(motion.at(kFps.time_s(2), stop)); });
-    EXPECT_EQ(failure.code, ExitCode::kInterrupted);
-    EXPECT_EQ(asked_at, 2);
+    {
+        const CancelScope stop = test::cancel_after(0);
+        const test::Failure failure = failure_of([&] { static_cast<void>(motion.at(kFps.time_s(2))); });
+        EXPECT_EQ(failure.code, ExitCode::kInterrupted);
+        EXPECT_EQ(motion.next(), 2U);
+    }
     Motion alone(system, WorldDef{}, {method}, Timeline(kFps, 3), kMuch);
     EXPECT_EQ(motion.at(kFps.time_s(3)).x_m, alone.at(kFps.time_s(3)).x_m);
     EXPECT_EQ(motion.recording().size(), 4U);

@@ -9,6 +9,7 @@
 
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/film_renderer.hpp"
+#include "support/cancel.hpp"
 #include "support/failure.hpp"
 #include "support/host_context.hpp"
 #include "support/image_matchers.hpp"
@@ -131,24 +132,26 @@ TEST(LargePictures, AreTheSameIfTheirCallbackDrawsAnotherFilm) {
     };
     for (const auto& callback : callbacks) {
         int asked = 0;
-        const Image drawn = film.frame(1, [&](std::int64_t done, std::int64_t) {
-            if (done == 0) return true;
-            callback();
-            return ++asked > 0;
-        });
-        EXPECT_TRUE(equal_images(drawn, alone));
+        {
+            const CancelScope calling([&] {
+                callback();
+                return ++asked > 0;
+            });
+            EXPECT_TRUE(equal_images(film.frame(1), alone));
+        }
         EXPECT_GE(asked, 1);
         EXPECT_TRUE(host.is_current());
         static_cast<void>(film.frame(0));
     }
 }
 
-TEST(LargePictures, CanBeInterrupted) {
+TEST(LargePictures, CanBeCancelled) {
     Film film(large_scene());
-    EXPECT_EQ(test::code_of([&] {
-                  static_cast<void>(film.frame(0, [](std::int64_t done, std::int64_t) { return done == 0; }));
-              }),
-              ExitCode::kInterrupted);
+    static_cast<void>(film.camera());
+    {
+        const CancelScope stop = test::cancel_after(0);
+        EXPECT_EQ(test::code_of([&] { static_cast<void>(film.frame(0)); }), ExitCode::kInterrupted);
+    }
     EXPECT_TRUE(equal_images(film.frame(0), Film(large_scene()).frame(0)));
 }
 

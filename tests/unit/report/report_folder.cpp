@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "samples.hpp"
+#include "support/cancel.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"
 
@@ -67,11 +68,13 @@ TEST(ReportFolder, HasAChapterAsSoonAsItIsAdded) {
 TEST(ReportFolder, IsFinishedWithThePicturesThatWereDrawn) {
     const test::ScratchFolder folder;
     const Report whole = small_report();
-    // Called once per picture; the first chapter has three.
-    const auto asks = [asked = 0](std::int64_t, std::int64_t) mutable { return ++asked < 4; };
-    ReportFolder report(folder.path(), {.on_progress = asks});
-    report.add(whole.chapters[0]);
-    EXPECT_EQ(code_of([&] { report.add(whole.chapters[1]); }), ExitCode::kInterrupted);
+    ReportFolder report(folder.path());
+    {
+        const CancelScope stop =
+            test::cancel_after(3);  // checked once per picture; the first chapter has three
+        report.add(whole.chapters[0]);
+        EXPECT_EQ(code_of([&] { report.add(whole.chapters[1]); }), ExitCode::kInterrupted);
+    }
     report.finish(whole);
     EXPECT_THAT(folder.files(), ElementsAre("error.pdf", "error.png", "error.svg", "report.html",
                                             "report.json", "report.md", "speed.csv"));

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <tuple>
 
+#include "corda/core/cancel.hpp"
 #include "support/failure.hpp"
 #include "unit/scene/support.hpp"
 
@@ -270,23 +271,23 @@ TEST(SceneReader, PalettesOfAnyNumberOfColours) {
 
 // Longer than the blocks in which the parser gets a text, and with a byte order mark, after which it goes
 // back.
-TEST(SceneReader, LongFilesAreReadUntilTheCallerStops) {
+TEST(SceneReader, LongFilesAreReadUntilCancelled) {
     std::string points;
     for (int i = 0; i < 20'000; ++i) points += "[" + std::to_string(i) + ".25, 1.5],\n";
     const std::string text = "\xef\xbb\xbfschema = 1\n[[rope]]\nstring = true\npoints = [" + points + "]\n";
     ASSERT_GT(text.size(), 200'000U);
     int asked = 0;
-    const auto stop_at = [&asked](int last) {
-        return [&asked, last](std::int64_t, std::int64_t) { return ++asked != last; };
+    const auto parse_until = [&](int last) {
+        const CancelScope stop([&] { return ++asked != last; });
+        return parse_scene(text, "a");
     };
-    const Scene scene = parse_scene(text, "a", {}, stop_at(0));
+    const Scene scene = parse_until(0);
     EXPECT_EQ(scene.ropes[0].points_m.size(), 20'000U);
     EXPECT_EQ(scene.ropes[0].points_m.back().x - scene.ropes[0].points_m.front().x, 19'999.0);
     EXPECT_GE(asked, 7);
     for (int last = asked; last > 0; --last) {
         asked = 0;
-        const auto code = test::code_of([&] { std::ignore = parse_scene(text, "a", {}, stop_at(last)); });
-        EXPECT_EQ(code, ExitCode::kInterrupted) << last;
+        EXPECT_EQ(test::code_of([&] { std::ignore = parse_until(last); }), ExitCode::kInterrupted) << last;
     }
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/stop_check.hpp"
+#include "corda/core/cancel.hpp"
 #include "support/failure.hpp"
 #include "support/nets.hpp"
 #include "support/random_system.hpp"
@@ -108,17 +108,17 @@ std::vector<LongRun> long_runs() {
             {"relaxation of many sweeps", system_with(rope, {}), many_sweeps}};
 }
 
-TEST(Simulation, CallsGoesOnInEveryMethod) {
+TEST(Simulation, ChecksInEveryMethodForCancellation) {
     for (const LongRun& run : long_runs()) {
         std::uint64_t asked = 0;
         Simulation simulation = run.start();
-        ASSERT_EQ(simulation.advance_to(1.0,
-                                        [&asked] {
-                                            ++asked;
-                                            return true;
-                                        }),
-                  Status::kOk)
-            << run.name;
+        {
+            const CancelScope counting([&asked] {
+                ++asked;
+                return true;
+            });
+            ASSERT_EQ(simulation.advance_to(1.0), Status::kOk) << run.name;
+        }
         Simulation alone = run.start();
         ASSERT_EQ(alone.advance_to(1.0), Status::kOk) << run.name;
         EXPECT_EQ(alone.state().x_m, simulation.state().x_m) << run.name;
@@ -127,17 +127,18 @@ TEST(Simulation, CallsGoesOnInEveryMethod) {
         const double steps = static_cast<double>(simulation.diagnostics().steps) *
                              (relaxation == nullptr ? 1.0 : relaxation->sweeps / 50.0);
         const double updates = steps * static_cast<double>(run.system.particle_count());
-        EXPECT_GE(static_cast<double>(asked), 0.5 * updates / StopCheck::kUpdates) << run.name;
+        EXPECT_GE(static_cast<double>(asked), 0.5 * updates / kUpdatesPerCheck) << run.name;
         EXPECT_GE(asked, 5U) << run.name;
     }
 }
 
-TEST(Simulation, StopsEveryMethodOnRequest) {
+TEST(Simulation, EndsInEveryMethodIfCancelled) {
     for (const LongRun& run : long_runs()) {
         Simulation simulation = run.start();
         int left = 3;
         try {
-            static_cast<void>(simulation.advance_to(1.0, [&left] { return --left > 0; }));
+            const CancelScope stop([&left] { return --left > 0; });
+            static_cast<void>(simulation.advance_to(1.0));
             ADD_FAILURE() << run.name;
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), ExitCode::kInterrupted) << run.name;
@@ -153,19 +154,19 @@ TEST(Simulation, StopsEveryMethodOnRequest) {
     }
 }
 
-TEST(Simulation, StopsThePreparationOfALargeNet) {
+TEST(Simulation, IsNotMadeOfALargeNetIfCancelled) {
     const NetDef net = test::leaning_net(80, 80, 0.1);
     int left = 2;
-    const GoesOn goes_on = [&left] { return --left > 0; };
-    EXPECT_THROW(Simulation(build_system({}, {&net, 1}), WorldDef{}, RattleDef{4}, 0.01, goes_on), Error);
+    const CancelScope stop([&left] { return --left > 0; });
+    EXPECT_THROW(Simulation(build_system({}, {&net, 1}), WorldDef{}, RattleDef{4}, 0.01), Error);
     EXPECT_EQ(left, 0);
 }
 
-TEST(Simulation, StopsThePreparationOfManyBodies) {
+TEST(Simulation, IsNotMadeOfManyBodiesIfCancelled) {
     const std::vector<RopeDef> ropes(2000, reference::straight_rope(2, 1.0, 30.0));
     int left = 2;
-    const GoesOn goes_on = [&left] { return --left > 0; };
-    EXPECT_THROW(Simulation(build_system(ropes), WorldDef{}, ExactDef{}, 0.01, goes_on), Error);
+    const CancelScope stop([&left] { return --left > 0; });
+    EXPECT_THROW(Simulation(build_system(ropes), WorldDef{}, ExactDef{}, 0.01), Error);
     EXPECT_EQ(left, 0);
 }
 

@@ -17,7 +17,6 @@
 #include "support/refusal_of.hpp"
 #include "support/solver_run.hpp"
 #include "support/strings.hpp"
-#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -56,7 +55,7 @@ TEST(BodySolvers, AddUpEnergiesAndSteps) {
     const Mixed mixed;
     State state{0.0, mixed.system.x_m, mixed.system.y_m};
     const auto all = make_solver(mixed.system, WorldDef{}, mixed.methods, 0.01);
-    ASSERT_EQ(all->advance_to(1.0, state, test::unstopped), Status::kOk);
+    ASSERT_EQ(all->advance_to(1.0, state), Status::kOk);
     double energy_j = 0.0;
     double scale_j = 0.0;
     std::uint64_t steps = 0;
@@ -65,7 +64,7 @@ TEST(BodySolvers, AddUpEnergiesAndSteps) {
         const System system = build_system({&mixed.ropes[i], 1});
         State own{0.0, system.x_m, system.y_m};
         const auto alone = make_solver(system, WorldDef{}, {&mixed.methods[i], 1}, 0.01);
-        ASSERT_EQ(alone->advance_to(1.0, own, test::unstopped), Status::kOk);
+        ASSERT_EQ(alone->advance_to(1.0, own), Status::kOk);
         energy_j += alone->energy_j();
         scale_j += alone->energy_scale_j();
         steps += alone->steps();

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "own_problems.hpp"
 #include "support/failure.hpp"
 #include "support/nets.hpp"
@@ -76,10 +77,11 @@ TEST(Study, EndsWithTheChaptersBeforeWhatEndsIt) {
     def.quick = true;
     def.chapters = {"findings", "hard_cases"};
     bool ends = false;
-    def.on_step = [&ends] {
-        if (ends) throw Error(ExitCode::kTerminated, "stopped");
-    };
     Study study(def);
+    const CancelScope stop([&ends] {
+        if (ends) throw Error(ExitCode::kTerminated, "stopped");
+        return true;
+    });
     report::Report report;
     const auto run = [&] {
         study.run(

@@ -66,18 +66,18 @@ StringContacts::StringContacts(const System& string, const Forces& forces, doubl
     }
 }
 
-bool StringContacts::resolve(System& string, std::vector<std::uint8_t>& is_taut, StopCheck& stop) {
+bool StringContacts::resolve(System& string, std::vector<std::uint8_t>& is_taut) {
     const std::size_t links = rest_m_.size();
     measure(string);
     find_present(string, is_taut);
     for (std::size_t k = 0; k < links; ++k) lcp_.z_error[k] = speed_error_m_s_ * largest_mass_kg_[k];
-    if (!lcp_.solve(speed_error_m_s_, stop)) return false;
+    if (!lcp_.solve(speed_error_m_s_)) return false;
     snap(string);
     for (std::size_t k = 0; k < links; ++k) {
         const bool goes_in = lcp_.side[k] == Side::kFree && lcp_.w()[k] > speed_error_m_s_;
         inward_m_s_[k] = goes_in ? lcp_.w()[k] : 0.0;
     }
-    if (!find_tensions(string, stop)) return false;
+    if (!find_tensions(string)) return false;
     for (std::size_t k = 0; k < links; ++k) is_taut[k] = lcp_.side[k] == Side::kPulls ? 1 : 0;
     return true;
 }
@@ -95,7 +95,7 @@ void StringContacts::measure(const System& string) {
     place_error_m_ = kUlps * std::numeric_limits<double>::epsilon() * farthest_m;
 }
 
-bool StringContacts::find_tensions(const System& string, StopCheck& stop) {
+bool StringContacts::find_tensions(const System& string) {
     const std::size_t links = rest_m_.size();
     find_accelerations(string);
     double largest_m_s2 = length_m_ * inverse_timescale_1_s_ * inverse_timescale_1_s_;
@@ -111,7 +111,7 @@ bool StringContacts::find_tensions(const System& string, StopCheck& stop) {
         if (leaves(k, kMaxAcceleration * largest_m_s2)) lcp_.side[k] = Side::kAbsent;
     }
     for (;;) {
-        if (!lcp_.solve(acceleration_error_m_s2_, stop)) return false;
+        if (!lcp_.solve(acceleration_error_m_s2_)) return false;
         bool is_done = true;
         for (std::size_t k = 0; k < links; ++k) {
             // The acceleration that would bring the link back if it alone did not pull.

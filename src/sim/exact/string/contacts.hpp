@@ -29,7 +29,7 @@ class StringContacts {
     /// A link counts as taut if the snap of another link shortens it by less than a hundredth of the
     /// tolerance of its length before it returns. Two links that lie on each other shorten each other in this
     /// way in turn, ever more slowly; impulses along both at once give the limit.
-    [[nodiscard]] bool resolve(System& string, std::vector<std::uint8_t>& is_taut, StopCheck& stop);
+    [[nodiscard]] bool resolve(System& string, std::vector<std::uint8_t>& is_taut);
 
     // In the state that was resolved last, smaller tensions and changes of length are rounding.
     [[nodiscard]] double tension_error_n(std::size_t link) const {
@@ -46,7 +46,7 @@ class StringContacts {
     void find_present(const System& string, const std::vector<std::uint8_t>& is_taut);
     void snap(System& string) const;
     /// Finds the links that stay taut after the snap.
-    [[nodiscard]] bool find_tensions(const System& string, StopCheck& stop);
+    [[nodiscard]] bool find_tensions(const System& string);
     void find_accelerations(const System& string);
 
     Forces forces_;

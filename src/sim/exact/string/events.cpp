@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "corda/core/cancel.hpp"
+
 namespace corda::sim {
 namespace {
 
@@ -104,7 +106,7 @@ double StringEvents::raw_margin(std::size_t link) const {
 }
 
 double StringEvents::measure(const Motion& motion, double time_s, double* margin) {
-    motion.stop.spend(1 + link_count_);
+    count_work(1 + link_count_);
     motion.integrator.interpolate(time_s, y_.data());
     read(motion.dynamics);
     double largest = -kNever;
@@ -115,9 +117,8 @@ double StringEvents::measure(const Motion& motion, double time_s, double* margin
     return largest;
 }
 
-std::optional<double> StringEvents::first_in_step(Dop853& integrator, StringDynamics& dynamics,
-                                                  StopCheck& stop) {
-    const Motion motion{integrator, dynamics, stop};
+std::optional<double> StringEvents::first_in_step(Dop853& integrator, StringDynamics& dynamics) {
+    const Motion motion{integrator, dynamics};
     const double start_s = integrator.old_time_s();
     const double part_s = (integrator.time_s() - start_s) / static_cast<double>(kParts);
     for (std::size_t j = 0; j < kParts; ++j) time_s_[j] = start_s + static_cast<double>(j) * part_s;

@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "corda/core/stop_check.hpp"
 #include "corda/sim/exact/chain_dynamics.hpp"
 #include "corda/sim/exact/dop853.hpp"
 #include "corda/sim/exact/string/contacts.hpp"
@@ -54,8 +53,7 @@ class StringEvents {
 
     /// The first event in the last step of `integrator`, which integrates `dynamics`: the time, to rounding,
     /// from which on a margin is not negative. std::nullopt if there is none.
-    [[nodiscard]] std::optional<double> first_in_step(Dop853& integrator, StringDynamics& dynamics,
-                                                      StopCheck& stop);
+    [[nodiscard]] std::optional<double> first_in_step(Dop853& integrator, StringDynamics& dynamics);
 
   private:
     struct Sample {
@@ -66,7 +64,6 @@ class StringEvents {
     struct Motion {
         Dop853& integrator;
         StringDynamics& dynamics;
-        StopCheck& stop;
     };
 
     /// Writes the margin of every link at a time within the step and returns the largest.

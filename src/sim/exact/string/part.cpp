@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "corda/core/cancel.hpp"
 #include "corda/sim/defs.hpp"
 #include "corda/sim/system.hpp"
 
@@ -90,7 +91,7 @@ void refuse_taut(const System& string) {
 
 }  // namespace
 
-StringPart::StringPart(const System& system, const Forces& forces, double tolerance, StopCheck& stop)
+StringPart::StringPart(const System& system, const Forces& forces, double tolerance)
     : Exact(system, forces, tolerance),
       forces_(forces),
       tolerance_(tolerance),
@@ -99,11 +100,11 @@ StringPart::StringPart(const System& system, const Forces& forces, double tolera
       is_taut_(links_at_rest_length(string_)),
       contacts_(string_, forces, tolerance),
       finder_(string_.particle_count()) {
-    stop.spend(1 + string_.particle_count());
+    count_work(1 + string_.particle_count());
     refuse_bends(system);
     refuse_long_links(string_);
     refuse_taut(string_);
-    if (!start(0.0, stop)) {
+    if (!start(0.0)) {
         throw Refusal(Refusal::Reason::kUndecidedString,
                       "the start does not determine which links of a string are taut");
     }
@@ -112,10 +113,10 @@ StringPart::StringPart(const System& system, const Forces& forces, double tolera
     local_.y_m = string_.y_m;
 }
 
-Status StringPart::reach(double time_s, State& state, StopCheck& stop) {
+Status StringPart::reach(double time_s, State& state) {
     if (!std::isfinite(time_s)) return Status::kDiverged;
     while (known_s_ < time_s) {
-        if (!(event_s_ ? pass_event(stop) : take_step(stop))) return Status::kDiverged;
+        if (!(event_s_ ? pass_event() : take_step())) return Status::kDiverged;
     }
     output_.resize(integrator_->size());
     integrator_->interpolate(std::clamp(time_s - start_s_, integrator_->old_time_s(), integrator_->time_s()),
@@ -130,31 +131,31 @@ Status StringPart::reach(double time_s, State& state, StopCheck& stop) {
     return Status::kOk;
 }
 
-bool StringPart::start(double first_step_s, StopCheck& stop) {
-    if (!contacts_.resolve(string_, is_taut_, stop)) return false;
+bool StringPart::start(double first_step_s) {
+    if (!contacts_.resolve(string_, is_taut_)) return false;
     // Each of these costs about one update per particle.
     const std::size_t updates = 1 + string_.particle_count();
-    stop.spend(updates);
+    count_work(updates);
     dynamics_ = std::make_unique<StringDynamics>(string_, is_taut_, forces_);
-    stop.spend(updates);
+    count_work(updates);
     StepControl control = step_control(dynamics_->inverse_timescale_1_s(), tolerance_);
     control.first_s = std::max(control.first_s, first_step_s);
     integrator_ =
         std::make_unique<Dop853>(*dynamics_, dynamics_->initial_state(), dynamics_->error_scales(), control);
-    stop.spend(updates);
+    count_work(updates);
     finder_.start(string_, is_taut_, contacts_, *dynamics_);
-    stop.spend(updates);
+    count_work(updates);
     return true;
 }
 
-bool StringPart::take_step(StopCheck& stop) {
-    if (integrator_->step(stop) == Status::kDiverged) return false;
-    event_s_ = finder_.first_in_step(*integrator_, *dynamics_, stop);
+bool StringPart::take_step() {
+    if (integrator_->step() == Status::kDiverged) return false;
+    event_s_ = finder_.first_in_step(*integrator_, *dynamics_);
     known_s_ = start_s_ + (event_s_ ? *event_s_ : integrator_->time_s());
     return true;
 }
 
-bool StringPart::pass_event(StopCheck& stop) {
+bool StringPart::pass_event() {
     std::vector<double> y(integrator_->size());
     integrator_->interpolate(*event_s_, y.data());
     dynamics_->project(y.data());
@@ -166,7 +167,7 @@ bool StringPart::pass_event(StopCheck& stop) {
     event_s_.reset();
     steps_before_ += integrator_->accepted_steps();
     rejected_before_ += integrator_->rejected_steps();
-    return count_event() && start(integrator_->next_step_s(), stop);
+    return count_event() && start(integrator_->next_step_s());
 }
 
 bool StringPart::count_event() {

@@ -27,8 +27,8 @@ class StringPart final : public Exact {
   public:
     /// Requires one body, a chain with is_string and without compliance. Throws corda::Refusal if it resists
     /// bending, if a link is longer than its rest length, if it is taut between two pins, or if its start
-    /// does not determine which links are taut. `stop` counts the work of finding them.
-    StringPart(const System& system, const Forces& forces, double tolerance, StopCheck& stop);
+    /// does not determine which links are taut.
+    StringPart(const System& system, const Forces& forces, double tolerance);
 
     [[nodiscard]] double energy_j() const override;
     [[nodiscard]] std::uint64_t steps() const override;
@@ -39,12 +39,12 @@ class StringPart final : public Exact {
 
   private:
     [[nodiscard]] Dynamics& dynamics() const override { return *dynamics_; }
-    Status reach(double time_s, State& state, StopCheck& stop) override;
+    Status reach(double time_s, State& state) override;
     /// Finds the taut links of string_ and starts the motion there, with a first step of at least
     /// `first_step_s` if the tolerance allows. False if the taut links cannot be found.
-    [[nodiscard]] bool start(double first_step_s, StopCheck& stop);
-    [[nodiscard]] bool take_step(StopCheck& stop);
-    [[nodiscard]] bool pass_event(StopCheck& stop);
+    [[nodiscard]] bool start(double first_step_s);
+    [[nodiscard]] bool take_step();
+    [[nodiscard]] bool pass_event();
     /// Counts an event; false if there are too many in too short a time.
     [[nodiscard]] bool count_event();
 

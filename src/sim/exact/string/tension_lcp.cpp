@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "corda/core/cancel.hpp"
 #include "corda/sim/chain_tensions.hpp"
 
 namespace corda::sim {
@@ -43,12 +44,12 @@ class InteriorPoint {
     }
 
     /// Iterates until either z or w is 0 in every row, or no step is possible.
-    void run(StopCheck& stop) {
+    void run() {
         const double enough = kEnough * mean_product(0.0);
         for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
             const double mean = mean_product(0.0);
             if (!(mean > enough)) return;
-            stop.spend(1 + size_);
+            count_work(1 + size_);
             factorise();
             for (std::size_t k = 0; k < size_; ++k) aim_[k] = -z_[k] * w_[k];
             find_step();
@@ -131,11 +132,11 @@ constexpr std::size_t kRoundsBeforeGuess = 50;
 
 }  // namespace
 
-std::vector<std::uint8_t> guess_positive(TridiagonalLcp problem, StopCheck& stop) {
+std::vector<std::uint8_t> guess_positive(TridiagonalLcp problem) {
     std::vector<std::uint8_t> is_positive(problem.right.size());
     if (is_positive.empty()) return is_positive;
     InteriorPoint point(std::move(problem));
-    point.run(stop);
+    point.run();
     for (std::size_t k = 0; k < is_positive.size(); ++k) is_positive[k] = point.is_positive(k) ? 1 : 0;
     return is_positive;
 }
@@ -152,21 +153,21 @@ TensionLcp::TensionLcp(std::vector<double> inverse_mass_1_kg)
     wrong_.reserve(links);
 }
 
-bool TensionLcp::solve(double w_error, StopCheck& stop) {
+bool TensionLcp::solve(double w_error) {
     guess_ = side;
-    if (pivot(kRoundsBeforeGuess, w_error, stop)) return true;
-    guess_by_interior_point(stop);
-    keep_guess_within_errors(w_error, stop);
+    if (pivot(kRoundsBeforeGuess, w_error)) return true;
+    guess_by_interior_point();
+    keep_guess_within_errors(w_error);
     // Pivoting by single links terminates, but rounding could undo that.
-    return pivot(100 + 20 * side.size(), w_error, stop);
+    return pivot(100 + 20 * side.size(), w_error);
 }
 
-bool TensionLcp::pivot(std::size_t most_rounds, double w_error, StopCheck& stop) {
+bool TensionLcp::pivot(std::size_t most_rounds, double w_error) {
     const std::size_t links = side.size();
     std::size_t fewest = std::numeric_limits<std::size_t>::max();
     int patience = kPatience;
     for (std::size_t round = 0; round < most_rounds; ++round) {
-        stop.spend(1 + links);
+        count_work(1 + links);
         solve_pulling();
         wrong_.clear();
         for (std::size_t k = 0; k < links; ++k) {
@@ -186,7 +187,7 @@ bool TensionLcp::pivot(std::size_t most_rounds, double w_error, StopCheck& stop)
     return false;
 }
 
-void TensionLcp::guess_by_interior_point(StopCheck& stop) {
+void TensionLcp::guess_by_interior_point() {
     TridiagonalLcp problem;
     std::vector<std::size_t> present;
     const std::vector<double>& mass = inverse_mass_1_kg_;
@@ -198,13 +199,13 @@ void TensionLcp::guess_by_interior_point(StopCheck& stop) {
         problem.right.push_back(right[k]);
         present.push_back(k);
     }
-    const std::vector<std::uint8_t> is_positive = guess_positive(std::move(problem), stop);
+    const std::vector<std::uint8_t> is_positive = guess_positive(std::move(problem));
     for (std::size_t i = 0; i < present.size(); ++i)
         side[present[i]] = is_positive[i] != 0 ? Side::kPulls : Side::kFree;
 }
 
-void TensionLcp::keep_guess_within_errors(double w_error, StopCheck& stop) {
-    stop.spend(1 + side.size());
+void TensionLcp::keep_guess_within_errors(double w_error) {
+    count_work(1 + side.size());
     solve_pulling();
     for (std::size_t k = 0; k < side.size(); ++k) {
         if (side[k] == Side::kAbsent) continue;

@@ -4,8 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "corda/core/stop_check.hpp"
-
 namespace corda::sim {
 
 /// A linear complementarity problem with a symmetric tridiagonal matrix A, positive semidefinite: find z >= 0
@@ -19,7 +17,7 @@ struct TridiagonalLcp {
 /// Guesses which z_k are positive: 1 where they are, 0 where w_k is; either where both are almost 0. Takes
 /// about 30 solutions of all rows, whatever their number, and at most 100. Mehrotra's predictor-corrector
 /// method: S. Wright, Primal-Dual Interior-Point Methods, SIAM 1997, ch. 8 and 10.
-[[nodiscard]] std::vector<std::uint8_t> guess_positive(TridiagonalLcp problem, StopCheck& stop);
+[[nodiscard]] std::vector<std::uint8_t> guess_positive(TridiagonalLcp problem);
 
 /// Which links of a chain pull, and how strongly, if a link can pull and never push: a linear complementarity
 /// problem. For links k at their rest lengths, find z with
@@ -56,17 +54,17 @@ class TensionLcp {
 
     /// False if no solution was found. `w_error`: w above minus this counts as >= 0. A link whose z or w is
     /// negative by no more than its error stays on the side of the guess.
-    [[nodiscard]] bool solve(double w_error, StopCheck& stop);
+    [[nodiscard]] bool solve(double w_error);
 
     [[nodiscard]] const std::vector<double>& z() const { return z_; }
     [[nodiscard]] const std::vector<double>& w() const { return w_; }
 
   private:
     /// False if `most_rounds` do not find the solution.
-    [[nodiscard]] bool pivot(std::size_t most_rounds, double w_error, StopCheck& stop);
-    void guess_by_interior_point(StopCheck& stop);
+    [[nodiscard]] bool pivot(std::size_t most_rounds, double w_error);
+    void guess_by_interior_point();
     /// Takes links that may be on either side within the errors back to the side of guess_.
-    void keep_guess_within_errors(double w_error, StopCheck& stop);
+    void keep_guess_within_errors(double w_error);
     void solve_pulling();
     [[nodiscard]] bool has_wrong_sign(std::size_t link, double w_error) const;
 

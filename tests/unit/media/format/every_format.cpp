@@ -160,7 +160,7 @@ TEST_P(EveryFormat, IsComparedWithWhatWasDrawn) {
         std::vector<ColorPatch> patches = choose_patches(drawn);
         ASSERT_FALSE(patches.empty());
         const auto problems = [&] {
-            return all_problems(verify(file("a"), {}, VerifyDepth::kAllFrames, {{frame, patches}}));
+            return all_problems(verify(file("a"), VerifyDepth::kAllFrames, {{frame, patches}}));
         };
         EXPECT_THAT(problems(), testing::IsEmpty());
         patches[0].rgb[1] ^= 0x40;
@@ -361,7 +361,7 @@ TEST_F(Video, AGifHasNoColourToCompareWhereItIsTransparent) {
     for (int k = 0; k < 2; ++k) writer.write(image, {image.rect()});
     EXPECT_NO_THROW(writer.finish());
     const std::vector<FrameColors> rendered{{0, choose_patches(image)}};
-    EXPECT_TRUE(verify(file("a.gif"), {}, VerifyDepth::kAllFrames, rendered).ok());
+    EXPECT_TRUE(verify(file("a.gif"), VerifyDepth::kAllFrames, rendered).ok());
 }
 
 }  // namespace

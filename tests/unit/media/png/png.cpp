@@ -12,6 +12,7 @@
 #include "corda/core/child_process.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/media/png/png.hpp"
+#include "support/cancel.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"
 #include "support/png_chunks.hpp"
@@ -219,15 +220,16 @@ TEST_F(Png, AFullDiskIsReportedInTheWordsOfTheSystem) {
     }
 }
 
-TEST_F(Png, StopsIfItIsAsked) {
+TEST_F(Png, CanBeCancelled) {
     const Image image = random_image(5, 4, true);
     write_png(file("a.png"), image);
     for (const std::int64_t last : {0, 3}) {
-        const OnProgress stop = [last](std::int64_t row, std::int64_t) { return row < last; };
-        EXPECT_EQ(test::code_of([&] { write_png(file("b.png"), image, {}, {.on_progress = stop}); }),
-                  ExitCode::kInterrupted);
-        EXPECT_EQ(test::code_of([&] { static_cast<void>(read_png(file("a.png"), stop)); }),
-                  ExitCode::kInterrupted);
+        const auto code_of = [last](const auto& work) {
+            const CancelScope scope = test::cancel_after(last);
+            return test::code_of(work);
+        };
+        EXPECT_EQ(code_of([&] { write_png(file("b.png"), image); }), ExitCode::kInterrupted);
+        EXPECT_EQ(code_of([&] { static_cast<void>(read_png(file("a.png"))); }), ExitCode::kInterrupted);
     }
     EXPECT_EQ(folder_.files(), std::vector<std::string>{"a.png"});
 }
@@ -263,15 +265,15 @@ TEST_F(Png, LongAndManyTextsAreLeftOut) {
     EXPECT_LT(bytes, std::size_t{2} << 20);
 }
 
-TEST_F(Png, StopsInTheMidstOfItsTexts) {
+TEST_F(Png, CanBeCancelledWithinItsTexts) {
     write_png(file("a.png"), random_image(8, 8, true));
     std::string png = test::read_file(file("a.png"));
     for (int i = 0; i < 4; ++i)
         png = test::with_chunk(png, "tEXt", std::string("Long") + '\0' + std::string(1'000'000, 'a'));
     test::write_file(file("b.png"), png);
     int asked = 0;
-    const auto stop = [&](std::int64_t, std::int64_t) { return ++asked < 3; };
-    EXPECT_EQ(test::failure_of([&] { static_cast<void>(read_png_info(file("b.png"), stop)); }).code,
+    const CancelScope stop([&] { return ++asked < 3; });
+    EXPECT_EQ(test::code_of([&] { static_cast<void>(read_png_info(file("b.png"))); }),
               ExitCode::kInterrupted);
     EXPECT_EQ(asked, 3);
 }

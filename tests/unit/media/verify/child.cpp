@@ -6,6 +6,7 @@
 
 #include <cerrno>
 
+#include "support/cancel.hpp"
 #include "support/failure.hpp"
 #include "unit/media/video_support.hpp"
 
@@ -71,8 +72,8 @@ TEST_F(VerifyChild, NeedsNoThread) {
     const VerifyReport report = verify_in_child(file("a.mp4"));
     EXPECT_THAT(all_problems(report), IsEmpty());
     EXPECT_EQ(report.frames, 30);
-    const auto stop = [](std::int64_t, std::int64_t) { return false; };
-    EXPECT_EQ(test::code_of([&] { static_cast<void>(verify_in_child(file("a.mp4"), stop)); }),
+    const CancelScope stop = test::cancel_after(0);
+    EXPECT_EQ(test::code_of([&] { static_cast<void>(verify_in_child(file("a.mp4"))); }),
               ExitCode::kInterrupted);
 }
 

@@ -103,7 +103,7 @@ TEST_F(Video, VerifyComparesWithWhatWasRendered) {
 TEST_F(Video, VerifyComparesFramesThatItIsToldOf) {
     make_video(file("a.mp4"), small_video(), 150);
     const auto red_at = [&](std::int64_t frame, std::uint8_t red, VerifyDepth depth) {
-        return all_problems(verify(file("a.mp4"), {}, depth, {{frame, {{32, 32, {red, 0, 0}}}}}));
+        return all_problems(verify(file("a.mp4"), depth, {{frame, {{32, 32, {red, 0, 0}}}}}));
     };
     for (const VerifyDepth depth : {VerifyDepth::kKeyFrames, VerifyDepth::kAllFrames}) {
         EXPECT_THAT(red_at(60, 255, depth), IsEmpty());
@@ -160,7 +160,7 @@ TEST_F(Video, VerifyFindsTheSameByKeyFrames) {
             const std::string name = file("a" + std::to_string(frames) + std::to_string(fps.num) + ".mp4");
             make_video(name, small_video(fps), frames);
             VerifyReport all = verify(name);
-            VerifyReport keys = verify(name, {}, VerifyDepth::kKeyFrames);
+            VerifyReport keys = verify(name, VerifyDepth::kKeyFrames);
             EXPECT_TRUE(keys.ok()) << (keys.problems.empty() ? "" : keys.problems.front());
             EXPECT_NE(all.notes, keys.notes);  // which name the decoded frames
             all.notes.clear();
@@ -173,14 +173,14 @@ TEST_F(Video, VerifyFindsTheSameByKeyFrames) {
 TEST_F(Video, VerifyByKeyFramesFindsOneThatDoesNotDecode) {
     make_video(file("a.mp4"), small_video(), 150);
     std::string bytes = test::read_file(file("a.mp4"));
-    const VerifyReport whole = verify(file("a.mp4"), {}, VerifyDepth::kKeyFrames);
+    const VerifyReport whole = verify(file("a.mp4"), VerifyDepth::kKeyFrames);
     ASSERT_TRUE(whole.ok());
     // Within the first picture, behind what x264 says of itself.
     const std::size_t data = bytes.find("mdat");
     ASSERT_NE(data, std::string::npos);
     for (std::size_t i = 720; i < 1200; ++i) bytes[data + i] = static_cast<char>(0x5a);
     test::write_file(file("b.mp4"), bytes);
-    EXPECT_FALSE(verify(file("b.mp4"), {}, VerifyDepth::kKeyFrames).ok());
+    EXPECT_FALSE(verify(file("b.mp4"), VerifyDepth::kKeyFrames).ok());
 }
 
 TEST_F(Video, VerifyReportsFilesThatAreNoVideo) {

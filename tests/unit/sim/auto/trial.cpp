@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "corda/core/cancel.hpp"
 #include "corda/core/timeline.hpp"
 #include "corda/reference/ropes.hpp"
 #include "support/nets.hpp"
@@ -124,11 +125,10 @@ class ChecksOfARope : public testing::TestWithParam<int> {
   protected:
     const RopeDef rope_ = reference::straight_rope(GetParam(), 1.0, 60.0);
     const System system_ = build_system({&rope_, 1});
-    const GoesOn always_ = [] { return true; };
 };
 
 TEST_P(ChecksOfARope, AreNearALooserRun) {
-    Checks checks(system_, WorldDef{}, ExactDef{1e-12}, 1.0 / 60.0, 3, always_);
+    Checks checks(system_, WorldDef{}, ExactDef{1e-12}, 1.0 / 60.0, 3);
     Simulation run(system_, WorldDef{}, ExactDef{1e-8});
     for (const double time_s : {0.1, 0.2, 0.3}) {
         checks.start(time_s);
@@ -143,11 +143,11 @@ TEST_P(ChecksOfARope, AreNearALooserRun) {
 TEST_P(ChecksOfARope, CallGoesOnOnlyInTheCallersThread) {
     const auto caller = std::this_thread::get_id();
     bool is_asked = false;
-    const GoesOn never = [&] {
+    const CancelScope never([&] {
         EXPECT_EQ(std::this_thread::get_id(), caller);
         return !std::exchange(is_asked, true);
-    };
-    Checks checks(system_, WorldDef{}, ExactDef{1e-12}, 1.0 / 60.0, 3, never);
+    });
+    Checks checks(system_, WorldDef{}, ExactDef{1e-12}, 1.0 / 60.0, 3);
     is_asked = true;
     checks.start(30.0);  // a second of work or more
     try {
@@ -159,7 +159,7 @@ TEST_P(ChecksOfARope, CallGoesOnOnlyInTheCallersThread) {
 }
 
 TEST_P(ChecksOfARope, EndWithTheirOwner) {
-    Checks checks(system_, WorldDef{}, ExactDef{1e-12}, 1.0 / 60.0, 3, always_);
+    Checks checks(system_, WorldDef{}, ExactDef{1e-12}, 1.0 / 60.0, 3);
     checks.start(1e6);
     EXPECT_EQ(checks.steps(), 0U);  // of the last finish(), whatever a thread has done since
 }

@@ -12,7 +12,6 @@
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/exact/chain_series.hpp"
 #include "support/chains.hpp"
-#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -90,9 +89,9 @@ TEST(ChainPart, GivesTheSameBitsForAnyRequestedTimes) {
         ChainPart often(system, WorldDef{}, 1e-9);
         State state = start_of(system);
         State other = start_of(system);
-        ASSERT_EQ(direct.advance_to(0.9, state, test::unstopped), Status::kOk);
+        ASSERT_EQ(direct.advance_to(0.9, state), Status::kOk);
         for (const double time_s : {0.0, 1e-6, 0.1, 0.1, 0.25, 0.8999999, 0.9})
-            ASSERT_EQ(often.advance_to(time_s, other, test::unstopped), Status::kOk);
+            ASSERT_EQ(often.advance_to(time_s, other), Status::kOk);
         EXPECT_EQ(state.x_m, other.x_m);
         EXPECT_EQ(state.y_m, other.y_m);
         EXPECT_EQ(direct.steps(), often.steps());
@@ -105,7 +104,7 @@ TEST(ChainPart, IsMoreAccurateWithMoreSteps) {
     const auto run = [&](double tolerance) {
         ChainPart part(system, WorldDef{}, tolerance);
         State state = start_of(system);
-        EXPECT_EQ(part.advance_to(0.5, state, test::unstopped), Status::kOk);
+        EXPECT_EQ(part.advance_to(0.5, state), Status::kOk);
         EXPECT_EQ(part.rejected_steps(), 0U);
         return std::pair(state, part.steps());
     };
@@ -129,8 +128,8 @@ TEST(ChainPart, LetsEachChainTakeStepsOfItsOwn) {
     ChainPart one(alone, WorldDef{}, 1e-9);
     State state = start_of(both);
     State expected = start_of(alone);
-    ASSERT_EQ(two.advance_to(2.0, state, test::unstopped), Status::kOk);
-    ASSERT_EQ(one.advance_to(2.0, expected, test::unstopped), Status::kOk);
+    ASSERT_EQ(two.advance_to(2.0, state), Status::kOk);
+    ASSERT_EQ(one.advance_to(2.0, expected), Status::kOk);
     EXPECT_EQ(state.x_m[0], expected.x_m[1]);
     EXPECT_EQ(state.y_m[0], expected.y_m[1]);
     EXPECT_GT(two.steps(), 5U * one.steps());
@@ -140,10 +139,8 @@ TEST(ChainPart, DivergesAtATimeThatIsNotFinite) {
     const System system = test::chain(test::Pins::kStart);
     ChainPart part(system, WorldDef{}, 1e-9);
     State state = start_of(system);
-    EXPECT_EQ(part.advance_to(std::numeric_limits<double>::infinity(), state, test::unstopped),
-              Status::kDiverged);
-    EXPECT_EQ(part.advance_to(std::numeric_limits<double>::quiet_NaN(), state, test::unstopped),
-              Status::kDiverged);
+    EXPECT_EQ(part.advance_to(std::numeric_limits<double>::infinity(), state), Status::kDiverged);
+    EXPECT_EQ(part.advance_to(std::numeric_limits<double>::quiet_NaN(), state), Status::kDiverged);
     EXPECT_EQ(part.steps(), 0U);
 }
 

@@ -7,7 +7,6 @@
 #include "corda/reference/ropes.hpp"
 #include "support/refusal_of.hpp"
 #include "support/solver_run.hpp"
-#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {

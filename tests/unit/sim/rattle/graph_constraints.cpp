@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "corda/core/cancel.hpp"
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/system.hpp"
 #include "support/constraint_checks.hpp"
@@ -65,7 +66,7 @@ TEST(GraphConstraints, MoveImpliedBarsToTheirLengthsToo) {
     GraphConstraints constraints(system);
     Motion motion = Motion::start_of(system);
     std::vector<double> impulse(constraints.links().size(), 0.0);
-    ASSERT_TRUE(constraints.move({0.01, 0.9, {0.02, -0.05}}, motion, impulse, test::unstopped));
+    ASSERT_TRUE(constraints.move({0.01, 0.9, {0.02, -0.05}}, motion, impulse));
     for (const Bar& bar : system.bars) {
         const double length_m =
             std::hypot(motion.x_m[bar.b] - motion.x_m[bar.a], motion.y_m[bar.b] - motion.y_m[bar.a]);
@@ -117,8 +118,7 @@ TEST(StoppableLdlt, HasTheBitsOfEigen) {
         eigens.factorize(matrix);
         StoppableLdlt own;
         own.analyzePattern(matrix);
-        StopCheck nobody;
-        ASSERT_TRUE(own.factorize(matrix, nobody)) << n;
+        ASSERT_TRUE(own.factorize(matrix)) << n;
         const Eigen::VectorXd right = Eigen::VectorXd::LinSpaced(n * n, -1.0, 2.0);
         EXPECT_TRUE(own.solve(right) == eigens.solve(right)) << n;
         EXPECT_TRUE(own.vectorD() == eigens.vectorD()) << n;
@@ -130,21 +130,20 @@ TEST(StoppableLdlt, FindsAPivotOfZero) {
     for (const auto& [row, column] : {std::pair{0, 0}, {1, 0}, {1, 1}}) matrix.insert(row, column) = 1.0;
     StoppableLdlt own;
     own.analyzePattern(matrix);
-    StopCheck nobody;
-    EXPECT_FALSE(own.factorize(matrix, nobody));
+    EXPECT_FALSE(own.factorize(matrix));
 }
 
-TEST(StoppableLdlt, CanBeInterruptedAndRepeated) {
+TEST(StoppableLdlt, CanBeCancelledAndStartAgain) {
     const Eigen::SparseMatrix<double> matrix = grid_matrix(120);
     StoppableLdlt own;
     own.analyzePattern(matrix);
     int asked = 0;
-    const GoesOn goes_on = [&asked] { return ++asked < 2; };
-    StopCheck stop(goes_on);
-    EXPECT_THROW(static_cast<void>(own.factorize(matrix, stop)), Error);
+    {
+        const CancelScope stop([&asked] { return ++asked < 2; });
+        EXPECT_THROW(static_cast<void>(own.factorize(matrix)), Error);
+    }
     EXPECT_EQ(asked, 2);
-    StopCheck nobody;
-    ASSERT_TRUE(own.factorize(matrix, nobody));
+    ASSERT_TRUE(own.factorize(matrix));
     const Eigen::VectorXd right = Eigen::VectorXd::Ones(matrix.cols());
     const Eigen::VectorXd solved = own.solve(right);
     const Eigen::VectorXd product = matrix.selfadjointView<Eigen::Lower>() * solved;

@@ -12,7 +12,6 @@
 
 #include "corda/sim/relaxation/relaxation.hpp"
 #include "support/random_system.hpp"
-#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -55,8 +54,8 @@ TEST_P(RelaxationKernels, HaveTheBitsOfTheScalarOneOnRandomBodies) {
         // Single steps, many at once, and times between two steps.
         for (const double steps : {1.0, 1.0, 1.0, 2.0, 0.25, 0.75, 5.0, 20.0, 1.5, 2.5}) {
             time_s += steps / 64.0;
-            ASSERT_EQ(scalar.relaxation.advance_to(time_s, scalar.state, test::unstopped), Status::kOk);
-            ASSERT_EQ(run.relaxation.advance_to(time_s, run.state, test::unstopped), Status::kOk);
+            ASSERT_EQ(scalar.relaxation.advance_to(time_s, scalar.state), Status::kOk);
+            ASSERT_EQ(run.relaxation.advance_to(time_s, run.state), Status::kOk);
             ASSERT_TRUE(same_bits(scalar.state.x_m, run.state.x_m)) << "seed " << seed << ", " << time_s;
             ASSERT_TRUE(same_bits(scalar.state.y_m, run.state.y_m)) << "seed " << seed << ", " << time_s;
             ASSERT_EQ(scalar.relaxation.energy_j(), run.relaxation.energy_j()) << "seed " << seed;
@@ -69,8 +68,8 @@ TEST_P(RelaxationKernels, HaveTheBitsOfTheScalarOneOverManySteps) {
         const System system = test::report_system(particles);
         KernelRun scalar(system, RelaxationDef{}, RelaxationKernel::kScalar);
         KernelRun run(system, RelaxationDef{}, GetParam());
-        ASSERT_EQ(scalar.relaxation.advance_to(60.0, scalar.state, test::unstopped), Status::kOk);
-        ASSERT_EQ(run.relaxation.advance_to(60.0, run.state, test::unstopped), Status::kOk);
+        ASSERT_EQ(scalar.relaxation.advance_to(60.0, scalar.state), Status::kOk);
+        ASSERT_EQ(run.relaxation.advance_to(60.0, run.state), Status::kOk);
         EXPECT_LT(std::abs(scalar.state.x_m.back()), particles);
         EXPECT_TRUE(same_bits(scalar.state.x_m, run.state.x_m)) << particles << " particles";
         EXPECT_TRUE(same_bits(scalar.state.y_m, run.state.y_m)) << particles << " particles";
@@ -126,7 +125,7 @@ TEST_P(RelaxationKernels, DoNotMoveAFoldedRopeOfBarsWithoutLength) {
     rope.reach = 7;
     const System system = build_system({&rope, 1});
     KernelRun run(system, def, GetParam());
-    ASSERT_EQ(run.relaxation.advance_to(2.0, run.state, test::unstopped), Status::kOk);
+    ASSERT_EQ(run.relaxation.advance_to(2.0, run.state), Status::kOk);
     EXPECT_EQ(run.state.x_m, system.x_m);
     EXPECT_EQ(run.state.y_m, system.y_m);
 }

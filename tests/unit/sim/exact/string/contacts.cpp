@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "support/strings.hpp"
-#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -18,7 +17,7 @@ TEST(StringContacts, ShareASnapAmongTautNeighbours) {
     System system = build_system({&rope, 1});
     StringContacts contacts(system, Forces(ForceTerm{}), 1e-9);
     std::vector<std::uint8_t> is_taut{1, 1, 0};
-    ASSERT_TRUE(contacts.resolve(system, is_taut, test::unstopped));
+    ASSERT_TRUE(contacts.resolve(system, is_taut));
     for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(system.vx_m_s[i], 1.0, 1e-15);
     EXPECT_EQ(system.vy_m_s, std::vector<double>({0.0, 0.0, 0.0, 2.0}));
     // The last one goes round the others and pulls.
@@ -32,7 +31,7 @@ TEST(StringContacts, ReleaseLinksThatASnapShortens) {
     System system = build_system({&rope, 1});
     StringContacts contacts(system, Forces(ForceTerm{}), 1e-9);
     std::vector<std::uint8_t> is_taut{1, 1};
-    ASSERT_TRUE(contacts.resolve(system, is_taut, test::unstopped));
+    ASSERT_TRUE(contacts.resolve(system, is_taut));
     EXPECT_NEAR(system.vx_m_s[1], -2.0, 1e-15);
     EXPECT_NEAR(system.vx_m_s[2], -2.0, 1e-15);
     EXPECT_EQ(is_taut[0], 0);
@@ -46,7 +45,7 @@ bool stays_taut(double speed_m_s, double tolerance) {
     System system = build_system({&rope, 1});
     StringContacts contacts(system, Forces(ForceTerm{{0.0, -9.81}}), tolerance);
     std::vector<std::uint8_t> is_taut{1, 1};
-    EXPECT_TRUE(contacts.resolve(system, is_taut, test::unstopped));
+    EXPECT_TRUE(contacts.resolve(system, is_taut));
     return is_taut[1] == 1;
 }
 

@@ -9,7 +9,6 @@
 #include "corda/sim/exact/exact.hpp"
 #include "support/chains.hpp"
 #include "support/strings.hpp"
-#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -27,15 +26,15 @@ std::optional<Event> first_event(const RopeDef& rope, std::vector<std::uint8_t> 
                                  double end_s) {
     System string = build_system({&rope, 1});
     StringContacts contacts(string, WorldDef{}, 1e-9);
-    EXPECT_TRUE(contacts.resolve(string, is_taut, test::unstopped));
+    EXPECT_TRUE(contacts.resolve(string, is_taut));
     StringDynamics dynamics(string, is_taut, WorldDef{});
     StringEvents events(string.particle_count());
     events.start(string, is_taut, contacts, dynamics);
     Dop853 integrator(dynamics, dynamics.initial_state(), dynamics.error_scales(),
                       step_control(dynamics.inverse_timescale_1_s(), tolerance));
     while (integrator.time_s() < end_s) {
-        if (integrator.step(test::unstopped) != Status::kOk) return std::nullopt;
-        const std::optional<double> time_s = events.first_in_step(integrator, dynamics, test::unstopped);
+        if (integrator.step() != Status::kOk) return std::nullopt;
+        const std::optional<double> time_s = events.first_in_step(integrator, dynamics);
         if (!time_s) continue;
         std::vector<double> y(integrator.size());
         integrator.interpolate(*time_s, y.data());

@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
+#include "corda/core/cancel.hpp"
 #include "corda/reference/ropes.hpp"
 #include "corda/sim/exact/exact.hpp"
 #include "support/refusal_of.hpp"
 #include "support/solver_run.hpp"
 #include "support/strings.hpp"
-#include "support/unstopped.hpp"
 
 namespace corda::sim {
 namespace {
@@ -52,12 +52,13 @@ TEST(ExactRefusesAString, ThatIsClosed) {
     EXPECT_EQ(refusal_of(rope), Reason::kRigidStringGraph);
 }
 
-TEST(LongString, CanBeStoppedWhileItsFirstContactsAreFound) {
+TEST(LongString, CanBeCancelledWhileItsFirstContactsAreFound) {
     RopeDef rope = reference::straight_rope(20'000, 3.0, 45.0);
     rope.material.is_string = true;
     const System system = build_system({&rope, 1});
+    const CancelScope stop([] { return false; });
     try {
-        static_cast<void>(Exact::make(system, WorldDef{}, ExactDef{1e-9}, [] { return false; }));
+        static_cast<void>(Exact::make(system, WorldDef{}, ExactDef{1e-9}));
         FAIL() << "the string was made";
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ExitCode::kInterrupted);
@@ -72,11 +73,9 @@ TEST(LongString, StartsTautDespiteTheRoundingOfItsEnds) {
     for (Vec2& point : rope.points_m) point = {0.8 * point.x - 0.6 * point.y, 0.6 * point.x + 0.8 * point.y};
     const System system = build_system({&rope, 1});
     std::uint64_t asked = 0;
-    const std::unique_ptr<Exact> exact = Exact::make(system, WorldDef{}, ExactDef{1e-9}, [&asked] {
-        ++asked;
-        return true;
-    });
-    EXPECT_LE(asked * StopCheck::kUpdates, 20U * kLinks);  // measured 8, of slack links 100
+    const CancelScope count([&asked] { return ++asked > 0; });
+    const std::unique_ptr<Exact> exact = Exact::make(system, WorldDef{}, ExactDef{1e-9});
+    EXPECT_LE(asked * kUpdatesPerCheck, 20U * kLinks);  // measured 8, of slack links 100
     std::vector<double> tension_n(kLinks);
     ASSERT_TRUE(exact->tensions(tension_n));
     for (const double tension : tension_n) EXPECT_GT(tension, 0.0);

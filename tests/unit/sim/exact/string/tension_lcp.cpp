@@ -1,5 +1,4 @@
 #include "corda/sim/exact/string/tension_lcp.hpp"
-#include "support/unstopped.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +7,8 @@
 #include <cstdio>
 #include <random>
 #include <vector>
+
+#include "corda/core/cancel.hpp"
 
 namespace corda::sim {
 namespace {
@@ -61,7 +62,7 @@ TEST(TensionLcp, FindsTheOneSolution) {
         RandomProblem problem(links, random);
         TensionLcp& lcp = problem.lcp;
         const std::vector<Side> guess = lcp.side;
-        ASSERT_TRUE(lcp.solve(0.0, test::unstopped));
+        ASSERT_TRUE(lcp.solve(0.0));
         for (std::size_t k = 0; k < links; ++k) {
             ASSERT_EQ(guess[k] == Side::kAbsent, lcp.side[k] == Side::kAbsent);
             EXPECT_GE(lcp.z()[k], 0.0);
@@ -114,13 +115,12 @@ struct LongProblem {
 double passes_to_solve(LongProblem::Kind kind, std::size_t links) {
     LongProblem problem(kind, links);
     std::uint64_t asked = 0;
-    const GoesOn count = [&asked] {
+    const CancelScope count([&asked] {
         ++asked;
         return true;
-    };
-    StopCheck stop(count);
-    EXPECT_TRUE(problem.lcp.solve(1e-12, stop)) << static_cast<int>(kind);
-    return static_cast<double>(asked * StopCheck::kUpdates) / static_cast<double>(links);
+    });
+    EXPECT_TRUE(problem.lcp.solve(1e-12)) << static_cast<int>(kind);
+    return static_cast<double>(asked * kUpdatesPerCheck) / static_cast<double>(links);
 }
 
 TEST(TensionLcp, TakesNoMorePassesForMoreLinks) {
@@ -141,7 +141,7 @@ TEST(TensionLcp, KeepsTheGuessOfLinksWithoutAnyForceInALongChain) {
     TensionLcp& lcp = problem.lcp;
     lcp.side[2000] = Side::kAbsent;
     const std::vector<Side> guess = lcp.side;
-    ASSERT_TRUE(lcp.solve(1e-12, test::unstopped));
+    ASSERT_TRUE(lcp.solve(1e-12));
     for (std::size_t k = 0; k < 2000; ++k) EXPECT_EQ(lcp.side[k], Side::kPulls) << k;
     EXPECT_TRUE(std::equal(guess.begin() + 2000, guess.end(), lcp.side.begin() + 2000));
 }
@@ -153,7 +153,7 @@ TEST(TensionLcp, KeepsTheGuessWithinRounding) {
         lcp.z_error = {1e-12, 1e-12};
         lcp.right = {1e-14, -1e-14};
         lcp.cosine = {1.0, 1.0};
-        ASSERT_TRUE(lcp.solve(1e-12, test::unstopped));
+        ASSERT_TRUE(lcp.solve(1e-12));
         EXPECT_EQ(lcp.side, std::vector<Side>({guess, guess}));
     }
 }
@@ -162,7 +162,7 @@ TEST(TensionLcp, FailsOnNumbersThatAreNotFinite) {
     TensionLcp lcp({1.0, 1.0});
     lcp.side = {Side::kPulls};
     lcp.right = {std::nan("")};
-    EXPECT_FALSE(lcp.solve(0.0, test::unstopped));
+    EXPECT_FALSE(lcp.solve(0.0));
 }
 
 }  // namespace
