@@ -18,7 +18,7 @@
 #include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/core/threads.hpp"
+#include "corda/core/workers.hpp"
 #include "corda/golden/perceived.hpp"
 #include "corda/golden/variant.hpp"
 #include "corda/media/defs.hpp"

@@ -15,7 +15,7 @@
 
 #include "corda/core/cancel.hpp"
 #include "corda/core/cpu.hpp"
-#include "corda/core/threads.hpp"
+#include "corda/core/workers.hpp"
 #include "corda/golden/perceived.hpp"
 
 namespace corda {

@@ -13,7 +13,7 @@
 #include "corda/golden/cases.hpp"
 #include "corda/golden/provenance.hpp"
 #include "corda/golden/staging.hpp"
-#include "corda/golden/task_queue.hpp"
+#include "corda/core/workers.hpp"
 #include "corda/golden/update_folder.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 

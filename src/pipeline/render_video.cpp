@@ -12,7 +12,7 @@
 #include "corda/core/cancel.hpp"
 #include "corda/core/clock.hpp"
 #include "corda/core/machine.hpp"
-#include "corda/core/ordered_workers.hpp"
+#include "corda/core/workers.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
 #include "corda/core/text.hpp"

@@ -11,9 +11,9 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
 #include "corda/core/image.hpp"
-#include "corda/core/ordered_workers.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/rational.hpp"
+#include "corda/core/workers.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/media/read/decoder.hpp"
 

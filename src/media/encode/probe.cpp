@@ -13,7 +13,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/child_process.hpp"
 #include "corda/core/machine.hpp"
-#include "corda/core/threads.hpp"
+#include "corda/core/workers.hpp"
 #include "corda/media/encode/encoder.hpp"
 #include "corda/media/encode/resources.hpp"
 #include "corda/media/format/format.hpp"

@@ -1,28 +1,81 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <exception>
 #include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "corda/core/threads.hpp"
-
 namespace corda {
 
-/// Numbered things that several threads make and one takes in order. Few wait to be taken at a time: a thread
-/// that is too far ahead waits.
+/// Starts up to `count` threads that do `work`. Returns those that the system started: perhaps fewer, perhaps
+/// none. `work` is copied to each.
+template <class Work>
+[[nodiscard]] std::vector<std::jthread> start_threads(int count, const Work& work) {
+    std::vector<std::jthread> threads;
+    threads.reserve(static_cast<std::size_t>(std::max(0, count)));
+    try {
+        for (int i = 0; i < count; ++i) threads.emplace_back(work);
+    } catch (const std::system_error&) {  // fewer will do
+    }
+    return threads;
+}
+
+/// Starts and joins `count` threads. Returns false if the system starts fewer at a time.
+[[nodiscard]] inline bool can_start_threads(int count) {
+    std::mutex mutex;
+    std::condition_variable changed;
+    bool may_end = false;
+    const auto threads = start_threads(count, [&] {
+        std::unique_lock lock(mutex);
+        changed.wait(lock, [&] { return may_end; });
+    });
+    const std::lock_guard lock(mutex);
+    may_end = true;
+    changed.notify_all();
+    return static_cast<int>(threads.size()) == count;
+}
+
+/// A queue of tasks for several threads; a task may add further ones.
+class TaskQueue {
+  public:
+    using Task = std::function<void()>;
+
+    /// Adds a task at the end.
+    void push_back(Task task);
+    /// Adds a task before all that wait.
+    void push_front(Task task);
+    /// Runs all tasks on `threads` threads, or on the calling one if the system starts none. Throws the
+    /// exception of the first task that failed; those that wait by then are dropped.
+    void run(int threads);
+
+  private:
+    void help();
+
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<Task> waiting_;
+    unsigned busy_ = 0;
+    std::exception_ptr error_;
+};
+
+/// Several threads make numbered things, each thread with a state of its own, and the caller takes them in
+/// order. A thread that is too far ahead waits. For tasks without an order, see TaskQueue.
 template <class Thing>
 class OrderedWorkers {
   public:
-    /// Makes the thing of a number, on the thread that made the maker; `all` tells whether to stop.
+    /// Makes the thing of a number, on the thread that made the maker, until `all` is stopped.
     using Make = std::function<Thing(std::int64_t number, const OrderedWorkers& all)>;
 
     /// Begins to make things first <= i < end. A thread calls `new_maker` before the first thing that it
@@ -42,7 +95,8 @@ class OrderedWorkers {
     /// False if the system starts no thread: then nothing is made.
     [[nodiscard]] bool has_threads() const { return !threads_.empty(); }
 
-    /// The next thing in order; std::nullopt if it is not there after a moment. Throws what making it threw.
+    /// The next thing in order; std::nullopt if it is not there after a moment. Throws the exception that
+    /// making it threw.
     std::optional<Thing> wait() {
         constexpr std::chrono::milliseconds kMoment{50};
         std::unique_lock lock(mutex_);
@@ -65,7 +119,7 @@ class OrderedWorkers {
     /// The number of the next thing to be taken.
     [[nodiscard]] std::int64_t taken() const { return taken_; }
 
-    /// After stop(): the next thing in order, as far as it got; std::nullopt if there is none.
+    /// After stop(): the next thing in order, perhaps incomplete; std::nullopt if there is none.
     std::optional<Thing> rest() {
         threads_.clear();  // joins them
         auto node = made_.extract(taken_++);

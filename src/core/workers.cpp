@@ -1,20 +1,18 @@
-#include "corda/golden/task_queue.hpp"
+#include "corda/core/workers.hpp"
 
 #include <utility>
 
-#include "corda/core/threads.hpp"
+namespace corda {
 
-namespace corda::golden {
-
-void TaskQueue::push_back(Work work) {
+void TaskQueue::push_back(Task task) {
     const std::lock_guard lock(mutex_);
-    waiting_.push_back(std::move(work));
+    waiting_.push_back(std::move(task));
     changed_.notify_one();
 }
 
-void TaskQueue::push_front(Work work) {
+void TaskQueue::push_front(Task task) {
     const std::lock_guard lock(mutex_);
-    waiting_.push_front(std::move(work));
+    waiting_.push_front(std::move(task));
     changed_.notify_one();
 }
 
@@ -31,17 +29,17 @@ void TaskQueue::help() {
     while (true) {
         changed_.wait(lock, [&] { return !waiting_.empty() || busy_ == 0; });
         if (waiting_.empty()) return;
-        Work work = std::move(waiting_.front());
+        Task task = std::move(waiting_.front());
         waiting_.pop_front();
         ++busy_;
         lock.unlock();
         std::exception_ptr error;
         try {
-            work();
+            task();
         } catch (...) {
             error = std::current_exception();
         }
-        work = {};  // what it holds may be large, and is not to outlive it
+        task = {};  // its data may be large
         lock.lock();
         --busy_;
         if (error) waiting_.clear();
@@ -50,4 +48,4 @@ void TaskQueue::help() {
     }
 }
 
-}  // namespace corda::golden
+}  // namespace corda
