@@ -10,10 +10,11 @@
 
 #include "corda/core/cancel.hpp"
 #include "corda/core/machine.hpp"
+#include "corda/core/workers.hpp"
 #include "corda/golden/cases.hpp"
+#include "corda/golden/perceived.hpp"
 #include "corda/golden/provenance.hpp"
 #include "corda/golden/staging.hpp"
-#include "corda/core/workers.hpp"
 #include "corda/golden/update_folder.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 
@@ -21,6 +22,8 @@ namespace corda::golden {
 namespace {
 
 namespace fs = std::filesystem;
+
+static_assert(GoldenDef::kMinSsimSidePx == kMinSsimSidePx);
 
 /// A thread of its own draws no fewer pictures: the context that it needs takes as long as some of them.
 constexpr std::size_t kMinApart = 8;
@@ -48,6 +51,8 @@ bool passes(const Drawn& drawn, const DifferenceLimits& limits, const std::strin
     }
     picture.difference =
         reference.deep ? compare(reference, {.image = drawn.image}) : compare(reference.image, drawn.image);
+    add_perceived(reference.image, drawn.image,
+                  {.flip = limits.flip.has_value(), .ssim = limits.ssim.has_value()}, picture.difference);
     if (picture.difference.within(limits)) return true;
     picture.cause = cause_of(from_png_info(read_png_info(path)), drawn.made);
     picture.change = scene_change(path, drawn.scene);
@@ -60,7 +65,11 @@ bool passes(const Drawn& drawn, const DifferenceLimits& limits, const std::strin
 /// Compares a picture with its references until one passes; otherwise tells of the plain one, if there is.
 void judge(const Drawn& drawn, const std::vector<std::string>& variants, Checked& picture) {
     const GoldenDef& golden = *drawn.scene.golden;
-    const DifferenceLimits limits{.max = golden.max, .mean = {}, .share = golden.share};
+    const DifferenceLimits limits{.max = golden.max,
+                                  .mean = golden.mean,
+                                  .share = golden.share,
+                                  .flip = golden.flip,
+                                  .ssim = golden.ssim};
     picture.verdict = variants.empty() ? Verdict::kMissing : Verdict::kDifferent;
     std::optional<Checked> told;
     for (const std::string& path : variants) {

@@ -152,15 +152,26 @@ std::vector<Key> camera_keys() {
 std::vector<Key> golden_keys() {
     Type times = list(Kind::kNumber, 1);
     times.range = kFrom0;
-    const auto exact = [](const Binding& binding) { return otherwise("only equal pictures pass", binding); };
+    const auto limit = [](const char* name, double low, double high, auto member, const char* meaning,
+                          const char* note) {
+        return Key{"golden",
+                   name,
+                   number({.low = low, .high = high}),
+                   "",
+                   otherwise("no limit; without any, only equal pictures pass", field(member)),
+                   meaning,
+                   note};
+    };
     return {
         {"golden", "at", times, "s", required(field(&GoldenDef::at_s)), "the times of the pictures",
          "increasing, none after world.duration"},
         {"golden", "size", picture_size(), "px", size_field<GoldenDef>(), "the size of the pictures"},
-        {"golden", "max", number({.low = 0.0, .high = 255.0}), "", exact(field(&GoldenDef::max)),
-         "the largest difference of a channel that passes"},
-        {"golden", "share", number({.low = 0.0, .high = 1.0}), "", exact(field(&GoldenDef::share)),
-         "the share of differing pixels that passes", "given without golden.max it bounds the share alone"},
+        limit("max", 0.0, 255.0, &GoldenDef::max, "the largest difference of a channel that passes", ""),
+        limit("mean", 0.0, 255.0, &GoldenDef::mean, "the mean difference of all channels that passes", ""),
+        limit("share", 0.0, 1.0, &GoldenDef::share, "the share of differing pixels that passes",
+              "given without golden.max it bounds the share alone"),
+        limit("flip", 0.0, 1.0, &GoldenDef::flip, "the mean FLIP that passes", ""),
+        limit("ssim", -1.0, 1.0, &GoldenDef::ssim, "the least structural similarity that passes", ""),
     };
 }
 

@@ -110,6 +110,17 @@ TEST_F(GoldenSuite, ReportsWhenPositionsBeginToDiffer) {
     EXPECT_THAT(more.out, AllOf(Not(HasSubstr("_500000.png")), HasSubstr("from t = 0.5 s on")));
 }
 
+TEST_F(GoldenSuite, AllowsDifferencesByAnyFigure) {
+    for (const auto& [limit, code] : std::vector<std::pair<std::string, int>>{{"mean=20", 0},
+                                                                              {"mean=0", 7},
+                                                                              {"flip=0.9", 0},
+                                                                              {"flip=1e-9", 7},
+                                                                              {"ssim=0.1", 0},
+                                                                              {"ssim=0.999999", 7}}) {
+        EXPECT_EQ(run({"--set", "world.drag=0.3", "--set", "golden." + limit}).exit_code, code) << limit;
+    }
+}
+
 TEST_F(GoldenSuite, AcceptsAReferenceWithoutPositions) {
     change_reference("swing_t0000_000000.png", [](Image&, PngInfo& info) { info.text.clear(); });
     const auto result = run({"--set", "world.drag=0.3"});  // which the first picture does not show
