@@ -12,7 +12,6 @@
 /// Errors are corda::Error, with code() and what(). Coordinates are in metres, y up; times in seconds.
 
 #include "corda/core/basics.hpp"
-#include "corda/core/cancel.hpp"
 #include "corda/core/image.hpp"
 #include "corda/core/rational.hpp"
 #include "corda/golden/compare.hpp"

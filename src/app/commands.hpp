@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json_fwd.hpp>
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -31,7 +30,7 @@ AddCommand add_render, add_still, add_strobe, add_sheet, add_simulate, add_compa
     add_completion, add_help;
 
 /// The subcommands in the order of `corda --help`.
-inline constexpr std::array<AddCommand*, 18> kCommands{
+inline constexpr AddCommand* kCommands[] = {
     add_render, add_still,  add_strobe,   add_sheet,  add_simulate,   add_compare,
     add_golden, add_verify, add_recover,  add_doctor, add_plan,       add_report,
     add_study,  add_init,   add_examples, add_schema, add_completion, add_help};

@@ -14,6 +14,7 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
@@ -214,6 +215,10 @@ void compare_all(const CompareOptions& options, const std::optional<Image>& mask
     std::atomic<std::size_t> next = 0;
     std::atomic<bool> stops = false;
     const auto work = [&] {
+        const CancelScope stopping([&stops] {
+            stop_if_asked();
+            return !stops;
+        });
         for (std::size_t i = next++; i < pairs.size() && !stops; i = next++) {
             if (!pairs[i].is_in_a || !pairs[i].is_in_b) continue;
             try {

@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/golden/suite.hpp"
@@ -141,6 +142,7 @@ ExitCode run_suite(const Console& console, GoldenOptions options) {
     options.def.film.on_progress = stopping_if_asked();
     options.def.on_progress = stopping_if_asked();
     const golden::SuiteResult result = golden::run(options.def);
+    const CancelScope finishing({}, CancelScope::Outer::kIgnored);  // an update has been published
     if (!options.junit.empty()) write_text(options.junit, golden::junit_xml(result));
     if (!options.html.empty()) write_text(options.html, golden::page_html(result, options.def.folder));
     tell(console, options, result);

@@ -14,6 +14,7 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
@@ -299,7 +300,7 @@ void write_each(const std::vector<Still>& stills, const FigureOptions& options, 
     const std::vector<double> stills_s = options.film_times({stills.begin(), stills.end()});
     try {
         for (const Still& still : stills) {
-            stop_if_asked();
+            check_cancelled();
             const FigureDef def{.times_s = {still.time_s}, .shutter = options.shutter};
             const auto empty_s =
                 write_figure(still.path, film, def,

@@ -18,7 +18,6 @@ OnProgress show_progress(const Console& console, const std::string& what) {
     const double start_s = now_s();
     return [&console, what, start_s, progress = std::shared_ptr<Progress>(), last = std::int64_t{0}](
                std::int64_t done, std::int64_t total) mutable {
-        stop_if_asked();
         if (done < last || !progress) progress = std::make_shared<Progress>(console, what, total);
         last = done;
         if (now_s() - start_s > kSilentSeconds) progress->update(done);

@@ -187,13 +187,12 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     def.verify_all = options.verify == "full";
     parse_range(range_of(console, options), def);
     check_standard_output(console, options.output);
-    def.on_progress = stopping_if_asked();  // a file under the name of a part may be large
     const CheckedOutput output = check_render(scene, options.output, def, options.scene.input());
     report_format(console, scene, output);
     OnProgress on_progress = show_progress(console, "simulate");
     FilmDef film_def;
-    film_def.on_progress = [&on_progress](std::int64_t done, std::int64_t all) {
-        return on_progress(done, all);
+    film_def.on_progress = [&](std::int64_t done, std::int64_t all) {
+        return !on_progress || on_progress(done, all);
     };
     options.gl.apply_to(film_def);
     Film film(scene, film_def);
@@ -211,7 +210,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
 
     const GlInfo gl = film.gl();
     report_gl(console, gl);
-    on_progress = stopping_if_asked();  // from now on, simulation shows as frames that are drawn
+    on_progress = {};  // from now on, simulation shows as frames that are drawn
     Progress progress(console, "render", count);
     if (is_one_file(options.output)) keep_words_of_part(part_path(options.output));
     const Rendered rendered = render_video(film, output, [&](std::int64_t done, std::int64_t total) {

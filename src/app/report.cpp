@@ -52,7 +52,6 @@ std::optional<Error> write_report(const Console& console, Film& film, const std:
     for (const RequestedTime& time : times) def.at_s.push_back(time.time_s);
     def.output = {.force = options.force};
     def.on_part = [&](const std::string& part, std::int64_t done, std::int64_t total) {
-        stop_if_asked();
         parts.show(part, done, total);
     };
     try {
@@ -72,7 +71,9 @@ ExitCode report_command(const Console& console, const ReportOptions& options) {
     prepare_page_folder(options.output, options.force, options.dry_run);
     OnProgress on_progress = show_progress(console, "simulate");
     FilmDef def;
-    def.on_progress = [&on_progress](std::int64_t done, std::int64_t all) { return on_progress(done, all); };
+    def.on_progress = [&](std::int64_t done, std::int64_t all) {
+        return !on_progress || on_progress(done, all);
+    };
     def.readings = figures::needed_readings();
     for (const RequestedTime& time : times) def.stills_s.push_back(time.time_s);
     options.gl.apply_to(def);
@@ -84,7 +85,7 @@ ExitCode report_command(const Console& console, const ReportOptions& options) {
         return ExitCode::kOk;
     }
     set_interruption_message(kSomethingWritten);
-    on_progress = stopping_if_asked();
+    on_progress = {};
     report::ReportFolder folder(options.output, {.force = options.force},
                                 {figures::kColumnMm, figures::kPageMm});
     const std::optional<Error> failure = write_report(console, film, times, options, folder);

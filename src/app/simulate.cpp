@@ -8,6 +8,7 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/csv.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/pipeline/film.hpp"
@@ -149,7 +150,7 @@ void write_states(const Console& console, Film& film, const Columns& columns, Ou
     Progress progress(console, "simulate", film.last_frame() + 1);
     CsvLine line;
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
-        stop_if_asked();
+        check_cancelled();
         const State& state = film.state(k);
         if (csv != nullptr) {
             add_row(film, state, columns, line);
@@ -182,7 +183,9 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     if (to_file) check_output(options.output, options.scene.path, options.force, OutputKind::kStream);
     OnProgress on_progress = show_progress(console, "plan");
     FilmDef def;
-    def.on_progress = [&on_progress](std::int64_t done, std::int64_t all) { return on_progress(done, all); };
+    def.on_progress = [&](std::int64_t done, std::int64_t all) {
+        return !on_progress || on_progress(done, all);
+    };
     def.readings = {options.columns.velocities, options.columns.tensions};
     Film film(scene, def);
     report_plan(console, film);
@@ -194,7 +197,7 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     }
 
     set_interruption_message(kSomethingWritten);
-    on_progress = stopping_if_asked();
+    on_progress = {};
     std::unique_ptr<OutputFile> csv;
     if (!options.output.empty()) {
         csv = std::make_unique<OutputFile>(options.output, OutputOptions{.force = options.force});

@@ -6,7 +6,7 @@ corda_add_public_library(
     FOLDERS core sim view gl render media scene pipeline golden
     HEADERS
         corda.hpp
-        core/basics.hpp core/cancel.hpp core/image.hpp core/rational.hpp
+        core/basics.hpp core/image.hpp core/rational.hpp
         golden/compare.hpp golden/check_golden.hpp testing.hpp
         media/defs.hpp
         pipeline/film.hpp

@@ -19,8 +19,10 @@ if(CORDA_SANITIZE)
         -fsanitize=${CORDA_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(corda_options INTERFACE -fsanitize=${CORDA_SANITIZE})
     # ThreadSanitizer is not ready when the choice between clones is made.
-    target_compile_definitions(corda_options INTERFACE CORDA_SANITIZE
-        $<$<STREQUAL:${CORDA_SANITIZE},thread>:CORDA_NO_CLONES>)
+    target_compile_definitions(corda_options INTERFACE CORDA_SANITIZE)
+    if(CORDA_SANITIZE STREQUAL "thread")
+        target_compile_definitions(corda_options INTERFACE CORDA_NO_CLONES)
+    endif()
 endif()
 
 # corda_optimise(<folder>): optimises a folder under CORDA_SANITIZE. Others take longer to optimise than to run.

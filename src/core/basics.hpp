@@ -47,6 +47,32 @@ class Error : public std::runtime_error {
 /// May be empty.
 using OnProgress = std::function<bool(std::int64_t done, std::int64_t total)>;
 
+/// Cancellation of long work on one thread. While a scope lives, check_cancelled() calls its callback, which
+/// returns false to end the work. Scopes nest; a thread that the work starts has none.
+class [[nodiscard]] CancelScope {
+  public:
+    enum class Outer { kAsked, kIgnored };
+
+    /// An empty callback cancels nothing. `outer`: whether check_cancelled() also asks the scopes around this
+    /// one.
+    explicit CancelScope(std::function<bool()> goes_on, Outer outer = Outer::kAsked);
+    CancelScope(const CancelScope&) = delete;
+    CancelScope& operator=(const CancelScope&) = delete;
+    ~CancelScope();
+
+  private:
+    friend void check_cancelled();
+    static void ask(const CancelScope* scope);
+
+    std::function<bool()> goes_on_;
+    const CancelScope* outer_;
+    bool ignores_outer_;
+};
+
+/// Calls the callbacks of this thread's scopes, the outermost first. Throws corda::Error (kInterrupted) if
+/// one returns false, and what a callback throws. Work inside a callback calls none of them.
+void check_cancelled();
+
 /// How a file is written.
 struct OutputOptions {
     bool force = false;  ///< replace an existing file, and keep its permissions

@@ -1,5 +1,6 @@
 #include "corda/core/cancel.hpp"
 
+#include <cassert>
 #include <utility>
 
 namespace corda {
@@ -37,6 +38,7 @@ CancelScope::CancelScope(std::function<bool()> goes_on, Outer outer)
       ignores_outer_(outer == Outer::kIgnored) {}
 
 CancelScope::~CancelScope() {
+    assert(innermost == this);
     innermost = outer_;
 }
 

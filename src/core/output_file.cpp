@@ -235,8 +235,8 @@ void OutputFile::write(std::string_view bytes) {
 }
 
 void OutputFile::flush() {
-    const int status = write_all(descriptor_.get(), buffer_);
-    buffer_.clear();
+    // Not kept: if this is cancelled, a part of it is written, which must not be repeated.
+    const int status = write_all(descriptor_.get(), std::exchange(buffer_, {}));
     if (status != 0) fail_write(status);
 }
 

@@ -25,7 +25,7 @@ struct SceneReportDef {
 
 /// Writes the report of a film, whose states have needed_readings(), into a folder: CSVs with a row per frame
 /// time, figures, and the pages. If a motion diverges, the report shows the part before that, and the error
-/// is returned. If `on_progress` asks to stop, the pages have the figures that are drawn. Throws
+/// is returned. If it is cancelled, the pages have the figures that are drawn. Throws
 /// corda::Error: kIo, kNoGl, kDiverged if there is no state at all, kInterrupted.
 [[nodiscard]] std::optional<Error> write_scene_report(Film& film, const SceneReportDef& def,
                                                       report::ReportFolder& folder);

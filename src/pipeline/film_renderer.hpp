@@ -50,8 +50,8 @@ class FilmRenderer {
     /// as far as they need it.
     [[nodiscard]] static bool can_draw_in_any_order(Film& film, std::int64_t end);
     /// The poses at one or more times in one picture: earlier ones fainter, the last one opaque and on top.
-    /// Needs no OpenGL. Throws corda::Error as Film::state_at(), kInterrupted,
-    /// and kUsage for poses with too many lines in total.
+    /// Needs no OpenGL. Throws corda::Error as Film::state_at(), and kUsage for poses with too many
+    /// lines in total.
     [[nodiscard]] static view::DrawList list_poses(Film& film, std::span<const double> times_s);
     /// Draws list_poses() with the film's own context.
     [[nodiscard]] static Image draw_poses(Film& film, std::span<const double> times_s);
@@ -65,6 +65,7 @@ class FilmRenderer {
     /// True if the frame at a time would be empty. Needs no OpenGL. Throws as Film::state_at().
     [[nodiscard]] static bool is_empty(Film& film, double time_s);
 
+    /// The motion, for a SharedMotion::Activity.
     [[nodiscard]] static pipeline::SharedMotion& motion_of(Film& film);
 
   private:

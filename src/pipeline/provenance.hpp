@@ -54,9 +54,9 @@ inline constexpr const char* kProvenanceKey = "provenance";
 /// As a JSON object of at most kMaxBytes: without the scene, or without the picture, if they do not fit.
 [[nodiscard]] std::string provenance_text(Provenance provenance);
 
-/// Reads what a PNG or a video carries; a video in a child process (see core/child_process.hpp), and
-/// Throws corda::Error: kIo if the file cannot be read, kUsage if it
-/// carries nothing or no scene, or what it carries is damaged.
+/// Reads what a PNG or a video carries; a video in a child process (see core/child_process.hpp).
+/// Throws corda::Error: kIo if the file cannot be read, kUsage if it carries nothing or no scene, or what it
+/// carries is damaged.
 [[nodiscard]] Provenance read_provenance(const std::string& path);
 
 /// The scene of a file, with `settings` in place of what it says; messages name the file.

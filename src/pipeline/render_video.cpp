@@ -12,11 +12,11 @@
 #include "corda/core/cancel.hpp"
 #include "corda/core/clock.hpp"
 #include "corda/core/machine.hpp"
-#include "corda/core/workers.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/version.hpp"
+#include "corda/core/workers.hpp"
 #include "corda/media/chunks/chunk.hpp"
 #include "corda/media/chunks/part_reader.hpp"
 #include "corda/media/chunks/video_writer.hpp"
@@ -36,9 +36,6 @@ namespace corda {
 namespace {
 
 constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
-
-/// Time that the encoders may take, after a request to stop, to encode the frames that they hold back.
-constexpr double kMomentS = 0.4;
 
 /// Everything that determines the bytes of a video, by key.
 std::map<std::string, std::string> origin_of(const Scene& scene, const media::Format& format,
@@ -109,9 +106,9 @@ media::VideoMetadata metadata(Film& film, std::int64_t first, std::int64_t end,
 /// Keeps the frames before a divergence, and adds their file to the message.
 [[noreturn]] void keep_diverged(const Error& error, const std::string& path, std::int64_t first,
                                 media::VideoWriter& writer) {
+    const std::string kept = writer.abandon();
     const std::int64_t frames = writer.frames();
     if (frames == 0) throw Error(error.code(), error.what());
-    const std::string kept = writer.abandon();
     throw Error(error.code(),
                 fmt::format("{}; frames {}..{} before it are in {}, which plays; {} was not written",
                             error.what(), first, first + frames - 1, kept, path));
@@ -203,7 +200,7 @@ class ChunkMaker {
         std::optional<double> end_s;
         const CancelScope moment(
             [&] {
-                if (all.is_stopped() && !end_s) end_s = now_s() + kMomentS;
+                if (all.is_stopped() && !end_s) end_s = now_s() + media::kMomentS;
                 return !end_s || now_s() < *end_s;
             },
             CancelScope::Outer::kIgnored);
@@ -409,8 +406,6 @@ Rendered render_video(Film& film, const CheckedOutput& output, const OnProgress&
         if (error.code() == ExitCode::kDiverged) keep_diverged(error, video.path, video.first, writer);
         if (!is_interruption(error.code())) throw;
         result.complete = false;
-        const CancelScope moment([end_s = now_s() + kMomentS] { return now_s() < end_s; },
-                                 CancelScope::Outer::kIgnored);
         result.kept_part = writer.abandon();
     }
     result.frames = writer.frames();

@@ -43,8 +43,7 @@ class FrameRenderer {
     /// Discards lists that were exposed but not developed.
     void begin_exposure() { exposure_.clear(); }
     /// Adds the layers of a list to the frame that develop() will finish; all lists have the same ground.
-    /// image() is no frame until then. Throws as render(), and then discards the
-    /// exposure, as render() does.
+    /// image() is no frame until then. Throws as render(); then the exposure is discarded.
     void expose(const view::DrawList& list);
     /// Makes the next frame: the mean of the lists exposed since the last one, at least one, below the stamps
     /// of `list`, whose own layers are ignored. Returns what may differ from the last frame.

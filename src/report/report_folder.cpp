@@ -25,7 +25,7 @@ std::string contents_of(const std::string& path) {
 }  // namespace
 
 ReportFolder::ReportFolder(std::string path, OutputOptions options, std::vector<int> widths_mm)
-    : path_(std::move(path)), options_(std::move(options)), widths_mm_(std::move(widths_mm)) {
+    : path_(std::move(path)), options_(options), widths_mm_(std::move(widths_mm)) {
     make_folder(path_);
 }
 

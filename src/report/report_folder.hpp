@@ -15,12 +15,11 @@ namespace corda::report {
 /// OutputFile).
 class ReportFolder {
   public:
-    /// Makes the folder if it is missing. `widths_mm`: see
-    /// Report, of which it becomes that.
+    /// Makes the folder if it is missing. `widths_mm`: see Report.
     explicit ReportFolder(std::string path, OutputOptions options = {}, std::vector<int> widths_mm = {});
 
     /// Writes the figures of a chapter: `<id>.csv` per table, then the .svg, .png and .pdf of each picture
-    /// and plot. Also throws kInterrupted if it is asked to stop.
+    /// and plot. Also throws kInterrupted if cancelled.
     void add(const Chapter& chapter);
 
     /// Where a file of that name belongs.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
 #include "corda/core/cpu.hpp"
 #include "corda/sim/forces/forces.hpp"
 #include "corda/sim/recording.hpp"
@@ -85,6 +86,7 @@ Status Simulation::advance_to(double time_s) {
     is_stepping_ = false;
     if (has_diverged_) return Status::kDiverged;
     std::swap(state_, next_);
+    const CancelScope whole({}, CancelScope::Outer::kIgnored);
     observe();
     return Status::kOk;
 }

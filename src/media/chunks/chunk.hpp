@@ -14,6 +14,9 @@
 
 namespace corda::media {
 
+/// Seconds that an encoder may take, after a request to stop, to encode the frames that it holds back.
+inline constexpr double kMomentS = 0.4;
+
 /// Frames of a video that were encoded apart from all others: they begin with a key frame, and nothing before
 /// or after them is needed to decode them.
 struct Chunk {

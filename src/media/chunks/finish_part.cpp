@@ -101,7 +101,6 @@ RemuxResult finish_part(PartFile& part, const std::string& path, const OutputOpt
     if (ending.kind == FileKind::kAnimation) {
         const OnProgress encoded = [&](std::int64_t frame, std::int64_t) {
             if (def.frames) done = result.frames + frame;
-            check_cancelled();
             return true;
         };
         const int threads = animation_threads(def.jobs, ending, open_part(part.path(), index.bytes));

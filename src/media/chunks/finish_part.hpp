@@ -25,8 +25,7 @@ struct RemuxResult {
 /// and removes the part, unless that is damaged or `keep_part` is set. Throws corda::Error, and leaves the
 /// part as it is: kIo if a file cannot be read or written, or if `path` exists and is not to be replaced;
 /// kUsage if the ending of `path` is not that of what the part holds; kMismatch if the part holds no whole
-/// chunk, has no constant frame rate, or gives a video that fails its check; kInterrupted if
-/// cancelled.
+/// chunk, has no constant frame rate, or gives a video that fails its check; kInterrupted if cancelled.
 RemuxResult recover_part(const std::string& part_path, const std::string& path,
                          const OutputOptions& options = {}, bool keep_part = false);
 

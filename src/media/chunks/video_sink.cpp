@@ -197,7 +197,7 @@ class PartSink : public VideoSink {
 class PictureSink : public VideoSink {
   public:
     PictureSink(std::string pattern, OutputOptions options, const FrameRange& frames)
-        : pattern_(std::move(pattern)), options_(std::move(options)), first_frame_(frames.first) {
+        : pattern_(std::move(pattern)), options_(options), first_frame_(frames.first) {
         const std::filesystem::path path(pattern_);
         const std::string folder = path.parent_path().string();
         if (!folder.empty()) make_folder(folder);

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/cancel.hpp"
+#include "corda/core/clock.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
@@ -187,18 +189,11 @@ struct VideoWriter::Impl {
     /// The number in the film of the next frame that write() is given.
     [[nodiscard]] std::int64_t next_frame() const { return first_frame + frames(); }
 
-    /// Ends the stream; behind a chunk that could not be written nothing goes.
+    /// Ends the stream. After a chunk that could not be written, nothing more is written.
     void drain() {
-        if (is_broken) {
-            encoder.reset();
-        } else {
-            try {
-                end_chunk();
-            } catch (const Error& error) {
-                if (error.code() != ExitCode::kInterrupted) throw;
-            }
-            if (written > 0) sink->drain();
-        }
+        if (is_broken) encoder.reset();
+        if (encoder) end_chunk();
+        if (!is_broken && written > 0) sink->drain();
         drained = true;
     }
 
@@ -238,12 +233,15 @@ void VideoWriter::write(const Image& frame, const Damage& damage, bool is_last) 
     if (!impl.encoder) impl.encoder = std::make_unique<ChunkEncoder>(impl.chunk_encoder(impl.next_frame()));
     const bool ends_chunk = is_last || (impl.next_frame() + 1) % frames_per_chunk() == 0;
     impl.encoder->encode(frame, damage, ends_chunk);
-    if (ends_chunk) impl.end_chunk();
+    if (!ends_chunk) return;
+    const CancelScope whole({}, CancelScope::Outer::kIgnored);  // or its frames would be lost
+    impl.end_chunk();
 }
 
 void VideoWriter::append(Chunk chunk) {
     Impl& impl = *impl_;
     impl.check_goes_on();
+    const CancelScope whole({}, CancelScope::Outer::kIgnored);
     impl.end_chunk();
     impl.append(std::move(chunk));
 }
@@ -276,7 +274,10 @@ void VideoWriter::finish(VerifyDepth depth, const OnProgress& on_progress) {
             ExitCode::kUsage,
             fmt::format("'{}' would have no frame; ask for a duration of at least one frame", impl.path));
     }
-    impl.drain();
+    {
+        const CancelScope whole({}, CancelScope::Outer::kIgnored);
+        impl.drain();
+    }
     const bool takes_all = depth == VerifyDepth::kKeyFrames && impl.format.codec->verifies_all;
     if (takes_all) depth = VerifyDepth::kAllFrames;
     impl.sink->finish({.frames = frames(),
@@ -287,7 +288,17 @@ void VideoWriter::finish(VerifyDepth depth, const OnProgress& on_progress) {
 }
 
 std::string VideoWriter::abandon() {
-    if (!impl_->drained) impl_->drain();
+    const auto is_within_moment = [end_s = now_s() + kMomentS] { return now_s() < end_s; };
+    if (!impl_->drained) {
+        try {
+            const CancelScope moment(is_within_moment, CancelScope::Outer::kIgnored);
+            impl_->drain();
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::kInterrupted) throw;
+            const CancelScope whole({}, CancelScope::Outer::kIgnored);
+            impl_->drain();  // without the frames that the encoder held back
+        }
+    }
     if (frames() == 0) {
         impl_->sink->remove();
         return {};

@@ -95,13 +95,13 @@ class VideoWriter {
 
     /// Ends the last chunk, copies, verifies, and gives the video its name. Of codecs that take much longer
     /// to encode than to decode (AV1, VP9, H.265) all frames are verified in any case. Needs at least one
-    /// frame. Throws kEncoder, kIo, kMismatch (the check found a problem), or kInterrupted if
-    /// cancelled; then the frames stay in `PATH.part`. `on_progress`: see FinishDef.
+    /// frame. Throws kEncoder, kIo, kMismatch (the check found a problem), or kInterrupted if cancelled;
+    /// then the frames stay in `PATH.part`. `on_progress`: see FinishDef.
     void finish(VerifyDepth depth = VerifyDepth::kKeyFrames, const OnProgress& on_progress = {});
 
     /// Drains and ends the part file unless `finish` has, so that it stays as a playable `PATH.part`, and
-    /// returns its path. Without any frame the part is removed, and the path is empty. Cancelling it while
-    /// the encoder is drained drops the chunk that it drains.
+    /// returns its path. Without any frame the part is removed, and the path is empty. Cannot be
+    /// cancelled; a chunk whose encoder takes longer than kMomentS to end is dropped.
     std::string abandon();
 
   private:

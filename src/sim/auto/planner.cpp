@@ -71,7 +71,9 @@ std::vector<Trial> exact_trials(const System& system, double tolerance_m) {
 }
 
 /// Trials of `rattle` for a graph, each checked by the next order (8 by 8) at kCheckStep of its step.
-std::vector<Trial> graph_trials(const System& system, const WorldDef& world) {
+std::vector<Trial> graph_trials(const System& system, const WorldDef& world, const PlanDef& def) {
+    const std::int64_t none_done = 0;
+    const CancelScope progress = report_frames(def, none_done);
     std::vector<Trial> trials;
     int order = 0;
     double stable_s = 0.0;
@@ -241,10 +243,13 @@ void sum_up(const System& system, Plan& plan) {
 
 BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& def, Recording& recording) {
     const double interval_s = def.timeline.fps().interval_s();
-    const std::int64_t none_done = 0;
-    const CancelScope progress = report_frames(def, none_done);
+    const auto refusal_of = [&](const MethodDef& method) {
+        const std::int64_t none_done = 0;
+        const CancelScope progress = report_frames(def, none_done);
+        return refusal(system, world, method, interval_s);
+    };
     BodyPlan plan;
-    const auto exact_refusal = refusal(system, world, ExactDef{kTolerance[kMaxDigits]}, interval_s);
+    const auto exact_refusal = refusal_of(ExactDef{kTolerance[kMaxDigits]});
     if (!exact_refusal) {
         plan.reason = PlanReason::kExact;
         MotionBounds start;
@@ -256,15 +261,15 @@ BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& d
     if (is_rigid_chain(system.bodies.front()) ||
         exact_refusal->reason() == Refusal::Reason::kBarWithoutLength)
         throw Refusal(*exact_refusal);
-    const bool can_fall_back = !refusal(system, world, RelaxationDef{}, interval_s);
-    if (const auto rattle_refusal = refusal(system, world, RattleDef{}, interval_s)) {
+    const bool can_fall_back = !refusal_of(RelaxationDef{});
+    if (const auto rattle_refusal = refusal_of(RattleDef{})) {
         if (!can_fall_back) throw Refusal(*rattle_refusal);
         fall_back(system, world, def, plan, recording);
         return plan;
     }
     plan.reason = PlanReason::kGraph;
     try {
-        run_until_one_holds(system, world, def, graph_trials(system, world), plan, recording);
+        run_until_one_holds(system, world, def, graph_trials(system, world, def), plan, recording);
     } catch (const Refusal&) {
         // A check, whose start is turned, may take bars to depend on each other that the run does not.
         if (!can_fall_back) throw;

@@ -45,8 +45,7 @@ class Forces {
     [[nodiscard]] bool conserve_energy() const { return sum_.drag_1_s == 0.0; }
 
     /// Decay factor exp(-drag t) of a velocity after `time_s`; greater than 1 for a negative time. Uses only
-    /// +, -,
-    /// * and /, because the last bit of std::exp differs between C libraries.
+    /// +, -, * and /, because the last bit of std::exp differs between C libraries.
     [[nodiscard]] double decay(double time_s) const;
 
     /// Inverse of the time in which a body of this length and speed moves by about its own length, in 1/s; 0

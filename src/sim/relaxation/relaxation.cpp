@@ -29,8 +29,8 @@ void refuse_materials(const System& system) {
 /// a level 2 cache.
 constexpr std::size_t kParticlesTogether = 256;
 
-/// Sweeps run in pieces of this many bars and particles, a few milliseconds, which are
-/// counted as work. With smaller pieces the kernel would wait more often for the last sweep to end.
+/// Sweeps run in pieces of this many bars and particles, a few milliseconds, which are counted
+/// as work. With smaller pieces the kernel would wait more often for the last sweep to end.
 constexpr std::uint64_t kMaxAtOnce = 1'000'000;
 /// Minimum number of sweeps of a piece, so that the memory reads of a large rope are still shared.
 constexpr std::uint64_t kMinSweeps = 12;

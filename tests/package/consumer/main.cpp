@@ -12,6 +12,7 @@ int main(int argc, char** argv) try {
     scene.world.duration_s = 0.5;
     corda::Film film(scene);
     const corda::Difference difference = corda::compare(film.frame(10), corda::read_png(argv[2]));
+    const corda::CancelScope uncancelled([] { return true; });
     std::int64_t last = 0;
     corda::render_video(film, argv[3], {.force = true, .on_progress = [&](std::int64_t k, std::int64_t) {
                                             last = k;

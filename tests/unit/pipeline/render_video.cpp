@@ -101,7 +101,6 @@ TEST_F(RenderVideo, CountsFramesOfAnimationsTwiceAndCanBeStoppedAnyTime) {
         def.on_progress = [&](std::int64_t done, std::int64_t total) {
             EXPECT_EQ(total, 2 * frames);
             heard.push_back(done);
-            if (done == 0) std::fprintf(stderr, "zero\n");
             return true;
         };
         EXPECT_EQ(render_video(film, file(name), def).encoder, name.substr(2));

@@ -8,6 +8,7 @@
 #include "corda/media/chunks/finish_part.hpp"
 #include "corda/media/encode/yuv420.hpp"
 #include "corda/media/format/format.hpp"
+#include "support/cancel.hpp"
 #include "support/decode_video.hpp"
 #include "support/failure.hpp"
 #include "support/file_size_limit.hpp"
@@ -273,6 +274,18 @@ TEST_F(Video, HasEveryChunkOnTheDiskOnceItIsWhole) {
         }
         EXPECT_EQ(writer.abandon(), part);
     }
+}
+
+TEST_F(Video, KeepsAllFramesIfCancelledAtAnyTime) {
+    {
+        VideoWriter writer(file("a.mp4"), small_video(), {});
+        const CancelScope stop = test::cancel_after(0);
+        for (int k = 0; k < 5; ++k) writer.write(frame_image(k), {}, k == 4);
+        EXPECT_EQ(test::code_of([&] { writer.finish(); }), ExitCode::kInterrupted);
+        EXPECT_EQ(writer.abandon(), file("a.mp4.part"));
+        EXPECT_EQ(writer.frames(), 5);
+    }
+    EXPECT_EQ(recover_part(file("a.mp4.part"), file("b.mp4")).frames, 5);
 }
 
 TEST_F(Video, EndsAChunkWithItsLastFrame) {
