@@ -158,10 +158,11 @@ class Runner {
         const VideoDef& video = job.film->scene().video;
         const double y_m = *camera.height_m / 2;
         const double x_m = y_m * video.width_px / video.height_px;
+        const Vec2 center = *camera.center_m - job.film->system().origin_m;  // positions are relative to it
         return std::any_of(job.made.begin(), job.made.end(), [&](const Provenance& made) {
             for (std::size_t i = 0; i + 1 < made.positions_m.size(); i += 2)
-                if (std::abs(made.positions_m[i] - camera.center_m->x) > x_m ||
-                    std::abs(made.positions_m[i + 1] - camera.center_m->y) > y_m)
+                if (std::abs(made.positions_m[i] - center.x) > x_m ||
+                    std::abs(made.positions_m[i + 1] - center.y) > y_m)
                     return true;
             return false;
         });
@@ -210,9 +211,11 @@ class Runner {
         tell_since_when(job);
         const bool is_cut = !job.frozen.empty() && leaves_frame(job);
         for (Checked& picture : job.scene->pictures) {
-            if (!picture.change.empty()) picture.cause += "; " + picture.change;
-            if (is_cut && picture.failed())
-                picture.cause += "; it leaves the frozen frame, and --update fits another";
+            const auto add = [&cause = picture.cause](const std::string& text) {
+                cause += (cause.empty() ? "" : "; ") + text;
+            };
+            if (!picture.change.empty()) add(picture.change);
+            if (is_cut && picture.failed()) add("it leaves the frozen frame, and --update fits another");
         }
         job.film.reset();
     }

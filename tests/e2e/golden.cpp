@@ -121,6 +121,24 @@ TEST_F(GoldenSuite, AllowsDifferencesByAnyFigure) {
     }
 }
 
+TEST_F(GoldenSuite, FindsTheMotionInItsFrameWhereverTheSceneLies) {
+    test::write_file(folder_.file("scenes/swing.toml"),
+                     R"(schema = 1
+video.size = [160, 90]
+world.duration = 1
+[[rope]]
+points = [[30.0, 40.0], [30.5, 39.5], [31.0, 39.0]]
+pinned = [0]
+[golden]
+at = [0.0, 0.5]
+)");
+    EXPECT_EQ(run({"--update"}).exit_code, 0);
+    std::filesystem::remove(reference(kMiddle));
+    const auto result = run();
+    EXPECT_EQ(result.exit_code, 7);
+    EXPECT_THAT(result.out, AllOf(HasSubstr("missing"), Not(HasSubstr("frozen frame"))));
+}
+
 TEST_F(GoldenSuite, AcceptsAReferenceWithoutPositions) {
     change_reference("swing_t0000_000000.png", [](Image&, PngInfo& info) { info.text.clear(); });
     const auto result = run({"--set", "world.drag=0.3"});  // which the first picture does not show
