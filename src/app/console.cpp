@@ -122,7 +122,9 @@ void Progress::update(std::int64_t done) {
     }
     if (console_->draws_bar()) {
         const double now = now_s();
-        if (now - last_drawn_s_ < kSecondsBetweenBars && done < total_) return;
+        const bool is_new_end = done == total_ && !is_at_end_;
+        if (now - last_drawn_s_ < kSecondsBetweenBars && !is_new_end) return;
+        is_at_end_ = done == total_;
         last_drawn_s_ = now;
         draw_bar(done);
         return;

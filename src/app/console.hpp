@@ -76,6 +76,7 @@ class Progress {
     std::optional<std::int64_t> first_done_;  ///< at start_s_; an earlier run may have done much
     double last_drawn_s_ = 0.0;
     bool bar_is_drawn_ = false;
+    bool is_at_end_ = false;
 };
 
 /// One row of the table that `corda --help` and the manual page print.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -211,12 +212,13 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     const GlInfo gl = film.gl();
     report_gl(console, gl);
     on_progress = {};  // from now on, simulation shows as frames that are drawn
-    Progress progress(console, "render", count);
+    std::optional<Progress> progress(std::in_place, console, "render", count);
     if (is_one_file(options.output)) keep_words_of_part(part_path(options.output));
     const Rendered rendered = render_video(film, output, [&](std::int64_t done, std::int64_t total) {
-        progress.update(total > 0 ? done * count / total : done);
+        progress->update(total > 0 ? done * count / total : done);
         return interruption() == ExitCode::kOk;
     });
+    progress.reset();
     if (rendered.reader_left) return ExitCode::kOk;
     if (!rendered.complete)
         throw Error(interruption(), words_of_interruption(options, output.first(), count, rendered));
