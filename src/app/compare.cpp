@@ -408,7 +408,7 @@ void add_compare(CLI::App& app, Action& action) {
         ->check(within(0.0, 1.0));
     command
         .add_option("--flip", options.limits.flip,
-                    "mean FLIP, what one sees who flips between both at 67 pixels per degree, that passes")
+                    "largest mean FLIP that passes (the visible difference at 67 pixels per degree)")
         ->check(within(0.0, 1.0));
     command
         .add_option("--ssim", options.limits.ssim,

@@ -141,7 +141,8 @@ ExitCode doctor(const Console& console) {
 }  // namespace
 
 void add_doctor(CLI::App& app, Action& action) {
-    CLI::App* command = app.add_subcommand("doctor", "say what this machine can do, and why not");
+    CLI::App* command =
+        app.add_subcommand("doctor", "show what works on this machine, and why the rest does not");
     command->callback([&action] { action = doctor; });
 }
 

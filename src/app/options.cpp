@@ -135,8 +135,9 @@ void SceneOptions::add_from(CLI::App& command) {
     CLI::Option* scene = command.get_option("SCENE")->required(false);
     CLI::Option* file =
         command
-            .add_option("--from", from_,
-                        "a picture or a video that corda has written, in place of SCENE: the same again")
+            .add_option(
+                "--from", from_,
+                "repeat a picture or a video of corda: take the scene that it carries in place of SCENE")
             ->type_name("FILE");
     file->excludes(scene);
 }

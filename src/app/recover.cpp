@@ -27,9 +27,9 @@ std::string name_of(const std::string& part) {
     const std::string ending = part_path("");
     if (part.size() > ending.size() && part.ends_with(ending))
         return part.substr(0, part.size() - ending.size());
-    throw Error(ExitCode::kUsage, fmt::format("'{}' does not end in {}, as what an interrupted render leaves "
-                                              "does; name such a file",
-                                              part, ending));
+    throw Error(ExitCode::kUsage,
+                fmt::format("'{}' does not end in {}; name the file that an interrupted render has left",
+                            part, ending));
 }
 
 ExitCode recover(const Console& console, const RecoverOptions& options) {

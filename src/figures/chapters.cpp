@@ -353,7 +353,7 @@ report::Chapter strain_chapter(const Film& film, const MotionSummary& motion) {
         chapter.summary = fmt::format(
             "The largest strain, | length / rest length - 1 |, is {} at {} ({}){}.",
             quantity_text(largest.size, ""), time_text(largest.time_s), link_text(system, largest),
-            stretches ? "" : ": an error of the method, for the links are not to stretch");
+            stretches ? "" : ": an error of the method, because these links do not stretch");
     }
     const std::vector<Curve> curves = curves_of(film.scene(), system, motion, &BodyCurves::strain);
     if (curves.empty()) return chapter;

@@ -152,7 +152,7 @@ std::string reason_text(const BodyPlan& plan) {
         case PlanReason::kNamed:
             return fmt::format("the scene asks for {}", method_name(plan.method));
         case PlanReason::kExact:
-            return "it moves chains, and bodies that stretch, with the least error";
+            return "it has the smallest error for chains and for bodies that stretch";
         case PlanReason::kGraph:
             return "it keeps the bars of closed ropes and nets at their lengths";
         case PlanReason::kDependent:

@@ -44,7 +44,7 @@ void open(AVCodecContext& context, const VideoDef& def, const EncoderOptions& se
     check_libav(avcodec_open2(&context, nullptr, options.get()), ExitCode::kEncoder,
                 fmt::format("{} does not open for {}x{} at {} fps{}", encoder, def.width_px, def.height_px,
                             def.fps.rational().text(), text),
-                is_hardware ? "try another codec: this one takes hardware and its driver"
+                is_hardware ? "try another codec: this one needs hardware and its driver"
                             : "try another preset, size or codec");
     if (const std::string name = options.left_over(); !name.empty()) {
         throw Error(ExitCode::kEncoder, fmt::format("{} does not know the option '{}'", encoder, name));
