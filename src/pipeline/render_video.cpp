@@ -198,14 +198,11 @@ class ChunkMaker {
     /// Flushes the encoder; once all threads are stopped, only for a moment.
     static void finish(media::ChunkEncoder& encoder, const OrderedWorkers<Made>& all, Made& made) {
         std::optional<double> end_s;
-        const CancelScope moment(
-            [&] {
+        try {
+            made.chunk = encoder.finish([&] {
                 if (all.is_stopped() && !end_s) end_s = now_s() + media::kMomentS;
                 return !end_s || now_s() < *end_s;
-            },
-            CancelScope::Outer::kIgnored);
-        try {
-            made.chunk = encoder.finish();
+            });
         } catch (const Error& error) {
             if (error.code() != ExitCode::kInterrupted) throw;
             made.is_whole = false;

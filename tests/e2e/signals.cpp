@@ -120,6 +120,22 @@ TEST_F(Signals, EndTheWaitForTheReaderOfAPipe) {
     EXPECT_EQ(alone.result.exit_code, 130) << alone.result.err;
 }
 
+TEST_F(Signals, EndARenderThatWaitsForItsReader) {
+    const std::string pipe = folder_.file("pipe");
+    ASSERT_EQ(run_shell("mkfifo " + pipe).exit_code, 0);
+    std::string scene = kSceneOfSignals;
+    scene.erase(scene.find("preset"));  // raw frames have no preset
+    scene = folder_.write("raw.toml", scene);
+    for (const char* const jobs : {"1", "2"}) {
+        const auto end = run_shell("sleep 20 < " + pipe + " & reader=$!; " + test::quoted(CORDA_PROGRAM) +
+                                   " render " + scene + " -o - --jobs " + jobs + " > " + pipe +
+                                   " & pid=$!; sleep 1.5; kill -TERM $pid; wait $pid; code=$?; "
+                                   "kill $reader; exit $code");
+        EXPECT_EQ(end.exit_code, 143) << end.err;
+        EXPECT_THAT(end.err, AllOf(HasSubstr("interrupted"), Not(HasSubstr("did not stop in time"))));
+    }
+}
+
 TEST_F(Signals, WriteNothingAfterATruncatedFrame) {
     const std::string pipe = folder_.file("pipe");
     ASSERT_EQ(run_shell("mkfifo " + pipe).exit_code, 0);

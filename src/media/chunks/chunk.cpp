@@ -37,8 +37,9 @@ void ChunkEncoder::encode(const Image& frame, const Damage& damage, bool is_last
     ++chunk_.frames;
 }
 
-Chunk ChunkEncoder::finish() {
+Chunk ChunkEncoder::finish(std::function<bool()> goes_on) {
     assert(encoder_);
+    const CancelScope alone(std::move(goes_on), CancelScope::Outer::kIgnored);
     if (chunk_.frames > 0) {
         encoder_->drain([&](AVPacket& packet) {
             check_cancelled();

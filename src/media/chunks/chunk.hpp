@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -44,9 +45,10 @@ class ChunkEncoder {
     /// first is taken whole).
     void encode(const Image& frame, const Damage& damage, bool is_last = false);
     [[nodiscard]] std::int64_t frames() const { return chunk_.frames; }
-    /// Drains the encoder. Nothing can be added afterwards. Calls check_cancelled() at each frame that the
-    /// encoder has held back; if that throws, the chunk is dropped.
-    [[nodiscard]] Chunk finish();
+    /// Drains the encoder. Nothing can be added afterwards. No scope around it cancels it, because its frames
+    /// have been drawn; if `goes_on` returns false at a frame that the encoder has held back, the chunk is
+    /// dropped (kInterrupted).
+    [[nodiscard]] Chunk finish(std::function<bool()> goes_on = {});
 
   private:
     /// Moves a packet to the chunk.

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/cancel.hpp"
 #include "corda/core/clock.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
@@ -179,9 +178,9 @@ struct VideoWriter::Impl {
     }
 
     /// Ends the chunk that write() has begun.
-    void end_chunk() {
+    void end_chunk(std::function<bool()> goes_on = {}) {
         const auto ended = std::exchange(encoder, nullptr);
-        if (ended && ended->frames() > 0) append(ended->finish());
+        if (ended && ended->frames() > 0) append(ended->finish(std::move(goes_on)));
     }
 
     [[nodiscard]] std::int64_t frames() const { return written + (encoder ? encoder->frames() : 0); }
@@ -190,9 +189,9 @@ struct VideoWriter::Impl {
     [[nodiscard]] std::int64_t next_frame() const { return first_frame + frames(); }
 
     /// Ends the stream. After a chunk that could not be written, nothing more is written.
-    void drain() {
+    void drain(std::function<bool()> goes_on = {}) {
         if (is_broken) encoder.reset();
-        if (encoder) end_chunk();
+        end_chunk(std::move(goes_on));
         if (!is_broken && written > 0) sink->drain();
         drained = true;
     }
@@ -233,15 +232,12 @@ void VideoWriter::write(const Image& frame, const Damage& damage, bool is_last) 
     if (!impl.encoder) impl.encoder = std::make_unique<ChunkEncoder>(impl.chunk_encoder(impl.next_frame()));
     const bool ends_chunk = is_last || (impl.next_frame() + 1) % frames_per_chunk() == 0;
     impl.encoder->encode(frame, damage, ends_chunk);
-    if (!ends_chunk) return;
-    const CancelScope whole({}, CancelScope::Outer::kIgnored);  // or its frames would be lost
-    impl.end_chunk();
+    if (ends_chunk) impl.end_chunk();
 }
 
 void VideoWriter::append(Chunk chunk) {
     Impl& impl = *impl_;
     impl.check_goes_on();
-    const CancelScope whole({}, CancelScope::Outer::kIgnored);
     impl.end_chunk();
     impl.append(std::move(chunk));
 }
@@ -274,10 +270,7 @@ void VideoWriter::finish(VerifyDepth depth, const OnProgress& on_progress) {
             ExitCode::kUsage,
             fmt::format("'{}' would have no frame; ask for a duration of at least one frame", impl.path));
     }
-    {
-        const CancelScope whole({}, CancelScope::Outer::kIgnored);
-        impl.drain();
-    }
+    impl.drain();
     const bool takes_all = depth == VerifyDepth::kKeyFrames && impl.format.codec->verifies_all;
     if (takes_all) depth = VerifyDepth::kAllFrames;
     impl.sink->finish({.frames = frames(),
@@ -288,14 +281,11 @@ void VideoWriter::finish(VerifyDepth depth, const OnProgress& on_progress) {
 }
 
 std::string VideoWriter::abandon() {
-    const auto is_within_moment = [end_s = now_s() + kMomentS] { return now_s() < end_s; };
     if (!impl_->drained) {
         try {
-            const CancelScope moment(is_within_moment, CancelScope::Outer::kIgnored);
-            impl_->drain();
+            impl_->drain([end_s = now_s() + kMomentS] { return now_s() < end_s; });
         } catch (const Error& error) {
-            if (error.code() != ExitCode::kInterrupted) throw;
-            const CancelScope whole({}, CancelScope::Outer::kIgnored);
+            if (!is_interruption(error.code())) throw;
             impl_->drain();  // without the frames that the encoder held back
         }
     }
