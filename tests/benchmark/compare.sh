@@ -23,4 +23,4 @@ build() {
 }
 (cd "$root" && build "$root")
 (cd "$scratch/tree" && build "$scratch/tree")
-exec python3 "$root/tests/benchmark/compare.py" "$root/build/ci" "$scratch/tree/build/ci" "$root/examples" "$@"
+exec python3 "$root/tests/benchmark/compare.py" "$root/build/ci" "$scratch/tree/build/ci" "$@"

@@ -54,7 +54,8 @@ struct Cursor {
 /// Pointers into a schedule and a motion.
 struct Pointers {
     const RelaxationPacket* packets;
-    const std::uint8_t* next_is_independent;
+    const PacketShares* shares;
+    const std::uint8_t* share_index;
     const std::uint32_t* updates;
     const std::uint32_t* update_begin;
     double* position_m;
@@ -63,15 +64,21 @@ struct Pointers {
     double* last_move_m;
     const double* push_m;
     double keep;
+
+    [[nodiscard]] const PacketShares& shares_of(std::size_t packet) const {
+        return shares[share_index[packet]];
+    }
 };
 
-/// Relaxes the bars of a packet, one of which has no length.
-[[gnu::noinline, gnu::cold]] void relax_one_by_one(const RelaxationPacket& packet, double* position_m) {
-    const std::size_t bars = packet.a[0] == packet.a[1] ? 1 : 2;
-    for (std::size_t lane = 0; lane < bars; ++lane) {
-        relax(position_m + packet.a[lane], position_m + packet.b[lane], packet.rest_m[lane],
-              packet.share_a[lane], packet.share_b[lane]);
-    }
+/// Relaxes the bars in lanes `lane` and `lane` + 1 of packet k, one of which has no length.
+[[gnu::noinline, gnu::cold]] void relax_one_by_one(const Pointers& p, std::size_t k, std::size_t lane) {
+    const RelaxationPacket& packet = p.packets[k];
+    const PacketShares& shares = p.shares_of(k);
+    const auto relax_lane = [&](std::size_t i, double share_a, double share_b) {
+        relax(p.position_m + packet.a[i], p.position_m + packet.b[i], packet.rest_m[i], share_a, share_b);
+    };
+    relax_lane(lane, shares.even_a[lane], shares.even_b[lane]);
+    if (packet.a[lane + 1] != packet.a[lane]) relax_lane(lane + 1, shares.odd_a[lane], shares.odd_b[lane]);
 }
 
 /// Verlet's update of one particle.
@@ -95,12 +102,14 @@ CORDA_INLINE void update_before(const Pointers& p, const Cursor& sweep) {
         update_particle(p, p.updates[j]);
 }
 
-/// Relaxes the bars of a packet.
-CORDA_INLINE void relax_two(const RelaxationPacket& packet, double* position_m) {
-    double* const a0 = position_m + packet.a[0];
-    double* const a1 = position_m + packet.a[1];
-    double* const b0 = position_m + packet.b[0];
-    double* const b1 = position_m + packet.b[1];
+/// Relaxes the bars in lanes `lane` and `lane` + 1 of packet k.
+CORDA_INLINE void relax_two(const Pointers& p, std::size_t k, std::size_t lane) {
+    const RelaxationPacket& packet = p.packets[k];
+    const PacketShares& shares = p.shares_of(k);
+    double* const a0 = p.position_m + packet.a[lane];
+    double* const a1 = p.position_m + packet.a[lane + 1];
+    double* const b0 = p.position_m + packet.b[lane];
+    double* const b1 = p.position_m + packet.b[lane + 1];
     const __m128d at_a0 = _mm_loadu_pd(a0);
     const __m128d at_a1 = _mm_loadu_pd(a1);
     const __m128d at_b0 = _mm_loadu_pd(b0);
@@ -112,22 +121,24 @@ CORDA_INLINE void relax_two(const RelaxationPacket& packet, double* position_m) 
     const __m128d distance =
         _mm_sqrt_pd(_mm_add_pd(_mm_unpacklo_pd(square0, square1), _mm_unpackhi_pd(square0, square1)));
     if (_mm_movemask_pd(_mm_cmpeq_pd(distance, _mm_setzero_pd())) != 0) [[unlikely]]
-        return relax_one_by_one(packet, position_m);
-    const __m128d adjust = _mm_sub_pd(distance, _mm_load_pd(packet.rest_m.data()));
+        return relax_one_by_one(p, k, lane);
+    const __m128d adjust = _mm_sub_pd(distance, _mm_load_pd(packet.rest_m.data() + lane));
     const __m128d move0 =
         _mm_mul_pd(_mm_div_pd(along0, _mm_unpacklo_pd(distance, distance)), _mm_unpacklo_pd(adjust, adjust));
     const __m128d move1 =
         _mm_mul_pd(_mm_div_pd(along1, _mm_unpackhi_pd(distance, distance)), _mm_unpackhi_pd(adjust, adjust));
-    _mm_storeu_pd(a0, _mm_add_pd(at_a0, _mm_mul_pd(_mm_set1_pd(packet.share_a[0]), move0)));
-    _mm_storeu_pd(a1, _mm_add_pd(at_a1, _mm_mul_pd(_mm_set1_pd(packet.share_a[1]), move1)));
-    _mm_storeu_pd(b0, _mm_sub_pd(at_b0, _mm_mul_pd(_mm_set1_pd(packet.share_b[0]), move0)));
-    _mm_storeu_pd(b1, _mm_sub_pd(at_b1, _mm_mul_pd(_mm_set1_pd(packet.share_b[1]), move1)));
+    _mm_storeu_pd(a0, _mm_add_pd(at_a0, _mm_mul_pd(_mm_load_pd(shares.even_a.data() + lane), move0)));
+    _mm_storeu_pd(a1, _mm_add_pd(at_a1, _mm_mul_pd(_mm_load_pd(shares.odd_a.data() + lane), move1)));
+    _mm_storeu_pd(b0, _mm_sub_pd(at_b0, _mm_mul_pd(_mm_load_pd(shares.even_b.data() + lane), move0)));
+    _mm_storeu_pd(b1, _mm_sub_pd(at_b1, _mm_mul_pd(_mm_load_pd(shares.odd_b.data() + lane), move1)));
 }
 
 /// Runs the next packet of a sweep.
 CORDA_INLINE void advance_one(const Pointers& p, Cursor& sweep) {
     update_before(p, sweep);
-    relax_two(p.packets[sweep.packet++], p.position_m);
+    const std::size_t k = sweep.packet++;
+    relax_two(p, k, 0);
+    if (!p.shares_of(k).is_half) relax_two(p, k, 2);
 }
 
 /// Runs `packets` packets of each sweep under way, one of each in turn.
@@ -155,86 +166,106 @@ CORDA_AVX2 CORDA_INLINE __m256d second_of(__m256d pairs) {
     return _mm256_permute_pd(pairs, 0xf);
 }
 
-/// Relaxes the bars of two packets without a common particle, as relax_two() does those of one.
-CORDA_AVX2 CORDA_INLINE void relax_four(const RelaxationPacket& first, const RelaxationPacket& second,
-                                        double* position_m) {
-    const __m256d at_a0 = load_pairs(position_m + first.a[0], position_m + second.a[0]);
-    const __m256d at_a1 = load_pairs(position_m + first.a[1], position_m + second.a[1]);
-    const __m256d at_b0 = load_pairs(position_m + first.b[0], position_m + second.b[0]);
-    const __m256d at_b1 = load_pairs(position_m + first.b[1], position_m + second.b[1]);
+/// Four bars without a common particle: two of each of two packets, or lanes 0 and 1, and 2 and 3, of one.
+struct Four {
+    const std::uint32_t* a[2];  ///< RelaxationPacket::a of two lanes each
+    const std::uint32_t* b[2];
+    __m256d rest_m;
+    __m256d even_a, odd_a, even_b, odd_b;  ///< PacketShares
+};
+
+/// As relax_two(). Returns false, with nothing moved, if a bar has no length.
+CORDA_AVX2 CORDA_INLINE bool relax_four(const Four& four, double* position_m) {
+    const auto at = [&](const std::uint32_t* const(&first)[2], int i, int lane) {
+        return position_m + first[i][lane];
+    };
+    const __m256d at_a0 = load_pairs(at(four.a, 0, 0), at(four.a, 1, 0));
+    const __m256d at_a1 = load_pairs(at(four.a, 0, 1), at(four.a, 1, 1));
+    const __m256d at_b0 = load_pairs(at(four.b, 0, 0), at(four.b, 1, 0));
+    const __m256d at_b1 = load_pairs(at(four.b, 0, 1), at(four.b, 1, 1));
     const __m256d along0 = _mm256_sub_pd(at_b0, at_a0);
     const __m256d along1 = _mm256_sub_pd(at_b1, at_a1);
     const __m256d square0 = _mm256_mul_pd(along0, along0);
     const __m256d square1 = _mm256_mul_pd(along1, along1);
     const __m256d distance = _mm256_sqrt_pd(
         _mm256_add_pd(_mm256_unpacklo_pd(square0, square1), _mm256_unpackhi_pd(square0, square1)));
-    if (_mm256_movemask_pd(_mm256_cmp_pd(distance, _mm256_setzero_pd(), _CMP_EQ_OQ)) != 0) [[unlikely]] {
-        relax_one_by_one(first, position_m);
-        return relax_one_by_one(second, position_m);
-    }
-    const __m256d adjust = _mm256_sub_pd(distance, load_pairs(first.rest_m.data(), second.rest_m.data()));
+    if (_mm256_movemask_pd(_mm256_cmp_pd(distance, _mm256_setzero_pd(), _CMP_EQ_OQ)) != 0) [[unlikely]]
+        return false;
+    const __m256d adjust = _mm256_sub_pd(distance, four.rest_m);
     const __m256d move0 = _mm256_mul_pd(_mm256_div_pd(along0, first_of(distance)), first_of(adjust));
     const __m256d move1 = _mm256_mul_pd(_mm256_div_pd(along1, second_of(distance)), second_of(adjust));
-    const __m256d share_a = load_pairs(first.share_a.data(), second.share_a.data());
-    const __m256d share_b = load_pairs(first.share_b.data(), second.share_b.data());
-    store_pairs(position_m + first.a[0], position_m + second.a[0],
-                _mm256_add_pd(at_a0, _mm256_mul_pd(first_of(share_a), move0)));
-    store_pairs(position_m + first.a[1], position_m + second.a[1],
-                _mm256_add_pd(at_a1, _mm256_mul_pd(second_of(share_a), move1)));
-    store_pairs(position_m + first.b[0], position_m + second.b[0],
-                _mm256_sub_pd(at_b0, _mm256_mul_pd(first_of(share_b), move0)));
-    store_pairs(position_m + first.b[1], position_m + second.b[1],
-                _mm256_sub_pd(at_b1, _mm256_mul_pd(second_of(share_b), move1)));
+    store_pairs(at(four.a, 0, 0), at(four.a, 1, 0), _mm256_add_pd(at_a0, _mm256_mul_pd(four.even_a, move0)));
+    store_pairs(at(four.a, 0, 1), at(four.a, 1, 1), _mm256_add_pd(at_a1, _mm256_mul_pd(four.odd_a, move1)));
+    store_pairs(at(four.b, 0, 0), at(four.b, 1, 0), _mm256_sub_pd(at_b0, _mm256_mul_pd(four.even_b, move0)));
+    store_pairs(at(four.b, 0, 1), at(four.b, 1, 1), _mm256_sub_pd(at_b1, _mm256_mul_pd(four.odd_b, move1)));
+    return true;
 }
 
-/// Runs the next packet of two sweeps, which are at least `lag` apart and so share no particle.
-CORDA_AVX2 CORDA_INLINE void advance_two(const Pointers& p, Cursor& first, Cursor& second) {
-    update_before(p, first);
-    update_before(p, second);
-    relax_four(p.packets[first.packet++], p.packets[second.packet++], p.position_m);
+/// Relaxes the bars of packet k.
+CORDA_AVX2 CORDA_INLINE void relax_packet(const Pointers& p, std::size_t k) {
+    const RelaxationPacket& packet = p.packets[k];
+    const PacketShares& shares = p.shares_of(k);
+    if (shares.is_half) return relax_two(p, k, 0);
+    const bool done = relax_four({{packet.a.data(), packet.a.data() + 2},
+                                  {packet.b.data(), packet.b.data() + 2},
+                                  _mm256_load_pd(packet.rest_m.data()),
+                                  _mm256_load_pd(shares.even_a.data()),
+                                  _mm256_load_pd(shares.odd_a.data()),
+                                  _mm256_load_pd(shares.even_b.data()),
+                                  _mm256_load_pd(shares.odd_b.data())},
+                                 p.position_m);
+    if (done) return;
+    relax_one_by_one(p, k, 0);
+    relax_one_by_one(p, k, 2);
 }
 
-/// Runs `packets` packets of each of `count` sweeps under way, two at a time: those of two sweeps, or two of
-/// the last sweep if the count is odd.
-template <std::size_t count>
-CORDA_AVX2 void run_count_by_avx2(const Pointers& p, Cursor* under_way, std::size_t packets) {
-    std::array<Cursor, count> sweeps;
-    std::copy_n(under_way, count, sweeps.begin());
-    constexpr std::size_t kPaired = count / 2 * 2;
-    for (; packets >= 2; packets -= 2) {
-        for (int k = 0; k < 2; ++k) {
-            for (std::size_t i = 0; i < kPaired; i += 2) advance_two(p, sweeps[i], sweeps[i + 1]);
-        }
-        if constexpr (kPaired < count) {
-            Cursor& last = sweeps[kPaired];
-            if (p.next_is_independent[last.packet] != 0) {
-                Cursor next{last.packet + 1, last.updates};
-                advance_two(p, last, next);
-                last.packet = next.packet;
+/// Relaxes the bars of packets k and l, which are half.
+CORDA_AVX2 CORDA_INLINE void relax_halves(const Pointers& p, std::size_t k, std::size_t l) {
+    const RelaxationPacket& first = p.packets[k];
+    const RelaxationPacket& second = p.packets[l];
+    const PacketShares& of_first = p.shares_of(k);
+    const PacketShares& of_second = p.shares_of(l);
+    const bool done = relax_four({{first.a.data(), second.a.data()},
+                                  {first.b.data(), second.b.data()},
+                                  load_pairs(first.rest_m.data(), second.rest_m.data()),
+                                  load_pairs(of_first.even_a.data(), of_second.even_a.data()),
+                                  load_pairs(of_first.odd_a.data(), of_second.odd_a.data()),
+                                  load_pairs(of_first.even_b.data(), of_second.even_b.data()),
+                                  load_pairs(of_first.odd_b.data(), of_second.odd_b.data())},
+                                 p.position_m);
+    if (done) return;
+    relax_one_by_one(p, k, 0);
+    relax_one_by_one(p, l, 0);
+}
+
+/// Runs `packets` packets of each sweep under way: four bars of a packet at a time, or two of each of two
+/// sweeps, which are at least `lag` packets apart and so share no particle.
+CORDA_AVX2 void run_by_avx2(const Pointers& p, std::span<Cursor> sweeps, std::size_t packets) {
+    for (; packets > 0; --packets) {
+        std::size_t i = 0;
+        for (; i + 1 < sweeps.size(); i += 2) {
+            update_before(p, sweeps[i]);
+            update_before(p, sweeps[i + 1]);
+            const std::size_t k = sweeps[i].packet++;
+            const std::size_t l = sweeps[i + 1].packet++;
+            if (p.shares_of(k).is_half && p.shares_of(l).is_half) {
+                relax_halves(p, k, l);
             } else {
-                advance_one(p, last);
-                advance_one(p, last);
+                relax_packet(p, k);
+                relax_packet(p, l);
             }
         }
+        if (i == sweeps.size()) continue;
+        update_before(p, sweeps[i]);
+        relax_packet(p, sweeps[i].packet++);
     }
-    if (packets > 0) {
-        for (std::size_t i = 0; i < kPaired; i += 2) advance_two(p, sweeps[i], sweeps[i + 1]);
-        if constexpr (kPaired < count) advance_one(p, sweeps[kPaired]);
-    }
-    std::copy_n(sweeps.begin(), count, under_way);
 }
 
-void run_by_avx2(const Pointers& p, std::span<Cursor> sweeps, std::size_t packets) {
-    static constexpr std::array kRun{run_count_by_avx2<1>, run_count_by_avx2<2>, run_count_by_avx2<3>,
-                                     run_count_by_avx2<4>, run_count_by_avx2<5>, run_count_by_avx2<6>};
-    static_assert(kRun.size() == kSweepsAtOnce);
-    kRun[sweeps.size() - 1](p, sweeps.data(), packets);
-}
-
-/// Runs sweeps of `length` packets, each at least `lag` packets behind its predecessor.
-void run_staggered(const Pointers& p, const RelaxationSweeps& sweeps, std::size_t length, std::size_t lag,
-                   bool is_by_avx2) {
-    const auto run_together = is_by_avx2 ? run_by_avx2 : run_by_sse2;
+/// Runs sweeps over a schedule, each at least `lag` packets behind its predecessor.
+void run_staggered(const Pointers& p, const RelaxationSweeps& sweeps, const RelaxationSchedule& schedule,
+                   bool has_avx2) {
+    const std::size_t length = schedule.packets.size();
+    const std::size_t lag = schedule.lag;
     std::array<Cursor, kSweepsAtOnce> cursors;
     std::size_t under_way = 0;
     std::uint64_t next = sweeps.begin;
@@ -247,7 +278,9 @@ void run_staggered(const Pointers& p, const RelaxationSweeps& sweeps, std::size_
         // Up to where the next sweep begins or the first one ends.
         std::size_t packets = length - cursors[0].packet;
         if (may_begin()) packets = std::min(packets, lag - cursors[under_way - 1].packet);
-        run_together(p, std::span(cursors.data(), under_way), packets);
+        // Where most packets depend on their predecessors, four bars at a time wait for the last of them.
+        const bool is_wide = under_way * length > 2 * schedule.levels || length > 2 * lag;
+        (has_avx2 && is_wide ? run_by_avx2 : run_by_sse2)(p, std::span(cursors.data(), under_way), packets);
         if (cursors[0].packet < length) continue;
         std::copy(cursors.begin() + 1, cursors.begin() + under_way, cursors.begin());
         --under_way;
@@ -286,14 +319,19 @@ void run_sweeps([[maybe_unused]] const RelaxationSchedule& schedule,
                 [[maybe_unused]] const RelaxationSweeps& sweeps, [[maybe_unused]] RelaxationKernel kernel,
                 [[maybe_unused]] RelaxationMotion& motion) {
 #if defined(__x86_64__)
-    const Pointers pointers{schedule.packets.data(),   schedule.next_is_independent.data(),
-                            schedule.updates.data(),   schedule.update_begin.data(),
-                            motion.position_m.data(),  motion.move_m.data(),
-                            motion.unrelaxed_m.data(), motion.last_move_m.data(),
-                            motion.push_m.data(),      motion.keep};
+    const Pointers pointers{schedule.packets.data(),
+                            schedule.shares.data(),
+                            schedule.share_index.data(),
+                            schedule.updates.data(),
+                            schedule.update_begin.data(),
+                            motion.position_m.data(),
+                            motion.move_m.data(),
+                            motion.unrelaxed_m.data(),
+                            motion.last_move_m.data(),
+                            motion.push_m.data(),
+                            motion.keep};
     if (!schedule.packets.empty())
-        return run_staggered(pointers, sweeps, schedule.packets.size(), schedule.lag,
-                             kernel == RelaxationKernel::kAvx2 && schedule.is_wide);
+        return run_staggered(pointers, sweeps, schedule, kernel == RelaxationKernel::kAvx2);
     for (std::uint64_t sweep = sweeps.begin; sweep < sweeps.end; ++sweep) {
         if (!sweeps.updates_before(sweep)) continue;
         for (const std::uint32_t particle : schedule.updates) update_particle(pointers, particle);

@@ -21,9 +21,9 @@ struct RelaxationMotion {
 /// Implementations of the sweeps. All kernels give the same bits: they do the same correctly rounded
 /// operations on each particle in the same order.
 ///
-/// kScalar takes the bars one by one and waits for the square root and division of each. kSse2 takes packets
-/// of two bars (RelaxationSchedule) and several sweeps at once, each `lag` packets behind its predecessor.
-/// kAvx2 takes the packets of two sweeps at once.
+/// kScalar takes the bars one by one and waits for the square root and division of each. kSse2 takes two bars
+/// of a packet at once (RelaxationSchedule), and several sweeps, each `lag` packets behind its predecessor.
+/// kAvx2 takes four bars at once: of one packet, or of those of two sweeps if both have at most two.
 enum class RelaxationKernel { kScalar, kSse2, kAvx2 };
 
 /// The kernels that this CPU can run, the fastest last.

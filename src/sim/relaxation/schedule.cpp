@@ -8,7 +8,17 @@ namespace corda::sim {
 namespace {
 
 constexpr std::size_t kLanes = RelaxationPacket::kLanes;
-using Lanes = std::array<std::uint32_t, kLanes>;  ///< indices of bars
+
+/// Bars of a packet.
+struct Lanes {
+    std::array<std::uint32_t, kLanes> bars{};  ///< their indices: 0 0 0 0, 0 1 0 1, 0 1 2 2 or 0 1 2 3
+    std::size_t count = 0;                     ///< different ones
+
+    void add(std::uint32_t bar) {
+        for (std::size_t lane = count; lane < kLanes; lane += count == 1 ? 2 : 1) bars[lane] = bar;
+        ++count;
+    }
+};
 
 /// 0, 1, ... ordered by key[i]; indices of equal keys stay in order.
 std::vector<std::uint32_t> sorted_by(const std::vector<std::uint32_t>& key) {
@@ -20,41 +30,40 @@ std::vector<std::uint32_t> sorted_by(const std::vector<std::uint32_t>& key) {
     return order;
 }
 
-/// A schedule of this many packets has independent ones even if sweeps cannot overlap: it holds several
-/// ropes.
-constexpr std::size_t kManyPackets = 400;
-
-/// True if no particle is in both.
-bool are_apart(const RelaxationPacket& first, const RelaxationPacket& second) {
-    const auto has = [&](std::uint32_t at) {
-        const auto is_it = [at](std::uint32_t other) { return other == at; };
-        return std::any_of(second.a.begin(), second.a.end(), is_it) ||
-               std::any_of(second.b.begin(), second.b.end(), is_it);
-    };
-    return std::none_of(first.a.begin(), first.a.end(), has) &&
-           std::none_of(first.b.begin(), first.b.end(), has);
-}
-
 /// Bars in packets.
 class Packing {
   public:
     Packing(std::span<const RelaxationBar> bars, std::uint32_t first_particle, std::uint32_t particle_count)
         : bars_(bars), first_particle_(first_particle), end_of_last_(particle_count, 0) {
-        for (const std::uint32_t bar : sorted_by(level_of_bars())) place(bar);
+        const std::vector<std::uint32_t> level = level_of_bars();
+        if (!level.empty()) levels_ = *std::max_element(level.begin(), level.end()) + 1U;
+        for (const std::uint32_t bar : sorted_by(level)) place(bar);
     }
 
     [[nodiscard]] std::size_t size() const { return lanes_.size(); }
+    [[nodiscard]] std::size_t levels() const { return levels_; }
     [[nodiscard]] RelaxationPacket packet(std::size_t k) const {
         RelaxationPacket packet;
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
-            const RelaxationBar& bar = bars_[lanes_[k][lane]];
+            const RelaxationBar& bar = bars_[lanes_[k].bars[lane]];
             packet.rest_m[lane] = bar.rest_m;
-            packet.share_a[lane] = bar.share_a;
-            packet.share_b[lane] = bar.share_b;
             packet.a[lane] = 2U * bar.a;
             packet.b[lane] = 2U * bar.b;
         }
         return packet;
+    }
+    [[nodiscard]] PacketShares shares(std::size_t k) const {
+        PacketShares shares;
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            const RelaxationBar& even = bars_[lanes_[k].bars[i / 2 * 2]];
+            const RelaxationBar& odd = bars_[lanes_[k].bars[i / 2 * 2 + 1]];
+            shares.even_a[i] = even.share_a;
+            shares.even_b[i] = even.share_b;
+            shares.odd_a[i] = odd.share_a;
+            shares.odd_b[i] = odd.share_b;
+        }
+        shares.is_half = lanes_[k].count <= 2;
+        return shares;
     }
     /// The number of packets up to and including the last one of each particle.
     [[nodiscard]] const std::vector<std::uint32_t>& end_of_last() const { return end_of_last_; }
@@ -62,7 +71,7 @@ class Packing {
     [[nodiscard]] std::vector<std::uint32_t> first() const {
         std::vector<std::uint32_t> first(end_of_last_.size(), 0);
         for (std::size_t k = lanes_.size(); k-- > 0;) {
-            for (const std::uint32_t bar : lanes_[k]) {
+            for (const std::uint32_t bar : lanes_[k].bars) {
                 first[bars_[bar].a - first_particle_] = static_cast<std::uint32_t>(k);
                 first[bars_[bar].b - first_particle_] = static_cast<std::uint32_t>(k);
             }
@@ -101,18 +110,18 @@ class Packing {
         std::uint32_t& of_b = end_of_last_[bars_[bar].b - first_particle_];
         const std::uint32_t k = with_room(std::max(of_a, of_b));
         if (k == lanes_.size()) {
-            lanes_.push_back({bar, bar});
+            lanes_.emplace_back();
             next_.push_back(k + 1U);
-        } else {
-            lanes_[k][1] = bar;
-            next_[k] = k + 1U;
         }
+        lanes_[k].add(bar);
+        if (lanes_[k].count == kLanes) next_[k] = k + 1U;
         of_a = of_b = k + 1U;
     }
 
     std::span<const RelaxationBar> bars_;
     std::uint32_t first_particle_;
     std::vector<std::uint32_t> end_of_last_;
+    std::size_t levels_ = 0;
     std::vector<Lanes> lanes_;
     std::vector<std::uint32_t> next_ = {0};  ///< k if packet k has room, else a later packet
 };
@@ -125,10 +134,13 @@ RelaxationSchedule schedule_bars(std::span<const RelaxationBar> bars, std::uint3
     const Packing packing(bars, first_particle, particle_count);
     RelaxationSchedule schedule;
     schedule.packets.reserve(packing.size());
-    for (std::size_t k = 0; k < packing.size(); ++k) schedule.packets.push_back(packing.packet(k));
-    schedule.next_is_independent.assign(packing.size(), 0);
-    for (std::size_t k = 0; k + 1 < packing.size(); ++k)
-        schedule.next_is_independent[k] = are_apart(schedule.packets[k], schedule.packets[k + 1]) ? 1 : 0;
+    for (std::size_t k = 0; k < packing.size(); ++k) {
+        schedule.packets.push_back(packing.packet(k));
+        const PacketShares shares = packing.shares(k);
+        const auto known = std::find(schedule.shares.begin(), schedule.shares.end(), shares);
+        schedule.share_index.push_back(static_cast<std::uint8_t>(known - schedule.shares.begin()));
+        if (known == schedule.shares.end()) schedule.shares.push_back(shares);
+    }
     const std::vector<std::uint32_t> first = packing.first();
     schedule.updates = sorted_by(first);
     schedule.update_begin.assign(packing.size() + 1, particle_count);
@@ -140,7 +152,7 @@ RelaxationSchedule schedule_bars(std::span<const RelaxationBar> bars, std::uint3
         const std::uint32_t end = packing.end_of_last()[i];
         if (end > first[i]) schedule.lag = std::max<std::size_t>(schedule.lag, end - first[i]);
     }
-    schedule.is_wide = 2 * packing.size() >= 3 * schedule.lag || packing.size() >= kManyPackets;
+    schedule.levels = packing.levels();
     for (std::uint32_t& particle : schedule.updates) particle += first_particle;
     return schedule;
 }

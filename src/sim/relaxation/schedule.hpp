@@ -17,16 +17,27 @@ struct RelaxationBar {
     double share_b = 0.5;
 };
 
-/// Two bars without a common particle, relaxed by one instruction. If there is only one, it stands in both
-/// lanes: computed from the same numbers and stored again, it is still relaxed once.
+/// Up to four bars without a common particle. Bars repeat in lanes without one: computed from the same
+/// numbers and stored again, a bar is still relaxed once. Lanes 2 and 3 are unused if there are at most two
+/// bars.
 struct alignas(64) RelaxationPacket {
-    static constexpr std::size_t kLanes = 2;
+    static constexpr std::size_t kLanes = 4;
 
     std::array<double, kLanes> rest_m{};
-    std::array<double, kLanes> share_a{};
-    std::array<double, kLanes> share_b{};
     std::array<std::uint32_t, kLanes> a{};  ///< index of the x of a bar's first particle: 2 * the particle's
     std::array<std::uint32_t, kLanes> b{};
+};
+
+/// What the particles of a packet take of its adjustments, once for x and once for y of each. Few different
+/// ones occur: large ropes are bound by the memory that they read, so packets refer to them.
+struct alignas(64) PacketShares {
+    std::array<double, RelaxationPacket::kLanes> even_a{};  ///< of lanes 0 and 2
+    std::array<double, RelaxationPacket::kLanes> odd_a{};   ///< of lanes 1 and 3
+    std::array<double, RelaxationPacket::kLanes> even_b{};
+    std::array<double, RelaxationPacket::kLanes> odd_b{};
+    bool is_half = false;  ///< only lanes 0 and 1 are used
+
+    auto operator<=>(const PacketShares&) const = default;
 };
 
 /// One sweep over the bars of some bodies, in packets for the SIMD kernel (kernels.hpp).
@@ -38,16 +49,16 @@ struct alignas(64) RelaxationPacket {
 /// stays `lag` packets behind.
 struct RelaxationSchedule {
     std::vector<RelaxationPacket> packets;
-    std::vector<std::uint8_t> next_is_independent;  ///< per packet: 1 if the next one has other particles
+    std::vector<PacketShares> shares;       ///< all that occur
+    std::vector<std::uint8_t> share_index;  ///< per packet: an index of `shares`
     /// Particles in the order of their first packet; those without a bar come first.
     std::vector<std::uint32_t> updates;
     /// Packet k is preceded by the updates[j] with update_begin[k] <= j < update_begin[k + 1].
     std::vector<std::uint32_t> update_begin;
     /// Packet k of a sweep comes after packet k + lag - 1 of the sweep before; 1 .. number of packets.
     std::size_t lag = 1;
-    /// False for a single short rope: most of its packets depend on their predecessor, and two that run
-    /// together wait for both.
-    bool is_wide = false;
+    /// Length of the longest row of bars each of which has to wait for its predecessor.
+    std::size_t levels = 0;
 };
 
 /// Schedules `bars`, to be relaxed in this order, of the `particle_count` particles from `first_particle` on;
