@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "corda/core/cancel.hpp"
-#include "corda/sim/forces/elastic_forces.hpp"
 #include "corda/sim/recording.hpp"
 
 namespace corda::figures {
@@ -26,10 +25,7 @@ std::string key_of(const System& system, std::size_t body) {
 class Reader {
   public:
     Reader(Film& film, const OpenRows& open)
-        : film_(film),
-          system_(film.system()),
-          meter_(system_, film.scene().world, methods_of(film)),
-          motion_(film.last_frame() + 1) {
+        : film_(film), system_(film.system()), motion_(film.last_frame() + 1) {
         for (const pipeline::TrackedParticle& followed : pipeline::tracked_particles(system_))
             motion_.bodies.emplace_back(followed, film.last_frame() + 1);
         angles_.resize(motion_.bodies.size());
@@ -58,12 +54,6 @@ class Reader {
     }
 
   private:
-    static std::vector<MethodDef> methods_of(const Film& film) {
-        std::vector<MethodDef> methods;
-        for (const BodyPlan& body : film.plan().bodies) methods.push_back(body.method);
-        return methods;
-    }
-
     void open_rows(const OpenRows& open) {
         std::vector<std::string> tip{"t_s"};
         std::vector<std::string> tension{"t_s"};
@@ -129,15 +119,13 @@ class Reader {
 
     void add_energy(const State& state) {
         const double t = state.time_s;
-        const sim::Energy energy = meter_.of(state);
-        if (motion_.rows == 0) weight_at_start_j_ = energy.weight_j;
-        const double weight_j = energy.weight_j - weight_at_start_j_;
-        const double total_j = energy.kinetic_j + weight_j + energy.elastic_j;
+        const Energy energy = film_.energy();
+        const double total_j = energy.kinetic_j + energy.weight_j + energy.elastic_j;
         motion_.kinetic.add({t, t, energy.kinetic_j});
-        motion_.weight.add({t, t, weight_j});
+        motion_.weight.add({t, t, energy.weight_j});
         motion_.elastic.add({t, t, energy.elastic_j});
         motion_.total.add({t, t, total_j});
-        row_.assign({t, energy.kinetic_j, weight_j, energy.elastic_j, total_j,
+        row_.assign({t, energy.kinetic_j, energy.weight_j, energy.elastic_j, total_j,
                      film_.figures().energy_error.value_or(kUnknown)});
         energy_(row_);
     }
@@ -202,7 +190,6 @@ class Reader {
 
     Film& film_;
     const System& system_;
-    sim::EnergyMeter meter_;
     MotionSummary motion_;
     OnRow tip_;
     OnRow energy_;
@@ -213,7 +200,6 @@ class Reader {
     std::vector<double> angles_;  ///< of the last row, per curve
     std::vector<double> rates_;
     std::vector<bool> tells_tension_;  ///< per body
-    double weight_at_start_j_ = 0.0;
 };
 
 }  // namespace

@@ -387,6 +387,11 @@ const Figures& Film::figures() const {
     return impl_->figures;
 }
 
+Energy Film::energy() {
+    const pipeline::SharedMotion::Use use = impl_->reading();
+    return impl_->motion.energy_of(impl_->asked);
+}
+
 const Diagnostics& Film::diagnostics() const {
     return impl_->motion.recording().diagnostics();
 }
@@ -404,6 +409,17 @@ Image Film::still(double time_s, double shutter) {
     const CameraDef& camera = impl_->find_camera();
     impl_->draw(time_s, shutter, camera, impl_->drawing);
     return impl_->drawing.renderer.image();
+}
+
+std::vector<std::uint8_t> Film::mask(std::int64_t k) {
+    const view::Camera map = impl_->drawing.renderer.map_of(impl_->find_camera());
+    return impl_->drawing.renderer.mask(state(k), map);
+}
+
+Vec2 Film::to_pixels(Vec2 position_m) {
+    const view::Camera map = impl_->drawing.renderer.map_of(impl_->find_camera());
+    const Vec2 relative_m = position_m - system().origin_m;
+    return {map.x_px(relative_m.x), map.y_px(relative_m.y)};
 }
 
 bool Film::shows_nothing() const {

@@ -89,6 +89,9 @@ class Film {
     [[nodiscard]] const State& state_at(double time_s);
     /// Figures of the state that state() or state_at() returned last.
     [[nodiscard]] const Figures& figures() const;
+    /// Energy of that state, for which FilmDef::readings must include velocities; that of the weight is 0 at
+    /// the start. Throws corda::Error (kUsage) without velocities.
+    [[nodiscard]] Energy energy();
     /// Figures of the run up to the last simulated time.
     [[nodiscard]] const Diagnostics& diagnostics() const;
     /// Seconds spent in stepping.
@@ -102,6 +105,14 @@ class Film {
     /// check_cancelled() repeatedly if the picture is large or blurred. Throws as state(), and kNoGl.
     [[nodiscard]] Image frame(std::int64_t k);
     [[nodiscard]] Image still(double time_s, double shutter = 0.0);
+    /// The body at each pixel of frame `k` without motion blur, row 0 on top: 0 for none, or 1 + its index
+    /// (ropes before nets). A pixel shows the last body that covers at least half of it; bars between other
+    /// particles, supports and annotations are left out. Needs no OpenGL. Throws as state(), and kUsage for
+    /// more than 255 bodies.
+    [[nodiscard]] std::vector<std::uint8_t> mask(std::int64_t k);
+    /// A position in m in world coordinates as pixels, y down; the centre of the top left pixel is at (0.5,
+    /// 0.5). Throws what camera() throws.
+    [[nodiscard]] Vec2 to_pixels(Vec2 position_m);
     /// True if the last picture was empty.
     [[nodiscard]] bool shows_nothing() const;
     /// The OpenGL driver. Throws kNoGl.

@@ -125,7 +125,7 @@ void LivePlotData::add(const State& state, const std::optional<sim::EnergyMeter>
     const double x_m = system_->origin_m.x + state.x_m[tip_];
     switch (plot_) {
         case LivePlot::kEnergy: {
-            const sim::Energy energy = meter.value().of(state);
+            const Energy energy = meter.value().of(state);
             const double potential_j = energy.potential_j();
             data.curves[0].points.push_back({t, t, energy.kinetic_j});
             data.curves[1].points.push_back({t, t, potential_j});

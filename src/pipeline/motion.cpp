@@ -125,6 +125,19 @@ void Motion::fail_diverged(double time_s) const {
                             time_s, last_s, has_step ? ", or a smaller solver.step" : ""));
 }
 
+Energy Motion::energy_of(const State& state) {
+    if (state.vx_m_s.empty())
+        throw Error(ExitCode::kUsage, "the energy of a state needs FilmDef::readings.velocities");
+    if (!meter_) {
+        meter_.emplace(*system_, world_, methods_);
+        const State start{0.0, system_->x_m, system_->y_m, system_->vx_m_s, system_->vy_m_s};
+        weight_at_start_j_ = meter_->of(start).weight_j;
+    }
+    Energy energy = meter_->of(state);
+    energy.weight_j -= weight_at_start_j_;
+    return energy;
+}
+
 SharedMotion::SharedMotion(const Scene& scene) : system(system_of(scene)), named(named_methods(scene)) {}
 
 SharedMotion::Activity::Activity(const SharedMotion& motion)

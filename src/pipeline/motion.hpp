@@ -15,6 +15,7 @@
 #include "corda/core/timeline.hpp"
 #include "corda/scene/scene.hpp"
 #include "corda/sim/auto/planner.hpp"
+#include "corda/sim/forces/elastic_forces.hpp"
 #include "corda/sim/recording.hpp"
 #include "corda/sim/simulation.hpp"
 #include "corda/view/scene_view.hpp"
@@ -49,6 +50,10 @@ class Motion {
     void keep(std::span<const double> times_s);
     /// Figures of the last state that at() returned.
     [[nodiscard]] const Figures& figures() const { return figures_; }
+
+    /// The energy of a state of this motion with velocities; that of the weight is 0 at the start. Throws
+    /// corda::Error (kUsage) without velocities.
+    [[nodiscard]] Energy energy_of(const State& state);
 
     [[nodiscard]] const Timeline& timeline() const { return timeline_; }
     [[nodiscard]] const sim::Recording& recording() const { return recording_; }
@@ -86,6 +91,8 @@ class Motion {
     std::map<double, Kept> kept_;  ///< by time
     State state_;
     Figures figures_;
+    std::optional<sim::EnergyMeter> meter_;
+    double weight_at_start_j_ = 0.0;
 };
 
 /// A motion and its plan, which several films may show in different looks, and several renderers may read in

@@ -1,5 +1,7 @@
 #include "corda/pipeline/scene_renderer.hpp"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <utility>
@@ -107,6 +109,23 @@ bool SceneRenderer::would_show_nothing(const State& state, const view::Camera& m
 Damage SceneRenderer::draw(view::DrawList list) {
     list_ = std::move(list);
     return paint();
+}
+
+std::vector<std::uint8_t> SceneRenderer::mask(const State& state, const view::Camera& map) {
+    constexpr std::size_t kMaxDistinct = 255;
+    const std::size_t bodies = system_->bodies.size();
+    if (bodies > kMaxDistinct)
+        throw Error(ExitCode::kUsage, fmt::format("a mask distinguishes {} bodies, and the scene has {}",
+                                                  kMaxDistinct, bodies));
+    view_.start(list_);
+    std::vector<std::uint8_t> mask(static_cast<std::size_t>(list_.width) * list_.height);
+    for (std::size_t i = 0; i < bodies; ++i) {
+        check_cancelled();
+        list_.clear();
+        view_.draw_body(i, state, map, list_);
+        render::mark_covered(list_, static_cast<std::uint8_t>(i + 1), mask);
+    }
+    return mask;
 }
 
 void SceneRenderer::begin_exposure() {

@@ -66,6 +66,8 @@ class SceneRenderer {
                 const Traces& traces = {});
     /// True if a picture of a state would show only the ground. Draws nothing.
     [[nodiscard]] bool would_show_nothing(const State& state, const view::Camera& map, const Traces& traces);
+    /// See Film::mask(). Draws nothing.
+    [[nodiscard]] std::vector<std::uint8_t> mask(const State& state, const view::Camera& map);
     /// Starts an exposure; discards an unfinished one. Requires a Use.
     void begin_exposure();
     /// Adds a state to the exposure. Throws as draw().

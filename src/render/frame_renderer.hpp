@@ -120,6 +120,10 @@ class FrameRenderer {
 /// ignored.
 [[nodiscard]] Image render_reference(std::span<const view::DrawList> exposed, const view::DrawList& list);
 
+/// Sets the pixels to `id` of which a capsule of the list covers at least half. `mask`: one per pixel of the
+/// list, row 0 on top.
+void mark_covered(const view::DrawList& list, std::uint8_t id, std::span<std::uint8_t> mask);
+
 /// If the environment has unusual variables (see gl::has_unusual_variables()), with some of which Mesa
 /// crashes, makes a context by `def` and draws in it in a child process, once per process, `def` and
 /// variables. Call it before a context is made. Throws corda::Error: kNoGl, with the variables to unset, if

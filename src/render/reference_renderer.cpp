@@ -109,4 +109,19 @@ Image render_reference(std::span<const view::DrawList> exposed, const view::Draw
     return image;
 }
 
+void mark_covered(const view::DrawList& list, std::uint8_t id, std::span<std::uint8_t> mask) {
+    constexpr std::uint32_t kHalf = 128;
+    for (const view::Capsule& capsule : list.capsules) {
+        const PixelRect box = view::capsule_bounds(capsule, list.width, list.height);
+        for (int y = box.y0; y < box.y1; ++y) {
+            for (int x = box.x0; x < box.x1; ++x) {
+                const float distance_px =
+                    segment_distance_px(capsule, static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F);
+                if (coverage_within(capsule.radius, distance_px) >= kHalf)
+                    mask[static_cast<std::size_t>(y) * list.width + x] = id;
+            }
+        }
+    }
+}
+
 }  // namespace corda::render

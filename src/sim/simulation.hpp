@@ -28,6 +28,15 @@ struct Figures {
     double energy_change_j = 0.0;  ///< E(t) - E(0), kinetic plus potential, of all bodies, in J
 };
 
+/// The mechanical energy of free particles and of what joins them, in J.
+struct Energy {
+    double kinetic_j = 0.0;
+    double weight_j = 0.0;   ///< potential of gravity or of its replacement
+    double elastic_j = 0.0;  ///< of bars that stretch and ropes that resist bending
+
+    [[nodiscard]] double potential_j() const { return weight_j + elastic_j; }
+};
+
 /// The largest figures of a run over all requested times.
 struct Diagnostics {
     std::uint64_t steps = 0;

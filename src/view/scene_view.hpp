@@ -74,6 +74,10 @@ class SceneView {
     void start(DrawList& list) const;
     void draw_trails(std::span<const Trail> trails, const Camera& camera, DrawList& list) const;
     void draw_pose(const State& state, const Camera& camera, DrawList& list) const;
+    /// Draws the links and balls of one body.
+    void draw_body(std::size_t i, const State& state, const Camera& camera, DrawList& list) const {
+        draw_body(i, Positions(state, camera), list);
+    }
     /// Draws the supports, which never move; any `state` will do.
     void draw_supports(const State& state, const Camera& camera, DrawList& list) const;
 

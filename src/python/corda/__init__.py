@@ -173,6 +173,13 @@ def _index(value, name):
         raise TypeError(f"{name}: takes an integer, not {value!r}") from None
 
 
+def _frame_index(value, film):
+    k = _index(value, "k")
+    if not -2**63 <= k < 2**63:
+        raise _error(f"frame {k} is not within 0 .. {len(film)}")
+    return k
+
+
 def _answering(on_progress):
     """Wraps a callback: only False (of Python or numpy) stops the work; None and other results continue it."""
     if on_progress is None:
@@ -238,10 +245,7 @@ class Film:
 
     def frame(self, k):
         """Frame `k`, 0 <= k < len(film), or the frame at the end of the motion, as numpy uint8 of shape (height, width, 4)."""
-        k = _index(k, "k")
-        if not -2**63 <= k < 2**63:
-            raise _error(f"frame {k} is not within 0 .. {len(self)}")
-        return self._film.frame(k)
+        return self._film.frame(_frame_index(k, self))
 
     def still(self, time, shutter=0.0):
         """The picture at a time in seconds, 0 .. duration, like frame(); `shutter`, 0 .. 1, blurs it like video.shutter."""
@@ -251,6 +255,34 @@ class Film:
     def positions(self):
         """Positions of all particles in all frames, in metres: float64 of shape (frames, particles, 2), ropes before nets."""
         return self._film.positions()
+
+    @property
+    def velocities(self):
+        """Velocities of all particles in all frames, in m/s, 0 for pinned ones; shaped like positions. The first of
+        velocities, tensions and energy to be read simulates the motion once more."""
+        return self._film.velocities()
+
+    @property
+    def tensions(self):
+        """Tensions of all links in all frames, in N, positive if they pull: float64 of shape (frames, links), body by body.
+        NaN where the method does not know them."""
+        return self._film.tensions()
+
+    @property
+    def energy(self):
+        """Kinetic, potential and total energy of all bodies in all frames, in J: float64 of shape (frames, 3). The potential
+        energy of the weight is 0 in frame 0."""
+        return self._film.energy()
+
+    def to_pixels(self, positions):
+        """Positions in m, of shape (..., 2), in pixels of a frame, y down: a pixel's centre is at (column + 0.5, row + 0.5)."""
+        return self._film.to_pixels(positions)
+
+    def mask(self, k):
+        """The body at each pixel of frame `k` without motion blur, as numpy uint8 of shape (height, width): 0 for the ground,
+        else 1 + the index of the body in front (ropes before nets). A pixel belongs to a body that covers at least half of it;
+        supports, annotations and bars beyond the links are not in it."""
+        return self._film.mask(_frame_index(k, self))
 
     @property
     def times(self):

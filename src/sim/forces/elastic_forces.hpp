@@ -71,16 +71,7 @@ class ElasticForces {
     double joint_square_frequency_ = 0.0;
 };
 
-/// The mechanical energy of free particles and of what joins them, in J.
-struct Energy {
-    double kinetic_j = 0.0;
-    double weight_j = 0.0;   ///< potential of gravity or of its replacement; 0 at the origin of the system
-    double elastic_j = 0.0;  ///< of bars that stretch and ropes that resist bending
-
-    [[nodiscard]] double potential_j() const { return weight_j + elastic_j; }
-};
-
-/// Computes the energy of states.
+/// Computes the energy of states; that of the weight is 0 at the origin of the system.
 class EnergyMeter {
   public:
     /// `methods`: one per body of the system, or one for all. The system must outlive it.

@@ -28,8 +28,8 @@ struct alignas(64) RelaxationPacket {
     std::array<std::uint32_t, kLanes> b{};
 };
 
-/// What the particles of a packet take of its adjustments, once for x and once for y of each. Few different
-/// ones occur: large ropes are bound by the memory that they read, so packets refer to them.
+/// Shares of the adjustments that the particles of a packet take, once for x and once for y of each. Few
+/// different ones occur: large ropes are bound by the memory that they read, so packets refer to them.
 struct alignas(64) PacketShares {
     std::array<double, RelaxationPacket::kLanes> even_a{};  ///< of lanes 0 and 2
     std::array<double, RelaxationPacket::kLanes> odd_a{};   ///< of lanes 1 and 3

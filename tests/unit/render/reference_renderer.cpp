@@ -139,5 +139,22 @@ TEST(TintedLayer, ShowsTheHeaviestCapsule) {
     EXPECT_LE(image.pixel(30, 20)[0], 4);
 }
 
+TEST(MarkCovered, MarksPixelsThatABlackLineHalfCovers) {
+    view::DrawList list;
+    list.width = 60;
+    list.height = 40;
+    list.ground.top = list.ground.bottom = {255, 255, 255, 255};
+    list.add_layer({0, 0, 0, 255});
+    list.add_capsule({5.3, 8.1}, {44.2, 31.7}, 3.6);
+    list.add_capsule({44.2, 31.7}, {70.0, 10.0}, 1.1);
+    const Image image = render_reference(list);
+    std::vector<std::uint8_t> mask(60 * 40);
+    mark_covered(list, 7, mask);
+    for (int y = 0; y < 40; ++y) {
+        for (int x = 0; x < 60; ++x)
+            ASSERT_EQ(mask[60 * y + x], image.pixel(x, y)[0] < 128 ? 7 : 0) << x << ", " << y;
+    }
+}
+
 }  // namespace
 }  // namespace corda::render

@@ -1,0 +1,297 @@
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <corda/corda.hpp>
+
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+
+namespace corda::python {
+
+namespace py = pybind11;
+
+/// Calls in progress, and the end of the interpreter. Python before 3.14 ends threads that ask for its lock
+/// after Py_Finalize by pthread_exit, whose unwinding C++ does not survive, and a driver that still draws
+/// does not survive exit(). So an atexit function calls begin_end(): it stops the calls of all other threads
+/// and waits for them, and these threads never return to Python.
+class Calls {
+  public:
+    /// Releases the interpreter's lock during one call, which counts from before the release until the lock
+    /// is held again.
+    class Scope {
+      public:
+        Scope() {
+            if (has_ended()) never_return();
+            {
+                const std::lock_guard lock(mutex());
+                ++count();
+            }
+            state_ = PyEval_SaveThread();
+        }
+        Scope(const Scope&) = delete;
+        Scope& operator=(const Scope&) = delete;
+        ~Scope() {
+            while (has_given_up() && has_ended()) sleep_long();
+            PyEval_RestoreThread(state_);
+            {
+                const std::lock_guard lock(mutex());
+                --count();
+            }
+            ended().notify_all();
+            if (has_ended()) never_return();
+        }
+
+      private:
+        PyThreadState* state_;
+    };
+
+    /// True if another thread is ending the interpreter.
+    static bool has_ended() { return is_ending().load() && std::this_thread::get_id() != ending_thread(); }
+
+    static void begin_end() {
+        constexpr std::chrono::seconds kPatience{5};  // an encoder that hangs must not keep the process alive
+        ending_thread() = std::this_thread::get_id();
+        is_ending() = true;
+        const py::gil_scoped_release release;
+        std::unique_lock lock(mutex());
+        has_given_up() = !ended().wait_for(lock, kPatience, [] { return count() <= 0; });
+    }
+
+    /// To be called in a forked child, where the calls of the parent's other threads do not exist.
+    static void forget() {
+        new (&mutex()) std::mutex;
+        new (&ended()) std::condition_variable;
+        count() = 0;
+    }
+
+  private:
+    static void sleep_long() { std::this_thread::sleep_for(std::chrono::hours(1)); }
+
+    /// Gives up the interpreter's lock for good.
+    [[noreturn]] static void never_return() {
+        PyEval_SaveThread();
+        while (true) sleep_long();
+    }
+
+    // Never destroyed: blocked threads outlive the static objects.
+    static std::mutex& mutex() {
+        static auto& mutex = *new std::mutex;
+        return mutex;
+    }
+    static std::condition_variable& ended() {
+        static auto& ended = *new std::condition_variable;
+        return ended;
+    }
+    static int& count() {
+        static int count = 0;
+        return count;
+    }
+    static std::atomic<bool>& is_ending() {
+        static std::atomic<bool> is_ending{false};
+        return is_ending;
+    }
+    /// True if a call did not end in time, so that the interpreter ends without it.
+    static std::atomic<bool>& has_given_up() {
+        static std::atomic<bool> has_given_up{false};
+        return has_given_up;
+    }
+    static std::thread::id& ending_thread() {
+        static std::thread::id thread;
+        return thread;
+    }
+};
+
+/// Runs work without the interpreter's lock, and asks Python now and then: for Ctrl-C, and for the answer of
+/// `on_progress`. What those raise ends the work and is raised.
+class Asking {
+  public:
+    explicit Asking(py::object on_progress = py::none()) : on_progress_(std::move(on_progress)) {}
+
+    /// An OnProgress, at most every 50 ms and for the last frame.
+    bool operator()(std::int64_t done, std::int64_t total) {
+        const bool is_last = done == total && !std::exchange(has_told_last_, true);
+        if (on_progress_.is_none() || !(is_last || is_due(told_))) return true;
+        const auto ask = [&] {
+            const py::object answer = on_progress_(done, total);
+            return !(py::isinstance<py::bool_>(answer) && !answer.cast<bool>());
+        };
+        return hold_and_ask(ask, told_);
+    }
+
+    /// To be called with the lock.
+    void raise() const {
+        if (raised_) std::rethrow_exception(raised_);
+    }
+
+    /// Calls `work`, which signals can cancel.
+    template <class Work>
+    auto run(const Work& work) {
+        try {
+            const Calls::Scope call;
+            const CancelScope signals([this] {
+                if (raised_ || Calls::has_ended()) return false;
+                return !is_due(checked_) || hold_and_ask(check_signals, checked_);
+            });
+            return work();
+        } catch (const Error& error) {
+            raise();
+            if (error.code() == ExitCode::kInterrupted) check_signals();
+            throw;
+        }
+    }
+
+  private:
+    using Time = std::chrono::steady_clock::time_point;
+
+    static bool is_due(Time last) {
+        return std::chrono::steady_clock::now() - last >= std::chrono::milliseconds(50);
+    }
+
+    static bool check_signals() { return PyErr_CheckSignals() == 0 ? true : throw py::error_already_set(); }
+
+    /// Calls `ask` with the interpreter's lock. False if that raises, too.
+    template <class Ask>
+    bool hold_and_ask(const Ask& ask, Time& last) {
+        if (raised_ || Calls::has_ended()) return false;
+        const py::gil_scoped_acquire hold;
+        try {
+            const bool goes_on = ask();
+            last = std::chrono::steady_clock::now();  // a callback that takes long has its pause, too
+            return goes_on;
+        } catch (py::error_already_set&) {
+            raised_ = std::current_exception();
+            return false;
+        }
+    }
+
+    py::object on_progress_;
+    bool has_told_last_ = false;
+    Time told_ = std::chrono::steady_clock::now();
+    Time checked_ = told_;
+    std::exception_ptr raised_;
+};
+
+/// A film that any thread of Python may use; calls of several threads wait for each other.
+class PyFilm {
+  public:
+    PyFilm(const Scene& scene, const std::string& backend, bool require_gpu) {
+        const FilmDef def{.backend = backend, .require_gpu = require_gpu};
+        Asking().run([&] { film_ = std::make_unique<Film>(scene, def); });
+    }
+    PyFilm(const PyFilm&) = delete;
+    PyFilm& operator=(const PyFilm&) = delete;
+    ~PyFilm() {
+        const Calls::Scope call;
+        const std::unique_lock lock(mutex_, std::try_to_lock);
+        // Leaks a film that a thread which never returns is using.
+        if (!lock.owns_lock() || is_cut_off()) leak();
+        with_fields_.reset();
+        film_.reset();
+    }
+
+    /// For `const` functions, which several threads may call at once.
+    [[nodiscard]] const Film& constant() const { return *film_; }
+
+    /// Calls `work` with the film; Python can cancel it. Throws Error (kUsage) inside of a callback of
+    /// another call.
+    template <class Work>
+    auto with_film(const Work& work) {
+        Asking asking;
+        return with_film(work, asking);
+    }
+
+    template <class Work>
+    auto with_film(const Work& work, Asking& asking) {
+        if (is_cut_off()) {
+            throw Error(ExitCode::kUsage,
+                        "the parent process was using this film when it forked, so its state is "
+                        "unfinished here; make another Film, or start processes by spawn");
+        }
+        if (thread_ == std::this_thread::get_id()) {
+            throw Error(ExitCode::kUsage,
+                        "on_progress used the film whose progress it reports; "
+                        "draw and read the film after the call that reports progress, or make another Film");
+        }
+        auto result = asking.run([&] {
+            const std::lock_guard lock(mutex_);
+            const Use use(*this);
+            return work(*film_);
+        });
+        asking.raise();
+        return result;
+    }
+
+    /// As with_film(), with a film of the same motion whose states have velocities and tensions. The first
+    /// call simulates the motion once more.
+    template <class Work>
+    auto with_fields(const Work& work) {
+        return with_film([&](Film& film) {
+            if (!with_fields_) {
+                const StateFields fields{.velocities = true, .tensions = true, .unknown_tensions = true};
+                with_fields_ = std::make_unique<Film>(frozen_scene(film), FilmDef{.readings = fields});
+            }
+            return work(*with_fields_);
+        });
+    }
+
+  private:
+    void leak() {
+        static_cast<void>(film_.release());
+        static_cast<void>(with_fields_.release());
+    }
+
+    /// Marks the film as used by this thread.
+    class Use {
+      public:
+        explicit Use(PyFilm& film) : film_(&film) {
+            film.process_ = getpid();
+            film.thread_ = std::this_thread::get_id();
+        }
+        Use(const Use&) = delete;
+        Use& operator=(const Use&) = delete;
+        ~Use() {
+            film_->thread_ = std::thread::id();
+            film_->process_ = 0;
+        }
+
+      private:
+        PyFilm* film_;
+    };
+
+    /// True in a process that was forked while a thread of its parent used the film: the child lacks that
+    /// thread, so the work never ends and the lock stays taken.
+    [[nodiscard]] bool is_cut_off() const {
+        const pid_t process = process_;
+        return process != 0 && process != getpid();
+    }
+
+    std::mutex mutex_;
+    std::atomic<pid_t> process_ = 0;         ///< the process that is using the film; 0: none
+    std::atomic<std::thread::id> thread_{};  ///< the thread that is using the film
+    std::unique_ptr<Film> film_;
+    std::unique_ptr<Film> with_fields_;
+};
+
+// Arrays of a film's frames: see the properties of the same names in corda/__init__.py.
+[[nodiscard]] py::array_t<double> positions(PyFilm& film);
+[[nodiscard]] py::array_t<double> velocities(PyFilm& film);
+[[nodiscard]] py::array_t<double> tensions(PyFilm& film);
+[[nodiscard]] py::array_t<double> energy(PyFilm& film);
+[[nodiscard]] py::array_t<double> times(const PyFilm& film);
+[[nodiscard]] py::array_t<std::uint8_t> mask(PyFilm& film, std::int64_t k);
+using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
+[[nodiscard]] py::array_t<double> to_pixels(PyFilm& film, const Points& points_m);
+
+}  // namespace corda::python
