@@ -20,8 +20,8 @@
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/workers.hpp"
+#include "corda/golden/cases.hpp"
 #include "corda/golden/perceived.hpp"
-#include "corda/golden/variant.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/media/png/png.hpp"
 #include "interrupt.hpp"
@@ -105,7 +105,7 @@ ComparedPicture compare_picture(const CompareOptions& options, const std::string
         compared.difference = difference_of(picture, a, path, b, figures, its_mask, !diff.empty());
         compared.passed = compared.difference.within(options.limits);
         compared.reference = path;
-        if (compared.passed && path != references.front()) compared.variant = variant_cause(path);
+        if (compared.passed && path != references.front()) compared.variant = golden::variant_cause(path);
         compared.words = words_of(compared, a.image, b.image);
         compared.notes = notes_of(picture, path);
         if (chosen && !compared.passed) continue;
@@ -162,7 +162,7 @@ std::set<std::string> pictures_in(const std::string& folder, const std::string& 
 
 /// The picture of which NAME.CAUSE.png is a variant, in the same folder; empty if it is none by its name.
 std::string base_of(const std::string& name) {
-    const std::string base = base_of_variant(name);
+    const std::string base = golden::base_of_variant(name);
     return base.empty() ? "" : (fs::path(name).parent_path() / base).string();
 }
 
@@ -341,7 +341,7 @@ ExitCode compare(const Console& console, CompareOptions options) {
     if (is_folder) return compare_folders(console, options, mask);
     const bool is_video = is_video_name(options.a);
     for (const std::string& other : options.variants)
-        if (variant_cause(other).empty())
+        if (golden::variant_cause(other).empty())
             throw Error(ExitCode::kUsage,
                         fmt::format("--variant {}: does not name its cause; call it NAME.CAUSE.png, e.g. "
                                     "swing.nvidia.png",

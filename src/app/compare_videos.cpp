@@ -11,7 +11,7 @@
 #include "corda/core/child_process.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/golden/variant.hpp"
+#include "corda/golden/cases.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/media/read/stored_video.hpp"
 #include "interrupt.hpp"
@@ -239,7 +239,7 @@ ExitCode compare_videos(const Console& console, const CompareOptions& options,
     const bool is_variant = reference != options.b;
     for (const Json& words : json["words"])
         console.result(words.get<std::string>() +
-                       (is_variant ? fmt::format(" (variant {})", variant_cause(reference)) : ""));
+                       (is_variant ? fmt::format(" (variant {})", golden::variant_cause(reference)) : ""));
     if (json.contains("picture")) {
         write_difference(options, json, pixels);
         console.info(fmt::format("difference picture: {}", options.diff));
@@ -248,7 +248,7 @@ ExitCode compare_videos(const Console& console, const CompareOptions& options,
     json.erase("picture");
     json["schema"] = 1;
     json["reference"] = printable(reference);
-    json["variant"] = is_variant ? Json(printable(variant_cause(reference))) : Json();
+    json["variant"] = is_variant ? Json(printable(golden::variant_cause(reference))) : Json();
     console.report(json);
     return json["passed"].get<bool>() ? ExitCode::kOk : ExitCode::kMismatch;
 }

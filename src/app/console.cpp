@@ -13,7 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/clock.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/core/text.hpp"
 #include "corda/report/writers.hpp"
 

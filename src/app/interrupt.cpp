@@ -24,7 +24,7 @@
 #include <nlohmann/json.hpp>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/saving.hpp"
+#include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 
 namespace corda::app {

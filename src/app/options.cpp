@@ -7,9 +7,8 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
-#include "corda/core/nearest.hpp"
+#include "corda/core/text.hpp"
 #include "corda/core/timeline.hpp"
-#include "corda/core/version.hpp"
 #include "corda/scene/check_limits.hpp"
 #include "corda/scene/read_file.hpp"
 #include "corda/scene/schema.hpp"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "corda/core/clock.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/sim/solver.hpp"
 #include "interrupt.hpp"

@@ -12,7 +12,7 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
-#include "corda/core/clock.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/media/chunks/video_writer.hpp"

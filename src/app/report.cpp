@@ -5,9 +5,9 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
-#include "corda/core/clock.hpp"
+#include "corda/core/machine.hpp"
+#include "corda/figures/chart.hpp"
 #include "corda/figures/motion_summary.hpp"
-#include "corda/figures/paper.hpp"
 #include "corda/figures/scene_report.hpp"
 #include "corda/report/report_folder.hpp"
 #include "corda/report/writers.hpp"

@@ -10,7 +10,7 @@
 
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
-#include "corda/core/clock.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/report/report_folder.hpp"
 #include "corda/report/writers.hpp"
 #include "interrupt.hpp"

@@ -178,4 +178,18 @@ void sync_folder_of(const std::string& path) {
     if (file) static_cast<void>(::syncfs(file.get()));
 }
 
+TemporaryFolder::TemporaryFolder() {
+    std::error_code failure;
+    path_ = (std::filesystem::temp_directory_path(failure) / "corda-XXXXXX").string();
+    if (!failure && mkdtemp(path_.data()) == nullptr) failure.assign(errno, std::generic_category());
+    if (failure)
+        throw Error(ExitCode::kIo, "cannot make a folder for temporary files, '" + path_ + "': " +
+                                       failure.message() + "; set TMPDIR to a folder that can be written to");
+}
+
+TemporaryFolder::~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}
+
 }  // namespace corda

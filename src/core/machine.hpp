@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -31,5 +32,10 @@ void require_address_space(std::uint64_t bytes, const std::string& what, std::ui
 /// a container's set of cores), or fewer if the processor time of its control groups (version 2) is that of
 /// fewer.
 [[nodiscard]] int usable_cores(const std::filesystem::path& root = "/");
+
+/// Seconds on a clock that only goes forward.
+[[nodiscard]] inline double now_s() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 }  // namespace corda

@@ -16,7 +16,6 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/part_file.hpp"
-#include "corda/core/saving.hpp"
 
 namespace corda {
 namespace {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -27,5 +30,18 @@ namespace corda {
 
 /// "1 bar", "2 bars".
 [[nodiscard]] std::string counted(std::int64_t count, const std::string& what);
+
+/// Number of single edits (a character added, removed or changed, or two neighbours swapped) that turn `a`
+/// into `b`, ignoring case: the optimal string alignment distance.
+[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The candidate that someone who wrote `word` most likely meant; std::nullopt if none is close. Close is at
+/// most a third of the letters wrong, the word being the beginning of the candidate, or the candidate that of
+/// the word and half of it.
+[[nodiscard]] std::optional<std::string_view> nearest(std::string_view word,
+                                                      std::span<const std::string_view> candidates);
+
+/// The version of Corda, "1.2.3".
+[[nodiscard]] std::string_view version();
 
 }  // namespace corda

@@ -8,7 +8,6 @@
 
 #include "corda/core/csv.hpp"
 #include "corda/core/text.hpp"
-#include "corda/core/version.hpp"
 #include "corda/figures/chapters.hpp"
 #include "corda/figures/drawings.hpp"
 #include "corda/pipeline/film_renderer.hpp"

@@ -12,7 +12,6 @@
 #include "corda/core/text.hpp"
 #include "corda/core/timeline.hpp"
 #include "corda/golden/provenance.hpp"
-#include "corda/golden/variant.hpp"
 #include "corda/media/format/file_kind.hpp"
 
 namespace corda::golden {
@@ -245,6 +244,17 @@ std::vector<std::string> stale_ones(const SuiteDef& def, const std::vector<Case>
         if (!scene.empty() && (has_folder || scenes.contains(scene))) stale.push_back(path);
     }
     return stale;
+}
+
+std::string variant_cause(const std::string& path) {
+    const std::string cause = fs::path(path).stem().extension().string();
+    return cause.empty() ? "" : cause.substr(1);
+}
+
+std::string base_of_variant(const std::string& path) {
+    if (variant_cause(path).empty()) return "";
+    const fs::path file = fs::path(path).filename();
+    return file.stem().stem().string() + file.extension().string();
 }
 
 }  // namespace corda::golden

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "corda/core/file.hpp"
-#include "corda/core/version.hpp"
+#include "corda/core/text.hpp"
 #include "corda/golden/cases.hpp"
 #include "corda/golden/provenance.hpp"
 #include "corda/media/defs.hpp"

@@ -7,7 +7,6 @@
 #include "corda/core/file.hpp"
 #include "corda/core/markup.hpp"
 #include "corda/core/text.hpp"
-#include "corda/core/version.hpp"
 #include "corda/golden/page_text.hpp"
 #include "corda/golden/suite.hpp"
 #include "corda/media/png/png.hpp"

@@ -10,7 +10,6 @@
 #include <cstdint>
 
 #include "corda/core/text.hpp"
-#include "corda/core/version.hpp"
 #include "corda/pipeline/provenance.hpp"
 #include "corda/scene/write_scene.hpp"
 

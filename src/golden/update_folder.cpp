@@ -15,7 +15,6 @@
 #include <utility>
 
 #include "corda/core/output_file.hpp"
-#include "corda/core/saving.hpp"
 
 namespace corda::golden {
 namespace {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/cancel.hpp"
-#include "corda/core/clock.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "corda/pipeline/live_plot_data.hpp"
 #include "corda/pipeline/motion.hpp"

@@ -9,7 +9,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
-#include "corda/core/clock.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/pipeline/motion_input.hpp"
 
 namespace corda::pipeline {

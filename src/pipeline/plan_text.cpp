@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "corda/core/text.hpp"
-#include "corda/core/version.hpp"
 #include "corda/pipeline/provenance.hpp"
 #include "corda/scene/write_scene.hpp"
 #include "corda/sim/forces/forces.hpp"

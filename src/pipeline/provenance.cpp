@@ -11,7 +11,6 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/core/version.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/media/format/file_kind.hpp"
 #include "corda/media/read/video_comment.hpp"

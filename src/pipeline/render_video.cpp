@@ -10,12 +10,10 @@
 #include <nlohmann/json.hpp>
 
 #include "corda/core/cancel.hpp"
-#include "corda/core/clock.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/core/version.hpp"
 #include "corda/core/workers.hpp"
 #include "corda/media/chunks/chunk.hpp"
 #include "corda/media/chunks/part_reader.hpp"

@@ -1,4 +1,4 @@
-#include "corda/report/child.hpp"
+#include "corda/report/writers.hpp"
 
 #include <fcntl.h>
 #include <sys/prctl.h>

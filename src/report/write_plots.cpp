@@ -12,7 +12,6 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
 #include "corda/core/text.hpp"
-#include "corda/report/child.hpp"
 #include "corda/report/writers.hpp"
 
 namespace corda::report {

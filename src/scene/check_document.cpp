@@ -8,7 +8,6 @@
 
 #include "corda/core/css_colors.hpp"
 #include "corda/core/image.hpp"
-#include "corda/core/nearest.hpp"
 #include "corda/core/text.hpp"
 #include "corda/scene/schema.hpp"
 #include "corda/scene/table_reader.hpp"

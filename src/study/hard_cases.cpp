@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/clock.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/report/writers.hpp"
 #include "corda/scene/scene.hpp"
 

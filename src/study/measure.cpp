@@ -10,7 +10,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
-#include "corda/core/clock.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::study {

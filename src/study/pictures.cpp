@@ -8,8 +8,8 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
-#include "corda/core/clock.hpp"
-#include "corda/core/temporary_folder.hpp"
+#include "corda/core/file.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/media/chunks/video_writer.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "corda/pipeline/plan_text.hpp"

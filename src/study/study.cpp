@@ -12,7 +12,6 @@
 #include "corda/core/cancel.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/text.hpp"
-#include "corda/core/version.hpp"
 #include "corda/study/accuracy.hpp"
 #include "corda/study/hard_cases.hpp"
 #include "corda/study/speed.hpp"

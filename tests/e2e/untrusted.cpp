@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "corda/core/clock.hpp"
+#include "corda/core/machine.hpp"
 #include "support/command.hpp"
 
 namespace corda {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/clock.hpp"
 #include "corda/core/file.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/part_file.hpp"
 #include "corda/media/animation/animation.hpp"

@@ -12,9 +12,8 @@ extern "C" {
 
 #include "benchmark/video/measure.hpp"
 #include "corda/core/basics.hpp"
-#include "corda/core/clock.hpp"
 #include "corda/core/file.hpp"
-#include "corda/core/temporary_folder.hpp"
+#include "corda/core/machine.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/media/read/decoder.hpp"
 #include "corda/pipeline/film_renderer.hpp"

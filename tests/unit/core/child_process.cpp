@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "corda/core/clock.hpp"
+#include "corda/core/machine.hpp"
 #include "support/cancel.hpp"
 #include "support/failure.hpp"
 

@@ -1,4 +1,4 @@
-#include "corda/report/child.hpp"
+#include "corda/report/writers.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,9 +1,8 @@
-// Names of variants.
-#include "corda/golden/variant.hpp"
+#include "corda/golden/cases.hpp"
 
 #include <gtest/gtest.h>
 
-namespace corda {
+namespace corda::golden {
 namespace {
 
 TEST(Variant, IsNamedByItsCause) {
@@ -21,4 +20,4 @@ TEST(Variant, NeedsANameAndACause) {
 }
 
 }  // namespace
-}  // namespace corda
+}  // namespace corda::golden
