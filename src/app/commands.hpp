@@ -115,13 +115,13 @@ struct SceneOptions {
 };
 
 /// Frames FIRST <= k < END of a video; without an end, up to its last.
-struct FrameRange {
+struct RequestedFrames {
     std::int64_t first = 0;
     std::optional<std::int64_t> end;
 };
 
 /// Reads "FIRST:END", either of which may be left out; std::nullopt for any other text.
-[[nodiscard]] std::optional<FrameRange> parse_frame_range(std::string_view text);
+[[nodiscard]] std::optional<RequestedFrames> parse_frames(std::string_view text);
 
 /// A moment of the motion that is to be drawn.
 struct RequestedTime {

@@ -52,12 +52,12 @@ bool parse_frame(std::string_view text, Frame& frame) {
 }
 
 /// The frames that a word of `--frame` names.
-FrameRange frames_of(const std::string& word, const Scene& scene) {
+RequestedFrames frames_of(const std::string& word, const Scene& scene) {
     const std::int64_t count = scene.video.fps.frame_count(scene.world.duration_s);
-    FrameRange range;
+    RequestedFrames range;
     if (parse_frame(word, range.first)) {
         range.end = range.first + (range.first < count ? 1 : 0);
-    } else if (const auto parsed = parse_frame_range(word)) {
+    } else if (const auto parsed = parse_frames(word)) {
         range = *parsed;
     } else {
         throw Error(ExitCode::kUsage,
@@ -257,8 +257,8 @@ void report_gl(const Console& console, const GlInfo& gl) {
                                gl.platform));
 }
 
-std::optional<FrameRange> parse_frame_range(std::string_view text) {
-    FrameRange range;
+std::optional<RequestedFrames> parse_frames(std::string_view text) {
+    RequestedFrames range;
     const auto colon = text.find(':');
     const bool is_range = colon != std::string_view::npos &&
                           (colon == 0 || parse_frame(text.substr(0, colon), range.first)) &&
@@ -293,7 +293,7 @@ std::vector<RequestedTime> TimeOptions::list(const Scene& scene) const {
         times.push_back({*within_s, std::nullopt});
     }
     for (const std::string& word : frames) {
-        const FrameRange range = frames_of(word, scene);
+        const RequestedFrames range = frames_of(word, scene);
         const auto count = static_cast<std::int64_t>(times.size()) + *range.end - range.first;
         if (count > kMaxTimes) {
             throw Error(ExitCode::kUsage, fmt::format("--frame {}: are {} pictures or more, over the limit "

@@ -44,7 +44,7 @@ struct RenderOptions {
 /// Puts "FIRST:END" into `def`, either of which may be left out.
 void parse_range(std::string_view text, RenderDef& def) {
     if (text.empty()) return;
-    if (const auto range = parse_frame_range(text)) {
+    if (const auto range = parse_frames(text)) {
         def.first = range->first;
         def.end = range->end;
         return;

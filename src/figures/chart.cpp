@@ -12,7 +12,7 @@
 namespace corda::figures {
 namespace {
 
-struct Range {
+struct Extremes {
     double low = HUGE_VAL;
     double high = -HUGE_VAL;
 
@@ -63,8 +63,8 @@ std::string time_text(double time_s) {
 
 report::Plot make_plot(const std::string& id, const std::string& title, const AxisDef& x, const AxisDef& y,
                        const std::vector<Curve>& curves) {
-    Range x_range;
-    Range y_range;
+    Extremes x_range;
+    Extremes y_range;
     for (const Curve& curve : curves) {
         for (const CurvePoint& point : curve.points) {
             x_range.include(point.x);
@@ -112,8 +112,8 @@ void fit_height(report::Plot& plot) {
     constexpr double kBox = 0.82;
     constexpr double kLetters = 0.17;
     const double key = plot.height_per_width - report::Plot{}.height_per_width;
-    Range x;
-    Range y;
+    Extremes x;
+    Extremes y;
     for (const report::Series& series : plot.series) {
         for (const auto& point : series.points) {
             x.include(point.first);
