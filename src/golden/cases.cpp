@@ -11,7 +11,7 @@
 #include "corda/core/file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/timeline.hpp"
-#include "corda/golden/provenance.hpp"
+#include "corda/golden/record.hpp"
 #include "corda/media/format/file_kind.hpp"
 
 namespace corda::golden {
@@ -114,10 +114,10 @@ bool is_foreign(const std::string& path) {
     return !has_schema(text) && !has_tables_of_scenes(text);
 }
 
-/// The record of a golden picture; empty if it cannot be read.
-Provenance provenance_in(const std::string& path) {
+/// The provenance of a golden picture; empty if it cannot be read.
+Provenance provenance_of_file(const std::string& path) {
     try {
-        return from_png_info(read_png_info(path));
+        return provenance_in(read_png_info(path));
     } catch (const Error&) {
         return {};
     }
@@ -146,7 +146,7 @@ bool is_no_png(const std::string& path) {
 
 bool lacks_record(const std::string& path) {
     try {
-        return !from_png_info(read_png_info(path)).is_golden();
+        return !provenance_in(read_png_info(path)).golden;
     } catch (const Error&) {
         return false;
     }
@@ -238,9 +238,9 @@ std::vector<std::string> stale_ones(const SuiteDef& def, const std::vector<Case>
     std::vector<std::string> stale;
     for (const std::string& path : references) {
         if (used.contains(path)) continue;
-        const Provenance made = provenance_in(path);
+        const Provenance made = provenance_of_file(path);
         const std::string scene =
-            made.is_golden() ? made.scene : printable(scene_in_name(fs::path(path).filename().string()));
+            made.golden ? made.name : printable(scene_in_name(fs::path(path).filename().string()));
         if (!scene.empty() && (has_folder || scenes.contains(scene))) stale.push_back(path);
     }
     return stale;

@@ -8,7 +8,7 @@
 #include "corda/core/file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/golden/cases.hpp"
-#include "corda/golden/provenance.hpp"
+#include "corda/golden/record.hpp"
 #include "corda/media/defs.hpp"
 
 namespace corda::testing {
@@ -66,7 +66,7 @@ std::string keep_artifacts(const std::string& name, const fs::path& golden_folde
 /// Whether `corda golden` made a picture.
 bool is_of_suite(const std::string& path) {
     try {
-        return golden::from_png_info(read_png_info(path)).is_golden();
+        return provenance_in(read_png_info(path)).golden.has_value();
     } catch (const Error&) {  // it is missing, or damaged
         return false;
     }

@@ -13,7 +13,7 @@
 #include "corda/core/workers.hpp"
 #include "corda/golden/cases.hpp"
 #include "corda/golden/perceived.hpp"
-#include "corda/golden/provenance.hpp"
+#include "corda/golden/record.hpp"
 #include "corda/golden/staging.hpp"
 #include "corda/golden/update_folder.hpp"
 #include "corda/pipeline/film_renderer.hpp"
@@ -31,7 +31,7 @@ constexpr std::size_t kMinApart = 8;
 /// A picture as it was drawn.
 struct Drawn {
     const Image& image;
-    const Provenance& made;
+    const GoldenRecord& made;
     const Scene& scene;  ///< that of its film
 };
 
@@ -54,7 +54,7 @@ bool passes(const Drawn& drawn, const DifferenceLimits& limits, const std::strin
     add_perceived(reference.image, drawn.image,
                   {.flip = limits.flip.has_value(), .ssim = limits.ssim.has_value()}, picture.difference);
     if (picture.difference.within(limits)) return true;
-    picture.cause = cause_of(from_png_info(read_png_info(path)), drawn.made);
+    picture.cause = cause_of(provenance_in(read_png_info(path)), drawn.made);
     picture.change = scene_change(path, drawn.scene);
     if (!picture.difference.same_size)
         picture.cause = fmt::format("{}x{} pixels, now {}x{}", reference.image.width(),
@@ -91,8 +91,8 @@ struct Job {
     Case* scene = nullptr;
     std::vector<Setting> frozen;
     std::optional<Film> film;
-    std::vector<Provenance> made;  ///< per picture
-    std::size_t left = 0;          ///< pictures to draw
+    std::vector<GoldenRecord> made;  ///< per picture
+    std::size_t left = 0;            ///< pictures to draw
 };
 
 class Runner {
@@ -159,7 +159,7 @@ class Runner {
         const double y_m = *camera.height_m / 2;
         const double x_m = y_m * video.width_px / video.height_px;
         const Vec2 center = *camera.center_m - job.film->system().origin_m;  // positions are relative to it
-        return std::any_of(job.made.begin(), job.made.end(), [&](const Provenance& made) {
+        return std::any_of(job.made.begin(), job.made.end(), [&](const GoldenRecord& made) {
             for (std::size_t i = 0; i + 1 < made.positions_m.size(); i += 2)
                 if (std::abs(made.positions_m[i] - center.x) > x_m ||
                     std::abs(made.positions_m[i + 1] - center.y) > y_m)
@@ -185,7 +185,7 @@ class Runner {
         job.film.emplace(load_scene(one.path, settings), def);
         FilmRenderer::keep(*job.film, def.stills_s);
         job.made.clear();
-        for (const double time_s : def.stills_s) job.made.push_back(provenance_of(*job.film, time_s));
+        for (const double time_s : def.stills_s) job.made.push_back(record_of(*job.film, time_s));
     }
 
     void draw(Job& job, std::size_t first, std::size_t end) {
@@ -225,7 +225,7 @@ class Runner {
         for (const Checked& picture : one.pictures) {
             for (const std::string& path : variants_of(references_, picture.name)) {
                 try {
-                    auto frozen = freezing(one.scene, from_png_info(read_png_info(path)));
+                    auto frozen = freezing(one.scene, provenance_in(read_png_info(path)).golden);
                     if (frozen.empty()) continue;
                     tell_frozen(one, frozen, "frozen by " + picture.name);
                     return frozen;
@@ -245,14 +245,14 @@ class Runner {
 
     /// Writes a picture that is missing, differs, or freezes something else.
     void update(Job& job, std::size_t i, const Image& drawn, Checked& picture) {
-        const Provenance& made = job.made[i];
+        const GoldenRecord& made = job.made[i];
         if (picture.verdict == Verdict::kPassed) {
             const std::string path = (fs::path(def_.folder) / picture.name).string();
-            const bool is_kept =
-                picture.variant != picture.name || from_png_info(read_png_info(path)).is_frozen_as(made);
-            if (is_kept) return;
-            picture.cause = lacks_record(path) ? "the same pixels, without a record of how they were made"
-                                               : "the same pixels, by another solver or camera";
+            if (picture.variant != picture.name) return;
+            const std::optional<GoldenRecord> kept = provenance_in(read_png_info(path)).golden;
+            if (kept && kept->is_frozen_as(made)) return;
+            picture.cause = kept ? "the same pixels, by another solver or camera"
+                                 : "the same pixels, without a record of how they were made";
         }
         if (!def_.force && is_no_png((fs::path(def_.folder) / picture.name).string())) return;
         picture.changed = true;
@@ -268,8 +268,8 @@ class Runner {
         const auto is_the_same = [&](std::size_t i) {
             if (pictures[i].verdict != Verdict::kPassed) return !moved(pictures[i]);
             const auto path = (fs::path(def_.folder) / pictures[i].variant).string();
-            const Provenance reference = from_png_info(read_png_info(path));
-            return !reference.is_golden() || reference.state == job.made[i].state;
+            const auto reference = provenance_in(read_png_info(path)).golden;
+            return !reference || reference->state == job.made[i].state;
         };
         while (is_the_same(first)) ++first;
         for (Checked& picture : pictures)

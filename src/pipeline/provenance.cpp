@@ -45,6 +45,53 @@ Json json_of(const PictureOrigin& picture) {
     return json;
 }
 
+constexpr std::size_t kDigits = 16;  // of a double's bits
+
+std::string hex_of(const std::vector<double>& values) {
+    std::string text;
+    text.reserve(values.size() * kDigits);
+    for (const double value : values)
+        fmt::format_to(std::back_inserter(text), "{:016x}", std::bit_cast<std::uint64_t>(value));
+    return text;
+}
+
+std::vector<double> from_hex(std::string_view text) {
+    std::vector<double> values;
+    for (; !text.empty(); text.remove_prefix(kDigits)) {
+        std::uint64_t bits = 0;
+        const char* const begin = text.data();
+        const auto [end, failure] = std::from_chars(begin, begin + std::min(text.size(), kDigits), bits, 16);
+        values.push_back(std::bit_cast<double>(bits));
+        if (failure != std::errc() || end != begin + kDigits || !std::isfinite(values.back()))
+            throw Error(ExitCode::kUsage, "its positions are not what corda writes");
+    }
+    return values;
+}
+
+Json json_of(const GoldenRecord& golden) {
+    return {{"renderer", golden.renderer},
+            {"solver", golden.solver},
+            {"center", {golden.center_m.x, golden.center_m.y}},
+            {"height", golden.height_m},
+            {"margin", golden.margin},
+            {"state", golden.state},
+            {"positions", hex_of(golden.positions_m)}};
+}
+
+/// Throws what the JSON library throws for other types.
+GoldenRecord golden_of(const Json& json) {
+    const Json& center = json.at("center");
+    GoldenRecord golden{.renderer = json.at("renderer").get<std::string>(),
+                        .solver = json.at("solver").get<std::string>(),
+                        .center_m = {center.at(0).get<double>(), center.at(1).get<double>()},
+                        .height_m = json.at("height").get<double>(),
+                        .margin = json.at("margin").get<double>(),
+                        .state = json.at("state").get<std::string>(),
+                        .positions_m = from_hex(json.at("positions").get<std::string>())};
+    if (!golden.solver.starts_with("solver=")) throw Error(ExitCode::kUsage, "its solver is no setting");
+    return golden;
+}
+
 /// Throws what the JSON library throws for other types.
 PictureOrigin picture_of(const Json& json) {
     PictureOrigin picture;
@@ -84,6 +131,7 @@ Provenance parsed(const Json& json) {
     provenance.left_out = json.value("left_out", "");
     provenance.frames = json.value("frames", "");
     if (json.contains("picture")) provenance.picture = picture_of(json["picture"]);
+    if (json.contains("golden")) provenance.golden = golden_of(json["golden"]);
     if (!is_sound_name(provenance.name)) throw Error(ExitCode::kUsage, "its name is none of a scene");
     return provenance;
 }
@@ -94,9 +142,9 @@ struct PngTexts {
     std::string frame;       ///< its number, in words
 };
 
-PngTexts texts_in_png(const std::string& path) {
+PngTexts texts_in(const PngInfo& info) {
     PngTexts texts;
-    for (const auto& [keyword, text] : read_png_info(path).text) {
+    for (const auto& [keyword, text] : info.text) {
         if (keyword == kProvenanceKeyword) texts.provenance = text;
         if (keyword == "Frame") texts.frame = text;
     }
@@ -158,18 +206,30 @@ std::string provenance_text(Provenance provenance) {
         if (!provenance.left_out.empty()) json["left_out"] = provenance.left_out;
         if (!provenance.frames.empty()) json["frames"] = provenance.frames;
         if (provenance.picture) json["picture"] = json_of(*provenance.picture);
+        if (provenance.golden) json["golden"] = json_of(*provenance.golden);
         return json.dump(-1, ' ', true, Json::error_handler_t::replace);
     };
     if (provenance.left_out.size() > kMaxReason) provenance.left_out.resize(kMaxReason);
     std::string text = text_of();
     if (text.size() <= Provenance::kMaxBytes) return text;
-    provenance.left_out =
-        fmt::format("the scene takes {} bytes, more than {}", provenance.scene.size(), Provenance::kMaxBytes);
     provenance.scene.clear();
+    const std::size_t others = text_of().size();
+    provenance.left_out = fmt::format("the scene takes {} bytes, more than {}", text.size() - others,
+                                      Provenance::kMaxBytes - std::min(others, Provenance::kMaxBytes));
     text = text_of();
     if (text.size() <= Provenance::kMaxBytes) return text;
     provenance.picture.reset();
     return text_of();
+}
+
+Provenance provenance_in(const PngInfo& info) {
+    const std::string text = texts_in(info).provenance;
+    if (text.empty() || text.size() > Provenance::kMaxBytes) return {};
+    try {
+        return parsed(media::parse_untrusted_json(text));
+    } catch (const std::exception&) {
+        return {};
+    }
 }
 
 Provenance read_provenance(const std::string& path) {
@@ -180,7 +240,7 @@ Provenance read_provenance(const std::string& path) {
         fail_at(path, "is a GIF, an APNG or a WebP, none of which tells what it was made from");
     PngTexts png;
     if (media::is_png(path))
-        png = texts_in_png(path);
+        png = texts_in(read_png_info(path));
     else
         png.provenance = text_in_video(path);
     const std::string& text = png.provenance;

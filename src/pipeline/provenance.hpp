@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "corda/media/defs.hpp"
 #include "corda/scene/scene.hpp"
 
 namespace corda {
@@ -30,17 +31,37 @@ struct PictureOrigin {
     friend bool operator==(const PictureOrigin&, const PictureOrigin&) = default;
 };
 
+/// How a golden picture was made of its scene.
+struct GoldenRecord {
+    static constexpr std::size_t kMaxParticles = 256;
+
+    std::string renderer = {};  ///< GL_RENDERER
+    std::string solver = {};    ///< setting "solver={...}"
+    Vec2 center_m = {};         ///< of the camera
+    double height_m = 0.0;      ///< of the camera
+    double margin = 0.0;        ///< camera.margin, to which both were fitted
+    std::string state = {};     ///< FNV-1a of the positions' bits, in hexadecimal
+    /// x and y of each particle in turn; of more than kMaxParticles, of every second, third, ... alone.
+    std::vector<double> positions_m = {};
+
+    /// True if both have the same solver and camera.
+    [[nodiscard]] bool is_frozen_as(const GoldenRecord& other) const {
+        return solver == other.solver && center_m == other.center_m && height_m == other.height_m;
+    }
+};
+
 /// Origin of a file.
 struct Provenance {
     /// Of the text that a file carries. QuickTime's comments end at 64 KiB.
     static constexpr std::size_t kMaxBytes = std::size_t{32} << 10;
 
-    std::string corda;     ///< the version that made it
-    std::string name;      ///< Scene::name, printable
-    std::string scene;     ///< a scene file (write_scene)
-    std::string left_out;  ///< why there is no scene; empty if there is one
-    std::string frames;    ///< of a video or a sequence of pictures: "FIRST:END"
-    std::optional<PictureOrigin> picture;
+    std::string corda = {};     ///< the version that made it
+    std::string name = {};      ///< Scene::name, printable
+    std::string scene = {};     ///< a scene file (write_scene)
+    std::string left_out = {};  ///< why there is no scene; empty if there is one
+    std::string frames = {};    ///< of a video or a sequence of pictures: "FIRST:END"
+    std::optional<PictureOrigin> picture = {};
+    std::optional<GoldenRecord> golden = {};  ///< of a picture that `corda golden` keeps
 };
 
 /// The keyword of the text in a PNG, and the key in the comment of a video.
@@ -52,7 +73,11 @@ inline constexpr const char* kProvenanceKey = "provenance";
 [[nodiscard]] Provenance provenance_of(const Scene& scene);
 
 /// As a JSON object of at most kMaxBytes: without the scene, or without the picture, if they do not fit.
+/// Positions of a golden picture are the bits of their numbers in hexadecimal.
 [[nodiscard]] std::string provenance_text(Provenance provenance);
+
+/// Provenance in the texts of a PNG; without a name if there is none, or it is damaged.
+[[nodiscard]] Provenance provenance_in(const PngInfo& info);
 
 /// Reads what a PNG or a video carries; a video in a child process (see core/child_process.hpp).
 /// Throws corda::Error: kIo if the file cannot be read, kUsage if it carries nothing or no scene, or what it

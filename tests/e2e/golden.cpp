@@ -58,6 +58,16 @@ class GoldenSuite : public testing::Test {
         write_png(reference(name), image, info, {.force = true});
     }
 
+    /// Changes the provenance, as JSON, and the pixels of a reference.
+    template <typename Change>
+    void change_provenance(const std::string& name, Change change) const {
+        change_reference(name, [&](Image& image, PngInfo& info) {
+            auto json = nlohmann::json::parse(info.text.back().second);
+            change(image, json);
+            info.text.back().second = json.dump();
+        });
+    }
+
     [[nodiscard]] std::string reference(const std::string& name) const { return folder_.file("ref/" + name); }
 
     test::ScratchFolder folder_;
@@ -148,17 +158,16 @@ TEST_F(GoldenSuite, AcceptsAReferenceWithoutPositions) {
 
 TEST_F(GoldenSuite, ReportsAnotherVersionAndAnotherOpenGl) {
     const auto recolor = [](Image& image) { image.pixel(5, 5)[0] ^= 1U; };
-    change_reference(kMiddle, [&](Image& image, PngInfo& info) {
+    change_provenance(kMiddle, [&](Image& image, auto& json) {
         recolor(image);
-        info.text.front().second = "corda 0.0.7";
+        json["corda"] = "0.0.7";
     });
     EXPECT_THAT(run().out, HasSubstr("max 1, mean 4.34028e-06, share 1.73611e-05; same positions and camera, "
                                      "drawn by another version of Corda: 0.0.7, now"));
     EXPECT_EQ(run({"--update"}).exit_code, 0);
-    change_reference(kMiddle, [&](Image& image, PngInfo& info) {
+    change_provenance(kMiddle, [&](Image& image, auto& json) {
         recolor(image);
-        for (auto& [key, text] : info.text)
-            if (key == "Renderer") text = "Voodoo";
+        json["golden"]["renderer"] = "Voodoo";
     });
     EXPECT_THAT(run().out, HasSubstr("drawn by another OpenGL: Voodoo, now"));
 }
@@ -180,13 +189,11 @@ TEST_F(GoldenSuite, ReportsAnotherSizeAndUnreadableFiles) {
 }
 
 TEST_F(GoldenSuite, SurvivesAnyTextInAReference) {
-    change_reference("swing_t0000_000000.png", [](Image&, PngInfo& info) {
-        for (auto& [key, text] : info.text) {
-            if (key == "Corda-Solver") text = "solver={method = \"none\"}\n[world]\nduration = 1e9";
-            if (key == "Corda-Center") text = "camera.center=[nan, {}]";
-            if (key == "Corda-Positions") text = "7ff0000000000000zz";
-        }
+    change_provenance("swing_t0000_000000.png", [](Image&, auto& json) {
+        json["golden"]["solver"] = "solver={method = \"none\"}\n[world]\nduration = 1e9";
     });
+    change_provenance(kMiddle,
+                      [](Image&, auto& json) { json["golden"]["positions"] = "7ff0000000000000zz"; });
     const auto result = run({"-v"});
     EXPECT_EQ(result.exit_code, 0) << result.err;  // planned again, with the same result
     EXPECT_THAT(result.err, HasSubstr("does not fit the scene any more"));

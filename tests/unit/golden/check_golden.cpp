@@ -7,6 +7,7 @@
 #include <string>
 
 #include "corda/media/defs.hpp"
+#include "corda/pipeline/provenance.hpp"
 #include "corda/testing.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"
@@ -116,7 +117,8 @@ TEST_F(CheckGolden, UpdatesItsOwnPictures) {
 
 TEST_F(CheckGolden, LeavesPicturesOfTheCommandAlone) {
     PngInfo info;
-    info.text = {{"Corda-State", "0123"}};
+    const Provenance made{.corda = "0.1.0", .name = "dot", .golden = GoldenRecord{.solver = "solver={}"}};
+    info.text = {{kProvenanceKeyword, provenance_text(made)}};
     write_png(folder_.file("ref/dot.png"), with_dot(200), info, {.force = true});
     setenv("CORDA_UPDATE_GOLDENS", "1", 1);
     const auto outcome = check_golden(with_dot(7), "dot.png");

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "corda/pipeline/film.hpp"
+#include "corda/pipeline/provenance.hpp"
+
+namespace corda::golden {
+
+/// How a film's picture at a time is made.
+[[nodiscard]] GoldenRecord record_of(Film& film, double time_s);
+
+/// The texts of a golden PNG. `film` is what the picture was drawn from: `still --from` draws it again.
+[[nodiscard]] PngInfo to_png_info(GoldenRecord record, const Film& film, double time_s);
+
+/// Settings that give `scene` the solver and the camera of `made`, as far as the scene itself leaves them
+/// open: a method or a camera that the scene names is what a golden test checks.
+[[nodiscard]] std::vector<Setting> freezing(const Scene& scene, const std::optional<GoldenRecord>& made);
+
+/// The changes of a scene since its picture was kept, of the keys that may change pixels: "world.drag is 0.2
+/// and was 0, rope[0].hang.links is 31 and was 30". Empty if there are none, or the kept picture does not
+/// carry its scene.
+[[nodiscard]] std::string scene_change(const std::string& reference, const Scene& now);
+
+/// The most likely cause of the difference from a kept picture, in words.
+[[nodiscard]] std::string cause_of(const Provenance& kept, const GoldenRecord& now);
+
+/// The largest distance between particles in m; empty if positions are not known or differ in number.
+[[nodiscard]] std::optional<double> largest_distance_m(const GoldenRecord& a, const GoldenRecord& b);
+
+}  // namespace corda::golden
