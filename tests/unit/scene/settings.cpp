@@ -51,7 +51,7 @@ TEST(SceneSettings, TakeWhatIsNotTomlAsText) {
     const SceneError two = error_of(rope_with(""), {"video.crf=20\nother=3"});
     EXPECT_EQ(two.message,
               "--set video.crf=20\\x0aother=3: video.crf: \"20\\x0aother=3\" is a string, not an integer; "
-              "give the constant rate factor, 1 .. 63");
+              "give the constant rate factor (H.264, H.265: up to 51), 1 .. 63");
 }
 
 TEST(SceneSettings, LaterOnesWin) {
