@@ -101,10 +101,7 @@ int fail(const Console& console, ExitCode code, const std::string& text) {
 int act(const Console& console, const Action& action) {
     try {
         install_signal_handlers(console.json());
-        const CancelScope stopping([] {
-            stop_if_asked();
-            return true;
-        });
+        const CancelScope stopping(stop_if_asked);
         return static_cast<int>(action(console));
     } catch (const ReaderLeft&) {
         return static_cast<int>(ExitCode::kOk);

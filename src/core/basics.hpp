@@ -4,6 +4,8 @@
 #include <functional>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 #pragma GCC visibility push(default)
 namespace corda {
@@ -56,6 +58,15 @@ class [[nodiscard]] CancelScope {
     /// An empty callback cancels nothing. `outer`: whether check_cancelled() also asks the scopes around this
     /// one.
     explicit CancelScope(std::function<bool()> goes_on, Outer outer = Outer::kAsked);
+    /// A callback that returns nothing ends the work by an exception.
+    template <class Callback>
+    requires std::is_void_v<std::invoke_result_t<Callback&>>
+    explicit CancelScope(Callback callback, Outer outer = Outer::kAsked)
+        : CancelScope(std::function<bool()>([callback = std::move(callback)]() mutable {
+                          callback();
+                          return true;
+                      }),
+                      outer) {}
     CancelScope(const CancelScope&) = delete;
     CancelScope& operator=(const CancelScope&) = delete;
     ~CancelScope();

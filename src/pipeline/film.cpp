@@ -60,10 +60,8 @@ struct Film::Impl {
 
     /// Calls on_progress, with nothing done, until the simulation starts.
     CancelScope reporting_start() const {
-        return CancelScope([this] {
-            report_progress(def.on_progress, 0, pipeline::last_frame_of(scene) + 1);
-            return true;
-        });
+        return CancelScope(
+            [this] { report_progress(def.on_progress, 0, pipeline::last_frame_of(scene) + 1); });
     }
 
     pipeline::Motion& start_motion() const {

@@ -162,7 +162,6 @@ SharedMotion::Use::Use(SharedMotion& motion, const OnProgress& on_progress)
           const Motion& its = *motion.motion;
           report_progress(on_progress, static_cast<std::int64_t>(its.next()),
                           static_cast<std::int64_t>(its.timeline().size()));
-          return true;
       }) {}
 
 TrailRecorder::TrailRecorder(std::vector<std::size_t> particles, double trail_s, FrameRate fps)

@@ -279,10 +279,7 @@ void write_frames(Film& film, std::int64_t first, std::int64_t end, const OnProg
     if (result.jobs > 1 && render_chunks(film, first, end, result.jobs, on_progress, writer, result)) return;
     result.jobs = 1;
     FilmRenderer renderer(film);
-    const CancelScope progress([&] {
-        report_progress(on_progress, k - first, end - first);
-        return true;
-    });
+    const CancelScope progress([&] { report_progress(on_progress, k - first, end - first); });
     for (; k < end; ++k) {
         check_cancelled();
         const Damage damage = renderer.draw(film.time_s(k));
@@ -351,10 +348,7 @@ CheckedOutput check_render(const Scene& scene, const std::string& path, const Re
                         def.first, end, count));
     }
     std::int64_t total = end - def.first;
-    const CancelScope starting([&] {
-        report_progress(def.on_progress, 0, total);
-        return true;
-    });
+    const CancelScope starting([&] { report_progress(def.on_progress, 0, total); });
     media::CheckedVideo video = check_video(scene, path, def, input, end);
     total *= media::passes(*video.format.ending);
     media::check_encoder_starts(video.format, scene.video);

@@ -165,10 +165,7 @@ void SceneRenderer::check_tints() {
 }
 
 CancelScope SceneRenderer::keep_current() {
-    return CancelScope([this] {
-        canvas_->context.make_current();
-        return true;
-    });
+    return CancelScope([this] { canvas_->context.make_current(); });
 }
 
 }  // namespace corda::pipeline

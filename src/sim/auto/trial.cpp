@@ -241,7 +241,6 @@ double Checks::difference_m(const State& state) const {
 CancelScope report_frames(const PlanDef& def, const std::int64_t& frames_done) {
     return CancelScope([&def, &frames_done] {
         report_progress(def.on_progress, frames_done, static_cast<std::int64_t>(def.timeline.size()));
-        return true;
     });
 }
 

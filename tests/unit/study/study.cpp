@@ -80,7 +80,6 @@ TEST(Study, EndsWithTheChaptersBeforeWhatEndsIt) {
     Study study(def);
     const CancelScope stop([&ends] {
         if (ends) throw Error(ExitCode::kTerminated, "stopped");
-        return true;
     });
     report::Report report;
     const auto run = [&] {
