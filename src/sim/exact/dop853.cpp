@@ -302,9 +302,10 @@ double Dop853::error(double step_s) const {
         }
     }
     if (!is_finite) return kInfinity;
-    if (largest5 == 0.0) return 0.0;
+    const double square5 = largest5 * largest5;
+    if (square5 == 0.0) return 0.0;  // or the square underflows: a string comes to rest, and 0 / 0 follows
     // The book's combination (II.10), of order 8 if both estimates behave according to their orders.
-    const double both = largest5 * largest5 / std::sqrt(largest5 * largest5 + 0.01 * largest3 * largest3);
+    const double both = square5 / std::sqrt(square5 + 0.01 * largest3 * largest3);
     return both / control_.tolerance;
 }
 

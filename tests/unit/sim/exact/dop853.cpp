@@ -107,6 +107,15 @@ TEST(Dop853, KeepsItsErrorsNearTheTolerance) {
     }
 }
 
+TEST(Dop853, AcceptsStepsWhoseErrorsUnderflow) {
+    for (const double start : {1e-140, 1e-155, 1e-165, 1e-300, 0.0}) {
+        Spiral spiral;
+        Dop853 integrator(spiral, {start, 0.0}, {{0, 2}}, StepControl{1e-9, 1e-3, 1.0, 1e-12});
+        EXPECT_EQ(integrator.advance_to(10.0), Status::kOk) << start;
+        EXPECT_EQ(integrator.rejected_steps(), 0U) << start;
+    }
+}
+
 /// y' = y^2 from 1: infinite at t = 1.
 class BlowUp final : public Ode {
   public:

@@ -98,6 +98,14 @@ TEST(SlackString, CarriesNoTensionAndFallsFreely) {
     EXPECT_NEAR(run.solver().energy_scale_j(), 9.81 * 2.0 * 2.0, 1e-13);
 }
 
+TEST(SlackString, ComesToRestBetweenItsPins) {
+    RopeDef rope = test::string_of({{0.0, 0.0}, {1.0, 0.0}, {2.0, 0.0}}, {1.1, 1.1});
+    rope.pinned = {0, 2};
+    test::ExactRun run(rope);
+    ASSERT_TRUE(run.go(20.0));
+    EXPECT_NEAR(run.state().y_m[1], -std::sqrt(1.1 * 1.1 - 1.0), 1e-12);
+}
+
 TEST(PinnedLinks, OfAStringStay) {
     RopeDef rope = test::string_of({{0.0, 0.0}, {0.5, 0.0}, {1.0, 0.0}}, {1.0, 0.5});
     rope.pinned = {0, 1};
