@@ -141,11 +141,21 @@ void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& li
             left_px = write_bottom(item.text(caption, interval_s_), left_px, right_px, list);
     }
     const int end_px = legend_ && scale_ ? draw_legend(list) : width_ - edge_px_;
-    write_top(def_.title, " ", end_px, title_baseline_px(), title_px(), color_, list);
+    write_top(def_.title, " ", end_px, title_baseline_px(), fitting_title_px(end_px), color_, list);
     constexpr std::uint8_t kDim = 0xb0;
     if (def_.method)
         write_top(caption.method, ", ", end_px, method_baseline_px(), em_px_,
                   {color_.r, color_.g, color_.b, kDim}, list);
+}
+
+int Overlay::fitting_title_px(int end_px) {
+    const int room_px = end_px - edge_px_;
+    int size_px = title_px();
+    const int width_px = font_.width_px(def_.title, size_px);
+    if (width_px <= room_px) return size_px;
+    size_px = std::max(em_px_, rounded(static_cast<double>(size_px) * room_px / width_px));
+    while (size_px > em_px_ && font_.width_px(def_.title, size_px) > room_px) --size_px;
+    return size_px;
 }
 
 int Overlay::write_bottom(const std::string& text, int x_px, int end_px, DrawList& list) {
@@ -230,7 +240,10 @@ void Overlay::write_top(std::string text, std::string_view separator, int end_px
             if (end > room_px) break;
         }
         const std::size_t last = text.rfind(separator, kept);
-        if (last != std::string::npos && last > 0) kept = last;
+        constexpr double kMinUsed = 0.75;
+        const bool is_long_word =
+            separator == " " && font_.width_px(text.substr(0, last), size_px) < kMinUsed * room_px;
+        if (last != std::string::npos && last > 0 && !is_long_word) kept = last;
         text = kept == 0 ? "" : text.substr(0, kept) + mark;
     }
     font_.write({edge_px_, baseline_px, size_px, color, std::move(text)}, list);

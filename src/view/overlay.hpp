@@ -62,8 +62,10 @@ class Overlay {
     /// Draws the legend; returns where it begins.
     int draw_legend(DrawList& list);
     void draw_gradient(const PixelRect& bar, DrawList& list) const;
+    /// Size of the title: smaller, down to the size of the other texts, if it would not end before `end_px`.
+    int fitting_title_px(int end_px);
     /// Writes a text at the left of an upper baseline, shortened to end before `end_px`: at a separator if it
-    /// has one.
+    /// has one; a title inside of a word if a quarter of its room would stay empty.
     void write_top(std::string text, std::string_view separator, int end_px, int baseline_px, int size_px,
                    Color color, DrawList& list);
 

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "corda/view/font.hpp"
+
 namespace corda::view {
 namespace {
 
@@ -182,7 +184,9 @@ TEST(Legends, NameTheirUnitAndTheEndsOfTheScale) {
 
 TEST(Legends, StayInTheirFrameAndKeepClearOfTheTitle) {
     OverlayDef def;
-    def.title = "a title that is a good deal longer than the room to the left of the legend of a picture";
+    def.title =
+        "a title that is a good deal longer than the room to the left of the legend of a picture, even "
+        "in the size of the other texts";
     for (const auto& [width, height] :
          {std::pair{128, 128}, {160, 90}, {960, 540}, {540, 960}, {3840, 2160}}) {
         const DrawList list = with_legend(kilonewtons(), def, width, height);
@@ -217,11 +221,32 @@ TEST(Overlays, ShortenATitleBetweenWordsAndAMethodBetweenItsParts) {
             if (!text.ends_with("…")) continue;
             ++shortened;
             const std::string kept = text.substr(0, text.size() - std::string("…").size());
-            const bool is_title = def.title.starts_with(kept + " ");
+            const bool is_title =
+                def.title.starts_with(kept + " ") || Font().width_px(text, em_of(170)) > width / 2;
             EXPECT_TRUE(is_title || caption.method.starts_with(kept + ", ")) << text;
         }
     }
     EXPECT_GE(shortened, 20);
+}
+
+TEST(Titles, UseTheirRoomBeforeTheyAreCut) {
+    OverlayDef def;
+    def.time = def.scale_bar = false;
+    def.title = "A double pendulum of two ropes, released from 60 degrees, at a quarter of its speed";
+    const auto title = [&def](int width) { return drawn(def, {}, width, 720).texts.at(0); };
+    const Text whole = title(1920);
+    const Text smaller = title(1100);
+    EXPECT_EQ(smaller.utf8, def.title);
+    EXPECT_LT(smaller.size_px, whole.size_px);
+    EXPECT_GE(smaller.size_px, em_of(720));
+    EXPECT_GT(Font().width_px(smaller.utf8, smaller.size_px + 1), 1100 - 2 * smaller.x_px);
+    const Text cut = title(600);
+    EXPECT_EQ(cut.size_px, em_of(600));
+    EXPECT_TRUE(cut.utf8.ends_with("…"));
+    def.title = "Seile: Donaudampfschifffahrtsgesellschaftskapitaensmuetzenhalterungsbefestigung";
+    const Text word = title(600);
+    EXPECT_TRUE(word.utf8.ends_with("…"));
+    EXPECT_GT(Font().width_px(word.utf8, word.size_px), 450);
 }
 
 TEST(Legends, AreLeftOutIfThereIsNoRoomOrNoScale) {
