@@ -176,10 +176,26 @@ void fail_in_body(const Sections& sections, std::size_t i, const std::vector<con
 struct Pace {
     double frequency_1_s = 0.0;  ///< angular, of the motion to be followed
     std::string_view what;       ///< of the body, before "so fast that"
-    std::string_view remedy;
+    std::string remedy;
     std::vector<const char*> keys_of_body;
     const char* key_of_world = nullptr;
 };
+
+/// Advice for a body whose lightest particles vibrate because the others pull at them.
+std::string less_pull(const System& system, const Body& body) {
+    const auto first = system.inverse_mass_1_kg.begin() + static_cast<std::ptrdiff_t>(body.first_particle);
+    const auto end = first + static_cast<std::ptrdiff_t>(body.particle_count);
+    double lowest = HUGE_VAL;
+    double highest = 0.0;
+    std::for_each(first, end, [&](double inverse_1_kg) {
+        if (inverse_1_kg > 0.0) lowest = std::min(lowest, inverse_1_kg);
+        highest = std::max(highest, inverse_1_kg);
+    });
+    constexpr double kEqual = 1.001;
+    return fmt::format("{}less speed or gravity, {}",
+                       highest > kEqual * lowest ? "less unequal masses, " : "",
+                       body.is_net ? "fewer particles" : "fewer or longer links");
+}
 
 /// The reasons of a body, in the order in which messages name them.
 std::vector<Pace> paces_of(const Scene& scene, const System& system, const Body& body,
@@ -189,7 +205,8 @@ std::vector<Pace> paces_of(const Scene& scene, const System& system, const Body&
         is_moved_by_rounding || (std::holds_alternative<RattleDef>(solver) && body.is_chain);
     std::vector<Pace> paces{{sim::vibration_frequency_1_s(system, body),
                              "vibrates",
-                             "more compliance, less bending, heavier particles",
+                             body.is_net ? "more compliance, heavier particles"
+                                         : "more compliance, less bending, heavier particles",
                              {"compliance", "bending"}}};
     if (std::holds_alternative<RelaxationDef>(solver)) return paces;
     paces.push_back({scene.world.drag_1_s, "slows down", "less drag", {}, "drag"});
@@ -202,7 +219,7 @@ std::vector<Pace> paces_of(const Scene& scene, const System& system, const Body&
                      "gravity"});
     paces.push_back({sim::tension_frequency_1_s(system, body, scene.world, is_moved_by_rounding),
                      "is pulled so hard that its lightest particles vibrate",
-                     "less unequal masses, less speed or gravity, fewer or longer links",
+                     less_pull(system, body),
                      {"payload", "mass", "velocity"}});
     return paces;
 }
@@ -336,7 +353,7 @@ std::string cost_notice(const Scene& scene) {
         const double steps = step_count(solvers[i], scene);
         double body_s = 0.0;
         std::string why = fmt::format("takes {:g} steps", steps);
-        std::string_view remedy = "a longer step";
+        std::string remedy = "a longer step";
         if (std::holds_alternative<RelaxationDef>(solvers[i])) {
             body_s =
                 steps * sweep_count(solvers[i]) * static_cast<double>(body.bar_count) / kBarUpdatesPerSecond;
