@@ -21,12 +21,15 @@ namespace corda::app {
 namespace {
 
 constexpr double kSecondsBetweenBars = 0.1;
+constexpr double kSecondsBetweenLines = 2.0;
+constexpr double kSecondsBeforeLines = 1.0;
 constexpr int kBarCells = 30;
 
+/// If the reader leaves, as head(1) does, the command completes its work, and its exit code counts.
 void write_stdout(std::string_view text) {
     const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() &&
                          std::fputc('\n', stdout) != EOF && std::fflush(stdout) == 0;
-    if (!written)
+    if (!written && errno != EPIPE)
         throw Error(ExitCode::kIo, fmt::format("writing to standard output: {}", std::strerror(errno)));
 }
 
@@ -102,15 +105,22 @@ void Console::report(nlohmann::json json) const {
 }
 
 Progress::Progress(const Console& console, std::string_view what, std::int64_t total)
-    : console_(&console), what_(what), total_(std::max<std::int64_t>(1, total)), start_s_(now_s()) {}
+    : console_(&console),
+      what_(what),
+      total_(std::max<std::int64_t>(1, total)),
+      start_s_(now_s()),
+      next_line_s_(start_s_ + kSecondsBeforeLines) {}
 
 Progress::~Progress() {
     if (bar_is_drawn_) write_stderr("\r\x1b[K");
 }
 
-double Progress::seconds_left(std::int64_t done) const {
-    return (now_s() - start_s_) * static_cast<double>(total_ - done) /
-           static_cast<double>(std::max<std::int64_t>(1, done - first_done_.value_or(0)));
+std::string Progress::time_left(std::int64_t done) const {
+    const std::int64_t since_start = done - first_done_.value_or(0);
+    if (since_start <= 0 && done < total_) return "starting";
+    return duration_text((now_s() - start_s_) * static_cast<double>(total_ - done) /
+                         static_cast<double>(std::max<std::int64_t>(1, since_start))) +
+           " left";
 }
 
 void Progress::update(std::int64_t done) {
@@ -118,10 +128,9 @@ void Progress::update(std::int64_t done) {
     if (!first_done_ && done > 0) {
         first_done_ = done;
         start_s_ = now_s();
-        next_line_percent_ += 100 * done / total_ / 10 * 10;
     }
+    const double now = now_s();
     if (console_->draws_bar()) {
-        const double now = now_s();
         const bool is_new_end = done == total_ && !is_at_end_;
         if (now - last_drawn_s_ < kSecondsBetweenBars && !is_new_end) return;
         is_at_end_ = done == total_;
@@ -130,17 +139,17 @@ void Progress::update(std::int64_t done) {
         return;
     }
     const std::int64_t percent = 100 * done / total_;
-    if (percent < next_line_percent_) return;
+    if (percent < next_line_percent_ || now < next_line_s_) return;
+    next_line_s_ = now + kSecondsBetweenLines;
     next_line_percent_ = percent / 10 * 10 + 10;
-    console_->info(fmt::format("{} {} % ({} of {}), {} left", what_, percent / 10 * 10, done, total_,
-                               duration_text(seconds_left(done))));
+    console_->info(
+        fmt::format("{} {} % ({} of {}), {}", what_, percent / 10 * 10, done, total_, time_left(done)));
 }
 
 void Progress::draw_bar(std::int64_t done) {
     const auto cells = static_cast<int>(kBarCells * done / total_);
-    write_stderr(fmt::format("\r\x1b[K{} [{:#<{}}{:.<{}}] {:3} % {}/{}, {} left", what_, "", cells, "",
-                             kBarCells - cells, 100 * done / total_, done, total_,
-                             duration_text(seconds_left(done))));
+    write_stderr(fmt::format("\r\x1b[K{} [{:#<{}}{:.<{}}] {:3} % {}/{}, {}", what_, "", cells, "",
+                             kBarCells - cells, 100 * done / total_, done, total_, time_left(done)));
     bar_is_drawn_ = true;
 }
 

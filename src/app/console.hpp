@@ -38,7 +38,8 @@ class Console {
     void warning(std::string_view text) const;
     void error(std::string_view text) const;
 
-    /// A line of result on stdout, if results are words. Throws corda::Error (kIo) if stdout takes no more.
+    /// A line of result on stdout, if results are words. Throws corda::Error (kIo) if stdout takes no more,
+    /// unless its reader has left.
     void result(std::string_view text) const;
     /// The result on stdout, if results are JSON. A text that is not UTF-8 is escaped (see core/text.hpp).
     void report(nlohmann::json json) const;
@@ -53,7 +54,7 @@ class Console {
 };
 
 /// Progress of a count of equal pieces of work: a bar with the time left on a terminal, otherwise a line
-/// every 10 %.
+/// after a second and then every 10 %, but not more often than every two seconds.
 class Progress {
   public:
     Progress(const Console& console, std::string_view what, std::int64_t total);
@@ -65,14 +66,15 @@ class Progress {
     void update(std::int64_t done);
 
   private:
-    [[nodiscard]] double seconds_left(std::int64_t done) const;
+    [[nodiscard]] std::string time_left(std::int64_t done) const;
     void draw_bar(std::int64_t done);
 
     const Console* console_;
     std::string what_;
     std::int64_t total_;
-    std::int64_t next_line_percent_ = 10;
+    std::int64_t next_line_percent_ = 0;
     double start_s_;
+    double next_line_s_;
     std::optional<std::int64_t> first_done_;  ///< at start_s_; an earlier run may have done much
     double last_drawn_s_ = 0.0;
     bool bar_is_drawn_ = false;

@@ -71,6 +71,7 @@ std::atomic<int> exit_code_of_ended_work{-1};
 std::atomic<const char*> interruption_message{kNothingWritten};
 std::atomic<const LastWords*> last_words{nullptr};
 bool reports_json = false;
+bool is_on_terminal = false;  // standard error
 static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<int>::is_always_lock_free &&
                   std::atomic<const LastWords*>::is_always_lock_free,
               "a signal handler may use nothing else");
@@ -94,8 +95,7 @@ Words words_for(int signal, const std::string& kept) {
     const std::string message = fmt::format(
         "interrupted (SIG{}); the work, a driver, an encoder or another program did not stop in time{}",
         sigabbrev_np(signal), kept);
-    Words words{fmt::format("{}corda: error: {}\n", isatty(STDERR_FILENO) == 1 ? "\r\x1b[K" : "", message),
-                {}};
+    Words words{fmt::format("{}corda: error: {}\n", is_on_terminal ? "\r\x1b[K" : "", message), {}};
     if (reports_json) {
         const nlohmann::json error{{"code", kSignalBase + signal}, {"message", message}};
         words.json = nlohmann::json{{"schema", 1}, {"error", error}}.dump(2) + "\n";
@@ -136,6 +136,7 @@ void write_at_once(int descriptor, std::string_view text) {
             write_at_once(STDOUT_FILENO, words[i].json);
         }
     }
+    if (!with_words && is_on_terminal) write_at_once(STDERR_FILENO, "\n");  // ends the line of a bar
     _exit(ended < 0 ? kSignalBase + signal : ended);
 }
 
@@ -175,6 +176,7 @@ void on_signal(int signal) {
 
 void install_signal_handlers(bool json) {
     reports_json = json;
+    is_on_terminal = isatty(STDERR_FILENO) == 1;
     make_last_words("");
     for (const int signal : {SIGHUP, SIGINT, SIGTERM, SIGALRM}) {
         struct sigaction before = {};

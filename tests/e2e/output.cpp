@@ -298,14 +298,31 @@ TEST_F(Output, RenderJsonDescribesTheRender) {
     EXPECT_FALSE(figures["gl_renderer"].get<std::string>().empty());
 }
 
-TEST_F(Output, ProgressIsALineEveryTenPercentWithoutATerminal) {
-    const auto result = run_corda({"render", scene_, "-o", video_});
-    std::size_t lines = 0;
-    for (std::size_t at = result.err.find(" % ("); at != std::string::npos;
-         at = result.err.find(" % (", at + 1))
-        ++lines;
-    EXPECT_EQ(lines, 10U) << result.err;
-    EXPECT_THAT(result.err, Not(HasSubstr("\x1b")));
+TEST_F(Output, ProgressIsALineEveryTwoSecondsWithoutATerminal) {
+    EXPECT_THAT(run_corda({"simulate", scene_}).err, Not(HasSubstr(" % (")));  // takes 10 ms
+    // The reader delays the rows by 1.5 s once and then takes all.
+    const auto slow = test::run_shell(test::quoted(CORDA_PROGRAM) + " simulate " + scene_ +
+                                      " --fps 2000 -o - | { sleep 1.5; cat > /dev/null; }");
+    const std::size_t first = slow.err.find(" % (");
+    EXPECT_NE(first, std::string::npos) << slow.err;
+    EXPECT_EQ(slow.err.find(" % (", first + 1), std::string::npos) << slow.err;
+    EXPECT_THAT(slow.err, Not(HasSubstr("\x1b")));
+}
+
+TEST_F(Output, EndsQuietlyIfItsReaderLeaves) {
+    // The reader ends before it reads, as head(1) may before the end of a long text.
+    const std::string left = " | true; echo ${PIPESTATUS[0]}";
+    for (const std::string& arguments :
+         {std::string("help scene"), std::string("examples"), "plan " + scene_,
+          "simulate " + scene_ + " -o - -q", "simulate " + scene_ + " --json -q"}) {
+        const auto result = test::run_shell("{ sleep 0.2; exec " + test::quoted(CORDA_PROGRAM) + " " +
+                                            arguments + "; }" + left);
+        EXPECT_EQ(result.out, "0\n") << arguments;
+        EXPECT_THAT(result.err, Not(HasSubstr("pipe"))) << arguments;
+    }
+    const auto missing = test::run_shell("{ sleep 0.2; exec " + test::quoted(CORDA_PROGRAM) +
+                                         " verify /dev/null --json; }" + left);
+    EXPECT_EQ(missing.out, "6\n");  // a failure is not hidden
 }
 
 TEST_F(Output, ProgressIsABarOnATerminal) {
