@@ -131,6 +131,27 @@ void tell(const Console& console, const GoldenOptions& options, const golden::Su
     console.report(std::move(json));
 }
 
+/// Runs a suite. A signal ends it with the number of pictures that were compared by then.
+golden::SuiteResult run_until_asked(golden::SuiteDef& def) {
+    std::int64_t compared = 0;
+    std::int64_t all = 0;
+    def.film.on_progress = stopping_if_asked();
+    def.on_progress = [&](std::int64_t done, std::int64_t total) {
+        compared = done;
+        all = total;
+        stop_if_asked();
+        return true;
+    };
+    try {
+        return golden::run(def);
+    } catch (const Error&) {
+        // Afterwards an update is published, whose errors say what became of it.
+        if (interruption() == ExitCode::kOk || compared == all) throw;
+        throw Error(interruption(), fmt::format("interrupted after {} of {}; nothing was written", compared,
+                                                counted(all, "picture")));
+    }
+}
+
 ExitCode run_suite(const Console& console, GoldenOptions options) {
     if ((options.def.dry_run || options.def.replan || options.def.force) && !options.def.update)
         throw Error(ExitCode::kUsage, "--dry-run, --replan and --force say how --update works; add --update");
@@ -138,10 +159,7 @@ ExitCode run_suite(const Console& console, GoldenOptions options) {
         if (!path.empty()) check_output(path, "", true);
     if (!options.html.empty()) options.def.most_drawn = kMaxOnPage;
     options.gl.apply_to(options.def.film);
-    set_interruption_message(kSomethingWritten);
-    options.def.film.on_progress = stopping_if_asked();
-    options.def.on_progress = stopping_if_asked();
-    const golden::SuiteResult result = golden::run(options.def);
+    const golden::SuiteResult result = run_until_asked(options.def);
     const CancelScope finishing({}, CancelScope::Outer::kIgnored);  // an update has been published
     if (!options.junit.empty()) write_text(options.junit, golden::junit_xml(result));
     if (!options.html.empty()) write_text(options.html, golden::page_html(result, options.def.folder));

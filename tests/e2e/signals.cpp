@@ -272,6 +272,21 @@ TEST_F(Signals, EndAStudy) {
     EXPECT_LT(end.ms, kMaxMs);  // measured 60 .. 230
 }
 
+TEST_F(Signals, EndASuiteWithTheNumberOfItsPictures) {
+    std::string times = "0";
+    for (int i = 1; i < 40; ++i) times += ", " + std::to_string(i);
+    const std::string suite = folder_.write(
+        "suite.toml", std::string(kSceneOfSignals) + "[golden]\nsize = [1920, 1080]\nat = [" + times + "]\n");
+    const std::string ref = folder_.file("ref");
+    const Interrupted end = interrupt("golden " + suite + " --dir " + ref + " --update", "INT",
+                                      "ls -A " + ref + "/.*/new 2>/dev/null | grep -q png");
+    EXPECT_EQ(end.result.exit_code, 130) << end.result.err;
+    EXPECT_THAT(end.result.err,
+                testing::ContainsRegex("interrupted after [0-9]+ of 40 pictures; nothing was written"));
+    EXPECT_TRUE(std::filesystem::is_empty(ref));
+    EXPECT_LT(end.ms, kMaxMs);
+}
+
 /// A scene whose frames, or whose plan, take minutes.
 struct HeavyScene {
     const char* name;
