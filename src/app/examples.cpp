@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,6 +11,7 @@
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/output_file.hpp"
+#include "corda/core/text.hpp"
 #include "embedded_examples.hpp"
 
 namespace corda::app {
@@ -35,6 +38,15 @@ std::string summary(std::string_view text) {
     return comment.substr(1, comment.find(". ") - 1);
 }
 
+/// The example whose name differs from `name` by one or two letters; std::nullopt if there is none.
+std::optional<std::string_view> misspelt_example(std::string_view name) {
+    std::vector<std::string_view> names;
+    for (const Example& one : kExamples) names.push_back(one.name);
+    const auto meant = nearest(name, names);
+    constexpr std::size_t kMaxEdits = 2;
+    return meant && edit_distance(name, *meant) <= kMaxEdits ? meant : std::nullopt;
+}
+
 struct InitOptions {
     std::string name = "scene";
     bool force = false;
@@ -43,12 +55,18 @@ struct InitOptions {
 ExitCode write_scene(const Console& console, const InitOptions& options) {
     const bool is_toml = std::filesystem::path(options.name).extension() == ".toml";
     const std::string path = options.name + (is_toml ? "" : ".toml");
-    const Example* const named = find_example(std::filesystem::path(path).stem().string());
+    const std::string name = std::filesystem::path(path).stem().string();
+    const Example* const named = find_example(name);
     const Example& example = named != nullptr ? *named : *find_example(kStart);
     check_output(path, {}, options.force);
     OutputFile file(path, {.force = options.force});
     file.write(example.text);
     file.commit();
+    if (const auto meant = misspelt_example(name); meant && named == nullptr)
+        console.warning(
+            fmt::format("there is no example {}, and {} is the scene to start from; for the example "
+                        "{}: corda init {}",
+                        name, path, *meant, *meant));
     console.info(fmt::format("example {}; draw it with: corda render {} -o {}.mp4", example.name, path,
                              path.substr(0, path.size() - std::string_view(".toml").size())));
     console.result(path);
