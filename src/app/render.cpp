@@ -17,6 +17,7 @@
 #include "corda/core/text.hpp"
 #include "corda/media/chunks/video_writer.hpp"
 #include "corda/media/encode/resources.hpp"
+#include "corda/media/format/file_kind.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/plan_text.hpp"
@@ -175,6 +176,24 @@ void warn_of_other_pictures(const Console& console, const std::string& output, s
             next));
 }
 
+/// Refuses frames beside others of another size in the same folder: together they are no video.
+void check_adjacent_pictures(const VideoDef& video, const std::string& output, std::int64_t first,
+                             std::int64_t end) {
+    if (media::find_ending(output).kind != media::FileKind::kPictures) return;
+    for (const std::int64_t frame : {first - 1, end}) {
+        const std::string path = frame < 0 ? "" : media::picture_name(output, frame);
+        std::error_code ignored;
+        if (!std::filesystem::is_regular_file(path, ignored) || !media::is_png(path)) continue;
+        const Image other = read_png(path);
+        if (other.width() == video.width_px && other.height() == video.height_px) continue;
+        throw Error(ExitCode::kUsage,
+                    fmt::format("{} has {}x{} pixels, and these frames would have {}x{}; give --size {}x{}, "
+                                "another folder, or --force if you replace the others as well",
+                                path, other.width(), other.height(), video.width_px, video.height_px,
+                                other.width(), other.height()));
+    }
+}
+
 ExitCode render(const Console& console, const RenderOptions& options) {
     const double start_s = now_s();
     Scene scene = options.scene.load(console);
@@ -189,6 +208,8 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     parse_range(range_of(console, options), def);
     check_standard_output(console, options.output);
     const CheckedOutput output = check_render(scene, options.output, def, options.scene.input());
+    if (!options.frames.empty() && !options.force)
+        check_adjacent_pictures(scene.video, options.output, output.first(), output.end());
     report_format(console, scene, output);
     OnProgress on_progress = show_progress(console, "simulate");
     FilmDef film_def;

@@ -90,6 +90,14 @@ TEST_F(FormatsOfRender, PicturesEqualStillsByteForByte) {
     EXPECT_FALSE(std::filesystem::exists(folder_.file("frames/f014.png")));
     EXPECT_EQ(render(folder_.file("frames/f%03d.png"), {"--frames", "13:15", "--force"}).exit_code, 0);
     EXPECT_TRUE(std::filesystem::exists(folder_.file("frames/f014.png")));
+
+    for (const char* const beside : {"9:10", "15:16"}) {
+        const auto mixed = render(folder_.file("frames/f%03d.png"), {"--frames", beside, "--size", "34x34"});
+        EXPECT_EQ(mixed.exit_code, 2) << beside;
+        EXPECT_THAT(mixed.err, HasSubstr("and these frames would have 34x34; give --size ")) << beside;
+    }
+    const std::vector<std::string> forced{"--frames", "15:16", "--size", "34x34", "--force"};
+    EXPECT_EQ(render(folder_.file("frames/f%03d.png"), forced).exit_code, 0);
 }
 
 TEST_F(FormatsOfRender, WarnsAboutPicturesOfALongerFilm) {
