@@ -77,7 +77,7 @@ on_arm64() {
     local system=$work/arm64 release packages
     src/cmake/setup.sh platforms
     release=$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)
-    packages=$(src/cmake/setup.sh list | grep -E '^(lib|zlib|fonts|nlohmann|python3-dev|pybind)' | paste -sd,)
+    packages=$(src/cmake/setup.sh list | grep -E '^(lib|fonts|nlohmann|python3-dev|pybind)' | paste -sd,)
     new_system "$release" "$system" --variant=extract --architectures=arm64 --include="libc6-dev,libopengl0,$packages" \
         --hook-dir=/usr/share/mmdebstrap/hooks/merged-usr
     say "arm64: new system"

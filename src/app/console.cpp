@@ -15,7 +15,6 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/text.hpp"
-#include "corda/report/writers.hpp"
 
 namespace corda::app {
 namespace {
@@ -42,6 +41,13 @@ void write_stderr(const std::string& text) {
 bool is_set(const char* variable) {
     const char* value = std::getenv(variable);
     return value != nullptr && *value != '\0';
+}
+
+/// Makes every text in a value UTF-8, which is all that JSON can hold: names of files can have any bytes.
+void make_utf8(nlohmann::json& json) {
+    if (json.is_string()) json = utf8(json.get_ref<const std::string&>());
+    if (!json.is_structured()) return;
+    for (nlohmann::json& value : json) make_utf8(value);
 }
 
 std::string duration_text(double seconds) {
@@ -99,7 +105,7 @@ void Console::result(std::string_view text) const {
 }
 
 void Console::report(nlohmann::json json) const {
-    report::make_utf8(json);
+    make_utf8(json);
     // A terminal gets ASCII, which has no control characters if it is JSON.
     if (def_.json) write_stdout(json.dump(2, ' ', prints_results_));
 }

@@ -10,7 +10,6 @@
 #include "corda/figures/motion_summary.hpp"
 #include "corda/figures/scene_report.hpp"
 #include "corda/report/report_folder.hpp"
-#include "corda/report/writers.hpp"
 #include "interrupt.hpp"
 #include "page_folder.hpp"
 
@@ -67,14 +66,12 @@ ExitCode report_command(const Console& console, const ReportOptions& options) {
     Scene scene = options.scene.load(console);
     figures::prefer_paper(scene);
     const std::vector<RequestedTime> times = options.times.list(scene);
-    report::check_gnuplot();
     prepare_page_folder(options.output, options.force, options.dry_run);
     OnProgress on_progress = show_progress(console, "simulate");
-    FilmDef def;
+    FilmDef def = figures::film_def(scene);
     def.on_progress = [&](std::int64_t done, std::int64_t all) {
         return !on_progress || on_progress(done, all);
     };
-    def.readings = figures::needed_readings();
     for (const RequestedTime& time : times) def.stills_s.push_back(time.time_s);
     options.gl.apply_to(def);
     Film film(scene, def);
@@ -87,7 +84,7 @@ ExitCode report_command(const Console& console, const ReportOptions& options) {
     set_interruption_message(kSomethingWritten);
     on_progress = {};
     report::ReportFolder folder(options.output, {.force = options.force},
-                                {figures::kColumnMm, figures::kPageMm});
+                                {report::kColumnMm, report::kPageMm});
     const std::optional<Error> failure = write_report(console, film, times, options, folder);
     warn_of_branch(console, film);
     if (failure) throw with_files(*failure, folder);

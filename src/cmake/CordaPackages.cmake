@@ -39,7 +39,6 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 # OpenGL on the CPU, which is loaded at run time, so dpkg-shlibdeps does not see it.
 set(opengl "libegl1, libegl-mesa0, libopengl0, libgl1-mesa-dri")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${opengl}")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS gnuplot-nox)
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "The program: it simulates ropes and nets of particles and bars, draws each frame \
 with OpenGL on a machine without a screen, the same bytes on every run, and encodes video.")
 

@@ -26,7 +26,6 @@ packages=(
     libfreetype-dev         # glyphs of text in pictures
     fonts-dejavu-core       # their font, which becomes part of the program
     libpng-dev              # stills and golden images, with their sRGB, pHYs and text chunks
-    zlib1g-dev              # plots as PDF, which cairo 1.18 compresses with their date
     libcli11-dev            # the command line
     libtomlplusplus-dev     # scene files, with line and column of every value
     nlohmann-json3-dev      # the --json output
@@ -34,7 +33,6 @@ packages=(
     python3-dev             # the Python module
     pybind11-dev            # its C++ half
     python3-numpy           # its arrays, at run time
-    gnuplot-nox             # the plots of corda study, at run time
 )
 if [[ "${1:-build}" == list ]]; then
     printf '%s\n' "${packages[@]}"

@@ -8,18 +8,20 @@ namespace corda {
 /// Any bytes as the text or an attribute value in double quotes of XML and HTML.
 [[nodiscard]] std::string markup_text(std::string_view text);
 
-/// The style sheet of HTML pages, to be embedded. Light or dark follows the reader's system, for plots too:
-/// their text, borders and grid get the page's colours.
+/// Base64 (RFC 4648), for addresses of pictures that are part of a page.
+[[nodiscard]] std::string base64(std::string_view bytes);
+
+/// The style sheet of HTML pages, to be embedded. Light or dark follows the reader's system.
 inline constexpr const char* kPageStyle = R"css(
 :root {
   color-scheme: light dark;
   --ink: #1c2026; --soft: #5b6470; --line: #dde1e6; --page: #ffffff; --band: #f5f7f9;
-  --accent: #0b5fa5; --bad: #b3261e; --bad-band: #fdf0ee; --grid: #d5d9de;
+  --accent: #0b5fa5; --bad: #b3261e; --bad-band: #fdf0ee;
 }
 @media (prefers-color-scheme: dark) {
   :root {
     --ink: #e4e7eb; --soft: #9aa4b0; --line: #333a43; --page: #14171b; --band: #1c2126;
-    --accent: #6cb6ff; --bad: #ff8f85; --bad-band: #33201f; --grid: #39414a;
+    --accent: #6cb6ff; --bad: #ff8f85; --bad-band: #33201f;
   }
 }
 * { box-sizing: border-box; }
@@ -55,16 +57,13 @@ tbody tr.failed { background: var(--bad-band); color: var(--bad); }
 table.setting td { white-space: normal; }
 table.setting th { font-weight: 500; color: var(--soft); white-space: nowrap; }
 figure { margin: 2rem 0; padding: 0.5rem; border: 1px solid var(--line); border-radius: 8px; }
-figure svg { display: block; width: 100%; height: auto; }
+figure img { display: block; width: 100%; height: auto; }
 figcaption { padding: 0.7rem 0.4rem 0.2rem; color: var(--soft); font-size: 0.9375rem; line-height: 1.45; }
 figcaption b { color: var(--ink); }
 figcaption .files { display: block; margin-top: 0.3rem; font-size: 0.875rem; }
 .small { display: grid; grid-template-columns: repeat(auto-fill, minmax(20rem, 1fr)); gap: 1rem; margin: 2rem 0; }
 .small figure { margin: 0; }
 sup { line-height: 0; font-size: 0.75em; }
-svg [stroke="black"] { stroke: var(--ink); }
-svg [fill="black"] { fill: var(--ink); }
-svg .gridline { stroke: var(--grid); }
 @media print {
   body { max-width: none; padding: 0; font-size: 10pt; }
   nav { display: none; }

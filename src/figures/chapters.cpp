@@ -108,23 +108,6 @@ std::vector<pipeline::TrackedParticle> followed_of(const MotionSummary& motion) 
     return followed;
 }
 
-/// Curves that are not over time: dots where lines would be misleading.
-std::vector<Curve> tip_curves(const Film& film, const MotionSummary& motion, Thinner BodyCurves::*curve) {
-    std::vector<Curve> curves = curves_of(film.scene(), film.system(), motion, curve);
-    for (std::size_t i = 0; i < curves.size(); ++i)
-        curves[i].is_joined = (motion.bodies[i].*curve).is_joined();
-    return curves;
-}
-
-/// As thinning_text().
-std::string path_thinning_text(const MotionSummary& motion) {
-    if (motion.bodies.front().path.is_joined()) return thinning_text(motion);
-    return fmt::format(
-        " At most {1} of the {0} rows are drawn, as dots: evenly spread ones, the last one, and the extremes "
-        "of x and y. The CSV has all rows.",
-        motion.rows, Thinner::kMaxPoints);
-}
-
 /// Whether all bodies turn about their pins: near a point, the angle about it has no meaning.
 bool all_turn(const System& system, const MotionSummary& motion) {
     constexpr double kNear = 0.1;
@@ -141,7 +124,7 @@ double extent_m(const std::vector<Curve>& curves) {
     double low_y = HUGE_VAL;
     double high_y = -HUGE_VAL;
     for (const Curve& curve : curves) {
-        for (const CurvePoint& point : curve.points) {
+        for (const view::CurvePoint& point : curve.points) {
             low_x = std::min(low_x, point.x);
             high_x = std::max(high_x, point.x);
             low_y = std::min(low_y, point.y);
@@ -183,17 +166,17 @@ void add_tensions_along(const Film& film, const MotionSummary& motion, report::C
     const Body& body = system.bodies[motion.tension.body];
     constexpr std::size_t kMinLinks = 3;
     if (body.is_net || body.link_count < kMinLinks) return;
-    Thinner thinner(static_cast<std::int64_t>(body.link_count));
+    CurvePoints points;
     double at_m = 0.0;
     for (std::size_t k = 0; k < body.link_count; ++k) {
         const double rest_m = system.bars[body.first_bar + k].rest_m;
         const double middle_m = at_m + 0.5 * rest_m;
-        thinner.add({middle_m, middle_m, motion.tensions_n[k]});
+        points.push_back({middle_m, middle_m, motion.tensions_n[k]});
         at_m += rest_m;
     }
     const std::string name = body_name(system, motion.tension.body);
     report::Plot plot = make_plot("tension_along", "Tension along the rope", {"distance along the rope", "m"},
-                                  {"tension", "N"}, {{"", thinner.points()}});
+                                  {"tension", "N"}, {{"", points}});
     plot.caption = fmt::format(
         "Tension of the links of {} at {}, when that of one is largest, against the "
         "distance of their middles from particle 0 along the rope at rest.",
@@ -210,8 +193,9 @@ report::Chapter motion_chapter(Film& film, const MotionSummary& motion, const Fi
     chapter.summary = model_text(film) + " " + method_text(film);
     const Rational fps = film.scene().video.fps.rational();
     chapter.paragraphs.push_back(
-        fmt::format("All figures are at frame times, {} per second: {} of them, from 0 to {}.", fps.text(),
-                    motion.rows, time_text(motion.end_s)));
+        fmt::format("All numbers are at frame times, {} per second: {} of them, from 0 to {}. Paths and "
+                    "phase portraits have up to eight points per frame.",
+                    fps.text(), motion.rows, time_text(motion.end_s)));
     if (motion.failure) {
         chapter.paragraphs.push_back(
             fmt::format("The motion ends early: {}. The figures show the motion before that.",
@@ -244,13 +228,13 @@ report::Chapter path_chapter(const Film& film, const MotionSummary& motion) {
                                       quantity_text(speed.size, "m/s"), time_text(speed.time_s), speed.index,
                                       body_name(system, speed.body));
     }
-    std::vector<Curve> curves = tip_curves(film, motion, &BodyCurves::path);
+    std::vector<Curve> curves = curves_of(film.scene(), system, motion, &BodyCurves::path);
     // Axes far from 0 would have the same number at each tick.
     constexpr double kFar = 1e3;
     const Vec2 origin_m = system.origin_m;
     const bool is_far = std::max(std::abs(origin_m.x), std::abs(origin_m.y)) > kFar * extent_m(curves);
     for (Curve& curve : curves) {
-        for (CurvePoint& point : curve.points) {
+        for (view::CurvePoint& point : curve.points) {
             if (is_far) break;
             point.x += origin_m.x;
             point.y += origin_m.y;
@@ -258,10 +242,9 @@ report::Chapter path_chapter(const Film& film, const MotionSummary& motion) {
     }
     report::Plot plot = make_plot("path", "Path of the tip", {"x", "m"}, {"y", "m"}, curves);
     plot.has_equal_scales = true;
-    fit_height(plot);
-    plot.caption = fmt::format("Path of {}.{}{}{}", pipeline::particles_text(system, followed_of(motion)),
+    plot.caption = fmt::format("Path of {}.{}{}", pipeline::particles_text(system, followed_of(motion)),
                                is_far ? fmt::format(" Counted from ({}, {}) m.", origin_m.x, origin_m.y) : "",
-                               left_out_text(system, motion), path_thinning_text(motion));
+                               left_out_text(system, motion));
     add_plot(std::move(plot), kTipData, chapter);
     return chapter;
 }
@@ -273,7 +256,7 @@ report::Chapter phase_chapter(const Film& film, const MotionSummary& motion) {
     const System& system = film.system();
     const bool turns = all_turn(system, motion);
     const auto curve = turns ? &BodyCurves::turning : &BodyCurves::phase;
-    const std::vector<Curve> curves = tip_curves(film, motion, curve);
+    const std::vector<Curve> curves = curves_of(film.scene(), system, motion, curve);
     report::Plot plot =
         turns ? make_plot("phase", "Phase portrait", {"angle", "rad"}, {"angular velocity", "rad/s"}, curves)
               : make_plot("phase", "Phase portrait", {"x", "m"}, {"vx", "m/s"}, curves);
@@ -286,7 +269,7 @@ report::Chapter phase_chapter(const Film& film, const MotionSummary& motion) {
                                "its body or, if that has none or several, from the start, and the "
                                "horizontal velocity.",
                                pipeline::particles_text(system, followed_of(motion)));
-    plot.caption += left_out_text(system, motion) + path_thinning_text(motion);
+    plot.caption += left_out_text(system, motion);
     add_plot(std::move(plot), kTipData, chapter);
     return chapter;
 }
@@ -300,14 +283,14 @@ report::Chapter energy_chapter(const Film& film, const MotionSummary& motion) {
                                   "bodies, or over E(0) without a force, is at most {}.",
                                   quantity_text(*error, ""))
                             : "Damping takes energy on purpose, so there is no energy error to tell.";
-    std::vector<Curve> curves{{"kinetic", motion.kinetic.points()}, {"weight", motion.weight.points()}};
-    if (motion.is_elastic) curves.push_back({"elastic", motion.elastic.points()});
-    curves.push_back({"total", motion.total.points(), "#000000"});
+    std::vector<Curve> curves{{"kinetic", motion.kinetic}, {"weight", motion.weight}};
+    if (motion.is_elastic) curves.push_back({"elastic", motion.elastic});
+    curves.push_back({"total", motion.total, "#000000"});
     report::Plot plot = make_plot("energy", "Energy over time", {"t", "s"}, {"energy", "J"}, curves);
     plot.caption = fmt::format(
         "Energy of all free particles over time: kinetic, that of the weight since the "
-        "start{}, and their sum.{}",
-        motion.is_elastic ? ", elastic" : "", thinning_text(motion));
+        "start{}, and their sum.",
+        motion.is_elastic ? ", elastic" : "");
     add_plot(std::move(plot), "energy.csv", chapter);
     return chapter;
 }
@@ -327,15 +310,15 @@ report::Chapter tension_chapter(const Film& film, const MotionSummary& motion) {
     std::vector<Curve> curves = curves_of(film.scene(), system, motion, &BodyCurves::tension);
     std::erase_if(curves, [](const Curve& curve) {
         return std::all_of(curve.points.begin(), curve.points.end(),
-                           [](const CurvePoint& point) { return std::isnan(point.y); });
+                           [](const view::CurvePoint& point) { return std::isnan(point.y); });
     });
     if (!curves.empty()) {
         report::Plot plot =
             make_plot("tension", "Largest tension over time", {"t", "s"}, {"largest tension", "N"}, curves);
         plot.caption = fmt::format(
             "Largest tension of a link{} over time; one that pushes counts by the size "
-            "of its force.{}{}",
-            curves.size() > 1 ? " of each body" : "", left_out_text(system, motion), thinning_text(motion));
+            "of its force.{}",
+            curves.size() > 1 ? " of each body" : "", left_out_text(system, motion));
         add_plot(std::move(plot), "tension.csv", chapter);
     }
     add_tensions_along(film, motion, chapter);
@@ -359,9 +342,9 @@ report::Chapter strain_chapter(const Film& film, const MotionSummary& motion) {
     if (curves.empty()) return chapter;
     report::Plot plot =
         make_plot("strain", "Largest strain over time", {"t", "s"}, {"largest strain", ""}, curves);
-    plot.caption = fmt::format(
-        "Largest strain of a link{} over time; a slack link of a string counts as 0.{}{}",
-        curves.size() > 1 ? " of each body" : "", left_out_text(system, motion), thinning_text(motion));
+    plot.caption =
+        fmt::format("Largest strain of a link{} over time; a slack link of a string counts as 0.{}",
+                    curves.size() > 1 ? " of each body" : "", left_out_text(system, motion));
     add_plot(std::move(plot), "strain.csv", chapter);
     return chapter;
 }

@@ -13,9 +13,8 @@ namespace corda::figures {
 /// A curve before its units are known.
 struct Curve {
     std::string name;
-    std::vector<CurvePoint> points;
+    CurvePoints points;
     std::string color = {};  ///< see report::Series
-    bool is_joined = true;
 };
 
 /// The quantity of an axis, and the unit of its values, which takes a prefix; "": bare numbers, "rad": as it
@@ -32,13 +31,7 @@ struct AxisDef {
 
 /// A curve per body, of the colour that it has in pictures; the only one needs no name.
 [[nodiscard]] std::vector<Curve> curves_of(const Scene& scene, const System& system,
-                                           const MotionSummary& motion, Thinner BodyCurves::*curve);
-
-/// Gives a plot of paths as high a picture as they are, within what fits a page.
-void fit_height(report::Plot& plot);
-
-/// " Of 36001 rows it keeps ...", a sentence for the caption of a curve that was thinned; empty otherwise.
-[[nodiscard]] std::string thinning_text(const MotionSummary& motion);
+                                           const MotionSummary& motion, CurvePoints BodyCurves::*curve);
 
 /// "4 more bodies are not shown." as a sentence; empty if all are.
 [[nodiscard]] std::string left_out_text(const System& system, const MotionSummary& motion);

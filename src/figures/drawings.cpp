@@ -30,10 +30,10 @@ constexpr int kPoses = 6;
 constexpr int kStills = 5;
 
 /// When a path first turns back in x; std::nullopt if it never does.
-std::optional<double> first_turn_s(const std::vector<CurvePoint>& path) {
+std::optional<double> first_turn_s(const CurvePoints& path) {
     constexpr double kFarEnough = 0.25;
     if (path.size() < 3) return std::nullopt;
-    const auto by_x = [](const CurvePoint& a, const CurvePoint& b) { return a.x < b.x; };
+    const auto by_x = [](const view::CurvePoint& a, const view::CurvePoint& b) { return a.x < b.x; };
     const auto [left, right] = std::minmax_element(path.begin(), path.end(), by_x);
     const double enough_m = kFarEnough * (right->x - left->x);
     for (std::size_t i = 1; i + 1 < path.size(); ++i) {
@@ -73,7 +73,7 @@ FigureTimes find_figure_times(const Film& film, const MotionSummary& motion,
     const std::int64_t last = motion.rows - 1;
     std::int64_t end = last;
     if (!motion.bodies.empty()) {
-        if (const auto turn_s = first_turn_s(motion.bodies.front().path.points())) {
+        if (const auto turn_s = first_turn_s(motion.bodies.front().path)) {
             times.is_swing = true;
             end = std::min(last, film.scene().video.fps.last_frame_within(*turn_s));
         }

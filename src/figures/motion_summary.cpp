@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/cancel.hpp"
+#include "corda/core/timeline.hpp"
 #include "corda/sim/recording.hpp"
 
 namespace corda::figures {
@@ -22,14 +23,28 @@ std::string key_of(const System& system, std::size_t body) {
     return key;
 }
 
+std::vector<double> times_between_frames_s(const Scene& scene) {
+    constexpr std::int64_t kMaxStates = 4000;
+    constexpr std::int64_t kMaxPerFrame = 8;
+    constexpr std::size_t kMaxParticles = 2'000'000;  // in all states: 80 MB
+    const FrameRate fps = scene.video.fps;
+    const std::int64_t frames = fps.last_frame_within(scene.world.duration_s) + 1;
+    const std::size_t particles = build_system(scene.ropes, scene.nets).particle_count();
+    const auto states = std::min(kMaxStates, static_cast<std::int64_t>(kMaxParticles / particles));
+    const std::int64_t per_frame = std::clamp(states / frames, std::int64_t{1}, kMaxPerFrame);
+    std::vector<double> times_s;
+    for (std::int64_t i = 0; i < (frames - 1) * per_frame; ++i) {
+        const double share = static_cast<double>(i % per_frame) / static_cast<double>(per_frame);
+        if (share > 0.0) times_s.push_back(fps.time_s(i / per_frame) + share * fps.interval_s());
+    }
+    return times_s;
+}
+
 class Reader {
   public:
-    Reader(Film& film, const OpenRows& open)
-        : film_(film), system_(film.system()), motion_(film.last_frame() + 1) {
+    Reader(Film& film, const OpenRows& open) : film_(film), system_(film.system()) {
         for (const pipeline::TrackedParticle& followed : pipeline::tracked_particles(system_))
-            motion_.bodies.emplace_back(followed, film.last_frame() + 1);
-        angles_.resize(motion_.bodies.size());
-        rates_.resize(motion_.bodies.size());
+            motion_.bodies.push_back({followed});
         tells_tension_.resize(system_.bodies.size());
         const auto stretches = [](const Body& body) { return body.material.compliance_1_n > 0.0; };
         motion_.is_elastic =
@@ -38,8 +53,10 @@ class Reader {
     }
 
     /// Takes the state that the film handed out last.
-    void add(const State& state) {
+    void add(const State& state, bool is_frame) {
         add_tips(state);
+        if (!is_frame) return;
+        tip_(row_);
         add_energy(state);
         add_links(state);
         add_speeds(state);
@@ -80,26 +97,23 @@ class Reader {
     void add_tips(const State& state) {
         const double t = state.time_s;
         row_.assign(1, t);
-        for (std::size_t b = 0; b < motion_.bodies.size(); ++b) {
-            BodyCurves& body = motion_.bodies[b];
+        for (BodyCurves& body : motion_.bodies) {
             const std::size_t i = body.followed.particle;
             const double x_m = state.x_m[i];
             const double y_m = state.y_m[i];
-            body.path.add({t, x_m, y_m});
-            body.phase.add({t, x_m - system_.x_m[body.followed.pin.value_or(i)], state.vx_m_s[i]});
+            body.path.push_back({t, x_m, y_m});
+            body.phase.push_back({t, x_m - system_.x_m[body.followed.pin.value_or(i)], state.vx_m_s[i]});
             row_.insert(row_.end(), {system_.origin_m.x + x_m, system_.origin_m.y + y_m, state.vx_m_s[i],
                                      state.vy_m_s[i]});
             if (!body.followed.pin) continue;
-            add_turning(state, b);
-            row_.insert(row_.end(), {angles_[b], rates_[b]});
+            add_turning(state, body);
+            row_.insert(row_.end(), {body.turning.back().x, body.turning.back().y});
         }
-        tip_(row_);
     }
 
-    /// Between two rows a fast one may turn by more than half a turn, so the turns are counted by the rate.
-    void add_turning(const State& state, std::size_t b) {
+    /// Between two states a fast one may turn by more than half a turn, so the turns are counted by the rate.
+    static void add_turning(const State& state, BodyCurves& body) {
         constexpr double kTurn = 2.0 * std::numbers::pi;
-        BodyCurves& body = motion_.bodies[b];
         const std::size_t i = body.followed.particle;
         const std::size_t pin = body.followed.pin.value();
         const double dx_m = state.x_m[i] - state.x_m[pin];
@@ -107,24 +121,23 @@ class Reader {
         const double square_m2 = dx_m * dx_m + dy_m * dy_m;
         const double rate = (dx_m * state.vy_m_s[i] - dy_m * state.vx_m_s[i]) / square_m2;
         double angle = std::atan2(dx_m, -dy_m);
-        if (motion_.rows > 0) {
-            const double expected = angles_[b] + 0.5 * (rates_[b] + rate) * (state.time_s - motion_.end_s);
+        if (!body.turning.empty()) {
+            const view::CurvePoint& last = body.turning.back();
+            const double expected = last.x + 0.5 * (last.y + rate) * (state.time_s - last.time_s);
             if (std::isfinite(expected)) angle += kTurn * std::round((expected - angle) / kTurn);
         }
-        angles_[b] = angle;
-        rates_[b] = rate;
         body.nearest_m = std::min(body.nearest_m, std::sqrt(square_m2));
-        body.turning.add({state.time_s, angle, rate});
+        body.turning.push_back({state.time_s, angle, rate});
     }
 
     void add_energy(const State& state) {
         const double t = state.time_s;
         const Energy energy = film_.energy();
         const double total_j = energy.kinetic_j + energy.weight_j + energy.elastic_j;
-        motion_.kinetic.add({t, t, energy.kinetic_j});
-        motion_.weight.add({t, t, energy.weight_j});
-        motion_.elastic.add({t, t, energy.elastic_j});
-        motion_.total.add({t, t, total_j});
+        motion_.kinetic.push_back({t, t, energy.kinetic_j});
+        motion_.weight.push_back({t, t, energy.weight_j});
+        motion_.elastic.push_back({t, t, energy.elastic_j});
+        motion_.total.push_back({t, t, total_j});
         row_.assign({t, energy.kinetic_j, energy.weight_j, energy.elastic_j, total_j,
                      film_.figures().energy_error.value_or(kUnknown)});
         energy_(row_);
@@ -159,8 +172,8 @@ class Reader {
             BodyCurves& body = motion_.bodies[curve++];
             const double tension_n = tension.is_known ? tension.size : kUnknown;
             const double link = tension.is_known ? static_cast<double>(tension.index) : kUnknown;
-            body.tension.add({t, t, tension_n});
-            body.strain.add({t, t, own_strain.size});
+            body.tension.push_back({t, t, tension_n});
+            body.strain.push_back({t, t, own_strain.size});
             row_.insert(row_.end(), {tension_n, link});
             strains_.insert(strains_.end(), {own_strain.size, static_cast<double>(own_strain.index)});
         }
@@ -197,8 +210,6 @@ class Reader {
     OnRow strain_;
     std::vector<double> row_;
     std::vector<double> strains_;
-    std::vector<double> angles_;  ///< of the last row, per curve
-    std::vector<double> rates_;
     std::vector<bool> tells_tension_;  ///< per body
 };
 
@@ -214,20 +225,25 @@ void Extreme::include(const Extreme& other) {
     if (other.is_known) include(other.size, other.time_s, other.body, other.index);
 }
 
-StateFields needed_readings() {
-    return {.velocities = true, .tensions = true, .unknown_tensions = true};
+FilmDef film_def(const Scene& scene) {
+    FilmDef def;
+    def.readings = {.velocities = true, .tensions = true, .unknown_tensions = true};
+    def.stills_s = times_between_frames_s(scene);
+    return def;
 }
 
 MotionSummary read_motion(Film& film, const OpenRows& open, const OnProgress& on_progress) {
     const std::int64_t rows = film.last_frame() + 1;
+    const Timeline timeline(film.scene().video.fps, film.last_frame(), times_between_frames_s(film.scene()));
     Reader reader(film, open);
     std::optional<Error> failure;
-    for (std::int64_t k = 0; k < rows; ++k) {
-        report_progress(on_progress, k, rows);
+    std::int64_t k = 0;
+    for (std::size_t i = 0; i < timeline.size(); ++i) {
+        if (timeline.is_frame(i)) report_progress(on_progress, k++, rows);
         try {
-            reader.add(film.state(k));
+            reader.add(film.state_at(timeline.time_s(i)), timeline.is_frame(i));
         } catch (const Error& error) {
-            if (error.code() != ExitCode::kDiverged || k == 0) throw;
+            if (error.code() != ExitCode::kDiverged || i == 0) throw;
             failure = error;
             break;
         }

@@ -9,11 +9,13 @@
 #include <vector>
 
 #include "corda/core/basics.hpp"
-#include "corda/figures/thinning.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/tracked_particle.hpp"
+#include "corda/view/plot_panel.hpp"
 
 namespace corda::figures {
+
+using CurvePoints = std::vector<view::CurvePoint>;
 
 /// The largest size of a quantity, when and where it was.
 struct Extreme {
@@ -30,36 +32,28 @@ struct Extreme {
 
 /// The curves of one body.
 struct BodyCurves {
-    BodyCurves(const pipeline::TrackedParticle& whom, std::int64_t rows)
-        : followed(whom),
-          path(rows, Thinner::Kind::kPath),
-          phase(rows, Thinner::Kind::kPath),
-          turning(rows, Thinner::Kind::kPath),
-          tension(rows),
-          strain(rows) {}
-
     pipeline::TrackedParticle followed;
-    Thinner path;     ///< x and y in m, relative to the system's origin
-    Thinner phase;    ///< x in m from the only pin, or else from the start, and vx in m/s
-    Thinner turning;  ///< angle of the way from the only pin, in rad from straight down, turns counted on,
-                      ///< and its rate in rad/s; no points without such a pin
-    Thinner tension;  ///< the largest of a link, in N, over time; NaN if the method does not know it
-    Thinner strain;   ///< the largest of a link over time
+    CurvePoints path = {};   ///< x and y in m, relative to the system's origin
+    CurvePoints phase = {};  ///< x in m from the only pin, or else from the start, and vx in m/s
+    /// Angle of the way from the only pin, in rad from straight down, turns counted on, and its rate in
+    /// rad/s; no points without such a pin.
+    CurvePoints turning = {};
+    CurvePoints tension = {};  ///< the largest of a link, in N, over time; NaN if the method does not know it
+    CurvePoints strain = {};   ///< the largest of a link over time
     double nearest_m = std::numeric_limits<double>::infinity();  ///< to that pin
 };
 
-/// Summary of a motion for a report, from its states at all frame times.
+/// Summary of a motion for a report, from its states at all frame times; paths, phases and turnings have
+/// more.
 struct MotionSummary {
-    explicit MotionSummary(std::int64_t most) : kinetic(most), weight(most), elastic(most), total(most) {}
-
     std::int64_t rows = 0;
     double end_s = 0.0;  ///< of the last row
     std::vector<BodyCurves> bodies;
     // Energies over time in J. That of the weight is 0 at the start, and so counted in the total.
-    Thinner kinetic;
-    Thinner weight;
-    Thinner elastic;
-    Thinner total;
+    CurvePoints kinetic;
+    CurvePoints weight;
+    CurvePoints elastic;
+    CurvePoints total;
     bool is_elastic = false;  ///< whether anything stretches or bends
     Extreme tension;          ///< of all bodies, like the next two
     Extreme strain;
@@ -70,16 +64,17 @@ struct MotionSummary {
     std::optional<Error> failure;
 };
 
-/// Fields that the states of the film need: FilmDef::readings.
-[[nodiscard]] StateFields needed_readings();
+/// How the film of a report records its motion: with the fields that the report reads, and several times per
+/// frame if the frames are few, so that paths are smooth.
+[[nodiscard]] FilmDef film_def(const Scene& scene);
 
 /// Where rows go: a file name and the keys of its columns give what takes its rows.
 using OnRow = std::function<void(std::span<const double> values)>;
 using OpenRows = std::function<OnRow(const std::string& name, const std::vector<std::string>& keys)>;
 
-/// Reads the states at all frame times once, and hands all rows of tip.csv, energy.csv, tension.csv and
-/// strain.csv to `open`. A motion that diverges ends the reading early. Throws corda::Error: kInterrupted if
-/// cancelled, kDiverged if there is not even a start, and what `open` throws.
+/// Reads the states of a film with film_def() once, and hands all rows of tip.csv, energy.csv, tension.csv
+/// and strain.csv to `open`, one per frame time. A motion that diverges ends the reading early. Throws
+/// corda::Error: kInterrupted if cancelled, kDiverged if there is not even a start, and what `open` throws.
 [[nodiscard]] MotionSummary read_motion(Film& film, const OpenRows& open, const OnProgress& on_progress);
 
 }  // namespace corda::figures

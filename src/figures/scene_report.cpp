@@ -83,7 +83,8 @@ report::Report page_of(const Film& film, std::vector<report::Chapter> chapters) 
 
 std::optional<Error> write_scene_report(Film& film, const SceneReportDef& def, report::ReportFolder& folder) {
     Drawings drawings(film);
-    static_cast<void>(drawings.gl(kColumnMm));  // before anything is simulated, if the method is named
+    static_cast<void>(
+        drawings.gl(report::kColumnMm));  // before anything is simulated, if the method is named
     const MotionSummary motion = read_into(film, def, folder);
     if (motion.tension.is_known) write_tensions_along(film, motion, def.output, folder);
     const FigureTimes times = find_figure_times(film, motion, def.at_s);

@@ -11,10 +11,6 @@
 
 namespace corda::figures {
 
-/// The widths of a report's figures in print, in mm: a column and a page of a journal.
-inline constexpr int kColumnMm = 85;
-inline constexpr int kPageMm = 170;
-
 /// How a report of a scene is made.
 struct SceneReportDef {
     std::vector<double> at_s;  ///< times of its strobe and stills, increasing; empty: see find_figure_times()
@@ -23,7 +19,7 @@ struct SceneReportDef {
     std::function<void(const std::string& part, std::int64_t done, std::int64_t total)> on_part;
 };
 
-/// Writes the report of a film, whose states have needed_readings(), into a folder: CSVs with a row per frame
+/// Writes the report of a film, with film_def(), into a folder: CSVs with a row per frame
 /// time, figures, and the pages. If a motion diverges, the report shows the part before that, and the error
 /// is returned. If it is cancelled, the pages have the figures that are drawn. Throws
 /// corda::Error: kIo, kNoGl, kDiverged if there is no state at all, kInterrupted.

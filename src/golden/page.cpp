@@ -16,21 +16,6 @@ namespace {
 
 constexpr int kGain = 16;  // of the difference: one step of 255 is seen
 
-std::string base64(std::string_view bytes) {
-    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::string_view three = bytes.substr(i, 3);
-        unsigned bits = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            bits = bits << 8U | (k < three.size() ? static_cast<unsigned char>(three[k]) : 0U);
-        for (std::size_t k = 0; k < 4; ++k)
-            text += k <= three.size() ? kDigits[bits >> (18 - 6 * k) & 63U] : '=';
-    }
-    return text;
-}
-
 /// Sixteen times the difference of each channel on black, that of alpha in all three. Blue: what only one of
 /// them has.
 Image amplified(const Image& a, const Image& b) {

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "corda/core/basics.hpp"
+#include "corda/core/csv.hpp"
 #include "corda/report/writers.hpp"
 
 namespace corda::report {
@@ -81,10 +82,26 @@ bool is_for_people(const Table& table, std::size_t column) {
     return false;
 }
 
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
-        text.replace(at, from.size(), to);
+std::string file_stem(const std::string& id, int width_mm, const std::vector<int>& widths_mm) {
+    return widths_mm.size() > 1 ? fmt::format("{}_{}mm", id, width_mm) : id;
+}
+
+std::string csv_text(const Table& table) {
+    CsvLine line;
+    for (const Column& column : table.columns) line.add(column.key);
+    std::string text(line.end());
+    for (const auto& row : table.rows) {
+        for (const Cell& cell : row) {
+            if (const auto* number = std::get_if<double>(&cell))
+                line.add(*number);
+            else if (const auto* words = std::get_if<std::string>(&cell))
+                line.add(*words);
+            else
+                line.add(std::string_view());
+        }
+        text += line.end();
     }
+    return text;
 }
 
 std::string short_number(double value) {

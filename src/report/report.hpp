@@ -12,6 +12,12 @@
 
 namespace corda::report {
 
+/// Pixels per inch of figures in print.
+inline constexpr double kPrintPpi = 300.0;
+/// Widths of figures in print: a column and a page of a journal, in mm.
+inline constexpr int kColumnMm = 85;
+inline constexpr int kPageMm = 170;
+
 /// A cell of a table: empty, a number or a text.
 using Cell = std::variant<std::monostate, double, std::string>;
 
@@ -56,19 +62,17 @@ struct Table {
 
 /// One line of a plot: points in the order in which they are joined.
 struct Series {
-    /// Lines that differ by colour and marker; more repeat them with dashes.
-    static constexpr std::size_t kLooks = 8;
+    static constexpr std::size_t kLooks = 8;  ///< colours
 
     std::string name;
     std::vector<std::pair<double, double>> points;
     /// The least and the largest y of each point, drawn as a bar; empty: there are none.
     std::vector<std::pair<double, double>> spreads = {};
-    /// Its colour and marker, 0 .. kLooks - 1, so that a subject looks the same in all plots; default: its
-    /// place among the lines that are not context.
+    /// Its colour and marker, so that a subject looks the same in all plots; default: its place among the
+    /// lines that are not context.
     std::optional<std::size_t> look = {};
     bool is_context = false;  ///< grey and thin, behind the others, with one entry for all such in the key
     std::string color = {};   ///< "#rrggbb" in place of that of its look
-    bool is_joined = true;    ///< false: dots, for points too far apart for lines between them
 
     void add(double x, double y, const std::pair<double, double>& spread) {
         points.emplace_back(x, y);
@@ -91,7 +95,7 @@ struct Plot {
     std::string data = {};          ///< name of the file with its numbers, for the page; empty: none
     bool has_markers = true;        ///< false: lines without a marker at each point
     bool has_equal_scales = false;  ///< a unit is as long along x as along y: for paths
-    double height_per_width = 2.0 / 3.0;
+    double height_per_width = 0.6;  ///< of the box, unless it has equal scales
 };
 
 /// A drawing that is made elsewhere.
@@ -121,13 +125,10 @@ struct Report {
     /// give the same files.
     std::vector<std::pair<std::string, std::string>> setting;
     std::vector<Chapter> chapters;
-    /// Widths of its figures in print, in mm, increasing: each has the files `<id>_<width>mm.svg`, .png (at
-    /// kPrintPpi) and .pdf per width, and the page shows the widest, of small pictures the narrowest. Empty:
-    /// `<id>.svg`, .png and .pdf, of a plot 170 mm or 1200 pixels wide.
-    std::vector<int> widths_mm = {};
+    /// Widths of its figures in print, in mm, increasing, at least one: each has the files
+    /// `<id>_<width>mm.svg`, .png (at kPrintPpi) and .pdf per width, and the page shows the widest, of small
+    /// pictures the narrowest. A single width is not in the names.
+    std::vector<int> widths_mm = {kPageMm};
 };
-
-/// Pixels per inch of pictures of a width in print.
-inline constexpr double kPrintPpi = 300.0;
 
 }  // namespace corda::report

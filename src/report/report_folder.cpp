@@ -2,7 +2,6 @@
 
 #include <array>
 #include <filesystem>
-#include <optional>
 #include <utility>
 
 #include "corda/core/cancel.hpp"
@@ -42,11 +41,11 @@ void ReportFolder::write(const std::string& name, const std::string& bytes) {
 }
 
 void ReportFolder::add_picture(const Picture& picture) {
-    if (widths_mm_.empty()) throw Error(ExitCode::kInternal, "a report with pictures needs widths in print");
     for (const int width_mm : widths_mm_) {
         for (const PlotFormat format : {PlotFormat::kSvg, PlotFormat::kPng, PlotFormat::kPdf}) {
             check_cancelled();
-            const std::string path = path_of(file_stem(picture.id, width_mm) + "." + ending(format));
+            const std::string path =
+                path_of(file_stem(picture.id, width_mm, widths_mm_) + "." + ending(format));
             picture.write(path, width_mm);
             note(path);
             // What is small on the page is read with the letters of the narrow one.
@@ -58,13 +57,11 @@ void ReportFolder::add_picture(const Picture& picture) {
 }
 
 void ReportFolder::add_plot(const Plot& plot) {
-    std::vector<std::optional<int>> widths_mm(widths_mm_.begin(), widths_mm_.end());
-    if (widths_mm.empty()) widths_mm.emplace_back();
-    for (const std::optional<int>& width_mm : widths_mm) {
+    for (const int width_mm : widths_mm_) {
         for (const PlotFormat format : {PlotFormat::kSvg, PlotFormat::kPng, PlotFormat::kPdf}) {
             check_cancelled();
             const std::string picture = draw_plot(plot, format, width_mm);
-            write(file_stem(plot.id, width_mm) + "." + ending(format), picture);
+            write(file_stem(plot.id, width_mm, widths_mm_) + "." + ending(format), picture);
             if (format == PlotFormat::kSvg) svgs_[plot.id] = picture;
         }
     }
@@ -85,18 +82,10 @@ void ReportFolder::finish(Report report) {
         std::erase_if(chapter.plots, is_missing);
         std::erase_if(chapter.pictures, is_missing);
     }
-    const std::string page = html_text(report, [this](const std::string& id) { return svgs_.at(id); });
-    const std::array<std::pair<const char*, std::string>, 3> files{
-        {{"report.md", markdown_text(report)}, {"report.json", json_text(report)}, {"report.html", page}}};
-    std::optional<Error> failure;
-    for (const auto& [name, bytes] : files) {
-        try {
-            write(name, bytes);
-        } catch (const Error& error) {
-            if (!failure) failure = error;
-        }
-    }
-    if (failure) throw Error(*failure);
+    Table setting{"setting", "Setting", {{"name", "What"}, {"value", "Value"}}, {}, ""};
+    for (const auto& [name, value] : report.setting) setting.add({name, value});
+    write("setting.csv", csv_text(setting));
+    write("report.html", html_text(report, [this](const std::string& id) { return svgs_.at(id); }));
 }
 
 }  // namespace corda::report

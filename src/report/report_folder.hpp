@@ -16,7 +16,8 @@ namespace corda::report {
 class ReportFolder {
   public:
     /// Makes the folder if it is missing. `widths_mm`: see Report.
-    explicit ReportFolder(std::string path, OutputOptions options = {}, std::vector<int> widths_mm = {});
+    explicit ReportFolder(std::string path, OutputOptions options = {},
+                          std::vector<int> widths_mm = {kPageMm});
 
     /// Writes the figures of a chapter: `<id>.csv` per table, then the .svg, .png and .pdf of each picture
     /// and plot. Also throws kInterrupted if cancelled.
@@ -27,8 +28,7 @@ class ReportFolder {
     /// Counts a file that other code has written there.
     void note(const std::string& path) { paths_.insert(paths_.begin(), path); }
 
-    /// Writes report.md, report.json and report.html. A figure that `add` has not drawn is left out. A file
-    /// that cannot be written does not keep the others from being written.
+    /// Writes setting.csv and report.html. A figure that `add` has not drawn is left out.
     void finish(Report report);
 
     /// The paths of the files, the last written first.

@@ -55,68 +55,41 @@ std::string table_html(const Table& table) {
     return text + "</details>\n";
 }
 
-void remove_element(std::string& text, std::string_view start, std::string_view end) {
-    const std::size_t first = text.find(start);
-    if (first == std::string::npos) return;
-    const std::size_t last = text.find(end, first);
-    if (last != std::string::npos) text.erase(first, last + end.size() - first);
-}
-
-/// An SVG file by gnuplot or of a picture as an element of the page: without the file's header, with a label
-/// for readers who cannot see it, and with ids that no other has.
-std::string svg_element(std::string svg, const std::string& id, const std::string& title) {
-    svg.erase(0, std::min(svg.find("<svg"), svg.size()));
-    remove_element(svg, "<title>", "</title>");
-    remove_element(svg, "<desc>", "</desc>");
-    for (const std::string_view own : {"gpDot", "gpPt", "textbox", "greybox"}) {
-        replace_all(svg, fmt::format("id='{}", own), fmt::format("id='{}_{}", id, own));
-        replace_all(svg, fmt::format("'#{}", own), fmt::format("'#{}_{}", id, own));
-    }
-    for (const std::string_view own : {"ground", "halo", "mask"}) {
-        replace_all(svg, fmt::format(" id=\"{}", own), fmt::format(" id=\"{}_{}", id, own));
-        replace_all(svg, fmt::format("url(#{}", own), fmt::format("url(#{}_{}", id, own));
-        replace_all(svg, fmt::format("href=\"#{}", own), fmt::format("href=\"#{}_{}", id, own));
-    }
-    replace_all(svg, "id=\"gnuplot_canvas\"", fmt::format("id=\"{}_canvas\"", id));
-    // A black curve is as dark as letters are, which a dark page makes light.
-    replace_all(svg, "'rgb(  0,   0,   0)'", "'black'");
-    if (svg.rfind("<svg", 0) == 0)
-        svg.insert(4, fmt::format(" role=\"img\" aria-label=\"{}\"", markup_text(title)));
-    return svg;
-}
-
 /// Where the files of a figure are.
 std::string files_html(const Report& report, const std::string& id, const std::string& data) {
     std::string text;
     for (const int width_mm : report.widths_mm) {
         text += fmt::format("{}{} mm: ", text.empty() ? "" : " · ", width_mm);
         for (const auto& [ending, name] : {std::pair{"svg", "SVG"}, {"pdf", "PDF"}, {"png", "PNG"}})
-            text += fmt::format("<a href=\"{}.{}\">{}</a> ", file_stem(id, width_mm), ending, name);
+            text += fmt::format("<a href=\"{}.{}\">{}</a> ", file_stem(id, width_mm, report.widths_mm),
+                                ending, name);
         text.pop_back();
     }
-    if (!data.empty())
-        text += fmt::format("{}<a href=\"{}\">CSV</a>", text.empty() ? "" : " · numbers: ", data);
-    return text.empty() ? "" : "<span class=\"files\">" + text + "</span>";
+    if (!data.empty()) text += fmt::format(" · numbers: <a href=\"{}\">CSV</a>", data);
+    return "<span class=\"files\">" + text + "</span>";
 }
 
-/// The figures that have a caption are numbered.
-struct FigureCount {
-    int count = 0;
+/// Figures of a report as elements of its page. Those with a caption are numbered.
+class Figures {
+  public:
+    Figures(const Report& report, const SvgOf& svg_of) : report_(report), svg_of_(svg_of) {}
+
+    [[nodiscard]] std::string html(const std::string& id, const std::string& title,
+                                   const std::string& caption, const std::string& data) {
+        std::string text =
+            fmt::format("<figure id=\"figure-{}\">\n<img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\"/>\n",
+                        id, markup_text(title), base64(svg_of_(id)));
+        if (!caption.empty())
+            text += fmt::format("<figcaption><b>Figure {}.</b> {}{}</figcaption>\n", ++count_,
+                                markup_text(caption), files_html(report_, id, data));
+        return text + "</figure>\n";
+    }
+
+  private:
+    const Report& report_;
+    const SvgOf& svg_of_;
+    int count_ = 0;
 };
-
-std::string caption_html(const Report& report, const std::string& id, const std::string& caption,
-                         const std::string& data, FigureCount& figures) {
-    if (caption.empty()) return {};
-    return fmt::format("<figcaption><b>Figure {}.</b> {}{}</figcaption>\n", ++figures.count,
-                       markup_text(caption), files_html(report, id, data));
-}
-
-std::string picture_html(const Report& report, const Picture& picture, const SvgOf& svg_of,
-                         FigureCount& figures) {
-    return fmt::format("<figure id=\"picture-{}\">\n{}{}</figure>\n", picture.id,
-                       svg_element(svg_of(picture.id), picture.id, picture.title),
-                       caption_html(report, picture.id, picture.caption, "", figures));
-}
 
 std::string setting_html(const Report& report) {
     if (report.setting.empty()) return {};
@@ -140,32 +113,26 @@ std::string contents_html(const Report& report) {
     return text + "</ol>\n</nav>\n";
 }
 
-std::string pictures_html(const Report& report, const Chapter& chapter, const SvgOf& svg_of,
-                          FigureCount& figures) {
+std::string pictures_html(const Chapter& chapter, Figures& figures) {
     std::string text;
     bool is_in_row = false;
     for (const Picture& picture : chapter.pictures) {
         if (picture.is_small != is_in_row) text += is_in_row ? "</div>\n" : "<div class=\"small\">\n";
         is_in_row = picture.is_small;
-        text += picture_html(report, picture, svg_of, figures);
+        text += figures.html(picture.id, picture.title, picture.caption, "");
     }
     return text + (is_in_row ? "</div>\n" : "");
 }
 
-std::string chapter_html(const Report& report, const Chapter& chapter, std::size_t number,
-                         const SvgOf& svg_of, FigureCount& figures) {
+std::string chapter_html(const Chapter& chapter, std::size_t number, Figures& figures) {
     std::string text =
         fmt::format("<section id=\"chapter-{0}\">\n<h2><a href=\"#chapter-{0}\">{0}. {1}</a></h2>\n", number,
                     markup_text(chapter.title));
     for (const std::string& paragraph : chapter.paragraphs) {
         text += fmt::format("<p>{}</p>\n", markup_text(paragraph));
     }
-    text += pictures_html(report, chapter, svg_of, figures);
-    for (const Plot& plot : chapter.plots) {
-        text += fmt::format("<figure id=\"plot-{}\">\n{}{}</figure>\n", plot.id,
-                            svg_element(svg_of(plot.id), plot.id, plot.title),
-                            caption_html(report, plot.id, plot.caption, plot.data, figures));
-    }
+    text += pictures_html(chapter, figures);
+    for (const Plot& plot : chapter.plots) text += figures.html(plot.id, plot.title, plot.caption, plot.data);
     for (const Table& table : chapter.tables) text += table_html(table);
     return text + "</section>\n";
 }
@@ -184,9 +151,9 @@ std::string html_text(const Report& report, const SvgOf& svg_of) {
             text += fmt::format("<p class=\"summary\">{}</p>\n", markup_text(chapter.summary));
     }
     text += contents_html(report) + setting_html(report);
-    FigureCount figures;
+    Figures figures(report, svg_of);
     for (std::size_t i = 0; i < report.chapters.size(); ++i)
-        text += chapter_html(report, report.chapters[i], i + 1, svg_of, figures);
+        text += chapter_html(report.chapters[i], i + 1, figures);
     return text + "</body>\n</html>\n";
 }
 

@@ -10,14 +10,6 @@
 namespace corda::view {
 namespace {
 
-/// "10⁻¹²"
-std::string power_of_10_text(int exponent) {
-    std::string text = exponent < 0 ? "10⁻" : "10";
-    constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-    for (const char digit : std::to_string(std::abs(exponent))) text += kDigits[digit - '0'];
-    return text;
-}
-
 /// The exponent of the largest power of 1000 that is not above.
 int thousands_below(double value) {
     int exponent = 0;
@@ -38,6 +30,13 @@ double power_of_10(int exponent) {
     double power = 1.0;
     for (int i = 0; i < std::abs(exponent); ++i) power *= 10.0;
     return exponent < 0 ? 1.0 / power : power;
+}
+
+std::string power_of_10_text(int exponent) {
+    std::string text = exponent < 0 ? "10⁻" : "10";
+    constexpr const char* kDigits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    for (const char digit : std::to_string(std::abs(exponent))) text += kDigits[digit - '0'];
+    return text;
 }
 
 RoundNumber round_number_below(double value) {

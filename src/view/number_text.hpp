@@ -9,6 +9,9 @@ namespace corda::view {
 /// 10 to that power, rounded once.
 [[nodiscard]] double power_of_10(int exponent);
 
+/// "10⁻¹²"
+[[nodiscard]] std::string power_of_10_text(int exponent);
+
 /// A positive number rounded up to two digits; any other number unchanged.
 [[nodiscard]] double rounded_up(double value);
 

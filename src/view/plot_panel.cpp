@@ -23,7 +23,6 @@ constexpr double kMinCurvePx = 1.5;
 constexpr double kDotPerCurve = 3.0;
 
 // Shares of the em.
-constexpr double kTickLength = 0.25;
 constexpr double kAboveBox = 1.1;  // from the baseline above it
 constexpr double kMinBox = 4.0;
 constexpr double kMinPanelWidth = 9.5;
@@ -35,8 +34,6 @@ constexpr int kMaxLabels = 6;
 constexpr std::uint8_t kGridAlpha = 0x2c;
 constexpr std::uint8_t kBoxAlpha = 0x90;
 
-/// Points that are closer than this to the last one are left out.
-constexpr double kTooClosePx = 0.5;
 /// Number of points shown of a curve that is not over time: the last ones.
 constexpr std::size_t kMaxPoints = 4000;
 
@@ -68,55 +65,6 @@ ValueRange range_of(const PlotData& data, double CurvePoint::*value) {
     return range;
 }
 
-/// True if an axis of that extent has steps.
-bool can_be_divided(double extent) {
-    constexpr double kMinExtent = 1e-290;
-    return extent >= kMinExtent && extent <= 1.0 / kMinExtent;
-}
-
-/// The distance of labels that gives at most `most_steps` steps.
-RoundNumber step_of(double extent, int most_steps) {
-    return round_number_above(extent / most_steps);
-}
-
-/// Keeps the first, highest, lowest and last point in each column of pixels; the picture is the same.
-void keep_outline(std::vector<PixelPoint>& points, std::vector<double>& times_s) {
-    std::size_t kept = 0;
-    for (std::size_t first = 0; first < points.size();) {
-        const double column = std::floor(points[first].x);
-        std::size_t end = first;
-        std::size_t low = first;
-        std::size_t high = first;
-        for (; end < points.size() && std::floor(points[end].x) == column; ++end) {
-            if (points[end].y < points[low].y) low = end;
-            if (points[end].y > points[high].y) high = end;
-        }
-        std::size_t last = points.size();
-        for (const std::size_t i : {first, std::min(low, high), std::max(low, high), end - 1}) {
-            if (i == last) continue;
-            last = i;
-            points[kept] = points[i];
-            times_s[kept++] = times_s[i];
-        }
-        first = end;
-    }
-    points.resize(kept);
-    times_s.resize(kept);
-}
-
-void keep_apart(std::vector<PixelPoint>& points, std::vector<double>& times_s) {
-    std::size_t kept = 1;
-    for (std::size_t i = 1; i < points.size(); ++i) {
-        const PixelPoint& last = points[kept - 1];
-        if (std::abs(points[i].x - last.x) < kTooClosePx && std::abs(points[i].y - last.y) < kTooClosePx)
-            continue;
-        points[kept] = points[i];
-        times_s[kept++] = times_s[i];
-    }
-    points.resize(kept);
-    times_s.resize(kept);
-}
-
 Color faint(Color color, std::uint8_t alpha) {
     return {color.r, color.g, color.b, alpha};
 }
@@ -136,13 +84,11 @@ Room room_beside(LivePlot plot, int width_px, int height_px) {
 }
 
 PlotPanel::PlotPanel(const StyleDef& style, int width_px, int height_px)
-    : width_px_(width_px),
-      height_px_(height_px),
-      is_beside_(width_px > height_px),
-      em_px_(em_of(std::min(width_px, height_px))),
-      edge_px_(edge_of(std::min(width_px, height_px), em_px_)) {
+    : width_px_(width_px), height_px_(height_px), is_beside_(width_px > height_px) {
     const int side_px = std::min(width_px, height_px);
-    line_px_ = std::max(1, rounded(kBoxLineWidth * side_px));
+    plot_.em_px = em_of(side_px);
+    edge_px_ = edge_of(side_px, plot_.em_px);
+    plot_.line_px = std::max(1, rounded(kBoxLineWidth * side_px));
     text_color_ = text_color(look_of(style));
     // The theme's: those of a style are for its bodies.
     StyleDef plain;
@@ -174,34 +120,32 @@ void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_color
     const bool is_over_time = data.end_s > 0.0;
     const auto start_axis = [](const PlotData::AxisName& name, const ValueRange& range) {
         const NumberTitle title = title_of(name.text, name.unit, range.largest());
-        Axis axis;
+        PlotAxis axis;
         axis.low = range.low;
         axis.high = range.high;
         axis.title = title.text;
         axis.unit = title.unit;
         return axis;
     };
-    x_ = start_axis(data.x, is_over_time ? ValueRange{0.0, data.end_s}
-                                         : range_of(data, &CurvePoint::x).widened(data.x.least_extent));
-    y_ = start_axis(data.y, range_of(data, &CurvePoint::y).widened(data.y.least_extent));
+    plot_.x = start_axis(data.x, is_over_time ? ValueRange{0.0, data.end_s}
+                                              : range_of(data, &CurvePoint::x).widened(data.x.least_extent));
+    plot_.y = start_axis(data.y, range_of(data, &CurvePoint::y).widened(data.y.least_extent));
     curves_.clear();
     const std::vector<Color> colors = choose_colors(data, body_colors);
     for (std::size_t i = 0; i < data.curves.size(); ++i)
         curves_.push_back({data.curves[i].name, colors[i], {}, {}, data.curves[i].points});
     place_names(panel, font);
-    is_shown_ = !panel.empty() && can_be_divided(x_.high - x_.low) && can_be_divided(y_.high - y_.low) &&
-                place_box(panel, is_over_time, font);
+    is_shown_ = !panel.empty() && can_be_divided(plot_.x.high - plot_.x.low) &&
+                can_be_divided(plot_.y.high - plot_.y.low) && place_box(panel, is_over_time, font);
     if (!is_shown_) return;
-    for (std::size_t i = 0; i < curves_.size(); ++i) {
-        PixelCurve& curve = curves_[i];
-        for (const CurvePoint& point : data.curves[i].points) {
-            curve.points.push_back({x_.px(point.x), y_.px(point.y)});
-            curve.times_s.push_back(point.time_s);
+    for (PixelCurve& curve : curves_) {
+        std::vector<PixelPoint> points;
+        for (const CurvePoint& point : curve.samples)
+            points.push_back({plot_.x.px(point.x), plot_.y.px(point.y)});
+        for (const std::size_t k : visible_points(points)) {
+            curve.points.push_back(points[k]);
+            curve.times_s.push_back(curve.samples[k].time_s);
         }
-        if (is_over_time)
-            keep_outline(curve.points, curve.times_s);
-        else
-            keep_apart(curve.points, curve.times_s);
     }
 }
 
@@ -213,80 +157,46 @@ void PlotPanel::place_names(const PixelRect& panel, Font& font) {
     int x_px = begin_px;
     for (const PixelCurve& curve : curves_) {
         if (curve.name.empty()) continue;
-        const int name_px = font.width_px(curve.name, em_px_);
+        const int name_px = font.width_px(curve.name, plot_.em_px);
         if (x_px > begin_px && x_px + name_px > end_px) {
             x_px = begin_px;
             ++name_rows_;
         }
         names_.push_back({curve.name, curve.color, x_px, name_rows_});
-        x_px += name_px + em_px_;
+        x_px += name_px + plot_.em_px;
     }
     if (!names_.empty()) ++name_rows_;
 }
 
 bool PlotPanel::place_box(const PixelRect& panel, bool is_over_time, Font& font) {
-    const int line_px = rounded(kLine * em_px_);
-    const int gap_px = rounded(kGap * em_px_);
-    const int above_px = name_rows_ * line_px + rounded((kAscent + kAboveBox) * em_px_);
-    const int below_px = rounded(kTickLength * em_px_) + 2 * line_px;
+    const int gap_px = rounded(kGap * plot_.em_px);
+    const int above_px =
+        name_rows_ * rounded(kLine * plot_.em_px) + rounded((kAscent + kAboveBox) * plot_.em_px);
     const int top_px = is_beside_ ? edge_px_ : gap_px;
-    const int all_px = panel.height() - top_px - edge_px_ - above_px - below_px;
+    const int all_px = panel.height() - top_px - edge_px_ - above_px - plot_.title_px();
     const int most_px = is_beside_ ? rounded(kHeightPerWidth * panel.width()) : all_px;
     const int height_px = std::min(all_px, most_px);
-    const int least_px = rounded(kMinBox * em_px_);
+    const int least_px = rounded(kMinBox * plot_.em_px);
     if (height_px < least_px) return false;
-    box_.y0 = panel.y0 + top_px + (all_px - height_px) / 2 + above_px;
-    box_.y1 = box_.y0 + height_px;
-    y_.low_px = box_.y1 - 1;
-    y_.high_px = box_.y0;
-    const int y_labels = std::clamp(rounded(height_px / (kPerLabel * em_px_)), kMinLabels, kMaxLabels);
-    const RoundNumber y_step = step_of(y_.high - y_.low, y_labels);
-    y_.low = y_step.times(std::floor(y_.low / y_step.value()));
-    y_.high = y_step.times(std::ceil(y_.high / y_step.value()));
-    add_labels(y_, y_labels + 1);
+    plot_.box.y0 = panel.y0 + top_px + (all_px - height_px) / 2 + above_px;
+    plot_.box.y1 = plot_.box.y0 + height_px;
+    plot_.y.low_px = plot_.box.y1 - 1;
+    plot_.y.high_px = plot_.box.y0;
+    const int y_labels = std::clamp(rounded(height_px / (kPerLabel * plot_.em_px)), kMinLabels, kMaxLabels);
+    plot_.y.extend_to_labels(y_labels);
+    plot_.y.set_labels(y_labels + 1);
     int widest_px = 0;
-    for (const Label& label : y_.labels) widest_px = std::max(widest_px, font.width_px(label.text, em_px_));
-    box_.x0 = panel.x0 + edge_px_ + widest_px + gap_px + rounded(kTickLength * em_px_);
+    for (const PlotAxis::Label& label : plot_.y.labels)
+        widest_px = std::max(widest_px, font.width_px(label.text, plot_.em_px));
+    plot_.box.x0 = panel.x0 + edge_px_ + widest_px + gap_px + rounded(kTickLength * plot_.em_px);
     // Half of the last label on the x axis.
-    box_.x1 = panel.x1 - edge_px_ - em_px_;
-    if (box_.width() < least_px) return false;
-    x_.low_px = box_.x0;
-    x_.high_px = box_.x1 - 1;
-    if (!is_over_time) {
-        const RoundNumber step = step_of(x_.high - x_.low, kMaxLabels);
-        x_.low = step.times(std::floor(x_.low / step.value()));
-        x_.high = step.times(std::ceil(x_.high / step.value()));
-    }
-    for (int most = kMaxLabels; most >= 1; --most) {
-        add_labels(x_, most);
-        int end_px = std::numeric_limits<int>::min();
-        bool fits = true;
-        for (const Label& label : x_.labels) {
-            const int half_px = (font.width_px(label.text, em_px_) + 1) / 2;
-            fits &= label.at_px - half_px >= end_px;
-            end_px = label.at_px + half_px + gap_px;
-        }
-        if (fits) break;
-    }
+    plot_.box.x1 = panel.x1 - edge_px_ - plot_.em_px;
+    if (plot_.box.width() < least_px) return false;
+    plot_.x.low_px = plot_.box.x0;
+    plot_.x.high_px = plot_.box.x1 - 1;
+    if (!is_over_time) plot_.x.extend_to_labels(kMaxLabels);
+    plot_.x.set_labels_apart(kMaxLabels, gap_px, plot_.em_px, font);
     return true;
-}
-
-void PlotPanel::add_labels(Axis& axis, int most) const {
-    axis.labels.clear();
-    constexpr double kSlack = 1e-9;
-    constexpr int kMinDigits = 6;
-    constexpr int kMaxDigits = 15;
-    const RoundNumber step = step_of(axis.high - axis.low, most);
-    // Far from 0 it takes more digits to tell neighbours apart.
-    int digits = kMinDigits;
-    const double steps = std::max(std::abs(axis.low), std::abs(axis.high)) / step.value();
-    while (digits < kMaxDigits && power_of_10(digits - 1) < steps) ++digits;
-    const auto first = static_cast<std::int64_t>(std::ceil(axis.low / step.value() - kSlack));
-    const auto last = static_cast<std::int64_t>(std::floor(axis.high / step.value() + kSlack));
-    for (std::int64_t k = first; k <= last; ++k) {
-        const double value = step.times(static_cast<double>(k));
-        axis.labels.push_back({display_number(value / axis.unit, digits), rounded(axis.px(value))});
-    }
 }
 
 CurvePoint PlotPanel::PixelCurve::at(double time_s) const {
@@ -303,13 +213,7 @@ void PlotPanel::draw_curves(double time_s, DrawList& list) const {
     if (!is_shown_) return;
     list.add_layer(faint(text_color_, kGridAlpha));
     list.layers.back().is_note = true;
-    const double half_px = 0.5 * line_px_;
-    for (const Label& label : x_.labels)
-        list.add_capsule({label.at_px + half_px, box_.y0 + half_px},
-                         {label.at_px + half_px, box_.y1 - half_px}, half_px);
-    for (const Label& label : y_.labels)
-        list.add_capsule({box_.x0 + half_px, label.at_px + half_px},
-                         {box_.x1 - half_px, label.at_px + half_px}, half_px);
+    plot_.add_grid(list);
     const double radius_px = 0.5 * std::max(kMinCurvePx, kCurveWidth * std::min(width_px_, height_px_));
     for (std::size_t i = curves_.size(); i-- > 0;) {
         const PixelCurve& curve = curves_[i];
@@ -318,43 +222,24 @@ void PlotPanel::draw_curves(double time_s, DrawList& list) const {
         const CurvePoint now = curve.at(time_s);
         const auto later = std::lower_bound(curve.times_s.begin(), curve.times_s.end(), now.time_s);
         const auto end = static_cast<std::size_t>(later - curve.times_s.begin());
-        const PixelPoint dot{x_.px(now.x), y_.px(now.y)};
+        const PixelPoint dot{plot_.x.px(now.x), plot_.y.px(now.y)};
         for (std::size_t k = end - std::min(end, kMaxPoints); k < end; ++k)
             list.add_capsule(curve.points[k], k + 1 < end ? curve.points[k + 1] : dot, radius_px);
         list.add_capsule(dot, dot, kDotPerCurve * radius_px);
     }
 }
 
-void PlotPanel::write(const std::string& text, int x_px, int y_px, Color color, DrawList& list,
-                      Font& font) const {
-    font.write({x_px, y_px, em_px_, color, text}, list);
-}
-
 void PlotPanel::draw_axes(DrawList& list, Font& font) const {
     if (!is_shown_) return;
-    const Color line = faint(text_color_, kBoxAlpha);
-    const int tick_px = rounded(kTickLength * em_px_);
-    const int gap_px = rounded(kGap * em_px_);
-    const int row_px = rounded(kLine * em_px_);
-    list.add_box({box_.x0, box_.y0, box_.x0 + line_px_, box_.y1}, line);
-    list.add_box({box_.x0 + line_px_, box_.y1 - line_px_, box_.x1, box_.y1}, line);
-    const auto width_px = [&](const std::string& text) { return font.width_px(text, em_px_); };
-    for (const Label& label : y_.labels) {
-        list.add_box({box_.x0 - tick_px, label.at_px, box_.x0, label.at_px + line_px_}, line);
-        write(label.text, box_.x0 - tick_px - gap_px - width_px(label.text),
-              label.at_px + rounded(0.5 * kAscent * em_px_), text_color_, list, font);
-    }
-    const int labels_px = box_.y1 + tick_px + row_px;
-    for (const Label& label : x_.labels) {
-        list.add_box({label.at_px, box_.y1, label.at_px + line_px_, box_.y1 + tick_px}, line);
-        write(label.text, label.at_px - width_px(label.text) / 2, labels_px, text_color_, list, font);
-    }
-    write(x_.title, (box_.x0 + box_.x1 - width_px(x_.title)) / 2, labels_px + row_px, text_color_, list,
-          font);
-    const int title_px = box_.y0 - name_rows_ * row_px - rounded(kAboveBox * em_px_);
-    write(y_.title, names_.empty() ? box_.x0 : names_.front().x_px, title_px, text_color_, list, font);
+    plot_.draw_axes(faint(text_color_, kBoxAlpha), text_color_, list, font);
+    const auto write = [&](const std::string& text, int x_px, int y_px, Color color) {
+        font.write({x_px, y_px, plot_.em_px, color, text}, list);
+    };
+    const int row_px = rounded(kLine * plot_.em_px);
+    const int title_px = plot_.box.y0 - name_rows_ * row_px - rounded(kAboveBox * plot_.em_px);
+    write(plot_.y.title, names_.empty() ? plot_.box.x0 : names_.front().x_px, title_px, text_color_);
     for (const Name& name : names_)
-        write(name.text, name.x_px, title_px + (name.row + 1) * row_px, name.color, list, font);
+        write(name.text, name.x_px, title_px + (name.row + 1) * row_px, name.color);
 }
 
 }  // namespace corda::view

@@ -10,6 +10,7 @@
 #include "corda/view/defs.hpp"
 #include "corda/view/draw_list.hpp"
 #include "corda/view/font.hpp"
+#include "corda/view/plot_axis.hpp"
 
 namespace corda::view {
 
@@ -65,24 +66,6 @@ class PlotPanel {
     void draw_axes(DrawList& list, Font& font) const;
 
   private:
-    struct Label {
-        std::string text;
-        int at_px = 0;  ///< along its axis
-    };
-    /// One axis: the map from values to pixels, and its labels.
-    struct Axis {
-        double low = 0.0;
-        double high = 1.0;
-        int low_px = 0;
-        int high_px = 0;
-        std::string title;
-        double unit = 1.0;
-        std::vector<Label> labels;
-
-        [[nodiscard]] double px(double value) const {
-            return low_px + (value - low) / (high - low) * (high_px - low_px);
-        }
-    };
     struct PixelCurve {
         std::string name;
         Color color;
@@ -105,21 +88,15 @@ class PlotPanel {
     void place_names(const PixelRect& panel, Font& font);
     /// Places the box and finds the labels; false if there is no room.
     [[nodiscard]] bool place_box(const PixelRect& panel, bool is_over_time, Font& font);
-    void add_labels(Axis& axis, int most) const;
-    void write(const std::string& text, int x_px, int y_px, Color color, DrawList& list, Font& font) const;
 
     int width_px_;
     int height_px_;
-    bool is_beside_;  ///< to the right of the picture
-    int em_px_;
-    int edge_px_;  ///< from the edges of the frame to texts
-    int line_px_;
+    bool is_beside_;   ///< to the right of the picture
+    int edge_px_ = 0;  ///< from the edges of the frame to texts
     Color text_color_;
     std::vector<Color> palette_;
     bool is_shown_ = false;
-    PixelRect box_;
-    Axis x_;
-    Axis y_;
+    PlotBox plot_;
     std::vector<PixelCurve> curves_;
     std::vector<Name> names_;
     int name_rows_ = 0;

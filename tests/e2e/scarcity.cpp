@@ -106,43 +106,6 @@ TEST_F(Scarcity, LackOfMemoryIsNotReportedAsADamagedVideo) {
     EXPECT_EQ(run_corda({"verify", video_}).exit_code, 0);
 }
 
-TEST_F(Scarcity, AProgramThatFailsToStartIsNotReportedAsMissing) {
-    const auto result =
-        run_corda({"report", scene_, "-o", folder_.file("report")}, kFaults + "PROCESSES_TO_START=0");
-    EXPECT_EQ(result.exit_code, 75) << result.err;
-    EXPECT_THAT(result.err, HasSubstr("ulimit -u"));
-    EXPECT_THAT(result.err, Not(HasSubstr("apt-get")));
-}
-
-TEST_F(Scarcity, AProgramWithoutItsThreadsIsATemporaryFailure) {
-    const std::string gnuplot = folder_.write("gnuplot",
-                                              "#!/bin/sh\ncase $1 in --version) exit 0;; esac\n"
-                                              "echo \"creating thread '[pango] FcInit': Error creating "
-                                              "thread: Resource temporarily unavailable\" >&2\n"
-                                              "kill -TRAP $$\n");
-    const auto result =
-        run_shell("chmod +x " + gnuplot + "; PATH=" + folder_.path() + ":$PATH exec " +
-                  test::quoted(CORDA_PROGRAM) + " report " + scene_ + " -o " + folder_.file("report"));
-    EXPECT_EQ(result.exit_code, 75) << result.err;
-    EXPECT_THAT(result.err, AllOf(HasSubstr("(status 133): creating thread"), HasSubstr("ulimit -u")));
-}
-
-TEST_F(Scarcity, ASignalEndsAProgramThatHangsAndCordaWithIt) {
-    const std::string pid = folder_.file("pid");
-    const std::string gnuplot = folder_.write(
-        "gnuplot", "#!/bin/sh\ncase $1 in --version) exit 0;; esac\necho $$ > " + pid + "\nexec sleep 60\n");
-    const auto result =
-        run_shell("chmod +x " + gnuplot + "; PATH=" + folder_.path() + ":$PATH " +
-                  test::quoted(CORDA_PROGRAM) + " report " + scene_ + " -o " + folder_.file("report") +
-                  " & pid=$!; for i in $(seq 1500); do test -s " + pid +
-                  " && break; sleep 0.01; done; kill -TERM $pid; wait $pid; code=$?; sleep 0.5; "
-                  // The init process of a container may leave it as a zombie.
-                  "grep -sq '^State:.[^Z]' /proc/$(cat " +
-                  pid + ")/status && echo orphan; exit $code");
-    EXPECT_EQ(result.exit_code, 143) << result.err;
-    EXPECT_THAT(result.out, Not(HasSubstr("orphan")));
-}
-
 #endif
 
 }  // namespace

@@ -36,7 +36,7 @@ TEST(Chapters, HaveUnitsAndTheCurvesOfTheMotion) {
     const report::Plot phase = phase_chapter(scene.film, scene.motion).plots.at(0);
     EXPECT_EQ(phase.x_title, "angle (rad)");
     EXPECT_EQ(phase.y_title, "angular velocity (rad/s)");
-    EXPECT_EQ(phase.series.at(0).points.size(), 11U);
+    EXPECT_EQ(phase.series.at(0).points.size(), 81U);  // eight per frame
     EXPECT_NEAR(phase.series.at(0).points[0].first, 1.0472, 1e-4);
     const report::Plot path = path_chapter(scene.film, scene.motion).plots.at(0);
     EXPECT_EQ(path.x_title, "x (m)");

@@ -114,8 +114,17 @@ TEST(MotionSummary, EndsWhereTheMotionDiverges) {
     EXPECT_EQ(scene.rows.at("tip.csv").size(), 8U);
 }
 
+TEST(MotionSummary, HasSmoothPathsBetweenFewFrames) {
+    ReadScene scene(pendulum_toml("duration = 1.0", "10"));
+    EXPECT_EQ(scene.rows.at("tip.csv").size(), 11U);
+    const CurvePoints& path = scene.motion.bodies.at(0).path;
+    ASSERT_EQ(path.size(), 81U);  // eight per frame
+    for (const view::CurvePoint& point : path) EXPECT_NEAR(std::hypot(point.x, point.y), 1.0, 1e-8);
+    EXPECT_EQ(scene.motion.kinetic.size(), 11U);
+}
+
 TEST(MotionSummary, StopsAtItsCallback) {
-    Film film(parse_scene("schema = 1\n" + pendulum_toml(), "a"), def_of());
+    Film film(scene_of(pendulum_toml()), def_of(scene_of(pendulum_toml())));
     const auto open = [](const std::string&, const std::vector<std::string>&) -> OnRow {
         return [](std::span<const double>) {};
     };

@@ -8,17 +8,20 @@
 
 namespace corda::figures {
 
-inline FilmDef def_of(std::vector<double> stills_s = {}) {
-    FilmDef def;
-    def.stills_s = std::move(stills_s);
-    def.readings = needed_readings();
+inline FilmDef def_of(const Scene& scene, const std::vector<double>& stills_s = {}) {
+    FilmDef def = film_def(scene);
+    def.stills_s.insert(def.stills_s.end(), stills_s.begin(), stills_s.end());
     return def;
+}
+
+inline Scene scene_of(const std::string& toml) {
+    return parse_scene("schema = 1\n" + toml, "scene.toml");
 }
 
 /// A motion and its rows.
 struct ReadScene {
-    explicit ReadScene(const std::string& toml, std::vector<double> stills_s = {})
-        : film(parse_scene("schema = 1\n" + toml, "scene.toml"), def_of(std::move(stills_s))),
+    explicit ReadScene(const std::string& toml, const std::vector<double>& stills_s = {})
+        : film(scene_of(toml), def_of(scene_of(toml), stills_s)),
           motion(read_motion(film,
                              [this](const std::string& name, const std::vector<std::string>& keys) -> OnRow {
                                  columns[name] = keys;
