@@ -12,7 +12,6 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/report/report_folder.hpp"
-#include "corda/report/writers.hpp"
 #include "interrupt.hpp"
 #include "page_folder.hpp"
 
@@ -21,7 +20,6 @@ namespace {
 
 struct StudyOptions {
     SceneOptions scene;
-    GlOptions gl;
     std::string output;
     study::StudyDef def;
     bool force = false;
@@ -62,10 +60,8 @@ ExitCode study_command(const Console& console, StudyOptions options) {
     } else if (!options.scene.settings.empty()) {
         throw Error(ExitCode::kUsage, "--set changes a scene; name its file");
     }
-    options.gl.apply_to(options.def.film);
     study::Study study(options.def);
     prepare_page_folder(options.output, options.force);
-    report::check_gnuplot();
     set_interruption_message(kSomethingWritten);
     report::ReportFolder folder(options.output, {.force = options.force});
     measure(console, study, folder);
@@ -88,7 +84,6 @@ void add_study(CLI::App& app, Action& action) {
                     fmt::format("only these chapters: {}", fmt::join(study::chapter_names(), ", ")))
         ->delimiter(',')
         ->type_name("NAME");
-    options.gl.add_to(command);
     add_force(command, options.force);
 }
 

@@ -35,8 +35,8 @@ void compare(const State& state, const State& truth, double length_m, Measuremen
 }
 
 /// Runs all frames, compares those that the reference knows, and notes what the run shows.
-void watch(const Problem& problem, std::span<const MethodDef> methods, Measurement& result) {
-    Simulation run(problem.system(), problem.world, methods, problem.fps.interval_s());
+void watch(const Problem& problem, Measurement& result) {
+    Simulation run(problem.system(), problem.world, result.method, problem.fps.interval_s());
     State truth = run.state();
     bool is_compared = false;
     for (std::int64_t k = 1; k <= problem.last_frame(); ++k) {
@@ -100,12 +100,6 @@ Problem with_reach(Problem problem, int reach) {
     return problem;
 }
 
-double largest_error(const Problem& problem, std::span<const MethodDef> methods) {
-    Measurement result;
-    watch(problem, methods, result);
-    return result.largest_error;
-}
-
 Measurement measure(const Problem& problem, const MethodDef& method, const std::string& label,
                     double parameter, const Timing& timing) {
     Measurement result;
@@ -113,7 +107,7 @@ Measurement measure(const Problem& problem, const MethodDef& method, const std::
     result.label = label;
     result.parameter = parameter;
     try {
-        watch(problem, {&method, 1}, result);
+        watch(problem, result);
         const double simulated_s = problem.fps.time_s(problem.last_frame());
         if (result.failure.empty() && timing.repeats > 0 && simulated_s > 0.0)
             result.ms_per_simulated_s = stepping_s(problem, method, timing).times(1e3 / simulated_s);
@@ -121,30 +115,6 @@ Measurement measure(const Problem& problem, const MethodDef& method, const std::
         result.failure = error.what();
     }
     return result;
-}
-
-std::optional<Slope> fit_slope(std::span<const std::pair<double, double>> points) {
-    std::vector<std::pair<double, double>> logs;
-    double mean_x = 0.0;
-    double mean_y = 0.0;
-    for (const auto& [x, y] : points) {
-        if (!(x > 0.0 && y > 0.0 && std::isfinite(x) && std::isfinite(y))) continue;
-        logs.emplace_back(std::log(x), std::log(y));
-        mean_x += logs.back().first;
-        mean_y += logs.back().second;
-    }
-    if (logs.size() < 3) return std::nullopt;
-    mean_x /= static_cast<double>(logs.size());
-    mean_y /= static_cast<double>(logs.size());
-    double sum_xx = 0.0;
-    double sum_xy = 0.0;
-    for (const auto& [x, y] : logs) {
-        sum_xx += (x - mean_x) * (x - mean_x);
-        sum_xy += (x - mean_x) * (y - mean_y);
-    }
-    // Equal logarithms leave the rounding of their mean.
-    if (!(sum_xx > 1e-24)) return std::nullopt;
-    return Slope{sum_xy / sum_xx, logs.size()};
 }
 
 Probe::Probe(const RopeDef& rope, const WorldDef& world, const MethodDef& method, double frame_interval_s)

@@ -62,22 +62,9 @@ struct Timing {
     double shortest_s = 0.05;  ///< a repeat consists of as many runs as take this time
 };
 
-/// Measurement::largest_error of a run by one method per body.
-[[nodiscard]] double largest_error(const Problem& problem, std::span<const MethodDef> methods);
-
 /// Runs a method on the problem, once for its errors and then again for its time.
 [[nodiscard]] Measurement measure(const Problem& problem, const MethodDef& method, const std::string& label,
                                   double parameter, const Timing& timing);
-
-/// The exponent of a power law fitted to points.
-struct Slope {
-    double exponent = 0.0;
-    std::size_t points = 0;
-};
-
-/// The exponent p of y = c x^p by least squares of log y over log x. Points with a coordinate that is not
-/// finite or not above 0 are left out; std::nullopt if fewer than three remain, or if all have the same x.
-[[nodiscard]] std::optional<Slope> fit_slope(std::span<const std::pair<double, double>> points);
 
 /// A run of one rope that can be inspected at any time, and the time that its steps take.
 class Probe {

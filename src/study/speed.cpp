@@ -62,19 +62,6 @@ report::Table runs_table(const Sweep& sweep) {
     return table;
 }
 
-/// The points of a series over which its error falls and is far above rounding.
-std::vector<std::pair<double, double>> falling_points(const Sweep& sweep, const std::string& label) {
-    constexpr double kLargest = 0.1;
-    const double floor = 30.0 * std::max(1e-15, sweep.subject.disagreement.value_or(0.0));
-    std::vector<std::pair<double, double>> points;
-    for (const Measurement& run : sweep.results) {
-        if (run.label != label || !run.failure.empty() || !(run.rms_error < kLargest)) continue;
-        if (run.rms_error < floor || (!points.empty() && run.rms_error >= points.back().second)) break;
-        points.emplace_back(run.parameter, run.rms_error);
-    }
-    return points;
-}
-
 /// In the order of the sweep.
 std::vector<std::string> labels_of(const Sweep& sweep) {
     std::vector<std::string> labels;
@@ -82,25 +69,6 @@ std::vector<std::string> labels_of(const Sweep& sweep) {
         if (labels.empty() || labels.back() != run.label) labels.push_back(run.label);
     }
     return labels;
-}
-
-report::Table slopes_table(const Sweep& sweep) {
-    report::Table table{"slopes_" + sweep.problem().id,
-                        "How the error falls with the step or the tolerance: " + sweep.problem().title,
-                        {{"series", "method"}, {"slope", "exponent"}, {"points", "points of the fit"}},
-                        {},
-                        {}};
-    for (const std::string& label : labels_of(sweep)) {
-        if (const auto slope = fit_slope(falling_points(sweep, label))) {
-            table.add({label, slope->exponent, static_cast<double>(slope->points)});
-        } else {
-            table.add({label});
-        }
-    }
-    table.note =
-        "The exponent p of RMS error ~ parameter ^ p by least squares, over the runs whose error still falls "
-        "and is well above rounding; empty if there are fewer than three.";
-    return table;
 }
 
 report::Table fastest_table(const Sweep& sweep) {
@@ -213,7 +181,6 @@ void add_jobs(const std::shared_ptr<Sweep>& sweep, bool is_quick, std::vector<Jo
 void add_sweep(const Sweep& sweep, report::Chapter& chapter) {
     chapter.paragraphs.push_back(truth_paragraph(sweep));
     chapter.tables.push_back(fastest_table(sweep));
-    chapter.tables.push_back(slopes_table(sweep));
     chapter.tables.push_back(runs_table(sweep));
     chapter.plots.push_back(plot_of(sweep));
 }

@@ -24,11 +24,10 @@ struct ChapterKind {
     ChapterWork (*work)(const StudyDef&);
     bool takes_a_scene;
 };
-constexpr std::array<ChapterKind, 5> kChapters{{{"speed", speed_work, true},
+constexpr std::array<ChapterKind, 4> kChapters{{{"speed", speed_work, true},
                                                 {"findings", findings_work, false},
                                                 {"accuracy", accuracy_work, false},
-                                                {"hard_cases", hard_cases_work, false},
-                                                {"picture", pictures_work, true}}};
+                                                {"hard_cases", hard_cases_work, false}}};
 
 void check_chapters(const StudyDef& def) {
     for (const std::string& name : def.chapters) {

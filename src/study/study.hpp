@@ -18,7 +18,6 @@ struct StudyDef {
     bool quick = false;  ///< fewer points and shorter runs: to see whether it works, not to quote from
     std::optional<Scene> scene;         ///< studied instead of the built-in problems
     std::vector<std::string> chapters;  ///< some of chapter_names(); empty: all that apply
-    FilmDef film;                       ///< how chapter "picture" gets to OpenGL
 };
 
 /// A run of a chapter, or several that belong together.
@@ -46,19 +45,13 @@ using OnChapter = std::function<void(const report::Chapter&)>;
 /// The chapter "The source report's findings" (section 1 of src/sim/README.md): a measurement of each.
 [[nodiscard]] ChapterWork findings_work(const StudyDef& def);
 
-/// The chapter "Pictures", on the scene of `def` or on the source report's swing: the time of a whole render
-/// against the displayed error of several methods. Throws corda::Error (kNoGl, kUsage) if OpenGL cannot be
-/// used.
-[[nodiscard]] ChapterWork pictures_work(const StudyDef& def);
-
 /// How a study times its runs.
 [[nodiscard]] Timing study_timing(bool quick);
 
 /// A study that has been checked and is ready to run.
 class Study {
   public:
-    /// Throws corda::Error: kUsage for an unknown chapter, or one that does not apply to a scene; kNoGl if
-    /// chapter "picture" is wanted and cannot be drawn.
+    /// Throws corda::Error (kUsage) for an unknown chapter, or one that does not apply to a scene.
     explicit Study(const StudyDef& def);
 
     /// Measures everything in this thread, which can cancel it, and adds the chapters to `report` one after

@@ -97,21 +97,12 @@ TEST(Study, NamesUnknownAndUnsuitableChapters) {
     StudyDef def;
     def.chapters = {"colours"};
     EXPECT_EQ(refusal_of(def),
-              "there is no chapter \"colours\"; known are speed, findings, accuracy, hard_cases, picture");
+              "there is no chapter \"colours\"; known are speed, findings, accuracy, hard_cases");
     def.chapters = {"hard_cases"};
     def.scene = scene_with(reference::straight_rope(5, 1.0, 30.0), 0.1);
     EXPECT_THAT(refusal_of(def), HasSubstr("chapter \"hard_cases\" is about built-in problems"));
     for (const std::string& name : chapter_names())
         EXPECT_EQ(name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_"), std::string::npos);
-}
-
-TEST(Study, NeedsOpenGlForPicturesOnly) {
-    StudyDef def;
-    def.film.backend = "no such backend";
-    def.chapters = {"speed"};
-    EXPECT_NO_THROW(static_cast<void>(Study(def)));
-    def.chapters = {"picture"};
-    EXPECT_THAT(refusal_of(def), HasSubstr("no such backend"));
 }
 
 TEST(Setting, NamesTheProcessor) {
