@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include <fmt/format.h>
@@ -28,22 +29,11 @@ struct GoldenOptions {
 /// A page of more pictures is too large to open.
 constexpr int kMaxOnPage = 200;
 
+/// In the order of Verdict.
+constexpr std::array<const char*, 6> kWords{"passed", "different", "missing", "empty", "stale", "invalid"};
+
 const char* word_of(Verdict verdict) {
-    switch (verdict) {
-        case Verdict::kPassed:
-            return "passed";
-        case Verdict::kDifferent:
-            return "different";
-        case Verdict::kMissing:
-            return "missing";
-        case Verdict::kEmpty:
-            return "empty";
-        case Verdict::kStale:
-            return "stale";
-        case Verdict::kInvalid:
-            return "invalid";
-    }
-    return "";
+    return kWords.at(static_cast<std::size_t>(verdict));
 }
 
 std::string line_of(const Checked& picture, const GoldenOptions& options) {

@@ -5,17 +5,18 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <mutex>
 
 #include "corda/core/cancel.hpp"
 #include "corda/core/machine.hpp"
+#include "corda/core/output_file.hpp"
 #include "corda/core/workers.hpp"
 #include "corda/golden/cases.hpp"
 #include "corda/golden/perceived.hpp"
 #include "corda/golden/record.hpp"
-#include "corda/golden/staging.hpp"
-#include "corda/golden/update_folder.hpp"
+#include "corda/media/png/png.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 
 namespace corda::golden {
@@ -98,15 +99,29 @@ struct Job {
 class Runner {
   public:
     Runner(const SuiteDef& def, const std::vector<std::string>& references, std::int64_t all)
-        : def_(def), references_(references), staging_(def.folder), all_(all) {}
+        : def_(def), references_(references), all_(all) {}
 
     void check(std::vector<Case>& cases) {
         for (Case& one : cases) queue_.push_back([this, &one] { begin(one); });
         queue_.run(threads_);
     }
 
-    /// Writes the pictures of an update and removes stale ones.
-    void publish(const std::vector<std::string>& stale) { staging_.publish(stale); }
+    /// Writes the pictures of an update and removes stale ones. Each is replaced as a whole.
+    void publish(const std::vector<std::string>& stale) {
+        if (files_.empty() && stale.empty()) return;
+        const Saving saving;
+        make_folder(def_.folder);
+        for (const auto& [name, bytes] : files_) {
+            OutputFile file((fs::path(def_.folder) / name).string(), {.force = true});
+            file.write(bytes);
+            file.commit();
+        }
+        for (const std::string& path : stale) {
+            std::error_code failure;
+            fs::remove(path, failure);
+            if (failure) fail_file("remove", path, failure.value());
+        }
+    }
 
   private:
     /// Makes the film of a scene, and pieces of work of its pictures.
@@ -256,7 +271,10 @@ class Runner {
         }
         if (!def_.force && is_no_png((fs::path(def_.folder) / picture.name).string())) return;
         picture.changed = true;
-        if (!def_.dry_run) staging_.add(picture.name, drawn, to_png_info(made, *job.film, picture.time_s));
+        if (def_.dry_run) return;
+        std::string bytes = media::png_bytes(drawn, to_png_info(made, *job.film, picture.time_s));
+        const std::lock_guard lock(mutex_);
+        files_[picture.name] = std::move(bytes);
     }
 
     /// Adds to the causes from when on positions differ, be it not enough to fail a picture.
@@ -288,7 +306,7 @@ class Runner {
 
     const SuiteDef& def_;
     const std::vector<std::string>& references_;
-    Staging staging_;
+    std::map<std::string, std::string> files_;  ///< of an update, written when all pictures are drawn
     std::int64_t all_;
     int threads_ = usable_cores();
     std::mutex mutex_;
@@ -347,8 +365,6 @@ SuiteResult run(const SuiteDef& def) {
     SuiteResult result;
     std::vector<Case> cases = load_cases(def, invalid, result.details);
     require_files(def, cases);
-    std::string settled = settle_update(def.folder, def.dry_run);
-    if (!settled.empty()) result.notes.push_back(std::move(settled));
     const std::vector<std::string> references = references_in(def.folder);
     std::int64_t all = 0;
     for (const Case& one : cases) all += std::ssize(one.pictures);

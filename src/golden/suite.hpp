@@ -55,8 +55,8 @@ struct SuiteResult {
 };
 
 /// Draws all pictures of a suite, one per core at a time, as frames of a video: exposed as video.shutter
-/// says. Compares them with their references. An update is written when all is drawn, or not at all. Beside
-/// an invalid scene the others are checked, but nothing is updated or stale. Throws corda::Error: kUsage if
+/// says. Compares them with their references. An update is written when all is drawn. Beside an invalid
+/// scene the others are checked, but nothing is updated or stale. Throws corda::Error: kUsage if
 /// there is no scene with a table [golden] or two pictures have one name, what load_scene() and Film throw,
 /// kIo.
 [[nodiscard]] SuiteResult run(const SuiteDef& def);

@@ -1,6 +1,4 @@
 // `corda golden`: suites that pass, fail for each cause, lack pictures or have stale ones.
-#include <fcntl.h>
-#include <sys/file.h>
 #include <sys/stat.h>
 
 #include <gmock/gmock.h>
@@ -12,7 +10,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "corda/core/file.hpp"
 #include "corda/media/defs.hpp"
 #include "support/command.hpp"
 
@@ -265,44 +262,15 @@ TEST_F(GoldenSuite, ChangesNothingIfAnUpdateFails) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.file("ref")), {}), 3);
 }
 
-TEST_F(GoldenSuite, RemovesStagedFilesOfAKilledUpdateButNoUserFolder) {
-    std::filesystem::create_directories(reference(".corda-golden-update/new"));
-    test::write_file(reference(".corda-golden-update/corda-golden-update"), "");
-    test::write_file(reference(".corda-golden-update/new/swing_t0009_000000.png"), "half a picture");
-    std::filesystem::create_directory(reference(".update"));
-    test::write_file(reference(".update/mine"), "mine");
+TEST_F(GoldenSuite, CompletesAnUpdateThatWasCutOff) {
     EXPECT_EQ(run({"--update", "--set", "world.drag=0.3"}).exit_code, 0);
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.file("ref")), {}), 4);
-    EXPECT_EQ(test::read_file(reference(".update/mine")), "mine");
-}
-
-TEST_F(GoldenSuite, NextCheckCompletesAKilledUpdate) {
     const std::string kept = test::read_file(reference(kMiddle));
-    std::filesystem::create_directories(reference(".corda-golden-update/new"));
-    std::filesystem::create_directories(reference(".corda-golden-update/old"));
-    test::write_file(reference(".corda-golden-update/corda-golden-update"), "");
-    test::write_file(reference(".corda-golden-update/journal"),
-                     std::string("w") + kMiddle + '\0' + "end" + '\0');
-    std::filesystem::rename(reference(kMiddle),
-                            reference(std::string(".corda-golden-update/new/") + kMiddle));
-    const auto result = run();
-    EXPECT_EQ(result.exit_code, 0);
-    EXPECT_THAT(result.err, HasSubstr("completed an interrupted update"));
+    test::write_file(reference(kMiddle), "half a picture");
+    std::filesystem::remove(reference("swing_t0000_000000.png"));
+    EXPECT_EQ(run({"--update", "--force", "--set", "world.drag=0.3"}).exit_code, 0);
     EXPECT_EQ(test::read_file(reference(kMiddle)), kept);
+    EXPECT_EQ(run({"--set", "world.drag=0.3"}).exit_code, 0);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.file("ref")), {}), 3);
-}
-
-TEST_F(GoldenSuite, AllowsOneUpdateAtATime) {
-    const std::string kept = test::read_file(reference(kMiddle));
-    std::filesystem::create_directory(reference(".corda-golden-update"));
-    const Descriptor other(
-        open(reference(".corda-golden-update").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-    ASSERT_EQ(flock(other.get(), LOCK_EX), 0);
-    const auto result = run({"--update", "--set", "world.drag=0.3"});
-    EXPECT_EQ(result.exit_code, 75);
-    EXPECT_THAT(result.err, HasSubstr("another update is writing to"));
-    EXPECT_EQ(test::read_file(reference(kMiddle)), kept);
-    EXPECT_EQ(run().exit_code, 0);
 }
 
 TEST_F(GoldenSuite, KeepsPicturesThatItDidNotMake) {
