@@ -1,7 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 
 #include <cstdint>
 #include <functional>
@@ -161,6 +161,12 @@ struct GlOptions {
 void report_plan(const Console& console, Film& film);
 /// Warns if a method that the scene names took one of several ways. To be called when the motion is known.
 void warn_of_branch(const Console& console, const Film& film);
+
+/// A value, or null if there is none.
+template <class Value>
+[[nodiscard]] nlohmann::json or_null(const std::optional<Value>& value) {
+    return value ? nlohmann::json(*value) : nlohmann::json();
+}
 
 /// The keys that every JSON result about a film has: method, sizes, error bound, camera, passes; null for
 /// unknown values. Simulates the film if necessary.

@@ -358,20 +358,13 @@ ExitCode compare(const Console& console, CompareOptions options) {
 }  // namespace
 
 nlohmann::json figures_json(const Difference& difference) {
-    nlohmann::json json{{"equal", difference.equal},
-                        {"same_size", difference.same_size},
-                        {"max", nullptr},
-                        {"mean", nullptr},
-                        {"share", nullptr},
-                        {"flip", nullptr},
-                        {"ssim", nullptr}};
-    if (!difference.same_size) return json;
-    json["max"] = max_json(difference);
-    json["mean"] = difference.mean;
-    json["share"] = difference.share;
-    if (difference.flip) json["flip"] = *difference.flip;
-    if (difference.ssim) json["ssim"] = *difference.ssim;
-    return json;
+    const auto figure = [&](const nlohmann::json& value) {
+        return difference.same_size ? value : nlohmann::json();
+    };
+    return {{"equal", difference.equal},           {"same_size", difference.same_size},
+            {"max", figure(max_json(difference))}, {"mean", figure(difference.mean)},
+            {"share", figure(difference.share)},   {"flip", or_null(difference.flip)},
+            {"ssim", or_null(difference.ssim)}};
 }
 
 nlohmann::json max_json(const Difference& difference) {

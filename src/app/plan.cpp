@@ -57,11 +57,9 @@ nlohmann::json to_json(const Film& film, std::size_t i) {
                            {"method", method_name(body.method)},
                            {"solver", sim::method_text(body.method)},
                            {"reason", reason_text(body)},
-                           {"error_bound_m", nullptr},
-                           {"horizon_s", nullptr},
+                           {"error_bound_m", or_null(body.error_bound_m)},
+                           {"horizon_s", or_null(body.horizon_s)},
                            {"trials", nlohmann::json::array()}};
-    if (body.error_bound_m) json["error_bound_m"] = *body.error_bound_m;
-    if (body.horizon_s) json["horizon_s"] = *body.horizon_s;
     for (const Trial& trial : body.trials) json["trials"].push_back(to_json(trial));
     return json;
 }

@@ -130,14 +130,9 @@ nlohmann::json film_json(Film& film) {
                            {"particles", system.particle_count()},
                            {"bars", system.bars.size()},
                            {"links", system.link_count()},
-                           {"error_bound_m", nullptr},
-                           {"error_bound_px", nullptr},
-                           {"horizon_s", nullptr}};
-    if (plan.error_bound_m) {
-        json["error_bound_m"] = *plan.error_bound_m;
-        json["error_bound_px"] = *film.error_bound_px();
-    }
-    if (plan.horizon_s) json["horizon_s"] = *plan.horizon_s;
+                           {"error_bound_m", or_null(plan.error_bound_m)},
+                           {"error_bound_px", or_null(film.error_bound_px())},
+                           {"horizon_s", or_null(plan.horizon_s)}};
     const CameraDef& camera = film.camera();
     json["camera"] = {{"center", {camera.center_m->x, camera.center_m->y}}, {"height", *camera.height_m}};
     json["notes"] = plan.notes;

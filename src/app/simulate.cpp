@@ -116,33 +116,21 @@ nlohmann::json report(Film& film) {
     json["steps"] = film.diagnostics().steps;
     json["bodies"] = bodies_json(film.system());
     json["wall_s"] = film.stepping_s();
-    json["energy_error"] = nullptr;
+    json["energy_error"] = or_null(largest.energy_error);
     json["max_strain"] = largest.strain;
     json["max_pin_force_n"] = nullptr;
     json["max_tension_n"] = nullptr;
-    if (largest.energy_error) json["energy_error"] = *largest.energy_error;
     if (largest.loads) json["max_pin_force_n"] = largest.loads->pin_force_n;
     if (largest.loads) json["max_tension_n"] = largest.loads->largest_tension_n;
     return json;
 }
 
-/// Cost of the run, also in the unit of the method if all bodies take the same steps.
+/// Cost of the run.
 std::string cost_text(const Film& film) {
-    const System& system = film.system();
     const auto steps = static_cast<double>(film.diagnostics().steps);
-    const double wall_s = film.stepping_s();
     if (steps == 0.0) return "no steps";
-    std::string text = fmt::format("{:.0f} steps in {:.3g} s: {:.4g} steps/s", steps, wall_s, steps / wall_s);
-    const std::vector<MethodGroup> groups = groups_of(film.plan());
-    const auto* relaxation = std::get_if<RelaxationDef>(&groups.front().method);
-    if (groups.size() == 1 && relaxation != nullptr) {
-        const double bars = static_cast<double>(system.bars.size()) * relaxation->sweeps;
-        text += fmt::format(", {:.3g} ns per bar", 1e9 * wall_s / (steps * bars));
-    } else if (system.bodies.size() == 1) {
-        const auto particles = static_cast<double>(system.particle_count());
-        text += fmt::format(", {:.3g} ns per particle", 1e9 * wall_s / (steps * particles));
-    }
-    return text;
+    const double wall_s = film.stepping_s();
+    return fmt::format("{:.0f} steps in {:.3g} s: {:.4g} steps/s", steps, wall_s, steps / wall_s);
 }
 
 /// Writes the states of all frame times.

@@ -117,23 +117,6 @@ bool all_turn(const System& system, const MotionSummary& motion) {
     });
 }
 
-/// The size of the area in which the paths are.
-double extent_m(const std::vector<Curve>& curves) {
-    double low_x = HUGE_VAL;
-    double high_x = -HUGE_VAL;
-    double low_y = HUGE_VAL;
-    double high_y = -HUGE_VAL;
-    for (const Curve& curve : curves) {
-        for (const view::CurvePoint& point : curve.points) {
-            low_x = std::min(low_x, point.x);
-            high_x = std::max(high_x, point.x);
-            low_y = std::min(low_y, point.y);
-            high_y = std::max(high_y, point.y);
-        }
-    }
-    return std::max(high_x - low_x, high_y - low_y);
-}
-
 /// "link 3 of rope 0 (between its particles 3 and 4)"
 std::string link_text(const System& system, const Extreme& extreme) {
     const Body& body = system.bodies[extreme.body];
@@ -232,7 +215,9 @@ report::Chapter path_chapter(const Film& film, const MotionSummary& motion) {
     // Axes far from 0 would have the same number at each tick.
     constexpr double kFar = 1e3;
     const Vec2 origin_m = system.origin_m;
-    const bool is_far = std::max(std::abs(origin_m.x), std::abs(origin_m.y)) > kFar * extent_m(curves);
+    const double extent_m = std::max(extremes_of(curves, &view::CurvePoint::x).extent(),
+                                     extremes_of(curves, &view::CurvePoint::y).extent());
+    const bool is_far = std::max(std::abs(origin_m.x), std::abs(origin_m.y)) > kFar * extent_m;
     for (Curve& curve : curves) {
         for (view::CurvePoint& point : curve.points) {
             if (is_far) break;

@@ -12,18 +12,6 @@
 namespace corda::figures {
 namespace {
 
-struct Extremes {
-    double low = HUGE_VAL;
-    double high = -HUGE_VAL;
-
-    void include(double value) {
-        if (!std::isfinite(value)) return;
-        low = std::min(low, value);
-        high = std::max(high, value);
-    }
-    [[nodiscard]] double size() const { return low > high ? 0.0 : std::max(std::abs(low), std::abs(high)); }
-};
-
 view::NumberTitle title_of_axis(const AxisDef& axis, double size) {
     const bool is_plain = axis.unit == "s" || axis.unit == "rad" || axis.unit == "rad/s";
     if (is_plain) return {fmt::format("{} ({})", axis.text, axis.unit), 1.0};
@@ -46,6 +34,18 @@ bool all_show(const std::vector<Color>& colors) {
 
 }  // namespace
 
+Extremes extremes_of(const std::vector<Curve>& curves, double view::CurvePoint::*value) {
+    Extremes extremes;
+    for (const Curve& curve : curves) {
+        for (const view::CurvePoint& point : curve.points) {
+            if (!std::isfinite(point.*value)) continue;
+            extremes.low = std::min(extremes.low, point.*value);
+            extremes.high = std::max(extremes.high, point.*value);
+        }
+    }
+    return extremes;
+}
+
 std::string quantity_text(double value, const std::string& unit) {
     constexpr double kMinPlain = 1e-3;
     if (unit.empty()) {
@@ -63,16 +63,8 @@ std::string time_text(double time_s) {
 
 report::Plot make_plot(const std::string& id, const std::string& title, const AxisDef& x, const AxisDef& y,
                        const std::vector<Curve>& curves) {
-    Extremes x_range;
-    Extremes y_range;
-    for (const Curve& curve : curves) {
-        for (const view::CurvePoint& point : curve.points) {
-            x_range.include(point.x);
-            y_range.include(point.y);
-        }
-    }
-    const view::NumberTitle x_title = title_of_axis(x, x_range.size());
-    const view::NumberTitle y_title = title_of_axis(y, y_range.size());
+    const view::NumberTitle x_title = title_of_axis(x, extremes_of(curves, &view::CurvePoint::x).size());
+    const view::NumberTitle y_title = title_of_axis(y, extremes_of(curves, &view::CurvePoint::y).size());
     report::Plot plot{id, title, x_title.text, y_title.text, false, false, {}};
     plot.has_markers = false;
     for (const Curve& curve : curves) {

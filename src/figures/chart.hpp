@@ -1,6 +1,7 @@
 #pragma once
 
-#include <cstddef>
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,17 @@ struct Curve {
     CurvePoints points;
     std::string color = {};  ///< see report::Series
 };
+
+/// The finite values of a coordinate.
+struct Extremes {
+    double low = HUGE_VAL;
+    double high = -HUGE_VAL;
+
+    [[nodiscard]] double extent() const { return std::max(0.0, high - low); }
+    /// The largest absolute value.
+    [[nodiscard]] double size() const { return low > high ? 0.0 : std::max(std::abs(low), std::abs(high)); }
+};
+[[nodiscard]] Extremes extremes_of(const std::vector<Curve>& curves, double view::CurvePoint::*value);
 
 /// The quantity of an axis, and the unit of its values, which takes a prefix; "": bare numbers, "rad": as it
 /// is.
