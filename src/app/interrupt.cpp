@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/stat.h>
 #include <sys/time.h>
 #include <unistd.h>
 
@@ -58,11 +57,7 @@ struct Words {
 };
 
 /// The words for each signal of kRequests, made before one comes: a handler can only write them.
-struct LastWords {
-    std::string part;  ///< where whole chunks are kept; may be empty
-    std::array<Words, kRequests.size()> without_part;
-    std::array<Words, kRequests.size()> with_part;
-};
+using LastWords = std::array<Words, kRequests.size()>;
 
 std::atomic<int> asked_to_stop_by{0};
 std::atomic<std::int64_t> asked_at_ns{0};
@@ -103,14 +98,9 @@ Words words_for(int signal, const std::string& kept) {
     return words;
 }
 
-void make_last_words(const std::string& part) {
+void make_last_words(const std::string& kept) {
     auto words = std::make_unique<LastWords>();
-    words->part = part;
-    const std::string kept = fmt::format("; whole chunks are in {} (--resume continues it)", printable(part));
-    for (std::size_t i = 0; i < kRequests.size(); ++i) {
-        words->without_part[i] = words_for(kRequests[i], "");
-        words->with_part[i] = words_for(kRequests[i], kept);
-    }
+    for (std::size_t i = 0; i < kRequests.size(); ++i) (*words)[i] = words_for(kRequests[i], kept);
     static std::vector<std::unique_ptr<const LastWords>> all;  // a handler may be reading the ones before
     last_words = all.emplace_back(std::move(words)).get();
 }
@@ -127,13 +117,10 @@ void write_at_once(int descriptor, std::string_view text) {
     const LastWords* const last = last_words;
     const int ended = exit_code_of_ended_work;
     if (with_words && last != nullptr && ended < 0) {
-        struct stat part {};
-        const bool has_part = stat(last->part.c_str(), &part) == 0 && part.st_size > 0;
-        const auto& words = has_part ? last->with_part : last->without_part;
         for (std::size_t i = 0; i < kRequests.size(); ++i) {
             if (kRequests[i] != signal) continue;
-            write_at_once(STDERR_FILENO, words[i].text);
-            write_at_once(STDOUT_FILENO, words[i].json);
+            write_at_once(STDERR_FILENO, (*last)[i].text);
+            write_at_once(STDOUT_FILENO, (*last)[i].json);
         }
     }
     if (!with_words && is_on_terminal) write_at_once(STDERR_FILENO, "\n");  // ends the line of a bar
@@ -192,8 +179,9 @@ void install_signal_handlers(bool json) {
     std::signal(SIGXFSZ, SIG_IGN);
 }
 
-void keep_words_of_part(const std::string& part) {
-    make_last_words(part);
+void keep_words_of_parts(const std::string& parts) {
+    make_last_words(
+        fmt::format("; chunks that were finished are in {} (--resume continues it)", printable(parts)));
 }
 
 void note_end_of_work(int exit_code) {

@@ -15,9 +15,8 @@ namespace corda::app {
 /// once. SIGPIPE and SIGXFSZ become ordinary write errors.
 void install_signal_handlers(bool json);
 
-/// Sets the part file that the message of a process that was ended by its handler names, if it exists and is
-/// not empty.
-void keep_words_of_part(const std::string& part);
+/// Sets the folder of chunks that the message of a process that was ended by its handler names.
+void keep_words_of_parts(const std::string& parts);
 
 /// All is written and said: if what is left, destructors and exit handlers of libraries, does not return
 /// after a signal, the process ends with this code and without a message.

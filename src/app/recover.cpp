@@ -9,56 +9,49 @@
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
-#include "corda/core/part_file.hpp"
-#include "corda/media/chunks/finish_part.hpp"
-#include "interrupt.hpp"
+#include "corda/core/text.hpp"
+#include "corda/media/chunks/join.hpp"
 
 namespace corda::app {
 namespace {
 
 struct RecoverOptions {
-    std::string part;
-    std::string output;  ///< empty: the name without ".part"
+    std::string parts;
+    std::string output;  ///< empty: the name without ".parts"
     bool force = false;
 };
 
-/// "a.mp4" for "a.mp4.part". Another file is refused: a part is removed once its video is there.
-std::string name_of(const std::string& part) {
-    const std::string ending = part_path("");
-    if (part.size() > ending.size() && part.ends_with(ending))
-        return part.substr(0, part.size() - ending.size());
-    throw Error(ExitCode::kUsage,
-                fmt::format("'{}' does not end in {}; name the file that an interrupted render has left",
-                            part, ending));
-}
-
 ExitCode recover(const Console& console, const RecoverOptions& options) {
-    const std::string name = name_of(options.part);
+    const std::string ending = media::parts_path("");
+    const std::string parts = options.parts.substr(0, options.parts.find_last_not_of('/') + 1);
+    if (parts.size() <= ending.size() || !parts.ends_with(ending))
+        throw Error(
+            ExitCode::kUsage,
+            fmt::format("'{}' does not end in {}; name the folder that an interrupted render has left",
+                        options.parts, ending));
     std::error_code failure;
-    if (!std::filesystem::exists(options.part, failure)) {
-        if (failure) fail_file("read", options.part, failure.value());
-        throw Error(ExitCode::kIo,
-                    fmt::format("there is no '{}', so there is nothing to recover", options.part));
+    if (!std::filesystem::exists(parts, failure)) {
+        if (failure) fail_file("read", parts, failure.value());
+        throw Error(ExitCode::kIo, fmt::format("there is no '{}', so there is nothing to recover", parts));
     }
-    const std::string output = options.output.empty() ? name : options.output;
-    check_output(output, options.part, options.force);
-    const media::RemuxResult result =
-        media::recover_part(options.part, output, {.force = options.force}, !options.output.empty());
+    const std::string output =
+        options.output.empty() ? parts.substr(0, parts.size() - ending.size()) : options.output;
+    check_output(output, "", options.force);
+    const media::Recovered result =
+        media::recover(parts, output, {.force = options.force}, !options.output.empty());
     const std::string frames = counted(result.frames, "frame");
-    if (result.damaged) {
-        console.warning(fmt::format("{} is damaged after {}, which were recovered", options.part, frames));
-    } else if (result.truncated) {
-        console.warning(fmt::format("{} ends in the middle of a chunk; the {} before it were recovered",
-                                    options.part, frames));
-    }
-    console.info(fmt::format("{}; verified; {} {}", frames, options.part,
-                             result.removed ? "was removed" : "stays as it is"));
+    if (result.left_out > 0)
+        console.warning(fmt::format("{}; the {} before it were recovered, and {} left out", result.gap,
+                                    frames, counted(result.left_out, "chunk file")));
+    console.info(fmt::format("{}; verified{}; {} {}", frames, result.gap.empty() ? "" : "; " + result.gap,
+                             parts, result.removed ? "was removed" : "stays as it is"));
     console.result(output);
     console.report({{"schema", 1},
                     {"output", output},
                     {"frames", result.frames},
-                    {"truncated", result.truncated},
-                    {"damaged", result.damaged},
+                    {"gap", result.gap},
+                    {"truncated", result.left_out > 0},
+                    {"damaged", result.is_damaged},
                     {"removed", result.removed}});
     return ExitCode::kOk;
 }
@@ -68,11 +61,11 @@ ExitCode recover(const Console& console, const RecoverOptions& options) {
 void add_recover(CLI::App& app, Action& action) {
     auto [command, options] = add_command(
         app, action, "recover",
-        "make the part file of an interrupted render a video, without encoding it again", recover);
-    command.add_option("PART", options.part, "part file, such as out.mp4.part")->required();
+        "join the chunks of an interrupted render to a video, without encoding them again", recover);
+    command.add_option("PARTS", options.parts, "folder of chunks, such as out.mp4.parts")->required();
     command.add_option(
         "-o,--output", options.output,
-        "video file, and the part stays; default: the name without .part, and the part is removed");
+        "video file, and the folder stays; default: the name without .parts, and the folder is removed");
     command.add_flag("--force", options.force, "replace an existing output");
 }
 

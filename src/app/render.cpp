@@ -1,6 +1,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cinttypes>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -37,6 +39,7 @@ struct RenderOptions {
     bool pad = false;
     bool force = false;
     bool resume = false;
+    std::string shard;
     bool dry_run = false;
 
     void require() const { scene.require(); }
@@ -54,6 +57,19 @@ void parse_range(std::string_view text, RenderDef& def) {
                 fmt::format("--frames {}: is not FIRST:END, two frame numbers (END is not drawn)", text));
 }
 
+/// Reads "I/N", 0 <= I < N.
+Shard parse_shard(const std::string& text) {
+    Shard shard;
+    const bool is_read = std::sscanf(text.c_str(), "%" SCNd64 "/%" SCNd64, &shard.index, &shard.count) == 2;
+    if (!is_read || fmt::format("{}/{}", shard.index, shard.count) != text || shard.index < 0 ||
+        shard.index >= shard.count)
+        throw Error(ExitCode::kUsage,
+                    fmt::format("--shard {}: is not I/N, the number of this shard (0 .. N - 1) and how many "
+                                "there are",
+                                text));
+    return shard;
+}
+
 /// "FIRST:END" of the command line; of a file that is rendered again its own, unless the scene gets another
 /// number of frames.
 std::string range_of(const Console& console, const RenderOptions& options) {
@@ -66,7 +82,7 @@ std::string range_of(const Console& console, const RenderOptions& options) {
     return takes_its ? options.scene.provenance(console).frames : options.frames;
 }
 
-/// Whether the video is one file, which has a part before.
+/// Whether the video is one file, which is made of chunks.
 bool is_one_file(const std::string& output) {
     const media::FileKind kind = media::find_ending(output).kind;
     return kind == media::FileKind::kVideo || kind == media::FileKind::kAnimation;
@@ -77,14 +93,14 @@ std::string words_of_interruption(const RenderOptions& options, std::int64_t fir
                                   const Rendered& rendered) {
     if (rendered.frames == 0)
         return fmt::format("interrupted before any frame was finished; {} was not written", options.output);
-    const std::int64_t next = first + rendered.frames;
-    const std::string done = fmt::format("interrupted: {} of {} frames ({}..{}) are in {}", rendered.frames,
-                                         count, first, next - 1, rendered.kept_part);
     if (is_one_file(options.output))
         return fmt::format(
-            "{}, which plays; {} was not written (--resume continues it, corda recover makes it a video "
-            "of these frames)",
-            done, options.output);
+            "interrupted: {} of {} frames are in {}; {} was not written (--resume makes the others, corda "
+            "recover makes a video of these)",
+            rendered.frames, count, rendered.kept, options.output);
+    const std::int64_t next = first + rendered.frames;
+    const std::string done = fmt::format("interrupted: {} of {} frames ({}..{}) are in {}", rendered.frames,
+                                         count, first, next - 1, rendered.kept);
     const bool is_resumable = !is_standard_output(options.output) && rendered.frames < count;
     return is_resumable ? fmt::format("{} (--frames {}:{} draws the others)", done, next, first + count)
                         : done;
@@ -105,6 +121,8 @@ nlohmann::json report(Film& film, const RenderOptions& options, const Rendered& 
     json["frames_per_wall_s"] = static_cast<double>(rendered.frames) / wall_s;
     json["encoder"] = rendered.encoder;
     json["empty_frames"] = rendered.empty_frames;
+    if (!options.shard.empty()) json["shard"] = options.shard;
+    json["chunks"] = rendered.chunks;
     json["gl_renderer"] = gl_renderer;
     return json;
 }
@@ -150,18 +168,17 @@ void check_standard_output(const Console& console, const std::string& output) {
                     "-o - and --json both want standard output; give the video a file name");
 }
 
-void report_rendered(const Console& console, const std::string& output, const Rendered& rendered,
-                     double wall_s) {
+void report_rendered(const Console& console, bool is_verified, const Rendered& rendered, double wall_s) {
     if (rendered.resumed_frames > 0)
-        console.info(fmt::format("{} were there from the interrupted render{}",
-                                 counted(rendered.resumed_frames, "frame"),
-                                 rendered.was_part_damaged ? ", whose part was damaged after them" : ""));
+        console.info(fmt::format("{} were there already", counted(rendered.resumed_frames, "frame")));
+    if (!rendered.damaged_chunks.empty())
+        console.warning(fmt::format("damaged since they were written, and made again: chunk {}",
+                                    fmt::join(rendered.damaged_chunks, ", ")));
     if (rendered.is_short_of_memory)
         console.info(fmt::format("only {} at a time: more would not fit into the memory that is free",
                                  counted(rendered.jobs, "chunk")));
     console.info(fmt::format("{} in {:.3g} s, {:.1f} per second{}", counted(rendered.frames, "frame"), wall_s,
-                             static_cast<double>(rendered.frames) / wall_s,
-                             is_one_file(output) ? "; verified" : ""));
+                             static_cast<double>(rendered.frames) / wall_s, is_verified ? "; verified" : ""));
 }
 
 /// A longer film may have been there before.
@@ -205,6 +222,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     def.force = options.force;
     def.resume = options.resume;
     def.verify_all = options.verify == "full";
+    if (!options.shard.empty()) def.shard = parse_shard(options.shard);
     parse_range(range_of(console, options), def);
     check_standard_output(console, options.output);
     const CheckedOutput output = check_render(scene, options.output, def, options.scene.input());
@@ -234,7 +252,7 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     report_gl(console, gl);
     on_progress = {};  // from now on, simulation shows as frames that are drawn
     std::optional<Progress> progress(std::in_place, console, "render", count);
-    if (is_one_file(options.output)) keep_words_of_part(part_path(options.output));
+    if (is_one_file(options.output)) keep_words_of_parts(media::parts_path(options.output));
     const Rendered rendered = render_video(film, output, [&](std::int64_t done, std::int64_t total) {
         progress->update(total > 0 ? done * count / total : done);
         return interruption() == ExitCode::kOk;
@@ -244,10 +262,11 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     if (!rendered.complete)
         throw Error(interruption(), words_of_interruption(options, output.first(), count, rendered));
     const double wall_s = now_s() - start_s;
-    report_rendered(console, options.output, rendered, wall_s);
+    report_rendered(console, is_one_file(options.output) && !def.shard, rendered, wall_s);
     warn_of_branch(console, film);
     if (!def.end) warn_of_other_pictures(console, options.output, output.end());
-    if (!is_standard_output(options.output)) console.result(options.output);
+    if (!is_standard_output(options.output))
+        console.result(def.shard ? media::parts_path(options.output) : options.output);
     console.report(report(film, options, rendered, wall_s, gl.renderer));
     const EmptyPictures empty{options.empty.are_failures, rendered.empty_frames, rendered.first_empty_s};
     return empty.report(console, rendered.frames);
@@ -284,9 +303,17 @@ void add_render(CLI::App& app, Action& action) {
         ->capture_default_str();
     options.gl.add_to(command);
     options.empty.add_to(command);
-    command.add_flag("--force", options.force, "replace an existing output");
-    command.add_flag("--resume", options.resume,
-                     "resume what an interrupted render of the same scene has left");
+    auto* const force = command.add_flag("--force", options.force, "replace an existing output");
+    auto* const resume = command.add_flag("--resume", options.resume,
+                                          "make the chunks that an interrupted render or shards of the same "
+                                          "scene lack, and join all");
+    command
+        .add_option(
+            "--shard", options.shard,
+            "make only every N-th chunk, from chunk I (0 .. N - 1) on, in OUT.parts; --resume joins them")
+        ->type_name("I/N")
+        ->excludes(resume)
+        ->excludes(force);
     command.add_flag("--dry-run", options.dry_run, "check everything but OpenGL, and write nothing");
 }
 

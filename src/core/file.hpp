@@ -112,4 +112,20 @@ class TemporaryFolder {
     std::string path_;
 };
 
+/// Keeps other renders from a range of numbered files, by a lock file that exists meanwhile. Others may hold
+/// other ranges.
+class RangeLock {
+  public:
+    /// Locks `first` to `end`, without it; `path` is the lock file's. Throws corda::Error (kIo) if another
+    /// render holds one of them, or if there can be no such file. A file system without locks locks nothing.
+    RangeLock(std::string path, std::int64_t first, std::int64_t end, const std::string& what);
+    RangeLock(const RangeLock&) = delete;
+    RangeLock& operator=(const RangeLock&) = delete;
+    ~RangeLock();
+
+  private:
+    std::string path_;
+    Descriptor file_;
+};
+
 }  // namespace corda

@@ -15,7 +15,6 @@
 #include <utility>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/part_file.hpp"
 
 namespace corda {
 namespace {
@@ -304,7 +303,7 @@ std::string OutputFile::keep() {
     const Descriptor lock = second_lock();
     if (descriptor_) close();
     if (temporary_.empty()) return path_;
-    const std::string part = part_path(target_);
+    const std::string part = target_ + ".part";
     const bool is_renamed = rename_to(part) == 0;
     std::string kept = std::exchange(temporary_, {});
     return is_renamed ? part : kept;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
@@ -60,6 +61,9 @@ class OutputFile {
 
     /// Flushes the buffer of `write`, for readers of the file before it has its name.
     void flush();
+
+    /// Changes the final name, which must be in the same folder.
+    void rename(std::string path) { path_ = target_ = std::move(path); }
 
     /// Flushes the buffer of `write` and the file to disk, closes it, and gives it its name.
     /// If the name was taken meanwhile, without `force` by anything, with it by a device or a pipe, the

@@ -53,6 +53,12 @@ struct VideoDef {
     EncoderDef encoder;
 };
 
+/// One of several processes, perhaps on several machines, that make the chunks of a video together.
+struct Shard {
+    std::int64_t index = 0;  ///< 0 .. count - 1
+    std::int64_t count = 1;
+};
+
 /// Metadata of a PNG.
 struct PngInfo {
     /// Texts in file order: keyword (1..79 Latin-1 characters) and UTF-8 text; bytes that are not UTF-8

@@ -142,10 +142,6 @@ class LogCapture {
 [[nodiscard]] inline std::string file_url(const std::string& path) {
     return "file:" + path;
 }
-/// The same of its first bytes: libav gives up on a file that ends in the middle of a fragment's header.
-[[nodiscard]] inline std::string file_url(const std::string& path, std::uint64_t bytes) {
-    return "subfile,,start,0,end," + std::to_string(bytes) + ",,:" + file_url(path);
-}
 
 [[nodiscard]] inline AVRational to_libav(Rational value) {
     return {static_cast<int>(value.num), static_cast<int>(value.den)};

@@ -161,8 +161,11 @@ class Renderer {
 struct RenderDef {
     bool force = false;  ///< replace an existing file
     /// Continue an interrupted render of the same scene, frames and name, if there is one: the file has the
-    /// bytes of an uninterrupted render. Throws kUsage for a part of another render, naming a difference.
+    /// bytes of an uninterrupted render. Throws kUsage for chunks of another render, naming a difference.
     bool resume = false;
+    /// Make only the chunks of this shard, in the folder `PATH.parts`. A render with `resume` makes those
+    /// that are missing, and joins all.
+    std::optional<Shard> shard{};
     std::int64_t first = 0;
     std::optional<std::int64_t> end;  ///< one past the last frame; default Film::frame_count()
     /// Decode every frame of the finished video, also of H.264, ProRes and FFV1.
@@ -176,15 +179,16 @@ struct RenderDef {
 /// The result of render_video().
 struct Rendered {
     std::int64_t frames = 0;
-    std::int64_t resumed_frames = 0;  ///< number of these that an interrupted render had made
-    bool was_part_damaged = false;    ///< the part of that render was damaged after these
-    bool complete = true;             ///< false if it was cancelled or on_progress returned false
-    std::string kept_part;     ///< the file with the frames so far if incomplete; empty if there are none
-    bool reader_left = false;  ///< standard output was closed by its reader, which ends the video early
-    std::string encoder;       ///< libav's name
-    std::int64_t empty_frames = 0;    ///< number of empty frames
-    double first_empty_s = 0.0;       ///< time of the first empty frame
-    int jobs = 1;                     ///< number of chunks made at a time
+    std::int64_t resumed_frames = 0;             ///< number of these that an interrupted render had made
+    std::vector<std::int64_t> damaged_chunks{};  ///< chunks of that render that were damaged, made again
+    std::int64_t chunks = 0;                     ///< number of chunks that were made
+    bool complete = true;                        ///< false if it was cancelled or on_progress returned false
+    std::string kept;               ///< where the frames are if incomplete; empty if there are none
+    bool reader_left = false;       ///< standard output was closed by its reader, which ends the video early
+    std::string encoder;            ///< libav's name
+    std::int64_t empty_frames = 0;  ///< number of empty frames
+    double first_empty_s = 0.0;     ///< time of the first empty frame
+    int jobs = 1;                   ///< number of chunks made at a time
     bool is_short_of_memory = false;  ///< jobs was reduced because memory is short
 };
 

@@ -95,9 +95,9 @@ std::int64_t save(PyFilm& film, const std::string& path, bool force, bool resume
         film.with_film([&](corda::Film& its) { return corda::render_video(its, path, def); }, asking);
     if (!rendered.complete) {
         throw corda::Error(corda::ExitCode::kInterrupted,
-                           rendered.kept_part.empty() ? "stopped by on_progress; there is no frame yet"
-                                                      : "stopped by on_progress; the frames so far are in '" +
-                                                            rendered.kept_part + "', which plays");
+                           rendered.kept.empty()
+                               ? "stopped by on_progress; there is no frame yet"
+                               : "stopped by on_progress; the frames so far are in '" + rendered.kept + "'");
     }
     return rendered.frames;
 }

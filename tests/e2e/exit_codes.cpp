@@ -310,18 +310,18 @@ TEST_F(ExitCodes, SixWhenNoMoreCanBeWritten) {
     };
     const auto none = render(4);
     EXPECT_EQ(none.exit_code, 6) << none.err;
-    EXPECT_THAT(none.err, testing::Not(HasSubstr("which plays")));
+    EXPECT_THAT(none.err, testing::Not(HasSubstr("finished chunks")));
     EXPECT_EQ(folder_.files(), std::vector<std::string>{"scene.toml"});
 
-    const auto some = render(400);  // of about 700
+    const auto some = render(400);  // the chunks have about 90, and the video about 700
     EXPECT_EQ(some.exit_code, 6) << some.err;
-    EXPECT_THAT(some.err, HasSubstr("the frames before are in '" + video_ + ".part', which plays; --resume"));
+    EXPECT_THAT(some.err, HasSubstr("finished chunks are in '" + video_ + ".parts'; --resume"));
     EXPECT_THAT(folder_.files(), testing::Not(testing::Contains("out.mp4")));
     // Once space is available, the advice works.
     const auto resumed = run_shell(test::quoted(CORDA_PROGRAM) + " render " + scene_ + " -o " + video_ +
                                    " --size 640x360 --crf 1 --duration 8 --resume");
     EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
-    EXPECT_THAT(resumed.err, HasSubstr("were there from the interrupted render"));
+    EXPECT_THAT(resumed.err, HasSubstr("were there already"));
     EXPECT_EQ(run_corda({"verify", video_}).exit_code, 0);
     const auto csv = run_shell("trap '' XFSZ; ulimit -f 4; " + test::quoted(CORDA_PROGRAM) + " simulate " +
                                scene_ + " -o " + folder_.file("out.csv") + " --duration 5");
@@ -340,8 +340,9 @@ TEST_F(ExitCodes, SixIfTheFolderIsRemovedMidway) {
     const std::string folder = folder_.file("gone");
     const auto result =
         run_shell("mkdir " + folder + "; " + test::quoted(CORDA_PROGRAM) + " render " + scene_ + " -o " +
-                  folder + "/out.mp4 --duration 200 --size 320x180 & pid=$!; until [ -s " + folder +
-                  "/out.mp4.part ] || ! kill -0 $pid; do sleep 0.01; done; rm -rf " + folder + "; wait $pid");
+                  folder + "/out.mp4 --duration 200 --size 320x180 & pid=$!; until ls " + folder +
+                  "/out.mp4.parts/0* >/dev/null 2>&1 || ! kill -0 $pid; do sleep 0.01; done; rm -rf " +
+                  folder + "; wait $pid");
     EXPECT_EQ(result.exit_code, 6) << result.err;
     EXPECT_THAT(result.err, HasSubstr("was removed meanwhile, and its frames with it"));
 }
@@ -362,11 +363,12 @@ TEST_F(ExitCodes, SixRatherThanOverwriteWithoutForce) {
 }
 
 TEST_F(ExitCodes, SixRatherThanOverwriteAnInterruptedRenderWithoutForce) {
-    const std::string part = folder_.write("out.mp4.part", "frames");
+    const auto made = run_corda({"render", scene_, "-o", video_, "--shard", "0/1"});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
     const auto refused = run_corda({"render", scene_, "-o", video_});
     EXPECT_EQ(refused.exit_code, 6);
     EXPECT_THAT(refused.err, HasSubstr("interrupted render"));
-    EXPECT_EQ(test::read_file(part), "frames");
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.mp4.parts", "scene.toml"}));
     EXPECT_EQ(run_corda({"render", scene_, "-o", video_, "--force"}).exit_code, 0);
     EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.mp4", "scene.toml"}));
 }
@@ -375,7 +377,7 @@ TEST_F(ExitCodes, SixForTheSecondOfTwoRendersToOneName) {
     const std::string render = test::quoted(CORDA_PROGRAM) + " render --force " + scene_ + " -o " + video_;
     const auto both = run_shell(
         render + " --size 640x360 --duration 20 & pid=$!; for i in $(seq 200); do [ -e " + video_ +
-        ".part ] && break; sleep 0.1; done; " + render + "; echo second $?; wait $pid; echo first $?");
+        ".parts ] && break; sleep 0.1; done; " + render + "; echo second $?; wait $pid; echo first $?");
     EXPECT_EQ(both.out, "second 6\n" + video_ + "\nfirst 0\n") << both.err;
     EXPECT_THAT(both.err, HasSubstr("another render is writing"));
     EXPECT_EQ(run_corda({"verify", video_}).exit_code, 0);
@@ -406,10 +408,11 @@ TEST_F(ExitCodes, SevenForADifferenceOrAProblem) {
     EXPECT_EQ(run_corda({"verify", a}).exit_code, 7);
 }
 
-/// Number of frames of a part file, counted by another program.
-int count_frames(const std::string& part) {
-    const auto frames = run_shell(
-        "ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 -f mp4 " + part);
+/// Number of frames of the first chunk of a video, counted by another program.
+int count_frames(const std::string& video) {
+    const auto frames =
+        run_shell("ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 -f mp4 " +
+                  video + ".parts/000000-*.mp4");
     return std::atoi(frames.out.c_str());
 }
 
@@ -420,15 +423,15 @@ TEST_F(ExitCodes, EightForADivergedSimulationKeepingItsGoodFrames) {
     arguments.insert(arguments.end(), wild.begin(), wild.end());
     const auto result = run_corda(arguments);
     EXPECT_EQ(result.exit_code, 8) << result.err;
-    EXPECT_THAT(result.err, HasSubstr("out.mp4.part"));
+    EXPECT_THAT(result.err, HasSubstr("out.mp4.parts"));
     // The start and the first step, an Euler step without the force.
-    EXPECT_EQ(count_frames(video_ + ".part"), 2);
+    EXPECT_EQ(count_frames(video_), 2);
     arguments[0] = "simulate";
     arguments[3] = folder_.file("out.csv");
     const auto simulated = run_corda(arguments);
     EXPECT_EQ(simulated.exit_code, 8);
     EXPECT_THAT(simulated.err, HasSubstr("out.csv.part"));
-    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.csv.part", "out.mp4.part", "scene.toml"}));
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.csv.part", "out.mp4.parts", "scene.toml"}));
 }
 
 #ifndef CORDA_SANITIZE  // which reserves more memory than any limit
@@ -446,21 +449,22 @@ TEST_F(ExitCodes, SeventyFiveWithoutMemory) {
 test::CommandResult interrupted_render(const std::string& signal, const std::string& scene,
                                        const std::string& video) {
     return run_shell(test::quoted(CORDA_PROGRAM) + " render " + scene + " -o " + video +
-                     " --size 640x360 --duration 200 & pid=$!; for i in $(seq 200); do sleep 0.1; [ -s " +
-                     video + ".part ] && break; done; sleep 0.5; kill -" + signal + " $pid; wait $pid");
+                     " --size 640x360 --duration 200 & pid=$!; for i in $(seq 200); do sleep 0.1; ls " +
+                     video + ".parts/0* >/dev/null 2>&1 && break; done; sleep 0.5; kill -" + signal +
+                     " $pid; wait $pid");
 }
 
-TEST_F(ExitCodes, OneHundredThirtyWhenInterruptedKeepingAPlayablePart) {
+TEST_F(ExitCodes, OneHundredThirtyWhenInterruptedKeepingPlayableChunks) {
     const auto result = interrupted_render("INT", scene_, video_);
     EXPECT_EQ(result.exit_code, 130) << result.err;
-    EXPECT_THAT(result.err, HasSubstr("out.mp4.part"));
-    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.mp4.part", "scene.toml"}));
-    EXPECT_GT(count_frames(video_ + ".part"), 0);
+    EXPECT_THAT(result.err, HasSubstr("out.mp4.parts"));
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.mp4.parts", "scene.toml"}));
+    EXPECT_GT(count_frames(video_), 0);
 }
 
 TEST_F(ExitCodes, OneHundredFortyThreeWhenTerminated) {
     EXPECT_EQ(interrupted_render("TERM", scene_, video_).exit_code, 143);
-    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.mp4.part", "scene.toml"}));
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"out.mp4.parts", "scene.toml"}));
 }
 
 TEST_F(ExitCodes, OneHundredThirtyForStillsWithTheNumberWritten) {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "corda/media/chunks/finish_part.hpp"
+#include "corda/media/chunks/join.hpp"
 #include "corda/media/defs.hpp"
 #include "support/command.hpp"
 
@@ -191,11 +191,11 @@ TEST_F(Signals, EndTheFinalCopyKeepingTheFrames) {
     const Interrupted end = interrupt("render --verify full " + scene_ + " -o " + video, "TERM",
                                       "ls " + video + ".*.tmp >/dev/null 2>&1");
     EXPECT_EQ(end.result.exit_code, 143) << end.result.err;
-    EXPECT_THAT(end.result.err, HasSubstr("interrupted: 1200 of 1200 frames (0..1199) are in " + video +
-                                          ".part, which plays; " + video + " was not written"));
+    EXPECT_THAT(end.result.err, HasSubstr("interrupted: 1200 of 1200 frames are in " + video + ".parts; " +
+                                          video + " was not written"));
     EXPECT_LT(end.ms, kMaxMs);  // measured 21
-    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"a.mp4.part", "scene.toml"}));
-    EXPECT_EQ(media::recover_part(video + ".part", folder_.file("b.mp4")).frames, 1200);
+    EXPECT_EQ(folder_.files(), (std::vector<std::string>{"a.mp4.parts", "scene.toml"}));
+    EXPECT_EQ(media::recover(video + ".parts", folder_.file("b.mp4")).frames, 1200);
 }
 
 TEST_F(Signals, EndAStill) {
@@ -239,7 +239,7 @@ TEST_F(Signals, EndAnEncoderThatDoesNotReturn) {
             EXPECT_LT(end.ms, kMaxMs);  // measured 840 .. 880
         }
     }
-    // The remaining part is empty and blocks no other render.
+    // The remaining folder has no chunk and blocks no other render.
     EXPECT_EQ(run_corda({"render", scene_, "-o", video, "-q", "--duration", "1"}).exit_code, 0);
 }
 

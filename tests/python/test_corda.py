@@ -231,14 +231,14 @@ def test_an_interrupted_video_is_gone_on_with(tmp_path):
     with pytest.raises(corda.Error) as raised:
         film.save(tmp_path / "a.mp4", on_progress=lambda done, total: done < 200)
     assert raised.value.code == 130
-    assert (tmp_path / "a.mp4.part").exists()
+    assert (tmp_path / "a.mp4.parts").exists()
     with pytest.raises(corda.Error, match="interrupted render"):
         film.save(tmp_path / "a.mp4")
     heard = []
     assert film.save(tmp_path / "a.mp4", resume=True, on_progress=lambda done, total: heard.append(done)) == 300
     assert min(done for done in heard if done > 0) > 60  # existing frames are not drawn again
     assert (tmp_path / "a.mp4").read_bytes() == (tmp_path / "whole.mp4").read_bytes()
-    assert not (tmp_path / "a.mp4.part").exists()
+    assert not (tmp_path / "a.mp4.parts").exists()
 
 
 def test_ctrl_c_ends_a_render(tmp_path):

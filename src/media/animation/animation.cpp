@@ -1,6 +1,7 @@
 #include "corda/media/animation/animation.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cassert>
 #include <cstring>
 #include <string_view>
@@ -27,24 +28,33 @@ PixelRect difference(const Image& a, const Image& b) {
 
 }  // namespace
 
-LosslessFrames::LosslessFrames(std::string part_path, std::uint64_t bytes)
-    : part_path_(std::move(part_path)), decoder_(part_path_, bytes) {}
+void LosslessFrames::enter(std::int64_t k) {
+    if (k < end_) return;
+    while (k >= end_) {
+        next_ = end_;
+        end_ += chunks_[chunk_++].frames;
+    }
+    decoder_.emplace(chunks_[chunk_ - 1].path);
+}
 
 void LosslessFrames::decode() {
-    if (!decoder_.read())
-        throw Error(ExitCode::kIo, fmt::format("'{}' changed while it was read", part_path_));
+    if (!decoder_->read())
+        throw Error(ExitCode::kIo, fmt::format("'{}' changed while it was read", chunks_[chunk_ - 1].path));
     ++next_;
 }
 
 void LosslessFrames::read(Image& picture) {
+    enter(next_);
     decode();
-    if (!copy_exact(decoder_.frame(), picture))
-        throw Error(ExitCode::kIo, fmt::format("'{}' holds no lossless R'G'B'", part_path_));
+    if (!copy_exact(decoder_->frame(), picture))
+        throw Error(ExitCode::kIo, fmt::format("'{}' holds no lossless R'G'B'", chunks_[chunk_ - 1].path));
 }
 
 void LosslessFrames::go_to(std::int64_t k) {
     assert(k >= next_);
-    while (next_ < k - 1) decode();
+    const std::int64_t before = std::max<std::int64_t>(0, k - 1);
+    enter(before);
+    while (next_ < before) decode();
     if (next_ < k) read(picture_);
     std::swap(last_, picture_);
     read(picture_);
@@ -54,7 +64,7 @@ PictureChange LosslessFrames::change() const {
     if (next_ == 1) return {picture_.rect(), picture_, false};
     PictureChange change;
     change.part = difference(picture_, last_);
-    const auto format = static_cast<AVPixelFormat>(decoder_.frame().format);
+    const auto format = static_cast<AVPixelFormat>(decoder_->frame().format);
     change.is_blended = (av_pix_fmt_desc_get(format)->flags & AV_PIX_FMT_FLAG_ALPHA) == 0;
     change.picture = Image(change.part.width(), change.part.height());
     for (int y = 0; y < change.part.height(); ++y) {

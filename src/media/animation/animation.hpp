@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "corda/core/output_file.hpp"
 #include "corda/core/rational.hpp"
 #include "corda/core/workers.hpp"
+#include "corda/media/chunks/chunk_folder.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/media/read/decoder.hpp"
 
@@ -21,9 +23,8 @@ namespace corda::media {
 
 /// Pictures of which an animation is made.
 struct AnimationDef {
-    std::string part_path;    ///< they are exact
-    std::uint64_t bytes = 0;  ///< number of its first bytes to read
-    std::int64_t frames = 0;  ///< number of its first pictures
+    std::vector<ChunkFile> chunks;  ///< one after the other; they are exact
+    std::int64_t frames = 0;        ///< in all
     Rational fps;
     int threads = 1;  ///< change the time that it takes, and no byte
 };
@@ -59,25 +60,28 @@ struct PictureChange {
     bool is_blended = false;
 };
 
-/// The exact pictures of a part, one after the other, and what each of them changes.
+/// The exact pictures of chunks, one after the other, and what each of them changes.
 class LosslessFrames {
   public:
-    /// Reads the first `bytes` of a part. Throws corda::Error (kIo), like all below.
-    LosslessFrames(std::string part_path, std::uint64_t bytes);
+    explicit LosslessFrames(std::vector<ChunkFile> chunks) : chunks_(std::move(chunks)) {}
 
-    /// Goes on to picture `k`, which must come after the current one.
+    /// Goes on to picture `k`, which must come after the current one. Throws corda::Error (kIo).
     void go_to(std::int64_t k);
     [[nodiscard]] const Image& picture() const { return picture_; }
     /// The change since the picture before; of picture 0, all of it. Opaque pictures are blended.
     [[nodiscard]] PictureChange change() const;
 
   private:
+    /// Opens the chunk of picture `k`, unless it is open.
+    void enter(std::int64_t k);
     void read(Image& picture);
     void decode();
 
-    std::string part_path_;
+    std::vector<ChunkFile> chunks_;
     QuietLog quiet_;
-    Decoder decoder_;
+    std::optional<Decoder> decoder_;  ///< of the chunk before chunk_
+    std::size_t chunk_ = 0;           ///< the next one to open
+    std::int64_t end_ = 0;            ///< of the open one
     std::int64_t next_ = 0;
     Image picture_;
     Image last_;  ///< the picture before
@@ -118,7 +122,7 @@ void for_each_frame(const AnimationDef& def, const OnProgress& on_progress,
                     const std::function<void(const Frame&)>& take) {
     using Section = std::vector<Frame>;
     const auto new_maker = [&] {
-        const auto pictures = std::make_shared<LosslessFrames>(def.part_path, def.bytes);
+        const auto pictures = std::make_shared<LosslessFrames>(def.chunks);
         return [pictures, &make](std::int64_t first, std::int64_t end, const OrderedWorkers<Section>& all) {
             Section section;
             for (std::int64_t k = first; k < end && !all.is_stopped(); ++k) {

@@ -52,7 +52,7 @@ class SectionEncoder {
     SectionEncoder(const Ending& ending, const AnimationDef& def, const Palette& palette)
         : ending_(&ending),
           fps_(def.fps),
-          pictures_(def.part_path, def.bytes),
+          pictures_(def.chunks),
           colors_(std::make_shared<Colors>(palette)) {}
 
     [[nodiscard]] std::vector<Packet> encode(std::int64_t first, std::int64_t end,
@@ -86,7 +86,7 @@ class SectionEncoder {
 Palette choose_palette(const AnimationDef& def, const OnProgress& on_progress) {
     PaletteMaker all;
     const auto new_maker = [&def] {
-        return [pictures = std::make_shared<LosslessFrames>(def.part_path, def.bytes)](
+        return [pictures = std::make_shared<LosslessFrames>(def.chunks)](
                    std::int64_t first, std::int64_t end, const OrderedWorkers<PaletteMaker>& every) {
             PaletteMaker colors;
             for (std::int64_t k = first; k < end && !every.is_stopped(); ++k) {
@@ -112,11 +112,10 @@ void write_gif(const Ending& ending, const AnimationDef& def, const OnProgress& 
         };
     };
     const Palette palette = choose_palette(def, half(0));
-    LosslessFrames pictures(def.part_path, def.bytes);
+    LosslessFrames pictures(def.chunks);
     pictures.go_to(0);
-    TrackOutput track(output.descriptor(), output.temporary_path(), TrackLayout::kFinal);
-    track.begin(
-        ending.muxer,
+    TrackOutput track(
+        output, ending.muxer,
         open_encoder(ending, def.fps, pictures.picture(), std::make_shared<Colors>(palette))->parameters(),
         {.fps = def.fps, .title = {}, .comment = {}});
     using Packets = std::vector<Packet>;

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <vector>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/image.hpp"
+#include "corda/core/output_file.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/media/encode/encoder.hpp"
 #include "corda/media/format/format.hpp"
@@ -15,14 +15,12 @@
 
 namespace corda::media {
 
-/// Seconds that an encoder may take, after a request to stop, to encode the frames that it holds back.
-inline constexpr double kMomentS = 0.4;
-
 /// Frames of a video that were encoded apart from all others: they begin with a key frame, and nothing before
 /// or after them is needed to decode them.
 struct Chunk {
+    std::int64_t first = 0;  ///< number of the first frame in the film
     std::int64_t frames = 0;
-    /// In the order of decoding. Their stamps and durations count frames from the first one of the chunk.
+    /// One per frame, in order: no encoder here makes B-frames.
     std::vector<Packet> packets;
     CodecParameters parameters;       ///< the same for all chunks of a video; null without a frame
     std::vector<FrameColors> colors;  ///< of the first frame and the one marked as last
@@ -38,17 +36,17 @@ struct Chunk {
 /// Makes one chunk. Several may work at a time, in threads of their own.
 class ChunkEncoder {
   public:
-    /// Takes the encoder of a chunk. Throws corda::Error (kEncoder), like all below.
-    explicit ChunkEncoder(std::unique_ptr<Encoder> encoder);
+    /// Takes the encoder of a chunk that begins with frame `first` of the film. Throws corda::Error
+    /// (kEncoder), like all below.
+    ChunkEncoder(std::unique_ptr<Encoder> encoder, std::int64_t first);
 
     /// Adds the next frame, of the size of the def. `damage` is what may differ from the previous frame (the
     /// first is taken whole).
     void encode(const Image& frame, const Damage& damage, bool is_last = false);
     [[nodiscard]] std::int64_t frames() const { return chunk_.frames; }
-    /// Drains the encoder. Nothing can be added afterwards. No scope around it cancels it, because its frames
-    /// have been drawn; if `goes_on` returns false at a frame that the encoder has held back, the chunk is
-    /// dropped (kInterrupted).
-    [[nodiscard]] Chunk finish(std::function<bool()> goes_on = {});
+    /// Drains the encoder. Nothing can be added afterwards. Throws kInterrupted if cancelled at a frame that
+    /// the encoder has held back.
+    [[nodiscard]] Chunk finish();
 
   private:
     /// Moves a packet to the chunk.
@@ -57,5 +55,9 @@ class ChunkEncoder {
     std::unique_ptr<Encoder> encoder_;
     Chunk chunk_;
 };
+
+/// Writes a chunk to a file that plays by itself. Its comment tells the colours of its first and its last
+/// frame. Its packets are empty afterwards. Throws corda::Error (kIo).
+void write_chunk(const Chunk& chunk, const Format& format, Rational fps, OutputFile& output);
 
 }  // namespace corda::media

@@ -3,24 +3,16 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cassert>
 #include <cerrno>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
 #include "corda/core/file.hpp"
-#include "corda/media/bytes.hpp"
 
 namespace corda::media {
 namespace {
 
 constexpr ExitCode kIo = ExitCode::kIo;
-
-// delay_moov writes the header together with the first fragment, when it is known how far decoding runs
-// ahead; without it the part file would start two frames late. Before the first fragment there is no picture
-// to play anyway.
-constexpr const char* kFragmentFlags = "frag_keyframe+empty_moov+default_base_moof+delay_moov+skip_trailer";
-constexpr const char* kFaststartFlags = "faststart";
 
 constexpr int kBufferBytes = 1 << 16;
 
@@ -35,55 +27,28 @@ std::uint32_t tag_of(const AVCodecParameters& parameters) {
 }
 
 /// The muxer's options.
-void set_options(std::string_view container, TrackLayout layout, Rational fps, Options& options) {
+void set_options(std::string_view container, Rational fps, Options& options) {
     if (container == "mp4" || container == "mov") {
         // Both clocks count in units of the rate's numerator, so that no stamp and no duration is ever
         // rounded.
-        options.set("movflags", layout == TrackLayout::kPart ? kFragmentFlags : kFaststartFlags)
+        options.set("movflags", "faststart")
             .set("video_track_timescale", std::to_string(fps.num))
             .set("movie_timescale", std::to_string(fps.num));
     } else if (container == "matroska" || container == "webm") {
-        if (layout == TrackLayout::kFinal) options.set("cues_to_front", "1");
+        options.set("cues_to_front", "1");
     } else if (container == "gif") {
         options.set("loop", "0").set("final_delay", std::to_string(100 * fps.den / fps.num));
     }
 }
 
-/// Head of a checksum: that of a free box (ISO/IEC 14496-12, 8.1.2), or of a Void element (RFC
-/// 8794, 11.3.2).
-std::string checksum_head(std::string_view container) {
-    constexpr std::size_t kBytes = PartChecksum::kRecordBytes;
-    if (container == "mp4" || container == "mov") return big_endian(kBytes + 8, 4) + "free";
-    return {static_cast<char>(0xec), static_cast<char>(0x80U | kBytes)};
-}
-
 }  // namespace
-
-void PartChecksum::add(std::string_view bytes) {
-    crc_ = av_crc(av_crc_get_table(AV_CRC_32_IEEE_LE), crc_,
-                  reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-    bytes_ += bytes.size();
-}
-
-std::string PartChecksum::record() const {
-    return std::string(kMark) + big_endian(bytes_, kLengthBytes) + big_endian(crc_, kSumBytes);
-}
-
-std::string PartChecksum::element(std::string_view container) const {
-    PartChecksum with_head = *this;
-    const std::string head = checksum_head(container);
-    with_head.add(head);
-    return head + with_head.record();
-}
 
 int TrackOutput::write_bytes(void* output, const std::uint8_t* bytes, int count) {
     TrackOutput& track = *static_cast<TrackOutput*>(output);
     const std::string_view data(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(count));
     const CancelScope uncancelled({}, CancelScope::Outer::kIgnored);  // libav is between here and the caller
     const int status = write_all(track.descriptor_, data);
-    if (status != 0) return AVERROR(status);
-    if (track.layout_ == TrackLayout::kPart) track.checksum_.add(data);
-    return count;
+    return status != 0 ? AVERROR(status) : count;
 }
 
 std::int64_t TrackOutput::seek(void* output, std::int64_t offset, int whence) {
@@ -93,34 +58,29 @@ std::int64_t TrackOutput::seek(void* output, std::int64_t offset, int whence) {
     return position < 0 ? AVERROR(errno) : position;
 }
 
-TrackOutput::TrackOutput(int descriptor, std::string path, TrackLayout layout)
-    : descriptor_(descriptor), path_(std::move(path)), layout_(layout) {
-    auto* buffer = static_cast<unsigned char*>(av_malloc(kBufferBytes));
-    // What a part has stays as it is: a muxer that can seek would change its header at the end.
-    auto* const can_seek = layout == TrackLayout::kPart ? nullptr : &seek;
-    // FFmpeg 7.0 makes the bytes const: `auto` becomes either type.
-    const auto write = [](void* output, auto* bytes, int count) { return write_bytes(output, bytes, count); };
-    if (buffer != nullptr)
-        io_.reset(avio_alloc_context(buffer, kBufferBytes, 1, this, nullptr, write, can_seek));
-    io_ = check_allocated(std::move(io_), "an output buffer");
-}
-
 TrackOutput::~TrackOutput() {
     // The muxer of GIF keeps a packet until its trailer, and loses it without.
-    const bool holds_packet = begun_ && !ended_ && std::string_view(format_->oformat->name) == "gif";
+    const bool holds_packet = !ended_ && std::string_view(format_->oformat->name) == "gif";
     if (holds_packet) static_cast<void>(av_write_trailer(format_.get()));
 }
 
-void TrackOutput::begin(const char* container, const AVCodecParameters& parameters, const TrackInfo& info) {
-    assert(!begun_);
+TrackOutput::TrackOutput(const OutputFile& output, const char* container, const AVCodecParameters& parameters,
+                         const TrackInfo& info)
+    : descriptor_(output.descriptor()), path_(output.temporary_path()) {
     const LogCapture log;
+    auto* buffer = static_cast<unsigned char*>(av_malloc(kBufferBytes));
+    // FFmpeg 7.0 makes the bytes const: `auto` becomes either type.
+    const auto write = [](void* track, auto* bytes, int count) { return write_bytes(track, bytes, count); };
+    if (buffer != nullptr)
+        io_.reset(avio_alloc_context(buffer, kBufferBytes, 1, this, nullptr, write, &seek));
+    io_ = check_allocated(std::move(io_), "an output buffer");
     AVFormatContext* format = nullptr;
     check_libav(avformat_alloc_output_context2(&format, nullptr, container, file_url(path_).c_str()), kIo,
                 fmt::format("this libavformat does not write {}", container));
     format_.reset(format);
     format_->pb = io_.get();
     // No library version and no date: the same input gives the same bytes.
-    // The muxer must not move frame 0 away from 0; both layouts can say that decoding starts earlier.
+    // The muxer must not move frame 0 away from 0; a file can say that decoding starts earlier.
     format_->avoid_negative_ts = AVFMT_AVOID_NEG_TS_DISABLED;
     format_->flags |= AVFMT_FLAG_BITEXACT | AVFMT_FLAG_FLUSH_PACKETS;
     if (!info.title.empty()) set(format_->metadata, "title", info.title);
@@ -136,7 +96,7 @@ void TrackOutput::begin(const char* container, const AVCodecParameters& paramete
 
     if (has_old_header()) format_->metadata_header_padding = kNewMatroskaBytes;
     Options options;
-    set_options(container, layout_, info.fps, options);
+    set_options(container, info.fps, options);
     check_libav(avformat_write_header(format_.get(), options.get()), kIo,
                 fmt::format("cannot write the header of '{}'", path_));
     if (const std::string name = options.left_over(); !name.empty()) {
@@ -145,43 +105,36 @@ void TrackOutput::begin(const char* container, const AVCodecParameters& paramete
                                 "newer has it",
                                 name, container));
     }
-    begun_ = true;
 }
 
 void TrackOutput::write(AVPacket& packet) {
-    assert(begun_);
     const LogCapture log;
     const AVStream* stream = format_->streams[0];
     av_packet_rescale_ts(&packet, frame_base_, stream->time_base);
     packet.stream_index = stream->index;
     packet.pos = -1;
+    bytes_ += packet.size;
+    ++frames_;
     check_libav(av_write_frame(format_.get(), &packet), kIo, fmt::format("cannot write to '{}'", path_));
     av_packet_unref(&packet);
     check_libav(io_->error, kIo, fmt::format("cannot write to '{}'", path_));
 }
 
-void TrackOutput::flush() {
-    assert(begun_);
-    const LogCapture log;
-    // The first flush of an MP4 with delay_moov writes the moov box alone, the second one the frames.
-    for (int i = 0; i < 2; ++i)
-        check_libav(av_write_frame(format_.get(), nullptr), kIo, fmt::format("cannot write to '{}'", path_));
-    end_bytes(fmt::format("cannot write to '{}'", path_));
-}
-
 void TrackOutput::finish() {
-    assert(begun_);
     const LogCapture log;
     const std::string what = fmt::format("cannot finish '{}'", path_);
     ended_ = true;
+    // Of the whole video: MP4 states it as the largest bit rate, if the average is not larger.
+    format_->streams[0]->codecpar->bit_rate =
+        av_rescale(bytes_, 8 * std::int64_t{frame_base_.den}, frames_ * frame_base_.num);
     check_libav(av_write_trailer(format_.get()), kIo, what);
-    end_bytes(what);
+    avio_flush(io_.get());
+    check_libav(io_->error, kIo, what);
     if (has_old_header()) renew_header(what);
 }
 
 bool TrackOutput::has_old_header() const {
-    return kHasOldMatroska && layout_ == TrackLayout::kFinal &&
-           std::string_view(format_->oformat->name) == "matroska";
+    return kHasOldMatroska && std::string_view(format_->oformat->name) == "matroska";
 }
 
 void TrackOutput::renew_header(const std::string& what) {
@@ -191,18 +144,6 @@ void TrackOutput::renew_header(const std::string& what) {
     check_libav(::lseek(descriptor_, 0, SEEK_SET) < 0 ? AVERROR(errno) : 0, kIo, what);
     check_libav(AVERROR(write_all(descriptor_, renewed)), kIo, what);
     check_libav(::lseek(descriptor_, 0, SEEK_END) < 0 ? AVERROR(errno) : 0, kIo, what);
-}
-
-void TrackOutput::end_bytes(const std::string& what) {
-    avio_flush(io_.get());
-    check_libav(io_->error, kIo, what);
-    if (layout_ == TrackLayout::kFinal || !checksum_.is_due()) return;
-    const std::string element = checksum_.element(format_->oformat->name);
-    avio_write(io_.get(), reinterpret_cast<const unsigned char*>(element.data()),
-               static_cast<int>(element.size()));
-    avio_flush(io_.get());
-    checksum_ = {};  // the element was counted as it was written
-    check_libav(io_->error, kIo, what);
 }
 
 }  // namespace corda::media

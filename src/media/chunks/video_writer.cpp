@@ -1,38 +1,249 @@
 #include "corda/media/chunks/video_writer.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
-#include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+#include <string_view>
 #include <utility>
-#include <vector>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/file.hpp"
 #include "corda/core/machine.hpp"
 #include "corda/core/output_file.hpp"
-#include "corda/core/part_file.hpp"
 #include "corda/media/animation/animation.hpp"
-#include "corda/media/chunks/chunk.hpp"
-#include "corda/media/chunks/video_sink.hpp"
+#include "corda/media/chunks/join.hpp"
 #include "corda/media/format/format.hpp"
 
 namespace corda::media {
+
+/// Destination of the chunks of a video. All functions throw corda::Error (kIo).
+class VideoSink {
+  public:
+    VideoSink() = default;
+    VideoSink(const VideoSink&) = delete;
+    VideoSink& operator=(const VideoSink&) = delete;
+    virtual ~VideoSink() = default;
+
+    /// Whether a chunk is to be added: another is there, or is another shard's.
+    [[nodiscard]] virtual bool lacks(std::int64_t /*chunk*/) const { return true; }
+    /// Chunks that had changed since they were written.
+    [[nodiscard]] virtual std::vector<std::int64_t> damaged() const { return {}; }
+    /// Number of frames that are there.
+    [[nodiscard]] virtual std::int64_t frames() const = 0;
+    virtual void add(std::int64_t number, Chunk chunk) = 0;
+    /// Gives the video its name once all chunks are there. Throws as join_chunks().
+    virtual void finish(const JoinDef& /*def*/) {}
+    /// Where the frames are that are there.
+    [[nodiscard]] virtual std::string place() const = 0;
+};
+
 namespace {
 
-nlohmann::json parsed_comment(const std::string& text) {
-    auto json = nlohmann::json::parse(text, nullptr, false);
-    if (json.is_object()) return json;
-    throw Error(ExitCode::kUsage, fmt::format("the video comment is not a JSON object: {}", text));
+std::string_view bytes_of(const AVPacket& packet) {
+    return {reinterpret_cast<const char*>(packet.data), static_cast<std::size_t>(packet.size)};
 }
 
-nlohmann::json patches_json(const std::vector<ColorPatch>& patches) {
-    auto list = nlohmann::json::array();
-    for (const ColorPatch& patch : patches) {
-        list.push_back({patch.x, patch.y, patch.rgb[0], patch.rgb[1], patch.rgb[2]});
+/// A folder of chunks, of which it makes the finished file.
+class FolderSink : public VideoSink {
+  public:
+    FolderSink(const CheckedVideo& output, Manifest manifest)
+        : output_(output), folder_(parts_path(output.path), output.use(), std::move(manifest)) {
+        std::vector<ChunkFile> unusable;
+        for (ChunkFile& file : chunk_files(folder_.path())) {
+            const bool is_whole = file.frames == folder_.manifest().frames_of(file.number);
+            if (!is_of_shard(file.number) || has_chunk(file.number)) continue;
+            const bool has_checksum = is_sound(file, folder_.manifest());
+            if (has_checksum && is_whole)
+                take(file.number, file.frames);
+            else
+                unusable.push_back(std::move(file));
+            if (!has_checksum) damaged_.push_back(unusable.back().number);
+        }
+        std::error_code ignored;
+        for (const ChunkFile& file : unusable) std::filesystem::remove(file.path, ignored);
     }
-    return list;
+    FolderSink(const FolderSink&) = delete;
+    FolderSink& operator=(const FolderSink&) = delete;
+    /// Removes a folder without a chunk, which is of no use.
+    ~FolderSink() override {
+        if (frames_ == 0 && !output_.shard) folder_.remove();
+    }
+
+    [[nodiscard]] bool lacks(std::int64_t chunk) const override {
+        return is_of_shard(chunk) && !has_chunk(chunk);
+    }
+    [[nodiscard]] std::vector<std::int64_t> damaged() const override { return damaged_; }
+    [[nodiscard]] std::int64_t frames() const override { return frames_; }
+    void add(std::int64_t number, Chunk chunk) override {
+        telling_what_is_kept([&] {
+            folder_.add(number, chunk.frames, chunk_ending(), [&](OutputFile& file) {
+                write_chunk(chunk, output_.format, folder_.manifest().fps, file);
+            });
+        });
+        take(number, chunk.frames);
+    }
+    void finish(const JoinDef& def) override {
+        if (output_.shard) return;
+        telling_what_is_kept([&] {
+            ChunkRun run = folder_.run();
+            if (run.frames == frames_) run.gap.reset();  // the writer has ended early
+            if (run.gap)
+                throw Error(ExitCode::kMismatch, fmt::format("{} in '{}': --resume makes it again",
+                                                             gap_text(run, folder_.manifest()), place()));
+            join_chunks(run, folder_.manifest(), output_.path, {.force = output_.force}, def);
+        });
+        folder_.remove();
+    }
+    [[nodiscard]] std::string place() const override { return folder_.path(); }
+
+  private:
+    /// Shards take turns, so that each has as much to do, also if only a part of the film moves.
+    [[nodiscard]] bool is_of_shard(std::int64_t chunk) const {
+        const Shard shard = output_.shard.value_or(Shard{});
+        return (chunk - folder_.manifest().first_chunk()) % shard.count == shard.index;
+    }
+    [[nodiscard]] bool has_chunk(std::int64_t chunk) const { return there_.contains(chunk); }
+    void take(std::int64_t chunk, std::int64_t frames) {
+        there_.insert(chunk);
+        frames_ += frames;
+    }
+    /// That of the video, or of the lossless frames of an animation.
+    [[nodiscard]] std::string chunk_ending() const {
+        return output_.format.ending->kind == FileKind::kAnimation ? ".mov" : output_.format.ending->text;
+    }
+
+    /// Adds to a failure to write where the chunks are that were written before it.
+    template <class Work>
+    void telling_what_is_kept(const Work& work) {
+        try {
+            work();
+        } catch (const Error& error) {
+            if (error.code() != ExitCode::kIo || (folder_.is_named() && frames_ == 0)) throw;
+            std::error_code ignored;
+            const bool is_taken = !output_.force && std::filesystem::exists(output_.path, ignored);
+            const std::string kept =
+                folder_.is_named()
+                    ? fmt::format("finished chunks are in '{}'; --resume{} continues it", folder_.path(),
+                                  is_taken ? " --force" : "")
+                    : fmt::format("'{}' was removed meanwhile, and its frames with it", folder_.path());
+            throw Error(error.code(), fmt::format("{}; {}", error.what(), kept));
+        }
+    }
+
+    CheckedVideo output_;
+    ChunkFolder folder_;
+    std::set<std::int64_t> there_;
+    std::vector<std::int64_t> damaged_;
+    std::int64_t frames_ = 0;
+};
+
+/// A file for each frame, complete as soon as it has its name.
+class PictureSink : public VideoSink {
+  public:
+    explicit PictureSink(const CheckedVideo& output)
+        : pattern_(output.path), force_(output.force), first_(output.first) {
+        const std::filesystem::path path(pattern_);
+        const std::string folder = path.parent_path().string();
+        if (!folder.empty()) make_folder(folder);
+        const std::filesystem::path lock_file =
+            path.parent_path() / ("." + path.filename().string() + ".lock");
+        lock_.emplace(lock_file.string(), output.first, output.end, fmt::format("frames of '{}'", pattern_));
+        remove_leftovers(folder.empty() ? "." : folder,
+                         [this](const std::string& name) { return is_picture_name(pattern_, name); });
+    }
+
+    [[nodiscard]] std::int64_t frames() const override { return frames_; }
+    void add(std::int64_t /*number*/, Chunk chunk) override {
+        for (const Packet& packet : chunk.packets) {
+            OutputFile file(picture_name(pattern_, first_ + frames_), {.force = force_});
+            file.write(bytes_of(*packet));
+            file.commit();
+            ++frames_;
+        }
+    }
+    [[nodiscard]] std::string place() const override { return pattern_; }
+
+  private:
+    std::string pattern_;
+    bool force_;
+    std::int64_t first_;
+    std::int64_t frames_ = 0;
+    std::optional<RangeLock> lock_;
+};
+
+/// Standard output: YUV4MPEG2, or pixels without a header.
+class StreamSink : public VideoSink {
+  public:
+    explicit StreamSink(const CheckedVideo& output)
+        : def_(output.def), pixel_format_(output.format.pixel_format) {}
+
+    [[nodiscard]] std::int64_t frames() const override { return frames_; }
+    void add(std::int64_t /*number*/, Chunk chunk) override {
+        const bool has_headers = pixel_format_ != "rgba";
+        for (const Packet& packet : chunk.packets) {
+            is_cut_ = true;
+            if (has_headers) put(frames_ == 0 ? header() + "FRAME\n" : "FRAME\n");
+            put(bytes_of(*packet));
+            is_cut_ = false;
+            ++frames_;
+        }
+    }
+    [[nodiscard]] std::string place() const override {
+        return is_cut_ ? "standard output, perhaps with a part of the next one" : "standard output";
+    }
+
+  private:
+    void put(std::string_view bytes) const {
+        const int status = write_all(STDOUT_FILENO, bytes);
+        if (status == EPIPE) throw ReaderLeft();
+        if (status != 0) fail_file("write to", "standard output", status);
+    }
+
+    [[nodiscard]] std::string header() const {
+        const Rational fps = def_.fps.rational();
+        return fmt::format("YUV4MPEG2 W{} H{} F{}:{} Ip A1:1 {} XCOLORRANGE=LIMITED\n", def_.width_px,
+                           def_.height_px, fps.num, fps.den,
+                           pixel_format_ == "yuv420p" ? "C420mpeg2 XYSCSS=420MPEG2" : "C444 XYSCSS=444");
+    }
+
+    VideoDef def_;
+    std::string_view pixel_format_;
+    std::int64_t frames_ = 0;
+    bool is_cut_ = false;  ///< the last frame, or that may be
+};
+
+std::unique_ptr<VideoSink> make_sink(const CheckedVideo& output, Manifest manifest) {
+    switch (output.format.ending->kind) {
+        case FileKind::kPictures:
+            return std::make_unique<PictureSink>(output);
+        case FileKind::kStream:
+            return std::make_unique<StreamSink>(output);
+        case FileKind::kVideo:
+        case FileKind::kAnimation:
+            break;
+    }
+    return std::make_unique<FolderSink>(output, std::move(manifest));
+}
+
+Manifest manifest_of(const CheckedVideo& output, const VideoMetadata& metadata) {
+    auto comment = nlohmann::json::parse(metadata.comment_json, nullptr, false);
+    if (!comment.is_object())
+        throw Error(ExitCode::kUsage,
+                    fmt::format("the video comment is not a JSON object: {}", metadata.comment_json));
+    comment["fps"] = output.def.fps.rational().text();
+    if (output.format.codec->crf) comment["crf"] = output.format.crf_of(output.def.encoder);
+    return {.made_from = metadata.made_from,
+            .fps = output.def.fps.rational(),
+            .first = output.first,
+            .end = output.end,
+            .per_chunk = frames_per_chunk(output.format, output.def.fps),
+            .title = metadata.title,
+            .comment = comment.dump()};
 }
 
 /// Refuses to replace existing files. The folder is made if there is none.
@@ -45,255 +256,128 @@ void check_pictures(const std::string& pattern, const std::string& input, bool f
     for (std::int64_t k = first; k < end; ++k) check_output(picture_name(pattern, k), input, force);
 }
 
-/// Whether a decoder of one takes the other, too.
-bool are_of_one_video(const AVCodecParameters& a, const AVCodecParameters& b) {
-    return a.width == b.width && a.height == b.height && a.video_delay == b.video_delay &&
-           std::equal(a.extradata, a.extradata + a.extradata_size, b.extradata,
-                      b.extradata + b.extradata_size);
-}
-
-/// The parameters of a chunk for a muxer: libaom gives its header with the first packet, not before.
-CodecParameters with_header(const Chunk& chunk) {
-    CodecParameters parameters =
-        check_allocated(CodecParameters(avcodec_parameters_alloc()), "codec parameters");
-    check_libav(avcodec_parameters_copy(parameters.get(), chunk.parameters.get()), ExitCode::kEncoder,
-                "cannot copy codec parameters");
-    std::size_t bytes = 0;
-    const std::uint8_t* const header =
-        chunk.packets.empty()
-            ? nullptr
-            : av_packet_get_side_data(chunk.packets.front().get(), AV_PKT_DATA_NEW_EXTRADATA, &bytes);
-    if (header == nullptr || parameters->extradata_size > 0) return parameters;
-    parameters->extradata = static_cast<std::uint8_t*>(av_mallocz(bytes + AV_INPUT_BUFFER_PADDING_SIZE));
-    if (parameters->extradata == nullptr)
-        fail_libav(ExitCode::kTemporary, "cannot copy codec parameters", AVERROR(ENOMEM));
-    std::copy_n(header, bytes, parameters->extradata);
-    parameters->extradata_size = static_cast<int>(bytes);
-    return parameters;
-}
-
 }  // namespace
 
-CheckedVideo check_video_output(const std::string& path, const VideoDef& def, const std::string& input,
-                                bool force, bool is_transparent, std::int64_t first, std::int64_t end,
-                                bool resume) {
-    check_video_def(def);
-    const Format format = find_format(path, def, is_transparent);
-    if (format.codec->is_hardware) static_cast<void>(make_encoder(format, def));
-    const std::int64_t known_end = end == CheckedVideo::kNoEnd ? first : end;
-    check_animation_frames(*format.ending, known_end - first);
-    const bool has_part =
-        format.ending->kind == FileKind::kVideo || format.ending->kind == FileKind::kAnimation;
-    if (resume && !has_part) {
-        throw Error(
-            ExitCode::kUsage,
-            fmt::format(
-                "{} has no part file, so --resume has nothing to continue; render the frames that are "
-                "missing (--frames FIRST:END)",
-                path));
-    }
-    switch (format.ending->kind) {
-        case FileKind::kStream:
-            break;
-        case FileKind::kPictures:
-            check_pictures(path, input, force, first, known_end);
-            break;
-        case FileKind::kVideo:
-        case FileKind::kAnimation:
-            check_output(path, input, force);
-            PartFile::check(part_path(path), {.force = force || resume});
-    }
-    return {path, def, format, first, end, force, resume};
+ChunkFolder::Use CheckedVideo::use() const {
+    if (shard) return ChunkFolder::Use::kShare;
+    if (resume) return ChunkFolder::Use::kContinue;
+    return force ? ChunkFolder::Use::kReplace : ChunkFolder::Use::kNew;
 }
 
-struct VideoWriter::Impl {
-    Impl(const CheckedVideo& output, VideoMetadata meta)
-        : path(output.path),
-          def(output.def),
-          metadata(std::move(meta)),
-          format(output.format),
-          comment(parsed_comment(metadata.comment_json)),
-          first_frame(output.first),
-          sink(make_sink(format, path, {.force = output.force},
-                         {output.first, output.end, media::frames_per_chunk(format, def.fps)},
-                         output.resume)),
-          written(sink->resumed_frames()) {
-        if (written == 0) return;
-        parameters = check_allocated(CodecParameters(avcodec_parameters_alloc()), "codec parameters");
-        check_libav(avcodec_parameters_copy(parameters.get(), &make_encoder(format, def)->parameters()),
-                    ExitCode::kEncoder, "cannot copy codec parameters");
+CheckedVideo check_video_output(CheckedVideo video, const std::string& input, bool is_transparent) {
+    check_video_def(video.def);
+    video.format = find_format(video.path, video.def, is_transparent);
+    if (video.format.codec->is_hardware) static_cast<void>(make_encoder(video.format, video.def));
+    const std::int64_t known_end = video.end == CheckedVideo::kNoEnd ? video.first : video.end;
+    check_animation_frames(*video.format.ending, known_end - video.first);
+    const FileKind kind = video.format.ending->kind;
+    if (kind == FileKind::kVideo || kind == FileKind::kAnimation) {
+        check_output(video.path, input, video.force);
+        ChunkFolder::check(parts_path(video.path), video.use());
+    } else if (video.resume || video.shard) {
+        throw Error(ExitCode::kUsage,
+                    fmt::format("{} has no chunk files, which {} needs; render the frames that are missing "
+                                "(--frames FIRST:END)",
+                                video.path, video.resume ? "--resume" : "--shard"));
+    } else if (kind == FileKind::kPictures) {
+        check_pictures(video.path, input, video.force, video.first, known_end);
     }
-
-    [[nodiscard]] ChunkEncoder chunk_encoder(std::int64_t frame) const {
-        return ChunkEncoder(make_encoder(format, def, frame, metadata.picture_info));
-    }
-
-    /// Writes the header, with the colours of the first frame.
-    void begin(Chunk& chunk) {
-        comment["fps"] = def.fps.rational().text();
-        if (format.codec->crf) comment["crf"] = format.crf_of(def.encoder);
-        comment["patches"] = patches_json(chunk.colors.front().patches);
-        const CodecParameters stored = with_header(chunk);
-        parameters = std::move(chunk.parameters);
-        sink->begin(*stored, {.fps = def.fps.rational(),
-                              .title = metadata.title,
-                              .comment = comment.dump(),
-                              .has_alpha = format.has_alpha && parameters->codec_id == AV_CODEC_ID_VP9});
-    }
-
-    void append(Chunk chunk) {
-        if (chunk.frames == 0) return;
-        if (!parameters)
-            begin(chunk);
-        else if (!are_of_one_video(*parameters, *chunk.parameters))
-            throw Error(ExitCode::kInternal, "two chunks of a video have different parameters");
-        is_broken = true;  // until all of the chunk is written
-        const bool has_whole_packets =
-            format.ending->kind == FileKind::kPictures || format.ending->kind == FileKind::kStream;
-        const std::int64_t first = written;
-        // The n-th packet is decoded at frame n, earlier by as many as it takes to put frames in order.
-        std::int64_t decoded = first - parameters->video_delay;
-        for (const Packet& packet : chunk.packets) {
-            packet->pts += first;
-            packet->dts = decoded++;
-            packet->duration = 1;
-            if (packet->pts < packet->dts || packet->pts >= first + chunk.frames)
-                throw Error(ExitCode::kInternal, "a chunk has a packet at a time that cannot be");
-            sink->write(*packet);
-            if (has_whole_packets) ++written;
-        }
-        sink->end_chunk();
-        for (FrameColors& frame : chunk.colors) {
-            frame.frame += first;
-            colors.push_back(std::move(frame));
-        }
-        written = first + chunk.frames;
-        is_broken = false;
-    }
-
-    void check_goes_on() const {
-        if (drained) throw Error(ExitCode::kInternal, "this video has already ended");
-        if (is_broken)
-            throw Error(ExitCode::kInternal, "writing this video has failed: it can only be abandoned");
-    }
-
-    /// Ends the chunk that write() has begun.
-    void end_chunk(std::function<bool()> goes_on = {}) {
-        const auto ended = std::exchange(encoder, nullptr);
-        if (ended && ended->frames() > 0) append(ended->finish(std::move(goes_on)));
-    }
-
-    [[nodiscard]] std::int64_t frames() const { return written + (encoder ? encoder->frames() : 0); }
-
-    /// The number in the film of the next frame that write() is given.
-    [[nodiscard]] std::int64_t next_frame() const { return first_frame + frames(); }
-
-    /// Ends the stream. After a chunk that could not be written, nothing more is written.
-    void drain(std::function<bool()> goes_on = {}) {
-        if (is_broken) encoder.reset();
-        end_chunk(std::move(goes_on));
-        if (!is_broken && written > 0) sink->drain();
-        drained = true;
-    }
-
-    std::string path;
-    VideoDef def;
-    VideoMetadata metadata;
-    Format format;
-    nlohmann::json comment;
-    std::int64_t first_frame;
-    std::unique_ptr<ChunkEncoder> encoder;  ///< of the chunk that write() adds to; null between chunks
-    CodecParameters parameters;
-    std::unique_ptr<VideoSink> sink;
-    std::int64_t written = 0;         ///< frames of whole chunks, or whole ones if each stands alone
-    std::vector<FrameColors> colors;  ///< of frames in them
-    bool drained = false;
-    bool is_broken = false;  ///< a chunk could not be written, or not all of it
-};
+    return video;
+}
 
 VideoWriter::VideoWriter(const CheckedVideo& output, VideoMetadata metadata)
-    : impl_(std::make_unique<Impl>(output, std::move(metadata))) {}
+    : output_(output),
+      metadata_(std::move(metadata)),
+      manifest_(manifest_of(output_, metadata_)),
+      sink_(make_sink(output_, manifest_)),
+      next_(output_.first) {
+    skip_chunks_that_are_there();
+}
 
 VideoWriter::VideoWriter(const std::string& path, const VideoDef& def, const VideoMetadata& metadata,
                          const OutputOptions& options)
-    : VideoWriter(check_video_output(path, def, "", options.force, metadata.is_transparent), metadata) {}
+    : VideoWriter(
+          check_video_output({.path = path, .def = def, .force = options.force}, "", metadata.is_transparent),
+          metadata) {}
 
-VideoWriter::VideoWriter(VideoWriter&&) noexcept = default;
 VideoWriter::~VideoWriter() = default;
 
-void VideoWriter::write(const Image& frame, const Damage& damage, bool is_last) {
-    Impl& impl = *impl_;
-    impl.check_goes_on();
-    if (frame.width() != impl.def.width_px || frame.height() != impl.def.height_px) {
+void VideoWriter::write(const Image& frame, const Damage& damage) {
+    if (frame.width() != output_.def.width_px || frame.height() != output_.def.height_px) {
         throw Error(ExitCode::kInternal,
                     fmt::format("a frame of {}x{} was written to a video of {}x{}", frame.width(),
-                                frame.height(), impl.def.width_px, impl.def.height_px));
+                                frame.height(), output_.def.width_px, output_.def.height_px));
     }
-    if (!impl.encoder) impl.encoder = std::make_unique<ChunkEncoder>(impl.chunk_encoder(impl.next_frame()));
-    const bool ends_chunk = is_last || (impl.next_frame() + 1) % frames_per_chunk() == 0;
-    impl.encoder->encode(frame, damage, ends_chunk);
-    if (ends_chunk) impl.end_chunk();
+    if (!encoder_) encoder_ = std::make_unique<ChunkEncoder>(chunk_encoder(next_));
+    const bool ends_chunk = next_ + encoder_->frames() + 1 == manifest_.end_of(next_ / manifest_.per_chunk);
+    encoder_->encode(frame, damage, ends_chunk);
+    if (ends_chunk) end_chunk();
 }
 
 void VideoWriter::append(Chunk chunk) {
-    Impl& impl = *impl_;
-    impl.check_goes_on();
-    impl.end_chunk();
-    impl.append(std::move(chunk));
+    if (chunk.frames == 0) return;
+    for (std::int64_t frame = 0; const Packet& packet : chunk.packets) {
+        if (packet->pts != frame)
+            throw Error(ExitCode::kInternal, "an encoder has given the frames of a chunk in another order");
+        packet->dts = frame++;
+        packet->duration = 1;
+    }
+    next_ = chunk.first + chunk.frames;
+    sink_->add(chunk.first / manifest_.per_chunk, std::move(chunk));
+    skip_chunks_that_are_there();
 }
 
-const Format& VideoWriter::format() const {
-    return impl_->format;
+void VideoWriter::skip_chunks_that_are_there() {
+    while (next_ < output_.end && !sink_->lacks(next_ / manifest_.per_chunk))
+        next_ = manifest_.end_of(next_ / manifest_.per_chunk);
 }
 
-std::int64_t VideoWriter::frames_per_chunk() const {
-    return media::frames_per_chunk(impl_->format, impl_->def.fps);
+void VideoWriter::end_chunk() {
+    const auto ended = std::exchange(encoder_, nullptr);
+    if (ended) append(ended->finish());
+}
+
+std::vector<std::int64_t> VideoWriter::lacking_chunks() const {
+    std::vector<std::int64_t> chunks;
+    for (std::int64_t chunk = manifest_.first_chunk(); chunk < manifest_.end_chunk(); ++chunk)
+        if (sink_->lacks(chunk)) chunks.push_back(chunk);
+    return chunks;
+}
+
+std::vector<std::int64_t> VideoWriter::damaged_chunks() const {
+    return sink_->damaged();
 }
 
 ChunkEncoder VideoWriter::chunk_encoder(std::int64_t frame) const {
-    return impl_->chunk_encoder(frame);
-}
-
-bool VideoWriter::was_part_damaged() const {
-    return impl_->sink->was_part_damaged();
+    return {make_encoder(output_.format, output_.def, frame, metadata_.picture_info), frame};
 }
 
 std::int64_t VideoWriter::frames() const {
-    return impl_->frames();
+    return sink_->frames() + (encoder_ ? encoder_->frames() : 0);
 }
 
 void VideoWriter::finish(VerifyDepth depth, const OnProgress& on_progress) {
-    Impl& impl = *impl_;
-    impl.check_goes_on();
-    if (frames() == 0) {
+    end_chunk();
+    if (frames() == 0 && !output_.shard)
         throw Error(
             ExitCode::kUsage,
-            fmt::format("'{}' would have no frame; ask for a duration of at least one frame", impl.path));
-    }
-    impl.drain();
-    const bool takes_all = depth == VerifyDepth::kKeyFrames && impl.format.codec->verifies_all;
-    if (takes_all) depth = VerifyDepth::kAllFrames;
-    impl.sink->finish({.frames = frames(),
-                       .depth = depth,
-                       .rendered = impl.colors,
-                       .jobs = impl.def.encoder.jobs,
-                       .on_progress = on_progress});
+            fmt::format("'{}' would have no frame; ask for a duration of at least one frame", output_.path));
+    const bool takes_all = depth == VerifyDepth::kKeyFrames && output_.format.codec->verifies_all;
+    sink_->finish({.depth = takes_all ? VerifyDepth::kAllFrames : depth,
+                   .jobs = output_.def.encoder.jobs,
+                   .on_progress = on_progress});
 }
 
 std::string VideoWriter::abandon() {
-    if (!impl_->drained) {
-        try {
-            impl_->drain([end_s = now_s() + kMomentS] { return now_s() < end_s; });
-        } catch (const Error& error) {
-            if (!is_interruption(error.code())) throw;
-            impl_->drain();  // without the frames that the encoder held back
-        }
+    constexpr double kMomentS = 0.4;  // for the frames that the encoder holds back
+    try {
+        const CancelScope moment([end_s = now_s() + kMomentS] { return now_s() < end_s; },
+                                 CancelScope::Outer::kIgnored);
+        end_chunk();
+    } catch (const Error& error) {
+        if (!is_interruption(error.code())) throw;
     }
-    if (frames() == 0) {
-        impl_->sink->remove();
-        return {};
-    }
-    return impl_->sink->abandon();
+    return frames() == 0 ? "" : sink_->place();
 }
 
 }  // namespace corda::media

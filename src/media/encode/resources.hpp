@@ -18,7 +18,7 @@ namespace corda::media {
 /// The number of jobs, at most `wanted`, that fit into free memory if each takes `bytes`.
 [[nodiscard]] int jobs_that_fit(int wanted, std::uint64_t bytes);
 
-/// Bytes of a disk that a video takes while it is made, with its part, which exists until the file is
+/// Bytes of a disk that a video takes while it is made, with its chunks, which exist until the file is
 /// finished.
 struct DiskNeed {
     std::uint64_t least = 0;  ///< of a drawing of a few lines

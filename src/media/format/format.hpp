@@ -95,15 +95,15 @@ struct Codec {
                                      const PictureInfo& info) = &make_libav_encoder;
     EncoderOptions (*options)(const Format& format, const VideoDef& def) = nullptr;  ///< null: none
     std::string (*version)() = nullptr;  ///< of an encoder that is not libav's; gives "" if it is missing
-    /// Makes an animation of the lossless pictures of a part.
+    /// Makes an animation of the lossless pictures of chunks.
     void (*write)(const Ending& ending, const AnimationDef& def, const OnProgress& on_progress,
                   OutputFile& output) = nullptr;
 };
 
 /// How the packets of a video become files.
 enum class FileKind {
-    kVideo,      ///< one file with the packets of the part
-    kAnimation,  ///< one file made of the lossless pictures of the part: its encoder needs the whole film
+    kVideo,      ///< one file with the packets of the chunks
+    kAnimation,  ///< one file made of the lossless pictures of the chunks: its encoder needs the whole film
     kPictures,   ///< a file for each frame
     kStream,     ///< standard output
 };
@@ -113,9 +113,8 @@ struct Ending {
     const char* text;   ///< ".mp4"; "-" is standard output
     const char* words;  ///< "MP4"
     FileKind kind;
-    const char* muxer;       ///< libav's name; of an animation also its codec's
-    const char* part_muxer;  ///< of the file that is written while the video is made
-    /// libav's names of the codecs that it takes, the default first; of an animation, what its part holds.
+    const char* muxer;  ///< libav's name; of an animation also its codec's
+    /// libav's names of the codecs that it takes, the default first; of an animation, what its chunks hold.
     std::array<const char*, 5> codecs;
     int max_side_px = kMaxSidePx;
 };
@@ -131,7 +130,7 @@ struct Format {
     bool has_alpha = false;
     bool is_fallback = false;  ///< the ending's own codec is missing
 
-    /// The codec of the finished file: of an animation, not that of its part.
+    /// The codec of the finished file: of an animation, not that of its chunks.
     [[nodiscard]] const Codec& finished_codec() const;
     [[nodiscard]] std::string preset_of(const EncoderDef& def) const;
     [[nodiscard]] int crf_of(const EncoderDef& def) const;

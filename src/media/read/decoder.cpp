@@ -40,7 +40,7 @@ std::string metadata_entry(const AVFormatContext& format, const char* key) {
     return entry == nullptr ? std::string() : std::string(entry->value);
 }
 
-Decoder::Decoder(std::string path, std::optional<std::uint64_t> bytes) : path_(std::move(path)) {
+Decoder::Decoder(std::string path) : path_(std::move(path)) {
     const LogCapture log;
     const std::string kind = file_kind(path_);
     const AVInputFormat* demuxer = kind.empty() ? nullptr : av_find_input_format(kind.c_str());
@@ -51,9 +51,8 @@ Decoder::Decoder(std::string path, std::optional<std::uint64_t> bytes) : path_(s
                         ? fmt::format("'{}' is no video of a kind that is known", path_)
                         : fmt::format("'{}' is {}: {}", path_, foreign->words, foreign->remedy));
     }
-    const std::string url = bytes ? file_url(path_, *bytes) : file_url(path_);
     AVFormatContext* format = nullptr;
-    check_libav(avformat_open_input(&format, url.c_str(), demuxer, nullptr), ExitCode::kIo,
+    check_libav(avformat_open_input(&format, file_url(path_).c_str(), demuxer, nullptr), ExitCode::kIo,
                 fmt::format("'{}' does not open", path_));
     format_.reset(format);
     const AVCodec* codec = nullptr;

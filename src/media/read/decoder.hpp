@@ -1,10 +1,8 @@
 #pragma once
 
 #include <atomic>
-#include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "corda/media/libav_handles.hpp"
@@ -21,10 +19,9 @@ class Decoder {
         kSkip,
     };
 
-    /// Opens a file of a kind that libav demuxes (see file_kind.hpp), or its first `bytes`. Throws
-    /// corda::Error (kIo) with libav's reason if it is of no such kind, has no video track, or needs a
-    /// decoder that does not open.
-    explicit Decoder(std::string path, std::optional<std::uint64_t> bytes = {});
+    /// Opens a file of a kind that libav demuxes (see file_kind.hpp). Throws corda::Error (kIo) with libav's
+    /// reason if it is of no such kind, has no video track, or needs a decoder that does not open.
+    explicit Decoder(std::string path);
 
     [[nodiscard]] const AVFormatContext& format() const { return *format_; }
     [[nodiscard]] const AVStream& stream() const { return *stream_; }

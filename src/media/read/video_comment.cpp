@@ -9,6 +9,15 @@
 #include "corda/core/child_process.hpp"
 #include "corda/media/read/decoder.hpp"
 
+void corda::to_json(nlohmann::json& json, const Rational& value) {
+    json = {{"num", value.num}, {"den", value.den}};
+}
+
+void corda::from_json(const nlohmann::json& json, Rational& value) {
+    json.at("num").get_to(value.num);
+    json.at("den").get_to(value.den);
+}
+
 namespace corda::media {
 namespace {
 
@@ -58,6 +67,13 @@ std::optional<ColorPatch> parse_patch(const Json& json) {
                        static_cast<std::uint8_t>(values[4])}};
 }
 
+Json patches_json(const std::vector<ColorPatch>& patches) {
+    Json list = Json::array();
+    for (const ColorPatch& patch : patches)
+        list.push_back({patch.x, patch.y, patch.rgb[0], patch.rgb[1], patch.rgb[2]});
+    return list;
+}
+
 }  // namespace
 
 std::string comment_problem(std::string_view comment) {
@@ -89,30 +105,27 @@ std::optional<std::int64_t> comment_number(const std::string& comment, const cha
     return json.contains(key) ? whole_number(json[key]) : std::nullopt;
 }
 
-std::vector<ColorPatch> told_patches(const std::string& comment) {
+std::vector<ColorPatch> told_patches(const std::string& comment, const char* key) {
     const Json json = parse_comment(comment);
     std::vector<ColorPatch> patches;
-    if (!json.contains("patches") || !json["patches"].is_array()) return patches;
-    for (const Json& entry : json["patches"]) {
+    if (!json.contains(key) || !json[key].is_array()) return patches;
+    for (const Json& entry : json[key]) {
         if (const auto patch = parse_patch(entry)) patches.push_back(*patch);
     }
     return patches;
 }
 
-std::map<std::string, std::string> told_origin(const std::string& comment) {
-    const Json json = parse_comment(comment);
-    std::map<std::string, std::string> origin;
-    if (!json.contains(kOriginKey) || !json[kOriginKey].is_object()) return origin;
-    for (const auto& [key, value] : json[kOriginKey].items())
-        if (value.is_string()) origin.emplace(key, value.get<std::string>());
-    return origin;
+std::string chunk_comment(const std::vector<FrameColors>& colors) {
+    return Json{{"patches", patches_json(colors.front().patches)},
+                {"last_patches", patches_json(colors.back().patches)}}
+        .dump();
 }
 
-std::string finished_comment(const std::string& comment, std::size_t frames) {
+std::string finished_comment(const std::string& comment, std::int64_t frames,
+                             const std::vector<ColorPatch>& first) {
     Json json = parse_comment(comment);
-    if (json.empty()) return comment;
-    json.erase(kOriginKey);
     json["frames"] = frames;
+    json["patches"] = patches_json(first);
     return json.dump();
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -12,10 +11,12 @@
 #include "corda/core/rational.hpp"
 #include "corda/media/verify/verify.hpp"
 
-namespace corda::media {
+namespace corda {
 
-/// The key of the origin in the comment of a part.
-inline constexpr const char* kOriginKey = "made_from";
+void to_json(nlohmann::json& json, const Rational& value);
+void from_json(const nlohmann::json& json, Rational& value);
+
+namespace media {
 
 /// The largest JSON text that is read from a file, in bytes, and how deeply it may be nested. Corda writes
 /// less: QuickTime's comments end at this size, and the deepest value in one is at level 5.
@@ -37,13 +38,13 @@ inline constexpr int kDeepestJsonLevel = 16;
 [[nodiscard]] std::optional<Rational> comment_rate(const std::string& comment);
 /// A whole number; std::nullopt if it is something else.
 [[nodiscard]] std::optional<std::int64_t> comment_number(const std::string& comment, const char* key);
-/// The colour patches of the first frame.
-[[nodiscard]] std::vector<ColorPatch> told_patches(const std::string& comment);
-/// The origin of a part as its comment states it, by keys; empty if there is none.
-[[nodiscard]] std::map<std::string, std::string> told_origin(const std::string& comment);
-/// The comment of a finished video, with the number of its frames and without its origin; unchanged if it is
-/// no JSON object.
-[[nodiscard]] std::string finished_comment(const std::string& comment, std::size_t frames);
+/// The colour patches of a key: "patches" are those of the first frame.
+[[nodiscard]] std::vector<ColorPatch> told_patches(const std::string& comment, const char* key = "patches");
+/// The comment of a chunk, with the colours of its first and its last frame.
+[[nodiscard]] std::string chunk_comment(const std::vector<FrameColors>& colors);
+/// The comment of a finished video: with the number of its frames and the colours of the first one.
+[[nodiscard]] std::string finished_comment(const std::string& comment, std::int64_t frames,
+                                           const std::vector<ColorPatch>& first);
 
 /// The comment of a video of any origin, read in a child process with limits on memory and time; empty if it
 /// has none. Throws corda::Error: kIo if the file cannot
@@ -51,4 +52,5 @@ inline constexpr int kDeepestJsonLevel = 16;
 /// also says why this process must have no other thread.
 [[nodiscard]] std::string comment_in_child(const std::string& path);
 
-}  // namespace corda::media
+}  // namespace media
+}  // namespace corda

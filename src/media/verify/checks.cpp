@@ -20,7 +20,7 @@ bool check_boxes(const Mp4Boxes& boxes, VerifyReport& report) {
         problem(
             report,
             "the index (moov box) is missing: writing was interrupted, or the file was cut; render it again, "
-            "or make its .part file a video by corda recover");
+            "or join the chunks in its folder .parts (corda recover)");
         return false;
     }
     report.faststart = boxes.index_first && !boxes.fragmented;
@@ -44,7 +44,8 @@ void check_index(const Mp4Boxes& boxes, VerifyReport& report) {
     problem(
         report, "{}; remedy: {}",
         boxes.fragmented
-            ? "the file is still in fragments, as a .part file is: it plays, but a browser cannot seek in it"
+            ? "the file is in fragments: it plays, but a browser "
+              "cannot seek in it"
             : "the index stands behind the pictures, so a browser must load the whole file before it starts",
         copy_command(report, boxes.is_quicktime ? "mov" : "mp4"));
 }

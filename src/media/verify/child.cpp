@@ -9,15 +9,11 @@
 #include "corda/core/cancel.hpp"
 #include "corda/core/child_process.hpp"
 #include "corda/core/machine.hpp"
-#include "corda/media/chunks/part_reader.hpp"
 #include "corda/media/libav_handles.hpp"
+#include "corda/media/read/video_comment.hpp"
 #include "corda/media/verify/verify.hpp"
 
-namespace corda {
-
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Rational, num, den)
-
-namespace media {
+namespace corda::media {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(VerifyReport, container, codec, profile, h264_level, pixel_format,
                                    width_px, height_px, fps, frames, duration_s, range, matrix, primaries,
@@ -33,14 +29,11 @@ constexpr std::uint64_t kMemoryBytes = std::uint64_t{kMemoryGib} << 30;
 
 /// In time, more than a sound file takes: measured are 0.06 s per kB, in a still scene, whose frames are
 /// small.
-ChildLimits limits_for(const std::string& path) {
+ChildLimits limits_for(std::uint64_t bytes) {
     constexpr std::int64_t kMinS = 20;
     constexpr std::int64_t kBytesPerS = 1000;
     constexpr double kWallPerCpu = 3.0;  // the machine may be busy
-    std::error_code none;                // if it is no regular file
-    const std::uintmax_t size = std::filesystem::file_size(path, none);
-    const std::int64_t bytes = none ? 0 : static_cast<std::int64_t>(size);
-    const std::int64_t cpu_s = kMinS + bytes / kBytesPerS;
+    const std::int64_t cpu_s = kMinS + static_cast<std::int64_t>(bytes) / kBytesPerS;
     return {kMemoryBytes, cpu_s, kWallPerCpu * static_cast<double>(cpu_s)};
 }
 
@@ -110,7 +103,10 @@ std::string report_bytes(const std::string& path, bool has_little, std::optional
 
 VerifyReport verify_in_child(const std::string& path, std::optional<Rational> fps) {
     const bool has_little = has_little_memory();
-    const auto end = run_in_child([&] { return report_bytes(path, has_little, fps); }, limits_for(path));
+    std::error_code none;  // if it is no regular file
+    const std::uintmax_t bytes = std::filesystem::file_size(path, none);
+    const auto end =
+        run_in_child([&] { return report_bytes(path, has_little, fps); }, limits_for(none ? 0 : bytes));
     if (!end) return verify(path, VerifyDepth::kAllFrames, {}, fps);
     if (!end->finished()) {
         throw_if_memory_may_lack(path, *end);
@@ -121,24 +117,19 @@ VerifyReport verify_in_child(const std::string& path, std::optional<Rational> fp
     return report;
 }
 
-void check_part_in_child(const std::string& path, bool decodes) {
-    if (has_other_threads()) return;  // see run_in_child
+void work_in_child(const std::string& path, std::uint64_t bytes, const std::function<void()>& work) {
+    if (has_other_threads()) return work();  // see run_in_child
     const QuietLog quiet;
-    const auto read = [&]() -> std::string {
-        try {
-            static_cast<void>(index_part(path));
-            if (decodes) static_cast<void>(verify(path));
-        } catch (const std::exception&) {
-            // This process comes to the same point, and reports it.
-        }
+    const auto answering = [&work]() -> std::string {
+        work();
         return {};
     };
-    const auto end = run_in_child(read, limits_for(path));
-    if (!end || end->finished()) return;
+    const auto end = run_in_child(answering, limits_for(bytes));
+    if (!end) return work();
+    if (end->finished()) return;
     throw_if_memory_may_lack(path, *end);
     throw Error(ExitCode::kMismatch,
                 fmt::format("'{}' is damaged: reading it {}; render it again (--force)", path, end->text));
 }
 
-}  // namespace media
-}  // namespace corda
+}  // namespace corda::media

@@ -181,13 +181,6 @@ VerifyReport verify(const std::string& path, VerifyDepth depth, const std::vecto
     fill_times(video, report);
     check_decoding(video, report);
     check_stamps(video, report);
-    if (!told_origin(video.comment).empty()) {
-        problem(
-            report,
-            "this is the part of an interrupted render: corda render --resume continues it, corda recover "
-            "makes it a video of these frames");
-        return report;
-    }
     if (kind == "mov") {
         check_index(boxes, report);
         check_clocks(video, boxes, report);

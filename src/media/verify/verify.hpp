@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -59,8 +60,8 @@ enum class VerifyDepth { kKeyFrames, kAllFrames };
 /// decodes that is to be decoded. If the file's comment says that corda made it, also frame count, rate and
 /// some colours of the first frame against the rendered ones; a caller that rendered it can pass more of
 /// them in `rendered`, in the order of the frames, and in `fps` the rate, which a WebP of a few frames does
-/// not show. The part of an interrupted render is a problem by itself. What the other frames show is not
-/// compared with anything: a change that still decodes is not found.
+/// not show. What the other frames show is not compared with anything: a change that still decodes is not
+/// found.
 ///
 /// Throws corda::Error: kIo if the file cannot be opened for reading (one that is not a video gives a report
 /// with a problem), kInterrupted if cancelled. libav ends the
@@ -75,9 +76,9 @@ enum class VerifyDepth { kKeyFrames, kAllFrames };
 /// it throws, and why this process must have no other thread.
 [[nodiscard]] VerifyReport verify_in_child(const std::string& path, std::optional<Rational> fps = {});
 
-/// Reads a part of unknown origin in such a child, as index_part() does, and decodes it if `decodes`. After
-/// that this process can read it. Throws corda::Error: kMismatch if the child crashes or exceeds a limit, and
-/// what run_in_child throws. Says nothing of other damage, nor if the system starts no further process.
-void check_part_in_child(const std::string& path, bool decodes);
+/// Does work that reads files of unknown origin, `bytes` in all, in such a child; in this process,
+/// if it has other threads or the system starts no further process. Throws corda::Error: what `work` throws,
+/// kMismatch, naming `path`, if the child crashes or exceeds a limit, and what run_in_child throws.
+void work_in_child(const std::string& path, std::uint64_t bytes, const std::function<void()>& work);
 
 }  // namespace corda::media

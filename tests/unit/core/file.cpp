@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "corda/core/output_file.hpp"
-#include "corda/core/part_file.hpp"
 #include "support/command.hpp"
 #include "support/failure.hpp"
 
@@ -47,8 +46,7 @@ TEST(Files, HaveNamesWithoutNul) {
     const std::string name = folder.file("a") + std::string("\0.png", 5);
     const std::vector<std::function<void()>> uses{
         [&] { static_cast<void>(open_for_reading(name)); }, [&] { make_folder(name); },
-        [&] { check_output(name, "", true); }, [&] { const OutputFile file(name, {.force = true}); },
-        [&] { static_cast<void>(PartFile::open(name)); }};
+        [&] { check_output(name, "", true); }, [&] { const OutputFile file(name, {.force = true}); }};
     for (const auto& use : uses) {
         const test::Failure failure = failure_of(use);
         EXPECT_EQ(failure.code, ExitCode::kUsage);

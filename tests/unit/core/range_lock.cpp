@@ -1,4 +1,4 @@
-#include "corda/core/range_lock.hpp"
+#include "corda/core/file.hpp"
 
 #include <gtest/gtest.h>
 

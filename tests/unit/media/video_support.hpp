@@ -7,9 +7,10 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
-#include <string_view>
+#include <vector>
 
-#include "corda/media/chunks/part_reader.hpp"
+#include "corda/media/chunks/chunk_folder.hpp"
+#include "corda/media/chunks/join.hpp"
 #include "corda/media/chunks/video_writer.hpp"
 #include "corda/media/verify/verify.hpp"
 #include "support/command.hpp"
@@ -87,47 +88,20 @@ inline void make_video(const std::string& path, const VideoDef& def, std::int64_
     writer.finish();
 }
 
-/// Leaves the part file of a video that was not finished.
-inline void abandon_video(const std::string& path, const VideoDef& def, std::int64_t frames) {
+/// Leaves the chunks of a video that was not finished. Returns their files.
+inline std::vector<ChunkFile> abandon_video(const std::string& path, const VideoDef& def,
+                                            std::int64_t frames) {
     VideoWriter writer(path, def, {"A swing", "{}"}, {.force = true});
     write_frames(writer, frames);
-    EXPECT_EQ(writer.abandon(), path + ".part");
+    EXPECT_EQ(writer.abandon(), parts_path(path));
+    return chunk_files(parts_path(path));
 }
 
-/// Decode times of a fragment that no video has and that libav lets pass.
-inline constexpr std::array<std::uint64_t, 3> kDamagedStamps{0x7000'0000'0000'0000, 0x4000'0000'0000'0000,
-                                                             0x1000'0000'0000'0100};
-
-/// The part file with checksums that are right again.
-inline std::string with_checksums(std::string part) {
-    constexpr std::string_view kMark =
-        "\xc3"
-        "corda checksum\n";
-    std::size_t from = 0;
-    for (std::size_t at = part.find(kMark); at != std::string::npos; at = part.find(kMark, from)) {
-        PartChecksum checksum;
-        checksum.add(std::string_view(part).substr(from, at - from));
-        const std::string record = checksum.record();
-        part.replace(at, record.size(), record);
-        from = at + record.size();
-    }
-    return part;
-}
-
-/// How many fragments say when their decoding starts.
-inline int decode_times_in(const std::string& part) {
-    int count = 0;
-    for (std::size_t at = part.find("tfdt"); at != std::string::npos; at = part.find("tfdt", at + 4)) ++count;
-    return count;
-}
-
-/// The part file with another decode time, 64 bits wide, of a fragment.
-inline std::string with_decode_time(std::string part, int fragment, std::uint64_t ticks) {
-    std::size_t at = part.find("tfdt");
-    for (int i = 0; i < fragment; ++i) at = part.find("tfdt", at + 4);
-    EXPECT_EQ(part[at + 4], 1) << "the decode time is not 64 bits wide";
-    for (std::size_t i = 0; i < 8; ++i) part[at + 8 + i] = static_cast<char>(ticks >> (56 - 8 * i));
-    return with_checksums(part);
+/// Changes a byte of a file.
+inline void damage(const std::string& path, std::size_t at) {
+    std::string bytes = test::read_file(path);
+    bytes.at(at) = static_cast<char>(bytes.at(at) ^ 1);
+    test::write_file(path, bytes);
 }
 
 inline std::string all_problems(const VerifyReport& report) {

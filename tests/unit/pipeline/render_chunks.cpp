@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "corda/media/chunks/chunk.hpp"
-#include "corda/media/chunks/finish_part.hpp"
+#include "corda/media/chunks/join.hpp"
 #include "corda/media/verify/verify.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "support/command.hpp"
@@ -115,10 +115,10 @@ TEST_F(RenderChunks, CountEmptyFramesOfAResumedPart) {
         Scene scene = chunked_scene(2, {"camera.center=[100,100]", "camera.height=1", shutter});
         Film film(scene);
         RenderDef def;
-        def.on_progress = [](std::int64_t done, std::int64_t) { return done < 70; };
+        def.on_progress = [](std::int64_t done, std::int64_t) { return done < 100; };
         const Rendered stopped = render_video(film, file("a.mp4"), def);
         EXPECT_FALSE(stopped.complete);
-        EXPECT_EQ(stopped.empty_frames, stopped.frames);
+        EXPECT_GE(stopped.empty_frames, stopped.frames);
         def.on_progress = {};
         def.resume = true;
         const Rendered rendered = render_video(film, file("a.mp4"), def);
@@ -132,15 +132,50 @@ TEST_F(RenderChunks, CountEmptyFramesOfAResumedPart) {
 TEST_F(RenderChunks, KeepTheFramesBeforeAStop) {
     Film film(chunked_scene(3));
     RenderDef def;
-    def.on_progress = [](std::int64_t done, std::int64_t) { return done < 45; };
+    def.on_progress = [](std::int64_t done, std::int64_t) { return done < 100; };
     const Rendered rendered = render_video(film, file("a.mp4"), def);
     EXPECT_FALSE(rendered.complete);
     EXPECT_GT(rendered.frames, 0);
     EXPECT_LT(rendered.frames, 130);
-    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.part"));
-    const media::RemuxResult kept = media::recover_part(file("a.mp4.part"), file("b.mp4"));
-    EXPECT_EQ(kept.frames, rendered.frames);
-    EXPECT_FALSE(kept.truncated);
+    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.parts"));
+    EXPECT_EQ(media::recover(file("a.mp4.parts"), file("b.mp4")).frames, rendered.frames);
+}
+
+TEST_F(RenderChunks, OfShardsAreJoinedToTheSameBytes) {
+    for (const std::size_t budget_bytes : {std::size_t{1} << 20, std::size_t{0}}) {  // any order, or one
+        FilmDef film_def;
+        film_def.motion_budget_bytes = budget_bytes;
+        const Scene scene = chunked_scene(2);
+        RenderDef def;
+        def.first = 20;  // chunks of 10, 30, 30, 30 and 10 frames
+        const std::string expected = bytes_of(scene, def, budget_bytes);
+        for (const auto& [index, frames] : {std::pair{2, 30}, {0, 40}, {1, 40}}) {
+            Film film(scene, film_def);
+            std::int64_t heard = 0;
+            def.shard = Shard{index, 3};
+            def.on_progress = [&](std::int64_t done, std::int64_t total) {
+                heard = done;
+                return total == 110 || total == frames;
+            };
+            const Rendered rendered = render_video(film, file("out.mp4"), def);
+            EXPECT_TRUE(rendered.complete);
+            EXPECT_EQ(rendered.frames, frames);
+            EXPECT_EQ(rendered.chunks, index == 2 ? 1 : 2);
+            EXPECT_EQ(heard, frames);
+            EXPECT_THAT(folder_.files(), ElementsAre("out.mp4.parts"));
+            EXPECT_EQ(render_video(film, file("out.mp4"), def).chunks, 0);  // all are there
+        }
+        def.shard = {};
+        def.resume = true;
+        def.on_progress = {};
+        Film film(scene, film_def);
+        const Rendered rendered = render_video(film, file("out.mp4"), def);
+        EXPECT_EQ(rendered.resumed_frames, 110);
+        EXPECT_EQ(rendered.chunks, 0);
+        EXPECT_TRUE(test::read_file(file("out.mp4")) == expected);
+        EXPECT_THAT(folder_.files(), ElementsAre("out.mp4"));
+        std::filesystem::remove(file("out.mp4"));
+    }
 }
 
 TEST_F(RenderChunks, PassOnExceptionsOfTheCallback) {

@@ -6,7 +6,7 @@
 #include <thread>
 #include <tuple>
 
-#include "corda/media/chunks/finish_part.hpp"
+#include "corda/media/chunks/join.hpp"
 #include "corda/media/verify/verify.hpp"
 #include "corda/pipeline/film.hpp"
 #include "support/command.hpp"
@@ -81,7 +81,8 @@ TEST_F(RenderVideo, WritesEveryFrameOnce) {
     const Rendered rendered = render_video(film, file("a.mp4"), def);
     EXPECT_EQ(rendered.frames, 20);
     EXPECT_TRUE(rendered.complete);
-    EXPECT_EQ(rendered.kept_part, "");
+    EXPECT_EQ(rendered.kept, "");
+    EXPECT_EQ(rendered.chunks, 1);
     EXPECT_EQ(rendered.encoder, "libx264");
     EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
     for (std::int64_t done = 0; done < 20; ++done) EXPECT_GE(std::count(heard.begin(), heard.end(), done), 1);
@@ -116,7 +117,7 @@ TEST_F(RenderVideo, CountsFramesOfAnimationsTwiceAndCanBeStoppedAnyTime) {
             if (stopped.complete) break;  // what it is asked depends on how fast its threads are
             EXPECT_TRUE(test::read_file(file(name)) == bytes) << name;  // the old one
             if (stopped.frames < frames) continue;
-            media::recover_part(stopped.kept_part, file(name), {.force = true});
+            media::recover(stopped.kept, file(name), {.force = true});
             EXPECT_TRUE(test::read_file(file(name)) == bytes) << name;
         }
     }
@@ -147,7 +148,7 @@ TEST_F(RenderVideo, RefusesInvalidRanges) {
 TEST_F(RenderVideo, ChecksTheOutputBeforeItSimulates) {
     Film film = rope_film();
     test::write_file(file("a.mp4"), "precious");
-    test::write_file(file("b.mp4.part"), "interrupted");
+    test::write_file(file("b.mp4.parts"), "no folder");
     for (const char* name : {"a.mp4", "b.mp4", "no/such/folder/a.mp4"})
         EXPECT_EQ(failure_of([&] { render_video(film, file(name)); }).code, ExitCode::kIo) << name;
     EXPECT_EQ(failure_of([&] { render_video(film, file("c.avi")); }).code, ExitCode::kUsage);
@@ -195,26 +196,25 @@ TEST_F(RenderVideo, ChecksTheVideoBeforeItSimulates) {
     EXPECT_THAT(folder_.files(), IsEmpty());
 }
 
-TEST_F(RenderVideo, KeepsThePartWhenItIsStopped) {
+TEST_F(RenderVideo, KeepsTheFramesWhenItIsStopped) {
     Film film = rope_film();
     RenderDef def;
     def.on_progress = [](std::int64_t done, std::int64_t) { return done < 7; };
     const Rendered rendered = render_video(film, file("a.mp4"), def);
     EXPECT_FALSE(rendered.complete);
     EXPECT_EQ(rendered.frames, 7);
-    EXPECT_EQ(rendered.kept_part, file("a.mp4.part"));
-    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.part"));
+    EXPECT_EQ(rendered.kept, file("a.mp4.parts"));
+    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.parts"));
     def.on_progress = [](std::int64_t, std::int64_t) { return false; };
     def.force = true;
-    EXPECT_EQ(render_video(film, file("a.mp4"), def).kept_part, "");
+    EXPECT_EQ(render_video(film, file("a.mp4"), def).kept, "");
     EXPECT_THAT(folder_.files(), IsEmpty());
 }
 
 TEST_F(RenderVideo, KeepsAllFramesIfStoppedWhileCopyingOrVerifying) {
     Film film = rope_film();
-    // Measured, with all frames done: 1 call when they are drawn, 20 while the part is read, 20 while it is
-    // copied, 20 while the copy is verified.
-    for (const int most_calls : {0, 1, 20, 21, 40, 41, 60}) {
+    // Measured, with all frames done: 23 calls until they are copied, 20 while the copy is verified.
+    for (const int most_calls : {3, 4, 22, 23, 40}) {
         RenderDef def;
         def.force = true;
         int calls = 0;
@@ -224,9 +224,9 @@ TEST_F(RenderVideo, KeepsAllFramesIfStoppedWhileCopyingOrVerifying) {
         const Rendered rendered = render_video(film, file("a.mp4"), def);
         EXPECT_FALSE(rendered.complete) << most_calls;
         EXPECT_EQ(rendered.frames, 20) << most_calls;
-        EXPECT_EQ(rendered.kept_part, file("a.mp4.part")) << most_calls;
-        EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.part")) << most_calls;
-        media::recover_part(rendered.kept_part, file("b.mp4"), {.force = true});
+        EXPECT_EQ(rendered.kept, file("a.mp4.parts")) << most_calls;
+        EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.parts")) << most_calls;
+        media::recover(rendered.kept, file("b.mp4"), {.force = true});
         EXPECT_EQ(media::verify(file("b.mp4")).frames, 20) << most_calls;
         std::filesystem::remove(file("b.mp4"));
     }
@@ -247,8 +247,8 @@ TEST_F(RenderVideo, KeepsTheFramesBeforeADivergence) {
     Film diverging(scene);
     const test::Failure failure = failure_of([&] { render_video(diverging, file("a.mp4")); });
     EXPECT_EQ(failure.code, ExitCode::kDiverged);
-    EXPECT_THAT(failure.message, HasSubstr(file("a.mp4.part")));
-    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.part"));
+    EXPECT_THAT(failure.message, HasSubstr(file("a.mp4.parts")));
+    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.parts"));
 }
 
 TEST_F(RenderVideo, KeepsTheSameFramesBeforeADivergenceWithAnyJobs) {
@@ -266,9 +266,11 @@ TEST_F(RenderVideo, KeepsTheSameFramesBeforeADivergenceWithAnyJobs) {
             RenderDef def;
             def.force = true;
             EXPECT_EQ(code_of([&] { render_video(diverging, file("a.mp4"), def); }), ExitCode::kDiverged);
-            parts.push_back(test::read_file(file("a.mp4.part")));
+            for (const media::ChunkFile& chunk : media::chunk_files(file("a.mp4.parts")))
+                parts.push_back(test::read_file(chunk.path));
         }
     }
+    ASSERT_EQ(parts.size(), 4U);
     EXPECT_TRUE(parts[0] == parts[2]);
     EXPECT_TRUE(parts[1] == parts[3]);
 }
@@ -314,7 +316,7 @@ TEST_F(RenderVideo, RefusesItsCallbackToUseTheFilm) {
         EXPECT_EQ(render(film, def), alone);
         def.on_progress = [&](std::int64_t, std::int64_t) { return film.frame(3).width() > 0; };
         EXPECT_EQ(code_of([&] { static_cast<void>(render(film, def)); }), ExitCode::kUsage);
-        std::filesystem::remove(file("out.mp4.part"));
+        std::filesystem::remove_all(file("out.mp4.parts"));
     }
 }
 

@@ -5,7 +5,6 @@
 
 #include <filesystem>
 
-#include "corda/media/chunks/finish_part.hpp"
 #include "corda/media/encode/yuv420.hpp"
 #include "corda/media/format/format.hpp"
 #include "support/cancel.hpp"
@@ -235,8 +234,10 @@ TEST_F(Video, WithoutFramesCannotBeFinishedAndLeavesNoFile) {
 }
 
 TEST_F(Video, AbandonedWithoutFramesLeavesNoFile) {
-    VideoWriter writer(file("a.mp4"), small_video(), {});
-    EXPECT_EQ(writer.abandon(), "");
+    {
+        VideoWriter writer(file("a.mp4"), small_video(), {});
+        EXPECT_EQ(writer.abandon(), "");
+    }
     EXPECT_THAT(folder_.files(), IsEmpty());
 }
 
@@ -248,55 +249,88 @@ TEST_F(Video, WithoutAFragmentLeavesNoFile) {
     EXPECT_THAT(folder_.files(), IsEmpty());
 }
 
-TEST_F(Video, AbandonedPlaysAsAPart) {
-    abandon_video(file("a.mp4"), small_video({24000, 1001}), 60);
-    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.part"));
-    const auto video = test::decode_video(file("a.mp4.part"));
-    ASSERT_EQ(video.pts.size(), 60U);
-    for (std::int64_t k = 0; k < 60; ++k) EXPECT_EQ(video.pts[static_cast<std::size_t>(k)], k * 1001);
-    EXPECT_THAT(all_problems(verify(file("a.mp4.part"))), HasSubstr("fragments"));
+TEST_F(Video, AbandonedPlaysAsChunks) {
+    const auto chunks = abandon_video(file("a.mp4"), small_video({24000, 1001}), 60);
+    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.parts"));
+    ASSERT_EQ(chunks.size(), 2U);
+    EXPECT_EQ(chunks[0].frames + chunks[1].frames, 60);
+    const auto video = test::decode_video(chunks[0].path);
+    ASSERT_EQ(video.pts.size(), 48U);
+    for (std::int64_t k = 0; k < 48; ++k) EXPECT_EQ(video.pts[static_cast<std::size_t>(k)], k * 1001);
+    EXPECT_THAT(all_problems(verify(chunks[0].path)), IsEmpty());
 }
 
 TEST_F(Video, HasEveryChunkOnTheDiskOnceItIsWhole) {
     for (const char* const name : {"a.mp4", "a.webm", "a.mkv"}) {
-        const std::string part = file(name) + std::string(".part");
+        const std::string parts = parts_path(file(name));
         VideoWriter writer(file(name), small_video({30, 1}), {"A swing", "{}"}, {});
-        const std::int64_t chunk = writer.frames_per_chunk();
+        const std::int64_t chunk = writer.manifest().per_chunk;
         for (int chunks = 1; chunks <= 2; ++chunks) {
             write_frames(writer, chunk);
-            // The file as a kill would leave it now.
-            std::filesystem::copy_file(part, file("copy.part"),
-                                       std::filesystem::copy_options::overwrite_existing);
-            EXPECT_EQ(
-                recover_part(file("copy.part"), file(std::string("copy_") + name), {.force = true}).frames,
-                chunks * chunk)
+            // The folder as a kill would leave it now.
+            const std::string copy = parts_path(file("copy"));
+            fs::remove_all(copy);
+            fs::copy(parts, copy);
+            EXPECT_EQ(recover(copy, file(std::string("copy_") + name), {.force = true}).frames,
+                      chunks * chunk)
                 << name;
         }
-        EXPECT_EQ(writer.abandon(), part);
+        EXPECT_EQ(writer.abandon(), parts);
     }
-}
-
-TEST_F(Video, KeepsAllFramesIfCancelledAtAnyTime) {
-    {
-        VideoWriter writer(file("a.mp4"), small_video(), {});
-        const CancelScope stop = test::cancel_after(0);
-        for (int k = 0; k < 5; ++k) writer.write(frame_image(k), {}, k == 4);
-        EXPECT_EQ(test::code_of([&] { writer.finish(); }), ExitCode::kInterrupted);
-        EXPECT_EQ(writer.abandon(), file("a.mp4.part"));
-        EXPECT_EQ(writer.frames(), 5);
-    }
-    EXPECT_EQ(recover_part(file("a.mp4.part"), file("b.mp4")).frames, 5);
 }
 
 TEST_F(Video, EndsAChunkWithItsLastFrame) {
-    VideoWriter writer(file("a.mp4"), small_video(), {});
+    VideoWriter writer(check_video_output({.path = file("a.mp4"), .def = small_video(), .end = 8}), {});
     write_frames(writer, 7);
-    EXPECT_EQ(test::read_file(file("a.mp4.part")), "");
-    writer.write(frame_image(7), {bob(6), bob(7)}, true);
-    std::filesystem::copy_file(file("a.mp4.part"), file("copy.part"));
-    EXPECT_EQ(recover_part(file("copy.part"), file("copy.mp4")).frames, 8);
+    EXPECT_THAT(chunk_files(file("a.mp4.parts")), IsEmpty());
+    writer.write(frame_image(7), {bob(6), bob(7)});
+    fs::copy(file("a.mp4.parts"), file("copy.mp4.parts"));
+    EXPECT_EQ(recover(file("copy.mp4.parts"), file("copy.mp4")).frames, 8);
     writer.finish();
     EXPECT_TRUE(test::read_file(file("a.mp4")) == test::read_file(file("copy.mp4")));
+}
+
+TEST_F(Video, KeepsAllFramesIfCancelledWhileItIsJoined) {
+    {
+        VideoWriter writer(check_video_output({.path = file("a.mp4"), .def = small_video(), .end = 5}), {});
+        write_frames(writer, 5);
+        const CancelScope stop = test::cancel_after(0);
+        EXPECT_EQ(test::code_of([&] { writer.finish(); }), ExitCode::kInterrupted);
+        EXPECT_EQ(writer.abandon(), file("a.mp4.parts"));
+        EXPECT_EQ(writer.frames(), 5);
+    }
+    EXPECT_EQ(recover(file("a.mp4.parts"), file("b.mp4")).frames, 5);
+}
+
+TEST_F(Video, SkipsTheChunksThatAreThere) {
+    const auto output = [&](std::optional<Shard> shard) {
+        return check_video_output({.path = file("a.mp4"),
+                                   .def = small_video(),
+                                   .first = 50,  // chunks of 10, 60, 60 and 20 frames
+                                   .end = 200,
+                                   .resume = !shard,
+                                   .shard = shard});
+    };
+    {
+        VideoWriter writer(output(Shard{1, 2}), {});
+        EXPECT_THAT(writer.lacking_chunks(), ElementsAre(1, 3));
+        for (int k = 0; k < 80; ++k)
+            writer.write(frame_image(k < 60 ? 60 + k : 120 + k), {{0, 0, kWidth, kHeight}});
+        EXPECT_EQ(writer.frames(), 80);
+        writer.finish();
+        EXPECT_FALSE(fs::exists(file("a.mp4")));
+    }
+    VideoWriter rest(output({}), {});
+    EXPECT_EQ(rest.frames(), 80);
+    EXPECT_THAT(rest.lacking_chunks(), ElementsAre(0, 2));
+    for (int k = 0; k < 70; ++k)
+        rest.write(frame_image(k < 10 ? 50 + k : 110 + k), {{0, 0, kWidth, kHeight}});
+    rest.finish();
+    VideoWriter all(
+        check_video_output({.path = file("b.mp4"), .def = small_video(), .first = 50, .end = 200}), {});
+    for (int k = 50; k < 200; ++k) all.write(frame_image(k), {{0, 0, kWidth, kHeight}});
+    all.finish();
+    EXPECT_TRUE(test::read_file(file("a.mp4")) == test::read_file(file("b.mp4")));
 }
 
 TEST_F(Video, AnExistingFileIsReplacedOnlyWithForce) {
@@ -315,10 +349,11 @@ TEST_F(Video, AFileThatAppearedMeanwhileIsNotReplaced) {
     test::write_file(file("a.mp4"), "precious");
     const test::Failure failure = failure_of([&] { writer.finish(); });
     EXPECT_EQ(failure.code, ExitCode::kIo);
-    EXPECT_THAT(failure.message, HasSubstr("all frames are in '" + file("a.mp4.part") + "'"));
+    EXPECT_THAT(failure.message,
+                HasSubstr("finished chunks are in '" + file("a.mp4.parts") + "'; --resume --force"));
     EXPECT_EQ(test::read_file(file("a.mp4")), "precious");
-    EXPECT_EQ(test::decode_video(file("a.mp4.part")).pts.size(), 4U);
-    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4", "a.mp4.part"));
+    EXPECT_EQ(chunk_files(file("a.mp4.parts")).size(), 1U);
+    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4", "a.mp4.parts"));
 }
 
 TEST_F(Video, ForceReplacesTheFileBehindALink) {
@@ -330,18 +365,17 @@ TEST_F(Video, ForceReplacesTheFileBehindALink) {
 }
 
 TEST_F(Video, AnInterruptedRenderIsReplacedOnlyWithForce) {
-    abandon_video(file("a.mp4"), small_video(), 4);
-    const std::string part = test::read_file(file("a.mp4.part"));
+    const std::string chunk = abandon_video(file("a.mp4"), small_video(), 4)[0].path;
     for (const auto& start : std::vector<std::function<void()>>{
-             [&] { check_video_output(file("a.mp4"), small_video(), "", false); },
+             [&] { static_cast<void>(check_video_output({.path = file("a.mp4"), .def = small_video()})); },
              [&] { VideoWriter(file("a.mp4"), small_video(), {}); }}) {
         const test::Failure failure = failure_of(start);
         EXPECT_EQ(failure.code, ExitCode::kIo);
         EXPECT_THAT(failure.message, HasSubstr("interrupted render"));
         EXPECT_THAT(failure.message, HasSubstr("--force"));
-        EXPECT_EQ(test::read_file(file("a.mp4.part")), part);
+        EXPECT_TRUE(fs::exists(chunk));
     }
-    check_video_output(file("a.mp4"), small_video(), "", true);
+    static_cast<void>(check_video_output({.path = file("a.mp4"), .def = small_video(), .force = true}));
     make_video(file("a.mp4"), small_video(), 8);
     EXPECT_EQ(verify(file("a.mp4")).frames, 8);
     EXPECT_THAT(folder_.files(), ElementsAre("a.mp4"));
@@ -352,7 +386,10 @@ TEST_F(Video, TwoRendersNeverWriteToOneName) {
     write_frames(writer, 8);
     for (const bool force : {false, true}) {
         for (const auto& start : std::vector<std::function<void()>>{
-                 [&] { check_video_output(file("a.mp4"), small_video(), "", force); },
+                 [&] {
+                     static_cast<void>(
+                         check_video_output({.path = file("a.mp4"), .def = small_video(), .force = force}));
+                 },
                  [&] { VideoWriter(file("a.mp4"), small_video(), {}, {.force = force}); }}) {
             const test::Failure failure = failure_of(start);
             EXPECT_EQ(failure.code, ExitCode::kIo);
@@ -364,18 +401,7 @@ TEST_F(Video, TwoRendersNeverWriteToOneName) {
     EXPECT_THAT(folder_.files(), ElementsAre("a.mp4"));
 }
 
-TEST_F(Video, ALinkAtThePlaceOfThePartIsNotFollowed) {
-    test::write_file(file("victim"), "precious");
-    fs::create_symlink("victim", file("a.mp4.part"));
-    EXPECT_EQ(failure_of([&] { VideoWriter(file("a.mp4"), small_video(), {}); }).code, ExitCode::kIo);
-    EXPECT_TRUE(fs::is_symlink(file("a.mp4.part")));
-    // Nor is it replaced, by --force either: no render made it.
-    EXPECT_EQ(failure_of([&] { make_video(file("a.mp4"), small_video(), 4); }).code, ExitCode::kIo);
-    EXPECT_EQ(test::read_file(file("victim")), "precious");
-    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.part", "victim"));
-}
-
-TEST_F(Video, AFullDiskIsAnIoErrorAndKeepsThePart) {
+TEST_F(Video, AFullDiskIsAnIoErrorAndKeepsTheChunks) {
     // A limit on the size of files stops the video as a full disk does.
     const test::Failure failure = failure_of([&] {
         const test::FileSizeLimit limit(8192);
@@ -384,29 +410,22 @@ TEST_F(Video, AFullDiskIsAnIoErrorAndKeepsThePart) {
     EXPECT_EQ(failure.code, ExitCode::kIo);
     EXPECT_THAT(failure.message, HasSubstr("File too large"));
     EXPECT_THAT(failure.message, HasSubstr("ulimit"));
-    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.part"));
+    EXPECT_THAT(folder_.files(), ElementsAre("a.mp4.parts"));
 }
 
-TEST_F(Video, AWriterThatFailedCanOnlyBeAbandoned) {
+TEST_F(Video, AWriterThatFailedKeepsItsWholeChunks) {
     auto writer = std::make_unique<VideoWriter>(file("a.mp4"), small_video(), VideoMetadata{});
     const test::Failure full = failure_of([&] {
-        const test::FileSizeLimit limit(8192);
-        write_frames(*writer, 240);
+        write_frames(*writer, 60);
+        const test::FileSizeLimit limit(512);
+        write_frames(*writer, 60);
     });
     EXPECT_EQ(full.code, ExitCode::kIo);
-    const std::int64_t whole = writer->frames();
-    EXPECT_EQ(whole % writer->frames_per_chunk(), 0);
-    EXPECT_GT(whole, 0);
-    for (const auto& failure :
-         {failure_of([&] { writer->write(frame_image(0), {}); }), failure_of([&] { writer->finish(); })}) {
-        EXPECT_EQ(failure.code, ExitCode::kInternal);
-        EXPECT_THAT(failure.message, HasSubstr("can only be abandoned"));
-    }
-    EXPECT_EQ(writer->frames(), whole);
-    // The space is there again.
-    EXPECT_EQ(writer->abandon(), file("a.mp4.part"));
+    EXPECT_THAT(full.message, HasSubstr("finished chunks are in '" + file("a.mp4.parts") + "'; --resume"));
+    EXPECT_EQ(writer->frames(), 60);
+    EXPECT_EQ(writer->abandon(), file("a.mp4.parts"));
     writer.reset();
-    EXPECT_EQ(recover_part(file("a.mp4.part"), file("a.mp4")).frames, whole);
+    EXPECT_EQ(recover(file("a.mp4.parts"), file("a.mp4")).frames, 60);
 }
 
 }  // namespace

@@ -5,8 +5,7 @@
 #include <ostream>
 #include <string_view>
 
-#include "corda/core/part_file.hpp"
-#include "corda/media/chunks/finish_part.hpp"
+#include "corda/media/chunks/join.hpp"
 #include "corda/media/chunks/video_writer.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/media/read/color_patch.hpp"
@@ -172,7 +171,7 @@ TEST_P(EveryFormat, HasTheSameBytesAgainAndFromChunksMadeApart) {
     make(file("a"));
     const VideoDef def = def_of(GetParam());
     VideoWriter writer(file("b"), def, {.title = "A swing", .is_transparent = GetParam().is_transparent});
-    const std::int64_t length = writer.frames_per_chunk();
+    const std::int64_t length = writer.manifest().per_chunk;
     for (std::int64_t first = 0; first < kVideoFrames; first += length) {
         ChunkEncoder chunk = writer.chunk_encoder(first);
         for (std::int64_t k = first; k < std::min<std::int64_t>(first + length, kVideoFrames); ++k) {
@@ -185,44 +184,16 @@ TEST_P(EveryFormat, HasTheSameBytesAgainAndFromChunksMadeApart) {
     EXPECT_EQ(test::read_file(file("a")), test::read_file(file("b")));
 }
 
-TEST_P(EveryFormat, IsRecoveredFromItsPart) {
+TEST_P(EveryFormat, IsRecoveredFromItsChunks) {
     make(file("a"));
     {
         VideoWriter writer(file("b"), def_of(GetParam()),
                            {.title = "A swing", .is_transparent = GetParam().is_transparent});
         write_variant(writer, GetParam());
-        EXPECT_EQ(writer.abandon(), part_path(file("b")));
+        EXPECT_EQ(writer.abandon(), parts_path(file("b")));
     }
-    EXPECT_EQ(recover_part(part_path(file("b")), file("b")).frames, kVideoFrames);
+    EXPECT_EQ(recover(parts_path(file("b")), file("b")).frames, kVideoFrames);
     EXPECT_EQ(test::read_file(file("a")), test::read_file(file("b")));
-}
-
-TEST_P(EveryFormat, ItsPartIsToBeRecoveredSaysVerify) {
-    VideoDef def = def_of(GetParam());
-    VideoWriter writer(
-        file("a"), def,
-        {.comment_json = R"({"made_from":{"scene":"0"}})", .is_transparent = GetParam().is_transparent});
-    write_variant(writer, GetParam());
-    const std::string part = writer.abandon();
-    const VerifyReport report = verify(part);
-    EXPECT_EQ(report.frames, kVideoFrames);
-    ASSERT_EQ(report.problems.size(), 1U) << all_problems(report);
-    EXPECT_THAT(report.problems[0], testing::HasSubstr("corda recover makes it a video"));
-}
-
-TEST_P(EveryFormat, APartWhosePictureHasNoSizeIsRefused) {
-    VideoWriter writer(file("a"), def_of(GetParam()), {.is_transparent = GetParam().is_transparent});
-    write_variant(writer, GetParam());
-    std::string part = test::read_file(writer.abandon());
-    const std::string coded = {kWidth >> 8, static_cast<char>(kWidth & 255), kHeight >> 8,
-                               static_cast<char>(kHeight & 255)};  // of MP4
-    const std::size_t at = part.find(coded, part.find("stsd"));
-    if (part.find("stsd") == std::string::npos) return;  // Matroska has another place for it
-    ASSERT_NE(at, std::string::npos);
-    part.replace(at, 4, std::string(4, '\0'));
-    test::write_file(file("b") + ".part", with_checksums(part));
-    const test::Failure failure = test::failure_of([&] { recover_part(file("b") + ".part", file("b")); });
-    EXPECT_EQ(failure.code, ExitCode::kMismatch) << failure.message;
 }
 
 TEST_F(Video, VerifyFindsWrongChecksumsOfFfv1) {
@@ -288,7 +259,10 @@ TEST_F(Video, OneFrameIsAVideoWhereAContainerHoldsOne) {
         EXPECT_EQ(verify(path).frames, 1) << path;
     }
     const std::string path = file("a.webp");  // which would be a picture
-    const auto check = [&] { check_video_output(path, small_video({25, 1}), "", false, false, 7, 8); };
+    const auto check = [&] {
+        static_cast<void>(
+            check_video_output({.path = path, .def = small_video({25, 1}), .first = 7, .end = 8}));
+    };
     for (const test::Failure& failure : {test::failure_of(check), test::failure_of([&] {
                                              make_video(path, small_video({25, 1}), 1);
                                          })}) {
@@ -344,12 +318,12 @@ TEST_F(Video, AGifOnATransparentGroundShowsItThroughEveryFrame) {
     }
 }
 
-TEST_F(Video, APartOfAnotherKindIsRefusedNamingWhatItHolds) {
+TEST_F(Video, ChunksOfAnotherKindAreRefusedNamingWhatTheyHold) {
     abandon_video(file("a.mp4"), small_video(), 4);
     const test::Failure failure =
-        test::failure_of([&] { static_cast<void>(recover_part(part_path(file("a.mp4")), file("a.webm"))); });
+        test::failure_of([&] { static_cast<void>(recover(parts_path(file("a.mp4")), file("a.webm"))); });
     EXPECT_EQ(failure.code, ExitCode::kUsage);
-    EXPECT_THAT(failure.message, testing::HasSubstr("holds h264"));
+    EXPECT_THAT(failure.message, testing::HasSubstr("hold h264"));
 }
 
 TEST_F(Video, AGifHasNoColourToCompareWhereItIsTransparent) {
