@@ -58,9 +58,8 @@ void take_frames(const CompareOptions& options, const std::array<media::StoredPi
                                  pictures[0].is_full_range == pictures[1].is_full_range;
     if (is_stored_alike && pictures[0].samples == pictures[1].samples) return;
     std::array<Image, 2> images{pictures[0].rgba(), pictures[1].rgba()};
-    PerceivedFigures figures = figures_for(options);
-    figures.flip = options.limits.flip.has_value();
-    figures.ssim = options.limits.ssim.has_value();
+    const PerceivedFigures figures{.flip = options.limits.flip.has_value(),
+                                   .ssim = options.limits.ssim.has_value()};
     const Image* const its_mask = mask ? &*mask : nullptr;
     Difference difference = compare(images[0], images[1], its_mask);
     add_perceived(images[0], images[1], figures, difference, its_mask);
@@ -102,10 +101,8 @@ VideoDifference compare_all_frames(const CompareOptions& options, const std::str
             result.sizes[i] = {pictures[i].width_px, pictures[i].height_px};
         if (has_a && has_b) take_frames(options, pictures, mask, result);
     }
-    PerceivedFigures figures = figures_for(options);
-    figures.threads = 1;
     if (result.differing > 0 && options.json)
-        add_perceived(result.worst_pictures[0], result.worst_pictures[1], figures, result.worst,
+        add_perceived(result.worst_pictures[0], result.worst_pictures[1], figures_for(options), result.worst,
                       mask ? &*mask : nullptr);
     return result;
 }

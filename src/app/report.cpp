@@ -25,38 +25,23 @@ struct ReportOptions {
     bool dry_run = false;
 };
 
-/// Shows the parts of a report as progress, each from its start.
-class Parts {
-  public:
-    explicit Parts(const Console& console) : console_(&console) {}
-
-    void show(const std::string& part, std::int64_t done, std::int64_t total) {
-        if (part != part_) progress_ = show_progress(*console_, part);
-        part_ = part;
-        progress_(done, total);
-    }
-    void end() { progress_ = {}; }
-
-  private:
-    const Console* console_;
-    std::string part_;
-    OnProgress progress_;
-};
-
 /// Writes the report; returns why the motion ended early, if it did.
 std::optional<Error> write_report(const Console& console, Film& film, const std::vector<RequestedTime>& times,
                                   const ReportOptions& options, report::ReportFolder& folder) {
-    Parts parts(console);
+    std::string shown;
+    OnProgress progress;  // each part from its start
     figures::SceneReportDef def;
     for (const RequestedTime& time : times) def.at_s.push_back(time.time_s);
     def.output = {.force = options.force};
     def.on_part = [&](const std::string& part, std::int64_t done, std::int64_t total) {
-        parts.show(part, done, total);
+        if (part != shown) progress = show_progress(console, part);
+        shown = part;
+        progress(done, total);
     };
     try {
         return figures::write_scene_report(film, def, folder);
     } catch (const Error& error) {
-        parts.end();
+        progress = {};
         throw with_files(error, folder);
     }
 }

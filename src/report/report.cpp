@@ -1,6 +1,5 @@
 #include "corda/report/report.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <set>
@@ -61,23 +60,6 @@ bool is_failed(const Table& table, std::size_t row) {
         if (table.columns[column].key != kFailureKey) continue;
         const auto* reason = std::get_if<std::string>(&table.rows[row][column]);
         return reason != nullptr && !reason->empty();
-    }
-    return false;
-}
-
-bool is_numeric(const Table& table, std::size_t column) {
-    const auto holds = [&table, column](auto predicate) {
-        return std::any_of(table.rows.begin(), table.rows.end(),
-                           [&](const auto& row) { return predicate(row[column]); });
-    };
-    return holds([](const Cell& cell) { return std::holds_alternative<double>(cell); }) &&
-           !holds([](const Cell& cell) { return std::holds_alternative<std::string>(cell); });
-}
-
-bool is_for_people(const Table& table, std::size_t column) {
-    if (table.columns[column].key != kFailureKey) return true;
-    for (std::size_t row = 0; row < table.rows.size(); ++row) {
-        if (is_failed(table, row)) return true;
     }
     return false;
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -11,6 +12,25 @@ namespace {
 
 /// A cell with more bytes than this may be broken into lines.
 constexpr std::size_t kLongText = 40;
+
+/// Whether a column has numbers and no texts.
+bool is_numeric(const Table& table, std::size_t column) {
+    const auto holds = [&table, column](auto predicate) {
+        return std::any_of(table.rows.begin(), table.rows.end(),
+                           [&](const auto& row) { return predicate(row[column]); });
+    };
+    return holds([](const Cell& cell) { return std::holds_alternative<double>(cell); }) &&
+           !holds([](const Cell& cell) { return std::holds_alternative<std::string>(cell); });
+}
+
+/// Whether people are shown a column: the failure column only if a row failed.
+bool is_for_people(const Table& table, std::size_t column) {
+    if (table.columns[column].key != kFailureKey) return true;
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+        if (is_failed(table, row)) return true;
+    }
+    return false;
+}
 
 /// "1.23e-5" as 1.23 · 10 to the -5.
 std::string number_html(double value) {

@@ -42,12 +42,6 @@ void check_report(const Report& report);
 /// Whether the row has a reason in the failure column.
 [[nodiscard]] bool is_failed(const Table& table, std::size_t row);
 
-/// Whether a column has numbers and no texts.
-[[nodiscard]] bool is_numeric(const Table& table, std::size_t column);
-
-/// Whether people are shown a column: the failure column only if a row failed.
-[[nodiscard]] bool is_for_people(const Table& table, std::size_t column);
-
 /// A number for people: three significant digits, e.g. "1.23e-5" or "1230"; whole numbers below a million in
 /// full.
 [[nodiscard]] std::string short_number(double value);

@@ -1,6 +1,5 @@
 // For LD_PRELOAD: faults of other libraries and of a full host, chosen by environment variables.
 //   THREADS_TO_START=N      the system starts N more threads, then none
-//   PROCESSES_TO_START=N    the same for processes
 //   FSYNC_TAKES_MS=N        flushing a file to disk takes N ms, despite signals
 //   DEMUXER_CRASHES=1       libavformat aborts the process that reads a packet
 //   X264_HANGS_FROM_PX=N    x264 never returns from opening an encoder for pictures of N columns or more
@@ -47,13 +46,6 @@ int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*
     static std::atomic<int> left = number_in("THREADS_TO_START", 1 << 30);
     if (left-- <= 0) return EAGAIN;
     return next(&pthread_create, "pthread_create")(thread, attributes, work, argument);
-}
-
-pid_t fork() {
-    static std::atomic<int> left = number_in("PROCESSES_TO_START", 1 << 30);
-    if (left-- > 0) return next(&fork, "fork")();
-    errno = EAGAIN;
-    return -1;
 }
 
 int fsync(int descriptor) {

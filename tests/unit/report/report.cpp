@@ -57,8 +57,6 @@ TEST(Report, TablesFillTheirRows) {
     EXPECT_EQ(csv_text(table), "method,error,failure\nexact,1.0000000000000001e-09,\nrattle,,it diverged\n");
     EXPECT_FALSE(is_failed(table, 0));
     EXPECT_TRUE(is_failed(table, 1));
-    EXPECT_TRUE(is_numeric(table, 1));
-    EXPECT_FALSE(is_numeric(table, 0));
 }
 
 TEST(Csv, QuotesAndKeepsEveryDigit) {
