@@ -54,7 +54,7 @@ class Reader {
 
     /// Takes the state that the film handed out last.
     void add(const State& state, bool is_frame) {
-        add_tips(state);
+        add_tips(state, is_frame);
         if (!is_frame) return;
         tip_(row_);
         add_energy(state);
@@ -94,7 +94,7 @@ class Reader {
         strain_ = open("strain.csv", strain);
     }
 
-    void add_tips(const State& state) {
+    void add_tips(const State& state, bool is_frame) {
         const double t = state.time_s;
         row_.assign(1, t);
         for (BodyCurves& body : motion_.bodies) {
@@ -102,6 +102,9 @@ class Reader {
             const double x_m = state.x_m[i];
             const double y_m = state.y_m[i];
             body.path.push_back({t, x_m, y_m});
+            // Relaxation has one velocity per step: between frames it would draw steps.
+            const MethodDef& method = film_.plan().bodies[body.followed.body].method;
+            if (!is_frame && std::holds_alternative<RelaxationDef>(method)) continue;
             body.phase.push_back({t, x_m - system_.x_m[body.followed.pin.value_or(i)], state.vx_m_s[i]});
             row_.insert(row_.end(), {system_.origin_m.x + x_m, system_.origin_m.y + y_m, state.vx_m_s[i],
                                      state.vy_m_s[i]});

@@ -123,6 +123,17 @@ TEST(MotionSummary, HasSmoothPathsBetweenFewFrames) {
     EXPECT_EQ(scene.motion.kinetic.size(), 11U);
 }
 
+TEST(MotionSummary, HasNoStepsInThePhasePortraitOfRelaxation) {
+    const ReadScene scene(
+        "[world]\nduration = 1.0\n[[rope]]\nhang = { links = 10, length = 1.0, angle_deg = 60.0 "
+        "}\n[solver]\nmethod "
+        "= \"relaxation\"\n[video]\nfps = 30\n");
+    const BodyCurves& body = scene.motion.bodies.at(0);
+    EXPECT_EQ(body.path.size(), 241U);  // eight per frame
+    EXPECT_EQ(body.phase.size(), 31U);  // its velocity is constant during a frame
+    EXPECT_EQ(body.turning.size(), 31U);
+}
+
 TEST(MotionSummary, StopsAtItsCallback) {
     Film film(scene_of(pendulum_toml()), def_of(scene_of(pendulum_toml())));
     const auto open = [](const std::string&, const std::vector<std::string>&) -> OnRow {
