@@ -99,7 +99,9 @@ struct Job {
 class Runner {
   public:
     Runner(const SuiteDef& def, const std::vector<std::string>& references, std::int64_t all)
-        : def_(def), references_(references), all_(all) {}
+        : def_(def), references_(references), all_(all) {
+        report_progress(def_.on_progress, 0, all_);
+    }
 
     void check(std::vector<Case>& cases) {
         for (Case& one : cases) queue_.push_back([this, &one] { begin(one); });

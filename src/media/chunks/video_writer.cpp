@@ -323,7 +323,8 @@ void VideoWriter::append(Chunk chunk) {
         packet->duration = 1;
     }
     next_ = chunk.first + chunk.frames;
-    sink_->add(chunk.first / manifest_.per_chunk, std::move(chunk));
+    const std::int64_t number = chunk.first / manifest_.per_chunk;
+    sink_->add(number, std::move(chunk));
     skip_chunks_that_are_there();
 }
 
