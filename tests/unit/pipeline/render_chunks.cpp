@@ -153,9 +153,9 @@ TEST_F(RenderChunks, OfShardsAreJoinedToTheSameBytes) {
             Film film(scene, film_def);
             std::int64_t heard = 0;
             def.shard = Shard{index, 3};
-            def.on_progress = [&](std::int64_t done, std::int64_t total) {
+            def.on_progress = [&, its_frames = frames](std::int64_t done, std::int64_t total) {
                 heard = done;
-                return total == 110 || total == frames;
+                return total == 110 || total == its_frames;
             };
             const Rendered rendered = render_video(film, file("out.mp4"), def);
             EXPECT_TRUE(rendered.complete);
