@@ -101,9 +101,11 @@ Contents contents_of(const std::string& folder) {
     for (fs::directory_iterator entry(folder, failure); !failure && entry != fs::directory_iterator();
          entry.increment(failure)) {
         const std::string name = entry->path().filename().string();
-        if (auto chunk = chunk_of(entry->path()))
+        // A pipe or a device could be read for ever.
+        const bool is_file = entry->symlink_status().type() == fs::file_type::regular;
+        if (auto chunk = is_file ? chunk_of(entry->path()) : std::nullopt)
             contents.chunks.push_back(std::move(*chunk));
-        else if (name == kManifestName)
+        else if (is_file && name == kManifestName)
             contents.has_manifest = true;
         else if (!name.ends_with(".tmp"))
             contents.has_others = true;
@@ -175,6 +177,8 @@ std::optional<Manifest> read_manifest(const std::string& folder) {
     const std::string path = manifest_path(folder);
     std::error_code ignored;
     if (!fs::exists(path, ignored)) return std::nullopt;
+    if (fs::symlink_status(path, ignored).type() != fs::file_type::regular)
+        throw Error(ExitCode::kMismatch, fmt::format("'{}' is no ordinary file; {}", path, kRemedy));
     try {
         const FileHandle file = open_for_reading(path);
         std::string text(kMaxJsonBytes + 1, '\0');

@@ -116,9 +116,10 @@ std::vector<ColorPatch> told_patches(const std::string& comment, const char* key
 }
 
 std::string chunk_comment(const std::vector<FrameColors>& colors) {
-    return Json{{"patches", patches_json(colors.front().patches)},
-                {"last_patches", patches_json(colors.back().patches)}}
-        .dump();
+    Json json{{"patches", patches_json(colors.front().patches)}};
+    // A chunk that ended early has the colours of its first frame alone.
+    if (colors.size() > 1) json["last_patches"] = patches_json(colors.back().patches);
+    return json.dump();
 }
 
 std::string finished_comment(const std::string& comment, std::int64_t frames,
