@@ -414,10 +414,14 @@ std::vector<std::uint8_t> Film::mask(std::int64_t k) {
     return impl_->drawing.renderer.mask(state(k), map);
 }
 
-Vec2 Film::to_pixels(Vec2 position_m) {
+std::vector<Vec2> Film::to_pixels(std::span<const Vec2> positions_m) {
     const view::Camera map = impl_->drawing.renderer.map_of(impl_->find_camera());
-    const Vec2 relative_m = position_m - system().origin_m;
-    return {map.x_px(relative_m.x), map.y_px(relative_m.y)};
+    std::vector<Vec2> pixels;
+    for (const Vec2 position_m : positions_m) {
+        const Vec2 relative_m = position_m - system().origin_m;
+        pixels.push_back({map.x_px(relative_m.x), map.y_px(relative_m.y)});
+    }
+    return pixels;
 }
 
 bool Film::shows_nothing() const {

@@ -110,9 +110,9 @@ class Film {
     /// particles, supports and annotations are left out. Needs no OpenGL. Throws as state(), and kUsage for
     /// more than 255 bodies.
     [[nodiscard]] std::vector<std::uint8_t> mask(std::int64_t k);
-    /// A position in m in world coordinates as pixels, y down; the centre of the top left pixel is at (0.5,
+    /// Positions in m in world coordinates as pixels, y down; the centre of the top left pixel is at (0.5,
     /// 0.5). Throws what camera() throws.
-    [[nodiscard]] Vec2 to_pixels(Vec2 position_m);
+    [[nodiscard]] std::vector<Vec2> to_pixels(std::span<const Vec2> positions_m);
     /// True if the last picture was empty.
     [[nodiscard]] bool shows_nothing() const;
     /// The OpenGL driver. Throws kNoGl.

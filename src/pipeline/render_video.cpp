@@ -312,10 +312,8 @@ Rendered render_video(Film& film, const CheckedOutput& output, const OnProgress&
     const std::int64_t passes = media::passes(*video.format.ending);
     static_cast<void>(film.camera());  // may fail, which is to happen before a file is made
     static_cast<void>(film.gl());
-    std::optional<CancelScope> resuming(std::in_place, [&] {
-        report_progress(on_progress, 0, passes * (video.end - video.first));
-        return true;
-    });
+    std::optional<CancelScope> resuming(
+        std::in_place, [&] { report_progress(on_progress, 0, passes * (video.end - video.first)); });
     media::VideoWriter writer(video, metadata(film, video.first, video.end,
                                               origin_of(film.scene(), video.format, video.first, video.end)));
     resuming.reset();

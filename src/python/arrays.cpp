@@ -89,19 +89,17 @@ py::array_t<double> to_pixels(PyFilm& film, const Points& points_m) {
     if (points_m.ndim() < 1 || points_m.shape(points_m.ndim() - 1) != 2)
         throw py::value_error("points are an array of shape (..., 2)");
     const std::vector<py::ssize_t> shape(points_m.shape(), points_m.shape() + points_m.ndim());
-    py::array_t<double> pixels(shape);
-    const double* const from = points_m.data();
-    double* const to = pixels.mutable_data();
-    const py::ssize_t count = points_m.size();
-    film.with_film([&](Film& its) {
-        for (py::ssize_t i = 0; i < count; i += 2) {
-            const Vec2 at = its.to_pixels({from[i], from[i + 1]});
-            to[i] = at.x;
-            to[i + 1] = at.y;
-        }
-        return true;
-    });
-    return pixels;
+    std::vector<Vec2> points;
+    for (const double* at = points_m.data(); at != points_m.data() + points_m.size(); at += 2)
+        points.push_back({at[0], at[1]});
+    const std::vector<Vec2> pixels = film.with_film([&](Film& its) { return its.to_pixels(points); });
+    py::array_t<double> all(shape);
+    double* to = all.mutable_data();
+    for (const Vec2 pixel : pixels) {
+        *to++ = pixel.x;
+        *to++ = pixel.y;
+    }
+    return all;
 }
 
 }  // namespace corda::python

@@ -94,11 +94,11 @@ bool are_of_one_video(const AVCodecParameters& a, const AVCodecParameters& b) {
                       b.extradata + b.extradata_size);
 }
 
-/// Calls `work` with each chunk, open, and the number of its first frame in the video. Returns the colours of
-/// their first and last frames.
+/// Calls `work` with each chunk, open, and the number of its first frame in the video. `first`: the first
+/// one. Returns the colours of their first and last frames.
 template <class Work>
-std::vector<FrameColors> for_each_chunk(const ChunkRun& run, const Manifest& manifest, const Work& work) {
-    const ChunkInput first(run.chunks.front(), manifest.fps);
+std::vector<FrameColors> for_each_chunk(const ChunkRun& run, const Manifest& manifest,
+                                        const ChunkInput& first, const Work& work) {
     std::vector<FrameColors> colors;
     std::int64_t frames = 0;
     for (const ChunkFile& file : run.chunks) {
@@ -122,7 +122,7 @@ std::vector<FrameColors> copy(const ChunkRun& run, const Manifest& manifest, con
          .title = manifest.title,
          .comment = finished_comment(manifest.comment, run.frames, first.colors(0).front().patches),
          .has_alpha = first.has_alpha()});
-    auto colors = for_each_chunk(run, manifest, [&track](ChunkInput& chunk, std::int64_t begin) {
+    auto colors = for_each_chunk(run, manifest, first, [&track](ChunkInput& chunk, std::int64_t begin) {
         chunk.read(begin, [&track](AVPacket& packet) { track.write(packet); });
     });
     track.finish();
@@ -175,7 +175,7 @@ void join_chunks(const ChunkRun& run, const Manifest& manifest, const std::strin
     OutputFile output(path, options);
     std::vector<FrameColors> colors;
     if (is_animation) {
-        colors = for_each_chunk(run, manifest, [](ChunkInput&, std::int64_t) {});
+        colors = for_each_chunk(run, manifest, first, [](ChunkInput&, std::int64_t) {});
         const OnProgress encoded = [&](std::int64_t frame, std::int64_t) {
             done = run.frames + frame;
             return true;
