@@ -229,14 +229,14 @@ def test_an_interrupted_video_is_gone_on_with(tmp_path):
     film = corda.Film(SCENE, size=(320, 180), fps=60, duration=5)
     film.save(tmp_path / "whole.mp4")
     with pytest.raises(corda.Error) as raised:
-        film.save(tmp_path / "a.mp4", on_progress=lambda done, total: done < 200)
+        film.save(tmp_path / "a.mp4", on_progress=lambda done, total: not list(tmp_path.glob("a.mp4.parts/0*")))
     assert raised.value.code == 130
     assert (tmp_path / "a.mp4.parts").exists()
     with pytest.raises(corda.Error, match="interrupted render"):
         film.save(tmp_path / "a.mp4")
     heard = []
     assert film.save(tmp_path / "a.mp4", resume=True, on_progress=lambda done, total: heard.append(done)) == 300
-    assert min(done for done in heard if done > 0) > 60  # existing frames are not drawn again
+    assert min(done for done in heard if done > 0) >= 60  # existing frames are not drawn again
     assert (tmp_path / "a.mp4").read_bytes() == (tmp_path / "whole.mp4").read_bytes()
     assert not (tmp_path / "a.mp4.parts").exists()
 
