@@ -26,14 +26,14 @@ using Action = std::function<ExitCode(const Console&)>;
 /// Adds one subcommand to `app`; parsing it sets `action`.
 using AddCommand = void(CLI::App& app, Action& action);
 AddCommand add_render, add_still, add_strobe, add_sheet, add_simulate, add_compare, add_golden, add_verify,
-    add_recover, add_doctor, add_plan, add_report, add_study, add_init, add_examples, add_schema,
+    add_recover, add_sweep, add_doctor, add_plan, add_report, add_study, add_init, add_examples, add_schema,
     add_completion, add_help;
 
 /// The subcommands in the order of `corda --help`.
 inline constexpr AddCommand* kCommands[] = {
-    add_render, add_still,  add_strobe,   add_sheet,  add_simulate,   add_compare,
-    add_golden, add_verify, add_recover,  add_doctor, add_plan,       add_report,
-    add_study,  add_init,   add_examples, add_schema, add_completion, add_help};
+    add_render, add_still,    add_strobe, add_sheet,      add_simulate, add_compare, add_golden,
+    add_verify, add_recover,  add_sweep,  add_doctor,     add_plan,     add_report,  add_study,
+    add_init,   add_examples, add_schema, add_completion, add_help};
 
 /// A subcommand and the values of its options, which live as long as the program.
 template <class Options>
@@ -122,6 +122,9 @@ struct RequestedFrames {
 
 /// Reads "FIRST:END", either of which may be left out; std::nullopt for any other text.
 [[nodiscard]] std::optional<RequestedFrames> parse_frames(std::string_view text);
+
+/// Reads "I/N", 0 <= I < N, of the option --shard. Throws corda::Error (kUsage).
+[[nodiscard]] Shard parse_shard(const std::string& text);
 
 /// A moment of the motion that is to be drawn.
 struct RequestedTime {

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <charconv>
+#include <cinttypes>
 #include <cmath>
+#include <cstdio>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -255,6 +257,18 @@ void GlOptions::apply_to(FilmDef& film) const {
 void report_gl(const Console& console, const GlInfo& gl) {
     console.detail(fmt::format("drawing with {} ({}), OpenGL {}, by {}", gl.renderer, gl.vendor, gl.version,
                                gl.platform));
+}
+
+Shard parse_shard(const std::string& text) {
+    Shard shard;
+    const bool is_read = std::sscanf(text.c_str(), "%" SCNd64 "/%" SCNd64, &shard.index, &shard.count) == 2;
+    if (!is_read || fmt::format("{}/{}", shard.index, shard.count) != text || shard.index < 0 ||
+        shard.index >= shard.count)
+        throw Error(ExitCode::kUsage,
+                    fmt::format("--shard {}: is not I/N, the number of this shard (0 .. N - 1) and how many "
+                                "there are",
+                                text));
+    return shard;
 }
 
 std::optional<RequestedFrames> parse_frames(std::string_view text) {

@@ -1,8 +1,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cinttypes>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <set>
@@ -55,19 +53,6 @@ void parse_range(std::string_view text, RenderDef& def) {
     }
     throw Error(ExitCode::kUsage,
                 fmt::format("--frames {}: is not FIRST:END, two frame numbers (END is not drawn)", text));
-}
-
-/// Reads "I/N", 0 <= I < N.
-Shard parse_shard(const std::string& text) {
-    Shard shard;
-    const bool is_read = std::sscanf(text.c_str(), "%" SCNd64 "/%" SCNd64, &shard.index, &shard.count) == 2;
-    if (!is_read || fmt::format("{}/{}", shard.index, shard.count) != text || shard.index < 0 ||
-        shard.index >= shard.count)
-        throw Error(ExitCode::kUsage,
-                    fmt::format("--shard {}: is not I/N, the number of this shard (0 .. N - 1) and how many "
-                                "there are",
-                                text));
-    return shard;
 }
 
 /// "FIRST:END" of the command line; of a file that is rendered again its own, unless the scene gets another

@@ -3,7 +3,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 corda_add_public_library(
-    FOLDERS core sim view gl render media scene pipeline golden
+    FOLDERS core sim view gl render media scene pipeline sweep golden
     HEADERS
         corda.hpp
         core/basics.hpp core/image.hpp core/rational.hpp
@@ -14,7 +14,7 @@ corda_add_public_library(
         sim/defs.hpp sim/simulation.hpp sim/system.hpp
         view/defs.hpp
     PRIVATE Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json PNG::PNG
-        PkgConfig::CAIRO PkgConfig::EPOXY PkgConfig::FREETYPE PkgConfig::LIBAV PkgConfig::WEBP PkgConfig::TOMLPLUSPLUS ${CORDA_X264_TARGET})
+        PkgConfig::CAIRO PkgConfig::EPOXY PkgConfig::FREETYPE PkgConfig::LIBARCHIVE PkgConfig::LIBAV PkgConfig::WEBP PkgConfig::TOMLPLUSPLUS ${CORDA_X264_TARGET})
 
 install(TARGETS corda_library EXPORT corda_targets
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development

@@ -8,6 +8,8 @@
 
 #include "corda/core/file.hpp"
 
+struct AVSHA;
+
 namespace corda::media {
 
 /// The last `bytes` bytes of a number, the largest first.
@@ -42,6 +44,24 @@ class ByteReader {
     std::uint64_t size_ = 0;
     std::uint64_t position_ = 0;
 };
+
+/// SHA-256 (FIPS 180-4) of the bytes that are added.
+class Sha256 {
+  public:
+    /// Throws corda::Error (kTemporary).
+    Sha256();
+    Sha256(const Sha256&) = delete;
+    Sha256& operator=(const Sha256&) = delete;
+    ~Sha256();
+    void add(std::string_view bytes);
+    /// In hexadecimal. Nothing can be added afterwards.
+    [[nodiscard]] std::string text();
+
+  private:
+    AVSHA* sum_;
+};
+/// Of a file. Throws corda::Error (kIo, kInterrupted).
+[[nodiscard]] std::string sha256_of_file(const std::string& path);
 
 /// The head of a chunk of a PNG (PNG specification, third edition, 5.3). Behind it are `length` bytes and a
 /// checksum.

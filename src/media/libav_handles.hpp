@@ -14,6 +14,7 @@ extern "C" {
 #include <libavutil/log.h>
 #include <libavutil/mathematics.h>
 #include <libavutil/pixdesc.h>
+#include <libavutil/sha.h>
 }
 
 #include <cstdint>

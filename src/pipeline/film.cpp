@@ -150,12 +150,13 @@ struct Film::Impl {
     }
 
     /// The state of another renderer of this film.
-    std::unique_ptr<DrawContext> make_context() {
+    std::unique_ptr<DrawContext> make_context(pipeline::OwnedCanvas* canvas) {
         const Use use = reading();
         static_cast<void>(find_camera_locked());
         auto made = std::make_unique<DrawContext>(scene, system, def);
         static_cast<void>(fit_locked(made->renderer));
         made->trails = drawing.trails;
+        if (canvas != nullptr) made->renderer.set_canvas(std::move(*canvas));
         return made;
     }
 
@@ -435,13 +436,16 @@ GlInfo Film::gl() {
             context.platform()};
 }
 
-FilmRenderer::FilmRenderer(Film& film)
+FilmRenderer::FilmRenderer(Film& film, pipeline::OwnedCanvas* canvas)
     : film_(&film),
-      context_(film.impl_->make_context()),
+      lent_(canvas),
+      context_(film.impl_->make_context(canvas)),
       use_(context_->renderer),
       camera_(film.impl_->find_camera()) {}
 
-FilmRenderer::~FilmRenderer() = default;
+FilmRenderer::~FilmRenderer() {
+    if (lent_ != nullptr) *lent_ = context_->renderer.take_canvas();
+}
 
 bool FilmRenderer::can_draw_in_any_order(Film& film, std::int64_t end) {
     return film.impl_->holds(end);

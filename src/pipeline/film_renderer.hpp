@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/motion.hpp"
@@ -30,8 +32,9 @@ struct DrawContext {
 /// use renderers of one film, each its own, as long as none uses the film itself.
 class FilmRenderer {
   public:
-    /// Throws corda::Error: kNoGl, and what Film::camera() throws.
-    explicit FilmRenderer(Film& film);
+    /// `canvas`: an open OpenGL of this thread to draw with, or a place for the one that is opened; this
+    /// renderer has it as long as it lives. Throws corda::Error: kNoGl, and what Film::camera() throws.
+    explicit FilmRenderer(Film& film, pipeline::OwnedCanvas* canvas = nullptr);
     FilmRenderer(const FilmRenderer&) = delete;
     FilmRenderer& operator=(const FilmRenderer&) = delete;
     ~FilmRenderer();
@@ -70,9 +73,15 @@ class FilmRenderer {
 
   private:
     Film* film_;
+    pipeline::OwnedCanvas* lent_;
     std::unique_ptr<pipeline::DrawContext> context_;
     pipeline::SceneRenderer::Use use_;
     CameraDef camera_;
 };
+
+/// The files that render_video() would write of a whole film under `name`, in memory: one video, or a picture
+/// per frame. Throws corda::Error as it does.
+[[nodiscard]] std::vector<std::string> video_files(Film& film, FilmRenderer& renderer,
+                                                   const std::string& name);
 
 }  // namespace corda

@@ -340,6 +340,30 @@ Rendered render_video(Film& film, const CheckedOutput& output, const OnProgress&
     return result;
 }
 
+std::vector<std::string> video_files(Film& film, FilmRenderer& renderer, const std::string& name) {
+    const VideoDef& def = film.scene().video;
+    const bool is_opaque = view::look_of(film.scene().style).ground.is_opaque();
+    const media::CheckedVideo video{.path = name,
+                                    .def = def,
+                                    .format = media::find_format(name, def, !is_opaque),
+                                    .end = film.frame_count()};
+    check_ground(film.scene(), video.format);
+    const media::VideoMetadata data = metadata(film, 0, video.end, {});
+    const std::int64_t per_chunk = media::frames_per_chunk(video.format, def.fps);
+    std::vector<media::Chunk> chunks;
+    for (std::int64_t first = 0; first < video.end; first += per_chunk) {
+        const std::int64_t end = std::min(first + per_chunk, video.end);
+        media::ChunkEncoder encoder(media::make_encoder(video.format, def, first, data.picture_info), first);
+        for (std::int64_t k = first; k < end; ++k) {
+            check_cancelled();
+            const Damage damage = renderer.draw(film.time_s(k));
+            encoder.encode(renderer.image(), damage, k + 1 == end);
+        }
+        chunks.push_back(encoder.finish());
+    }
+    return media::video_files(video, data, std::move(chunks));
+}
+
 Rendered render_video(Film& film, const std::string& path, const RenderDef& def) {
     return render_video(film, check_render(film.scene(), path, def), def.on_progress);
 }

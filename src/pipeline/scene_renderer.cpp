@@ -15,6 +15,17 @@
 
 namespace corda::pipeline {
 
+void Canvas::Delete::operator()(Canvas* canvas) const {
+    const gl::SavedContext saved;
+    const auto lock = canvas->context.exclusive();
+    try {
+        canvas->context.make_current();  // throws in a forked child
+    } catch (const Error&) {
+        return;
+    }
+    delete canvas;
+}
+
 SceneRenderer::SceneRenderer(const Scene& scene, const System& system, const std::string& backend,
                              bool require_gpu)
     : scene_(&scene),
@@ -25,21 +36,6 @@ SceneRenderer::SceneRenderer(const Scene& scene, const System& system, const std
       overlay_(scene.overlay, scene.style, scene.video.width_px, scene.video.height_px,
                scene.video.fps.interval_s(), scene.world.duration_s) {
     gl_.require_gpu = require_gpu;
-}
-
-SceneRenderer::~SceneRenderer() {
-    if (!canvas_) return;
-    const gl::SavedContext saved;
-    const auto lock = canvas_->context.exclusive();
-    try {
-        canvas_->context.make_current();  // throws in a forked child
-    } catch (const Error&) {
-        // OpenGL objects can only be deleted in their own context, which is lost, in use by another thread,
-        // or that of a parent process.
-        static_cast<void>(canvas_.release());
-        return;
-    }
-    canvas_.reset();
 }
 
 bool SceneRenderer::needs_motion() const {
@@ -72,15 +68,23 @@ view::Camera SceneRenderer::map_of(const CameraDef& camera) const {
 void SceneRenderer::open(Needs needs) {
     // A forked child needs a context of its own and must not destroy that of its parent.
     if (canvas_ && canvas_->context.is_inherited()) static_cast<void>(canvas_.release());
+    if (!canvas_) has_others_ = false;
     if (canvas_) {
         canvas_->context.make_current();
     } else {
         render::try_driver(gl_);
-        canvas_ = std::make_unique<Canvas>(gl_);
+        canvas_ = OwnedCanvas(new Canvas(gl_));
     }
-    if (needs == Needs::kContext || canvas_->renderer) return;
+    if (needs == Needs::kContext || (canvas_->renderer && !has_others_)) return;
     const auto lock = canvas_->context.exclusive();
-    canvas_->renderer.emplace(canvas_->context, scene_->video.width_px, scene_->video.height_px);
+    const int width_px = scene_->video.width_px;
+    const int height_px = scene_->video.height_px;
+    auto& renderer = canvas_->renderer;
+    if (std::exchange(has_others_, false) && renderer) {  // keeps the compiled programs
+        renderer = std::make_unique<render::FrameRenderer>(*renderer, width_px, height_px);
+        return;
+    }
+    renderer = std::make_unique<render::FrameRenderer>(canvas_->context, width_px, height_px);
     try {
         render::check_driver(canvas_->context, *canvas_->renderer, false);
     } catch (...) {

@@ -23,6 +23,22 @@ struct Traces {
     double plotted_s = 0.0;               ///< end of the curves of the live plot
 };
 
+/// An open OpenGL context, and what draws in it. The context dies last.
+struct Canvas {
+    explicit Canvas(const gl::ContextDef& def) : context(def) {}
+    gl::Context context;
+    std::unique_ptr<render::FrameRenderer> renderer;
+    bool has_checked_tints = false;
+
+    /// Deletes a canvas, with its context current, or leaks it if that is impossible: OpenGL objects can only
+    /// be deleted in their own context, which may be lost, in use by another thread, or that of a parent
+    /// process.
+    struct Delete {
+        void operator()(Canvas* canvas) const;
+    };
+};
+using OwnedCanvas = std::unique_ptr<Canvas, Canvas::Delete>;
+
 /// Draws a scene's bodies at any positions. The first Use opens OpenGL.
 class SceneRenderer {
   public:
@@ -31,7 +47,6 @@ class SceneRenderer {
     SceneRenderer(const Scene& scene, const System& system, const std::string& backend, bool require_gpu);
     SceneRenderer(const SceneRenderer&) = delete;
     SceneRenderer& operator=(const SceneRenderer&) = delete;
-    ~SceneRenderer();
 
     /// True if pictures depend on the whole motion: the camera, the supports of pins, or a plot does.
     [[nodiscard]] bool needs_motion() const;
@@ -57,6 +72,14 @@ class SceneRenderer {
       private:
         gl::SavedContext saved_;
     };
+
+    /// Takes the canvas of another renderer of this thread, which saves opening OpenGL; may be empty.
+    void set_canvas(OwnedCanvas canvas) {
+        canvas_ = std::move(canvas);
+        has_others_ = canvas_ != nullptr;
+    }
+    /// Gives the canvas away. The next Use opens OpenGL again.
+    [[nodiscard]] OwnedCanvas take_canvas() { return std::move(canvas_); }
 
     /// See view::SceneView::traced().
     [[nodiscard]] std::vector<std::size_t> traced() const { return view_.traced(); }
@@ -90,14 +113,6 @@ class SceneRenderer {
     [[nodiscard]] const gl::Context& context() const { return canvas_->context; }
 
   private:
-    /// The context dies after the renderer.
-    struct Canvas {
-        explicit Canvas(const gl::ContextDef& def) : context(def) {}
-        gl::Context context;
-        std::optional<render::FrameRenderer> renderer;
-        bool has_checked_tints = false;
-    };
-
     void open(Needs needs);
     /// Fills list_ with a state and its traces, without the caption.
     void list(const State& state, const view::Camera& map, const Traces& traces);
@@ -114,7 +129,8 @@ class SceneRenderer {
     view::SceneView view_;
     view::Overlay overlay_;
     view::DrawList list_;
-    std::unique_ptr<Canvas> canvas_;
+    OwnedCanvas canvas_;
+    bool has_others_ = false;  ///< the canvas has the frame renderer of another scene
     bool shows_nothing_ = true;
 };
 

@@ -17,7 +17,9 @@
 #include "corda/core/output_file.hpp"
 #include "corda/media/animation/animation.hpp"
 #include "corda/media/chunks/join.hpp"
+#include "corda/media/chunks/track_output.hpp"
 #include "corda/media/format/format.hpp"
+#include "corda/media/read/video_comment.hpp"
 
 namespace corda::media {
 
@@ -379,6 +381,35 @@ std::string VideoWriter::abandon() {
         if (!is_interruption(error.code())) throw;
     }
     return frames() == 0 ? "" : sink_->place();
+}
+
+std::vector<std::string> video_files(const CheckedVideo& video, const VideoMetadata& metadata,
+                                     std::vector<Chunk> chunks) {
+    if (video.format.ending->kind != FileKind::kVideo) {
+        std::vector<std::string> files;
+        for (const Chunk& chunk : chunks)
+            for (const Packet& packet : chunk.packets) files.emplace_back(bytes_of(*packet));
+        return files;
+    }
+    const Manifest manifest = manifest_of(video, metadata);
+    MemoryFile file;
+    std::int64_t frames = 0;
+    for (const Chunk& chunk : chunks) frames += chunk.frames;
+    TrackOutput track(
+        file.descriptor(), file.path(), video.format.ending->muxer, *chunk_parameters(chunks.front()),
+        {.fps = manifest.fps,
+         .title = manifest.title,
+         .comment = finished_comment(manifest.comment, frames, chunks.front().colors.front().patches),
+         .has_alpha = has_alpha_stream(chunks.front(), video.format)});
+    for (const Chunk& chunk : chunks) {
+        for (std::int64_t frame = chunk.first; const Packet& packet : chunk.packets) {
+            packet->pts = packet->dts = frame++;
+            packet->duration = 1;
+            track.write(*packet);
+        }
+    }
+    track.finish();
+    return {file.bytes()};
 }
 
 }  // namespace corda::media

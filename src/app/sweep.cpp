@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "commands.hpp"
+#include "corda/core/text.hpp"
+#include "corda/sweep/sweep.hpp"
+
+namespace corda::app {
+namespace {
+
+struct SweepOptions {
+    std::string path;
+    std::string folder;
+    std::string shard;
+    int jobs = 0;
+    bool checks = false;
+    bool resume = false;
+    bool force = false;
+};
+
+ExitCode check(const Console& console, const sweep::SweepDef& def, const SweepOptions& options) {
+    const auto problems = sweep::check_sweep(def, options.folder, show_progress(console, "check"));
+    for (const std::string& problem : problems) console.warning(problem);
+    if (problems.empty())
+        console.result(fmt::format("{}: all shards are as they were written", options.folder));
+    console.report(
+        {{"schema", 1}, {"output", options.folder}, {"ok", problems.empty()}, {"problems", problems}});
+    return problems.empty() ? ExitCode::kOk : ExitCode::kMismatch;
+}
+
+ExitCode sweep(const Console& console, const SweepOptions& options) {
+    const double start_s = now_s();
+    const sweep::SweepDef def = sweep::load_sweep(options.path);
+    if (options.checks) return check(console, def, options);
+    sweep::RunDef run{.folder = options.folder, .jobs = options.jobs, .force = options.force};
+    if (!options.shard.empty()) run.shard = parse_shard(options.shard);
+    run.on_progress = show_progress(console, "sweep");
+    const sweep::RunResult result = sweep::run_sweep(def, run);
+    const double wall_s = now_s() - start_s;
+    console.info(fmt::format("{} of {} made, {} in {:.3g} s, {:.1f} per second",
+                             counted(result.shards_made, "shard"), result.shards,
+                             counted(result.samples_made, "sample"), wall_s,
+                             static_cast<double>(result.samples_made) / wall_s));
+    if (result.failed > 0)
+        console.warning(fmt::format("{} refused, with the reason in column \"failure\" of metadata.csv",
+                                    counted(result.failed, "sample")));
+    if (!result.is_complete)
+        console.info("shards are missing; run it without --shard when the others are done");
+    console.result(options.folder);
+    console.report({{"schema", 1},
+                    {"output", options.folder},
+                    {"samples", def.samples},
+                    {"shards", result.shards},
+                    {"shards_made", result.shards_made},
+                    {"samples_made", result.samples_made},
+                    {"failed", result.failed},
+                    {"complete", result.is_complete},
+                    {"wall_s", wall_s}});
+    return ExitCode::kOk;
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& app, Action& action) {
+    auto [command, options] =
+        add_command(app, action, "sweep", "make many samples of a scene as a labelled data set", sweep);
+    command
+        .add_option("SWEEP", options.path,
+                    "sweep file: a scene and the keys that vary, or - for standard input")
+        ->required();
+    command.add_option("-o,--output", options.folder, "folder of the shards, metadata.csv and manifest.json")
+        ->required();
+    command.add_option("--jobs", options.jobs, "samples made at a time; 0: one per core")
+        ->check(within(0, EncoderDef::kMaxThreads));
+    auto* const shard = command
+                            .add_option("--shard", options.shard,
+                                        "make only every N-th shard file, from shard file I (0 .. N - 1) on")
+                            ->type_name("I/N");
+    auto* const check =
+        command.add_flag("--check", options.checks, "read all shards again, and make none")->excludes(shard);
+    command
+        .add_flag(
+            "--resume", options.resume,
+            "make the shards that are missing, as a sweep does in any case; for scripts that also render")
+        ->excludes(check);
+    command
+        .add_flag("--force", options.force,
+                  "replace the shards of another sweep, and make finished ones again")
+        ->excludes(check)
+        ->excludes(shard);
+}
+
+}  // namespace corda::app

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "corda/sweep/sample.hpp"
+
+struct archive;
+
+namespace corda::sweep {
+
+using WriteBytes = std::function<void(std::string_view bytes)>;
+
+/// Writes an archive by libarchive. All entries are ordinary files of user 0, mode 0644 and time 0, so that
+/// the same entries give the same bytes. Throws corda::Error (kIo, kTemporary), and what `write` throws.
+class ArchiveWriter {
+  public:
+    enum class Kind { kTar, kZip };
+
+    /// A tar is POSIX ustar. `write` is given the bytes.
+    ArchiveWriter(Kind kind, WriteBytes write);
+    ArchiveWriter(const ArchiveWriter&) = delete;
+    ArchiveWriter& operator=(const ArchiveWriter&) = delete;
+    ~ArchiveWriter();
+
+    void add(const std::string& name, std::string_view bytes);
+    /// Of a zip: whether the entries that follow are compressed; at first they are not.
+    void set_compression(bool is_compressed);
+    void finish();
+
+  private:
+    void check(int status);
+    static std::ptrdiff_t write(archive*, void* writer, const void* bytes, std::size_t count);
+
+    WriteBytes write_;
+    std::exception_ptr failure_;  ///< of write_
+    archive* archive_;
+};
+
+/// Calls `take` with the name and the size of each entry of a tar. Throws corda::Error: kMismatch with the
+/// reason if it is damaged, kIo.
+void list_tar(const std::string& path, const std::function<void(const std::string&, std::int64_t)>& take);
+
+/// Arrays as numpy.load() reads them from an .npz file. Those of bytes are compressed.
+[[nodiscard]] std::string npz_bytes(const std::vector<Array>& arrays);
+
+}  // namespace corda::sweep

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace corda::sweep {
+
+/// Philox4x32-10, a counter-based generator: 128 random bits as a function of a counter and a key (Salmon,
+/// Moraes, Dror and Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC11, 2011).
+[[nodiscard]] std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter,
+                                                  std::array<std::uint32_t, 2> key);
+
+/// The random numbers of one quantity of one sample. They are a function of the arguments alone, so that
+/// samples can be made in any order, and a further quantity does not change the others.
+class Random {
+  public:
+    /// `component`: of a vector quantity, 0 .. 2^16 - 1.
+    Random(std::uint64_t seed, std::int64_t sample, std::string_view quantity, std::size_t component = 0);
+
+    /// The next number, uniform in 0 <= u < 1, a multiple of 2^-53.
+    [[nodiscard]] double uniform();
+    /// A number from the standard normal distribution, by Marsaglia's polar method.
+    [[nodiscard]] double normal();
+
+  private:
+    std::array<std::uint32_t, 2> key_;
+    std::array<std::uint32_t, 4> counter_;
+};
+
+// Functions of arithmetic and square roots alone, which have the same bits on every CPU; those of the C
+// library differ with it. Errors are a few units in the last place.
+
+/// The natural logarithm of a positive normal number.
+[[nodiscard]] double log_of(double value);
+/// `base` to a power 0 <= exponent < 1 that is a multiple of 2^-53. `base`: a positive normal number.
+[[nodiscard]] double power_of(double base, double exponent);
+/// The angle of the vector (x, y) from the x axis in rad, -pi .. pi; 0 for the zero vector.
+[[nodiscard]] double angle_of(double x, double y);
+
+}  // namespace corda::sweep

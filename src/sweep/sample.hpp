@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "corda/pipeline/film_renderer.hpp"
+#include "corda/sweep/summary.hpp"
+#include "corda/sweep/sweep_file.hpp"
+
+namespace corda::sweep {
+
+/// Numbers of a sample, in C order and little endian.
+struct Array {
+    std::string name;
+    bool is_bytes = false;            ///< numbers are uint8, otherwise float64
+    std::vector<std::int64_t> shape;  ///< the first is the number of frames
+    std::string data;
+};
+
+/// A file of a sample: its ending, with the dot, and its bytes.
+struct SampleFile {
+    std::string ending;
+    std::string bytes;
+};
+
+/// Why there is no sample of a number.
+struct SampleFailure {
+    ExitCode code = ExitCode::kInvalidScene;
+    std::string message;
+};
+
+/// One sample of a sweep. A sample whose scene is refused, or whose motion diverges, has only a failure
+/// beside its number, its key, its split and its parameters.
+struct Sample {
+    std::int64_t number = 0;
+    std::string key;  ///< its number with at least 6 digits: names of its files begin with it
+    std::string split;
+    Parameters parameters;
+    std::optional<SampleFailure> failure;
+    Summary summary;
+    Json info;  ///< its .json: see README.md
+    std::vector<Array> arrays;
+    std::vector<SampleFile> pictures;  ///< one .mp4, or a .NUMBER.png per frame; empty for kNpz and kNone
+};
+
+/// "000012": samples of a sweep have as many digits as its last one, and at least 6.
+[[nodiscard]] std::string key_of(const SweepDef& sweep, std::int64_t sample);
+
+/// Makes samples, one at a time, on the thread that made the first. It keeps OpenGL open between them.
+class SampleMaker {
+  public:
+    /// `sweep` must outlive it.
+    explicit SampleMaker(const SweepDef& sweep) : sweep_(&sweep) {}
+
+    /// Throws corda::Error for what is wrong with more than this sample: kNoGl, kEncoder, kTemporary,
+    /// kInterrupted if cancelled.
+    [[nodiscard]] Sample make(std::int64_t number);
+
+  private:
+    void make_of(const Scene& scene, Sample& sample);
+    void draw(Film& film, Sample& sample);
+
+    const SweepDef* sweep_;
+    pipeline::OwnedCanvas canvas_;
+};
+
+}  // namespace corda::sweep
