@@ -57,6 +57,14 @@ bool is_drawable(const Plot& plot, const std::pair<double, double>& point) {
     return is_drawable(point.first, plot.log_x) && is_drawable(point.second, plot.log_y);
 }
 
+/// The ends of the error bar of a point; none if there is no bar, or one that cannot be drawn.
+std::vector<double> bar_of(const Plot& plot, const Series& series, std::size_t point) {
+    if (series.spreads.empty()) return {};
+    const auto [least, most] = series.spreads[point];
+    if (!is_drawable(least, plot.log_y) || !is_drawable(most, plot.log_y)) return {};
+    return {least, most};
+}
+
 /// The range of an axis, in powers of 10 if it is logarithmic.
 struct ValueRange {
     double low = std::numeric_limits<double>::infinity();
@@ -149,10 +157,12 @@ class Drawing {
         ValueRange x;
         ValueRange y;
         for (const Series& series : plot_.series) {
-            for (const auto& point : series.points) {
+            for (std::size_t i = 0; i < series.points.size(); ++i) {
+                const auto& point = series.points[i];
                 if (!is_drawable(plot_, point)) continue;
                 x.include(point.first, plot_.log_x);
                 y.include(point.second, plot_.log_y);
+                for (const double end : bar_of(plot_, series, i)) y.include(end, plot_.log_y);
             }
         }
         const int title_rows = plot_.caption.empty() ? 2 : 1;
@@ -244,10 +254,9 @@ class Drawing {
             }
             line.push_back({area_.x.px(x), area_.y.px(y)});
             if (look.marker_em > 0.0) add_marker(line.back(), look);
-            if (series.spreads.empty()) continue;
-            const auto [least, most] = series.spreads[i];
-            if (is_drawable(least, plot_.log_y) && is_drawable(most, plot_.log_y))
-                add_line({line.back().x, area_.y.px(least)}, {line.back().x, area_.y.px(most)}, kContextLine);
+            if (const auto bar = bar_of(plot_, series, i); !bar.empty())
+                add_line({line.back().x, area_.y.px(bar[0])}, {line.back().x, area_.y.px(bar[1])},
+                         kContextLine);
         }
         end_line();
     }

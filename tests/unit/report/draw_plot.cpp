@@ -147,6 +147,19 @@ TEST(DrawPlot, HasBarsOfSpreadsInTheColourOfTheirSeries) {
     EXPECT_THAT(svg_of(plot), Not(HasSubstr("<g stroke=\"#123456\"")));
 }
 
+TEST(DrawPlot, HasRoomForTheBarsOfSpreads) {
+    Plot plot = small_plot();
+    plot.has_markers = false;
+    plot.series = {{.name = "", .points = {}, .color = "#123456"}};
+    plot.series[0].add(1.0, 2.0, {3e-3, 500.0});
+    plot.series[0].add(2.0, 2.0, {0.0, 1e9});  // not drawn: a logarithmic axis has no place for 0
+    const std::string log_svg = svg_of(plot);
+    EXPECT_THAT(log_svg, AllOf(HasSubstr(">10⁻³<"), HasSubstr(">10³<"), Not(HasSubstr(">10⁴<"))));
+    plot.log_x = plot.log_y = false;
+    plot.series[0].spreads = {{-40.0, 3.0}, {1.0, 70.0}};
+    EXPECT_THAT(svg_of(plot), AllOf(HasSubstr(">−40<"), HasSubstr(">60<")));
+}
+
 TEST(DrawPlot, KeepsEveryExtremeOfALongCurve) {
     Plot plot = small_plot();
     plot.log_x = plot.log_y = plot.has_markers = false;
