@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -191,9 +192,10 @@ void join_chunks(const ChunkRun& run, const Manifest& manifest, const std::strin
     if (!report.ok()) {
         std::string problems;
         for (const std::string& line : report.problems) problems += "\n  - " + line;
-        throw Error(ExitCode::kMismatch,
-                    fmt::format("the video for '{}' failed its check, and its chunks stay in '{}':{}", path,
-                                parts_path(path), problems));
+        throw Error(
+            ExitCode::kMismatch,
+            fmt::format("the video for '{}' failed its check, and its chunks stay in '{}':{}", path,
+                        std::filesystem::path(run.chunks.front().path).parent_path().string(), problems));
     }
     output.commit();
 }

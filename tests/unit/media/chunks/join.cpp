@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <cctype>
 #include <filesystem>
 
 #include "support/failure.hpp"
@@ -106,6 +108,11 @@ TEST_F(Video, AForgedChunkIsRefused) {
                                static_cast<char>(kHeight & 255)};
     flat.replace(flat.find(coded, flat.find("stsd")), 4, std::string(4, '\0'));
     expect_refused(flat, "is damaged");
+    std::string recolored = whole;
+    const std::size_t colors = recolored.find("\"patches\":[[");
+    for (std::size_t at = colors; recolored.at(at) != ']'; ++at)
+        if (std::isdigit(recolored[at]) != 0) recolored[at] = '1';
+    expect_refused(recolored, "failed its check, and its chunks stay in '" + file("a.mp4.parts") + "':\n");
     forge(whole);
     EXPECT_EQ(recover(file("a.mp4.parts"), file("c.mp4")).frames, 120);
 }
