@@ -121,7 +121,13 @@ Contents contents_of(const std::string& folder) {
 Descriptor open_folder(const std::string& path) {
     Descriptor folder(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
     if (folder || errno == ENOENT) return folder;
-    if (errno != ENOTDIR && errno != ELOOP) fail_file("read", path, errno);
+    const int failure = errno;
+    std::error_code ignored;
+    if (fs::is_symlink(path, ignored))
+        throw Error(ExitCode::kIo, fmt::format("'{}' is a symbolic link, which is not followed; put the "
+                                               "folder that it leads to in its place, or remove it",
+                                               path));
+    if (failure != ENOTDIR) fail_file("read", path, failure);
     throw Error(ExitCode::kIo, fmt::format("'{}' is no folder, and the chunks of the unfinished video need "
                                            "this name; move it away, or choose another name for the output",
                                            path));
