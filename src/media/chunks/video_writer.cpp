@@ -64,8 +64,10 @@ class FolderSink : public VideoSink {
                 take(file.number, file.frames);
             else
                 unusable.push_back(std::move(file));
-            if (!has_checksum) damaged_.push_back(unusable.back().number);
+            if (!has_checksum) damaged_.insert(unusable.back().number);
         }
+        // Such a chunk may have a sound copy of another checksum.
+        std::erase_if(damaged_, [this](std::int64_t chunk) { return has_chunk(chunk); });
         std::error_code ignored;
         for (const ChunkFile& file : unusable) std::filesystem::remove(file.path, ignored);
     }
@@ -79,7 +81,9 @@ class FolderSink : public VideoSink {
     [[nodiscard]] bool lacks(std::int64_t chunk) const override {
         return is_of_shard(chunk) && !has_chunk(chunk);
     }
-    [[nodiscard]] std::vector<std::int64_t> damaged() const override { return damaged_; }
+    [[nodiscard]] std::vector<std::int64_t> damaged() const override {
+        return {damaged_.begin(), damaged_.end()};
+    }
     [[nodiscard]] std::int64_t frames() const override { return frames_; }
     void add(std::int64_t number, Chunk chunk) override {
         telling_what_is_kept([&] {
@@ -140,7 +144,7 @@ class FolderSink : public VideoSink {
     CheckedVideo output_;
     ChunkFolder folder_;
     std::set<std::int64_t> there_;
-    std::vector<std::int64_t> damaged_;
+    std::set<std::int64_t> damaged_;
     std::int64_t frames_ = 0;
 };
 
