@@ -237,5 +237,24 @@ TEST_F(ChunkFolders, OfUnsoundManifestsAreRefused) {
     }
 }
 
+TEST_F(ChunkFolders, WhoseManifestIsNoFileAreRefused) {
+    static_cast<void>(open(Use::kNew));
+    const std::string manifest = path_ + "/corda.json";
+    fs::rename(manifest, folder_.file("manifest"));
+    for (const char* const kind : {"pipe", "link"}) {
+        if (kind == std::string("pipe"))
+            ASSERT_EQ(::mkfifo(manifest.c_str(), 0600), 0);
+        else
+            fs::create_symlink(folder_.file("manifest"), manifest);
+        const test::Failure read = failure_of([&] { static_cast<void>(read_manifest(path_)); });
+        EXPECT_EQ(read.code, ExitCode::kMismatch) << kind;
+        EXPECT_THAT(read.message, HasSubstr("'" + manifest + "' is no ordinary file")) << kind;
+        EXPECT_THAT(failure_of([&] { static_cast<void>(open(Use::kContinue)); }).message,
+                    HasSubstr("holds other files"))
+            << kind;
+        fs::remove(manifest);
+    }
+}
+
 }  // namespace
 }  // namespace corda::media

@@ -118,6 +118,37 @@ TEST_F(Video, AForgedChunkIsRefused) {
     EXPECT_EQ(recover(file("a.mp4.parts"), file("c.mp4")).frames, 120);
 }
 
+TEST_F(Video, AShortChunkMayEndInOtherColorsThanItBegan) {
+    {
+        VideoWriter writer(file("a.mp4"), small_video(), {});
+        for (const auto& color :
+             std::vector<std::array<std::uint8_t, 3>>{{200, 0, 0}, {0, 0, 200}, {0, 160, 0}}) {
+            Image image(kWidth, kHeight);
+            fill(image, image.rect(), color);
+            writer.write(image, {image.rect()});
+        }
+        EXPECT_EQ(writer.abandon(), file("a.mp4.parts"));
+    }
+    EXPECT_EQ(recover(file("a.mp4.parts"), file("a.mp4")).frames, 3);
+}
+
+TEST_F(Video, AChunkMustBeAFile) {
+    const auto chunks = abandon_video(file("a.mp4"), small_video(), 130);
+    const std::string& second = chunks[1].path;
+    fs::rename(second, file("second.mp4"));
+    for (const char* const kind : {"pipe", "link"}) {
+        if (kind == std::string("pipe"))
+            ASSERT_EQ(::mkfifo(second.c_str(), 0600), 0);
+        else
+            fs::create_symlink(file("second.mp4"), second);
+        const Recovered recovered = recover(file("a.mp4.parts"), file("a.mp4"), {.force = true});
+        EXPECT_EQ(recovered.gap, "chunk 1 (frames 60..119) is missing") << kind;
+        EXPECT_EQ(recovered.left_out, 1) << kind;  // the third
+        EXPECT_NO_THROW(check_chunks_in_child(file("a.mp4.parts"))) << kind;
+        fs::remove(second);
+    }
+}
+
 /// Two whole chunks and a short one, of a video of one ending.
 class ChunksOf : public Video, public testing::WithParamInterface<const char*> {
   protected:
