@@ -215,8 +215,8 @@ report::Chapter path_chapter(const Film& film, const MotionSummary& motion) {
     // Axes far from 0 would have the same number at each tick.
     constexpr double kFar = 1e3;
     const Vec2 origin_m = system.origin_m;
-    const double extent_m = std::max(extremes_of(curves, &view::CurvePoint::x).extent(),
-                                     extremes_of(curves, &view::CurvePoint::y).extent());
+    const double extent_m = std::max(range_of(curves, &view::CurvePoint::x).extent(),
+                                     range_of(curves, &view::CurvePoint::y).extent());
     const bool is_far = std::max(std::abs(origin_m.x), std::abs(origin_m.y)) > kFar * extent_m;
     for (Curve& curve : curves) {
         for (view::CurvePoint& point : curve.points) {

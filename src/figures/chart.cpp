@@ -34,16 +34,12 @@ bool all_show(const std::vector<Color>& colors) {
 
 }  // namespace
 
-Extremes extremes_of(const std::vector<Curve>& curves, double view::CurvePoint::*value) {
-    Extremes extremes;
-    for (const Curve& curve : curves) {
-        for (const view::CurvePoint& point : curve.points) {
-            if (!std::isfinite(point.*value)) continue;
-            extremes.low = std::min(extremes.low, point.*value);
-            extremes.high = std::max(extremes.high, point.*value);
-        }
-    }
-    return extremes;
+view::ValueRange range_of(const std::vector<Curve>& curves, double view::CurvePoint::*value) {
+    view::ValueRange range;
+    for (const Curve& curve : curves)
+        for (const view::CurvePoint& point : curve.points)
+            if (std::isfinite(point.*value)) range.include(point.*value);
+    return range;
 }
 
 std::string quantity_text(double value, const std::string& unit) {
@@ -63,8 +59,8 @@ std::string time_text(double time_s) {
 
 report::Plot make_plot(const std::string& id, const std::string& title, const AxisDef& x, const AxisDef& y,
                        const std::vector<Curve>& curves) {
-    const view::NumberTitle x_title = title_of_axis(x, extremes_of(curves, &view::CurvePoint::x).size());
-    const view::NumberTitle y_title = title_of_axis(y, extremes_of(curves, &view::CurvePoint::y).size());
+    const view::NumberTitle x_title = title_of_axis(x, range_of(curves, &view::CurvePoint::x).largest());
+    const view::NumberTitle y_title = title_of_axis(y, range_of(curves, &view::CurvePoint::y).largest());
     report::Plot plot{id, title, x_title.text, y_title.text, false, false, {}};
     plot.has_markers = false;
     for (const Curve& curve : curves) {

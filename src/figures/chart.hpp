@@ -1,13 +1,12 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <string>
 #include <vector>
 
 #include "corda/figures/motion_summary.hpp"
 #include "corda/report/report.hpp"
 #include "corda/scene/scene.hpp"
+#include "corda/view/plot_axis.hpp"
 
 namespace corda::figures {
 
@@ -18,16 +17,8 @@ struct Curve {
     std::string color = {};  ///< see report::Series
 };
 
-/// The finite values of a coordinate.
-struct Extremes {
-    double low = HUGE_VAL;
-    double high = -HUGE_VAL;
-
-    [[nodiscard]] double extent() const { return std::max(0.0, high - low); }
-    /// The largest absolute value.
-    [[nodiscard]] double size() const { return low > high ? 0.0 : std::max(std::abs(low), std::abs(high)); }
-};
-[[nodiscard]] Extremes extremes_of(const std::vector<Curve>& curves, double view::CurvePoint::*value);
+/// The range of the finite values of a coordinate.
+[[nodiscard]] view::ValueRange range_of(const std::vector<Curve>& curves, double view::CurvePoint::*value);
 
 /// The quantity of an axis, and the unit of its values, which takes a prefix; "": bare numbers, "rad": as it
 /// is.

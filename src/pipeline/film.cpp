@@ -133,8 +133,9 @@ struct Film::Impl {
         if (scene.overlay.plot != LivePlot::kNone) {
             const std::vector<MethodDef> methods =
                 motion.methods();  // a copy: reading may restart the motion
-            plot = plot_data.read(methods, last_s_locked(),
-                                  [this](double time_s) -> const State& { return motion.at(time_s); });
+            plot = plot_data.read(
+                methods, last_s_locked(), [this](double time_s) -> const State& { return motion.at(time_s); },
+                [this](const State& state) { return motion.energy_of(state); });
         }
         camera = fit_locked(drawing.renderer);
         return *camera;

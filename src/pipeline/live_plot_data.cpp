@@ -97,15 +97,14 @@ view::PlotData LivePlotData::axes() const {
 }
 
 view::PlotData LivePlotData::read(std::span<const MethodDef> methods, double end_s,
-                                  const std::function<const State&(double time_s)>& state_at) const {
+                                  const std::function<const State&(double time_s)>& state_at,
+                                  const std::function<Energy(const State&)>& energy_of) const {
     view::PlotData data = axes();
-    std::optional<sim::EnergyMeter> meter;
-    if (plot_ == LivePlot::kEnergy) meter.emplace(*system_, scene_->world, methods);
     const FrameRate fps = scene_->video.fps;
     const Timeline timeline(fps, fps.last_frame_within(scene_->world.duration_s), times_s());
     const std::size_t stride = timeline.size() / kMaxSamples + 1;
     for (std::size_t i = 0; i < timeline.size() && timeline.time_s(i) <= end_s; i += stride)
-        add(state_at(timeline.time_s(i)), meter, data);
+        add(state_at(timeline.time_s(i)), energy_of, data);
     if (plot_ != LivePlot::kEnergy) return data;
     const auto lower = [](const view::CurvePoint& a, const view::CurvePoint& b) { return a.y < b.y; };
     auto& potential = data.curves[1].points;
@@ -119,13 +118,13 @@ view::PlotData LivePlotData::read(std::span<const MethodDef> methods, double end
     return data;
 }
 
-void LivePlotData::add(const State& state, const std::optional<sim::EnergyMeter>& meter,
+void LivePlotData::add(const State& state, const std::function<Energy(const State&)>& energy_of,
                        view::PlotData& data) const {
     const double t = state.time_s;
     const double x_m = system_->origin_m.x + state.x_m[tip_];
     switch (plot_) {
         case LivePlot::kEnergy: {
-            const Energy energy = meter.value().of(state);
+            const Energy energy = energy_of(state);
             const double potential_j = energy.potential_j();
             data.curves[0].points.push_back({t, t, energy.kinetic_j});
             data.curves[1].points.push_back({t, t, potential_j});

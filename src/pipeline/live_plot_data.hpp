@@ -2,12 +2,11 @@
 
 #include <cstddef>
 #include <functional>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "corda/scene/scene.hpp"
-#include "corda/sim/forces/elastic_forces.hpp"
+#include "corda/sim/simulation.hpp"
 #include "corda/view/plot_panel.hpp"
 
 namespace corda::pipeline {
@@ -25,14 +24,16 @@ class LivePlotData {
     [[nodiscard]] std::vector<double> times_s() const;
     /// Reads the motion of bodies with these methods up to `end_s`, at those times and at frame times,
     /// whatever else is recorded. The minimum of the potential energy is 0. With relaxation there is no total
-    /// energy: bars that it stretches store none.
+    /// energy: bars that it stretches store none. `energy_of` is called with the last state of `state_at`.
     [[nodiscard]] view::PlotData read(std::span<const MethodDef> methods, double end_s,
-                                      const std::function<const State&(double time_s)>& state_at) const;
+                                      const std::function<const State&(double time_s)>& state_at,
+                                      const std::function<Energy(const State&)>& energy_of) const;
 
   private:
     [[nodiscard]] view::PlotData axes() const;
-    /// Adds a point to each curve. `meter`: for energies.
-    void add(const State& state, const std::optional<sim::EnergyMeter>& meter, view::PlotData& data) const;
+    /// Adds a point to each curve.
+    void add(const State& state, const std::function<Energy(const State&)>& energy_of,
+             view::PlotData& data) const;
 
     const Scene* scene_;
     const System* system_;

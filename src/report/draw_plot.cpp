@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -18,6 +17,7 @@ namespace {
 using view::PixelPoint;
 using view::PlotAxis;
 using view::rounded;
+using view::ValueRange;
 
 /// Colours that colour-blind readers can tell apart (after Okabe and Ito 2008, without their yellow and
 /// black).
@@ -65,30 +65,14 @@ std::vector<double> bar_of(const Plot& plot, const Series& series, std::size_t p
     return {least, most};
 }
 
-/// The range of an axis, in powers of 10 if it is logarithmic.
-struct ValueRange {
-    double low = std::numeric_limits<double>::infinity();
-    double high = -std::numeric_limits<double>::infinity();
-
-    void include(double value, bool is_log) {
-        const double at = is_log ? std::log10(value) : value;
-        low = std::min(low, at);
-        high = std::max(high, at);
-    }
-    [[nodiscard]] double size() const { return high - low; }
-    /// Widened about its middle to that size.
-    [[nodiscard]] ValueRange widened(double to) const {
-        const double more = std::max(0.0, 0.5 * (to - size()));
-        return {low - more, high + more};
-    }
-    /// Wide enough to draw.
-    [[nodiscard]] ValueRange drawable() const {
-        if (low > high) return {0.0, 1.0};
-        constexpr double kMinShare = 1e-6;
-        const double least = kMinShare * std::max(std::abs(low), std::abs(high));
-        return view::can_be_divided(size()) && size() >= least ? *this : widened(least > 0.0 ? least : 1.0);
-    }
-};
+/// Wide enough to draw.
+ValueRange drawable(const ValueRange& range) {
+    if (range.low > range.high) return {0.0, 1.0};
+    constexpr double kMinShare = 1e-6;
+    const double least = kMinShare * range.largest();
+    const bool is_wide = view::can_be_divided(range.extent()) && range.extent() >= least;
+    return is_wide ? range : range.widened(least > 0.0 ? least : 1.0);
+}
 
 /// How a series is drawn.
 struct Look {
@@ -154,22 +138,25 @@ class Drawing {
 
     /// Places the box, its labels and the key; sets the height of the list.
     void place() {
-        ValueRange x;
+        ValueRange x;  // in powers of 10 on a logarithmic axis
         ValueRange y;
+        const auto include = [](double value, bool is_log, ValueRange& range) {
+            range.include(is_log ? std::log10(value) : value);
+        };
         for (const Series& series : plot_.series) {
             for (std::size_t i = 0; i < series.points.size(); ++i) {
                 const auto& point = series.points[i];
                 if (!is_drawable(plot_, point)) continue;
-                x.include(point.first, plot_.log_x);
-                y.include(point.second, plot_.log_y);
-                for (const double end : bar_of(plot_, series, i)) y.include(end, plot_.log_y);
+                include(point.first, plot_.log_x, x);
+                include(point.second, plot_.log_y, y);
+                for (const double end : bar_of(plot_, series, i)) include(end, plot_.log_y, y);
             }
         }
         const int title_rows = plot_.caption.empty() ? 2 : 1;
         area_.box = {px(kEdge), px(kEdge + kAboveBox + title_rows * view::kLine), list_.width - px(1.5), 0};
         // Labels at the left narrow the box.
         for (int pass = 0; pass < 2; ++pass) {
-            fit_axes(x.drawable(), y.drawable());
+            fit_axes(drawable(x), drawable(y));
             int widest_px = 0;
             for (const PlotAxis::Label& label : area_.y.labels)
                 widest_px = std::max(widest_px, width_px(label.text));
@@ -182,12 +169,12 @@ class Drawing {
     void fit_axes(ValueRange x, ValueRange y) {
         double height_per_width = plot_.height_per_width;
         if (plot_.has_equal_scales) {
-            const double margin = 2.0 * kMargin * std::max(x.size(), y.size());
-            x = x.widened(x.size() + margin);
-            y = y.widened(y.size() + margin);
-            height_per_width = std::clamp(y.size() / x.size(), kFlattest, kTallest);
-            x = x.widened(y.size() / height_per_width);
-            y = y.widened(x.size() * height_per_width);
+            const double margin = 2.0 * kMargin * std::max(x.extent(), y.extent());
+            x = x.widened(x.extent() + margin);
+            y = y.widened(y.extent() + margin);
+            height_per_width = std::clamp(y.extent() / x.extent(), kFlattest, kTallest);
+            x = x.widened(y.extent() / height_per_width);
+            y = y.widened(x.extent() * height_per_width);
         }
         area_.box.y1 = area_.box.y0 + rounded(height_per_width * area_.box.width());
         area_.x = {x.low, x.high, area_.box.x0, area_.box.x1 - 1, plot_.log_x, printable(plot_.x_title),

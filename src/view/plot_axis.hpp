@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -8,6 +11,27 @@
 #include "corda/view/font.hpp"
 
 namespace corda::view {
+
+/// The smallest and the largest of some values; without any, `low` is above `high`.
+struct ValueRange {
+    double low = std::numeric_limits<double>::infinity();
+    double high = -std::numeric_limits<double>::infinity();
+
+    void include(double value) {
+        low = std::min(low, value);
+        high = std::max(high, value);
+    }
+    [[nodiscard]] double extent() const { return std::max(0.0, high - low); }
+    /// The largest absolute value.
+    [[nodiscard]] double largest() const {
+        return low > high ? 0.0 : std::max(std::abs(low), std::abs(high));
+    }
+    /// Widened about its middle to an extent.
+    [[nodiscard]] ValueRange widened(double to) const {
+        const double more = std::max(0.0, 0.5 * (to - extent()));
+        return {low - more, high + more};
+    }
+};
 
 /// One axis of a plot: the map from values to pixels, and its labels.
 struct PlotAxis {

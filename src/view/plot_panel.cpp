@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include "corda/view/colors.hpp"
@@ -37,26 +36,14 @@ constexpr std::uint8_t kBoxAlpha = 0x90;
 /// Number of points shown of a curve that is not over time: the last ones.
 constexpr std::size_t kMaxPoints = 4000;
 
-struct ValueRange {
-    double low = std::numeric_limits<double>::infinity();
-    double high = -std::numeric_limits<double>::infinity();
-
-    void include(double value) {
-        low = std::min(low, value);
-        high = std::max(high, value);
-    }
-    [[nodiscard]] double largest() const { return std::max(std::abs(low), std::abs(high)); }
-    /// Widened if it is too narrow to draw: upwards from 0, otherwise about its middle.
-    [[nodiscard]] ValueRange widened(double least) const {
-        constexpr double kMinShare = 1e-6;
-        least = std::max(least, kMinShare * largest());
-        if (least == 0.0) least = 1.0;
-        if (high - low >= least) return *this;
-        if (low >= 0.0 && low < kMinShare * least) return {0.0, least};
-        const double middle = 0.5 * (low + high);
-        return {middle - 0.5 * least, middle + 0.5 * least};
-    }
-};
+/// Widened if it is too narrow to draw: upwards from 0, otherwise about its middle.
+ValueRange drawable(const ValueRange& range, double least) {
+    constexpr double kMinShare = 1e-6;
+    least = std::max(least, kMinShare * range.largest());
+    if (least == 0.0) least = 1.0;
+    if (range.low >= 0.0 && range.low < kMinShare * least && range.extent() < least) return {0.0, least};
+    return range.widened(least);
+}
 
 ValueRange range_of(const PlotData& data, double CurvePoint::*value) {
     ValueRange range;
@@ -127,9 +114,10 @@ void PlotPanel::set_data(const PlotData& data, std::span<const Color> body_color
         axis.unit = title.unit;
         return axis;
     };
-    plot_.x = start_axis(data.x, is_over_time ? ValueRange{0.0, data.end_s}
-                                              : range_of(data, &CurvePoint::x).widened(data.x.least_extent));
-    plot_.y = start_axis(data.y, range_of(data, &CurvePoint::y).widened(data.y.least_extent));
+    plot_.x =
+        start_axis(data.x, is_over_time ? ValueRange{0.0, data.end_s}
+                                        : drawable(range_of(data, &CurvePoint::x), data.x.least_extent));
+    plot_.y = start_axis(data.y, drawable(range_of(data, &CurvePoint::y), data.y.least_extent));
     curves_.clear();
     const std::vector<Color> colors = choose_colors(data, body_colors);
     for (std::size_t i = 0; i < data.curves.size(); ++i)

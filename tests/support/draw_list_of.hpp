@@ -28,8 +28,10 @@ inline std::optional<view::PlotData> plotted_of(Film& film) {
     const pipeline::LivePlotData curves(film.scene(), film.system());
     std::vector<MethodDef> methods;
     for (const BodyPlan& body : film.plan().bodies) methods.push_back(body.method);
-    return curves.read(methods, film.scene().world.duration_s,
-                       [&](double time_s) -> const State& { return film.state_at(time_s); });
+    return curves.read(
+        methods, film.scene().world.duration_s,
+        [&](double time_s) -> const State& { return film.state_at(time_s); },
+        [&](const State&) { return film.energy(); });
 }
 
 /// The draw list of a scene at a state, made without Film, for the reference renderer.
