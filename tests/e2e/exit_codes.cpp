@@ -341,8 +341,8 @@ TEST_F(ExitCodes, SixIfTheFolderIsRemovedMidway) {
     const auto result =
         run_shell("mkdir " + folder + "; " + test::quoted(CORDA_PROGRAM) + " render " + scene_ + " -o " +
                   folder + "/out.mp4 --duration 200 --size 320x180 & pid=$!; until ls " + folder +
-                  "/out.mp4.parts/0* >/dev/null 2>&1 || ! kill -0 $pid; do sleep 0.01; done; mv " +
-                  folder + " " + folder + ".removed; wait $pid");
+                  "/out.mp4.parts/0* >/dev/null 2>&1 || ! kill -0 $pid; do sleep 0.01; done; mv " + folder +
+                  " " + folder + ".removed; wait $pid");
     EXPECT_EQ(result.exit_code, 6) << result.err;
     EXPECT_THAT(result.err, HasSubstr("was removed meanwhile, and its frames with it"));
 }
