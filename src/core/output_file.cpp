@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -190,8 +191,21 @@ void OutputFile::find_target() {
         replaced_ = Owner{status->st_mode & 0777U, status->st_uid, status->st_gid};
 }
 
+OutputFile::OutputFile(InMemory) : descriptor_(::memfd_create("output", MFD_CLOEXEC)) {
+    if (!descriptor_)
+        throw Error(ExitCode::kTemporary,
+                    "cannot make a file in memory: " + std::generic_category().message(errno));
+    temporary_ = "/proc/self/fd/" + std::to_string(descriptor_.get());
+}
+
+std::string OutputFile::bytes() const {
+    std::string bytes(file_size(temporary_), '\0');
+    bytes.resize(read_bytes(open_for_reading(temporary_), temporary_, bytes.data(), bytes.size()));
+    return bytes;
+}
+
 OutputFile::~OutputFile() {
-    if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    if (!temporary_.empty() && !path_.empty()) ::unlink(temporary_.c_str());
 }
 
 void OutputFile::open_directly() {

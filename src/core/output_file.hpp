@@ -49,6 +49,10 @@ void remove_leftovers(const std::string& folder,
 /// A device, a pipe or standard output is written to directly.
 class OutputFile {
   public:
+    struct InMemory {};
+    /// A file in memory, which can be read through bytes() and temporary_path() and never gets a name. Throws
+    /// corda::Error (kTemporary).
+    explicit OutputFile(InMemory);
     /// Creates the temporary file. Throws corda::Error (kIo), like all below.
     explicit OutputFile(std::string path, const OutputOptions& options = {});
     OutputFile(const OutputFile&) = delete;
@@ -58,6 +62,9 @@ class OutputFile {
 
     /// Throws ReaderLeft, like all below, if whoever reads standard output closed it.
     void write(std::string_view bytes);
+
+    /// What was written, of a file in memory.
+    [[nodiscard]] std::string bytes() const;
 
     /// Flushes the buffer of `write`, for readers of the file before it has its name.
     void flush();

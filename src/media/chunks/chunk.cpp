@@ -11,9 +11,10 @@
 #include "corda/media/read/video_comment.hpp"
 
 namespace corda::media {
+namespace {
 
-/// libaom gives its header with the first packet, not before.
-CodecParameters chunk_parameters(const Chunk& chunk) {
+/// The parameters of a chunk for a muxer: libaom gives its header with the first packet, not before.
+CodecParameters with_header(const Chunk& chunk) {
     CodecParameters parameters =
         check_allocated(CodecParameters(avcodec_parameters_alloc()), "codec parameters");
     check_libav(avcodec_parameters_copy(parameters.get(), chunk.parameters.get()), ExitCode::kEncoder,
@@ -32,9 +33,7 @@ CodecParameters chunk_parameters(const Chunk& chunk) {
     return parameters;
 }
 
-bool has_alpha_stream(const Chunk& chunk, const Format& format) {
-    return format.has_alpha && chunk.parameters->codec_id == AV_CODEC_ID_VP9;
-}
+}  // namespace
 
 std::int64_t frames_per_chunk(const FrameRate& fps) {
     constexpr double kFrames = 60.0;
@@ -83,11 +82,11 @@ Chunk ChunkEncoder::finish() {
 
 void write_chunk(const Chunk& chunk, const Format& format, Rational fps, OutputFile& output) {
     const bool is_animation = format.ending->kind == FileKind::kAnimation;
-    TrackOutput track(output, is_animation ? "mov" : format.ending->muxer, *chunk_parameters(chunk),
+    TrackOutput track(output, is_animation ? "mov" : format.ending->muxer, *with_header(chunk),
                       {.fps = fps,
                        .title = {},
                        .comment = chunk_comment(chunk.colors),
-                       .has_alpha = has_alpha_stream(chunk, format)});
+                       .has_alpha = format.has_alpha && chunk.parameters->codec_id == AV_CODEC_ID_VP9});
     for (const Packet& packet : chunk.packets) track.write(*packet);
     track.finish();
 }

@@ -56,11 +56,6 @@ class ChunkEncoder {
     Chunk chunk_;
 };
 
-/// The parameters of a chunk for a muxer.
-[[nodiscard]] CodecParameters chunk_parameters(const Chunk& chunk);
-/// Whether a chunk keeps alpha in a second stream.
-[[nodiscard]] bool has_alpha_stream(const Chunk& chunk, const Format& format);
-
 /// Writes a chunk to a file that plays by itself. Its comment tells the colours of its first and its last
 /// frame. Its packets are empty afterwards. Throws corda::Error (kIo).
 void write_chunk(const Chunk& chunk, const Format& format, Rational fps, OutputFile& output);

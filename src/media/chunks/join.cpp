@@ -200,6 +200,13 @@ void join_chunks(const ChunkRun& run, const Manifest& manifest, const std::strin
     output.commit();
 }
 
+std::string join_in_memory(const ChunkRun& run, const Manifest& manifest, const Ending& ending) {
+    const LogCapture log;
+    OutputFile output{OutputFile::InMemory()};
+    copy(run, manifest, ending, ChunkInput(run.chunks.front(), manifest.fps), output);
+    return output.bytes();
+}
+
 void check_chunks_in_child(const std::string& folder) {
     const std::vector<ChunkFile> files = chunk_files(folder);
     const auto manifest = files.empty() ? std::nullopt : read_manifest(folder);

@@ -28,6 +28,10 @@ struct JoinDef {
 void join_chunks(const ChunkRun& run, const Manifest& manifest, const std::string& path,
                  const OutputOptions& options, const JoinDef& def);
 
+/// The bytes of the video that join_chunks() makes, without verifying them. Of an animation there is none.
+/// Throws corda::Error (kMismatch, kIo, kTemporary, kInterrupted).
+[[nodiscard]] std::string join_in_memory(const ChunkRun& run, const Manifest& manifest, const Ending& ending);
+
 /// Reads the sound chunks of a folder of any origin in a child process, which libav may end at one. After
 /// that this process can read them. Throws corda::Error: kIo, and as work_in_child().
 void check_chunks_in_child(const std::string& folder);

@@ -1,12 +1,9 @@
 #include "corda/media/chunks/track_output.hpp"
 
 #include <fmt/format.h>
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <system_error>
-#include <utility>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
@@ -67,9 +64,9 @@ TrackOutput::~TrackOutput() {
     if (holds_packet) static_cast<void>(av_write_trailer(format_.get()));
 }
 
-TrackOutput::TrackOutput(int descriptor, std::string path, const char* container,
-                         const AVCodecParameters& parameters, const TrackInfo& info)
-    : descriptor_(descriptor), path_(std::move(path)) {
+TrackOutput::TrackOutput(const OutputFile& output, const char* container, const AVCodecParameters& parameters,
+                         const TrackInfo& info)
+    : descriptor_(output.descriptor()), path_(output.temporary_path()) {
     const LogCapture log;
     auto* buffer = static_cast<unsigned char*>(av_malloc(kBufferBytes));
     // FFmpeg 7.0 makes the bytes const: `auto` becomes either type.
@@ -147,23 +144,6 @@ void TrackOutput::renew_header(const std::string& what) {
     check_libav(::lseek(descriptor_, 0, SEEK_SET) < 0 ? AVERROR(errno) : 0, kIo, what);
     check_libav(AVERROR(write_all(descriptor_, renewed)), kIo, what);
     check_libav(::lseek(descriptor_, 0, SEEK_END) < 0 ? AVERROR(errno) : 0, kIo, what);
-}
-
-MemoryFile::MemoryFile() : descriptor_(::memfd_create("video", MFD_CLOEXEC)) {
-    if (!descriptor_)
-        throw Error(ExitCode::kTemporary,
-                    fmt::format("cannot make a file in memory: {}", std::generic_category().message(errno)));
-}
-
-std::string MemoryFile::path() const {
-    return fmt::format("/proc/self/fd/{}", descriptor_.get());
-}
-
-std::string MemoryFile::bytes() const {
-    std::string bytes(file_size(path()), '\0');
-    const FileHandle file = open_for_reading(path());
-    bytes.resize(read_bytes(file, path(), bytes.data(), bytes.size()));
-    return bytes;
 }
 
 }  // namespace corda::media

@@ -23,14 +23,10 @@ struct TrackInfo {
 /// of packets are frame numbers.
 class TrackOutput {
   public:
-    /// Writes the header to an empty file, which is open for writing as `descriptor` and can be opened as
-    /// `path`; it must stay open. `container` is libav's name of the muxer. Throws
+    /// Writes the header. `output` must outlive this; `container` is libav's name of the muxer. Throws
     /// corda::Error (kIo), like all below.
-    TrackOutput(int descriptor, std::string path, const char* container, const AVCodecParameters& parameters,
-                const TrackInfo& info);
     TrackOutput(const OutputFile& output, const char* container, const AVCodecParameters& parameters,
-                const TrackInfo& info)
-        : TrackOutput(output.descriptor(), output.temporary_path(), container, parameters, info) {}
+                const TrackInfo& info);
     TrackOutput(const TrackOutput&) = delete;
     TrackOutput& operator=(const TrackOutput&) = delete;
     ~TrackOutput();
@@ -57,21 +53,6 @@ class TrackOutput {
     std::int64_t bytes_ = 0;   ///< of packets
     std::int64_t frames_ = 0;  ///< their number
     bool ended_ = false;
-};
-
-/// A file in memory.
-class MemoryFile {
-  public:
-    /// Throws corda::Error (kTemporary).
-    MemoryFile();
-    [[nodiscard]] int descriptor() const { return descriptor_.get(); }
-    /// A path that opens it.
-    [[nodiscard]] std::string path() const;
-    /// Throws corda::Error (kIo).
-    [[nodiscard]] std::string bytes() const;
-
-  private:
-    Descriptor descriptor_;
 };
 
 /// True if this libavformat, of FFmpeg 5.1, writes headers of Matroska files that FFmpeg 7.1 writes

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <deque>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -17,9 +18,7 @@
 #include "corda/core/output_file.hpp"
 #include "corda/media/animation/animation.hpp"
 #include "corda/media/chunks/join.hpp"
-#include "corda/media/chunks/track_output.hpp"
 #include "corda/media/format/format.hpp"
-#include "corda/media/read/video_comment.hpp"
 
 namespace corda::media {
 
@@ -252,6 +251,16 @@ Manifest manifest_of(const CheckedVideo& output, const VideoMetadata& metadata) 
             .comment = comment.dump()};
 }
 
+/// Stamps packets with the numbers of their frames.
+void number_packets(const Chunk& chunk) {
+    for (std::int64_t frame = 0; const Packet& packet : chunk.packets) {
+        if (packet->pts != frame)
+            throw Error(ExitCode::kInternal, "an encoder has given the frames of a chunk in another order");
+        packet->dts = frame++;
+        packet->duration = 1;
+    }
+}
+
 /// Refuses to replace existing files. The folder is made if there is none.
 void check_pictures(const std::string& pattern, const std::string& input, bool force, std::int64_t first,
                     std::int64_t end) {
@@ -322,12 +331,7 @@ void VideoWriter::write(const Image& frame, const Damage& damage) {
 
 void VideoWriter::append(Chunk chunk) {
     if (chunk.frames == 0) return;
-    for (std::int64_t frame = 0; const Packet& packet : chunk.packets) {
-        if (packet->pts != frame)
-            throw Error(ExitCode::kInternal, "an encoder has given the frames of a chunk in another order");
-        packet->dts = frame++;
-        packet->duration = 1;
-    }
+    number_packets(chunk);
     next_ = chunk.first + chunk.frames;
     const std::int64_t number = chunk.first / manifest_.per_chunk;
     sink_->add(number, std::move(chunk));
@@ -396,24 +400,17 @@ std::vector<std::string> video_files(const CheckedVideo& video, const VideoMetad
         return files;
     }
     const Manifest manifest = manifest_of(video, metadata);
-    MemoryFile file;
-    std::int64_t frames = 0;
-    for (const Chunk& chunk : chunks) frames += chunk.frames;
-    TrackOutput track(
-        file.descriptor(), file.path(), video.format.ending->muxer, *chunk_parameters(chunks.front()),
-        {.fps = manifest.fps,
-         .title = manifest.title,
-         .comment = finished_comment(manifest.comment, frames, chunks.front().colors.front().patches),
-         .has_alpha = has_alpha_stream(chunks.front(), video.format)});
-    for (const Chunk& chunk : chunks) {
-        for (std::int64_t frame = chunk.first; const Packet& packet : chunk.packets) {
-            packet->pts = packet->dts = frame++;
-            packet->duration = 1;
-            track.write(*packet);
-        }
+    std::deque<OutputFile> files;
+    ChunkRun run;
+    for (Chunk& chunk : chunks) {
+        number_packets(chunk);
+        files.emplace_back(OutputFile::InMemory());
+        write_chunk(chunk, video.format, manifest.fps, files.back());
+        run.chunks.push_back(
+            {chunk.first / manifest.per_chunk, chunk.frames, 0, files.back().temporary_path()});
+        run.frames += chunk.frames;
     }
-    track.finish();
-    return {file.bytes()};
+    return {join_in_memory(run, manifest, *video.format.ending)};
 }
 
 }  // namespace corda::media
