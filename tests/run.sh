@@ -2,7 +2,7 @@
 # Installs missing packages, builds Corda with warnings as errors and runs every test with ctest.
 # Usage: tests/run.sh [--preset ci|asan|tsan|debug] [--long | --units] [-- CTEST ARGUMENTS]
 #   --preset tsan  only the tests of threads, under ThreadSanitizer
-#   --long   the long form of the slow suites, and tests/platforms.sh
+#   --long   the long form of the slow suites, tests/platforms.sh and tests/cluster/slurm.sh
 #   --units  only the tests of unit and fuzz
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -26,4 +26,7 @@ cd "$root"
 cmake --build "build/$preset" --target "$target"
 [[ "$target" != unit_tests ]] || set -- -L 'unit|fuzz' -E fuzz.random_scenes "$@"
 ctest --preset "$preset" "$@"
-if [[ -n "${CORDA_TEST_LONG:-}" && "$preset" == ci && $# -eq 0 ]]; then tests/platforms.sh; fi
+if [[ -n "${CORDA_TEST_LONG:-}" && "$preset" == ci && $# -eq 0 ]]; then
+    tests/cluster/slurm.sh build/ci
+    tests/platforms.sh
+fi

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 or 13 packages that Corda needs; does nothing if all are installed.
-# Usage: setup.sh [build|test|platforms|list]
+# Usage: setup.sh [build|test|platforms|cluster|list]
 #   test        adds the packages of the tests
 #   platforms   adds the packages that build and run AArch64 programs here
+#   cluster     adds the packages that run a Slurm cluster here
 #   list        prints the packages of build, one per line, and installs nothing
 set -euo pipefail
 
@@ -62,6 +63,10 @@ if [[ "${1:-build}" != build ]]; then
         mandoc              # checks the manual page
         zsh                 # checks its completion
         fish                # the same
+        parallel            # runs the shards of a film: examples/cluster
+        python3-distributed # the same on Dask
+        python3-yaml        # reads the example for Kubernetes
+        python3-kubernetes  # the keys that it may have
         mmdebstrap          # new Debian systems to build and install in
     )
 fi
@@ -69,6 +74,13 @@ if [[ "${1:-build}" == platforms ]]; then
     packages+=(
         crossbuild-essential-arm64  # the compiler for AArch64
         qemu-user-static    # runs its programs
+    )
+fi
+if [[ "${1:-build}" == cluster ]]; then
+    packages+=(
+        slurm-wlm           # its controller and nodes
+        munge               # by which they trust each other
+        iproute2            # a network of their own: ip
     )
 fi
 
