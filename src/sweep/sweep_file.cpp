@@ -312,8 +312,7 @@ class SweepReader {
                 return "is [least, largest], two positive numbers or two vectors of one length";
             case Shape::kNormal:
                 return "is [mean, standard deviation], the second positive, or two vectors of one length; "
-                       "bounds "
-                       "are min and max";
+                       "bounds are min and max";
             case Shape::kInteger:
                 break;
         }
