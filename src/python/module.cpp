@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <corda/golden/check_golden.hpp>
+#include <corda/golden/compare.hpp>
 
 #include <array>
 #include <cstring>
@@ -129,9 +130,8 @@ void add_errors(py::module_& module) {
             try {
                 if (thrown) std::rethrow_exception(thrown);
             } catch (const corda::Error& raised) {
-                // A message holds names of files as they are, in any encoding.
-                const auto what = py::reinterpret_steal<py::str>(PyUnicode_DecodeFSDefault(raised.what()));
-                const py::object instance = py::reinterpret_borrow<py::object>(error.ptr())(what);
+                const py::object instance =
+                    py::reinterpret_borrow<py::object>(error.ptr())(corda::python::text_of(raised.what()));
                 instance.attr("code") = static_cast<int>(raised.code());
                 PyErr_SetObject(error.ptr(), instance.ptr());
             }
@@ -192,6 +192,7 @@ PYBIND11_MODULE(_corda, module) {
     module.attr("__version__") = CORDA_VERSION;
     add_errors(module);
     add_film(module);
+    corda::python::add_sweep(module);
     module.def("begin_end", &Calls::begin_end);
     module.def("forget_calls", &Calls::forget);
     module.def("compare", [](const py::object& a, const py::object& b) {

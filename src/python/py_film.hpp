@@ -3,7 +3,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include <corda/corda.hpp>
+#include <corda/pipeline/film.hpp>
 
 #include <unistd.h>
 
@@ -293,5 +293,13 @@ class PyFilm {
 [[nodiscard]] py::array_t<std::uint8_t> mask(PyFilm& film, std::int64_t k);
 using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
 [[nodiscard]] py::array_t<double> to_pixels(PyFilm& film, const Points& points_m);
+
+/// A message as Python's text. It holds names of files as they are, in any encoding.
+[[nodiscard]] inline py::str text_of(const char* message) {
+    return py::reinterpret_steal<py::str>(PyUnicode_DecodeFSDefault(message));
+}
+
+/// Adds the class `Sweep`.
+void add_sweep(py::module_& module);
 
 }  // namespace corda::python

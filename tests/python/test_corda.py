@@ -319,7 +319,7 @@ def test_stubs_tell_all_names_and_parameters():
                         if one.kind is not inspect.Parameter.VAR_KEYWORD]
         assert function.__doc__ or function.__name__.startswith("__")
 
-    for name in ("compare", "read_png", "write_png"):
+    for name in ("compare", "read_png", "sweep", "write_png"):
         check(getattr(corda, name), names[name])
     of_testing = ast.parse((pathlib.Path(corda.__file__).parent / "testing.pyi").read_text()).body
     check(corda.testing.assert_matches_golden, of_testing[-1])

@@ -1,6 +1,7 @@
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from fractions import Fraction
 from os import PathLike
-from typing import Any, NamedTuple, TypedDict
+from typing import Any, NamedTuple, NotRequired, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -75,3 +76,31 @@ class Difference(NamedTuple):
 def compare(a: NDArray[np.uint8] | str | PathLike[str], b: NDArray[np.uint8] | str | PathLike[str]) -> Difference: ...
 def read_png(path: str | bytes | PathLike[str]) -> NDArray[np.uint8]: ...
 def write_png(path: str | bytes | PathLike[str], picture: NDArray[np.uint8], *, force: bool = False) -> None: ...
+
+class SampleCamera(TypedDict):
+    center: tuple[float, float]
+    height: float
+
+class Sample(TypedDict):
+    key: str
+    sample: int
+    split: str | None
+    parameters: dict[str, Any]
+    fps: Fraction
+    camera: SampleCamera
+    px_per_m: float
+    method: str
+    error_bound_m: float | None
+    error_bound_px: float | None
+    horizon_s: float | None
+    summary: dict[str, float | None]
+    times: NDArray[np.float64]
+    positions: NotRequired[NDArray[np.float64]]
+    velocities: NotRequired[NDArray[np.float64]]
+    tensions: NotRequired[NDArray[np.float64]]
+    energy: NotRequired[NDArray[np.float64]]
+    pixels: NotRequired[NDArray[np.float64]]
+    mask: NotRequired[NDArray[np.uint8]]
+    frames: NotRequired[NDArray[np.uint8]]
+
+def sweep(path: str | bytes | PathLike[str], *, shard: tuple[int, int] | None = None) -> Iterator[Sample]: ...

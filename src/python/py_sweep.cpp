@@ -1,0 +1,72 @@
+// Samples of a sweep, for corda.sweep() of corda/__init__.py.
+#include <corda/sweep/sample.hpp>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "py_film.hpp"
+
+namespace corda::python {
+namespace {
+
+/// Hands the numbers of an array to numpy, which frees them.
+template <class Number>
+py::array to_numpy(sweep::Array array) {
+    auto owned = std::make_unique<std::string>(std::move(array.data));
+    const std::vector<py::ssize_t> shape(array.shape.begin(), array.shape.end());
+    const auto* const numbers = reinterpret_cast<const Number*>(owned->data());
+    const py::capsule owner(owned.get(), [](void* kept) { delete static_cast<std::string*>(kept); });
+    static_cast<void>(owned.release());
+    return py::array_t<Number>(shape, numbers, owner);
+}
+
+/// A sweep whose pictures are arrays. One thread at a time may use it.
+class PySweep {
+  public:
+    explicit PySweep(const std::string& path)
+        : sweep_(Asking().run([&] { return sweep::load_sweep(path); })), maker_(std::in_place, sweep_) {
+        if (sweep_.pictures != sweep::Pictures::kNone) sweep_.pictures = sweep::Pictures::kNpz;
+    }
+    PySweep(const PySweep&) = delete;
+    PySweep& operator=(const PySweep&) = delete;
+    ~PySweep() {
+        const Calls::Scope call;
+        maker_.reset();
+    }
+
+    [[nodiscard]] std::int64_t samples() const { return sweep_.samples; }
+    [[nodiscard]] std::int64_t shard_samples() const { return sweep_.shard_samples; }
+
+    /// The key of a sample, its .json as text, its arrays by name, and the reason if there is no sample.
+    py::tuple sample(std::int64_t number) {
+        sweep::Sample made = Asking().run([&] { return maker_->make(number); });
+        if (made.failure)
+            return py::make_tuple(made.key, py::none(), py::none(), text_of(made.failure->message.c_str()));
+        py::dict arrays;
+        for (sweep::Array& array : made.arrays) {
+            const py::str name(array.name);
+            arrays[name] = array.is_bytes ? to_numpy<std::uint8_t>(std::move(array))
+                                          : to_numpy<double>(std::move(array));
+        }
+        return py::make_tuple(made.key, made.info.dump(), arrays, py::none());
+    }
+
+  private:
+    sweep::SweepDef sweep_;
+    std::optional<sweep::SampleMaker> maker_;
+};
+
+}  // namespace
+
+void add_sweep(py::module_& module) {
+    py::class_<PySweep>(module, "Sweep")
+        .def(py::init<const std::string&>())
+        .def("samples", &PySweep::samples)
+        .def("shard_samples", &PySweep::shard_samples)
+        .def("sample", &PySweep::sample);
+}
+
+}  // namespace corda::python
