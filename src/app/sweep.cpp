@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "corda/core/text.hpp"
+#include "corda/figures/sweep_figures.hpp"
 #include "corda/sweep/sweep.hpp"
 
 namespace corda::app {
@@ -18,6 +19,8 @@ struct SweepOptions {
     bool checks = false;
     bool resume = false;
     bool force = false;
+    std::vector<std::string> plots;
+    bool sheet = false;
 };
 
 ExitCode check(const Console& console, const sweep::SweepDef& def, const SweepOptions& options) {
@@ -49,6 +52,13 @@ ExitCode sweep(const Console& console, const SweepOptions& options) {
     if (!result.is_complete)
         console.info("shards are missing; run it without --shard when the others are done");
     console.result(options.folder);
+    std::vector<std::string> figures;
+    for (const std::string& columns : options.plots) {
+        const auto paths = figures::write_sweep_plot(def, options.folder, columns);
+        figures.insert(figures.end(), paths.begin(), paths.end());
+    }
+    if (options.sheet) figures.push_back(figures::write_sweep_sheet(def, options.folder));
+    for (const std::string& path : figures) console.result(path);
     console.report({{"schema", 1},
                     {"output", options.folder},
                     {"samples", def.samples},
@@ -57,6 +67,7 @@ ExitCode sweep(const Console& console, const SweepOptions& options) {
                     {"samples_made", result.samples_made},
                     {"failed", result.failed},
                     {"complete", result.is_complete},
+                    {"figures", figures},
                     {"wall_s", wall_s}});
     return ExitCode::kOk;
 }
@@ -80,6 +91,15 @@ void add_sweep(CLI::App& app, Action& action) {
                             ->type_name("I/N");
     auto* const check =
         command.add_flag("--check", options.checks, "read all shards again, and make none")->excludes(shard);
+    command
+        .add_option(
+            "--plot", options.plots,
+            "draw a figure of the samples over another one, or over a key that varies; more than once: "
+            "several plots")
+        ->type_name("Y:X")
+        ->excludes(check);
+    command.add_flag("--sheet", options.sheet, "draw a contact sheet of 36 samples or fewer")
+        ->excludes(check);
     command
         .add_flag(
             "--resume", options.resume,

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace corda::reference {
 
@@ -40,6 +41,22 @@ long double rod_omega0_1_s(int particles, double spacing_m, double gravity_m_s2)
         second += static_cast<long double>(i) * i;
     }
     return std::sqrt(gravity_m_s2 * first / (spacing_m * second));
+}
+
+long double rope_omega0_1_s(int links, double spacing_m, double gravity_m_s2) {
+    // Newton's method from 0 stays below the least zero. L_N' = N (L_N - L_(N-1)) / x, and -N at 0.
+    long double x = 0.0L;
+    for (int i = 0; i < 100; ++i) {
+        long double before = 1.0L;
+        long double value = 1.0L - x;
+        for (int n = 1; n < links; ++n)
+            before = std::exchange(value, ((2 * n + 1 - x) * value - n * before) / (n + 1));
+        const long double slope = x > 0.0L ? links * (value - before) / x : -links;
+        const long double step = value / slope;
+        x -= step;
+        if (std::abs(step) <= 1e-18L * x) break;
+    }
+    return std::sqrt(gravity_m_s2 / spacing_m * x);
 }
 
 double damped_fall_m(double mass_kg, double step_s, int steps, double delta, double force_n) {

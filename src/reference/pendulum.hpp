@@ -34,6 +34,11 @@ class Pendulum {
 /// `spacing_m`, 2 `spacing_m`, ... from the pin: omega0^2 = g sum(r) / sum(r^2) (R3).
 [[nodiscard]] long double rod_omega0_1_s(int particles, double spacing_m, double gravity_m_s2);
 
+/// The least angular frequency, in 1/s, of small oscillations of a hanging rope of `links` links of the
+/// length `spacing_m` with equal masses: omega^2 = (g / a) x, x the least zero of the Laguerre polynomial L_N
+/// (R4).
+[[nodiscard]] long double rope_omega0_1_s(int links, double spacing_m, double gravity_m_s2);
+
 /// How far a particle has moved, in metres, after `steps` steps of method `relaxation` from rest, if it loses
 /// the share `delta` of its velocity per step: (h^2 f / (m delta)) (n - (1 - (1 - delta)^n) / delta) (R10).
 [[nodiscard]] double damped_fall_m(double mass_kg, double step_s, int steps, double delta, double force_n);

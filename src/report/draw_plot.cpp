@@ -124,8 +124,10 @@ class Drawing {
                 look.color =
                     Color::parse(series.color.empty() ? kColors[look.marker % kColors.size()] : series.color)
                         .value();
-                look.marker_em = plot_.has_markers ? kMarker : 0.0;
-                look.line_em = plot_.has_markers ? kMarkedLine : kCurveLine;
+                const bool has_markers = plot_.has_markers && series.form != Series::Form::kLine;
+                look.marker_em = has_markers ? kMarker : 0.0;
+                look.line_em = has_markers ? kMarkedLine : kCurveLine;
+                if (series.form == Series::Form::kPoints) look.line_em = 0.0;
             }
             looks_.push_back(look);
             const bool is_drawn = std::any_of(series.points.begin(), series.points.end(),
@@ -228,7 +230,8 @@ class Drawing {
         list_.add_layer(look.color);
         std::vector<PixelPoint> line;  // up to a point that cannot be drawn
         const auto end_line = [&] {
-            const std::vector<std::size_t> kept = view::visible_points(line);
+            const std::vector<std::size_t> kept =
+                look.line_em > 0.0 ? view::visible_points(line) : std::vector<std::size_t>();
             for (std::size_t k = 1; k < kept.size(); ++k)
                 add_line(line[kept[k - 1]], line[kept[k]], look.line_em);
             line.clear();
@@ -267,7 +270,7 @@ class Drawing {
             const double middle_px = y_px - 0.5 * view::kAscent * area_.em_px;
             const double end_px = x_px + kSample * area_.em_px;
             list_.add_layer(look.color);
-            add_line({1.0 * x_px, middle_px}, {end_px, middle_px}, look.line_em);
+            if (look.line_em > 0.0) add_line({1.0 * x_px, middle_px}, {end_px, middle_px}, look.line_em);
             if (look.marker_em > 0.0) add_marker({0.5 * (x_px + end_px), middle_px}, look);
             write(look.name, x_px + px(kSample + view::kGap), y_px);
         }

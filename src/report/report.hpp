@@ -73,6 +73,9 @@ struct Series {
     std::optional<std::size_t> look = {};
     bool is_context = false;  ///< grey and thin, behind the others, with one entry for all such in the key
     std::string color = {};   ///< "#rrggbb" in place of that of its look
+    /// kBoth of a plot without markers: a line.
+    enum class Form { kBoth, kPoints, kLine };
+    Form form = Form::kBoth;
 
     void add(double x, double y, const std::pair<double, double>& spread) {
         points.emplace_back(x, y);

@@ -396,9 +396,10 @@ void read_rows(const SweepDef& sweep, const std::string& folder,
         for (const Json& row : index->at("rows")) {
             check_cancelled();
             SampleRow read{number++, {}, {}, {}};
-            for (const auto& [key, value] : row.value("parameters", Json::object()).items())
-                read.parameters.emplace_back(key, value);
-            for (const auto& [name, value] : row.value("summary", Json::object()).items())
+            const Json parameters = row.value("parameters", Json::object());
+            const Json summary = row.value("summary", Json::object());
+            for (const auto& [key, value] : parameters.items()) read.parameters.emplace_back(key, value);
+            for (const auto& [name, value] : summary.items())
                 if (value.is_number()) read.summary[name] = value.get<double>();
             if (row.contains("failure"))
                 read.failure = {static_cast<ExitCode>(row.at("failure").at("code").get<int>()),
