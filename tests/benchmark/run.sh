@@ -3,8 +3,10 @@
 # Usage: tests/benchmark/run.sh video [--json] [SCENE] [--size WxH,...] [--preset NAME,...] [--encodings] ...
 #        tests/benchmark/run.sh sim [--json] [GOOGLE BENCHMARK OPTIONS]
 #        tests/benchmark/run.sh draw [--json] [GOOGLE BENCHMARK OPTIONS]
+#        tests/benchmark/run.sh sweep [--json] [GOOGLE BENCHMARK OPTIONS]
 #   video  renders beside x264 alone: time, stages and memory; with --encodings, presets and codecs
 #   sim    the cost of each method against the number of particles
+#   sweep  clips of a sweep with all labels: whole, and by stages
 #   draw   frames of examples/swing.toml in several styles
 # BUILD_DIR is a build folder of the preset ci or release with tests; build/ci by default.
 set -euo pipefail
@@ -16,7 +18,8 @@ case "$kind" in
     video) programs=(video) ;;
     sim) programs=(relaxation rattle exact) ;;
     draw) programs=(pipeline) ;;
-    *) sed -n '2,9s/^# \?//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+    sweep) programs=(sweep) ;;
+    *) sed -n '2,11s/^# \?//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac
 cd "$root"
 [[ -f "$build/build.ninja" ]] || cmake --preset ci >/dev/null
