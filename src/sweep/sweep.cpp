@@ -74,35 +74,29 @@ void write_text(const std::string& path, std::string_view text) {
 }
 
 /// The index of a shard file: its size, its checksum and the rows of its samples. It is written after the
-/// shard, so that a shard with an index is finished.
-class ShardIndex {
-  public:
-    /// Throws corda::Error (kUsage) if it is of another sweep. std::nullopt if there is no sound one for
-    /// these samples with a shard file of its size.
-    static std::optional<Json> find(const SweepDef& sweep, const std::string& folder, std::int64_t shard) {
-        const fs::path path = fs::path(folder) / shard_name(shard);
-        auto index = read_json(path.string() + ".json");
-        if (!index) return std::nullopt;
-        const SampleRange samples = samples_of(sweep, shard);
-        try {
-            if (index->at("sweep").get<std::string>() != sweep_hash(sweep))
-                throw Error(
-                    ExitCode::kUsage,
-                    fmt::format("'{}.tar' is of another sweep; move it away, choose another folder, or "
-                                "replace all shards (--force)",
-                                path.string()));
-            std::error_code failure;
-            const bool is_finished =
-                std::ssize(index->at("rows")) == samples.end - samples.first &&
-                fs::file_size(path.string() + ".tar", failure) == index->at("bytes").get<std::uintmax_t>();
-            if (!is_finished) return std::nullopt;
-            static_cast<void>(index->at("sha256").get_ref<const std::string&>());
-            return index;
-        } catch (const Json::exception&) {
-            return std::nullopt;
-        }
+/// shard, so that a shard with an index is finished. std::nullopt if there is no sound index for the samples
+/// of the sweep with a shard file of its size. Throws corda::Error (kUsage) if it is of another sweep.
+std::optional<Json> find_index(const SweepDef& sweep, const std::string& folder, std::int64_t shard) {
+    const fs::path path = fs::path(folder) / shard_name(shard);
+    auto index = read_json(path.string() + ".json");
+    if (!index) return std::nullopt;
+    const SampleRange samples = samples_of(sweep, shard);
+    try {
+        if (index->at("sweep").get<std::string>() != sweep_hash(sweep))
+            throw Error(ExitCode::kUsage,
+                        fmt::format("'{}.tar' is of another sweep; move it away, choose another folder, or "
+                                    "replace all shards (--force)",
+                                    path.string()));
+        std::error_code failure;
+        const bool is_finished =
+            std::ssize(index->at("rows")) == samples.end - samples.first &&
+            fs::file_size(path.string() + ".tar", failure) == index->at("bytes").get<std::uintmax_t>();
+        static_cast<void>(index->at("sha256").get_ref<const std::string&>());
+        return is_finished ? std::move(index) : std::nullopt;
+    } catch (const Json::exception&) {
+        return std::nullopt;
     }
-};
+}
 
 Json failure_json(const SampleFailure& failure) {
     return {{"code", static_cast<int>(failure.code)}, {"message", utf8(failure.message)}};
@@ -257,8 +251,8 @@ void add_row(const SweepDef& sweep, std::int64_t shard, const Json& row, CsvLine
     line.add(row.contains("failure") ? row.at("failure").at("message").get<std::string>() : std::string());
 }
 
-/// Writes metadata.csv and the whole manifest.
-void finish_folder(const SweepDef& sweep, const std::string& folder) {
+/// Writes metadata.csv and the whole manifest. Returns false if a shard is not finished.
+bool finish_folder(const SweepDef& sweep, const std::string& folder) {
     OutputFile metadata((fs::path(folder) / kMetadataName).string(), {.force = true});
     CsvLine line;
     for (const char* const column : {"key", "shard", "split"}) line.add(std::string_view(column));
@@ -270,7 +264,9 @@ void finish_folder(const SweepDef& sweep, const std::string& folder) {
     Json failures = Json::array();
     std::map<std::string, std::int64_t> splits;
     for (std::int64_t shard = 0; shard < shard_count(sweep); ++shard) {
-        const Json index = ShardIndex::find(sweep, folder, shard).value();
+        const auto found = find_index(sweep, folder, shard);
+        if (!found) return false;
+        const Json& index = *found;
         std::int64_t failed = 0;
         for (const Json& row : index.at("rows")) {
             add_row(sweep, shard, row, line);
@@ -297,6 +293,15 @@ void finish_folder(const SweepDef& sweep, const std::string& folder) {
     manifest["shards"] = std::move(shards);
     manifest["failures"] = std::move(failures);
     write_text((fs::path(folder) / kManifestName).string(), manifest.dump(1) + "\n");
+    return true;
+}
+
+/// Whether all shards seem to be there. Their indices are not read: each of many tasks asks for it.
+bool has_all_shards(const SweepDef& sweep, const std::string& folder) {
+    std::int64_t shard = 0;
+    while (shard < shard_count(sweep) && fs::exists(fs::path(folder) / (shard_name(shard) + ".json")))
+        ++shard;
+    return shard == shard_count(sweep);
 }
 
 /// The numbers of the shard files of a run that are not finished.
@@ -306,7 +311,7 @@ std::vector<std::int64_t> lacking_shards(const SweepDef& sweep, const RunDef& de
     for (std::int64_t shard = share.index; shard < shard_count(sweep); shard += share.count) {
         check_cancelled();
         ++result.shards;
-        if (!ShardIndex::find(sweep, def.folder, shard)) lacking.push_back(shard);
+        if (!find_index(sweep, def.folder, shard)) lacking.push_back(shard);
     }
     return lacking;
 }
@@ -339,11 +344,7 @@ RunResult run_sweep(const SweepDef& sweep, const RunDef& def) {
         }
     }
     report();
-    RunResult all;
-    RunDef whole = def;
-    whole.shard.reset();
-    result.is_complete = lacking_shards(sweep, whole, all).empty();
-    if (result.is_complete) finish_folder(sweep, def.folder);
+    result.is_complete = has_all_shards(sweep, def.folder) && finish_folder(sweep, def.folder);
     return result;
 }
 
@@ -355,7 +356,7 @@ std::vector<std::string> check_sweep(const SweepDef& sweep, const std::string& f
         report_progress(on_progress, shard, shards);
         const std::string path = (fs::path(folder) / (shard_name(shard) + ".tar")).string();
         try {
-            const auto index = ShardIndex::find(sweep, folder, shard);
+            const auto index = find_index(sweep, folder, shard);
             if (!index) {
                 problems.push_back(fmt::format("'{}' is missing or not finished", path));
                 continue;
@@ -390,7 +391,7 @@ std::vector<std::string> check_sweep(const SweepDef& sweep, const std::string& f
 void read_rows(const SweepDef& sweep, const std::string& folder,
                const std::function<void(const SampleRow&)>& take) {
     for (std::int64_t shard = 0; shard < shard_count(sweep); ++shard) {
-        const auto index = ShardIndex::find(sweep, folder, shard);
+        const auto index = find_index(sweep, folder, shard);
         if (!index) continue;
         std::int64_t number = samples_of(sweep, shard).first;
         for (const Json& row : index->at("rows")) {
