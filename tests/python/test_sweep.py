@@ -3,6 +3,7 @@
 import fractions
 import io
 import json
+import math
 import os
 import pathlib
 import signal
@@ -29,14 +30,14 @@ hang = { links = 6, length = 1.0, angle_deg = 60.0 }
 size = [64, 48]
 fps = "30000/1001"
 """
-# A point pendulum in front of a plain ground. The rope covers less than half of any pixel.
+# A point pendulum in front of a plain ground. Its rope covers less than half of any pixel.
 BALL = """schema = 1
 [world]
 duration = 4.0
 [[rope]]
 hang = { links = 1, length = 1.0, angle_deg = 60.0 }
 payload = 1.5
-color = "#ffffff"
+color = "#ff8000"
 [style]
 background = "#000000"
 rope_width_px = 0.4
@@ -47,10 +48,10 @@ time = false
 scale_bar = false
 [camera]
 center = [0.0, -0.4]
-height = 2.0
+height = 2.4
 [video]
 size = [128, 128]
-fps = 60
+fps = 30
 """
 VARY = """
 [vary]
@@ -187,3 +188,150 @@ def test_ctrl_c_ends_a_sample_while_other_threads_run(tmp_path):
     timer.start()
     with pytest.raises(KeyboardInterrupt):
         next(corda.sweep(path))
+
+
+def test_masks_are_the_silhouettes_of_the_drawn_bodies(tmp_path):
+    style = 'halo = false\npayload = PAYLOAD\npalette = ["#ffffff"]\n[overlay]\ntime = false\nscale_bar = false\n[video]'
+    scene = ROPE.replace("[video]", '[style]\nbackground = "#000000"\nsupports = false\n' + style)
+    for sample in corda.sweep(write(tmp_path, scene.replace("PAYLOAD", "false"), "samples = 6" + VARY)):
+        assert np.array_equal(sample["mask"] == 1, sample["frames"][..., 0] >= 128)
+    # A pixel of which a ball and its outline each cover less than half gets at most 3/4 of their brightness.
+    for sample in corda.sweep(write(tmp_path, scene.replace("PAYLOAD", "true"), "samples = 6" + VARY)):
+        brightness, drawn = sample["frames"][..., 0], sample["mask"] == 1
+        assert brightness[drawn].min() >= 128
+        assert brightness[~drawn].max() < 192
+
+
+def centroid(frames):
+    """x and y in pixels of the pixels of each frame that are more than half red."""
+    weight = np.maximum(frames[..., 0] / 255.0 - 0.5, 0.0)
+    rows, columns = np.indices(weight.shape[1:]) + 0.5
+    return [(weight * place).sum(axis=(1, 2)) / weight.sum(axis=(1, 2)) for place in (columns, rows)]
+
+
+def tracked_gravity(sample):
+    """Gravity from the frames alone: from the period, the amplitude and the length of the pendulum that they show."""
+    column, row = centroid(sample["frames"])
+    height, width = sample["frames"].shape[1:3]
+    x = sample["camera"]["center"][0] + (column - 0.5 * width) / sample["px_per_m"]
+    y = sample["camera"]["center"][1] - (row - 0.5 * height) / sample["px_per_m"]
+    angle = np.arctan2(x, -y)
+    k = np.flatnonzero(angle[:-1] * angle[1:] < 0.0)
+    crossings = k + angle[k] / (angle[k] - angle[k + 1])
+    period_s = 2.0 * np.polyfit(np.arange(len(k)), crossings, 1)[0] / float(sample["fps"])
+    # The period is 2 pi sqrt(L / g) over the arithmetic-geometric mean of 1 and cos(amplitude / 2).
+    mean, other = 1.0, math.cos(0.5 * angle[0])
+    for _ in range(6):
+        mean, other = 0.5 * (mean + other), math.sqrt(mean * other)
+    return np.hypot(x, y).mean() * (2.0 * math.pi / (mean * period_s)) ** 2
+
+
+def test_a_tracker_recovers_gravity_and_the_labels_say_where_the_ball_is(tmp_path):
+    path = write(tmp_path, BALL, """samples = 20
+seed = 5
+[vary]
+"rope[0].hang.angle_deg" = { uniform = [10.0, 80.0] }
+"world.gravity" = { uniform = [4.0, 20.0] }
+[output]
+labels = ["pixels"]
+""")
+    for sample in corda.sweep(path):
+        error = tracked_gravity(sample) / sample["parameters"]["world.gravity"] - 1.0
+        assert abs(error) < 1e-3  # measured 4.0e-4
+        places = np.stack(centroid(sample["frames"]), axis=1)
+        assert np.abs(places - sample["pixels"][:, 1]).max() < 0.5  # measured 0.055
+
+
+def test_energy_and_tension_are_those_of_a_point_pendulum(tmp_path):
+    scene = ROPE.replace("links = 6", "links = 1").replace("60.0", "90.0").replace("0.5", "200.0").replace("30000/1001", "2")
+    path = write(tmp_path, scene + "[solver]\nmethod = \"exact\"\ntolerance = 1e-13\n", """grid = true
+[vary]
+"rope[0].mass" = [1.0, 2.5]
+[output]
+pictures = "none"
+""")
+    places = np.loadtxt(A01)  # R1: x and y at 0.5 s, 1 s, ...
+    for sample in corda.sweep(path):
+        place = places[: len(sample["times"]) - 1]
+        weight = 9.81 * sample["parameters"]["rope[0].mass"]
+        kinetic, potential, total = sample["energy"][1:].T / weight
+        assert np.abs(sample["positions"][1:, 1] - place).max() < 1e-12  # measured 2.9e-13
+        assert np.abs(kinetic + place[:, 1]).max() < 1e-12  # measured 1.8e-13
+        assert np.abs(potential - place[:, 1]).max() < 1e-12  # measured 1.8e-13
+        assert np.abs(total).max() < 1e-14  # measured 3.3e-15
+        assert np.abs(sample["tensions"][1:, 0] / weight + 3.0 * place[:, 1]).max() < 2e-12  # measured 5.4e-13
+
+
+class Chains:
+    """The motion of chains of equal links, at rest at first, by another method than Corda's: the equations of the angles with a
+    dense matrix, and Gragg's extrapolation of order 16 in time (Hairer, Norsett, Wanner, Solving ODEs I, II.9)."""
+
+    def __init__(self, angle_rad, masses, gravity):
+        links = masses.shape[1]
+        self.link = 1.0 / links
+        self.start = np.stack([np.repeat(angle_rad[:, None], links, axis=1), np.zeros(masses.shape)])
+        below = np.cumsum(masses[:, ::-1], axis=1)[:, ::-1]
+        self.coupled = below[:, np.maximum.outer(np.arange(links), np.arange(links))]
+        self.weight = gravity[:, None] / self.link * below
+
+    def rate(self, state):
+        angle, speed = state
+        between = angle[:, :, None] - angle[:, None, :]
+        force = (self.coupled * np.sin(between)) @ (speed**2)[:, :, None] + (self.weight * np.sin(angle))[:, :, None]
+        return np.stack([speed, -np.linalg.solve(self.coupled * np.cos(between), force)[:, :, 0]])
+
+    def step(self, state, step_s):
+        row = []
+        for parts in range(2, 17, 2):
+            part_s = step_s / parts
+            before, now = state, state + part_s * self.rate(state)
+            for _ in range(parts - 1):
+                before, now = now, before + 2.0 * part_s * self.rate(now)
+            last, row = row, [0.5 * (before + now + part_s * self.rate(now))]
+            for k, coarser in enumerate(last):
+                row.append(row[k] + (row[k] - coarser) / ((parts / (parts - 2 * k - 2)) ** 2 - 1.0))
+        return row[-1]
+
+    def positions(self, times_s, steps):
+        """Of the free particles: (frames, chains, links, 2). `steps`: between two times."""
+        states = [self.start]
+        for step_s in np.diff(times_s) / steps:
+            state = states[-1]
+            for _ in range(steps):
+                state = self.step(state, step_s)
+            states.append(state)
+        angle = np.array(states)[:, 0]
+        return np.cumsum(self.link * np.stack([np.sin(angle), -np.cos(angle)], axis=-1), axis=2)
+
+
+def test_the_error_bound_holds(tmp_path):
+    path = write(tmp_path, ROPE.replace("0.5", "2.0").replace("30000/1001", "30"), """samples = 200
+seed = 11
+[vary]
+"rope[0].hang.angle_deg" = { uniform = [5.0, 90.0] }
+"rope[0].hang.links" = { integer = [1, 3] }
+"rope[0].mass" = { log_uniform = [0.3, 3.0] }
+"rope[0].payload" = { uniform = [0.0, 1.0] }
+"world.gravity" = { uniform = [1.62, 24.8] }
+[output]
+pictures = "none"
+labels = ["positions"]
+""")
+    samples = list(corda.sweep(path))
+    assert len(samples) == 200
+    for links in (1, 2, 3):
+        alike = [sample for sample in samples if sample["parameters"]["rope[0].hang.links"] == links]
+        angle_deg, mass, payload, gravity = (np.array([sample["parameters"][key] for sample in alike]) for key in (
+            "rope[0].hang.angle_deg", "rope[0].mass", "rope[0].payload", "world.gravity"))
+        masses = np.repeat(mass[:, None], links, axis=1)
+        masses[:, -1] += payload
+        chains = Chains(np.radians(angle_deg), masses, gravity)
+        bound = np.array([sample["error_bound_m"] for sample in alike])
+        steps = 2
+        rough, truth = (chains.positions(alike[0]["times"], n) for n in (1, 2))
+        while np.abs(truth - rough).max() > 0.01 * bound.min():
+            steps *= 2
+            rough, truth = truth, chains.positions(alike[0]["times"], steps)
+        made = np.stack([sample["positions"][:, 1:] for sample in alike], axis=1)
+        error = np.linalg.norm(made - truth, axis=-1).max(axis=(0, 2))
+        assert (error / bound).max() < 1.0  # measured 0.3334, of 4.3e-7 m .. 4.9e-5 m
