@@ -56,6 +56,8 @@ if [[ "${1:-build}" != build ]]; then
         poppler-utils       # a second opinion on PDF: pdftoppm
         python3-pytest      # the tests of the Python module
         python3-pytest-xdist  # user tests in several processes that draw
+        python3-torch       # a DataLoader whose workers make samples: examples/sweep
+        python3-pandas      # reads the table of a sweep: examples/sweep
         jupyter-nbconvert   # runs the example notebook
         python3-ipykernel   # the kernel of the notebook
         python3-jsonschema  # a second opinion on the JSON Schema of scenes

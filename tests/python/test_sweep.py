@@ -6,6 +6,7 @@ import json
 import math
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import sys
@@ -19,6 +20,7 @@ import pytest
 import corda
 
 PROGRAM = os.environ["CORDA_PROGRAM"]
+EXAMPLES = pathlib.Path(os.environ["CORDA_EXAMPLES"]) / "sweep"
 A01 = pathlib.Path(__file__).parents[1] / "accuracy" / "data" / "a01_pendulum.txt"
 
 ROPE = """schema = 1
@@ -335,3 +337,48 @@ labels = ["positions"]
         made = np.stack([sample["positions"][:, 1:] for sample in alike], axis=1)
         error = np.linalg.norm(made - truth, axis=-1).max(axis=(0, 2))
         assert (error / bound).max() < 1.0  # measured 0.3334, of 4.3e-7 m .. 4.9e-5 m
+
+
+@pytest.fixture(scope="module")
+def clips(tmp_path_factory):
+    """A folder with the sweep file of the examples, of 40 samples, and its shards."""
+    folder = tmp_path_factory.mktemp("clips")
+    shutil.copy(EXAMPLES / "clip.toml", folder)
+    sweep = (EXAMPLES / "clips.toml").read_text().replace("samples = 2000", "samples = 40")
+    (folder / "clips.toml").write_text(sweep.replace("shard_samples = 100", "shard_samples = 5"))
+    subprocess.run([PROGRAM, "sweep", folder / "clips.toml", "-o", folder / "shards"], check=True, capture_output=True)
+    return folder
+
+
+def lines_of_example(name, path):
+    ended = subprocess.run([sys.executable, EXAMPLES / name, path], capture_output=True, text=True, timeout=120)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    return ended.stdout.splitlines()
+
+
+def test_a_data_loader_forks_workers_that_make_all_clips(clips):
+    lines = lines_of_example("torch_clips.py", clips / "clips.toml")
+    assert len(lines) == 6  # of 2 workers, each with 20 clips in batches of 8
+    made = []
+    for line in lines:
+        shapes, _, gravity = line.rpartition(" [")
+        gravity = json.loads("[" + gravity)
+        assert shapes == f"({len(gravity)}, 60, 3, 64, 64) ({len(gravity)}, 60, 2)"
+        made += gravity
+    expected = [sample["parameters"]["world.gravity"] for sample in corda.sweep(clips / "clips.toml")]
+    assert sorted(made) == sorted(expected)
+
+
+def test_tarfile_and_numpy_read_the_shards(clips):
+    lines = [line.split() for line in lines_of_example("read_shards.py", clips / "shards")]
+    assert [line[0] for line in lines] == [f"{i:06}" for i in range(40)]
+    assert {line[1] for line in lines} == {"train", "validation", "test"}
+    assert all(" ".join(line[-3:]) == "(60, 64, 64)" for line in lines)
+
+
+def test_pandas_reads_the_table(clips):
+    lines = lines_of_example("table.py", clips / "shards")
+    assert lines[0].split() == ["world.gravity", "1.62", "3.73", "9.81"]
+    for line in lines[2:]:  # a heavier weight swings faster
+        periods = [float(number) for number in line.split()[-3:]]
+        assert periods == sorted(periods, reverse=True)
