@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kSamples = 256;
 
-/// The sweep file of SCENE.md's kind: 3 to 30 links, with pictures of `side_px` x `side_px`.
+/// A sweep file of ropes with 3 to 30 links, with pictures of `side_px` x `side_px`.
 sweep::SweepDef sweep_of(std::int64_t side_px, const test::ScratchFolder& folder) {
     static_cast<void>(folder.write("first.toml", R"(schema = 1
 [world]
