@@ -61,7 +61,8 @@ class Work:
         """Expects an engine to end well, and to have made shard 1 twice."""
         text, _ = engine.communicate(timeout=120)
         assert engine.returncode == 0, text
-        assert [len(self.runs_of(f"{i}/4")) for i in range(4)] == [1, 2, 1, 1], text
+        runs = [len(self.runs_of(f"{i}/4")) for i in range(4)]
+        assert runs[1] == 2 and min(runs) >= 1, text  # Dask also repeats the tasks that a lost worker had finished
         self.expect_output_of_one_machine()
 
 
