@@ -406,8 +406,7 @@ Image Film::frame(std::int64_t k) {
 
 Image Film::still(double time_s, double shutter) {
     const pipeline::SceneRenderer::Use use(impl_->drawing.renderer);
-    const CameraDef& camera = impl_->find_camera();
-    impl_->draw(time_s, shutter, camera, impl_->drawing);
+    impl_->draw(time_s, shutter, impl_->find_camera(), impl_->drawing);
     return impl_->drawing.renderer.image();
 }
 
@@ -474,9 +473,7 @@ pipeline::SharedMotion& FilmRenderer::motion_of(Film& film) {
 }
 
 Film FilmRenderer::another_look(const Film& film, const Scene& look) {
-    const Scene& scene = film.scene();
-    const bool has_more = look.overlay.plot != LivePlot::kNone || look.style.color_by != scene.style.color_by;
-    if (has_more)
+    if (look.overlay.plot != LivePlot::kNone || look.style.color_by != film.scene().style.color_by)
         throw Error(ExitCode::kInternal, "another look of a film needs what its motion does not have");
     return Film(std::make_unique<Film::Impl>(*film.impl_, look));
 }
