@@ -6,6 +6,7 @@
 
 #include "corda/core/basics.hpp"
 #include "corda/media/chunks/chunk_folder.hpp"
+#include "corda/media/format/format.hpp"
 #include "corda/media/verify/verify.hpp"
 
 namespace corda::media {
