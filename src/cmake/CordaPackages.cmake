@@ -36,17 +36,19 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME corda)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-# OpenGL on the CPU, which is loaded at run time, so dpkg-shlibdeps does not see it.
-set(opengl "libegl1, libegl-mesa0, libopengl0, libgl1-mesa-dri")
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${opengl}")
+# Loaded at run time, so that dpkg-shlibdeps does not see them: OpenGL on the CPU, and the libav of the headers. Debian
+# names a library's package after its major version.
+set(loaded "libegl1, libegl-mesa0, libopengl0, libgl1-mesa-dri, libavcodec${LIBAVCODEC_MAJOR}, \
+libavformat${LIBAVFORMAT_MAJOR}")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${loaded}")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "The program: it simulates ropes and nets of particles and bars, draws each frame \
 with OpenGL on a machine without a screen, the same bytes on every run, and encodes video.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libcorda-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 # The dependencies of a program that links the static library.
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libavcodec-dev, libavformat-dev, libavutil-dev, libx264-dev, libcairo2-dev, libegl-dev, \
-libwebp-dev, libegl-mesa0, libgl1-mesa-dri, libeigen3-dev, libepoxy-dev, libfmt-dev, libfreetype-dev, libpng-dev, libtomlplusplus-dev, \
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${loaded}, libavutil-dev, libx264-dev, libcairo2-dev, libegl-dev, \
+libwebp-dev, libeigen3-dev, libepoxy-dev, libfmt-dev, libfreetype-dev, libpng-dev, libtomlplusplus-dev, \
 nlohmann-json3-dev, pkg-config")
 # For golden tests: corda_add_golden_tests, and the matcher of corda/testing.hpp.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "corda, libgmock-dev")
@@ -56,6 +58,6 @@ corda/corda.hpp: load or build a scene, simulate it, draw frames, write stills a
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-corda)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${CORDA_PYTHON_DEPENDS}, python3-numpy, ${opengl}")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${CORDA_PYTHON_DEPENDS}, python3-numpy, ${loaded}")
 set(CPACK_DEBIAN_PYTHON_DESCRIPTION "The Python module corda: films as numpy arrays, as video files, and in notebooks.")
 include(CPack)

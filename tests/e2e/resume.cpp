@@ -118,7 +118,8 @@ TEST_F(Resume, MakesTheSameVideoAfterAKillAtAnyMoment) {
 TEST_F(Resume, AChunkThatCrashesItsReaderIsDamaged) {
     interrupt("a.mp4", "KILL", 0.0, From::kFirstChunk, {"--preset", "medium", "--duration", "15"});
     ASSERT_NE(first_chunk("a.mp4"), "");
-    const std::string crashes = "LD_PRELOAD=" FOREIGN_FAULTS " DEMUXER_CRASHES=1";
+    const std::string crashes = "LD_PRELOAD=" HIDDEN_LIBRARIES " CORDA_TEST_HIDES=" LIBAVFORMAT
+                                " LD_LIBRARY_PATH=" CRASHING_DEMUXER_FOLDER;
     const auto resume = render("a.mp4", {"--preset", "medium", "--duration", "15", "--resume"});
     for (const auto& command : {std::vector<std::string>{"recover", file("a.mp4.parts")}, resume}) {
         const auto result = run_corda(command, crashes);

@@ -1,7 +1,6 @@
 // For LD_PRELOAD: faults of other libraries and of a full host, chosen by environment variables.
 //   THREADS_TO_START=N      the system starts N more threads, then none
 //   FSYNC_TAKES_MS=N        flushing a file to disk takes N ms, despite signals
-//   DEMUXER_CRASHES=1       libavformat aborts the process that reads a packet
 //   X264_HANGS_FROM_PX=N    x264 never returns from opening an encoder for pictures of N columns or more
 //   X264_HANG_MARKER=FILE   the file that is created when it begins to hang
 
@@ -58,11 +57,6 @@ int fsync(int descriptor) {
         clock_gettime(CLOCK_MONOTONIC, &now);
     }
     return next(&fsync, "fsync")(descriptor);
-}
-
-int av_read_frame(struct AVFormatContext* format, struct AVPacket* packet) {
-    if (number_in("DEMUXER_CRASHES", 0) != 0) std::abort();
-    return next(&av_read_frame, "av_read_frame")(format, packet);
 }
 
 #ifdef X264_BUILD

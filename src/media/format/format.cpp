@@ -354,6 +354,7 @@ const Ending& find_ending(std::string_view path) {
 }
 
 Format find_format(std::string_view path, const VideoDef& def, bool is_transparent) {
+    load_libav();
     Format format;
     format.ending = &find_ending(path);
     format.codec = &choose_codec(*format.ending, path, def.encoder, format.is_fallback);
@@ -391,7 +392,7 @@ void check_video_def(const VideoDef& def) {
 }
 
 std::string libavcodec_package() {
-    return fmt::format("libavcodec{}", AV_VERSION_MAJOR(avcodec_version()));
+    return fmt::format("libavcodec{}", LIBAVCODEC_VERSION_MAJOR);
 }
 
 std::string endings_with_alpha() {

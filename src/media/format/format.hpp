@@ -163,7 +163,7 @@ struct Format {
 
 /// The format of a file of this name. Throws corda::Error: kUsage, naming the field, the value and the
 /// allowed ones, if the ending, the codec, the pixels, the preset, the crf, the size and the rate do not go
-/// together; kEncoder if libavcodec has no codec for it.
+/// together; kEncoder if libavcodec has no codec for it; and what load_libav() throws.
 [[nodiscard]] Format find_format(std::string_view path, const VideoDef& def, bool is_transparent = false);
 
 /// Checks the fields that mean the same for every format. Throws corda::Error (kUsage), naming the field, the

@@ -149,6 +149,7 @@ std::string read_comment(const std::string& path) {
 }  // namespace
 
 std::string comment_in_child(const std::string& path) {
+    load_libav();
     const QuietLog quiet;
     const auto end = run_in_child([&] { return read_comment(path); }, kCommentLimits);
     if (end && !end->finished()) fail_reading(path, ExitCode::kIo, "it " + end->text);
