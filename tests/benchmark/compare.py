@@ -42,15 +42,23 @@ def kernel_time(build, program, case):
     return next((row[name] for name in TIMES if name in row), row["cpu_time"])
 
 
-def scene_of(build, name):
-    """An example of the tree that was built: scenes of another revision may have other keys."""
-    return build.resolve().parents[1] / "examples" / name
+def common_scene(builds, name, size, options):
+    """An example of the first build that all of them can render; None if there is none: keys may differ."""
+    for own in builds:
+        scene = own.resolve().parents[1] / "examples" / name
+        try:
+            for build in builds:
+                render_time(build, scene, size, options)
+            return scene
+        except subprocess.CalledProcessError:
+            pass
+    return None
 
 
 def render_time(build, scene, size, options):
     """CPU time in s of rendering a video of 2 s."""
     with tempfile.TemporaryDirectory() as folder:
-        command = [build / "corda", "render", scene_of(build, scene), "-o", f"{folder}/video.mp4", "--size", size, "--duration", "2"]
+        command = [build / "corda", "render", scene, "-o", f"{folder}/video.mp4", "--size", size, "--duration", "2"]
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         subprocess.run([*command, *options], capture_output=True, check=True)
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -85,10 +93,11 @@ def main():
         case = " ".join(["video", name, size, *extra])
         if not re.search(options.filter, case):
             continue
-        try:
-            report(case, lambda b: render_time(b, name, size, extra), builds, options.repeats)
-        except subprocess.CalledProcessError:
-            print(f"   -    one of the programs cannot render it                {case}")
+        scene = common_scene(builds, name, size, extra)
+        if scene is None:
+            print(f"   -    they have no scene in common                        {case}")
+            continue
+        report(case, lambda b: render_time(b, scene, size, extra), builds, options.repeats)
 
 
 if __name__ == "__main__":

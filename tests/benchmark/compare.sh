@@ -3,7 +3,7 @@
 # faster.
 # Usage: tests/benchmark/compare.sh REV [--repeats N] [--filter REGEX]
 # Builds REV in a temporary worktree. Kernels are the Google Benchmark cases that both revisions have; video cases are
-# renders by both programs. Both take turns, N times (5 by default), and the ratio is the median of those of each turn.
+# renders of one scene by both programs. Both take turns, N times (5 by default), and the ratio is the median of those of each turn.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 if [[ $# -lt 1 || $1 == -* ]]; then sed -n '2,6s/^# \?//p' "${BASH_SOURCE[0]}" >&2; exit 2; fi
