@@ -19,8 +19,7 @@
 namespace corda {
 namespace {
 
-/// Maximum number of capsules in several poses: more would take hundreds of megabytes and be
-/// indistinguishable.
+/// Maximum number of capsules in several poses: more would be indistinguishable, and take much memory.
 constexpr std::size_t kMaxPoseCapsules = 5'000'000;
 
 /// Opacity of pose `k` of `count`: 1 for the last one, decreasing with age.
@@ -131,10 +130,9 @@ struct Film::Impl {
         if (camera) return *camera;
         if (drawing.renderer.needs_motion()) motion.run_to_end();
         if (scene.overlay.plot != LivePlot::kNone) {
-            const std::vector<MethodDef> methods =
-                motion.methods();  // a copy: reading may restart the motion
             plot = plot_data.read(
-                methods, last_s_locked(), [this](double time_s) -> const State& { return motion.at(time_s); },
+                motion.methods(), last_s_locked(),
+                [this](double time_s) -> const State& { return motion.at(time_s); },
                 [this](const State& state) { return motion.energy_of(state); });
         }
         camera = fit_locked(drawing.renderer);
@@ -282,9 +280,8 @@ struct Film::Impl {
         };
         const VideoDef& video = scene.video;
         if (video.shutter == 0.0) return shows_nothing_at(time_s);
-        const double end_s = last_s();
         for (int i = 0; i < video.subframes; ++i)
-            if (!shows_nothing_at(subframe_s(time_s, video.shutter, end_s, i))) return false;
+            if (!shows_nothing_at(subframe_s(time_s, video.shutter, last_s(), i))) return false;
         return true;
     }
 

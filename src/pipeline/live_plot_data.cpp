@@ -96,7 +96,7 @@ view::PlotData LivePlotData::axes() const {
     return {};
 }
 
-view::PlotData LivePlotData::read(std::span<const MethodDef> methods, double end_s,
+view::PlotData LivePlotData::read(const std::vector<MethodDef>& methods, double end_s,
                                   const std::function<const State&(double time_s)>& state_at,
                                   const std::function<Energy(const State&)>& energy_of) const {
     view::PlotData data = axes();

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <span>
 #include <vector>
 
 #include "corda/scene/scene.hpp"
@@ -25,7 +24,7 @@ class LivePlotData {
     /// Reads the motion of bodies with these methods up to `end_s`, at those times and at frame times,
     /// whatever else is recorded. The minimum of the potential energy is 0. With relaxation there is no total
     /// energy: bars that it stretches store none. `energy_of` is called with the last state of `state_at`.
-    [[nodiscard]] view::PlotData read(std::span<const MethodDef> methods, double end_s,
+    [[nodiscard]] view::PlotData read(const std::vector<MethodDef>& methods, double end_s,
                                       const std::function<const State&(double time_s)>& state_at,
                                       const std::function<Energy(const State&)>& energy_of) const;
 

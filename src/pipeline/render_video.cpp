@@ -55,7 +55,7 @@ void check_chunks(const std::string& path, const std::map<std::string, std::stri
             fmt::format("'{}' is of another render: {}; make its chunks a video (corda recover), render "
                         "to another name, or start again (--force without --resume)",
                         parts, differences_text(changes)));
-    media::check_chunks_in_child(parts);
+    media::check_chunks_in_child(parts, *manifest);
 }
 
 /// Title, comment and provenance of the file.

@@ -273,13 +273,15 @@ ChunkRun ChunkFolder::run() const {
     return run;
 }
 
-void ChunkFolder::add(std::int64_t number, std::int64_t frames, const std::string& ending,
-                      const std::function<void(OutputFile&)>& write) {
+ChunkFile ChunkFolder::add(std::int64_t number, std::int64_t frames, const std::string& ending,
+                           const std::function<void(OutputFile&)>& write) {
     OutputFile output(path_ + "/" + kUnnamedChunk, {.force = true});
     write(output);
-    const ChunkFile file{number, frames, checksum_of(output.temporary_path(), manifest_)};
-    output.rename(path_ + "/" + chunk_name(file, ending));
+    ChunkFile file{number, frames, checksum_of(output.temporary_path(), manifest_)};
+    file.path = path_ + "/" + chunk_name(file, ending);
+    output.rename(file.path);
     output.commit();
+    return file;
 }
 
 void ChunkFolder::remove() noexcept {

@@ -98,8 +98,8 @@ class ChunkFolder {
     [[nodiscard]] ChunkRun run() const;
 
     /// Adds a chunk of `frames` frames; `write` writes the file. `ending` is that of its name.
-    void add(std::int64_t number, std::int64_t frames, const std::string& ending,
-             const std::function<void(OutputFile&)>& write);
+    ChunkFile add(std::int64_t number, std::int64_t frames, const std::string& ending,
+                  const std::function<void(OutputFile&)>& write);
 
     /// Removes the chunks and the manifest, and the folder if nothing else is in it; never throws, because
     /// they do no harm.

@@ -207,13 +207,12 @@ std::string join_in_memory(const ChunkRun& run, const Manifest& manifest, const 
     return output.bytes();
 }
 
-void check_chunks_in_child(const std::string& folder) {
+void check_chunks_in_child(const std::string& folder, const Manifest& manifest) {
     const std::vector<ChunkFile> files = chunk_files(folder);
-    const auto manifest = files.empty() ? std::nullopt : read_manifest(folder);
-    if (!manifest) return;
+    if (files.empty()) return;
     work_in_child(folder, bytes_of(files), [&] {
         for (const ChunkFile& file : files)
-            if (is_sound(file, *manifest)) ChunkInput(file, manifest->fps).read(0, [](AVPacket&) {});
+            if (is_sound(file, manifest)) ChunkInput(file, manifest.fps).read(0, [](AVPacket&) {});
     });
 }
 

@@ -35,7 +35,7 @@ void join_chunks(const ChunkRun& run, const Manifest& manifest, const std::strin
 
 /// Reads the sound chunks of a folder of any origin in a child process, which libav may end at one. After
 /// that this process can read them. Throws corda::Error: kIo, and as work_in_child().
-void check_chunks_in_child(const std::string& folder);
+void check_chunks_in_child(const std::string& folder, const Manifest& manifest);
 
 /// Result of recover().
 struct Recovered {

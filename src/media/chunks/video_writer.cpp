@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <deque>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -60,7 +61,7 @@ class FolderSink : public VideoSink {
             if (!is_of_shard(file.number) || has_chunk(file.number)) continue;
             const bool has_checksum = is_sound(file, folder_.manifest());
             if (has_checksum && is_whole)
-                take(file.number, file.frames);
+                take(std::move(file));
             else
                 unusable.push_back(std::move(file));
             if (!has_checksum) damaged_.insert(unusable.back().number);
@@ -86,21 +87,15 @@ class FolderSink : public VideoSink {
     [[nodiscard]] std::int64_t frames() const override { return frames_; }
     void add(std::int64_t number, Chunk chunk) override {
         telling_what_is_kept([&] {
-            folder_.add(number, chunk.frames, chunk_ending(), [&](OutputFile& file) {
+            take(folder_.add(number, chunk.frames, chunk_ending(), [&](OutputFile& file) {
                 write_chunk(chunk, output_.format, folder_.manifest().fps, file);
-            });
+            }));
         });
-        take(number, chunk.frames);
     }
     void finish(const JoinDef& def) override {
         if (output_.shard) return;
         telling_what_is_kept([&] {
-            ChunkRun run = folder_.run();
-            if (run.frames == frames_) run.gap.reset();  // the writer has ended early
-            if (run.gap)
-                throw Error(ExitCode::kMismatch, fmt::format("{} in '{}': --resume makes it again",
-                                                             gap_text(run, folder_.manifest()), place()));
-            join_chunks(run, folder_.manifest(), output_.path, {.force = output_.force}, def);
+            join_chunks(all_chunks(), folder_.manifest(), output_.path, {.force = output_.force}, def);
         });
         folder_.remove();
     }
@@ -113,9 +108,25 @@ class FolderSink : public VideoSink {
         return (chunk - folder_.manifest().first_chunk()) % shard.count == shard.index;
     }
     [[nodiscard]] bool has_chunk(std::int64_t chunk) const { return there_.contains(chunk); }
-    void take(std::int64_t chunk, std::int64_t frames) {
-        there_.insert(chunk);
-        frames_ += frames;
+    void take(ChunkFile file) {
+        frames_ += file.frames;
+        there_.emplace(file.number, std::move(file));
+    }
+    /// All chunks, whose checksums this process has computed. Throws corda::Error (kMismatch) if one is gone.
+    [[nodiscard]] ChunkRun all_chunks() const {
+        ChunkRun run;
+        run.frames = frames_;
+        std::error_code ignored;
+        for (const auto& [number, file] : there_) {
+            const std::int64_t next = folder_.manifest().first_chunk() + std::ssize(run.chunks);
+            if (number != next || !std::filesystem::exists(file.path, ignored)) {
+                run.gap = next;
+                throw Error(ExitCode::kMismatch, fmt::format("{} in '{}': --resume makes it again",
+                                                             gap_text(run, folder_.manifest()), place()));
+            }
+            run.chunks.push_back(file);
+        }
+        return run;
     }
     /// That of the video, or of the lossless frames of an animation.
     [[nodiscard]] std::string chunk_ending() const {
@@ -142,7 +153,7 @@ class FolderSink : public VideoSink {
 
     CheckedVideo output_;
     ChunkFolder folder_;
-    std::set<std::int64_t> there_;
+    std::map<std::int64_t, ChunkFile> there_;  ///< by number
     std::set<std::int64_t> damaged_;
     std::int64_t frames_ = 0;
 };

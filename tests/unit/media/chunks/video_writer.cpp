@@ -356,6 +356,17 @@ TEST_F(Video, AFileThatAppearedMeanwhileIsNotReplaced) {
     EXPECT_THAT(folder_.files(), ElementsAre("a.mp4", "a.mp4.parts"));
 }
 
+TEST_F(Video, AChunkThatIsGoneAtTheEndIsNamed) {
+    VideoWriter writer(file("a.mp4"), small_video(), {});
+    write_frames(writer, 150);
+    fs::remove(chunk_files(file("a.mp4.parts"))[1].path);
+    const test::Failure failure = failure_of([&] { writer.finish(); });
+    EXPECT_EQ(failure.code, ExitCode::kMismatch);
+    EXPECT_EQ(failure.message, "chunk 1 (frames 60..119) is missing in '" + file("a.mp4.parts") +
+                                   "': --resume makes it again");
+    EXPECT_FALSE(fs::exists(file("a.mp4")));
+}
+
 TEST_F(Video, ForceReplacesTheFileBehindALink) {
     test::write_file(file("real.mp4"), "old");
     fs::create_symlink("real.mp4", file("a.mp4"));
