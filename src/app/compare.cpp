@@ -5,11 +5,9 @@
 #include <cerrno>
 #include <exception>
 #include <filesystem>
-#include <map>
 #include <set>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
@@ -20,10 +18,8 @@
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/core/workers.hpp"
-#include "corda/golden/cases.hpp"
 #include "corda/golden/perceived.hpp"
 #include "corda/media/defs.hpp"
-#include "corda/media/png/png.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -35,111 +31,52 @@ bool is_png(const fs::path& path) {
     return path.extension() == ".png";
 }
 
-/// Compares two pictures of files, the first of which is decoded. `keeps_b`: `b` is wanted in any case.
-Difference difference_of(const std::string& path_a, const Picture& a, const std::string& path_b, Picture& b,
-                         const PerceivedFigures& figures, const Image* mask, bool keeps_b) {
-    Difference difference;
-    if (mask == nullptr && media::have_same_picture_chunks(path_a, path_b)) {
-        if (keeps_b) b = a;
-    } else {
-        b = read_picture(path_b);
-        difference = compare(a, b, mask);
-    }
-    add_perceived(a.image, b.image, figures, difference, mask);
-    return difference;
-}
-
-/// A picture against those that it may be equal to.
+/// A comparison of two pictures.
 struct ComparedPicture {
     Difference difference;
     bool passed = false;
-    std::string reference;  ///< the file that the figures are of
-    std::string variant;    ///< the cause of the variant that passed; empty: none, or the first reference
     std::string words;
-    std::vector<std::string> notes;  ///< on contents of the files that the comparison ignores
 };
 
 std::string words_of(const ComparedPicture& compared, const Image& a, const Image& b) {
     const Difference& difference = compared.difference;
-    std::string words;
     if (!difference.same_size)
-        words = fmt::format("different sizes: {}x{} and {}x{}", a.width(), a.height(), b.width(), b.height());
-    else if (difference.equal)
-        words = "equal";
-    else
-        words = fmt::format("{}: {}", compared.passed ? "within the limits" : "different",
-                            figures_text(difference));
-    if (!compared.variant.empty()) words += fmt::format(" (variant {})", compared.variant);
-    return words;
+        return fmt::format("different sizes: {}x{} and {}x{}", a.width(), a.height(), b.width(), b.height());
+    if (difference.equal) return "equal";
+    return fmt::format("{}: {}", compared.passed ? "within the limits" : "different",
+                       figures_text(difference));
 }
 
-/// Notes on colour chunks of the two files that the comparison ignores.
-std::vector<std::string> notes_of(const std::string& a, const std::string& b) {
-    std::vector<std::string> notes;
-    for (const std::string& path : {a, b}) {
-        const std::vector<std::string> chunks = media::color_chunks_beside_srgb(path);
-        if (chunks.empty()) continue;
-        notes.push_back(fmt::format("{}: {} {} ignored: the numbers in the file are compared as sRGB", path,
-                                    fmt::join(chunks, ", "), chunks.size() == 1 ? "is" : "are"));
-    }
-    return notes;
-}
-
-/// Compares `picture` with `references`: the first that passes counts, or else the first of all. Writes the
-/// picture of the difference to `diff`, if that is not empty. `threads` is for each comparison.
-ComparedPicture compare_picture(const CompareOptions& options, const std::string& picture,
-                                const std::vector<std::string>& references, const std::optional<Image>& mask,
+/// Compares two pictures. Writes the picture of the difference to `diff`, if that is not empty.
+ComparedPicture compare_picture(const CompareOptions& options, const std::string& path_a,
+                                const std::string& path_b, const std::optional<Image>& mask,
                                 const std::string& diff, int threads) {
-    const Picture a = read_picture(picture);
+    const Picture a = read_picture(path_a);
+    const Picture b = read_picture(path_b);
     const Image* const its_mask = mask ? &*mask : nullptr;
     PerceivedFigures figures = figures_for(options);
     figures.threads = threads;
-    std::optional<ComparedPicture> chosen;
-    Picture chosen_picture;
-    for (const std::string& path : references) {
-        Picture b;
-        // Small pictures have no SSIM; only an explicit request is refused.
-        const bool is_small = std::min(a.image.width(), a.image.height()) < kMinSsimSidePx;
-        if (is_small && !options.limits.ssim) figures.ssim = false;
-        ComparedPicture compared;
-        compared.difference = difference_of(picture, a, path, b, figures, its_mask, !diff.empty());
-        compared.passed = compared.difference.within(options.limits);
-        compared.reference = path;
-        if (compared.passed && path != references.front()) compared.variant = golden::variant_cause(path);
-        compared.words = words_of(compared, a.image, b.image);
-        compared.notes = notes_of(picture, path);
-        if (chosen && !compared.passed) continue;
-        chosen = std::move(compared);
-        chosen_picture = std::move(b);
-        if (chosen->passed) break;
-    }
-    if (!diff.empty())
-        write_png(diff, difference_image(a, chosen_picture, its_mask), {}, {.force = options.force});
-    return *chosen;
-}
-
-nlohmann::json notes_json(const std::vector<std::string>& notes) {
-    nlohmann::json json = nlohmann::json::array();
-    for (const std::string& note : notes) json.push_back(printable(note));
-    return json;
+    // Small pictures have no SSIM; only an explicit request is refused.
+    const bool is_small = std::min(a.image.width(), a.image.height()) < kMinSsimSidePx;
+    if (is_small && !options.limits.ssim) figures.ssim = false;
+    ComparedPicture compared;
+    compared.difference = compare(a, b, its_mask);
+    add_perceived(a.image, b.image, figures, compared.difference, its_mask);
+    compared.passed = compared.difference.within(options.limits);
+    compared.words = words_of(compared, a.image, b.image);
+    if (!diff.empty()) write_png(diff, difference_image(a, b, its_mask), {}, {.force = options.force});
+    return compared;
 }
 
 ExitCode compare_pictures(const Console& console, const CompareOptions& options,
                           const std::optional<Image>& mask) {
-    std::vector<std::string> references{options.b};
-    references.insert(references.end(), options.variants.begin(), options.variants.end());
     const ComparedPicture compared =
-        compare_picture(options, options.a, references, mask, options.diff, usable_cores());
-    for (const std::string& note : compared.notes) console.warning(note);
+        compare_picture(options, options.a, options.b, mask, options.diff, usable_cores());
     console.result(compared.words);
     if (!options.diff.empty()) console.info(fmt::format("difference picture: {}", options.diff));
     nlohmann::json json = figures_json(compared.difference);
     json["schema"] = 1;
     json["passed"] = compared.passed;
-    json["reference"] = printable(compared.reference);
-    json["variant"] =
-        compared.variant.empty() ? nlohmann::json() : nlohmann::json(printable(compared.variant));
-    json["notes"] = notes_json(compared.notes);
     console.report(json);
     return compared.passed ? ExitCode::kOk : ExitCode::kMismatch;
 }
@@ -160,51 +97,32 @@ std::set<std::string> pictures_in(const std::string& folder, const std::string& 
     return names;
 }
 
-/// The picture of which NAME.CAUSE.png is a variant, in the same folder; empty if it is none by its name.
-std::string base_of(const std::string& name) {
-    const std::string base = golden::base_of_variant(name);
-    return base.empty() ? "" : (fs::path(name).parent_path() / base).string();
-}
-
 /// A name that stands in one of the folders at least.
 struct Pair {
     std::string name;
     bool is_in_a = false;
     bool is_in_b = false;
-    std::vector<std::string> variants;  ///< names in B
     ComparedPicture compared = {};
     std::exception_ptr failure = {};
 };
 
-/// NAME.CAUSE.png beside NAME.png in B is a variant of it, unless A has a picture of that name.
 std::vector<Pair> pairs_of(const std::set<std::string>& a, const std::set<std::string>& b) {
-    std::map<std::string, std::vector<std::string>> variants;
     std::set<std::string> all = a;
-    for (const std::string& name : b) {
-        const std::string base = base_of(name);
-        if (!base.empty() && b.contains(base) && !a.contains(name))
-            variants[base].push_back(name);
-        else
-            all.insert(name);
-    }
+    all.insert(b.begin(), b.end());
     std::vector<Pair> pairs;
     for (const std::string& name : all)
-        pairs.push_back({.name = name,
-                         .is_in_a = a.contains(name),
-                         .is_in_b = b.contains(name),
-                         .variants = variants[name]});
+        pairs.push_back({.name = name, .is_in_a = a.contains(name), .is_in_b = b.contains(name)});
     return pairs;
 }
 
 void compare_pair(const CompareOptions& options, const std::optional<Image>& mask, Pair& pair) {
-    const std::string picture = options.a + "/" + pair.name;
-    std::vector<std::string> references{options.b + "/" + pair.name};
-    for (const std::string& variant : pair.variants) references.push_back(options.b + "/" + variant);
-    pair.compared = compare_picture(options, picture, references, mask, "", 1);
+    const std::string a = options.a + "/" + pair.name;
+    const std::string b = options.b + "/" + pair.name;
+    pair.compared = compare_picture(options, a, b, mask, "", 1);
     if (options.diff.empty() || pair.compared.difference.equal) return;
     const fs::path diff = fs::path(options.diff) / pair.name;
     make_folder(diff.parent_path().string());
-    pair.compared = compare_picture(options, picture, references, mask, diff.string(), 1);
+    pair.compared = compare_picture(options, a, b, mask, diff.string(), 1);
 }
 
 /// Two pictures may take 512 MiB.
@@ -273,7 +191,6 @@ ExitCode compare_folders(const Console& console, const CompareOptions& options,
     Difference worst;
     std::int64_t failed = 0;
     nlohmann::json files = nlohmann::json::array();
-    std::vector<std::string> notes;
     for (const Pair& pair : pairs) {
         nlohmann::json file{{"name", printable(pair.name)}};
         if (!pair.is_in_a || !pair.is_in_b) {
@@ -287,27 +204,19 @@ ExitCode compare_folders(const Console& console, const CompareOptions& options,
             continue;
         }
         const ComparedPicture& compared = pair.compared;
-        if (!compared.difference.equal || !compared.variant.empty())
-            console.result(fmt::format("{}: {}", pair.name, compared.words));
+        if (!compared.difference.equal) console.result(fmt::format("{}: {}", pair.name, compared.words));
         failed += compared.passed ? 0 : 1;
         take_worst(compared.difference, worst);
         file.update(figures_json(compared.difference));
         file["passed"] = compared.passed;
-        file["notes"] = notes_json(compared.notes);
-        notes.insert(notes.end(), compared.notes.begin(), compared.notes.end());
-        file["variant"] =
-            compared.variant.empty() ? nlohmann::json() : nlohmann::json(printable(compared.variant));
         files.push_back(file);
     }
-    if (!notes.empty())
-        console.warning(notes.front() +
-                        (notes.size() > 1 ? fmt::format("; and so of {} more", notes.size() - 1) : ""));
     console.result(fmt::format("{}: {}", counted(std::ssize(pairs), "picture"),
                                worst.equal   ? "all equal"
                                : failed == 0 ? "all within the limits"
                                              : fmt::format("{} failed", failed)));
     nlohmann::json json = figures_json(worst);
-    json.update({{"schema", 1}, {"passed", failed == 0}, {"files", files}, {"notes", notes_json(notes)}});
+    json.update({{"schema", 1}, {"passed", failed == 0}, {"files", files}});
     console.report(json);
     return failed == 0 ? ExitCode::kOk : ExitCode::kMismatch;
 }
@@ -335,17 +244,8 @@ ExitCode compare(const Console& console, CompareOptions options) {
                     fmt::format("'{}' is a folder and '{}' is none; name two pictures, or two folders",
                                 is_folder ? options.a : options.b, is_folder ? options.b : options.a));
     }
-    if (is_folder && !options.variants.empty())
-        throw Error(ExitCode::kUsage,
-                    "--variant is for files; in a folder NAME.CAUSE.png is a variant of NAME.png");
     if (is_folder) return compare_folders(console, options, mask);
     const bool is_video = is_video_name(options.a);
-    for (const std::string& other : options.variants)
-        if (golden::variant_cause(other).empty())
-            throw Error(ExitCode::kUsage,
-                        fmt::format("--variant {}: does not name its cause; call it NAME.CAUSE.png, e.g. "
-                                    "swing.nvidia.png",
-                                    other));
     if (is_video != is_video_name(options.b)) {
         throw Error(ExitCode::kUsage,
                     fmt::format("'{}' is a video and '{}' is none; name two videos, or two pictures",
@@ -380,17 +280,10 @@ void add_compare(CLI::App& app, Action& action) {
     auto [command, options] = add_command(
         app, action, "compare",
         "compare two PNG files, those of two folders, or the frames of two videos; exit 7 if they differ (by "
-        "more than the limits). In folders NAME.CAUSE.png beside NAME.png in B may match, too",
+        "more than the limits)",
         compare);
     command.add_option("A", options.a, "PNG file, folder, or video")->required();
     command.add_option("B", options.b, "PNG file, folder, or video: the reference")->required();
-    command
-        .add_option("--variant", options.variants,
-                    "another reference that may match in place of B, named by its cause: NAME.CAUSE.png")
-        ->type_name("FILE")
-        ->expected(1)
-        ->take_all()
-        ->allow_extra_args(false);
     command
         .add_option("--max", options.limits.max,
                     "largest difference of a channel that passes; with no limit only equal pictures pass")

@@ -4,7 +4,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "console.hpp"
 #include "corda/golden/compare.hpp"
@@ -15,7 +14,6 @@ namespace corda::app {
 struct CompareOptions {
     std::string a;
     std::string b;
-    std::vector<std::string> variants;
     DifferenceLimits limits;
     std::string mask;
     std::string diff;

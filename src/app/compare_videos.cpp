@@ -11,7 +11,6 @@
 #include "corda/core/child_process.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/golden/cases.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/media/read/stored_video.hpp"
 #include "interrupt.hpp"
@@ -83,10 +82,9 @@ void take_frames(const CompareOptions& options, const std::array<media::StoredPi
     result.worst_pictures = std::move(images);
 }
 
-VideoDifference compare_all_frames(const CompareOptions& options, const std::string& path_b,
-                                   const std::optional<Image>& mask) {
+VideoDifference compare_all_frames(const CompareOptions& options, const std::optional<Image>& mask) {
     media::StoredVideo a(options.a);
-    media::StoredVideo b(path_b);
+    media::StoredVideo b(options.b);
     VideoDifference result;
     result.rates = {a.rate(), b.rate()};
     std::array<media::StoredPicture, 2> pictures;
@@ -153,9 +151,8 @@ Json json_of(const VideoDifference& found) {
 }
 
 /// The report as a line of JSON, and after it the picture of the differences.
-std::string compared(const CompareOptions& options, const std::string& path_b,
-                     const std::optional<Image>& mask) {
-    const VideoDifference found = compare_all_frames(options, path_b, mask);
+std::string compared(const CompareOptions& options, const std::optional<Image>& mask) {
+    const VideoDifference found = compare_all_frames(options, mask);
     Json json = json_of(found);
     std::string pixels;
     if (!options.diff.empty() && found.differing > 0) {
@@ -181,19 +178,18 @@ ChildLimits limits_of_videos(const std::string& a, const std::string& b) {
 }
 
 /// The report of the child; writes the picture of the differences.
-Json compare_two(const CompareOptions& options, const std::string& path_b, const std::optional<Image>& mask,
-                 std::string& pixels) {
+Json compare_two(const CompareOptions& options, const std::optional<Image>& mask, std::string& pixels) {
     const auto end =
-        run_in_child([&] { return compared(options, path_b, mask); }, limits_of_videos(options.a, path_b));
+        run_in_child([&] { return compared(options, mask); }, limits_of_videos(options.a, options.b));
     if (end && end->outcome == ChildEnd::Outcome::kOutOfMemory)
         throw Error(ExitCode::kIo, "a video asks for more memory than it may have");
     if (end && !end->finished()) {
         throw Error(ExitCode::kIo,
                     fmt::format("cannot compare '{}' with '{}': decoding {}; `corda verify` says "
                                 "which is damaged",
-                                options.a, path_b, end->text));
+                                options.a, options.b, end->text));
     }
-    const std::string report = end ? end->text : compared(options, path_b, mask);
+    const std::string report = end ? end->text : compared(options, mask);
     const std::size_t line = report.find('\n');
     pixels = report.substr(line + 1);
     return Json::parse(report.substr(0, line));
@@ -216,27 +212,9 @@ bool is_video_name(const std::string& path) {
 
 ExitCode compare_videos(const Console& console, const CompareOptions& options,
                         const std::optional<Image>& mask) {
-    std::vector<std::string> references{options.b};
-    references.insert(references.end(), options.variants.begin(), options.variants.end());
-    std::optional<Json> chosen;
     std::string pixels;
-    std::string reference;
-    for (const std::string& path : references) {
-        std::string its_pixels;
-        Json json = compare_two(options, path, mask, its_pixels);
-        const bool passed = json["passed"].get<bool>();
-        if (!chosen || passed) {
-            chosen = std::move(json);
-            pixels = std::move(its_pixels);
-            reference = path;
-        }
-        if (passed) break;
-    }
-    Json& json = *chosen;
-    const bool is_variant = reference != options.b;
-    for (const Json& words : json["words"])
-        console.result(words.get<std::string>() +
-                       (is_variant ? fmt::format(" (variant {})", golden::variant_cause(reference)) : ""));
+    Json json = compare_two(options, mask, pixels);
+    for (const Json& words : json["words"]) console.result(words.get<std::string>());
     if (json.contains("picture")) {
         write_difference(options, json, pixels);
         console.info(fmt::format("difference picture: {}", options.diff));
@@ -244,8 +222,6 @@ ExitCode compare_videos(const Console& console, const CompareOptions& options,
     json.erase("words");
     json.erase("picture");
     json["schema"] = 1;
-    json["reference"] = printable(reference);
-    json["variant"] = is_variant ? Json(printable(golden::variant_cause(reference))) : Json();
     console.report(json);
     return json["passed"].get<bool>() ? ExitCode::kOk : ExitCode::kMismatch;
 }

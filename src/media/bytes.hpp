@@ -69,8 +69,6 @@ struct PngChunk {
     static constexpr std::uint64_t kChecksumBytes = 4;
     std::string type;
     std::uint64_t length = 0;
-
-    friend bool operator==(const PngChunk&, const PngChunk&) = default;
 };
 [[nodiscard]] std::optional<PngChunk> next_png_chunk(ByteReader& bytes);
 

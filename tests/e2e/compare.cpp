@@ -1,4 +1,4 @@
-// `corda compare` on pictures made by hand, on videos, and with variants.
+// `corda compare` on pictures made by hand, and on videos.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,6 @@
 
 #include "corda/media/defs.hpp"
 #include "support/command.hpp"
-#include "support/png_chunks.hpp"
 
 namespace corda {
 namespace {
@@ -135,28 +134,6 @@ TEST_F(CompareFiles, SixteenBitFilesDifferInTheirLowerEightBits) {
     EXPECT_EQ(code({b, file("c.png")}), 7);
 }
 
-TEST_F(CompareFiles, IgnoredColourSpacesAreNamed) {
-    const std::string a = put("a.png", drawn());
-    EXPECT_EQ(report({a, a})["notes"], nlohmann::json::array());
-    const std::string png = test::read_file(a);
-    // Chunks before the pixels that replace sRGB and its gAMA and cHRM.
-    const std::string plain = test::without_chunks(png, {"sRGB", "gAMA", "cHRM"});
-    const std::vector<std::array<std::string, 3>> chunks{
-        {"gAMA", std::string("\0\1\x86\xa0", 4), "gAMA (1)"},
-        {"cICP", std::string("\x09\x10\0\1", 4), "cICP (9, 16, 0, 1)"},
-        {"cHRM", std::string(32, '\1'), "cHRM"},
-        {"iCCP", std::string("Display P3\0\0", 12) + "profile", "iCCP ('Display P3')"}};
-    for (const auto& [type, data, words] : chunks) {
-        test::write_file(file("b.png"), test::with_chunk(plain, type, data, "IDAT"));
-        const auto result = run_corda({"compare", a, file("b.png")});
-        EXPECT_EQ(result.exit_code, 0) << type;
-        EXPECT_THAT(result.err, HasSubstr("b.png: " + words + " is ignored")) << type;
-        EXPECT_EQ(report({a, file("b.png")})["notes"].size(), 1U) << type;
-    }
-    test::write_file(file("b.png"), test::with_chunk(png, "gAMA", chunks[0][1], "IDAT"));
-    EXPECT_EQ(report({a, file("b.png")})["notes"].size(), 0U) << "sRGB overrides it";
-}
-
 TEST_F(CompareFiles, CorruptPicturesAreErrorsNotMismatches) {
     const std::string a = put("a.png", drawn());
     std::string bytes = test::read_file(a);
@@ -186,38 +163,6 @@ TEST_F(CompareFiles, ImpossibleFileNamesAreNotInternalErrors) {
     EXPECT_EQ(run_corda({"golden", file(std::string(300, 'n')), "--dir", file("ref")}).exit_code, 6);
 }
 
-TEST_F(CompareFiles, AVariantMayMatch) {
-    const std::string a = put("new.png", drawn(11));
-    const std::string b = put("ref.png", drawn(10));
-    const std::string variant = put("ref.nvidia.png", drawn(11));
-    const std::string other = put("ref.amd.png", drawn(12));
-    EXPECT_EQ(code({a, b, "--variant", other}), 7);
-    const auto json = report({a, b, "--variant", other, "--variant", variant});
-    EXPECT_EQ(json["passed"], true);
-    EXPECT_EQ(json["variant"], "nvidia");
-    EXPECT_THAT(json["reference"].get<std::string>(), testing::EndsWith("ref.nvidia.png"));
-    EXPECT_THAT(run_corda({"compare", a, b, "--variant", variant}).out, HasSubstr("equal (variant nvidia)"));
-    EXPECT_EQ(report({b, b, "--variant", variant})["variant"], nullptr);
-    EXPECT_EQ(code({a, b, "--variant", put("plain.png", drawn())}), 2);
-}
-
-TEST_F(CompareFiles, VariantsInFolders) {
-    for (const std::string folder : {"a", "b"}) std::filesystem::create_directory(file(folder));
-    put("a/one.png", drawn(11));
-    put("b/one.png", drawn(10));
-    put("a/two.png", drawn(10));
-    put("b/two.png", drawn(10));
-    EXPECT_EQ(code({file("a"), file("b")}), 7);
-    put("b/one.old-mesa.png", drawn(11));
-    const auto json = report({file("a"), file("b")});
-    EXPECT_EQ(json["passed"], true);
-    ASSERT_EQ(json["files"].size(), 2U);
-    EXPECT_EQ(json["files"][0]["variant"], "old-mesa");
-    EXPECT_EQ(json["files"][1]["variant"], nullptr);
-    put("b/three.nvidia.png", drawn());  // a variant without a picture
-    EXPECT_EQ(code({file("a"), file("b")}), 7);
-}
-
 TEST_F(CompareFiles, NestedFolders) {
     for (const std::string folder : {"a/deep/in", "b/deep/in"})
         std::filesystem::create_directories(file(folder));
@@ -230,8 +175,6 @@ TEST_F(CompareFiles, NestedFolders) {
     for (int i = 0; i < 2; ++i)
         EXPECT_EQ(code({file("a"), file("b"), "--diff", file("a/diff"), "--force"}), 7);
     EXPECT_TRUE(std::filesystem::exists(file("a/diff/deep/in/two.PNG")));
-    put("b/deep/in/two.old-mesa.PNG", drawn(10));
-    EXPECT_EQ(report({file("a/deep"), file("b/deep")})["files"][0]["variant"], "old-mesa");
     put("b/deep/three.png", drawn());
     EXPECT_EQ(code({file("a/deep"), file("b/deep")}), 7);
 }
@@ -265,7 +208,6 @@ TEST_F(CompareFiles, VideosFrameByFrame) {
     EXPECT_EQ(read_png(file("d.png")).width(), 64);
     EXPECT_EQ(code({a, b, "--share", "0.01"}), 0);
     EXPECT_EQ(code({a, b, "--share", "0.001"}), 7);
-    EXPECT_EQ(report({a, b, "--variant", video("ref.other.mkv", source + lossless)})["variant"], "other");
 }
 
 TEST_F(CompareFiles, WorstFrameExceedsTheLimitsIfAnyFrameDoes) {
