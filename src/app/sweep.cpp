@@ -19,6 +19,7 @@ struct SweepOptions {
     bool checks = false;
     bool resume = false;
     bool force = false;
+    GlOptions gl;
     std::vector<std::string> plots;
     bool sheet = false;
 };
@@ -37,8 +38,12 @@ ExitCode sweep(const Console& console, const SweepOptions& options) {
     const double start_s = now_s();
     const sweep::SweepDef def = sweep::load_sweep(options.path);
     if (options.checks) return check(console, def, options);
-    sweep::RunDef run{.folder = options.folder, .jobs = options.jobs, .force = options.force};
+    sweep::RunDef run;
+    run.folder = options.folder;
+    run.jobs = options.jobs;
+    run.force = options.force;
     if (!options.shard.empty()) run.shard = parse_shard(options.shard);
+    options.gl.apply_to(run.film);
     run.on_progress = show_progress(console, "sweep");
     const sweep::RunResult result = sweep::run_sweep(def, run);
     const double wall_s = now_s() - start_s;
@@ -83,6 +88,7 @@ void add_sweep(CLI::App& app, Action& action) {
         ->required();
     command.add_option("-o,--output", options.folder, "folder of the shards, metadata.csv and manifest.json")
         ->required();
+    options.gl.add_to(command);
     command.add_option("--jobs", options.jobs, "samples made at a time; 0: one per core")
         ->check(within(0, EncoderDef::kMaxThreads));
     auto* const shard = command

@@ -199,7 +199,7 @@ struct Cell {
 /// Poses of a sample, and its parameters.
 Cell cell_of(const sweep::SweepDef& sweep, std::int64_t number, int side_px) {
     constexpr int kPosesPerCell = 5;
-    Cell cell{{}, {sweep::key_of(sweep, number)}};
+    Cell cell{{}, {sweep::key_of(number)}};
     try {
         const sweep::Parameters parameters = sweep::parameters_of(sweep, number);
         for (const auto& [key, value] : parameters)

@@ -140,15 +140,14 @@ Json info_of(Film& film, const SweepDef& sweep, const Sample& sample) {
 
 }  // namespace
 
-std::string key_of(const SweepDef& sweep, std::int64_t sample) {
-    const std::size_t digits = std::max<std::size_t>(6, std::to_string(sweep.samples - 1).size());
-    return fmt::format("{:0{}}", sample, digits);
+std::string key_of(std::int64_t sample) {
+    return fmt::format("{:06}", sample);
 }
 
 Sample SampleMaker::make(std::int64_t number) {
     Sample sample;
     sample.number = number;
-    sample.key = key_of(*sweep_, number);
+    sample.key = key_of(number);
     sample.split = split_of(*sweep_, number);
     try {
         sample.parameters = parameters_of(*sweep_, number);
@@ -163,7 +162,7 @@ Sample SampleMaker::make(std::int64_t number) {
 }
 
 void SampleMaker::make_of(const Scene& scene, Sample& sample) {
-    FilmDef def;
+    FilmDef def = film_;
     def.readings = {.velocities = true, .tensions = true, .unknown_tensions = true};
     Film film(scene, std::move(def));
     SummaryReader summary(film);

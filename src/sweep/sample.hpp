@@ -47,14 +47,14 @@ struct Sample {
     std::vector<SampleFile> pictures;  ///< one .mp4, or a .NUMBER.png per frame; empty for kNpz and kNone
 };
 
-/// "000012": samples of a sweep have as many digits as its last one, and at least 6.
-[[nodiscard]] std::string key_of(const SweepDef& sweep, std::int64_t sample);
+/// "000012": at least 6 digits, more from sample 1 000 000 on.
+[[nodiscard]] std::string key_of(std::int64_t sample);
 
 /// Makes samples, one at a time, on the thread that made the first. It keeps OpenGL open between them.
 class SampleMaker {
   public:
-    /// `sweep` must outlive it.
-    explicit SampleMaker(const SweepDef& sweep) : sweep_(&sweep) {}
+    /// `sweep` must outlive it. `film` says how to reach OpenGL.
+    explicit SampleMaker(const SweepDef& sweep, FilmDef film = {}) : sweep_(&sweep), film_(std::move(film)) {}
 
     /// Throws corda::Error for what is wrong with more than this sample: kNoGl, kEncoder, kTemporary,
     /// kInterrupted if cancelled.
@@ -65,6 +65,7 @@ class SampleMaker {
     void draw(Film& film, Sample& sample);
 
     const SweepDef* sweep_;
+    FilmDef film_;
     pipeline::OwnedCanvas canvas_;
 };
 

@@ -202,9 +202,12 @@ void open_folder(const SweepDef& sweep, const RunDef& def) {
 /// Makes samples on several threads, and gives them in order.
 class SampleQueue {
   public:
-    SampleQueue(const SweepDef& sweep, std::vector<std::int64_t> numbers, int jobs)
-        : sweep_(&sweep), numbers_(std::move(numbers)), workers_(0, std::ssize(numbers_), jobs, [this] {
-              return [this, maker = std::make_shared<SampleMaker>(*sweep_)](
+    SampleQueue(const SweepDef& sweep, const FilmDef& film, std::vector<std::int64_t> numbers, int jobs)
+        : sweep_(&sweep),
+          film_(film),
+          numbers_(std::move(numbers)),
+          workers_(0, std::ssize(numbers_), jobs, [this] {
+              return [this, maker = std::make_shared<SampleMaker>(*sweep_, film_)](
                          std::int64_t index, const OrderedWorkers<PackedSample>& all) {
                   const CancelScope running([&all] { return !all.is_stopped(); });
                   return pack(maker->make(numbers_[static_cast<std::size_t>(index)]));
@@ -224,11 +227,12 @@ class SampleQueue {
 
   private:
     SampleMaker& maker() {
-        if (!maker_) maker_ = std::make_unique<SampleMaker>(*sweep_);
+        if (!maker_) maker_ = std::make_unique<SampleMaker>(*sweep_, film_);
         return *maker_;
     }
 
     const SweepDef* sweep_;
+    FilmDef film_;
     std::vector<std::int64_t> numbers_;
     std::size_t next_ = 0;
     std::unique_ptr<SampleMaker> maker_;  ///< if the system starts no thread
@@ -329,7 +333,7 @@ RunResult run_sweep(const SweepDef& sweep, const RunDef& def) {
     const auto total = std::ssize(numbers);
     const auto report = [&] { report_progress(def.on_progress, result.samples_made, total); };
     if (total > 0) {
-        SampleQueue samples(sweep, std::move(numbers),
+        SampleQueue samples(sweep, def.film, std::move(numbers),
                             static_cast<int>(std::min<std::int64_t>(media::jobs_of(def.jobs), total)));
         for (const std::int64_t shard : lacking) {
             ShardWriter writer(sweep, def.folder, shard);

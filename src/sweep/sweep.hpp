@@ -17,6 +17,7 @@ struct RunDef {
     std::optional<Shard> shard{};  ///< make only every count-th shard file, from shard file `index` on
     int jobs = 0;                  ///< samples made at a time; 0: one per core. The bytes do not depend on it
     bool force = false;            ///< replace the shards of another sweep, and make finished ones again
+    FilmDef film{};                ///< how to reach OpenGL
     OnProgress on_progress{};      ///< called with the number of samples; returning false stops
 };
 

@@ -133,12 +133,11 @@ void stage_npz(benchmark::State& bench) {
 void whole(benchmark::State& bench) {
     const test::ScratchFolder folder;
     const sweep::SweepDef sweep = sweep_of(bench.range(0), folder);
-    for (auto _ : bench)
-        run_sweep(sweep, {.folder = folder.file("out"),
-                          .shard = {},
-                          .jobs = static_cast<int>(bench.range(1)),
-                          .force = true,
-                          .on_progress = {}});
+    sweep::RunDef def;
+    def.folder = folder.file("out");
+    def.jobs = static_cast<int>(bench.range(1));
+    def.force = true;
+    for (auto _ : bench) run_sweep(sweep, def);
     count_clips(bench, kSamples);
 }
 
