@@ -187,8 +187,12 @@ std::vector<std::string> references_in(const std::string& folder) {
 
 std::vector<std::string> variants_of(const std::vector<std::string>& references, const std::string& name) {
     std::vector<std::string> variants;
-    for (const std::string& path : references)
-        if (fs::path(path).filename() == name || base_of_variant(path) == name) variants.push_back(path);
+    for (const std::string& path : references) {
+        const fs::path file = fs::path(path).filename();
+        const bool has_cause = file.stem().extension().string().size() > 1;
+        if (file == name || (has_cause && file.stem().stem().string() + file.extension().string() == name))
+            variants.push_back(path);
+    }
     return variants;
 }
 
@@ -220,17 +224,6 @@ std::vector<std::string> stale_ones(const SuiteDef& def, const std::vector<Case>
         if (!scene.empty() && (has_folder || scenes.contains(scene))) stale.push_back(path);
     }
     return stale;
-}
-
-std::string variant_cause(const std::string& path) {
-    const std::string cause = fs::path(path).stem().extension().string();
-    return cause.empty() ? "" : cause.substr(1);
-}
-
-std::string base_of_variant(const std::string& path) {
-    if (variant_cause(path).empty()) return "";
-    const fs::path file = fs::path(path).filename();
-    return file.stem().stem().string() + file.extension().string();
 }
 
 }  // namespace corda::golden

@@ -27,7 +27,7 @@ struct Case {
 /// The pictures of the folder of references, sorted; none if there is no folder. Throws corda::Error (kIo).
 [[nodiscard]] std::vector<std::string> references_in(const std::string& folder);
 
-/// Those of `references` that are NAME.png or NAME.CAUSE.png; `name`: NAME.png.
+/// Those of `references` that are NAME.png or NAME.CAUSE.png, such as NAME.nvidia.png; `name`: NAME.png.
 [[nodiscard]] std::vector<std::string> variants_of(const std::vector<std::string>& references,
                                                    const std::string& name);
 
@@ -44,12 +44,5 @@ struct Case {
 /// Made by it are those that say so, and those without a record whose names are SCENE_tSSSS_FFFFFF.png.
 [[nodiscard]] std::vector<std::string> stale_ones(const SuiteDef& def, const std::vector<Case>& cases,
                                                   const std::vector<std::string>& references);
-
-/// "nvidia" of "NAME.nvidia.png", a variant of the reference NAME.png; empty if the name has no cause.
-[[nodiscard]] std::string variant_cause(const std::string& path);
-
-/// "NAME.png" of "FOLDER/NAME.nvidia.png": the name of the reference that it is a variant of; empty if the
-/// name has no cause.
-[[nodiscard]] std::string base_of_variant(const std::string& path);
 
 }  // namespace corda::golden
