@@ -23,10 +23,6 @@ namespace {
 
 constexpr std::string_view kHashed = "hash ";
 
-std::string hashed(std::string_view text) {
-    return std::string(kHashed) + hash_text(text);
-}
-
 [[noreturn]] void fail_unwritable(const std::string& problem) {
     throw Error(ExitCode::kUsage, fmt::format("a scene file cannot give this scene: {}", problem));
 }
@@ -299,6 +295,10 @@ Setting solver_setting(const Scene& scene) {
 
 std::map<std::string, std::string> digest(const Scene& scene) {
     return digest_of(Tables(scene));
+}
+
+std::string hashed(std::string_view text) {
+    return std::string(kHashed) + hash_text(text);
 }
 
 std::vector<std::string> differences(const std::map<std::string, std::string>& now,

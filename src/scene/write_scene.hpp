@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "corda/scene/scene.hpp"
@@ -25,6 +26,9 @@ namespace corda {
 /// Scenes of equal digests have equal frames, whatever they were read from. A scene of more than a hundred
 /// bodies has one hash for all of them.
 [[nodiscard]] std::map<std::string, std::string> digest(const Scene& scene);
+
+/// A value that is too long to stand in a digest.
+[[nodiscard]] std::string hashed(std::string_view text);
 
 /// All differences between two digests: "video.crf is 18 and was 20". Empty if they are equal.
 [[nodiscard]] std::vector<std::string> differences(const std::map<std::string, std::string>& now,

@@ -16,6 +16,7 @@
 #include "corda/core/workers.hpp"
 #include "corda/media/bytes.hpp"
 #include "corda/media/encode/resources.hpp"
+#include "corda/scene/write_scene.hpp"
 #include "corda/sweep/archive.hpp"
 
 namespace corda::sweep {
@@ -51,8 +52,15 @@ bool is_sweep_file(const std::string& name) {
     return name == kManifestName || name == kMetadataName || name.starts_with("shard-");
 }
 
-std::string sweep_hash(const SweepDef& sweep) {
-    return hash_text(Json(identity_of(sweep)).dump());
+/// Refuses what another sweep has made, naming the differences. Throws Json::exception if `made_from` is
+/// none.
+void require_same(const SweepDef& sweep, const Json& made_from, const std::string& path) {
+    const auto changes = differences(identity_of(sweep), made_from.get<std::map<std::string, std::string>>());
+    if (!changes.empty())
+        throw Error(ExitCode::kUsage,
+                    fmt::format("'{}' is of another sweep: {}; choose another folder, move it "
+                                "away, or replace all shards (--force)",
+                                path, differences_text(changes)));
 }
 
 /// The JSON object in a file; std::nullopt if there is no file, or none with an object.
@@ -73,29 +81,43 @@ void write_text(const std::string& path, std::string_view text) {
     file.commit();
 }
 
+/// The checksum of an index without its own.
+std::string checksum_of(Json index) {
+    index.erase("checksum");
+    return hash_text(index.dump());
+}
+
 /// The index of a shard file: its size, its checksum and the rows of its samples. It is written after the
-/// shard, so that a shard with an index is finished. std::nullopt if there is no sound index for the samples
-/// of the sweep with a shard file of its size. Throws corda::Error (kUsage) if it is of another sweep.
+/// shard, so that a shard with an index is finished. std::nullopt if there is no sound one for these samples
+/// with a shard file of its size. Throws corda::Error (kUsage) if it is of another sweep.
 std::optional<Json> find_index(const SweepDef& sweep, const std::string& folder, std::int64_t shard) {
-    const fs::path path = fs::path(folder) / shard_name(shard);
-    auto index = read_json(path.string() + ".json");
-    if (!index) return std::nullopt;
+    const std::string path = (fs::path(folder) / shard_name(shard)).string();
+    auto index = read_json(path + ".json");
+    if (!index || index->value("checksum", Json()) != checksum_of(*index)) return std::nullopt;
+    require_same(sweep, index->at("made_from"), path + ".tar");
     const SampleRange samples = samples_of(sweep, shard);
-    try {
-        if (index->at("sweep").get<std::string>() != sweep_hash(sweep))
-            throw Error(ExitCode::kUsage,
-                        fmt::format("'{}.tar' is of another sweep; move it away, choose another folder, or "
-                                    "replace all shards (--force)",
-                                    path.string()));
-        std::error_code failure;
-        const bool is_finished =
-            std::ssize(index->at("rows")) == samples.end - samples.first &&
-            fs::file_size(path.string() + ".tar", failure) == index->at("bytes").get<std::uintmax_t>();
-        static_cast<void>(index->at("sha256").get_ref<const std::string&>());
-        return is_finished ? std::move(index) : std::nullopt;
-    } catch (const Json::exception&) {
-        return std::nullopt;
+    std::error_code failure;
+    const bool is_finished =
+        std::ssize(index->at("rows")) == samples.end - samples.first &&
+        fs::file_size(path + ".tar", failure) == index->at("bytes").get<std::uintmax_t>();
+    return is_finished ? std::move(index) : std::nullopt;
+}
+
+/// What is wrong with shard files beyond the last one.
+std::vector<std::string> surplus_shards(const SweepDef& sweep, const std::string& folder) {
+    const std::string last = shard_name(shard_count(sweep) - 1) + ".tar";
+    std::vector<std::string> problems;
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+        const std::string name = entry.path().filename().string();
+        if (is_sweep_file(name) && name.ends_with(".tar") &&
+            std::pair(name.size(), name) > std::pair(last.size(), last))
+            problems.push_back(
+                fmt::format("'{}' is of a sweep of more samples; move it away, or replace all "
+                            "shards (--force)",
+                            entry.path().string()));
     }
+    return problems;
 }
 
 Json failure_json(const SampleFailure& failure) {
@@ -135,7 +157,7 @@ class ShardWriter {
               sum_.add(bytes);
               bytes_ += bytes.size();
           }) {
-        index_ = {{"schema", 1}, {"sweep", sweep_hash(sweep)}, {"rows", Json::array()}};
+        index_ = {{"schema", 1}, {"made_from", identity_of(sweep)}, {"rows", Json::array()}};
     }
 
     void add(PackedSample sample) {
@@ -147,6 +169,7 @@ class ShardWriter {
         file_.commit();
         index_["bytes"] = bytes_;
         index_["sha256"] = sum_.text();
+        index_["checksum"] = checksum_of(index_);
         write_text(path_ + ".json", index_.dump() + "\n");
     }
 
@@ -177,26 +200,16 @@ void open_folder(const SweepDef& sweep, const RunDef& def) {
         for (const fs::path& file : old) fs::remove(file, ignored);
     }
     const auto found = read_json(path);
-    if (!found) {
-        if (fs::exists(path))
-            throw Error(ExitCode::kIo, fmt::format("'{}' is no manifest of a sweep; move it away, or choose "
-                                                   "another folder",
-                                                   path));
-        return write_text(path, empty_manifest(sweep).dump(1) + "\n");
+    if (!found && !fs::exists(path)) return write_text(path, empty_manifest(sweep).dump(1) + "\n");
+    try {
+        require_same(sweep, found.value_or(Json()).at("made_from"), path);
+    } catch (const Json::exception&) {
+        throw Error(ExitCode::kIo, fmt::format("'{}' is no manifest of a sweep; move it away, or choose "
+                                               "another folder",
+                                               path));
     }
-    const Json wanted = identity_of(sweep);
-    const Json its = found->value("made_from", Json::object());
-    for (const auto& [key, value] : wanted.items()) {
-        if (its.contains(key) && its[key] == value) continue;
-        throw Error(ExitCode::kUsage,
-                    fmt::format("'{}' holds another sweep: {} differs; choose another folder, or replace its "
-                                "shards (--force)",
-                                def.folder, key));
-    }
-    if (its.size() != wanted.size())
-        throw Error(ExitCode::kUsage, fmt::format("'{}' holds another sweep, with other keys; choose another "
-                                                  "folder, or replace its shards (--force)",
-                                                  def.folder));
+    if (const auto surplus = surplus_shards(sweep, def.folder); !surplus.empty())
+        throw Error(ExitCode::kUsage, surplus.front());
 }
 
 /// Makes samples on several threads, and gives them in order.
@@ -354,7 +367,7 @@ RunResult run_sweep(const SweepDef& sweep, const RunDef& def) {
 
 std::vector<std::string> check_sweep(const SweepDef& sweep, const std::string& folder,
                                      const OnProgress& on_progress) {
-    std::vector<std::string> problems;
+    std::vector<std::string> problems = surplus_shards(sweep, folder);
     const std::int64_t shards = shard_count(sweep);
     for (std::int64_t shard = 0; shard < shards; ++shard) {
         report_progress(on_progress, shard, shards);
@@ -362,7 +375,8 @@ std::vector<std::string> check_sweep(const SweepDef& sweep, const std::string& f
         try {
             const auto index = find_index(sweep, folder, shard);
             if (!index) {
-                problems.push_back(fmt::format("'{}' is missing or not finished", path));
+                problems.push_back(fmt::format("'{}' {}; run the sweep again", path,
+                                               fs::exists(path) ? "does not fit its index" : "is missing"));
                 continue;
             }
             if (media::sha256_of_file(path) != index->at("sha256").get<std::string>()) {
@@ -383,9 +397,6 @@ std::vector<std::string> check_sweep(const SweepDef& sweep, const std::string& f
         } catch (const Error& error) {
             if (error.code() != ExitCode::kUsage && error.code() != ExitCode::kMismatch) throw;
             problems.emplace_back(error.what());
-        } catch (const Json::exception&) {
-            problems.push_back(
-                fmt::format("the index of '{}' is damaged; remove it, and run the sweep again", path));
         }
     }
     report_progress(on_progress, shards, shards);

@@ -18,7 +18,7 @@
 #include "corda/scene/problems.hpp"
 #include "corda/scene/read_file.hpp"
 #include "corda/scene/schema.hpp"
-#include "corda/sweep/random.hpp"
+#include "corda/scene/write_scene.hpp"
 #include "corda/sweep/summary.hpp"
 
 namespace corda::sweep {
@@ -27,6 +27,7 @@ namespace {
 using scene::described;
 using scene::Problems;
 
+constexpr std::size_t kMaxIdentityText = 200;
 constexpr double kMaxExactInteger = 9007199254740992.0;  // 2^53
 
 constexpr std::array<std::string_view, 4> kPictures{"mp4", "png", "npz", "none"};  // in the order of Pictures
@@ -436,6 +437,7 @@ std::map<std::string, std::string> identity_of(const SweepDef& sweep) {
             text += fmt::format("{} {} {} {} {}", kShapes[static_cast<std::size_t>(its.shape)],
                                 toml_of(its.first), toml_of(its.second), toml_of(its.min), toml_of(its.max));
         }
+        if (text.size() > kMaxIdentityText) text = hashed(text);
     }
     return identity;
 }
