@@ -178,11 +178,10 @@ class SweepReader {
 
     void read_vary() {
         const toml::table* const vary = table("vary");
+        if (vary == nullptr && document_->contains("vary")) return;  // it has a problem
         if (vary == nullptr || vary->empty())
-            return document_->contains("vary") && vary == nullptr
-                       ? void()
-                       : fail(*document_, "vary",
-                              "no key varies; give [vary] with keys of the scene and their values");
+            return fail(vary == nullptr ? *document_ : *vary, "vary",
+                        "no key varies; give [vary] with keys of the scene and their values");
         std::vector<const toml::key*> keys;  // in the order of the file
         for (const auto& [key, node] : *vary) keys.push_back(&key);
         std::sort(keys.begin(), keys.end(), [](const toml::key* a, const toml::key* b) {
@@ -256,7 +255,8 @@ class SweepReader {
             }
         }
         if (!made) {
-            fail(table, path, fmt::format("no distribution; give {}", fmt::join(kShapes, ", ")));
+            if (problems_->is_sound(path))
+                fail(table, path, fmt::format("no distribution; give {}", fmt::join(kShapes, ", ")));
             return made;
         }
         constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -397,6 +397,22 @@ class SweepReader {
     SweepDef* sweep_;
 };
 
+/// Refuses keys that do not fit the scene, such as an index beyond its list, before every sample does.
+void check_varied_keys(const SweepDef& sweep, const toml::table& vary, Problems& problems) {
+    toml::table document = scene::parse_document(sweep.scene_toml, sweep.scene_name);
+    for (const VariedKey& varied : sweep.vary) {
+        try {
+            Problems misfits(sweep.scene_name);
+            scene::apply_setting(document, varied.key + "=0", misfits);
+            misfits.throw_if_any();
+        } catch (const Error& error) {
+            problems.add(vary.get(varied.key)->source(), "vary." + Json(varied.key).dump(),
+                         fmt::format("does not fit the scene: {}", error.what()));
+        }
+    }
+    problems.throw_if_any();
+}
+
 }  // namespace
 
 SweepDef load_sweep(const std::string& path) {
@@ -407,15 +423,22 @@ SweepDef load_sweep(const std::string& path) {
     SweepReader(document, problems, sweep).read();
     problems.throw_if_any();
     const std::filesystem::path folder = path == "-" ? "" : std::filesystem::path(path).parent_path();
-    sweep.scene_toml = scene::read_file((folder / sweep.scene_name).string());
+    try {
+        sweep.scene_toml = scene::read_file((folder / sweep.scene_name).string());
+    } catch (const Error& error) {
+        const toml::source_position at = document.get("scene")->source().begin;
+        throw Error(error.code(),
+                    fmt::format("{}:{}:{}: scene: {}", sweep.source, at.line, at.column, error.what()));
+    }
     static_cast<void>(parse_scene(sweep.scene_toml, sweep.scene_name));  // the sweep's end if it is not sound
+    check_varied_keys(sweep, *document.get_as<toml::table>("vary"), problems);
     return sweep;
 }
 
 std::map<std::string, std::string> identity_of(const SweepDef& sweep) {
     std::map<std::string, std::string> identity{
         {"version", std::string(version())},
-        {"scene", hash_text(sweep.scene_name + "\n" + sweep.scene_toml)},
+        {"scene", hashed(sweep.scene_name + "\n" + sweep.scene_toml)},
         {"grid", sweep.is_grid ? "true" : "false"},
         {"seed", std::to_string(sweep.seed)},
         {"shard_samples", std::to_string(sweep.shard_samples)},
