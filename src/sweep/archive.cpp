@@ -4,12 +4,15 @@
 #include <archive_entry.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <zlib.h>
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
+#include "corda/media/bytes.hpp"
 
 namespace corda::sweep {
 namespace {
@@ -39,25 +42,47 @@ std::string npy_head(const Array& array) {
            static_cast<char>(length >> 8U) + words;
 }
 
-}  // namespace
-
-ArchiveWriter::ArchiveWriter(Kind kind, WriteBytes write)
-    : write_(std::move(write)), archive_(archive_write_new()) {
-    if (archive_ == nullptr) throw Error(ExitCode::kTemporary, "out of memory for an archive");
-    check(kind == Kind::kTar ? archive_write_set_format_ustar(archive_)
-                             : archive_write_set_format_zip(archive_));
-    if (kind == Kind::kZip) set_compression(false);
-    check(archive_write_set_bytes_per_block(archive_, 0));  // no padding after the end
-    check(archive_write_open(archive_, this, nullptr, &ArchiveWriter::write, nullptr));
+std::string little_endian(std::uint64_t value, std::size_t bytes) {
+    std::string text = media::big_endian(value, bytes);
+    std::reverse(text.begin(), text.end());
+    return text;
 }
 
-ArchiveWriter::~ArchiveWriter() {
+void check_zip_bytes(std::uint64_t bytes) {
+    if (bytes > 0xffffffffU)
+        throw Error(ExitCode::kUsage,
+                    "the arrays of a sample are over 4 GiB; leave out some of output.labels, or the frames "
+                    "(output.pictures)");
+}
+
+/// Compressed bytes without the head and the checksum of a zlib stream.
+std::string deflated(std::string_view bytes) {
+    constexpr std::size_t kHeadBytes = 2;
+    constexpr std::size_t kChecksumBytes = 4;
+    uLongf size = compressBound(bytes.size());
+    std::string packed(size, '\0');
+    if (compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+                 bytes.size()) != Z_OK)
+        throw Error(ExitCode::kTemporary, "out of memory for an archive");
+    return packed.substr(kHeadBytes, size - kHeadBytes - kChecksumBytes);
+}
+
+}  // namespace
+
+TarWriter::TarWriter(WriteBytes write) : write_(std::move(write)), archive_(archive_write_new()) {
+    if (archive_ == nullptr) throw Error(ExitCode::kTemporary, "out of memory for an archive");
+    check(archive_write_set_format_ustar(archive_));
+    check(archive_write_set_bytes_per_block(archive_, 0));  // no padding after the end
+    check(archive_write_open(archive_, this, nullptr, &TarWriter::write, nullptr));
+}
+
+TarWriter::~TarWriter() {
     if (failure_ == nullptr) archive_write_fail(archive_);  // writes nothing more
     archive_write_free(archive_);
 }
 
-std::ptrdiff_t ArchiveWriter::write(archive* its, void* writer, const void* bytes, std::size_t count) {
-    auto& self = *static_cast<ArchiveWriter*>(writer);
+std::ptrdiff_t TarWriter::write(archive* its, void* writer, const void* bytes, std::size_t count) {
+    auto& self = *static_cast<TarWriter*>(writer);
     try {
         self.write_({static_cast<const char*>(bytes), count});
         return static_cast<std::ptrdiff_t>(count);
@@ -68,19 +93,14 @@ std::ptrdiff_t ArchiveWriter::write(archive* its, void* writer, const void* byte
     }
 }
 
-void ArchiveWriter::check(int status) {
+void TarWriter::check(int status) {
     if (failure_) std::rethrow_exception(failure_);
     if (status == ARCHIVE_OK) return;
     const char* const reason = archive_error_string(archive_);
     throw Error(ExitCode::kIo, fmt::format("cannot write an archive: {}", reason == nullptr ? "" : reason));
 }
 
-void ArchiveWriter::set_compression(bool is_compressed) {
-    check(is_compressed ? archive_write_zip_set_compression_deflate(archive_)
-                        : archive_write_zip_set_compression_store(archive_));
-}
-
-void ArchiveWriter::add(const std::string& name, std::string_view bytes) {
+void TarWriter::add(const std::string& name, std::string_view bytes) {
     const std::unique_ptr<archive_entry, FreeEntry> entry(archive_entry_new());
     if (!entry) throw Error(ExitCode::kTemporary, "out of memory for an archive");
     archive_entry_set_pathname(entry.get(), name.c_str());
@@ -94,7 +114,7 @@ void ArchiveWriter::add(const std::string& name, std::string_view bytes) {
     check(archive_write_finish_entry(archive_));
 }
 
-void ArchiveWriter::finish() {
+void TarWriter::finish() {
     check(archive_write_close(archive_));
 }
 
@@ -119,14 +139,32 @@ void list_tar(const std::string& path, const std::function<void(const std::strin
 }
 
 std::string npz_bytes(const std::vector<Array>& arrays) {
-    std::string bytes;
-    ArchiveWriter zip(ArchiveWriter::Kind::kZip, [&bytes](std::string_view part) { bytes += part; });
+    // ZIP without its 64-bit extensions (PKWARE, APPNOTE.TXT 6.3.10, section 4.3). An archive of libarchive
+    // has other heads with each of its versions.
+    const std::string version = little_endian(20, 2);
+    const std::string date = little_endian(1U << 5U | 1U, 2);  // 1 January 1980
+    std::string files;
+    std::string directory;
     for (const Array& array : arrays) {
-        zip.set_compression(array.is_bytes);
-        zip.add(array.name + ".npy", npy_head(array) + array.data);
+        const std::string name = array.name + ".npy";
+        std::string content = npy_head(array) + array.data;
+        const std::size_t size = content.size();
+        check_zip_bytes(size);
+        const auto checksum =
+            crc32(0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(size));
+        if (array.is_bytes) content = deflated(content);
+        const std::string head =
+            version + std::string(2, '\0') + little_endian(array.is_bytes ? Z_DEFLATED : 0, 2) +
+            std::string(2, '\0') + date + little_endian(checksum, 4) + little_endian(content.size(), 4) +
+            little_endian(size, 4) + little_endian(name.size(), 2) + std::string(2, '\0');
+        directory +=
+            "PK\1\2" + version + head + std::string(10, '\0') + little_endian(files.size(), 4) + name;
+        files += "PK\3\4" + head + name + content;
+        check_zip_bytes(files.size() + directory.size());
     }
-    zip.finish();
-    return bytes;
+    const std::string count = little_endian(arrays.size(), 2);
+    return files + directory + "PK\5\6" + std::string(4, '\0') + count + count +
+           little_endian(directory.size(), 4) + little_endian(files.size(), 4) + std::string(2, '\0');
 }
 
 }  // namespace corda::sweep

@@ -15,21 +15,18 @@ namespace corda::sweep {
 
 using WriteBytes = std::function<void(std::string_view bytes)>;
 
-/// Writes an archive by libarchive. All entries are ordinary files of user 0, mode 0644 and time 0, so that
-/// the same entries give the same bytes. Throws corda::Error (kIo, kTemporary), and what `write` throws.
-class ArchiveWriter {
+/// Writes a tar (POSIX ustar) by libarchive. All entries are ordinary files of user 0, mode 0644 and time 0,
+/// so that the same entries give the same bytes. Throws corda::Error (kIo, kTemporary), and what `write`
+/// throws.
+class TarWriter {
   public:
-    enum class Kind { kTar, kZip };
-
-    /// A tar is POSIX ustar. `write` is given the bytes.
-    ArchiveWriter(Kind kind, WriteBytes write);
-    ArchiveWriter(const ArchiveWriter&) = delete;
-    ArchiveWriter& operator=(const ArchiveWriter&) = delete;
-    ~ArchiveWriter();
+    /// `write` is given the bytes.
+    explicit TarWriter(WriteBytes write);
+    TarWriter(const TarWriter&) = delete;
+    TarWriter& operator=(const TarWriter&) = delete;
+    ~TarWriter();
 
     void add(const std::string& name, std::string_view bytes);
-    /// Of a zip: whether the entries that follow are compressed; at first they are not.
-    void set_compression(bool is_compressed);
     void finish();
 
   private:
@@ -45,7 +42,8 @@ class ArchiveWriter {
 /// reason if it is damaged, kIo.
 void list_tar(const std::string& path, const std::function<void(const std::string&, std::int64_t)>& take);
 
-/// Arrays as numpy.load() reads them from an .npz file. Those of bytes are compressed.
+/// Arrays as numpy.load() reads them from an .npz file. Those of bytes are compressed. Throws corda::Error:
+/// kUsage if they are over 4 GiB, kTemporary.
 [[nodiscard]] std::string npz_bytes(const std::vector<Array>& arrays);
 
 }  // namespace corda::sweep

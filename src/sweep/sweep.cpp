@@ -103,7 +103,7 @@ std::optional<Json> find_index(const SweepDef& sweep, const std::string& folder,
     return is_finished ? std::move(index) : std::nullopt;
 }
 
-/// What is wrong with shard files beyond the last one.
+/// A problem for each shard file beyond the last one.
 std::vector<std::string> surplus_shards(const SweepDef& sweep, const std::string& folder) {
     const std::string last = shard_name(shard_count(sweep) - 1) + ".tar";
     std::vector<std::string> problems;
@@ -152,7 +152,7 @@ class ShardWriter {
     ShardWriter(const SweepDef& sweep, const std::string& folder, std::int64_t shard)
         : path_((fs::path(folder) / shard_name(shard)).string()),
           file_(path_ + ".tar", {.force = true}),
-          tar_(ArchiveWriter::Kind::kTar, [this](std::string_view bytes) {
+          tar_([this](std::string_view bytes) {
               file_.write(bytes);
               sum_.add(bytes);
               bytes_ += bytes.size();
@@ -179,7 +179,7 @@ class ShardWriter {
     media::Sha256 sum_;
     std::uint64_t bytes_ = 0;
     Json index_;
-    ArchiveWriter tar_;
+    TarWriter tar_;
 };
 
 Json empty_manifest(const SweepDef& sweep) {

@@ -13,7 +13,7 @@ namespace corda::sweep {
 
 /// How a sweep is run.
 struct RunDef {
-    std::string folder;            ///< of the shards; made if there is none
+    std::string folder{};          ///< of the shards; made if there is none
     std::optional<Shard> shard{};  ///< make only every count-th shard file, from shard file `index` on
     int jobs = 0;                  ///< samples made at a time; 0: one per core. The bytes do not depend on it
     bool force = false;            ///< replace the shards of another sweep, and make finished ones again
