@@ -1,0 +1,159 @@
+#include "corda/sweep/archive.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cstdlib>
+#include <ctime>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "corda/core/basics.hpp"
+#include "support/command.hpp"
+#include "support/failure.hpp"
+
+namespace corda::sweep {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::string tar_of(const std::vector<std::pair<std::string, std::string>>& entries) {
+    std::string bytes;
+    TarWriter tar([&](std::string_view part) { bytes += part; });
+    for (const auto& [name, content] : entries) tar.add(name, content);
+    tar.finish();
+    return bytes;
+}
+
+/// Fields of the head of an entry: POSIX.1-1988, "ustar".
+TEST(Archive, TarIsUstarWithoutOwnerAndTime) {
+    const std::string tar = tar_of({{"000000.json", "{}\n"}, {"000000.npz", std::string(513, 'x')}});
+    ASSERT_EQ(tar.size(), 512U * (1 + 1 + 1 + 2 + 2));
+    for (const std::size_t head : {0U, 1024U}) {
+        EXPECT_EQ(tar.substr(head + 100, 7), "000644 ");        // mode
+        EXPECT_EQ(tar.substr(head + 108, 7), "000000 ");        // user
+        EXPECT_EQ(tar.substr(head + 116, 7), "000000 ");        // group
+        EXPECT_EQ(tar.substr(head + 136, 12), "00000000000 ");  // time
+        EXPECT_EQ(tar[head + 156], '0');                        // ordinary file
+        EXPECT_EQ(tar.substr(head + 257, 8), std::string("ustar\00000", 8));
+        EXPECT_EQ(tar.substr(head + 265, 64), std::string(64, '\0'));  // names of user and group
+    }
+    EXPECT_THAT(tar, StartsWith(std::string("000000.json\0", 12)));
+    EXPECT_EQ(tar.substr(124, 12), "00000000003 ");
+    EXPECT_EQ(tar.substr(512, 512), "{}\n" + std::string(509, '\0'));
+    EXPECT_EQ(tar.substr(1024 + 124, 12), "00000001001 ");
+    EXPECT_EQ(tar.substr(tar.size() - 1024), std::string(1024, '\0'));
+}
+
+TEST(Archive, OtherProgramsReadTheTar) {
+    const test::ScratchFolder folder;
+    const std::string path = folder.write("a.tar", tar_of({{"b.mp4", "bytes"}, {"a.json", ""}}));
+    const auto listed = test::run_shell("TZ=UTC tar -tvf " + path);
+    EXPECT_EQ(listed.out,
+              "-rw-r--r-- 0/0               5 1970-01-01 00:00 b.mp4\n"
+              "-rw-r--r-- 0/0               0 1970-01-01 00:00 a.json\n");
+    EXPECT_EQ(test::run_shell("tar -xOf " + path + " b.mp4").out, "bytes");
+}
+
+TEST(Archive, TarIsListedAndDamageIsNamed) {
+    const test::ScratchFolder folder;
+    const std::string tar = tar_of({{"a", "bytes"}, {"b", std::string(5000, 'x')}});
+    std::vector<std::string> names;
+    std::int64_t bytes = 0;
+    const auto take = [&](const std::string& name, std::int64_t size) {
+        names.push_back(name);
+        bytes += size;
+    };
+    list_tar(folder.write("a.tar", tar), take);
+    EXPECT_THAT(names, ElementsAre("a", "b"));
+    EXPECT_EQ(bytes, 5005);
+    for (const std::string& damaged : {tar.substr(0, 700), tar.substr(0, 3000), "no tar" + tar.substr(6)}) {
+        const std::string path = folder.write("b.tar", damaged);
+        const test::Failure failure = test::failure_of([&] { list_tar(path, take); });
+        EXPECT_EQ(failure.code, ExitCode::kMismatch);
+        EXPECT_THAT(failure.message, StartsWith("'" + path + "' is damaged: "));
+        EXPECT_GT(failure.message.size(), path.size() + 20);
+    }
+}
+
+TEST(Archive, OutputThatTakesNoMoreEndsIt) {
+    std::size_t left = 2000;
+    const auto write = [&](std::string_view part) {
+        if (part.size() > left) throw Error(ExitCode::kIo, "no space");
+        left -= part.size();
+    };
+    const test::Failure failure = test::failure_of([&] {
+        TarWriter tar(write);
+        for (int i = 0; i < 100; ++i) tar.add("a", "bytes");
+        tar.finish();
+    });
+    EXPECT_EQ(failure.code, ExitCode::kIo);
+    EXPECT_EQ(failure.message, "no space");
+}
+
+/// The array "a" of an .npz file that has no compressed one.
+std::string npy_of(const Array& array) {
+    const std::string npz = npz_bytes({array});
+    const std::size_t begin = npz.find("\x93NUMPY");
+    const std::size_t head = 10U + static_cast<unsigned char>(npz[begin + 8]);
+    return npz.substr(begin, head + array.data.size());
+}
+
+/// NumPy enhancement proposal 1, version 1.0.
+TEST(Npz, ArraysHaveTheHeadOfNumpy) {
+    const std::string numbers(16, '\x42');
+    struct {
+        std::vector<std::int64_t> shape;
+        std::string text;
+    } const cases[] = {{{2}, "(2,)"}, {{1, 2}, "(1, 2)"}, {{1, 1, 2}, "(1, 1, 2)"}};
+    for (const auto& [shape, text] : cases) {
+        const std::string npy = npy_of({"a", false, shape, numbers});
+        EXPECT_THAT(npy, StartsWith(std::string("\x93NUMPY\1\0", 8)));
+        EXPECT_EQ((npy.size() - 16) % 64, 0U);
+        EXPECT_EQ(npy[npy.size() - 17], '\n');
+        EXPECT_THAT(npy.substr(10),
+                    StartsWith("{'descr': '<f8', 'fortran_order': False, 'shape': " + text + ", }"));
+        EXPECT_THAT(npy, testing::EndsWith(numbers));
+    }
+}
+
+TEST(Npz, HeadsOfEveryLengthAreWholeBlocks) {
+    std::set<std::size_t> lengths;
+    for (std::int64_t number = 10; number < 100'000'000'000'000'000; number *= 10) {
+        const std::string npy = npy_of({"a", false, {number, number, number, number}, ""});
+        EXPECT_EQ(npy.size() % 64, 0U) << number;
+        EXPECT_EQ(npy.back(), '\n') << number;
+        lengths.insert(npy.size());
+    }
+    EXPECT_EQ(lengths.size(), 2U);
+}
+
+TEST(Npz, BytesAreCompressedAndNumbersAreNot) {
+    const std::string data(8000, 'x');
+    const std::string npz = npz_bytes({{"mask", true, {1, 80, 100}, data}, {"times", false, {1000}, data}});
+    EXPECT_THAT(npz, HasSubstr("mask.npy"));
+    EXPECT_THAT(npz, HasSubstr("times.npy"));
+    EXPECT_THAT(npz, HasSubstr(data));
+    EXPECT_LT(npz.size(), 9000U);
+}
+
+TEST(Npz, BytesDoNotDependOnTheTimeZone) {
+    const std::vector<Array> arrays{{"mask", true, {4}, "abcd"}, {"times", false, {1}, "12345678"}};
+    const char* const old = std::getenv("TZ");
+    const std::string kept = old == nullptr ? "" : old;
+    std::set<std::string> made;
+    for (const char* const zone : {"UTC", "Asia/Tokyo", "America/Los_Angeles"}) {
+        ::setenv("TZ", zone, 1);
+        ::tzset();
+        made.insert(npz_bytes(arrays));
+    }
+    old == nullptr ? ::unsetenv("TZ") : ::setenv("TZ", kept.c_str(), 1);
+    ::tzset();
+    EXPECT_EQ(made.size(), 1U);
+}
+
+}  // namespace
+}  // namespace corda::sweep
