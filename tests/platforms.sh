@@ -45,6 +45,7 @@ make_outputs() {
     for codec in libvpx-vp9 libsvtav1; do "$@" render "${film[@]}" --codec "$codec" -o "$to/sound/$codec.webm"; done
     "$@" render "${film[@]}" --set style.background=transparent -o "$to/sound/clear.webm"
     "$@" render "${film[@]}" -o "$to/sound/swing.mov"
+    "$@" sweep - -o "$to/same/sweep" -q <tests/golden/sweep.toml
 }
 
 # check_outputs FOLDER NAME: fails unless they agree with those of this machine.
