@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <initializer_list>
 #include <utility>
 
 #include "corda/core/basics.hpp"
@@ -46,6 +47,14 @@ std::string little_endian(std::uint64_t value, std::size_t bytes) {
     std::string text = media::big_endian(value, bytes);
     std::reverse(text.begin(), text.end());
     return text;
+}
+
+std::string zeros(std::size_t bytes) {
+    return std::string(bytes, '\0');
+}
+
+void append(std::string& text, std::initializer_list<std::string_view> parts) {
+    for (const std::string_view part : parts) text += part;
 }
 
 void check_zip_bytes(std::uint64_t bytes) {
@@ -153,18 +162,19 @@ std::string npz_bytes(const std::vector<Array>& arrays) {
         const auto checksum =
             crc32(0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(size));
         if (array.is_bytes) content = deflated(content);
-        const std::string head =
-            version + std::string(2, '\0') + little_endian(array.is_bytes ? Z_DEFLATED : 0, 2) +
-            std::string(2, '\0') + date + little_endian(checksum, 4) + little_endian(content.size(), 4) +
-            little_endian(size, 4) + little_endian(name.size(), 2) + std::string(2, '\0');
-        directory +=
-            "PK\1\2" + version + head + std::string(10, '\0') + little_endian(files.size(), 4) + name;
-        files += "PK\3\4" + head + name + content;
+        std::string head;
+        append(head, {version, zeros(2), little_endian(array.is_bytes ? Z_DEFLATED : 0, 2), zeros(2), date,
+                      little_endian(checksum, 4), little_endian(content.size(), 4), little_endian(size, 4),
+                      little_endian(name.size(), 2), zeros(2)});
+        append(directory, {"PK\1\2", version, head, zeros(10), little_endian(files.size(), 4), name});
+        append(files, {"PK\3\4", head, name, content});
         check_zip_bytes(files.size() + directory.size());
     }
     const std::string count = little_endian(arrays.size(), 2);
-    return files + directory + "PK\5\6" + std::string(4, '\0') + count + count +
-           little_endian(directory.size(), 4) + little_endian(files.size(), 4) + std::string(2, '\0');
+    append(directory, {"PK\5\6", zeros(4), count, count, little_endian(directory.size(), 4),
+                       little_endian(files.size(), 4), zeros(2)});
+    files += directory;
+    return files;
 }
 
 }  // namespace corda::sweep
