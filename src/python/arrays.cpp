@@ -1,75 +1,16 @@
 #include "py_film.hpp"
 
-#include <algorithm>
-#include <cstddef>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace corda::python {
-namespace {
 
-/// An array of shape (frames, `rows`, `columns`), without the last if that is 0. write(film, state, to)
-/// writes a frame and returns its end. The array is made before the interpreter's lock is released.
-template <class Write>
-py::array_t<double> per_frame(PyFilm& film, bool needs_fields, std::size_t rows, std::size_t columns,
-                              const Write& write) {
-    const std::int64_t frames = film.constant().frame_count();
-    std::vector<py::ssize_t> shape{frames, static_cast<py::ssize_t>(rows)};
-    if (columns > 0) shape.push_back(static_cast<py::ssize_t>(columns));
-    py::array_t<double> all(shape);
-    double* to = all.mutable_data();
-    const auto write_all = [&](Film& its) {
-        for (std::int64_t k = 0; k < frames; ++k) {
-            check_cancelled();
-            to = write(its, its.state(k), to);
-        }
-        return true;
-    };
-    needs_fields ? film.with_fields(write_all) : film.with_film(write_all);
-    return all;
-}
-
-/// Pairs x, y of all particles.
-double* write_pairs(const std::vector<double>& x, const std::vector<double>& y, Vec2 origin, double* to) {
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        *to++ = origin.x + x[i];
-        *to++ = origin.y + y[i];
-    }
-    return to;
-}
-
-}  // namespace
-
-py::array_t<double> positions(PyFilm& film) {
-    const System& system = film.constant().system();
-    return per_frame(film, false, system.particle_count(), 2, [&](Film&, const State& state, double* to) {
-        return write_pairs(state.x_m, state.y_m, system.origin_m, to);
-    });
-}
-
-py::array_t<double> velocities(PyFilm& film) {
-    const System& system = film.constant().system();
-    return per_frame(film, true, system.particle_count(), 2, [](Film&, const State& state, double* to) {
-        return write_pairs(state.vx_m_s, state.vy_m_s, {}, to);
-    });
-}
-
-py::array_t<double> tensions(PyFilm& film) {
-    const System& system = film.constant().system();
-    return per_frame(film, true, system.link_count(), 0, [&](Film&, const State& state, double* to) {
-        for (const Body& body : system.bodies)
-            to = std::copy_n(state.tension_n.data() + body.first_bar, body.link_count, to);
-        return to;
-    });
-}
-
-py::array_t<double> energy(PyFilm& film) {
-    return per_frame(film, true, 3, 0, [](Film& its, const State&, double* to) {
-        const Energy energy = its.energy();
-        *to++ = energy.kinetic_j;
-        *to++ = energy.potential_j();
-        *to++ = energy.kinetic_j + energy.potential_j();
-        return to;
-    });
+py::array_t<double> label(PyFilm& film, const char* name, bool needs_fields) {
+    const sweep::Label* const label = sweep::find_label(name);
+    const auto read = [&](Film& its) { return sweep::read_labels(its, std::span(&label, 1)); };
+    auto arrays = needs_fields ? film.with_fields(read) : film.with_film(read);
+    return to_numpy<double>(std::move(arrays.front()));
 }
 
 py::array_t<double> times(const PyFilm& film) {

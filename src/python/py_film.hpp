@@ -3,6 +3,8 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <corda/sweep/labels.hpp>
+
 #include <corda/pipeline/film.hpp>
 
 #include <unistd.h>
@@ -284,11 +286,21 @@ class PyFilm {
     std::unique_ptr<Film> with_fields_;
 };
 
+/// Hands the numbers of an array to numpy, which frees them.
+template <class Number>
+py::array_t<Number> to_numpy(sweep::Array array) {
+    auto owned = std::make_unique<std::string>(std::move(array.data));
+    const std::vector<py::ssize_t> shape(array.shape.begin(), array.shape.end());
+    const auto* const numbers = reinterpret_cast<const Number*>(owned->data());
+    const py::capsule owner(owned.get(), [](void* kept) { delete static_cast<std::string*>(kept); });
+    static_cast<void>(owned.release());
+    return py::array_t<Number>(shape, numbers, owner);
+}
+
 // Arrays of a film's frames: see the properties of the same names in corda/__init__.py.
-[[nodiscard]] py::array_t<double> positions(PyFilm& film);
-[[nodiscard]] py::array_t<double> velocities(PyFilm& film);
-[[nodiscard]] py::array_t<double> tensions(PyFilm& film);
-[[nodiscard]] py::array_t<double> energy(PyFilm& film);
+
+/// A label of float64 (see sweep/labels.hpp). `needs_fields`: it needs velocities or tensions.
+[[nodiscard]] py::array_t<double> label(PyFilm& film, const char* name, bool needs_fields);
 [[nodiscard]] py::array_t<double> times(const PyFilm& film);
 [[nodiscard]] py::array_t<std::uint8_t> mask(PyFilm& film, std::int64_t k);
 using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;

@@ -12,17 +12,6 @@
 namespace corda::python {
 namespace {
 
-/// Hands the numbers of an array to numpy, which frees them.
-template <class Number>
-py::array to_numpy(sweep::Array array) {
-    auto owned = std::make_unique<std::string>(std::move(array.data));
-    const std::vector<py::ssize_t> shape(array.shape.begin(), array.shape.end());
-    const auto* const numbers = reinterpret_cast<const Number*>(owned->data());
-    const py::capsule owner(owned.get(), [](void* kept) { delete static_cast<std::string*>(kept); });
-    static_cast<void>(owned.release());
-    return py::array_t<Number>(shape, numbers, owner);
-}
-
 /// A sweep whose pictures are arrays. One thread at a time may use it.
 class PySweep {
   public:
@@ -48,8 +37,10 @@ class PySweep {
         py::dict arrays;
         for (sweep::Array& array : made.arrays) {
             const py::str name(array.name);
-            arrays[name] = array.is_bytes ? to_numpy<std::uint8_t>(std::move(array))
-                                          : to_numpy<double>(std::move(array));
+            if (array.is_bytes)
+                arrays[name] = to_numpy<std::uint8_t>(std::move(array));
+            else
+                arrays[name] = to_numpy<double>(std::move(array));
         }
         return py::make_tuple(made.key, made.info.dump(), arrays, py::none());
     }

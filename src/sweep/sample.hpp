@@ -8,18 +8,11 @@
 #include <vector>
 
 #include "corda/pipeline/film_renderer.hpp"
+#include "corda/sweep/labels.hpp"
 #include "corda/sweep/summary.hpp"
 #include "corda/sweep/sweep_file.hpp"
 
 namespace corda::sweep {
-
-/// Numbers of a sample, in C order and little endian.
-struct Array {
-    std::string name;
-    bool is_bytes = false;            ///< numbers are uint8, otherwise float64
-    std::vector<std::int64_t> shape;  ///< the first is the number of frames
-    std::string data;
-};
 
 /// A file of a sample: its ending, with the dot, and its bytes.
 struct SampleFile {

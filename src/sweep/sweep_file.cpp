@@ -32,17 +32,6 @@ constexpr double kMaxExactInteger = 9007199254740992.0;  // 2^53
 
 constexpr std::array<std::string_view, 4> kPictures{"mp4", "png", "npz", "none"};  // in the order of Pictures
 constexpr std::array<std::string_view, 4> kShapes{"uniform", "log_uniform", "normal", "integer"};
-struct LabelName {
-    std::string_view name;
-    bool Labels::*member;
-};
-constexpr std::array<LabelName, 6> kLabels{{{"positions", &Labels::positions},
-                                            {"velocities", &Labels::velocities},
-                                            {"tensions", &Labels::tensions},
-                                            {"energy", &Labels::energy},
-                                            {"pixels", &Labels::pixels},
-                                            {"mask", &Labels::mask}}};
-
 Json json_of(const toml::node& node) {
     if (const auto* table = node.as_table()) {
         Json json = Json::object();
@@ -337,6 +326,7 @@ class SweepReader {
     }
 
     void read_output() {
+        for (const Label& label : all_labels()) sweep_->labels.push_back(&label);
         for (const SummaryColumn& column : summary_columns()) sweep_->summary.emplace_back(column.name);
         const toml::table* const output = table("output");
         if (output == nullptr) return;
@@ -345,11 +335,10 @@ class SweepReader {
             if (const auto pictures = word(*node, "output.pictures", {kPictures.begin(), kPictures.end()}))
                 sweep_->pictures = static_cast<Pictures>(*pictures);
         Names labels;
-        for (const LabelName& label : kLabels) labels.push_back(label.name);
+        for (const Label& label : all_labels().subspan(1)) labels.push_back(label.name);
         if (const auto chosen = words(*output, "labels", labels)) {
-            for (std::size_t i = 0; i < kLabels.size(); ++i)
-                sweep_->labels.*kLabels[i].member =
-                    std::find(chosen->begin(), chosen->end(), i) != chosen->end();
+            sweep_->labels.resize(1);
+            for (const std::size_t i : *chosen) sweep_->labels.push_back(find_label(labels[i]));
         }
         const Names columns(sweep_->summary.begin(), sweep_->summary.end());
         if (const auto chosen = words(*output, "summary", columns)) {
@@ -444,10 +433,8 @@ std::map<std::string, std::string> identity_of(const SweepDef& sweep) {
         {"shard_samples", std::to_string(sweep.shard_samples)},
         {"output.pictures", std::string(kPictures[static_cast<std::size_t>(sweep.pictures)])},
         {"output.summary", fmt::format("{}", fmt::join(sweep.summary, " "))}};
-    std::string labels;
-    for (const LabelName& label : kLabels)
-        if (sweep.labels.*label.member) labels += fmt::format("{} ", label.name);
-    identity["output.labels"] = labels;
+    for (const Label* const label : sweep.labels)
+        identity["output.labels"] += fmt::format("{} ", label->name);
     for (const Split& split : sweep.splits) identity["split." + split.name] = scene::number_text(split.share);
     for (std::size_t i = 0; i < sweep.vary.size(); ++i) {
         const auto& [key, values] = sweep.vary[i];

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "corda/scene/scene.hpp"
+#include "corda/sweep/labels.hpp"
 
 namespace corda::sweep {
 
@@ -42,16 +43,6 @@ struct VariedKey {
 
 enum class Pictures { kMp4, kPng, kNpz, kNone };
 
-/// Arrays of a sample.
-struct Labels {
-    bool positions = true;
-    bool velocities = true;
-    bool tensions = true;
-    bool energy = true;
-    bool pixels = true;
-    bool mask = true;
-};
-
 struct Split {
     std::string name;
     double share = 0.0;
@@ -71,7 +62,7 @@ struct SweepDef {
     std::int64_t shard_samples = 256;
     std::vector<VariedKey> vary;  ///< in the order of the file
     Pictures pictures = Pictures::kMp4;
-    Labels labels;
+    std::vector<const Label*> labels;  ///< the times first
     std::vector<std::string> summary;  ///< names of summary columns
     std::vector<Split> splits;         ///< shares with the sum 1, or none
 };

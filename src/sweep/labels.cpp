@@ -1,0 +1,102 @@
+#include "corda/sweep/labels.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include "corda/core/cancel.hpp"
+
+namespace corda::sweep {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "arrays are little endian");
+
+void append(std::span<const double> numbers, std::string& data) {
+    data.append(reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes());
+}
+
+/// Appends pairs of all particles, each shifted.
+void append_pairs(std::span<const double> x, std::span<const double> y, Vec2 shift, std::string& data) {
+    for (std::size_t i = 0; i < x.size(); ++i) append(std::array{shift.x + x[i], shift.y + y[i]}, data);
+}
+
+using Dimensions = std::vector<std::int64_t>;
+
+Dimensions particle_pairs(const Film& film) {
+    return {static_cast<std::int64_t>(film.system().particle_count()), 2};
+}
+
+constexpr std::array<Label, 7> kLabels{{
+    {"times", false, [](const Film&) { return Dimensions(); },
+     [](Film&, std::int64_t, const State& state, std::string& data) {
+         append(std::array{state.time_s}, data);
+     }},
+    {"positions", false, &particle_pairs,
+     [](Film& film, std::int64_t, const State& state, std::string& data) {
+         append_pairs(state.x_m, state.y_m, film.system().origin_m, data);
+     }},
+    {"velocities", false, &particle_pairs,
+     [](Film&, std::int64_t, const State& state, std::string& data) {
+         append_pairs(state.vx_m_s, state.vy_m_s, {}, data);
+     }},
+    {"tensions", false,
+     [](const Film& film) { return Dimensions{static_cast<std::int64_t>(film.system().link_count())}; },
+     [](Film& film, std::int64_t, const State& state, std::string& data) {
+         for (const Body& body : film.system().bodies)
+             append(std::span(state.tension_n).subspan(body.first_bar, body.link_count), data);
+     }},
+    {"energy", false, [](const Film&) { return Dimensions{3}; },
+     [](Film& film, std::int64_t, const State&, std::string& data) {
+         const Energy energy = film.energy();
+         const double potential_j = energy.potential_j();
+         append(std::array{energy.kinetic_j, potential_j, energy.kinetic_j + potential_j}, data);
+     }},
+    {"pixels", false, &particle_pairs,
+     [](Film& film, std::int64_t, const State& state, std::string& data) {
+         const Vec2 origin_m = film.system().origin_m;
+         std::vector<Vec2> points_m;
+         for (std::size_t i = 0; i < state.x_m.size(); ++i)
+             points_m.push_back({origin_m.x + state.x_m[i], origin_m.y + state.y_m[i]});
+         for (const Vec2 pixel : film.to_pixels(points_m)) append(std::array{pixel.x, pixel.y}, data);
+     }},
+    {"mask", true,
+     [](const Film& film) {
+         return Dimensions{film.scene().video.height_px, film.scene().video.width_px};
+     },
+     [](Film& film, std::int64_t k, const State&, std::string& data) {
+         const std::vector<std::uint8_t> mask = film.mask(k);
+         data.append(mask.begin(), mask.end());
+     }},
+}};
+
+}  // namespace
+
+std::span<const Label> all_labels() {
+    return kLabels;
+}
+
+const Label* find_label(std::string_view name) {
+    const auto found =
+        std::find_if(kLabels.begin(), kLabels.end(), [&](const Label& label) { return label.name == name; });
+    return found == kLabels.end() ? nullptr : &*found;
+}
+
+std::vector<Array> read_labels(Film& film, std::span<const Label* const> labels) {
+    std::vector<Array> arrays;
+    for (const Label* const label : labels) {
+        Dimensions shape = label->shape(film);
+        shape.insert(shape.begin(), film.frame_count());
+        std::size_t bytes = label->is_bytes ? 1 : sizeof(double);
+        for (const std::int64_t count : shape) bytes *= static_cast<std::size_t>(count);
+        arrays.push_back({std::string(label->name), label->is_bytes, std::move(shape), {}});
+        arrays.back().data.reserve(bytes);
+    }
+    for (std::int64_t k = 0; k < film.frame_count(); ++k) {
+        check_cancelled();
+        for (std::size_t i = 0; i < labels.size(); ++i)
+            labels[i]->append(film, k, film.state(k), arrays[i].data);
+    }
+    return arrays;
+}
+
+}  // namespace corda::sweep

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "corda/pipeline/film.hpp"
+
+namespace corda::sweep {
+
+/// Numbers of a film, in C order and little endian.
+struct Array {
+    std::string name;
+    bool is_bytes = false;            ///< numbers are uint8, otherwise float64
+    std::vector<std::int64_t> shape;  ///< the first is the number of frames
+    std::string data;
+};
+
+/// An array that a sample can have: README.md gives shapes and units.
+struct Label {
+    std::string_view name;
+    bool is_bytes;
+    std::vector<std::int64_t> (*shape)(const Film& film);  ///< of one frame
+    /// Appends the numbers of frame `k`, whose state the film has just read.
+    void (*append)(Film& film, std::int64_t k, const State& state, std::string& data);
+};
+
+/// All labels. The first holds the times.
+[[nodiscard]] std::span<const Label> all_labels();
+/// Null for none.
+[[nodiscard]] const Label* find_label(std::string_view name);
+
+/// The arrays of all frames. Velocities, tensions and energy need a film whose states have velocities and
+/// tensions. Throws corda::Error as Film::state() and Film::mask(), kInterrupted if cancelled.
+[[nodiscard]] std::vector<Array> read_labels(Film& film, std::span<const Label* const> labels);
+
+}  // namespace corda::sweep
