@@ -34,28 +34,48 @@ ExitCode check(const Console& console, const sweep::SweepDef& def, const SweepOp
     return problems.empty() ? ExitCode::kOk : ExitCode::kMismatch;
 }
 
+/// Says what is kept if the sweep is interrupted.
+sweep::RunResult run(const sweep::SweepDef& def, const sweep::RunDef& how) {
+    try {
+        return sweep::run_sweep(def, how);
+    } catch (const Error& error) {
+        if (!is_interruption(error.code())) throw;
+        throw Error(
+            error.code(),
+            fmt::format("interrupted: finished shards stay in {}; run it again for the others", how.folder));
+    }
+}
+
 ExitCode sweep(const Console& console, const SweepOptions& options) {
     const double start_s = now_s();
+    if (options.folder == "-")
+        throw Error(ExitCode::kUsage, "-o -: a sweep has several files; give a folder");
     const sweep::SweepDef def = sweep::load_sweep(options.path);
     if (options.checks) return check(console, def, options);
-    sweep::RunDef run;
-    run.folder = options.folder;
-    run.jobs = options.jobs;
-    run.force = options.force;
-    if (!options.shard.empty()) run.shard = parse_shard(options.shard);
-    options.gl.apply_to(run.film);
-    run.on_progress = show_progress(console, "sweep");
-    const sweep::RunResult result = sweep::run_sweep(def, run);
+    sweep::RunDef how;
+    how.folder = options.folder;
+    how.jobs = options.jobs;
+    how.force = options.force;
+    if (!options.shard.empty()) how.shard = parse_shard(options.shard);
+    options.gl.apply_to(how.film);
+    how.on_progress = show_progress(console, "sweep");
+    const sweep::RunResult result = run(def, how);
     const double wall_s = now_s() - start_s;
-    console.info(fmt::format("{} of {} made, {} in {:.3g} s, {:.1f} per second",
-                             counted(result.shards_made, "shard"), result.shards,
-                             counted(result.samples_made, "sample"), wall_s,
-                             static_cast<double>(result.samples_made) / wall_s));
+    if (result.shards_made < result.shards)
+        console.info(
+            fmt::format("{} were there already", counted(result.shards - result.shards_made, "shard")));
+    if (result.samples_made > 0)
+        console.info(fmt::format("{} made, {} in {:.3g} s, {:.1f} per second",
+                                 counted(result.shards_made, "shard"), counted(result.samples_made, "sample"),
+                                 wall_s, static_cast<double>(result.samples_made) / wall_s));
+    if (result.is_complete && result.failed == def.samples)
+        throw Error(ExitCode::kInvalidScene,
+                    fmt::format("all samples were refused; the first, {}", result.first_failure));
     if (result.failed > 0)
-        console.warning(fmt::format("{} refused, with the reason in column \"failure\" of metadata.csv",
-                                    counted(result.failed, "sample")));
+        console.warning(fmt::format("{} refused, see column \"failure\" of metadata.csv; the first, {}",
+                                    counted(result.failed, "sample"), result.first_failure));
     if (!result.is_complete)
-        console.info("shards are missing; run it without --shard when the others are done");
+        console.info("other shards are missing; run it without --shard when they are done");
     console.result(options.folder);
     std::vector<std::string> figures;
     for (const std::string& columns : options.plots) {

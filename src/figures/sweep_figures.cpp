@@ -6,14 +6,15 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <numbers>
 #include <optional>
+#include <span>
 
 #include "corda/core/cancel.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
-#include "corda/figures/chart.hpp"
+#include "corda/figures/drawings.hpp"
+#include "corda/figures/motion_summary.hpp"
 #include "corda/media/png/png.hpp"
 #include "corda/pipeline/film_renderer.hpp"
 #include "corda/reference/pendulum.hpp"
@@ -86,7 +87,7 @@ std::vector<std::string> series_keys(const sweep::SweepDef& sweep, const SweepCo
     std::vector<std::pair<std::size_t, std::string>> choices;
     for (const sweep::VariedKey& varied : sweep.vary)
         if (const auto* const choice = std::get_if<sweep::Choice>(&varied.values);
-            choice && varied.key != x.name)
+            choice && varied.key != x.name && choice->values.size() > 1)
             choices.emplace_back(choice->values.size(), varied.key);
     std::stable_sort(choices.begin(), choices.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -107,15 +108,9 @@ std::string series_of(const std::vector<std::string>& keys, const sweep::SampleR
     return text;
 }
 
-/// A period in theory.
-struct Theory {
-    double period_s = 0.0;
-    const char* name = "";
-};
-
 /// The period of a scene that swings through `angle_deg`, by theory; std::nullopt if it is neither a point
 /// pendulum nor a rope of equal masses that hangs from its first particle.
-std::optional<Theory> theory_of(const Scene& scene, double angle_deg) {
+std::optional<double> theory_period_s(const Scene& scene, double angle_deg) {
     if (scene.ropes.size() != 1 || !scene.nets.empty()) return std::nullopt;
     const RopeDef& rope = scene.ropes.front();
     const Vec2 gravity = scene.world.gravity_m_s2;
@@ -131,9 +126,7 @@ std::optional<Theory> theory_of(const Scene& scene, double angle_deg) {
     const int links = static_cast<int>(rope.points_m.size()) - 1;
     if (links == 1) {
         if (!(angle_deg < 180.0)) return std::nullopt;
-        return Theory{
-            reference::Pendulum(std::sqrt(-gravity.y / length_m(0)), angle_deg * kDegrees).period_s(),
-            "theory"};
+        return reference::Pendulum(std::sqrt(-gravity.y / length_m(0)), angle_deg * kDegrees).period_s();
     }
     const bool has_equal_masses =
         rope.payload_kg == 0.0 && std::all_of(rope.mass_kg.begin(), rope.mass_kg.end(), [&](double mass_kg) {
@@ -142,48 +135,104 @@ std::optional<Theory> theory_of(const Scene& scene, double angle_deg) {
     for (int link = 1; link < links; ++link)
         if (std::abs(length_m(link) - length_m(0)) > 1e-9 * length_m(0)) return std::nullopt;
     if (!has_equal_masses) return std::nullopt;
-    const long double period_s =
-        2.0L * std::numbers::pi_v<long double> / reference::rope_omega0_1_s(links, length_m(0), -gravity.y);
-    return Theory{static_cast<double>(period_s), "small oscillations"};
+    return static_cast<double>(2.0L * std::numbers::pi_v<long double> /
+                               reference::rope_omega0_1_s(links, length_m(0), -gravity.y));
 }
 
-/// The plot of the finished samples.
-report::Plot plot_of_sweep(const sweep::SweepDef& sweep, const std::string& folder, const SweepColumn& y,
-                           const SweepColumn& x) {
-    report::Plot plot;
-    plot.title = fmt::format("{} over {}", y.title(), x.title());
-    plot.x_title = x.title();
-    plot.y_title = y.title();
-    plot.log_x = plot.log_y = false;
-    const std::vector<std::string> keys = series_keys(sweep, x);
-    // With one further key, the samples of a series lie on a curve.
-    const bool is_curve = sweep.vary.size() <= keys.size() + 1;
-    std::map<std::string, std::array<report::Series, 2>> all;  // measured, and by theory
+/// A sample in a plot.
+struct Point {
+    std::string key;
+    std::size_t series = 0;
+    double x = 0.0;
+    double y = 0.0;
+    std::optional<double> theory;
+};
+
+/// The samples of a plot, in series of equal choices.
+struct SweepPoints {
+    struct Group {
+        std::string name;
+        sweep::Parameters parameters;  ///< of its first sample
+    };
+    std::vector<Group> series;
+    std::vector<Point> points;
+};
+
+SweepPoints read_points(const sweep::SweepDef& sweep, const std::string& folder, const SweepColumn& y,
+                        const SweepColumn& x, const std::vector<std::string>& keys) {
+    SweepPoints all;
     sweep::read_rows(sweep, folder, [&](const sweep::SampleRow& row) {
         const auto x_value = x.value(row);
         const auto y_value = y.value(row);
         if (!x_value || !y_value) return;
-        auto& [measured, theory] = all[series_of(keys, row)];
-        measured.points.emplace_back(*x_value, *y_value);
+        const std::string name = series_of(keys, row);
+        const auto found = std::find_if(all.series.begin(), all.series.end(),
+                                        [&](const SweepPoints::Group& group) { return group.name == name; });
+        const std::size_t series = found - all.series.begin();
+        if (found == all.series.end()) all.series.push_back({name, row.parameters});
+        Point point{sweep::key_of(row.number), series, *x_value, *y_value, {}};
         const auto angle = row.summary.find("angle_max_deg");
-        if (y.name != "period_s" || angle == row.summary.end()) return;
-        if (const auto known = theory_of(scene_of(sweep, row.parameters), angle->second)) {
-            theory.points.emplace_back(*x_value, known->period_s);
-            theory.name = known->name;
-        }
+        if (y.name == "period_s" && angle != row.summary.end())
+            point.theory = theory_period_s(scene_of(sweep, row.parameters), angle->second);
+        all.points.push_back(std::move(point));
     });
-    if (all.empty())
-        throw Error(ExitCode::kUsage, fmt::format("--plot {}:{}: no finished sample in '{}' has both figures",
-                                                  y.name, x.name, folder));
-    for (std::size_t look = 0; auto& [name, its] : all) {
-        auto& [measured, theory] = its;
-        measured.name = name.empty() ? "measured" : name;
+    if (all.points.empty())
+        throw Error(
+            ExitCode::kUsage,
+            fmt::format("--plot {}:{}: no finished sample in '{}' has both figures (a period needs two "
+                        "passes below the only pin)",
+                        y.name, x.name, folder));
+    return all;
+}
+
+/// Whether the angle alone differs between the samples of a series, and is drawn along x.
+bool is_angle_curve(const sweep::SweepDef& sweep, const SweepColumn& x,
+                    const std::vector<std::string>& keys) {
+    if (x.name != "angle_max_deg" && short_name(x.name) != "angle_deg") return false;
+    return std::all_of(sweep.vary.begin(), sweep.vary.end(), [&](const sweep::VariedKey& varied) {
+        const auto* const choice = std::get_if<sweep::Choice>(&varied.values);
+        return std::find(keys.begin(), keys.end(), varied.key) != keys.end() ||
+               short_name(varied.key) == "angle_deg" || (choice && choice->values.size() == 1);
+    });
+}
+
+report::Plot plot_of(const sweep::SweepDef& sweep, const SweepPoints& all, const SweepColumn& y,
+                     const SweepColumn& x, bool is_curve) {
+    report::Plot plot;
+    plot.title = std::filesystem::path(sweep.source).stem().string();
+    plot.x_title = x.title();
+    plot.y_title = y.title();
+    plot.log_x = plot.log_y = false;
+    for (const sweep::VariedKey& varied : sweep.vary)
+        if (const auto* const its = std::get_if<sweep::Distribution>(&varied.values);
+            its && varied.key == x.name)
+            plot.log_x = its->shape == sweep::Shape::kLogUniform;
+    for (std::size_t i = 0; i < all.series.size(); ++i) {
+        const auto& [name, parameters] = all.series[i];
+        report::Series measured{.name = name.empty() ? "measured" : name, .points = {}};
+        report::Series theory{.name = name.empty() ? "theory" : "theory, " + name, .points = {}};
+        for (const Point& point : all.points) {
+            if (point.series != i) continue;
+            measured.points.emplace_back(point.x, point.y);
+            if (point.theory) theory.points.emplace_back(point.x, *point.theory);
+        }
+        if (is_curve && !theory.points.empty()) {
+            constexpr int kCurvePoints = 200;
+            const auto [least, most] = std::minmax_element(theory.points.begin(), theory.points.end());
+            const double first_deg = least->first;
+            const double extent_deg = most->first - first_deg;
+            const Scene scene = scene_of(sweep, parameters);
+            theory.points.clear();
+            for (int k = 0; k <= kCurvePoints; ++k) {
+                const double angle_deg = first_deg + k * extent_deg / kCurvePoints;
+                if (const auto period_s = theory_period_s(scene, angle_deg))
+                    theory.points.emplace_back(angle_deg, *period_s);
+            }
+        }
         measured.form = report::Series::Form::kPoints;
-        measured.look = look++;
-        std::sort(theory.points.begin(), theory.points.end());
-        if (!name.empty()) theory.name += ", " + name;
+        measured.look = i;
         theory.form = is_curve ? report::Series::Form::kLine : report::Series::Form::kPoints;
-        theory.look = is_curve ? *measured.look : all.size() + *measured.look;
+        theory.look = is_curve ? i : all.series.size() + i;
         plot.series.push_back(std::move(theory));
         plot.series.push_back(std::move(measured));
     }
@@ -198,7 +247,6 @@ struct Cell {
 
 /// Poses of a sample, and its parameters.
 Cell cell_of(const sweep::SweepDef& sweep, std::int64_t number, int side_px) {
-    constexpr int kPosesPerCell = 5;
     Cell cell{{}, {sweep::key_of(number)}};
     try {
         const sweep::Parameters parameters = sweep::parameters_of(sweep, number);
@@ -213,11 +261,12 @@ Cell cell_of(const sweep::SweepDef& sweep, std::int64_t number, int side_px) {
         for (int* const side : {&video.width_px, &video.height_px})
             *side = std::max(1, static_cast<int>(std::lround(scale * *side)));
         scene.overlay = {};
-        Film film(scene);
-        std::vector<double> times_s;
-        for (int pose = 0; pose < kPosesPerCell; ++pose)
-            times_s.push_back(film.time_s(film.last_frame() * pose / (kPosesPerCell - 1)));
-        times_s.erase(std::unique(times_s.begin(), times_s.end()), times_s.end());
+        Film film(scene, film_def(scene));
+        const auto no_rows = [](const std::string&, const std::vector<std::string>&) -> OnRow {
+            return [](std::span<const double>) {};
+        };
+        const FigureTimes times = find_figure_times(film, read_motion(film, no_rows, {}), {});
+        const std::vector<double>& times_s = times.strobe_s;
         cell.image = render::render_reference(FilmRenderer::list_poses(film, times_s));
     } catch (const Error& error) {
         if (error.code() != ExitCode::kInvalidScene && error.code() != ExitCode::kDiverged) throw;
@@ -242,7 +291,9 @@ std::vector<std::string> write_sweep_plot(const sweep::SweepDef& sweep, const st
                     fmt::format("--plot {}: is not Y:X, such as period_s:angle_max_deg", printable(columns)));
     const SweepColumn y = find_column(sweep, columns.substr(0, colon));
     const SweepColumn x = find_column(sweep, columns.substr(colon + 1));
-    const report::Plot plot = plot_of_sweep(sweep, folder, y, x);
+    const std::vector<std::string> keys = series_keys(sweep, x);
+    const SweepPoints all = read_points(sweep, folder, y, x, keys);
+    const report::Plot plot = plot_of(sweep, all, y, x, is_angle_curve(sweep, x, keys));
     const auto stem =
         std::filesystem::path(folder) / fmt::format("{}-{}", short_name(y.name), short_name(x.name));
     std::vector<std::string> paths;
@@ -250,9 +301,14 @@ std::vector<std::string> write_sweep_plot(const sweep::SweepDef& sweep, const st
         write_file(paths.emplace_back(stem.string() + "." + report::ending(format)),
                    report::draw_plot(plot, format, report::kPageMm));
     report::Table table{
-        "plot", plot.title, {{"series", "series"}, {x.name, x.name}, {y.name, y.name}}, {}, {}};
-    for (const report::Series& series : plot.series)
-        for (const auto& [at, value] : series.points) table.add({series.name, at, value});
+        "plot",
+        plot.title,
+        {{"key", "key"}, {"series", "series"}, {x.name, x.name}, {y.name, y.name}, {"theory", "theory"}},
+        {},
+        {}};
+    for (const Point& point : all.points)
+        table.add(
+            {point.key, all.series[point.series].name, point.x, point.y, report::cell_of(point.theory)});
     write_file(paths.emplace_back(stem.string() + ".csv"), report::csv_text(table));
     return paths;
 }

@@ -361,7 +361,7 @@ std::vector<std::string> video_files(Film& film, FilmRenderer& renderer, const s
         }
         chunks.push_back(encoder.finish());
     }
-    return media::video_files(video, data, std::move(chunks));
+    return media::video_files(video, data, chunks);
 }
 
 Rendered render_video(Film& film, const std::string& path, const RenderDef& def) {

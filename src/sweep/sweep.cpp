@@ -81,10 +81,28 @@ void write_text(const std::string& path, std::string_view text) {
     file.commit();
 }
 
+[[noreturn]] void fail_larger(const std::string& path) {
+    throw Error(ExitCode::kUsage,
+                fmt::format("'{}' is of a sweep of more samples; move it away, or replace all "
+                            "shards (--force)",
+                            path));
+}
+
 /// The checksum of an index without its own.
 std::string checksum_of(Json index) {
     index.erase("checksum");
     return hash_text(index.dump());
+}
+
+/// Throws Json::exception if a row of an index lacks what is read of it.
+void check_row(const Json& row) {
+    for (const char* const key : {"key", "split"})
+        static_cast<void>(row.at(key).get_ref<const std::string&>());
+    static_cast<void>(row.value("parameters", Json::object()).get_ref<const Json::object_t&>());
+    static_cast<void>(row.value("summary", Json::object()).get_ref<const Json::object_t&>());
+    if (!row.contains("failure")) return;
+    static_cast<void>(row.at("failure").at("code").get<int>());
+    static_cast<void>(row.at("failure").at("message").get_ref<const std::string&>());
 }
 
 /// The index of a shard file: its size, its checksum and the rows of its samples. It is written after the
@@ -94,30 +112,33 @@ std::optional<Json> find_index(const SweepDef& sweep, const std::string& folder,
     const std::string path = (fs::path(folder) / shard_name(shard)).string();
     auto index = read_json(path + ".json");
     if (!index || index->value("checksum", Json()) != checksum_of(*index)) return std::nullopt;
-    require_same(sweep, index->at("made_from"), path + ".tar");
-    const SampleRange samples = samples_of(sweep, shard);
-    std::error_code failure;
-    const bool is_finished =
-        std::ssize(index->at("rows")) == samples.end - samples.first &&
-        fs::file_size(path + ".tar", failure) == index->at("bytes").get<std::uintmax_t>();
-    return is_finished ? std::move(index) : std::nullopt;
+    try {
+        require_same(sweep, index->at("made_from"), path + ".tar");
+        const SampleRange samples = samples_of(sweep, shard);
+        const auto rows = std::ssize(index->at("rows").get_ref<const Json::array_t&>());
+        if (rows > samples.end - samples.first) fail_larger(path + ".tar");
+        std::error_code failure;
+        const bool is_finished =
+            rows == samples.end - samples.first &&
+            fs::file_size(path + ".tar", failure) == index->at("bytes").get<std::uintmax_t>();
+        static_cast<void>(index->at("sha256").get_ref<const std::string&>());
+        for (const Json& row : index->at("rows")) check_row(row);
+        return is_finished ? std::move(index) : std::nullopt;
+    } catch (const Json::exception&) {
+        return std::nullopt;
+    }
 }
 
-/// A problem for each shard file beyond the last one.
-std::vector<std::string> surplus_shards(const SweepDef& sweep, const std::string& folder) {
+/// Refuses a shard file beyond the last one.
+void refuse_surplus_shards(const SweepDef& sweep, const std::string& folder) {
     const std::string last = shard_name(shard_count(sweep) - 1) + ".tar";
-    std::vector<std::string> problems;
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(folder, ignored)) {
         const std::string name = entry.path().filename().string();
         if (is_sweep_file(name) && name.ends_with(".tar") &&
             std::pair(name.size(), name) > std::pair(last.size(), last))
-            problems.push_back(
-                fmt::format("'{}' is of a sweep of more samples; move it away, or replace all "
-                            "shards (--force)",
-                            entry.path().string()));
+            fail_larger(entry.path().string());
     }
-    return problems;
 }
 
 Json failure_json(const SampleFailure& failure) {
@@ -208,8 +229,7 @@ void open_folder(const SweepDef& sweep, const RunDef& def) {
                                                "another folder",
                                                path));
     }
-    if (const auto surplus = surplus_shards(sweep, def.folder); !surplus.empty())
-        throw Error(ExitCode::kUsage, surplus.front());
+    refuse_surplus_shards(sweep, def.folder);
 }
 
 /// Makes samples on several threads, and gives them in order.
@@ -227,10 +247,11 @@ class SampleQueue {
               };
           }) {}
 
-    /// The next sample. Calls `wait` repeatedly meanwhile.
+    /// The next sample. Calls `wait` repeatedly meanwhile. Throws what makes no sample, and kTemporary if the
+    /// system starts no thread.
     template <class Wait>
     PackedSample next(const Wait& wait) {
-        if (!workers_.has_threads()) return pack(maker().make(numbers_[next_++]));
+        if (!workers_.has_threads()) throw Error(ExitCode::kTemporary, "cannot start a thread; try again");
         while (true) {
             auto made = workers_.wait();
             wait();
@@ -239,16 +260,9 @@ class SampleQueue {
     }
 
   private:
-    SampleMaker& maker() {
-        if (!maker_) maker_ = std::make_unique<SampleMaker>(*sweep_, film_);
-        return *maker_;
-    }
-
     const SweepDef* sweep_;
     FilmDef film_;
     std::vector<std::int64_t> numbers_;
-    std::size_t next_ = 0;
-    std::unique_ptr<SampleMaker> maker_;  ///< if the system starts no thread
     OrderedWorkers<PackedSample> workers_;
 };
 
@@ -268,26 +282,31 @@ void add_row(const SweepDef& sweep, std::int64_t shard, const Json& row, CsvLine
     line.add(row.contains("failure") ? row.at("failure").at("message").get<std::string>() : std::string());
 }
 
-/// Writes metadata.csv and the whole manifest. Returns false if a shard is not finished.
-bool finish_folder(const SweepDef& sweep, const std::string& folder) {
-    OutputFile metadata((fs::path(folder) / kMetadataName).string(), {.force = true});
+/// What says of a whole sweep what its shards hold.
+struct Summaries {
+    std::string metadata;
+    Json manifest;
+};
+
+/// std::nullopt if a shard is not finished.
+std::optional<Summaries> summaries_of(const SweepDef& sweep, const std::string& folder) {
+    Summaries whole{{}, empty_manifest(sweep)};
     CsvLine line;
     for (const char* const column : {"key", "shard", "split"}) line.add(std::string_view(column));
     for (const VariedKey& varied : sweep.vary) line.add(varied.key);
     for (const std::string& name : sweep.summary) line.add(name);
     line.add(std::string_view("failure"));
-    metadata.write(line.end());
+    whole.metadata += line.end();
     Json shards = Json::array();
     Json failures = Json::array();
     std::map<std::string, std::int64_t> splits;
     for (std::int64_t shard = 0; shard < shard_count(sweep); ++shard) {
-        const auto found = find_index(sweep, folder, shard);
-        if (!found) return false;
-        const Json& index = *found;
+        const auto index = find_index(sweep, folder, shard);
+        if (!index) return std::nullopt;
         std::int64_t failed = 0;
-        for (const Json& row : index.at("rows")) {
+        for (const Json& row : index->at("rows")) {
             add_row(sweep, shard, row, line);
-            metadata.write(line.end());
+            whole.metadata += line.end();
             if (row.contains("failure")) {
                 ++failed;
                 failures.push_back({{"key", row.at("key")}, {"failure", row.at("failure")}});
@@ -296,21 +315,34 @@ bool finish_folder(const SweepDef& sweep, const std::string& folder) {
             }
         }
         shards.push_back({{"file", shard_name(shard) + ".tar"},
-                          {"bytes", index.at("bytes")},
-                          {"sha256", index.at("sha256")},
-                          {"samples", std::ssize(index.at("rows")) - failed},
+                          {"bytes", index->at("bytes")},
+                          {"sha256", index->at("sha256")},
+                          {"samples", std::ssize(index->at("rows")) - failed},
                           {"failed", failed}});
     }
-    metadata.commit();
-    Json manifest = empty_manifest(sweep);
+    Json& manifest = whole.manifest;
     manifest["complete"] = true;
     manifest["samples"] = sweep.samples - std::ssize(failures);
     manifest["failed"] = std::ssize(failures);
     manifest["splits"] = splits;
     manifest["shards"] = std::move(shards);
     manifest["failures"] = std::move(failures);
-    write_text((fs::path(folder) / kManifestName).string(), manifest.dump(1) + "\n");
-    return true;
+    return whole;
+}
+
+/// Writes metadata.csv and the whole manifest, if all shards are finished.
+void finish_folder(const SweepDef& sweep, const std::string& folder, RunResult& result) {
+    const auto whole = summaries_of(sweep, folder);
+    if (!whole) return;
+    write_text((fs::path(folder) / kMetadataName).string(), whole->metadata);
+    write_text((fs::path(folder) / kManifestName).string(), whole->manifest.dump(1) + "\n");
+    result.is_complete = true;
+    result.failed = whole->manifest.at("failed").get<std::int64_t>();
+    for (const Json& failed : whole->manifest.at("failures")) {
+        result.first_failure = fmt::format("{}: {}", failed.at("key").get<std::string>(),
+                                           failed.at("failure").at("message").get<std::string>());
+        break;
+    }
 }
 
 /// Whether all shards seem to be there. Their indices are not read: each of many tasks asks for it.
@@ -352,7 +384,10 @@ RunResult run_sweep(const SweepDef& sweep, const RunDef& def) {
             ShardWriter writer(sweep, def.folder, shard);
             for (std::int64_t i = samples_of(sweep, shard).first; i < samples_of(sweep, shard).end; ++i) {
                 PackedSample sample = samples.next(report);
-                if (sample.row.contains("failure")) ++result.failed;
+                if (sample.row.contains("failure") && result.failed++ == 0)
+                    result.first_failure =
+                        fmt::format("{}: {}", sample.row.at("key").get<std::string>(),
+                                    sample.row.at("failure").at("message").get<std::string>());
                 writer.add(std::move(sample));
                 ++result.samples_made;
             }
@@ -361,43 +396,70 @@ RunResult run_sweep(const SweepDef& sweep, const RunDef& def) {
         }
     }
     report();
-    result.is_complete = has_all_shards(sweep, def.folder) && finish_folder(sweep, def.folder);
+    if (has_all_shards(sweep, def.folder)) finish_folder(sweep, def.folder, result);
     return result;
 }
 
+namespace {
+
+/// Throws corda::Error: kMismatch if a shard file is missing or damaged, kUsage if it is of another sweep.
+void check_shard(const SweepDef& sweep, const std::string& folder, std::int64_t shard) {
+    const std::string path = (fs::path(folder) / (shard_name(shard) + ".tar")).string();
+    const auto fail = [&path](const std::string& problem) {
+        throw Error(ExitCode::kMismatch, fmt::format("'{}' {}", path, problem));
+    };
+    const auto index = find_index(sweep, folder, shard);
+    if (!index)
+        fail(fs::exists(path) ? "does not fit its index; run the sweep again"
+                              : "is missing; run the sweep again");
+    if (media::sha256_of_file(path) != index->at("sha256").get<std::string>())
+        fail(
+            "is damaged: its SHA-256 is another one than its index says; remove it, and run the sweep again");
+    std::set<std::string> keys;
+    list_tar(path,
+             [&keys](const std::string& name, std::int64_t) { keys.insert(name.substr(0, name.find('.'))); });
+    for (const Json& row : index->at("rows"))
+        if (const auto key = row.at("key").get<std::string>(); keys.contains(key) == row.contains("failure"))
+            fail("does not hold what its index says of sample " + key);
+}
+
+/// Throws corda::Error (kMismatch) if a file is not the one that the shards give.
+void check_text(const fs::path& path, std::string_view expected) {
+    std::string text;
+    if (fs::is_regular_file(path) && file_size(path.string()) == expected.size()) {
+        text.resize(expected.size());
+        text.resize(read_bytes(open_for_reading(path.string()), path.string(), text.data(), text.size()));
+    }
+    if (text != expected)
+        throw Error(ExitCode::kMismatch,
+                    fmt::format("'{}' does not say what the shards hold; remove it, and run "
+                                "the sweep again",
+                                path.string()));
+}
+
+}  // namespace
+
 std::vector<std::string> check_sweep(const SweepDef& sweep, const std::string& folder,
                                      const OnProgress& on_progress) {
-    std::vector<std::string> problems = surplus_shards(sweep, folder);
-    const std::int64_t shards = shard_count(sweep);
-    for (std::int64_t shard = 0; shard < shards; ++shard) {
-        report_progress(on_progress, shard, shards);
-        const std::string path = (fs::path(folder) / (shard_name(shard) + ".tar")).string();
+    std::vector<std::string> problems;
+    const auto check = [&problems](const auto& work) {
         try {
-            const auto index = find_index(sweep, folder, shard);
-            if (!index) {
-                problems.push_back(fmt::format("'{}' {}; run the sweep again", path,
-                                               fs::exists(path) ? "does not fit its index" : "is missing"));
-                continue;
-            }
-            if (media::sha256_of_file(path) != index->at("sha256").get<std::string>()) {
-                problems.push_back(
-                    fmt::format("'{}' is damaged: its SHA-256 is another one than its index says; "
-                                "remove it, and run the sweep again",
-                                path));
-                continue;
-            }
-            std::set<std::string> keys;
-            list_tar(path, [&keys](const std::string& name, std::int64_t) {
-                keys.insert(name.substr(0, name.find('.')));
-            });
-            for (const Json& row : index->at("rows"))
-                if (keys.contains(row.at("key").get<std::string>()) == row.contains("failure"))
-                    problems.push_back(fmt::format("'{}' does not hold what its index says of sample {}",
-                                                   path, row.at("key").get<std::string>()));
+            work();
         } catch (const Error& error) {
             if (error.code() != ExitCode::kUsage && error.code() != ExitCode::kMismatch) throw;
             problems.emplace_back(error.what());
         }
+    };
+    check([&] { refuse_surplus_shards(sweep, folder); });
+    const std::int64_t shards = shard_count(sweep);
+    for (std::int64_t shard = 0; shard < shards; ++shard) {
+        report_progress(on_progress, shard, shards);
+        check([&] { check_shard(sweep, folder, shard); });
+    }
+    if (problems.empty()) {
+        const Summaries whole = summaries_of(sweep, folder).value();
+        check([&] { check_text(fs::path(folder) / kMetadataName, whole.metadata); });
+        check([&] { check_text(fs::path(folder) / kManifestName, whole.manifest.dump(1) + "\n"); });
     }
     report_progress(on_progress, shards, shards);
     return problems;

@@ -25,7 +25,8 @@ struct RunResult {
     std::int64_t shards = 0;       ///< number of shard files of this run
     std::int64_t shards_made = 0;  ///< those that were not finished before
     std::int64_t samples_made = 0;
-    std::int64_t failed = 0;  ///< samples among them without files
+    std::int64_t failed = 0;  ///< samples without files: of this run, or of the whole sweep if it is complete
+    std::string first_failure{};  ///< key and reason of the first of them
     bool is_complete =
         false;  ///< all shard files of the sweep are there, with metadata.csv and manifest.json
 };

@@ -184,9 +184,7 @@ class SweepReader {
         const std::string name(key.str());
         const std::string path = "vary." + Json(name).dump();
         if (!is_scene_key(name)) {
-            problems_->add(key.source(), path,
-                           "no key of a scene; quote a dotted key such as \"rope[0].hang.angle_deg\" (see "
-                           "`corda help scene`)");
+            problems_->add(key.source(), path, key_remedy(name));
         } else if (const auto* const list = node.as_array()) {
             Choice choice;
             for (const toml::node& value : *list) {
@@ -207,18 +205,33 @@ class SweepReader {
         }
     }
 
-    /// Whether a dotted key, with any indices, is in the schema of scenes.
-    static bool is_scene_key(const std::string& name) {
+    /// A dotted key without its indices: its section and its name.
+    static std::pair<std::string, std::string> parts_of(const std::string& key) {
         std::string path;
         bool is_index = false;
-        for (const char c : name) {
+        for (const char c : key) {
             is_index = is_index || c == '[';
             if (!is_index) path += c;
             if (c == ']') is_index = false;
         }
         const std::size_t dot = path.rfind('.');
-        if (dot == std::string::npos) return false;
-        return scene::find_key(path.substr(0, dot), path.substr(dot + 1)) != nullptr;
+        return dot == std::string::npos ? std::pair(path, std::string())
+                                        : std::pair(path.substr(0, dot), path.substr(dot + 1));
+    }
+    static bool is_scene_key(const std::string& key) {
+        const auto [section, name] = parts_of(key);
+        return !name.empty() && scene::find_key(section, name) != nullptr;
+    }
+    static std::string key_remedy(const std::string& key) {
+        const auto [section, name] = parts_of(key);
+        if (name.empty())
+            return "no key of a scene; quote a dotted key, such as \"rope[0].hang.angle_deg\" (see corda "
+                   "help scene)";
+        Names names;
+        for (const scene::Key& its : scene::keys_of(section)) names.push_back(its.name);
+        const auto meant = nearest(name, names);
+        return meant ? fmt::format("no key of a scene; did you mean \"{}\" in place of \"{}\"?", *meant, name)
+                     : std::string("no key of a scene (see corda help scene)");
     }
 
     std::optional<Distribution> read_distribution(const toml::table& table, const std::string& path) {
@@ -297,7 +310,7 @@ class SweepReader {
     static std::string_view remedy_of(Shape shape) {
         switch (shape) {
             case Shape::kUniform:
-                return "is [least, largest], two numbers or two vectors of one length";
+                return "is [least, largest], two numbers, the smaller first, or two vectors of one length";
             case Shape::kLogUniform:
                 return "is [least, largest], two positive numbers or two vectors of one length";
             case Shape::kNormal:
@@ -338,7 +351,9 @@ class SweepReader {
         for (const Label& label : all_labels().subspan(1)) labels.push_back(label.name);
         if (const auto chosen = words(*output, "labels", labels)) {
             sweep_->labels.resize(1);
-            for (const std::size_t i : *chosen) sweep_->labels.push_back(find_label(labels[i]));
+            for (std::size_t i = 0; i < labels.size(); ++i)
+                if (std::find(chosen->begin(), chosen->end(), i) != chosen->end())
+                    sweep_->labels.push_back(find_label(labels[i]));
         }
         const Names columns(sweep_->summary.begin(), sweep_->summary.end());
         if (const auto chosen = words(*output, "summary", columns)) {
@@ -359,7 +374,7 @@ class SweepReader {
                  fmt::format("{}; give a list of {}", described(*node), fmt::join(allowed, ", ")));
         for (std::size_t i = 0; list != nullptr && i < list->size(); ++i)
             if (const auto place = word(*list->get(i), fmt::format("output.{}[{}]", key, i), allowed))
-                chosen.push_back(*place);
+                if (std::find(chosen.begin(), chosen.end(), *place) == chosen.end()) chosen.push_back(*place);
         return chosen;
     }
 

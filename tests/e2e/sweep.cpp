@@ -235,6 +235,36 @@ TEST_F(Sweep, RefusedSamplesAreCountedAndNamed) {
     EXPECT_EQ(sweep("out", {"--check"}).exit_code, 0);
 }
 
+TEST_F(Sweep, FailsIfAllSamplesAreRefused) {
+    define("samples = 3", "\"rope[0].hang.links\" = { uniform = [3.1, 3.9] }\n", kQuick);
+    const auto refused = sweep("out");
+    EXPECT_EQ(refused.exit_code, 3);
+    EXPECT_THAT(refused.err, AllOf(HasSubstr("all samples were refused; the first, 000000: "),
+                                   HasSubstr("rope[0].hang.links")));
+    EXPECT_EQ(sweep("out").exit_code, 3);  // although its shard is there
+}
+
+TEST_F(Sweep, NeedsAFolder) {
+    define("samples = 3", kVaried, kQuick);
+    EXPECT_EQ(run_corda({"sweep", file("sweep.toml"), "-o", "-"}).exit_code, 2);
+}
+
+TEST_F(Sweep, CheckComparesTheSummariesWithTheShards) {
+    define("samples = 3", kVaried, kQuick);
+    ASSERT_EQ(sweep("out").exit_code, 0);
+    const std::string whole = sums("out");
+    for (const std::string name : {"out/metadata.csv", "out/manifest.json"}) {
+        const std::string text = read_file(file(name));
+        test::write_file(file(name), text.substr(0, text.size() - 2) + " \n");
+        const auto checked = sweep("out", {"--check"});
+        EXPECT_EQ(checked.exit_code, 7);
+        EXPECT_THAT(checked.err, HasSubstr(file(name) + "' does not say what the shards hold"));
+        std::filesystem::remove(file(name));
+        EXPECT_EQ(sweep("out").exit_code, 0);
+        EXPECT_EQ(sums("out"), whole);
+    }
+}
+
 TEST_F(Sweep, AFullDiskKeepsFinishedShards) {
     define("grid = true\nshard_samples = 1", "\"world.duration\" = [0.1, 10.0, 0.2]\n", kQuick);
     const std::string whole = expected_sums();
@@ -317,8 +347,13 @@ TEST_F(Sweep, GrowsAndDoesNotShrink) {
     EXPECT_EQ(shorter.exit_code, 2);
     EXPECT_THAT(shorter.err, HasSubstr("' is of a sweep of more samples; move it away"));
     EXPECT_EQ(sweep("out", {"--check"}).exit_code, 7);
-    EXPECT_EQ(sweep("out", {"--force"}).exit_code, 0);
-    EXPECT_FALSE(std::filesystem::exists(file("out/shard-000002.tar")));
+    define("samples = 6\nshard_samples = 2", kVaried, kQuick);
+    ASSERT_EQ(sweep("out", {"--force"}).exit_code, 0);
+    EXPECT_FALSE(std::filesystem::exists(file("out/shard-000003.tar")));
+    const std::string kept = sums("out");
+    define("samples = 5\nshard_samples = 2", kVaried, kQuick);  // with as many shards
+    EXPECT_EQ(sweep("out").exit_code, 2);
+    EXPECT_EQ(sums("out"), kept);
 }
 
 TEST_F(Sweep, CheckNamesWhatIsWrongAndItsAdviceWorks) {
@@ -448,6 +483,7 @@ TEST_F(Sweep, AnInterruptKeepsFinishedShards) {
                                    " & pid=$!; until [ -e " + file("out/shard-000000.json") +
                                    " ] || ! kill -0 $pid; do sleep 0.01; done; kill -INT $pid; wait $pid");
     EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
+    EXPECT_THAT(stopped.err, HasSubstr("interrupted: finished shards stay in " + file("out")));
     EXPECT_TRUE(std::filesystem::exists(file("out/shard-000000.tar")));
     EXPECT_FALSE(std::filesystem::exists(file("out/shard-000039.tar")));
     EXPECT_EQ(run_shell("find " + file("out") + " -name '*.tmp'").out, "");

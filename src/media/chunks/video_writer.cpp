@@ -403,7 +403,7 @@ std::string VideoWriter::abandon() {
 }
 
 std::vector<std::string> video_files(const CheckedVideo& video, const VideoMetadata& metadata,
-                                     std::vector<Chunk> chunks) {
+                                     const std::vector<Chunk>& chunks) {
     if (video.format.ending->kind != FileKind::kVideo) {
         std::vector<std::string> files;
         for (const Chunk& chunk : chunks)
@@ -413,7 +413,7 @@ std::vector<std::string> video_files(const CheckedVideo& video, const VideoMetad
     const Manifest manifest = manifest_of(video, metadata);
     std::deque<OutputFile> files;
     ChunkRun run;
-    for (Chunk& chunk : chunks) {
+    for (const Chunk& chunk : chunks) {
         number_packets(chunk);
         files.emplace_back(OutputFile::InMemory());
         write_chunk(chunk, video.format, manifest.fps, files.back());

@@ -125,6 +125,6 @@ class VideoWriter {
 /// The files that a VideoWriter makes of all chunks of a video or of pictures, in memory: one, or one per
 /// frame. The bytes of a video are those that `finish` verifies. Throws corda::Error (kIo, kTemporary).
 [[nodiscard]] std::vector<std::string> video_files(const CheckedVideo& video, const VideoMetadata& metadata,
-                                                   std::vector<Chunk> chunks);
+                                                   const std::vector<Chunk>& chunks);
 
 }  // namespace corda::media

@@ -62,8 +62,7 @@ TEST_F(SweepFile, DefaultsAreAllPicturesLabelsAndColumns) {
     EXPECT_EQ(sweep.seed, 0U);
     EXPECT_EQ(sweep.shard_samples, 256);
     EXPECT_EQ(sweep.pictures, Pictures::kMp4);
-    EXPECT_TRUE(sweep.labels.positions && sweep.labels.velocities && sweep.labels.tensions &&
-                sweep.labels.energy && sweep.labels.pixels && sweep.labels.mask);
+    EXPECT_EQ(sweep.labels.size(), all_labels().size());
     EXPECT_EQ(sweep.summary.size(), summary_columns().size());
     EXPECT_THAT(sweep.splits, IsEmpty());
 }
@@ -103,9 +102,7 @@ test = 0.1
     EXPECT_TRUE(from.is_vector);
     EXPECT_THAT(from.second, ElementsAre(1.0, 2.0));
     EXPECT_EQ(sweep.pictures, Pictures::kNpz);
-    EXPECT_TRUE(sweep.labels.mask && sweep.labels.energy);
-    EXPECT_FALSE(sweep.labels.positions || sweep.labels.velocities || sweep.labels.tensions ||
-                 sweep.labels.pixels);
+    EXPECT_THAT(sweep.labels, ElementsAre(find_label("times"), find_label("energy"), find_label("mask")));
     EXPECT_THAT(sweep.summary, ElementsAre("horizon_s", "period_s"));
     ASSERT_EQ(sweep.splits.size(), 2U);
 }
@@ -154,9 +151,9 @@ TEST_F(SweepFile, AGridHasListsAndNoNumberOfSamples) {
 TEST_F(SweepFile, VariedKeysAreThoseOfScenes) {
     expect_errors({
         {"samples = 1\n[vary]\n\"rope[0].mas\" = [1]\n",
-         ":5:1: vary.\"rope[0].mas\": ", "no key of a scene; quote a dotted key"},
+         ":5:1: vary.\"rope[0].mas\": ", "no key of a scene; did you mean \"mass\""},
         {"samples = 1\n[vary]\nrope.mass = [1]\n",
-         ":5:1: vary.\"rope\": ", "quote a dotted key such as \"rope[0].hang.angle_deg\""},
+         ":5:1: vary.\"rope\": ", "quote a dotted key, such as \"rope[0].hang.angle_deg\""},
         {"samples = 1\n[vary]\n\"mass\" = [1]\n", ":5:1: vary.\"mass\": ", "no key of a scene"},
         {"samples = 1\n[vary]\n\"rope[7].mass\" = [1]\n", ":5:18: vary.\"rope[7].mass\": ",
          "does not fit the scene: --set rope[7].mass=0: rope: index 7 is out of range; the list has 1"},
@@ -247,7 +244,7 @@ TEST_F(SweepFile, OutputIsCheckedWordByWord) {
         {head + "picture = \"mp4\"\n", ":7:1: output.picture: ", "did you mean \"pictures\"?"},
     });
     const SweepDef none = folder_.load(head + "labels = []\nsummary = []\n");
-    EXPECT_FALSE(none.labels.positions || none.labels.mask);
+    EXPECT_THAT(none.labels, ElementsAre(find_label("times")));
     EXPECT_THAT(none.summary, IsEmpty());
 }
 
