@@ -79,15 +79,15 @@ std::string deflated(std::string_view bytes) {
 }  // namespace
 
 TarWriter::TarWriter(WriteBytes write) : write_(std::move(write)), archive_(archive_write_new()) {
-    if (archive_ == nullptr) throw Error(ExitCode::kTemporary, "out of memory for an archive");
-    check(archive_write_set_format_ustar(archive_));
-    check(archive_write_set_bytes_per_block(archive_, 0));  // no padding after the end
-    check(archive_write_open(archive_, this, nullptr, &TarWriter::write, nullptr));
+    if (!archive_) throw Error(ExitCode::kTemporary, "out of memory for an archive");
+    check(archive_write_set_format_ustar(archive_.get()));
+    check(archive_write_set_bytes_per_block(archive_.get(), 0));  // no padding after the end
+    check(archive_write_open(archive_.get(), this, nullptr, &TarWriter::write, nullptr));
 }
 
-TarWriter::~TarWriter() {
-    if (failure_ == nullptr) archive_write_fail(archive_);  // writes nothing more
-    archive_write_free(archive_);
+void TarWriter::Free::operator()(archive* its) const {
+    archive_write_fail(its);  // otherwise freeing an unfinished archive writes its end
+    archive_write_free(its);
 }
 
 std::ptrdiff_t TarWriter::write(archive* its, void* writer, const void* bytes, std::size_t count) {
@@ -105,7 +105,7 @@ std::ptrdiff_t TarWriter::write(archive* its, void* writer, const void* bytes, s
 void TarWriter::check(int status) {
     if (failure_) std::rethrow_exception(failure_);
     if (status == ARCHIVE_OK) return;
-    const char* const reason = archive_error_string(archive_);
+    const char* const reason = archive_error_string(archive_.get());
     throw Error(ExitCode::kIo, fmt::format("cannot write an archive: {}", reason == nullptr ? "" : reason));
 }
 
@@ -117,14 +117,14 @@ void TarWriter::add(const std::string& name, std::string_view bytes) {
     archive_entry_set_perm(entry.get(), kFileMode);
     archive_entry_set_size(entry.get(), static_cast<std::int64_t>(bytes.size()));
     archive_entry_set_mtime(entry.get(), 0, 0);
-    check(archive_write_header(archive_, entry.get()));
-    const auto written = archive_write_data(archive_, bytes.data(), bytes.size());
+    check(archive_write_header(archive_.get(), entry.get()));
+    const auto written = archive_write_data(archive_.get(), bytes.data(), bytes.size());
     check(written == static_cast<std::ptrdiff_t>(bytes.size()) ? ARCHIVE_OK : ARCHIVE_FATAL);
-    check(archive_write_finish_entry(archive_));
+    check(archive_write_finish_entry(archive_.get()));
 }
 
 void TarWriter::finish() {
-    check(archive_write_close(archive_));
+    check(archive_write_close(archive_.get()));
 }
 
 void list_tar(const std::string& path, const std::function<void(const std::string&, std::int64_t)>& take) {

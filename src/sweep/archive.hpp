@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <string>
@@ -24,18 +25,21 @@ class TarWriter {
     explicit TarWriter(WriteBytes write);
     TarWriter(const TarWriter&) = delete;
     TarWriter& operator=(const TarWriter&) = delete;
-    ~TarWriter();
+    ~TarWriter() = default;
 
     void add(const std::string& name, std::string_view bytes);
     void finish();
 
   private:
+    struct Free {
+        void operator()(archive* its) const;
+    };
     void check(int status);
     static std::ptrdiff_t write(archive*, void* writer, const void* bytes, std::size_t count);
 
     WriteBytes write_;
     std::exception_ptr failure_;  ///< of write_
-    archive* archive_;
+    std::unique_ptr<archive, Free> archive_;
 };
 
 /// Calls `take` with the name and the size of each entry of a tar. Throws corda::Error: kMismatch with the

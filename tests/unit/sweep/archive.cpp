@@ -2,8 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <cstdlib>
-#include <ctime>
 #include <set>
 #include <string>
 #include <utility>
@@ -81,8 +79,11 @@ TEST(Archive, TarIsListedAndDamageIsNamed) {
 
 TEST(Archive, OutputThatTakesNoMoreEndsIt) {
     std::size_t left = 2000;
+    bool is_full = false;
     const auto write = [&](std::string_view part) {
-        if (part.size() > left) throw Error(ExitCode::kIo, "no space");
+        EXPECT_FALSE(is_full);  // nothing is written after a failure, by the destructor neither
+        is_full = part.size() > left;
+        if (is_full) throw Error(ExitCode::kIo, "no space");
         left -= part.size();
     };
     const test::Failure failure = test::failure_of([&] {
@@ -138,21 +139,6 @@ TEST(Npz, BytesAreCompressedAndNumbersAreNot) {
     EXPECT_THAT(npz, HasSubstr("times.npy"));
     EXPECT_THAT(npz, HasSubstr(data));
     EXPECT_LT(npz.size(), 9000U);
-}
-
-TEST(Npz, BytesDoNotDependOnTheTimeZone) {
-    const std::vector<Array> arrays{{"mask", true, {4}, "abcd"}, {"times", false, {1}, "12345678"}};
-    const char* const old = std::getenv("TZ");
-    const std::string kept = old == nullptr ? "" : old;
-    std::set<std::string> made;
-    for (const char* const zone : {"UTC", "Asia/Tokyo", "America/Los_Angeles"}) {
-        ::setenv("TZ", zone, 1);
-        ::tzset();
-        made.insert(npz_bytes(arrays));
-    }
-    old == nullptr ? ::unsetenv("TZ") : ::setenv("TZ", kept.c_str(), 1);
-    ::tzset();
-    EXPECT_EQ(made.size(), 1U);
 }
 
 }  // namespace
