@@ -198,9 +198,17 @@ OutputFile::OutputFile(InMemory) : descriptor_(::memfd_create("output", MFD_CLOE
     temporary_ = "/proc/self/fd/" + std::to_string(descriptor_.get());
 }
 
-std::string OutputFile::bytes() const {
-    std::string bytes(file_size(temporary_), '\0');
-    bytes.resize(read_bytes(open_for_reading(temporary_), temporary_, bytes.data(), bytes.size()));
+std::string OutputFile::bytes() {
+    flush();
+    struct stat status {};
+    if (::fstat(descriptor_.get(), &status) != 0) fail_file("read", temporary_, errno);
+    std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
+    for (std::size_t begin = 0; begin < bytes.size();) {
+        const ssize_t count =
+            ::pread(descriptor_.get(), bytes.data() + begin, bytes.size() - begin, static_cast<off_t>(begin));
+        if (count <= 0) fail_file("read", temporary_, errno);
+        begin += static_cast<std::size_t>(count);
+    }
     return bytes;
 }
 

@@ -63,8 +63,8 @@ class OutputFile {
     /// Throws ReaderLeft, like all below, if whoever reads standard output closed it.
     void write(std::string_view bytes);
 
-    /// What was written, of a file in memory.
-    [[nodiscard]] std::string bytes() const;
+    /// Contents of a file in memory, with those in the buffer of `write`.
+    [[nodiscard]] std::string bytes();
 
     /// Flushes the buffer of `write`, for readers of the file before it has its name.
     void flush();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -51,6 +52,7 @@ class ChunkInput {
             fail_damaged(file, fmt::format("its frames would be {}x{} pixels", its.width, its.height));
     }
 
+    [[nodiscard]] const ChunkFile& file() const { return file_; }
     [[nodiscard]] const AVCodecParameters& parameters() const { return *stream_->codecpar; }
     [[nodiscard]] bool has_alpha() const { return is_marked_as_alpha(*stream_); }
     /// Colours of its first and its last frame, whose numbers count from `first`.
@@ -95,35 +97,46 @@ bool are_of_one_video(const AVCodecParameters& a, const AVCodecParameters& b) {
                       b.extradata + b.extradata_size);
 }
 
+/// Chunks of a video, of which one at a time is open.
+struct Chunks {
+    std::size_t count = 0;
+    std::function<ChunkInput(std::size_t index)> open;
+    std::int64_t frames = 0;  ///< of all
+};
+
+Chunks chunks_of(const ChunkRun& run, Rational fps) {
+    const auto open = [&run, fps](std::size_t index) { return ChunkInput(run.chunks[index], fps); };
+    return {run.chunks.size(), open, run.frames};
+}
+
 /// Calls `work` with each chunk, open, and the number of its first frame in the video. `first`: the first
 /// one. Returns the colours of their first and last frames.
 template <class Work>
-std::vector<FrameColors> for_each_chunk(const ChunkRun& run, const Manifest& manifest,
-                                        const ChunkInput& first, const Work& work) {
+std::vector<FrameColors> for_each_chunk(const Chunks& chunks, const ChunkInput& first, const Work& work) {
     std::vector<FrameColors> colors;
     std::int64_t frames = 0;
-    for (const ChunkFile& file : run.chunks) {
-        ChunkInput chunk(file, manifest.fps);
+    for (std::size_t i = 0; i < chunks.count; ++i) {
+        ChunkInput chunk = chunks.open(i);
         if (!are_of_one_video(first.parameters(), chunk.parameters()))
-            fail_damaged(file, "it is of another video than the chunks before it");
+            fail_damaged(chunk.file(), "it is of another video than the chunks before it");
         for (FrameColors& frame : chunk.colors(frames))
             if (colors.empty() || frame.frame > colors.back().frame) colors.push_back(std::move(frame));
         work(chunk, frames);
-        frames += file.frames;
+        frames += chunk.file().frames;
     }
     return colors;
 }
 
 /// Copies the packets. Returns colours as for_each_chunk().
-std::vector<FrameColors> copy(const ChunkRun& run, const Manifest& manifest, const Ending& ending,
+std::vector<FrameColors> copy(const Chunks& chunks, const Manifest& manifest, const Ending& ending,
                               const ChunkInput& first, OutputFile& output) {
     TrackOutput track(
         output, ending.muxer, first.parameters(),
         {.fps = manifest.fps,
          .title = manifest.title,
-         .comment = finished_comment(manifest.comment, run.frames, first.colors(0).front().patches),
+         .comment = finished_comment(manifest.comment, chunks.frames, first.colors(0).front().patches),
          .has_alpha = first.has_alpha()});
-    auto colors = for_each_chunk(run, manifest, first, [&track](ChunkInput& chunk, std::int64_t begin) {
+    auto colors = for_each_chunk(chunks, first, [&track](ChunkInput& chunk, std::int64_t begin) {
         chunk.read(begin, [&track](AVPacket& packet) { track.write(packet); });
     });
     track.finish();
@@ -176,7 +189,7 @@ void join_chunks(const ChunkRun& run, const Manifest& manifest, const std::strin
     OutputFile output(path, options);
     std::vector<FrameColors> colors;
     if (is_animation) {
-        colors = for_each_chunk(run, manifest, first, [](ChunkInput&, std::int64_t) {});
+        colors = for_each_chunk(chunks_of(run, manifest.fps), first, [](ChunkInput&, std::int64_t) {});
         const OnProgress encoded = [&](std::int64_t frame, std::int64_t) {
             done = run.frames + frame;
             return true;
@@ -184,7 +197,7 @@ void join_chunks(const ChunkRun& run, const Manifest& manifest, const std::strin
         const int threads = animation_threads(def.jobs, ending, first.parameters());
         write_animation(ending, {run.chunks, run.frames, manifest.fps, threads}, encoded, output);
     } else {
-        colors = copy(run, manifest, ending, first, output);
+        colors = copy(chunks_of(run, manifest.fps), manifest, ending, first, output);
     }
     done = total;
     VerifyReport report = verify(output.temporary_path(), def.depth, colors, manifest.fps);
@@ -200,10 +213,21 @@ void join_chunks(const ChunkRun& run, const Manifest& manifest, const std::strin
     output.commit();
 }
 
-std::string join_in_memory(const ChunkRun& run, const Manifest& manifest, const Ending& ending) {
+std::string join_in_memory(const std::vector<Chunk>& chunks, const Manifest& manifest, const Format& format) {
     const LogCapture log;
+    std::optional<OutputFile> file;
+    const auto open = [&](std::size_t index) {
+        const Chunk& chunk = chunks[index];
+        // The first one is opened twice, but its packets can be written only once.
+        if (index > 0 || !file)
+            write_chunk(chunk, format, manifest.fps, file.emplace(OutputFile::InMemory()));
+        return ChunkInput({chunk.first / manifest.per_chunk, chunk.frames, 0, file->temporary_path()},
+                          manifest.fps);
+    };
+    std::int64_t frames = 0;
+    for (const Chunk& chunk : chunks) frames += chunk.frames;
     OutputFile output{OutputFile::InMemory()};
-    copy(run, manifest, ending, ChunkInput(run.chunks.front(), manifest.fps), output);
+    copy({chunks.size(), open, frames}, manifest, *format.ending, open(0), output);
     return output.bytes();
 }
 

@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "corda/core/basics.hpp"
+#include "corda/media/chunks/chunk.hpp"
 #include "corda/media/chunks/chunk_folder.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/media/verify/verify.hpp"
@@ -29,9 +31,11 @@ struct JoinDef {
 void join_chunks(const ChunkRun& run, const Manifest& manifest, const std::string& path,
                  const OutputOptions& options, const JoinDef& def);
 
-/// The bytes of the video that join_chunks() makes, without verifying them. Of an animation there is none.
-/// Throws corda::Error (kMismatch, kIo, kTemporary, kInterrupted).
-[[nodiscard]] std::string join_in_memory(const ChunkRun& run, const Manifest& manifest, const Ending& ending);
+/// Returns the bytes of the video that join_chunks() makes of such chunks, without verifying them. The format
+/// is of a video, not of an animation. Packets must be numbered; they are empty afterwards. A few files are
+/// open at a time. Throws corda::Error (kMismatch, kIo, kTemporary, kInterrupted).
+[[nodiscard]] std::string join_in_memory(const std::vector<Chunk>& chunks, const Manifest& manifest,
+                                         const Format& format);
 
 /// Reads the sound chunks of a folder of any origin in a child process, which libav may end at one. After
 /// that this process can read them. Throws corda::Error: kIo, and as work_in_child().

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <deque>
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -410,18 +409,8 @@ std::vector<std::string> video_files(const CheckedVideo& video, const VideoMetad
             for (const Packet& packet : chunk.packets) files.emplace_back(bytes_of(*packet));
         return files;
     }
-    const Manifest manifest = manifest_of(video, metadata);
-    std::deque<OutputFile> files;
-    ChunkRun run;
-    for (const Chunk& chunk : chunks) {
-        number_packets(chunk);
-        files.emplace_back(OutputFile::InMemory());
-        write_chunk(chunk, video.format, manifest.fps, files.back());
-        run.chunks.push_back(
-            {chunk.first / manifest.per_chunk, chunk.frames, 0, files.back().temporary_path()});
-        run.frames += chunk.frames;
-    }
-    return {join_in_memory(run, manifest, *video.format.ending)};
+    for (const Chunk& chunk : chunks) number_packets(chunk);
+    return {join_in_memory(chunks, manifest_of(video, metadata), video.format)};
 }
 
 }  // namespace corda::media

@@ -124,6 +124,18 @@ TEST_F(OutputFiles, KeepTheOrderOfShortAndLongWrites) {
     EXPECT_EQ(test::read_file(file("a")), expected);
 }
 
+TEST_F(OutputFiles, InMemoryHaveWhatWasWritten) {
+    OutputFile output{OutputFile::InMemory()};
+    EXPECT_EQ(output.bytes(), "");
+    output.write("short");
+    EXPECT_EQ(output.bytes(), "short");
+    const std::string text(70'000, 'x');
+    output.write(text);
+    output.write("end");
+    EXPECT_EQ(output.bytes(), "short" + text + "end");
+    EXPECT_EQ(test::read_file(output.temporary_path()), output.bytes());
+}
+
 TEST_F(OutputFiles, HaveThePermissionsOfNewFiles) {
     const mode_t old_mask = ::umask(027);
     save(file("a"), "text");

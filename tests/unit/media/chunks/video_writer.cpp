@@ -2,9 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <filesystem>
 
+#include "corda/core/file.hpp"
 #include "corda/media/encode/yuv420.hpp"
 #include "corda/media/format/format.hpp"
 #include "support/cancel.hpp"
@@ -127,6 +130,46 @@ TEST_F(Video, SameBytesOnTwoRuns) {
     make_video(file("a.mp4"), small_video(), 60);
     make_video(file("b.mp4"), small_video(), 60);
     EXPECT_EQ(test::read_file(file("a.mp4")), test::read_file(file("b.mp4")));
+}
+
+/// During its lifetime, this process can open `count` more files.
+class OpenFileLimit {
+  public:
+    explicit OpenFileLimit(rlim_t count) {
+        const Descriptor next(::dup(STDERR_FILENO));
+        EXPECT_EQ(::getrlimit(RLIMIT_NOFILE, &old_limit_), 0);
+        const rlimit limit{static_cast<rlim_t>(next.get()) + count, old_limit_.rlim_max};
+        EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &limit), 0);
+    }
+    OpenFileLimit(const OpenFileLimit&) = delete;
+    OpenFileLimit& operator=(const OpenFileLimit&) = delete;
+    ~OpenFileLimit() { EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &old_limit_), 0); }
+
+  private:
+    rlimit old_limit_{};
+};
+
+TEST_F(Video, OfManyChunksIsMadeInMemoryWithFewOpenFiles) {
+    constexpr std::int64_t kFrames = 40;  // 20 chunks
+    const VideoDef def = small_video({1, 1});
+    const Format format = find_format("a.mp4", def);
+    const std::int64_t per_chunk = frames_per_chunk(format, def.fps);
+    ASSERT_EQ(per_chunk, 2);
+    std::vector<Chunk> chunks;
+    for (std::int64_t first = 0; first < kFrames; first += per_chunk) {
+        ChunkEncoder encoder(make_encoder(format, def, first), first);
+        for (std::int64_t k = first; k < first + per_chunk; ++k)
+            encoder.encode(frame_image(k), {{0, 0, kWidth, kHeight}}, k + 1 == first + per_chunk);
+        chunks.push_back(encoder.finish());
+    }
+    std::vector<std::string> files;
+    {
+        const OpenFileLimit limit(8);
+        files = video_files({.path = "a.mp4", .def = def, .format = format, .end = kFrames},
+                            {"A swing", R"({"scene":"test"})"}, chunks);
+    }
+    make_video(file("a.mp4"), def, kFrames);
+    EXPECT_EQ(files, std::vector{test::read_file(file("a.mp4"))});
 }
 
 TEST_F(Video, OneFrame) {
