@@ -179,6 +179,7 @@ ChildLimits limits_of_videos(const std::string& a, const std::string& b) {
 
 /// The report of the child; writes the picture of the differences.
 Json compare_two(const CompareOptions& options, const std::optional<Image>& mask, std::string& pixels) {
+    media::StoredVideo::load_libraries();
     const auto end =
         run_in_child([&] { return compared(options, mask); }, limits_of_videos(options.a, options.b));
     if (end && end->outcome == ChildEnd::Outcome::kOutOfMemory)

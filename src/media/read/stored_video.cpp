@@ -10,6 +10,7 @@
 #include "corda/core/basics.hpp"
 #include "corda/media/encode/yuv420.hpp"
 #include "corda/media/format/file_kind.hpp"
+#include "corda/media/libav_handles.hpp"
 #include "corda/media/read/containers.hpp"
 #include "corda/media/read/decoder.hpp"
 #include "corda/media/read/webp_reader.hpp"
@@ -123,6 +124,10 @@ struct StoredVideo::Impl {
     std::optional<Rational> delay_s;  ///< of every frame of an APNG that has one delay
     std::int64_t frames = 0;          ///< read so far of that APNG
 };
+
+void StoredVideo::load_libraries() {
+    load_libav();
+}
 
 StoredVideo::StoredVideo(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
 

@@ -38,6 +38,10 @@ struct StoredPicture {
 /// player shows them.
 class StoredVideo {
   public:
+    /// Loads the libraries that decode. Call it before a fork whose child reads videos. Throws corda::Error:
+    /// kEncoder if they are missing, kTemporary if memory is short.
+    static void load_libraries();
+
     /// Throws corda::Error (kIo) if the file is not a video that can be decoded, or breaks off before its
     /// end.
     explicit StoredVideo(const std::string& path);
