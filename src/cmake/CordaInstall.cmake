@@ -13,7 +13,7 @@ corda_add_public_library(
         scene/scene.hpp
         sim/defs.hpp sim/simulation.hpp sim/system.hpp
         view/defs.hpp
-    PRIVATE Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json PNG::PNG
+    PRIVATE Eigen3::Eigen fmt::fmt nlohmann_json::nlohmann_json PNG::PNG ZLIB::ZLIB
         PkgConfig::AVUTIL PkgConfig::CAIRO PkgConfig::EPOXY PkgConfig::FREETYPE PkgConfig::LIBARCHIVE PkgConfig::WEBP PkgConfig::TOMLPLUSPLUS ${CORDA_X264_TARGET}
         ${CMAKE_DL_LIBS})
 
