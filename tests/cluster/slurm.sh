@@ -19,7 +19,7 @@ ip link set lo up
 ip address add 10.0.0.1/32 dev lo  # with 127.0.0.1 alone, getaddrinfo() finds no name
 mkdir "$work"/{state,spool,shared}
 export SLURM_CONF=$work/slurm.conf RUNS=$work/runs PATH=$root/tests/cluster:$PATH
-export CORDA_PROGRAM=$build/corda FOREIGN_FAULTS=$build/tests/libforeign_faults.so SLOW_SHARDS="0/4 1/4 2/4 3/4" FSYNC_TAKES_MS=1000
+export CORDA_PROGRAM=$build/corda FOREIGN_FAULTS=$build/tests/libforeign_faults.so HELD_SHARDS="0/4 1/4 2/4 3/4"
 
 # Requeued tasks wait until the credentials of their first run expire.
 cat >"$SLURM_CONF" <<END
@@ -86,6 +86,7 @@ wait_for has_chunk 0
 wait_for has_chunk 1
 drained=$(field 2 1)
 scontrol update nodename="$drained" state=drain reason=test  # task 1 runs to its end; no other begins here
+touch "$RUNS-release-1"
 kill -9 "$(field 1 0)"
 wait_for is_in_state "${array}_0" FAILED
 scontrol requeue "${array}_0"

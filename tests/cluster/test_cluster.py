@@ -46,7 +46,7 @@ class Work:
         return [int(line.split()[0]) for line in lines if line.endswith(f"--shard {shard}")]
 
     def wait_for_first_file(self, engine):
-        """Returns the process that makes shard 1, as soon as its first file is on the disk."""
+        """Returns the process that makes shard 1, which is held once its first file is on the disk."""
         while not list(self.folder.glob(self.first_file)):
             assert engine.poll() is None, engine.stdout.read()
             time.sleep(0.01)
@@ -76,20 +76,19 @@ def work(request, tmp_path, monkeypatch):
     made = Work(tmp_path, request.param)
     monkeypatch.setenv("PATH", f"{HERE}:{os.environ['PATH']}")
     monkeypatch.setenv("RUNS", str(made.runs_file))
-    monkeypatch.setenv("FSYNC_TAKES_MS", "500")
     return made
 
 
 def test_parallel_runs_a_killed_task_again(work, monkeypatch):
     monkeypatch.setenv("PARALLEL", "--jobs 2")
-    monkeypatch.setenv("SLOW_SHARDS", "1/4")
+    monkeypatch.setenv("HELD_SHARDS", "1/4")
     engine = work.start([EXAMPLES / "parallel.sh", "4", *work.command])
     os.kill(work.wait_for_first_file(engine), signal.SIGKILL)
     work.expect_end(engine)
 
 
 def test_dask_runs_the_task_of_a_killed_worker_again(work, monkeypatch):
-    monkeypatch.setenv("SLOW_SHARDS", "1/4")
+    monkeypatch.setenv("HELD_SHARDS", "1/4")
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster:
         monkeypatch.setenv("DASK_SCHEDULER_ADDRESS", cluster.scheduler_address)
         engine = work.start([sys.executable, EXAMPLES / "dask_shards.py", "4", *work.command])

@@ -1,11 +1,14 @@
 // For LD_PRELOAD: faults of other libraries and of a full host, chosen by environment variables.
 //   THREADS_TO_START=N      the system starts N more threads, then none
 //   FSYNC_TAKES_MS=N        flushing a file to disk takes N ms, despite signals
+//   FSYNC_BLOCKS_AFTER=NAME flushing a file to disk blocks once there is a file of this name (see glob(3), with braces)
+//   FSYNC_BLOCKS_UNTIL=FILE the file that ends this
 //   X264_HANGS_FROM_PX=N    x264 never returns from opening an encoder for pictures of N columns or more
 //   X264_HANG_MARKER=FILE   the file that is created when it begins to hang
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <glob.h>
 #include <pthread.h>
 #include <unistd.h>
 
@@ -29,6 +32,13 @@ namespace {
 int number_in(const char* variable, int otherwise) {
     const char* const text = std::getenv(variable);
     return text == nullptr ? otherwise : std::atoi(text);
+}
+
+bool is_there(const char* pattern) {
+    glob_t found{};
+    const int status = glob(pattern, GLOB_BRACE | GLOB_NOSORT, nullptr, &found);
+    globfree(&found);
+    return status == 0;
 }
 
 template <class Function>
@@ -56,6 +66,9 @@ int fsync(int descriptor) {
         usleep(10'000);
         clock_gettime(CLOCK_MONOTONIC, &now);
     }
+    const char* const name = std::getenv("FSYNC_BLOCKS_AFTER");
+    const char* const end = std::getenv("FSYNC_BLOCKS_UNTIL");
+    while (name != nullptr && end != nullptr && is_there(name) && access(end, F_OK) != 0) usleep(10'000);
     return next(&fsync, "fsync")(descriptor);
 }
 
