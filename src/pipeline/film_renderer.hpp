@@ -32,8 +32,9 @@ struct DrawContext {
 /// use renderers of one film, each its own, as long as none uses the film itself.
 class FilmRenderer {
   public:
-    /// `canvas`: an open OpenGL of this thread to draw with, or a place for the one that is opened; this
-    /// renderer has it as long as it lives. Throws corda::Error: kNoGl, and what Film::camera() throws.
+    /// `canvas`: keeps the OpenGL canvas of this thread for the next renderer. This renderer takes it, or
+    /// opens one if there is none, and puts it back when it dies. Null: none is kept. Throws corda::Error:
+    /// kNoGl, and what Film::camera() throws.
     explicit FilmRenderer(Film& film, pipeline::OwnedCanvas* canvas = nullptr);
     FilmRenderer(const FilmRenderer&) = delete;
     FilmRenderer& operator=(const FilmRenderer&) = delete;

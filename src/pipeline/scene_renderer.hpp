@@ -23,7 +23,7 @@ struct Traces {
     double plotted_s = 0.0;               ///< end of the curves of the live plot
 };
 
-/// An open OpenGL context, and what draws in it. The context dies last.
+/// An open OpenGL context and its frame renderer. The context dies last.
 struct Canvas {
     explicit Canvas(const gl::ContextDef& def) : context(def) {}
     gl::Context context;
