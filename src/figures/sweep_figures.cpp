@@ -38,7 +38,7 @@ struct SweepColumn {
     std::string name;
     bool is_summary = false;
 
-    /// "angle max (°)", "mass (kg)"
+    /// "angle max (°)", "mass"
     [[nodiscard]] std::string title() const {
         constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kUnits{
             {{"_m_s", "m/s"}, {"_s", "s"}, {"_deg", "°"}, {"_n", "N"}, {"_px", "px"}, {"_m", "m"}}};
@@ -80,6 +80,26 @@ SweepColumn find_column(const sweep::SweepDef& sweep, const std::string& name) {
                 fmt::format("--plot: {} \"{}\"; give Y:X, two of {}",
                             found.empty() ? "there is no column" : "several columns are named",
                             printable(name), all));
+}
+
+/// The columns of "Y:X".
+std::pair<SweepColumn, SweepColumn> find_columns(const sweep::SweepDef& sweep, const std::string& columns) {
+    const std::size_t colon = columns.find(':');
+    if (colon == std::string::npos)
+        throw Error(ExitCode::kUsage,
+                    fmt::format("--plot {}: is not Y:X, such as period_s:angle_max_deg", printable(columns)));
+    return {find_column(sweep, columns.substr(0, colon)), find_column(sweep, columns.substr(colon + 1))};
+}
+
+/// "mass", or "rope_0__mass" if another key ends alike.
+std::string file_name(const sweep::SweepDef& sweep, const SweepColumn& column) {
+    const auto ends_alike = std::count_if(
+        sweep.vary.begin(), sweep.vary.end(),
+        [&](const sweep::VariedKey& varied) { return short_name(varied.key) == short_name(column.name); });
+    std::string name = ends_alike > 1 ? column.name : short_name(column.name);
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return c == '[' || c == ']' || c == '.'; }, '_');
+    return name;
 }
 
 /// Keys whose choices are drawn as series of their own: those with the fewest values, but not `x`.
@@ -239,6 +259,11 @@ report::Plot plot_of(const sweep::SweepDef& sweep, const SweepPoints& all, const
     return plot;
 }
 
+/// Whether a byte continues a character of UTF-8.
+bool is_continuation(char c) {
+    return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
+}
+
 /// A cell of a contact sheet.
 struct Cell {
     Image image;
@@ -269,7 +294,7 @@ Cell cell_of(const sweep::SweepDef& sweep, std::int64_t number, int side_px) {
         const std::vector<double>& times_s = times.strobe_s;
         cell.image = render::render_reference(FilmRenderer::list_poses(film, times_s));
     } catch (const Error& error) {
-        if (error.code() != ExitCode::kInvalidScene && error.code() != ExitCode::kDiverged) throw;
+        if (!sweep::is_refusal(error.code())) throw;
         cell.lines.emplace_back("refused");
     }
     return cell;
@@ -283,19 +308,17 @@ void write_file(const std::string& path, std::string_view bytes) {
 
 }  // namespace
 
+void check_sweep_plot(const sweep::SweepDef& sweep, const std::string& columns) {
+    static_cast<void>(find_columns(sweep, columns));
+}
+
 std::vector<std::string> write_sweep_plot(const sweep::SweepDef& sweep, const std::string& folder,
                                           const std::string& columns) {
-    const std::size_t colon = columns.find(':');
-    if (colon == std::string::npos)
-        throw Error(ExitCode::kUsage,
-                    fmt::format("--plot {}: is not Y:X, such as period_s:angle_max_deg", printable(columns)));
-    const SweepColumn y = find_column(sweep, columns.substr(0, colon));
-    const SweepColumn x = find_column(sweep, columns.substr(colon + 1));
+    const auto [y, x] = find_columns(sweep, columns);
     const std::vector<std::string> keys = series_keys(sweep, x);
     const SweepPoints all = read_points(sweep, folder, y, x, keys);
     const report::Plot plot = plot_of(sweep, all, y, x, is_angle_curve(sweep, x, keys));
-    const auto stem =
-        std::filesystem::path(folder) / fmt::format("{}-{}", short_name(y.name), short_name(x.name));
+    const auto stem = std::filesystem::path(folder) / (file_name(sweep, y) + "-" + file_name(sweep, x));
     std::vector<std::string> paths;
     for (const auto format : {report::PlotFormat::kSvg, report::PlotFormat::kPdf, report::PlotFormat::kPng})
         write_file(paths.emplace_back(stem.string() + "." + report::ending(format)),
@@ -343,7 +366,10 @@ std::string write_sweep_sheet(const sweep::SweepDef& sweep, const std::string& f
         auto [x_px, y_px] = place(i);
         y_px += height_px;
         for (std::string& line : cells[i].lines) {
-            while (font.width_px(line, kTextPx) > kSidePx) line = utf8(line.substr(0, line.size() - 4)) + "…";
+            for (std::string kept = line; font.width_px(line, kTextPx) > kSidePx; line = kept + "…") {
+                while (is_continuation(kept.back())) kept.pop_back();
+                kept.pop_back();
+            }
             font.write({x_px, y_px += kLinePx, kTextPx, Color{0, 0, 0}, line}, list);
         }
     }

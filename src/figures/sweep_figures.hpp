@@ -7,6 +7,9 @@
 
 namespace corda::figures {
 
+/// Throws corda::Error (kUsage) unless a sweep has the columns of the plot "Y:X".
+void check_sweep_plot(const sweep::SweepDef& sweep, const std::string& columns);
+
 /// Writes the plot "Y:X" of the finished samples of a sweep as `<folder>/<y>-<x>` .svg, .pdf, .png and .csv.
 /// X and Y are columns of metadata.csv that hold numbers: a figure of the summary, or a varied key, of which
 /// the part after the last dot is enough. A few choices of other keys are drawn apart. The period of a point

@@ -81,7 +81,8 @@ const Label* find_label(std::string_view name) {
     return found == kLabels.end() ? nullptr : &*found;
 }
 
-std::vector<Array> read_labels(Film& film, std::span<const Label* const> labels) {
+std::vector<Array> read_labels(Film& film, std::span<const Label* const> labels,
+                               const std::function<void(const State&)>& visit) {
     std::vector<Array> arrays;
     for (const Label* const label : labels) {
         Dimensions shape = label->shape(film);
@@ -93,6 +94,7 @@ std::vector<Array> read_labels(Film& film, std::span<const Label* const> labels)
     }
     for (std::int64_t k = 0; k < film.frame_count(); ++k) {
         check_cancelled();
+        if (visit) visit(film.state(k));
         for (std::size_t i = 0; i < labels.size(); ++i)
             labels[i]->append(film, k, film.state(k), arrays[i].data);
     }

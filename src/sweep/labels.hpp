@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -32,8 +33,10 @@ struct Label {
 /// Null for none.
 [[nodiscard]] const Label* find_label(std::string_view name);
 
-/// The arrays of all frames. Velocities, tensions and energy need a film whose states have velocities and
-/// tensions. Throws corda::Error as Film::state() and Film::mask(), kInterrupted if cancelled.
-[[nodiscard]] std::vector<Array> read_labels(Film& film, std::span<const Label* const> labels);
+/// The arrays of all frames. Calls `visit`, if there is one, with each state. Velocities, tensions and energy
+/// need a film whose states have velocities and tensions. Throws corda::Error as Film::state() and
+/// Film::mask(), kInterrupted if cancelled.
+[[nodiscard]] std::vector<Array> read_labels(Film& film, std::span<const Label* const> labels,
+                                             const std::function<void(const State&)>& visit = {});
 
 }  // namespace corda::sweep

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <new>
 
 #include "corda/core/cancel.hpp"
 #include "corda/core/text.hpp"
@@ -10,11 +11,6 @@
 
 namespace corda::sweep {
 namespace {
-
-/// Whether an error says that a scene is not one that Corda makes.
-bool is_refusal(ExitCode code) {
-    return code == ExitCode::kInvalidScene || code == ExitCode::kUsage || code == ExitCode::kDiverged;
-}
 
 Json number_or_null(const std::optional<double>& value) {
     return value ? Json(*value) : Json();
@@ -52,6 +48,10 @@ Json info_of(Film& film, const SweepDef& sweep, const Sample& sample) {
 
 }  // namespace
 
+bool is_refusal(ExitCode code) {
+    return code == ExitCode::kInvalidScene || code == ExitCode::kUsage || code == ExitCode::kDiverged;
+}
+
 std::string key_of(std::int64_t sample) {
     return fmt::format("{:06}", sample);
 }
@@ -65,10 +65,17 @@ Sample SampleMaker::make(std::int64_t number) {
         sample.parameters = parameters_of(*sweep_, number);
         make_of(scene_of(*sweep_, sample.parameters), sample);
     } catch (const Error& error) {
-        if (!is_refusal(error.code())) throw;
+        if (is_interruption(error.code())) throw;
+        if (!is_refusal(error.code()))
+            throw Error(error.code(), fmt::format("sample {}: {}", sample.key, error.what()));
         sample.failure = {error.code(), error.what()};
         sample.arrays.clear();
         sample.pictures.clear();
+    } catch (const std::bad_alloc&) {
+        throw Error(
+            ExitCode::kTemporary,
+            fmt::format("sample {}: out of memory; a smaller scene or picture, or fewer jobs, may help",
+                        sample.key));
     }
     return sample;
 }
@@ -78,13 +85,9 @@ void SampleMaker::make_of(const Scene& scene, Sample& sample) {
     def.readings = {.velocities = true, .tensions = true, .unknown_tensions = true};
     Film film(scene, std::move(def));
     SummaryReader summary(film);
-    for (std::int64_t k = 0; k < film.frame_count(); ++k) {
-        check_cancelled();
-        summary.add(film.state(k));
-    }
+    sample.arrays = read_labels(film, sweep_->labels, [&summary](const State& state) { summary.add(state); });
     sample.summary = summary.summary();
     sample.info = info_of(film, *sweep_, sample);
-    sample.arrays = read_labels(film, sweep_->labels);
     if (sweep_->pictures != Pictures::kNone) draw(film, sample);
 }
 

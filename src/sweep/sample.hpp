@@ -26,6 +26,9 @@ struct SampleFailure {
     std::string message;
 };
 
+/// Whether an error says that a scene is not one that Corda makes: it fails a sample, not the sweep.
+[[nodiscard]] bool is_refusal(ExitCode code);
+
 /// One sample of a sweep. A sample whose scene is refused, or whose motion diverges, has only a failure
 /// beside its number, its key, its split and its parameters.
 struct Sample {
@@ -49,8 +52,8 @@ class SampleMaker {
     /// `sweep` must outlive it. `film` says how to reach OpenGL.
     explicit SampleMaker(const SweepDef& sweep, FilmDef film = {}) : sweep_(&sweep), film_(std::move(film)) {}
 
-    /// Throws corda::Error for what is wrong with more than this sample: kNoGl, kEncoder, kTemporary,
-    /// kInterrupted if cancelled.
+    /// Throws corda::Error for what may be wrong with more than this sample, which the message names: kNoGl,
+    /// kEncoder, kTemporary; kInterrupted if cancelled.
     [[nodiscard]] Sample make(std::int64_t number);
 
   private:

@@ -14,6 +14,7 @@
 #include <span>
 
 #include "corda/core/text.hpp"
+#include "corda/media/format/format.hpp"
 #include "corda/scene/document.hpp"
 #include "corda/scene/problems.hpp"
 #include "corda/scene/read_file.hpp"
@@ -48,6 +49,13 @@ Json json_of(const toml::node& node) {
     if (const auto number = node.value_exact<double>()) return *number;
     if (const auto boolean = node.value_exact<bool>()) return *boolean;
     return nullptr;  // a date or a time, which no key of a scene takes
+}
+
+/// Whether a value has neither dates and times nor numbers that are not finite.
+bool is_finite(const Json& value) {
+    if (value.is_structured())
+        return std::all_of(value.begin(), value.end(), [](const Json& entry) { return is_finite(entry); });
+    return !value.is_null() && (!value.is_number_float() || std::isfinite(value.get<double>()));
 }
 
 /// Reads the tables of a sweep file. What is wrong in them goes to the problems.
@@ -188,8 +196,9 @@ class SweepReader {
         } else if (const auto* const list = node.as_array()) {
             Choice choice;
             for (const toml::node& value : *list) {
-                if (value.is_date() || value.is_time() || value.is_date_time())
-                    fail(value, path, described(value) + "; no key of a scene takes one");
+                if (!is_finite(json_of(value)))
+                    fail(value, path,
+                         described(value) + "; no key of a scene takes a date, a time, inf or nan");
                 choice.values.push_back(json_of(value));
             }
             if (choice.values.empty()) fail(node, path, "an empty list; give values to choose from");
@@ -401,6 +410,33 @@ class SweepReader {
     SweepDef* sweep_;
 };
 
+/// A key with its indices in their shortest form, "rope[0]" for "rope[00]", and a dot at its end.
+std::string plain_key(const std::string& key) {
+    std::string plain;
+    for (const char c : key) {
+        const bool follows_zero = plain.ends_with("[0");
+        if (follows_zero && c >= '0' && c <= '9') plain.pop_back();
+        plain += c;
+    }
+    return plain + ".";
+}
+
+/// Refuses a key that is another one or lies within it: one would replace the other.
+void refuse_overlaps(const SweepDef& sweep, const toml::table& vary, Problems& problems) {
+    for (const VariedKey& inner : sweep.vary)
+        for (const VariedKey& outer : sweep.vary) {
+            std::string within = plain_key(outer.key);
+            std::string whole = plain_key(inner.key);
+            const bool is_inside =
+                whole.starts_with(within) || (within.pop_back(), whole.starts_with(within + "["));
+            if (&inner != &outer && is_inside)
+                problems.add(
+                    vary.get(inner.key)->source(), "vary." + Json(inner.key).dump(),
+                    fmt::format("lies within \"{}\", which varies, too; leave one of them out", outer.key));
+        }
+    problems.throw_if_any();
+}
+
 /// Refuses keys that do not fit the scene, such as an index beyond its list, before every sample does.
 void check_varied_keys(const SweepDef& sweep, const toml::table& vary, Problems& problems) {
     toml::table document = scene::parse_document(sweep.scene_toml, sweep.scene_name);
@@ -434,8 +470,13 @@ SweepDef load_sweep(const std::string& path) {
         throw Error(error.code(),
                     fmt::format("{}:{}:{}: scene: {}", sweep.source, at.line, at.column, error.what()));
     }
-    static_cast<void>(parse_scene(sweep.scene_toml, sweep.scene_name));  // the sweep's end if it is not sound
-    check_varied_keys(sweep, *document.get_as<toml::table>("vary"), problems);
+    const Scene scene =
+        parse_scene(sweep.scene_toml, sweep.scene_name);  // the sweep's end if it is not sound
+    const toml::table& vary = *document.get_as<toml::table>("vary");
+    refuse_overlaps(sweep, vary, problems);
+    check_varied_keys(sweep, vary, problems);
+    if (sweep.pictures == Pictures::kMp4)
+        sweep.encoder = media::find_format("clip.mp4", scene.video).library_versions();
     return sweep;
 }
 
@@ -450,13 +491,14 @@ std::map<std::string, std::string> identity_of(const SweepDef& sweep) {
         {"output.summary", fmt::format("{}", fmt::join(sweep.summary, " "))}};
     for (const Label* const label : sweep.labels)
         identity["output.labels"] += fmt::format("{} ", label->name);
+    if (!sweep.encoder.empty()) identity["encoder"] = sweep.encoder;
     for (const Split& split : sweep.splits) identity["split." + split.name] = scene::number_text(split.share);
     for (std::size_t i = 0; i < sweep.vary.size(); ++i) {
         const auto& [key, values] = sweep.vary[i];
         std::string& text = identity["vary." + Json(key).dump()];
         text = sweep.is_grid ? fmt::format("{}: ", i) : "";
         if (const auto* const choice = std::get_if<Choice>(&values)) {
-            text += toml_of(choice->values);
+            text += Json(choice->values).dump();
         } else {
             const auto& its = std::get<Distribution>(values);
             text += fmt::format("{} {} {} {} {}", kShapes[static_cast<std::size_t>(its.shape)],

@@ -62,6 +62,7 @@ struct SweepDef {
     std::int64_t shard_samples = 256;
     std::vector<VariedKey> vary;  ///< in the order of the file
     Pictures pictures = Pictures::kMp4;
+    std::string encoder;               ///< of kMp4, with its versions: clips depend on them
     std::vector<const Label*> labels;  ///< the times first
     std::vector<std::string> summary;  ///< names of summary columns
     std::vector<Split> splits;         ///< shares with the sum 1, or none

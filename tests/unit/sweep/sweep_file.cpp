@@ -172,7 +172,7 @@ TEST_F(SweepFile, ValuesAreListsOrDistributions) {
          "1 is a number with a fraction; give a list of values, or a distribution such as { uniform"},
         {vary("[]"), at, "an empty list; give values to choose from"},
         {vary("[1979-05-27]"),
-         ":5:19: vary.\"rope[0].mass\": ", "this is a date or a time; no key of a scene takes one"},
+         ":5:19: vary.\"rope[0].mass\": ", "this is a date or a time; no key of a scene takes"},
         {vary("{ }"), at, "no distribution; give uniform, log_uniform, normal, integer"},
         {vary("{ unifrom = [1, 2] }"),
          ":5:20: vary.\"rope[0].mass\".unifrom: ", "unknown key \"unifrom\"; did you mean \"uniform\"?"},
@@ -181,7 +181,7 @@ TEST_F(SweepFile, ValuesAreListsOrDistributions) {
 }
 
 TEST_F(SweepFile, DistributionsHaveSoundEnds) {
-    const std::string uniform = "uniform is [least, largest], two numbers or two vectors of one length";
+    const std::string uniform = "uniform is [least, largest], two numbers, the smaller first, or two vectors of one length";
     const std::string log_uniform = "log_uniform is [least, largest], two positive numbers";
     const std::string normal = "normal is [mean, standard deviation], the second positive";
     const std::string integer = "integer is [least, largest], two whole numbers, both included";
