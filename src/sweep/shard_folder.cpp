@@ -251,10 +251,12 @@ void clear_folder(const SweepDef& sweep, const std::string& folder) {
     std::error_code ignored;
     for (const std::string& name : sweep_files(folder))
         if (name != kManifestName) fs::remove(fs::path(folder) / name, ignored);
-    mark_incomplete(sweep, folder);
+    write_plain_file(manifest_path(folder), text_of(empty_manifest(sweep)));
 }
 
 void mark_incomplete(const SweepDef& sweep, const std::string& folder) {
+    const auto manifest = read_json(manifest_path(folder));
+    if (manifest && manifest->value("complete", Json()) == false) return;
     write_plain_file(manifest_path(folder), text_of(empty_manifest(sweep)));
 }
 
