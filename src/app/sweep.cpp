@@ -34,7 +34,7 @@ ExitCode check(const Console& console, const sweep::SweepDef& def, const SweepOp
     return problems.empty() ? ExitCode::kOk : ExitCode::kMismatch;
 }
 
-/// Says what is kept if the sweep is interrupted.
+/// Runs a sweep; the message of an interruption names the finished shards.
 sweep::RunResult run(const sweep::SweepDef& def, const sweep::RunDef& how) {
     try {
         return sweep::run_sweep(def, how);
@@ -63,8 +63,8 @@ ExitCode sweep(const Console& console, const SweepOptions& options) {
     const sweep::RunResult result = run(def, how);
     const double wall_s = now_s() - start_s;
     if (result.shards_made < result.shards)
-        console.info(
-            fmt::format("{} were there already", counted(result.shards - result.shards_made, "shard")));
+        console.info(fmt::format("{} of {} shards were there already", result.shards - result.shards_made,
+                                 result.shards));
     if (result.samples_made > 0)
         console.info(fmt::format("{} made, {} in {:.3g} s, {:.1f} per second",
                                  counted(result.shards_made, "shard"), counted(result.samples_made, "sample"),

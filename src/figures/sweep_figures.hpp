@@ -13,7 +13,7 @@ void check_sweep_plot(const sweep::SweepDef& sweep, const std::string& columns);
 /// Writes the plot "Y:X" of the finished samples of a sweep as `<folder>/<y>-<x>` .svg, .pdf, .png and .csv.
 /// X and Y are columns of metadata.csv that hold numbers: a figure of the summary, or a varied key, of which
 /// the part after the last dot is enough. A few choices of other keys are drawn apart. The period of a point
-/// pendulum (by the elliptic integral) or of small oscillations of a hanging rope (R4) is drawn beside the
+/// pendulum (by the elliptic integral) or of small oscillations of a hanging rope (R4) is drawn with the
 /// measured one. Returns the paths. Throws corda::Error: kUsage for a column that does not exist, or if no
 /// sample has both; kIo.
 std::vector<std::string> write_sweep_plot(const sweep::SweepDef& sweep, const std::string& folder,

@@ -1,14 +1,19 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "corda/core/text.hpp"
 #include "corda/scene/schema.hpp"
+#include "corda/scene/write_scene.hpp"
 #include "corda/sweep/random.hpp"
 #include "corda/sweep/sweep_file.hpp"
 
 namespace corda::sweep {
 namespace {
+
+constexpr std::size_t kMaxIdentityText = 200;
 
 /// One number of a distribution.
 Json draw(const Distribution& distribution, std::size_t component, Random random, std::string_view key) {
@@ -98,6 +103,35 @@ Scene scene_of(const SweepDef& sweep, const Parameters& parameters) {
 
 std::string value_text(const Json& value) {
     return value.is_string() ? value.get<std::string>() : toml_of(value);
+}
+
+std::map<std::string, std::string> identity_of(const SweepDef& sweep) {
+    std::map<std::string, std::string> identity{
+        {"version", std::string(version())},
+        {"scene", hashed(sweep.scene_name + "\n" + sweep.scene_toml)},
+        {"grid", sweep.is_grid ? "true" : "false"},
+        {"seed", std::to_string(sweep.seed)},
+        {"shard_samples", std::to_string(sweep.shard_samples)},
+        {"output.pictures", std::string(kPictureNames[static_cast<std::size_t>(sweep.pictures)])},
+        {"output.summary", fmt::format("{}", fmt::join(sweep.summary, " "))}};
+    for (const Label* const label : sweep.labels)
+        identity["output.labels"] += fmt::format("{} ", label->name);
+    if (!sweep.encoder.empty()) identity["encoder"] = sweep.encoder;
+    for (const Split& split : sweep.splits) identity["split." + split.name] = scene::number_text(split.share);
+    for (std::size_t i = 0; i < sweep.vary.size(); ++i) {
+        const auto& [key, values] = sweep.vary[i];
+        std::string& text = identity["vary." + Json(key).dump()];
+        text = sweep.is_grid ? fmt::format("{}: ", i) : "";
+        if (const auto* const choice = std::get_if<Choice>(&values)) {
+            text += Json(choice->values).dump();
+        } else {
+            const auto& its = std::get<Distribution>(values);
+            text += fmt::format("{} {} {} {} {}", kShapeNames[static_cast<std::size_t>(its.shape)],
+                                toml_of(its.first), toml_of(its.second), toml_of(its.min), toml_of(its.max));
+        }
+        if (text.size() > kMaxIdentityText) text = hashed(text);
+    }
+    return identity;
 }
 
 }  // namespace corda::sweep

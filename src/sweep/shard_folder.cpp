@@ -94,7 +94,7 @@ std::string text_of(const Json& manifest) {
     return manifest.dump(1) + "\n";
 }
 
-/// What a file was made from; throws Json::exception if it does not say.
+/// The member "made_from" of a file. Throws Json::exception if it has none.
 std::map<std::string, std::string> origin_of(const Json& json) {
     return json.at("made_from").get<std::map<std::string, std::string>>();
 }
@@ -117,7 +117,7 @@ void require_same(const SweepDef& sweep, const std::map<std::string, std::string
                     path));
 }
 
-/// What the manifest says that the sweep was made from; std::nullopt if there is no manifest.
+/// The origin in the manifest; std::nullopt if there is no manifest.
 std::optional<std::map<std::string, std::string>> manifest_origin(const std::string& folder) {
     const std::string path = manifest_path(folder);
     if (!exists(path)) return std::nullopt;
@@ -130,7 +130,7 @@ std::optional<std::map<std::string, std::string>> manifest_origin(const std::str
     }
 }
 
-/// What the first sound index of a folder was made from; std::nullopt if there is none.
+/// The origin in the first sound index of a folder; std::nullopt if there is none.
 std::optional<std::map<std::string, std::string>> index_origin(const std::string& folder,
                                                                const std::vector<std::string>& files) {
     for (const std::string& name : files) {
@@ -150,7 +150,7 @@ std::string checksum_of(Json index) {
     return hash_text(index.dump());
 }
 
-/// Throws Json::exception if a row of an index lacks what is read of it.
+/// Throws Json::exception if a row of an index lacks a member.
 void check_row(const Json& row) {
     for (const char* const key : {"key", "split"})
         static_cast<void>(row.at(key).get_ref<const std::string&>());

@@ -27,7 +27,7 @@ struct SampleRange {
 };
 [[nodiscard]] SampleRange samples_of(const SweepDef& sweep, std::int64_t shard);
 
-/// Paths of a shard file, of its index, and of the files that tell of the whole sweep.
+/// Paths of a shard file, of its index, and of the files about the whole sweep.
 [[nodiscard]] std::string shard_path(const std::string& folder, std::int64_t shard);
 [[nodiscard]] std::string index_path(const std::string& folder, std::int64_t shard);
 [[nodiscard]] std::string metadata_path(const std::string& folder);
@@ -44,7 +44,7 @@ void write_plain_file(const std::string& path, std::string_view text);
 void open_folder(const SweepDef& sweep, const std::string& folder, bool force);
 /// Removes the files of any sweep, and makes a new manifest.
 void clear_folder(const SweepDef& sweep, const std::string& folder);
-/// Says in the manifest that the sweep is not complete.
+/// Clears `complete` in the manifest.
 void mark_incomplete(const SweepDef& sweep, const std::string& folder);
 
 /// The index of a shard file: its size, its checksum and the rows of its samples. It is written after the
@@ -79,7 +79,7 @@ class ShardWriter {
     TarWriter tar_;
 };
 
-/// What metadata.csv and manifest.json say of a whole sweep.
+/// Contents of metadata.csv and manifest.json.
 struct FolderSummary {
     std::string metadata;
     Json manifest;

@@ -149,7 +149,7 @@ void check_shard(const SweepDef& sweep, const std::string& folder, std::int64_t 
             fail("does not hold what its index says of sample " + key);
 }
 
-/// Throws corda::Error (kMismatch) if a file is not the one that the shards give.
+/// Throws corda::Error (kMismatch) if a file differs from the summary of the shards.
 void check_text(const std::string& path, std::string_view expected) {
     if (read_plain_file(path) != expected)
         throw Error(

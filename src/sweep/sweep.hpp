@@ -37,7 +37,7 @@ struct RunResult {
 /// SampleMaker::make() throws.
 RunResult run_sweep(const SweepDef& sweep, const RunDef& def);
 
-/// Reads all shard files again. Returns what is wrong: missing and damaged ones, and those of another sweep.
+/// Reads all files again. Returns the problems: missing and damaged files, and those of another sweep.
 /// Throws corda::Error (kIo, kInterrupted).
 [[nodiscard]] std::vector<std::string> check_sweep(const SweepDef& sweep, const std::string& folder,
                                                    const OnProgress& on_progress = {});

@@ -19,7 +19,6 @@
 #include "corda/scene/problems.hpp"
 #include "corda/scene/read_file.hpp"
 #include "corda/scene/schema.hpp"
-#include "corda/scene/write_scene.hpp"
 #include "corda/sweep/summary.hpp"
 
 namespace corda::sweep {
@@ -28,11 +27,8 @@ namespace {
 using scene::described;
 using scene::Problems;
 
-constexpr std::size_t kMaxIdentityText = 200;
 constexpr double kMaxExactInteger = 9007199254740992.0;  // 2^53
 
-constexpr std::array<std::string_view, 4> kPictures{"mp4", "png", "npz", "none"};  // in the order of Pictures
-constexpr std::array<std::string_view, 4> kShapes{"uniform", "log_uniform", "normal", "integer"};
 Json json_of(const toml::node& node) {
     if (const auto* table = node.as_table()) {
         Json json = Json::object();
@@ -246,8 +242,8 @@ class SweepReader {
     std::optional<Distribution> read_distribution(const toml::table& table, const std::string& path) {
         refuse_others(table, path, {"uniform", "log_uniform", "normal", "integer", "min", "max"});
         std::optional<Distribution> made;
-        for (std::size_t i = 0; i < kShapes.size(); ++i) {
-            const toml::node* const node = table.get(kShapes[i]);
+        for (std::size_t i = 0; i < kShapeNames.size(); ++i) {
+            const toml::node* const node = table.get(kShapeNames[i]);
             if (node == nullptr) continue;
             if (made) {
                 fail(*node, path, "two distributions; give one");
@@ -261,13 +257,13 @@ class SweepReader {
                                  read_numbers(*ends->get(1), made->is_vector, made->second) &&
                                  made->first.size() == made->second.size();
             if (!is_read || !is_sound(*made)) {
-                fail(*node, path, fmt::format("{} {}", kShapes[i], remedy_of(made->shape)));
+                fail(*node, path, fmt::format("{} {}", kShapeNames[i], remedy_of(made->shape)));
                 return std::nullopt;
             }
         }
         if (!made) {
             if (problems_->is_sound(path))
-                fail(table, path, fmt::format("no distribution; give {}", fmt::join(kShapes, ", ")));
+                fail(table, path, fmt::format("no distribution; give {}", fmt::join(kShapeNames, ", ")));
             return made;
         }
         constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -354,7 +350,8 @@ class SweepReader {
         if (output == nullptr) return;
         refuse_others(*output, "output", {"pictures", "labels", "summary"});
         if (const toml::node* const node = output->get("pictures"))
-            if (const auto pictures = word(*node, "output.pictures", {kPictures.begin(), kPictures.end()}))
+            if (const auto pictures =
+                    word(*node, "output.pictures", {kPictureNames.begin(), kPictureNames.end()}))
                 sweep_->pictures = static_cast<Pictures>(*pictures);
         Names labels;
         for (const Label& label : all_labels().subspan(1)) labels.push_back(label.name);
@@ -478,35 +475,6 @@ SweepDef load_sweep(const std::string& path) {
     if (sweep.pictures == Pictures::kMp4)
         sweep.encoder = media::find_format("clip.mp4", scene.video).library_versions();
     return sweep;
-}
-
-std::map<std::string, std::string> identity_of(const SweepDef& sweep) {
-    std::map<std::string, std::string> identity{
-        {"version", std::string(version())},
-        {"scene", hashed(sweep.scene_name + "\n" + sweep.scene_toml)},
-        {"grid", sweep.is_grid ? "true" : "false"},
-        {"seed", std::to_string(sweep.seed)},
-        {"shard_samples", std::to_string(sweep.shard_samples)},
-        {"output.pictures", std::string(kPictures[static_cast<std::size_t>(sweep.pictures)])},
-        {"output.summary", fmt::format("{}", fmt::join(sweep.summary, " "))}};
-    for (const Label* const label : sweep.labels)
-        identity["output.labels"] += fmt::format("{} ", label->name);
-    if (!sweep.encoder.empty()) identity["encoder"] = sweep.encoder;
-    for (const Split& split : sweep.splits) identity["split." + split.name] = scene::number_text(split.share);
-    for (std::size_t i = 0; i < sweep.vary.size(); ++i) {
-        const auto& [key, values] = sweep.vary[i];
-        std::string& text = identity["vary." + Json(key).dump()];
-        text = sweep.is_grid ? fmt::format("{}: ", i) : "";
-        if (const auto* const choice = std::get_if<Choice>(&values)) {
-            text += Json(choice->values).dump();
-        } else {
-            const auto& its = std::get<Distribution>(values);
-            text += fmt::format("{} {} {} {} {}", kShapes[static_cast<std::size_t>(its.shape)],
-                                toml_of(its.first), toml_of(its.second), toml_of(its.min), toml_of(its.max));
-        }
-        if (text.size() > kMaxIdentityText) text = hashed(text);
-    }
-    return identity;
 }
 
 }  // namespace corda::sweep

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -23,6 +24,7 @@ struct Choice {
 };
 
 enum class Shape { kUniform, kLogUniform, kNormal, kInteger };
+inline constexpr std::array<std::string_view, 4> kShapeNames{"uniform", "log_uniform", "normal", "integer"};
 
 /// A distribution of numbers, or of vectors with independent components.
 struct Distribution {
@@ -42,6 +44,7 @@ struct VariedKey {
 };
 
 enum class Pictures { kMp4, kPng, kNpz, kNone };
+inline constexpr std::array<std::string_view, 4> kPictureNames{"mp4", "png", "npz", "none"};
 
 struct Split {
     std::string name;

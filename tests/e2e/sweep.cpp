@@ -205,8 +205,7 @@ TEST_F(Sweep, RefusedSamplesAreCountedAndNamed) {
     ASSERT_EQ(made.exit_code, 0) << made.err;
     const json all = manifest("out");
     const int failed = all.at("failed").get<int>();
-    EXPECT_THAT(made.err, HasSubstr(std::to_string(failed) +
-                                    " samples refused, see column \"failure\""));
+    EXPECT_THAT(made.err, HasSubstr(std::to_string(failed) + " samples refused, see column \"failure\""));
     EXPECT_EQ(json::parse(made.out).at("failed"), failed);
     EXPECT_EQ(all.at("samples"), 8 - failed);
     EXPECT_EQ(all.at("splits").at("train"), 8 - failed);

@@ -181,7 +181,8 @@ TEST_F(SweepFile, ValuesAreListsOrDistributions) {
 }
 
 TEST_F(SweepFile, DistributionsHaveSoundEnds) {
-    const std::string uniform = "uniform is [least, largest], two numbers, the smaller first, or two vectors of one length";
+    const std::string uniform =
+        "uniform is [least, largest], two numbers, the smaller first, or two vectors of one length";
     const std::string log_uniform = "log_uniform is [least, largest], two positive numbers";
     const std::string normal = "normal is [mean, standard deviation], the second positive";
     const std::string integer = "integer is [least, largest], two whole numbers, both included";
