@@ -85,21 +85,22 @@ TarWriter::TarWriter(WriteBytes write) : write_(std::move(write)), archive_(arch
     check(archive_write_open(archive_.get(), this, nullptr, &TarWriter::write, nullptr));
 }
 
+TarWriter::~TarWriter() {
+    write_ = [](std::string_view) {};  // freeing an unfinished archive writes its end
+}
+
 void TarWriter::Free::operator()(archive* its) const {
-    archive_write_fail(its);  // otherwise freeing an unfinished archive writes its end
     archive_write_free(its);
 }
 
-std::ptrdiff_t TarWriter::write(archive* its, void* writer, const void* bytes, std::size_t count) {
+std::ptrdiff_t TarWriter::write(archive*, void* writer, const void* bytes, std::size_t count) {
     auto& self = *static_cast<TarWriter*>(writer);
     try {
-        self.write_({static_cast<const char*>(bytes), count});
-        return static_cast<std::ptrdiff_t>(count);
-    } catch (...) {  // libarchive is between here and the caller
+        if (!self.failure_) self.write_({static_cast<const char*>(bytes), count});
+    } catch (...) {  // libarchive is between here and the caller, and leaks if it is told
         self.failure_ = std::current_exception();
-        archive_set_error(its, ARCHIVE_FAILED, "the output takes no more");
-        return -1;
     }
+    return static_cast<std::ptrdiff_t>(count);
 }
 
 void TarWriter::check(int status) {

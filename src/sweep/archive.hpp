@@ -25,7 +25,7 @@ class TarWriter {
     explicit TarWriter(WriteBytes write);
     TarWriter(const TarWriter&) = delete;
     TarWriter& operator=(const TarWriter&) = delete;
-    ~TarWriter() = default;
+    ~TarWriter();
 
     void add(const std::string& name, std::string_view bytes);
     void finish();
