@@ -187,8 +187,8 @@ if __name__ == "__main__":
 def test_ctrl_c_ends_a_sample_while_other_threads_run(tmp_path):
     path = write(tmp_path, ROPE.replace("0.5", "1e5"), "samples = 1" + VARY)
     timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))  # runs only without the interpreter's lock
-    timer.start()
     with pytest.raises(KeyboardInterrupt):
+        timer.start()
         next(corda.sweep(path))
 
 
