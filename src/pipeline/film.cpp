@@ -280,8 +280,9 @@ struct Film::Impl {
         };
         const VideoDef& video = scene.video;
         if (video.shutter == 0.0) return shows_nothing_at(time_s);
+        const double end_s = last_s();
         for (int i = 0; i < video.subframes; ++i)
-            if (!shows_nothing_at(subframe_s(time_s, video.shutter, last_s(), i))) return false;
+            if (!shows_nothing_at(subframe_s(time_s, video.shutter, end_s, i))) return false;
         return true;
     }
 
