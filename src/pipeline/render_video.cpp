@@ -122,23 +122,32 @@ struct Made {
     double first_empty_s = 0.0;
 };
 
+/// Draws and encodes the frames first <= k < end of a film as one chunk; calls `drawn` with the time of each.
+template <class Drawn>
+media::Chunk draw_chunk(const Film& film, std::int64_t first, std::int64_t end, media::ChunkEncoder encoder,
+                        FilmRenderer& renderer, const Drawn& drawn) {
+    for (std::int64_t k = first; k < end; ++k) {
+        check_cancelled();
+        const double time_s = film.time_s(k);
+        const Damage damage = renderer.draw(time_s);
+        encoder.encode(renderer.image(), damage, k + 1 == end);
+        drawn(time_s);
+    }
+    return encoder.finish();
+}
+
 /// Draws and encodes a chunk of a film. Counts each frame in `drawn`. Throws corda::Error (kInterrupted) if
 /// all threads are stopped.
 Made make_chunk(std::int64_t chunk, const OrderedWorkers<Made>& all, const Film& film,
                 const media::VideoWriter& writer, FilmRenderer& renderer, std::atomic<std::int64_t>& drawn) {
     Made made;
     const CancelScope running([&all] { return !all.is_stopped(); });
-    const media::Manifest& video = writer.manifest();
-    const std::int64_t end = video.end_of(chunk);
-    media::ChunkEncoder encoder = writer.chunk_encoder(video.first_of(chunk));
-    for (std::int64_t k = video.first_of(chunk); k < end; ++k, ++drawn) {
-        check_cancelled();
-        const double time_s = film.time_s(k);
-        const Damage damage = renderer.draw(time_s);
-        if (renderer.shows_nothing()) note_empty(time_s, made);
-        encoder.encode(renderer.image(), damage, k + 1 == end);
-    }
-    made.chunk = encoder.finish();
+    const std::int64_t first = writer.manifest().first_of(chunk);
+    made.chunk = draw_chunk(film, first, writer.manifest().end_of(chunk), writer.chunk_encoder(first),
+                            renderer, [&](double time_s) {
+                                if (renderer.shows_nothing()) note_empty(time_s, made);
+                                ++drawn;
+                            });
     return made;
 }
 
@@ -354,12 +363,7 @@ std::vector<std::string> video_files(Film& film, FilmRenderer& renderer, const s
     for (std::int64_t first = 0; first < video.end; first += per_chunk) {
         const std::int64_t end = std::min(first + per_chunk, video.end);
         media::ChunkEncoder encoder(media::make_encoder(video.format, def, first, data.picture_info), first);
-        for (std::int64_t k = first; k < end; ++k) {
-            check_cancelled();
-            const Damage damage = renderer.draw(film.time_s(k));
-            encoder.encode(renderer.image(), damage, k + 1 == end);
-        }
-        chunks.push_back(encoder.finish());
+        chunks.push_back(draw_chunk(film, first, end, std::move(encoder), renderer, [](double) {}));
     }
     return media::video_files(video, data, chunks);
 }
