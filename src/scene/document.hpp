@@ -2,8 +2,11 @@
 
 #include <toml++/toml.h>
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "corda/core/basics.hpp"
 #include "corda/scene/problems.hpp"
@@ -22,6 +25,18 @@ inline constexpr int kKeyParts = 32;
 
 /// A dotted key of too many parts, as an offset into the TOML text; npos if there is none.
 [[nodiscard]] std::size_t find_deep_key(std::string_view text);
+
+/// One part of a dotted key: a name, or an index if the name is empty.
+struct KeyStep {
+    std::string name;
+    std::size_t index = 0;
+
+    [[nodiscard]] bool is_index() const { return name.empty(); }
+    friend bool operator==(const KeyStep&, const KeyStep&) = default;
+};
+
+/// The parts of a dotted key such as "rope[0].mass"; std::nullopt for any other text.
+[[nodiscard]] std::optional<std::vector<KeyStep>> parse_key(std::string_view key);
 
 /// Puts `setting` into the document, making missing tables on its way. What it puts there has the setting
 /// itself as its source, so that messages about it name the setting. One that does not fit the document is a

@@ -16,14 +16,6 @@ namespace {
 constexpr std::size_t kMaxLabel = 80;
 constexpr std::string_view kWhitespace = " \t\r\n";
 
-/// One part of a dotted key: a name, or an index if the name is empty.
-struct Step {
-    std::string name;
-    std::size_t index = 0;
-
-    [[nodiscard]] bool is_index() const { return name.empty(); }
-};
-
 std::string label_of(const Setting& setting) {
     return "--set " + excerpt(setting, kMaxLabel);
 }
@@ -45,42 +37,23 @@ bool is_name_character(char c) {
 }
 
 /// Takes "name" from the front of `rest`.
-std::optional<Step> take_name(std::string_view& rest) {
+std::optional<KeyStep> take_name(std::string_view& rest) {
     std::size_t length = 0;
     while (length < rest.size() && is_name_character(rest[length])) ++length;
     if (length == 0) return std::nullopt;
-    Step step{std::string(rest.substr(0, length))};
+    KeyStep step{std::string(rest.substr(0, length))};
     rest.remove_prefix(length);
     return step;
 }
 
 /// Takes "[3]" from the front of `rest`.
-std::optional<Step> take_index(std::string_view& rest) {
-    Step step;
+std::optional<KeyStep> take_index(std::string_view& rest) {
+    KeyStep step;
     const char* end = rest.data() + rest.size();
     const auto [stop, status] = std::from_chars(rest.data() + 1, end, step.index);
     if (status != std::errc{} || stop == end || *stop != ']') return std::nullopt;
     rest.remove_prefix(static_cast<std::size_t>(stop - rest.data()) + 1);
     return step;
-}
-
-/// "rope[0].mass" as its parts; std::nullopt for text that is not a dotted key.
-std::optional<std::vector<Step>> parse_key(std::string_view key) {
-    std::vector<Step> steps;
-    std::string_view rest = key;
-    while (true) {
-        const auto name = take_name(rest);
-        if (!name) return std::nullopt;
-        steps.push_back(*name);
-        while (rest.starts_with('[')) {
-            const auto index = take_index(rest);
-            if (!index) return std::nullopt;
-            steps.push_back(*index);
-        }
-        if (rest.empty()) return steps;
-        if (rest.front() != '.') return std::nullopt;
-        rest.remove_prefix(1);
-    }
 }
 
 /// A table {value = ...} made from a setting's text; text that is not one TOML value is taken as a string.
@@ -106,14 +79,14 @@ class SettingWriter {
     SettingWriter(toml::table& document, const Setting& setting)
         : node_(&document), label_(label_of(setting)) {}
 
-    void write(const std::vector<Step>& steps, std::string_view text) {
+    void write(const std::vector<KeyStep>& steps, std::string_view text) {
         for (std::size_t i = 0; i + 1 < steps.size(); ++i) descend(steps[i], steps[i + 1].is_index());
         toml::table parsed = parse_value(text, label_);
         put(steps.back(), *parsed.get("value"));
     }
 
   private:
-    void descend(const Step& step, bool index_follows) {
+    void descend(const KeyStep& step, bool index_follows) {
         if (step.is_index()) {
             node_ = element(step);
         } else {
@@ -130,7 +103,7 @@ class SettingWriter {
         extend_path(step);
     }
 
-    void put(const Step& step, toml::node& value) {
+    void put(const KeyStep& step, toml::node& value) {
         if (step.is_index()) {
             static_cast<void>(element(step));
             toml::array& list = *node_->as_array();
@@ -142,7 +115,7 @@ class SettingWriter {
         }
     }
 
-    toml::node* element(const Step& step) {
+    toml::node* element(const KeyStep& step) {
         toml::array* list = node_->as_array();
         if (list == nullptr) fail(fmt::format("{}, not a list", described(*node_)));
         if (step.index >= list->size()) {
@@ -159,7 +132,7 @@ class SettingWriter {
         return *node_->as_table();
     }
 
-    void extend_path(const Step& step) {
+    void extend_path(const KeyStep& step) {
         if (step.is_index()) {
             path_ += fmt::format("[{}]", step.index);
         } else {
@@ -178,6 +151,24 @@ class SettingWriter {
 };
 
 }  // namespace
+
+std::optional<std::vector<KeyStep>> parse_key(std::string_view key) {
+    std::vector<KeyStep> steps;
+    std::string_view rest = key;
+    while (true) {
+        const auto name = take_name(rest);
+        if (!name) return std::nullopt;
+        steps.push_back(*name);
+        while (rest.starts_with('[')) {
+            const auto index = take_index(rest);
+            if (!index) return std::nullopt;
+            steps.push_back(*index);
+        }
+        if (rest.empty()) return steps;
+        if (rest.front() != '.') return std::nullopt;
+        rest.remove_prefix(1);
+    }
+}
 
 void apply_setting(toml::table& document, const Setting& setting, Problems& problems) {
     const std::size_t equals = setting.find('=');

@@ -407,30 +407,20 @@ class SweepReader {
     SweepDef* sweep_;
 };
 
-/// A key with its indices in their shortest form, "rope[0]" for "rope[00]", and a dot at its end.
-std::string plain_key(const std::string& key) {
-    std::string plain;
-    for (const char c : key) {
-        const bool follows_zero = plain.ends_with("[0");
-        if (follows_zero && c >= '0' && c <= '9') plain.pop_back();
-        plain += c;
-    }
-    return plain + ".";
-}
-
 /// Refuses a key that is another one or lies within it: one would replace the other.
 void refuse_overlaps(const SweepDef& sweep, const toml::table& vary, Problems& problems) {
+    const auto is_within = [](const std::string& inner, const std::string& outer) {
+        const auto steps = scene::parse_key(inner);
+        const auto first = scene::parse_key(outer);
+        return steps && first && first->size() <= steps->size() &&
+               std::equal(first->begin(), first->end(), steps->begin());
+    };
     for (const VariedKey& inner : sweep.vary)
-        for (const VariedKey& outer : sweep.vary) {
-            std::string within = plain_key(outer.key);
-            std::string whole = plain_key(inner.key);
-            const bool is_inside =
-                whole.starts_with(within) || (within.pop_back(), whole.starts_with(within + "["));
-            if (&inner != &outer && is_inside)
+        for (const VariedKey& outer : sweep.vary)
+            if (&inner != &outer && is_within(inner.key, outer.key))
                 problems.add(
                     vary.get(inner.key)->source(), "vary." + Json(inner.key).dump(),
                     fmt::format("lies within \"{}\", which varies, too; leave one of them out", outer.key));
-        }
     problems.throw_if_any();
 }
 
