@@ -97,7 +97,7 @@ std::ptrdiff_t TarWriter::write(archive*, void* writer, const void* bytes, std::
     auto& self = *static_cast<TarWriter*>(writer);
     try {
         if (!self.failure_) self.write_({static_cast<const char*>(bytes), count});
-    } catch (...) {  // libarchive is between here and the caller, and leaks if it is told
+    } catch (...) {  // must not pass through libarchive, which leaks if its output fails
         self.failure_ = std::current_exception();
     }
     return static_cast<std::ptrdiff_t>(count);

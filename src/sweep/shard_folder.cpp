@@ -286,11 +286,8 @@ void refuse_surplus_shards(const SweepDef& sweep, const std::string& folder) {
 
 PackedSample pack(Sample sample) {
     PackedSample packed;
-    const auto make_row = [&] {
-        packed.row = {{"key", sample.key}, {"split", sample.split}};
-        for (const auto& [key, value] : sample.parameters) packed.row["parameters"][key] = value;
-    };
-    make_row();
+    packed.row = {{"key", sample.key}, {"split", sample.split}};
+    for (const auto& [key, value] : sample.parameters) packed.row["parameters"][key] = value;
     try {
         if (!sample.failure) packed.files.emplace_back(sample.key + ".npz", npz_bytes(sample.arrays));
     } catch (const Error& error) {
