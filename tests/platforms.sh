@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds Corda for other platforms, and fails unless golden pictures, positions, stills and lossless videos have the same
-# bytes there as here. Videos whose encoders differ between releases must pass `verify` of this machine's program. Run as
-# root, which makes new systems in TMPDIR.
+# bytes there as here; for AArch64, all videos too. Videos whose encoders differ between releases must pass `verify` of
+# this machine's program. Run as root, which makes new systems in TMPDIR.
 # Usage: tests/platforms.sh [debian13|arm64]   (both without an argument)
 #   debian13   in a new Debian 13; with CORDA_TEST_LONG=1 with every test that runs there, by tests/run.sh
 #   arm64      for AArch64, cross-built with this machine's release, and run by qemu-user
@@ -100,6 +100,8 @@ END
     say "arm64: built"
     make_outputs "$work/made" qemu-aarch64-static -L "$system" "$work/build/corda" >/dev/null
     check_outputs "$work/made" arm64
+    diff -rq "$work/here" "$work/made"
+    say "arm64: all videos with the same bytes"
 }
 
 src/cmake/setup.sh test

@@ -42,14 +42,6 @@ void on_x264_log(void* /*unused*/, int level, const char* format, va_list argume
     if (level == X264_LOG_ERROR) av_vlog(nullptr, AV_LOG_ERROR, format, arguments);
 }
 
-/// True if x264 (164) weighs macroblocks by uninitialized memory: with AVX-512 its macroblock tree takes
-/// eight at a time, also at the end of a row. One in a hundred videos of 480 columns had other bytes. Without
-/// AVX-512 it gives the same bytes as with it when all goes well, and takes a sixth more time.
-bool reads_beyond_its_rows(int width_px) {
-    constexpr int kAtATime = 8;
-    return macroblocks(width_px) % kAtATime != 0;
-}
-
 /// The constant rate factor; of a preset that spreads no bits over a frame, a constant quantizer in its
 /// place. For the former x264 looks at each frame once more to know how much moves in it: two fifths of the
 /// time of ultrafast, which has no other use for it, and macroblocks that stand still are encoded again
@@ -74,7 +66,10 @@ x264_param_t make_params(const Format& format, const VideoDef& def) {
     const bool is_420 = std::string_view(format.pixel_format) == "yuv420p";
     params.pf_log = &on_x264_log;
     params.i_log_level = X264_LOG_ERROR;
-    if (reads_beyond_its_rows(def.width_px)) params.cpu &= ~X264_CPU_AVX512;
+    // Otherwise the bytes depend on the CPU: SIMD code of the macroblock tree approximates reciprocals, and
+    // with AVX-512 it reads uninitialized memory beyond the rows. The plain code takes no measurable time
+    // more.
+    params.b_cpu_independent = 1;
     params.i_threads = def.encoder.threads;
     params.i_width = def.width_px;
     params.i_height = def.height_px;
