@@ -21,7 +21,6 @@ packages=(
     libavformat-dev         # muxers and demuxers of MP4, WebM, Matroska, GIF, APNG
     libavutil-dev           # frames and error texts of the two above
     libx264-dev             # H.264 with hints on unchanged macroblocks, which libavcodec cannot pass on
-    libarchive-dev          # shards of sweeps: tar
     zlib1g-dev              # their masks in .npz
     libwebp-dev             # animated WebP, which libavcodec does not decode
     libeigen3-dev           # sparse factorisation for nets of bars

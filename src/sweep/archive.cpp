@@ -1,31 +1,21 @@
 #include "corda/sweep/archive.hpp"
 
-#include <archive.h>
-#include <archive_entry.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <zlib.h>
 
 #include <algorithm>
-#include <exception>
 #include <initializer_list>
-#include <utility>
 
 #include "corda/core/basics.hpp"
-#include "corda/core/cancel.hpp"
 #include "corda/media/bytes.hpp"
 
 namespace corda::sweep {
 namespace {
 
-constexpr int kFileMode = 0644;
+using namespace std::string_view_literals;
 
-struct FreeEntry {
-    void operator()(archive_entry* entry) const { archive_entry_free(entry); }
-};
-struct FreeReader {
-    void operator()(archive* reader) const { archive_read_free(reader); }
-};
+constexpr std::size_t kTarBlockBytes = 512;
 
 /// The head of an array in NumPy's format 1.0; its length is a multiple of 64.
 std::string npy_head(const Array& array) {
@@ -53,6 +43,12 @@ std::string zeros(std::size_t bytes) {
     return std::string(bytes, '\0');
 }
 
+/// The text and zeros up to a multiple of `bytes`.
+std::string padded(std::string text, std::size_t bytes) {
+    text.resize((text.size() + bytes - 1) / bytes * bytes);
+    return text;
+}
+
 void append(std::string& text, std::initializer_list<std::string_view> parts) {
     for (const std::string_view part : parts) text += part;
 }
@@ -78,79 +74,26 @@ std::string deflated(std::string_view bytes) {
 
 }  // namespace
 
-TarWriter::TarWriter(WriteBytes write) : write_(std::move(write)), archive_(archive_write_new()) {
-    if (!archive_) throw Error(ExitCode::kTemporary, "out of memory for an archive");
-    check(archive_write_set_format_ustar(archive_.get()));
-    check(archive_write_set_bytes_per_block(archive_.get(), 0));  // no padding after the end
-    check(archive_write_open(archive_.get(), this, nullptr, &TarWriter::write, nullptr));
+std::string tar_entry(const std::string& name, std::string_view bytes) {
+    // Fields of fixed length; numbers are octal. The checksum sums the bytes of the head, itself as spaces.
+    constexpr std::string_view kNoChecksum = "        ";
+    std::string head;
+    append(head, {padded(name, 100), "000644 \0"sv, "000000 \0"sv, "000000 \0"sv,
+                  fmt::format("{:011o} ", bytes.size()), "00000000000 ", kNoChecksum, "0", zeros(100),
+                  "ustar\0"sv, "00", zeros(64), "000000 \0"sv, "000000 \0"sv});
+    unsigned sum = 0;
+    for (const char c : head) sum += static_cast<unsigned char>(c);
+    head.replace(148, 7, fmt::format("{:06o}", sum) + '\0');
+    return padded(head, kTarBlockBytes) + padded(std::string(bytes), kTarBlockBytes);
 }
 
-TarWriter::~TarWriter() {
-    write_ = [](std::string_view) {};  // freeing an unfinished archive writes its end
-}
-
-void TarWriter::Free::operator()(archive* its) const {
-    archive_write_free(its);
-}
-
-std::ptrdiff_t TarWriter::write(archive*, void* writer, const void* bytes, std::size_t count) {
-    auto& self = *static_cast<TarWriter*>(writer);
-    try {
-        if (!self.failure_) self.write_({static_cast<const char*>(bytes), count});
-    } catch (...) {  // must not pass through libarchive, which leaks if its output fails
-        self.failure_ = std::current_exception();
-    }
-    return static_cast<std::ptrdiff_t>(count);
-}
-
-void TarWriter::check(int status) {
-    if (failure_) std::rethrow_exception(failure_);
-    if (status == ARCHIVE_OK) return;
-    const char* const reason = archive_error_string(archive_.get());
-    throw Error(ExitCode::kIo, fmt::format("cannot write an archive: {}", reason == nullptr ? "" : reason));
-}
-
-void TarWriter::add(const std::string& name, std::string_view bytes) {
-    const std::unique_ptr<archive_entry, FreeEntry> entry(archive_entry_new());
-    if (!entry) throw Error(ExitCode::kTemporary, "out of memory for an archive");
-    archive_entry_set_pathname(entry.get(), name.c_str());
-    archive_entry_set_filetype(entry.get(), AE_IFREG);
-    archive_entry_set_perm(entry.get(), kFileMode);
-    archive_entry_set_size(entry.get(), static_cast<std::int64_t>(bytes.size()));
-    archive_entry_set_mtime(entry.get(), 0, 0);
-    check(archive_write_header(archive_.get(), entry.get()));
-    const auto written = archive_write_data(archive_.get(), bytes.data(), bytes.size());
-    check(written == static_cast<std::ptrdiff_t>(bytes.size()) ? ARCHIVE_OK : ARCHIVE_FATAL);
-    check(archive_write_finish_entry(archive_.get()));
-}
-
-void TarWriter::finish() {
-    check(archive_write_close(archive_.get()));
-}
-
-void list_tar(const std::string& path, const std::function<void(const std::string&, std::int64_t)>& take) {
-    constexpr std::size_t kBlockBytes = 1 << 16;
-    const std::unique_ptr<archive, FreeReader> reader(archive_read_new());
-    const auto fail = [&] {
-        const char* const reason = reader ? archive_error_string(reader.get()) : "out of memory";
-        throw Error(ExitCode::kMismatch,
-                    fmt::format("'{}' is damaged: {}", path, reason == nullptr ? "" : reason));
-    };
-    if (!reader || archive_read_support_format_tar(reader.get()) != ARCHIVE_OK ||
-        archive_read_open_filename(reader.get(), path.c_str(), kBlockBytes) != ARCHIVE_OK)
-        fail();
-    archive_entry* entry = nullptr;
-    int status = ARCHIVE_OK;
-    while ((status = archive_read_next_header(reader.get(), &entry)) == ARCHIVE_OK) {
-        check_cancelled();
-        take(archive_entry_pathname(entry), archive_entry_size(entry));
-    }
-    if (status != ARCHIVE_EOF) fail();
+std::string tar_end() {
+    return zeros(2 * kTarBlockBytes);
 }
 
 std::string npz_bytes(const std::vector<Array>& arrays) {
-    // ZIP without its 64-bit extensions (PKWARE, APPNOTE.TXT 6.3.10, section 4.3). An archive of libarchive
-    // has other heads with each of its versions.
+    // ZIP without its 64-bit extensions (PKWARE, APPNOTE.TXT 6.3.10, section 4.3). A library's heads would
+    // change with its version.
     const std::string version = little_endian(20, 2);
     const std::string date = little_endian(1U << 5U | 1U, 2);  // 1 January 1980
     std::string files;

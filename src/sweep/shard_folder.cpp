@@ -310,22 +310,23 @@ PackedSample pack(Sample sample) {
 
 ShardWriter::ShardWriter(const SweepDef& sweep, const std::string& folder, std::int64_t shard)
     : index_path_(index_path(folder, shard)),
-      file_((refuse_unusual(shard_path(folder, shard)), shard_path(folder, shard)), {.force = true}),
-      tar_([this](std::string_view bytes) {
-          file_.write(bytes);
-          sum_.add(bytes);
-          bytes_ += bytes.size();
-      }) {
+      file_((refuse_unusual(shard_path(folder, shard)), shard_path(folder, shard)), {.force = true}) {
     index_ = {{"schema", 1}, {"made_from", identity_of(sweep)}, {"rows", Json::array()}};
 }
 
+void ShardWriter::write(std::string_view bytes) {
+    file_.write(bytes);
+    sum_.add(bytes);
+    bytes_ += bytes.size();
+}
+
 void ShardWriter::add(PackedSample sample) {
-    for (const auto& [name, bytes] : sample.files) tar_.add(name, bytes);
+    for (const auto& [name, bytes] : sample.files) write(tar_entry(name, bytes));
     index_["rows"].push_back(std::move(sample.row));
 }
 
 void ShardWriter::finish() {
-    tar_.finish();
+    write(tar_end());
     file_.commit();
     index_["bytes"] = bytes_;
     index_["sha256"] = sum_.text();

@@ -71,12 +71,13 @@ class ShardWriter {
     void finish();
 
   private:
+    void write(std::string_view bytes);
+
     std::string index_path_;
     OutputFile file_;
     media::Sha256 sum_;
     std::uint64_t bytes_ = 0;
     Json index_;
-    TarWriter tar_;
 };
 
 /// Contents of metadata.csv and manifest.json.

@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <set>
 #include <utility>
 
 #include "corda/core/cancel.hpp"
 #include "corda/core/workers.hpp"
 #include "corda/media/bytes.hpp"
 #include "corda/media/encode/resources.hpp"
-#include "corda/sweep/archive.hpp"
 #include "corda/sweep/shard_folder.hpp"
 
 namespace corda::sweep {
@@ -141,12 +139,6 @@ void check_shard(const SweepDef& sweep, const std::string& folder, std::int64_t 
     if (media::sha256_of_file(path) != index->at("sha256").get<std::string>())
         fail(
             "is damaged: its SHA-256 is another one than its index says; remove it, and run the sweep again");
-    std::set<std::string> keys;
-    list_tar(path,
-             [&keys](const std::string& name, std::int64_t) { keys.insert(name.substr(0, name.find('.'))); });
-    for (const Json& row : index->at("rows"))
-        if (const auto key = row.at("key").get<std::string>(); keys.contains(key) == row.contains("failure"))
-            fail("does not hold what its index says of sample " + key);
 }
 
 /// Throws corda::Error (kMismatch) if a file differs from the summary of the shards.

@@ -2,28 +2,22 @@
 
 #include <gmock/gmock.h>
 
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "corda/core/basics.hpp"
 #include "support/command.hpp"
-#include "support/failure.hpp"
 
 namespace corda::sweep {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
 std::string tar_of(const std::vector<std::pair<std::string, std::string>>& entries) {
     std::string bytes;
-    TarWriter tar([&](std::string_view part) { bytes += part; });
-    for (const auto& [name, content] : entries) tar.add(name, content);
-    tar.finish();
-    return bytes;
+    for (const auto& [name, content] : entries) bytes += tar_entry(name, content);
+    return bytes + tar_end();
 }
 
 /// Fields of the head of an entry: POSIX.1-1988, "ustar".
@@ -54,45 +48,6 @@ TEST(Archive, OtherProgramsReadTheTar) {
               "-rw-r--r-- 0/0               5 1970-01-01 00:00 b.mp4\n"
               "-rw-r--r-- 0/0               0 1970-01-01 00:00 a.json\n");
     EXPECT_EQ(test::run_shell("tar -xOf " + path + " b.mp4").out, "bytes");
-}
-
-TEST(Archive, TarIsListedAndDamageIsNamed) {
-    const test::ScratchFolder folder;
-    const std::string tar = tar_of({{"a", "bytes"}, {"b", std::string(5000, 'x')}});
-    std::vector<std::string> names;
-    std::int64_t bytes = 0;
-    const auto take = [&](const std::string& name, std::int64_t size) {
-        names.push_back(name);
-        bytes += size;
-    };
-    list_tar(folder.write("a.tar", tar), take);
-    EXPECT_THAT(names, ElementsAre("a", "b"));
-    EXPECT_EQ(bytes, 5005);
-    for (const std::string& damaged : {tar.substr(0, 700), tar.substr(0, 3000), "no tar" + tar.substr(6)}) {
-        const std::string path = folder.write("b.tar", damaged);
-        const test::Failure failure = test::failure_of([&] { list_tar(path, take); });
-        EXPECT_EQ(failure.code, ExitCode::kMismatch);
-        EXPECT_THAT(failure.message, StartsWith("'" + path + "' is damaged: "));
-        EXPECT_GT(failure.message.size(), path.size() + 20);
-    }
-}
-
-TEST(Archive, OutputThatTakesNoMoreEndsIt) {
-    std::size_t left = 2000;
-    bool is_full = false;
-    const auto write = [&](std::string_view part) {
-        EXPECT_FALSE(is_full);  // nothing is written after a failure, by the destructor neither
-        is_full = part.size() > left;
-        if (is_full) throw Error(ExitCode::kIo, "no space");
-        left -= part.size();
-    };
-    const test::Failure failure = test::failure_of([&] {
-        TarWriter tar(write);
-        for (int i = 0; i < 100; ++i) tar.add("a", "bytes");
-        tar.finish();
-    });
-    EXPECT_EQ(failure.code, ExitCode::kIo);
-    EXPECT_EQ(failure.message, "no space");
 }
 
 /// The array "a" of an .npz file that has no compressed one.
