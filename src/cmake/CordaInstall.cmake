@@ -24,7 +24,7 @@ install(TARGETS corda RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT prog
 # The README and its pages for users, at the same relative places.
 foreach(page LICENSE README.md src/CHANGELOG.md src/cmake/LICENSES.md src/study/speed.png
         src/app/README.md src/golden/README.md src/media/README.md src/python/README.md src/scene/README.md src/study/README.md
-        src/sweep/README.md)
+        src/serve/README.md src/sweep/README.md)
     cmake_path(GET page PARENT_PATH folder)
     install(FILES ${PROJECT_SOURCE_DIR}/${page} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT program)
 endforeach()

@@ -41,6 +41,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(loaded "libegl1, libegl-mesa0, libopengl0, libgl1-mesa-dri, libavcodec${LIBAVCODEC_MAJOR}, \
 libavformat${LIBAVFORMAT_MAJOR}")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${loaded}")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libmicrohttpd12 | libmicrohttpd12t64")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "The program: it simulates ropes and nets of particles and bars, draws each frame \
 with OpenGL on a machine without a screen, the same bytes on every run, and encodes video.")
 

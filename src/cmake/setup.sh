@@ -21,7 +21,7 @@ packages=(
     libavformat-dev         # muxers and demuxers of MP4, WebM, Matroska, GIF, APNG
     libavutil-dev           # frames and error texts of the two above
     libx264-dev             # H.264 with hints on unchanged macroblocks, which libavcodec cannot pass on
-    zlib1g-dev              # their masks in .npz
+    zlib1g-dev              # masks in the .npz files of sweeps
     libwebp-dev             # animated WebP, which libavcodec does not decode
     libeigen3-dev           # sparse factorisation for nets of bars
     libcairo2-dev           # stills as PDF
@@ -32,6 +32,7 @@ packages=(
     libtomlplusplus-dev     # scene files, with line and column of every value
     nlohmann-json3-dev      # the --json output
     libfmt-dev              # formatted text
+    libmicrohttpd-dev       # the page of `watch`
     python3-dev             # the Python module
     pybind11-dev            # its C++ half
     python3-numpy           # its arrays, at run time

@@ -1,0 +1,134 @@
+#include "corda/serve/scene_numbers.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "corda/core/basics.hpp"
+#include "corda/core/text.hpp"
+#include "corda/scene/document.hpp"
+#include "corda/scene/schema.hpp"
+
+namespace corda::serve {
+namespace {
+
+constexpr std::size_t kMaxEntries = 4;  // of a list whose numbers count
+
+/// A number with its place.
+struct Found {
+    SceneNumber number;
+    toml::source_region region;
+};
+
+/// Collects the numbers of a document.
+class Collector {
+  public:
+    std::vector<Found> collect(const toml::table& document) {
+        add_table(document, "", "");
+        std::sort(found_.begin(), found_.end(), [](const Found& a, const Found& b) {
+            const auto place = [](const Found& its) {
+                return std::pair(its.region.begin.line, its.region.begin.column);
+            };
+            return place(a) < place(b);
+        });
+        return std::move(found_);
+    }
+
+  private:
+    /// `path` has the indices of tables, `section` has not.
+    void add_table(const toml::table& table, const std::string& path, const std::string& section) {
+        for (const auto& [key, node] : table) {
+            const std::string its_path = scene::dotted(path, key.str());
+            const std::string its_section = scene::dotted(section, key.str());
+            if (section.empty() && (key.str() == "video" || key.str() == "golden" || key.str() == "schema"))
+                continue;
+            if (const auto* const inner = node.as_table()) {
+                add_table(*inner, its_path, its_section);
+            } else if (const auto* const list = node.as_array(); list != nullptr) {
+                const bool has_tables = list->is_array_of_tables();
+                for (std::size_t i = 0; i < list->size() && (has_tables || list->size() <= kMaxEntries);
+                     ++i) {
+                    const std::string entry = fmt::format("{}[{}]", its_path, i);
+                    if (has_tables)
+                        add_table(*list->get_as<toml::table>(i), entry, its_section);
+                    else
+                        add_number(*list->get(i), entry, scene::find_key(section, key.str()));
+                }
+            } else {
+                add_number(node, its_path, scene::find_key(section, key.str()));
+            }
+        }
+    }
+
+    void add_number(const toml::node& node, const std::string& path, const scene::Key* key) {
+        using scene::Kind;
+        if (!node.is_number() || key == nullptr) return;
+        const bool is_integer = key->type.kind == Kind::kInteger;
+        const bool is_index = is_integer && key->type.forms == scene::kList;
+        if ((key->type.kind != Kind::kNumber && !is_integer) || is_index) return;
+        const double value = scene::number_of(node);
+        if (!std::isfinite(value)) return;
+        found_.push_back({{path, value, is_integer, key->type.range.low, key->type.range.high,
+                           std::string(key->unit), std::string(key->meaning), node.source().begin.line},
+                          node.source()});
+    }
+
+    std::vector<Found> found_;
+};
+
+std::vector<Found> find_all(std::string_view text, const std::string& name) {
+    return Collector().collect(scene::parse_document(text, name));
+}
+
+std::string text_of(double value, bool is_integer) {
+    return is_integer ? fmt::format("{:.0f}", value) : scene::number_text(value);
+}
+
+/// The offset of a place in a text; columns count characters.
+std::size_t offset_of(std::string_view text, toml::source_position place) {
+    std::size_t offset = 0;
+    for (std::size_t line = 1; line < place.line; ++line) offset = text.find('\n', offset) + 1;
+    for (std::size_t column = 1; column < place.column; ++column) do
+            ++offset;
+        while (offset < text.size() && (static_cast<unsigned char>(text[offset]) & 0xC0U) == 0x80U);
+    return offset;
+}
+
+}  // namespace
+
+std::vector<SceneNumber> numbers_of(std::string_view text, const std::string& name) {
+    std::vector<SceneNumber> numbers;
+    for (Found& found : find_all(text, name)) numbers.push_back(std::move(found.number));
+    return numbers;
+}
+
+std::vector<Setting> settings_of(const NumberChanges& changes, const std::vector<SceneNumber>& numbers) {
+    std::vector<Setting> settings;
+    for (const SceneNumber& number : numbers)
+        if (const auto found = changes.find(number.key); found != changes.end())
+            settings.push_back(fmt::format("{}={}", number.key, text_of(found->second, number.is_integer)));
+    return settings;
+}
+
+std::string with_changes(std::string text, const std::string& name, const NumberChanges& changes) {
+    std::vector<Found> all = find_all(text, name);
+    for (const auto& [key, value] : changes)
+        if (std::none_of(all.begin(), all.end(), [&](const Found& its) { return its.number.key == key; }))
+            throw Error(ExitCode::kUsage, fmt::format("{} has no number {} any more", name, printable(key)));
+    std::reverse(all.begin(), all.end());  // so that a change does not move the places of the others
+    for (const auto& [number, region] : all) {
+        const auto change = changes.find(number.key);
+        if (change == changes.end()) continue;
+        const std::size_t begin = offset_of(text, region.begin);
+        const std::size_t end = std::min(text.find_first_of(" \t\r\n,]}#", begin), text.size());
+        std::string changed = text_of(change->second, number.is_integer);
+        const bool had_point = text.substr(begin, end - begin).find('.') != std::string::npos;
+        if (had_point && changed.find_first_of(".e") == std::string::npos) changed += ".0";
+        text.replace(begin, end - begin, changed);
+    }
+    return text;
+}
+
+}  // namespace corda::serve

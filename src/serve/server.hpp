@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace corda::serve {
+
+/// A request that has passed the checks of a Server.
+struct Request {
+    bool is_post = false;
+    std::string path;  ///< after the token: "frame/30.png"; empty for the page itself
+    std::map<std::string, std::string, std::less<>> query;
+    std::string body;
+};
+
+struct Response {
+    unsigned status = 200;
+    std::string type = "application/json";
+    std::string body;
+};
+
+/// A response whose body is a text for a person.
+[[nodiscard]] Response text_response(unsigned status, std::string text);
+
+/// Whether a Host header, "localhost:8000", names this machine or one of `others`; the port is not compared.
+[[nodiscard]] bool is_known_host(std::string_view host, std::span<const std::string> others);
+
+struct ServerDef {
+    std::uint16_t port = 0;          ///< 0: any that is free
+    std::vector<std::string> hosts;  ///< names other than localhost that a proxy puts in the Host header
+};
+
+/// A web server for one person, at 127.0.0.1. It answers requests that know its random token and name this
+/// machine as their host and their origin, so that neither other users nor pages of other sites can use it.
+class Server {
+  public:
+    /// Answers one request on a thread of its own, within half a minute.
+    using Handler = std::function<Response(const Request&)>;
+
+    /// Throws corda::Error: kIo if the port cannot be used, kTemporary if libmicrohttpd cannot be loaded.
+    Server(const ServerDef& def, Handler handler);
+    Server(const Server&) = delete;
+    Server& operator=(const Server&) = delete;
+    /// Waits for the requests that are being answered.
+    ~Server();
+
+    /// Where the page is: "http://127.0.0.1:8000/0123456789abcdef0123456789abcdef/".
+    [[nodiscard]] const std::string& address() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace corda::serve

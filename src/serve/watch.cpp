@@ -1,0 +1,459 @@
+#include "corda/serve/watch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <new>
+#include <numbers>
+#include <utility>
+
+#include "corda/core/cancel.hpp"
+#include "corda/core/output_file.hpp"
+#include "corda/core/text.hpp"
+#include "corda/media/png/png.hpp"
+#include "corda/pipeline/plan_text.hpp"
+#include "corda/pipeline/tracked_particle.hpp"
+#include "corda/scene/read_file.hpp"
+#include "embedded_page.hpp"
+
+namespace corda::serve {
+namespace {
+
+using Json = nlohmann::json;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kPictureBytes = std::size_t{96} << 20U;
+constexpr auto kLongestWait = std::chrono::seconds(20);
+constexpr int kMinSidePx = 160;
+
+/// The picture size of a shape whose longer side has `side_px`, but not more than its own.
+void shrink(VideoDef& video, int side_px) {
+    const int longest_px = std::max(video.width_px, video.height_px);
+    const double scale = 1.0 * std::min(side_px, longest_px) / longest_px;
+    for (int* const px : {&video.width_px, &video.height_px})
+        *px = std::max(1, static_cast<int>(std::lround(scale * *px)));
+}
+
+/// The lines of an error with their places in the file, as the page shows them.
+Json problems_of(const std::string& message, const std::string& name) {
+    Json problems = Json::array();
+    for (std::size_t begin = 0; begin <= message.size();) {
+        const std::size_t end = std::min(message.find('\n', begin), message.size());
+        std::string_view line(message.data() + begin, end - begin);
+        begin = end + 1;
+        Json problem = {{"line", nullptr}, {"column", nullptr}};
+        if (line.starts_with(name + ":")) {
+            const std::string_view rest = line.substr(name.size() + 1);
+            std::size_t numbers[2] = {};
+            const char* at = rest.data();
+            int read = 0;
+            for (; read < 2; ++read) {
+                const auto [stop, status] = std::from_chars(at, rest.data() + rest.size(), numbers[read]);
+                if (status != std::errc{} || stop == rest.data() + rest.size() || *stop != ':') break;
+                at = stop + 1;
+            }
+            if (read == 2) {
+                problem["line"] = numbers[0];
+                problem["column"] = numbers[1];
+                line = rest.substr(static_cast<std::size_t>(at - rest.data()));
+            }
+        }
+        problem["text"] = printable(line.substr(std::min(line.find_first_not_of(' '), line.size())));
+        problems.push_back(std::move(problem));
+    }
+    return problems;
+}
+
+Json json_of(const SceneNumber& number, const NumberChanges& changes) {
+    const auto change = changes.find(number.key);
+    return {{"key", number.key},       {"value", change == changes.end() ? number.value : change->second},
+            {"in_file", number.value}, {"is_integer", number.is_integer},
+            {"low", number.low},       {"high", number.high},
+            {"unit", number.unit},     {"meaning", number.meaning},
+            {"line", number.line}};
+}
+
+std::vector<std::string> plan_lines(Film& film) {
+    std::vector<std::string> lines{system_text(film.system()),
+                                   "method: " + plan_text(film.system(), film.plan())};
+    if (const auto bound = bound_text(film)) lines.push_back("displayed error at most " + *bound);
+    if (film.plan().horizon_s)
+        lines.push_back(fmt::format("predictability ends at {:.6g} s", *film.plan().horizon_s));
+    for (const std::string& note : film.plan().notes) lines.push_back(note);
+    for (const std::string& term : modelled_terms(film.scene(), film.plan()))
+        lines.push_back("modelled: " + term);
+    return lines;
+}
+
+std::int64_t number_in(const Request& request, std::string_view name) {
+    const auto found = request.query.find(name);
+    std::int64_t number = 0;
+    if (found == request.query.end()) return number;
+    const std::string& text = found->second;
+    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return status == std::errc{} && end == text.data() + text.size() ? number : -1;
+}
+
+Response page(std::string_view type, std::string_view text) {
+    return {200, fmt::format("{}; charset=utf-8", type), std::string(text)};
+}
+
+}  // namespace
+
+/// A film, its renderer, and the OpenGL canvas that the next one takes over.
+struct Watch::Shown {
+    pipeline::OwnedCanvas canvas;
+    std::optional<Film> film;
+    std::optional<FilmRenderer> renderer;
+};
+
+Watch::Watch(WatchDef def) : def_(std::move(def)), shown_(std::make_unique<Shown>()) {
+    thread_ = std::jthread([this] { work(); });
+}
+
+Watch::~Watch() {
+    end();
+    thread_.join();
+}
+
+void Watch::end() {
+    {
+        const std::lock_guard lock(mutex_);
+        is_ending_ = true;
+    }
+    changed_.notify_all();
+}
+
+void Watch::reload() {
+    {
+        const std::lock_guard lock(mutex_);
+        is_reload_asked_ = true;
+    }
+    changed_.notify_all();
+}
+
+bool Watch::is_stale() const {
+    const std::lock_guard lock(mutex_);
+    return is_ending_ || is_reload_asked_;
+}
+
+void Watch::work() {
+    const CancelScope scope([this] { return !is_stale(); });
+    while (true) {
+        std::optional<std::int64_t> frame;
+        bool loads = false;
+        {
+            std::unique_lock lock(mutex_);
+            changed_.wait(lock, [&] {
+                frame = next_frame();
+                return is_ending_ || is_reload_asked_ || are_curves_wanted_ || frame;
+            });
+            if (is_ending_) break;
+            loads = std::exchange(is_reload_asked_, false);
+        }
+        try {
+            if (loads)
+                load();
+            else if (frame && (!are_curves_wanted_ || wanted_.contains(*frame)))
+                draw(*frame);
+            else
+                read_curves();
+        } catch (const Error& error) {
+            if (!is_interruption(error.code())) fail(error.what());
+        } catch (const std::bad_alloc&) {
+            fail("out of memory; a smaller scene may help");
+        } catch (const std::exception& error) {
+            fail(error.what());
+        }
+    }
+    shown_.reset();  // on the thread of its OpenGL context
+}
+
+void Watch::load() {
+    int side_px = 0;
+    NumberChanges changes;
+    {
+        const std::lock_guard lock(mutex_);
+        is_busy_ = true;
+        progress_ = 0.0;
+        ++version_;
+        side_px = def_.longest_side_px;
+        changes = changes_;
+    }
+    changed_.notify_all();
+    const std::string text = scene::read_file(def_.path);
+    std::vector<SceneNumber> numbers = numbers_of(text, def_.path);
+    std::vector<Setting> settings = def_.settings;
+    for (Setting& setting : settings_of(changes, numbers)) settings.push_back(std::move(setting));
+    {
+        const std::lock_guard lock(mutex_);
+        text_ = text;
+        numbers_ = numbers;
+    }
+    Scene scene = parse_scene(text, def_.path, settings);
+    const std::pair full_px(scene.video.width_px, scene.video.height_px);
+    shrink(scene.video, side_px);
+    FilmDef def = def_.film;
+    def.readings.velocities = true;
+    def.on_progress = [this, shown = Clock::now()](std::int64_t done, std::int64_t total) mutable {
+        constexpr auto kSilent = std::chrono::milliseconds(300);
+        if (const auto now = Clock::now(); now - shown > kSilent) {
+            shown = now;
+            const std::lock_guard lock(mutex_);
+            progress_ = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 0.0;
+            ++version_;
+            changed_.notify_all();
+        }
+        return true;
+    };
+    Film film(scene, std::move(def));
+    static_cast<void>(film.camera());  // simulates the motion
+    shown_->renderer.reset();
+    shown_->film.emplace(std::move(film));
+    shown_->renderer.emplace(*shown_->film, &shown_->canvas);
+    Film& its = *shown_->film;
+    const VideoDef& video = its.scene().video;
+    const Rational fps = video.fps.rational();
+    publish(std::move(numbers), {{"name", its.scene().name},
+                                 {"frames", its.frame_count()},
+                                 {"fps", static_cast<double>(fps.num) / static_cast<double>(fps.den)},
+                                 {"width", video.width_px},
+                                 {"height", video.height_px},
+                                 {"full", {full_px.first, full_px.second}},
+                                 {"plan", plan_lines(its)}});
+}
+
+void Watch::publish(std::vector<SceneNumber> numbers, Json film) {
+    std::int64_t playhead = 0;
+    {
+        const std::lock_guard lock(mutex_);
+        frames_ = film["frames"].get<std::int64_t>();
+        playhead = playhead_ = std::clamp<std::int64_t>(playhead_, 0, frames_ - 1);
+        wanted_.clear();
+        pictures_.clear();
+        picture_bytes_ = 0;
+        curves_.reset();
+        film["number"] = ++film_number_;
+        film_ = std::move(film);
+    }
+    draw(playhead);  // before the page asks for it
+    {
+        const std::lock_guard lock(mutex_);
+        numbers_ = std::move(numbers);
+        problems_ = Json::array();
+        is_busy_ = false;
+        ++version_;
+    }
+    changed_.notify_all();
+}
+
+void Watch::fail(const std::string& message) {
+    {
+        const std::lock_guard lock(mutex_);
+        problems_ = problems_of(message, def_.path);
+        is_busy_ = false;
+        are_curves_wanted_ = false;
+        ++version_;
+    }
+    changed_.notify_all();
+}
+
+void Watch::draw(std::int64_t k) {
+    Picture picture;
+    try {
+        shown_->renderer->draw(shown_->film->time_s(k));
+        picture.png = media::png_bytes(shown_->renderer->image(), {});
+    } catch (const Error& error) {
+        if (is_interruption(error.code())) throw;
+        picture.error = error.what();
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        keep(k, std::move(picture));
+    }
+    changed_.notify_all();
+}
+
+void Watch::read_curves() {
+    constexpr std::int64_t kMaxPoints = 1200;
+    Film& film = *shown_->film;
+    const auto tracked = pipeline::tracked_particles(film.system());
+    const std::int64_t stride = 1 + (film.frame_count() - 1) / kMaxPoints;
+    Json curves = {{"t", Json::array()},
+                   {"angle_deg", Json::array()},
+                   {"kinetic_j", Json::array()},
+                   {"potential_j", Json::array()}};
+    for (std::int64_t k = 0; k < film.frame_count(); k += stride) {
+        check_cancelled();
+        const State& state = film.state(k);
+        curves["t"].push_back(film.time_s(k));
+        if (!tracked.empty() && tracked.front().pin) {
+            const auto [body, tip, is_end, pin] = tracked.front();
+            const double x_m = state.x_m[tip] - state.x_m[*pin];
+            const double y_m = state.y_m[tip] - state.y_m[*pin];
+            curves["angle_deg"].push_back(std::atan2(x_m, -y_m) * 180.0 / std::numbers::pi);
+        }
+        const Energy energy = film.energy();
+        curves["kinetic_j"].push_back(energy.kinetic_j);
+        curves["potential_j"].push_back(energy.potential_j());
+    }
+    {
+        const std::lock_guard lock(mutex_);
+        curves_ = curves.dump();
+        are_curves_wanted_ = false;
+    }
+    changed_.notify_all();
+}
+
+/// How many frames the film plays from the playhead to frame `k`.
+std::int64_t Watch::distance(std::int64_t k) const {
+    return k >= playhead_ ? k - playhead_ : k - playhead_ + frames_;
+}
+
+/// The frame to draw next: one that was asked for, or the next one after the playhead while there is room.
+std::optional<std::int64_t> Watch::next_frame() const {
+    if (film_.is_null() || is_busy_) return std::nullopt;
+    if (!wanted_.empty()) return wanted_.contains(playhead_) ? playhead_ : *wanted_.begin();
+    if (std::ssize(pictures_) >= frames_) return std::nullopt;
+    std::int64_t ahead = 0;
+    while (pictures_.contains((playhead_ + ahead) % frames_)) ++ahead;
+    const auto is_farther = [&](const auto& entry) { return distance(entry.first) > ahead; };
+    const bool has_room =
+        picture_bytes_ < kPictureBytes || std::any_of(pictures_.begin(), pictures_.end(), is_farther);
+    return has_room ? std::optional((playhead_ + ahead) % frames_) : std::nullopt;
+}
+
+void Watch::keep(std::int64_t k, Picture picture) {
+    picture_bytes_ += picture.png.size();
+    wanted_.erase(k);
+    pictures_.insert_or_assign(k, std::move(picture));
+    while (picture_bytes_ > kPictureBytes && pictures_.size() > 1) {
+        const auto last = std::max_element(
+            pictures_.begin(), pictures_.end(),
+            [&](const auto& a, const auto& b) { return distance(a.first) < distance(b.first); });
+        picture_bytes_ -= last->second.png.size();
+        pictures_.erase(last);
+    }
+}
+
+Response Watch::answer(const Request& request) {
+    if (!request.is_post) {
+        if (request.path.empty()) return page("text/html", kWatchHtml);
+        if (request.path == "watch.css") return page("text/css", kWatchCss);
+        if (request.path == "watch.js") return page("text/javascript", kWatchJs);
+        if (request.path == "state") return state_after(number_in(request, "after"));
+        if (request.path == "curves") return curves(number_in(request, "film"));
+        std::int64_t k = 0;
+        const std::string_view path = request.path;
+        constexpr std::string_view kFrame = "frame/";
+        if (path.starts_with(kFrame)) {
+            const auto [end, status] =
+                std::from_chars(path.data() + kFrame.size(), path.data() + path.size(), k);
+            if (status == std::errc{} && std::string_view(end, path.data() + path.size()) == ".png")
+                return frame(k, number_in(request, "film"));
+        }
+        return text_response(404, "there is no such page\n");
+    }
+    const Json body = Json::parse(request.body, nullptr, false);
+    if (request.path == "number" && body.is_object()) return change_number(body);
+    if (request.path == "write") return write_file();
+    if (request.path == "side" && body.is_object() && body.contains("px") && body["px"].is_number_integer()) {
+        {
+            const std::lock_guard lock(mutex_);
+            def_.longest_side_px = std::clamp(body["px"].get<int>(), kMinSidePx, kMaxSidePx);
+        }
+        reload();
+        return {};
+    }
+    return text_response(400, "no such request\n");
+}
+
+Response Watch::state_after(std::int64_t version) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kLongestWait, [&] { return is_ending_ || version_ != version; });
+    Json numbers = Json::array();
+    for (const SceneNumber& number : numbers_) numbers.push_back(json_of(number, changes_));
+    return {200, "application/json",
+            Json{{"version", version_},
+                 {"busy", is_busy_},
+                 {"progress", progress_},
+                 {"ended", is_ending_},
+                 {"file", def_.path},
+                 {"film", film_},
+                 {"problems", problems_},
+                 {"numbers", numbers},
+                 {"changes", changes_.size()}}
+                .dump(-1, ' ', false, Json::error_handler_t::replace)};
+}
+
+Response Watch::frame(std::int64_t k, std::int64_t film) {
+    std::unique_lock lock(mutex_);
+    if (film != film_number_ || k < 0 || k >= frames_)
+        return text_response(410, "this frame is not in the present film\n");
+    playhead_ = k;
+    if (!pictures_.contains(k)) wanted_.insert(k);
+    changed_.notify_all();
+    const auto is_over = [&] { return is_ending_ || film != film_number_ || pictures_.contains(k); };
+    changed_.wait_for(lock, kLongestWait, is_over);
+    const auto found = pictures_.find(k);
+    if (film != film_number_ || found == pictures_.end())
+        return text_response(410, "this frame is not in the present film\n");
+    if (!found->second.error.empty()) return text_response(422, found->second.error);
+    return {200, "image/png", found->second.png};
+}
+
+Response Watch::curves(std::int64_t film) {
+    std::unique_lock lock(mutex_);
+    if (film != film_number_ || film_.is_null())
+        return text_response(410, "these curves are not of the present film\n");
+    if (!curves_) are_curves_wanted_ = true;
+    changed_.notify_all();
+    changed_.wait_for(lock, kLongestWait,
+                      [&] { return is_ending_ || film != film_number_ || curves_ || !are_curves_wanted_; });
+    if (film != film_number_ || !curves_) return text_response(410, "there are no curves\n");
+    return {200, "application/json", *curves_};
+}
+
+Response Watch::change_number(const Json& body) {
+    {
+        const std::lock_guard lock(mutex_);
+        const auto number = std::find_if(numbers_.begin(), numbers_.end(), [&](const SceneNumber& its) {
+            return body.contains("key") && body["key"] == its.key;
+        });
+        const Json value = body.value("value", Json());
+        if (number == numbers_.end()) return text_response(400, "the scene has no such number\n");
+        if (value.is_number() && value.get<double>() != number->value)
+            changes_[number->key] = value.get<double>();
+        else
+            changes_.erase(number->key);
+    }
+    reload();
+    return {};
+}
+
+Response Watch::write_file() {
+    std::string text;
+    NumberChanges changes;
+    {
+        const std::lock_guard lock(mutex_);
+        text = text_;
+        changes = changes_;
+    }
+    if (scene::read_file(def_.path) != text)
+        return text_response(409, "the file has changed; look at its new state, and write again\n");
+    OutputFile file(def_.path, {.force = true});
+    file.write(with_changes(text, def_.path, changes));
+    file.commit();
+    {
+        const std::lock_guard lock(mutex_);
+        changes_.clear();
+    }
+    reload();
+    return {};
+}
+
+}  // namespace corda::serve

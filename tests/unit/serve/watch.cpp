@@ -1,0 +1,171 @@
+#include "corda/serve/watch.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "corda/media/defs.hpp"
+#include "corda/serve/file_watch.hpp"
+#include "support/command.hpp"
+#include "support/image_matchers.hpp"
+
+namespace corda::serve {
+namespace {
+
+using Json = nlohmann::json;
+using testing::HasSubstr;
+
+constexpr const char* kScene = R"(schema = 1
+[world]
+duration = 1.0
+[[rope]]
+hang = { links = 3, length = 1.0, angle_deg = 80.0 }
+[video]
+fps = 30
+size = [1280, 720]
+)";
+
+std::string replaced(std::string text, const std::string& old, const std::string& its) {
+    return text.replace(text.find(old), old.size(), its);
+}
+
+class WatchTest : public testing::Test {
+  protected:
+    Response get(const std::string& path, std::int64_t film = 0) {
+        return watch_.answer({false, path, {{"film", std::to_string(film)}}, ""});
+    }
+    Response post(const std::string& path, const Json& body) {
+        return watch_.answer({true, path, {}, body.dump()});
+    }
+
+    /// The next state that is not busy and has another version than that of the last call.
+    Json state() {
+        Json state;
+        do {
+            state =
+                Json::parse(watch_.answer({false, "state", {{"after", std::to_string(version_)}}, ""}).body);
+            version_ = state["version"];
+        } while (state["busy"]);
+        return state;
+    }
+
+    Json save(const std::string& text) {
+        test::write_file(path_, text);
+        watch_.reload();
+        return state();
+    }
+
+    [[nodiscard]] Image picture(std::int64_t k, std::int64_t film) {
+        const Response response = get("frame/" + std::to_string(k) + ".png", film);
+        EXPECT_EQ(response.status, 200U) << response.body;
+        return read_png(folder_.write("picture.png", response.body));
+    }
+
+    const test::ScratchFolder folder_;
+    const std::string path_ = folder_.write("scene.toml", kScene);
+    std::int64_t version_ = 0;
+    Watch watch_{{.path = path_, .settings = {}, .longest_side_px = 320, .film = {}}};
+};
+
+TEST_F(WatchTest, ShowsTheFramesOfTheFilm) {
+    const Json film = state()["film"];
+    EXPECT_EQ(film["frames"], 30);
+    EXPECT_EQ(film["width"], 320);
+    EXPECT_EQ(film["height"], 180);
+    EXPECT_EQ(film["fps"], 30.0);
+    EXPECT_THAT(film["plan"].dump(), HasSubstr("displayed error at most"));
+    Scene scene = parse_scene(kScene, "scene.toml");
+    scene.video.width_px = 320;
+    scene.video.height_px = 180;
+    Film expected(scene);
+    for (const std::int64_t k : {17, 0, 29}) EXPECT_EQ(picture(k, film["number"]), expected.frame(k)) << k;
+    for (const char* const path : {"frame/30.png", "frame/-1.png", "frame/3.gif", "frame/", "other"})
+        EXPECT_GE(get(path, film["number"]).status, 400U) << path;
+    EXPECT_EQ(get("frame/3.png", 99).status, 410U);
+}
+
+TEST_F(WatchTest, GivesAngleAndEnergy) {
+    const Json curves = Json::parse(get("curves", state()["film"]["number"]).body);
+    ASSERT_EQ(curves["t"].size(), 30U);
+    EXPECT_NEAR(curves["angle_deg"][0].get<double>(), 80.0, 1e-9);
+    EXPECT_NEAR(curves["kinetic_j"][20].get<double>() + curves["potential_j"][20].get<double>(), 0.0,
+                1e-3);  // measured 2e-5
+}
+
+TEST_F(WatchTest, KeepsTheLastGoodFilmBesideAnError) {
+    const Json good = state();
+    const Json bad = save(replaced(kScene, "length = 1.0", "lenght = 1.0"));
+    EXPECT_EQ(bad["film"], good["film"]);
+    ASSERT_EQ(bad["problems"].size(), 1U);
+    EXPECT_EQ(bad["problems"][0]["line"], 5);
+    EXPECT_EQ(bad["problems"][0]["column"], 21);
+    EXPECT_THAT(bad["problems"][0]["text"], HasSubstr("did you mean \"length\"?"));
+    EXPECT_EQ(picture(3, good["film"]["number"]).width(), 320);
+    const Json again = save(kScene);
+    EXPECT_TRUE(again["problems"].empty());
+    EXPECT_GT(again["film"]["number"], good["film"]["number"]);
+}
+
+TEST_F(WatchTest, ASaveInterruptsTheWork) {
+    static_cast<void>(state());
+    // Hours of simulation, which end at once.
+    test::write_file(
+        path_, replaced(replaced(kScene, "links = 3", "links = 3000"), "duration = 1.0", "duration = 60.0"));
+    watch_.reload();
+    while (
+        !Json::parse(watch_.answer({false, "state", {{"after", std::to_string(version_)}}, ""}).body)["busy"])
+        continue;
+    EXPECT_EQ(save(kScene)["film"]["frames"], 30);
+}
+
+TEST_F(WatchTest, NumbersChangeTheFilmAndTheFileOnlyWhenAsked) {
+    const std::int64_t film = state()["film"]["number"];
+    const Image before = picture(10, film);
+    EXPECT_EQ(post("number", {{"key", "rope[0].hang.angle_deg"}, {"value", 45}}).status, 200U);
+    const Json changed = state();
+    EXPECT_EQ(changed["changes"], 1);
+    EXPECT_NE(picture(10, changed["film"]["number"]), before);
+    EXPECT_EQ(test::read_file(path_), kScene);
+    EXPECT_EQ(post("number", {{"key", "rope[0].mass"}, {"value", 45}}).status, 400U);
+
+    test::write_file(path_, std::string(kScene) + "# more\n");
+    EXPECT_EQ(post("write", Json::object()).status, 409U);  // by another program, meanwhile
+    watch_.reload();
+    EXPECT_EQ(state()["changes"], 1);
+    EXPECT_EQ(post("write", Json::object()).status, 200U);
+    EXPECT_EQ(test::read_file(path_), replaced(kScene, "80.0", "45.0") + "# more\n");
+    EXPECT_EQ(state()["changes"], 0);
+    EXPECT_EQ(post("number", {{"key", "rope[0].hang.angle_deg"}, {"value", nullptr}}).status, 200U);
+}
+
+TEST_F(WatchTest, PicturesHaveTheSizeThatIsAskedFor) {
+    static_cast<void>(state());
+    EXPECT_EQ(post("side", {{"px", 640}}).status, 200U);
+    const Json film = state()["film"];
+    EXPECT_EQ(film["width"], 640);
+    EXPECT_EQ(picture(0, film["number"]).height(), 360);
+    EXPECT_EQ(post("side", {{"px", 100000}}).status, 200U);
+    EXPECT_EQ(state()["film"]["width"], 1280);  // that of the scene
+    EXPECT_EQ(post("side", {{"px", "big"}}).status, 400U);
+}
+
+TEST(FileWatch, SeesOtherBytesAndAnotherFileUnderTheName) {
+    const test::ScratchFolder folder;
+    const std::string path = folder.write("a.toml", "1");
+    FileWatch file(path);
+    EXPECT_FALSE(file.wait(0));
+    test::write_file(path, "12");
+    EXPECT_TRUE(file.wait(0));
+    EXPECT_FALSE(file.wait(0));
+    static_cast<void>(test::run_shell("cd " + folder.path() + " && printf 12 >b && mv b a.toml"));
+    EXPECT_TRUE(file.wait(0));
+    static_cast<void>(folder.write("b.toml", "other"));
+    EXPECT_FALSE(file.wait(0));
+}
+
+}  // namespace
+}  // namespace corda::serve
