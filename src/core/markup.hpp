@@ -18,7 +18,7 @@ inline constexpr const char* kPageStyle = R"css(
   --ink: #1c2026; --soft: #5b6470; --line: #dde1e6; --page: #ffffff; --band: #f5f7f9;
   --accent: #0b5fa5; --bad: #b3261e; --bad-band: #fdf0ee;
 }
-@media (prefers-color-scheme: dark) {
+@media screen and (prefers-color-scheme: dark) {
   :root {
     --ink: #e4e7eb; --soft: #9aa4b0; --line: #333a43; --page: #14171b; --band: #1c2126;
     --accent: #6cb6ff; --bad: #ff8f85; --bad-band: #33201f;
@@ -64,11 +64,15 @@ figcaption .files { display: block; margin-top: 0.3rem; font-size: 0.875rem; }
 .small { display: grid; grid-template-columns: repeat(auto-fill, minmax(20rem, 1fr)); gap: 1rem; margin: 2rem 0; }
 .small figure { margin: 0; }
 sup { line-height: 0; font-size: 0.75em; }
+@media screen and (prefers-color-scheme: dark) { .white img { filter: invert(0.91) hue-rotate(180deg); } }
 @media print {
   body { max-width: none; padding: 0; font-size: 10pt; }
   nav { display: none; }
   figure, tr { break-inside: avoid; }
-  h2 { break-after: avoid; }
+  figure { margin: 3mm 0; }
+  figure img { width: auto; max-width: 100%; max-height: 46mm; margin: 0 auto; }
+  h2 { break-after: avoid; margin: 4mm 0 2mm; padding-top: 2mm; font-size: 14pt; }
+  details::details-content { content-visibility: visible; block-size: auto; }
 }
 )css";
 

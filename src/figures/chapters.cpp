@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -9,8 +11,10 @@
 
 #include "corda/core/text.hpp"
 #include "corda/figures/chart.hpp"
+#include "corda/figures/period_theory.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/sim/solver.hpp"
+#include "corda/view/colors.hpp"
 
 namespace corda::figures {
 namespace {
@@ -80,6 +84,8 @@ std::string times_text(const std::vector<double>& times_s) {
 void add_pictures(const Film& film, const FigureTimes& times, const WritePoses& write,
                   report::Chapter& chapter) {
     const std::string name = printable(film.scene().name);
+    const Ground ground = view::look_of(film.scene().style).ground;
+    const bool is_on_white = !shows_on_white(ground.top) && !shows_on_white(ground.bottom);
     if (times.strobe_s.size() > 1) {
         const std::vector<double> times_s = times.strobe_s;
         const std::string poses = fmt::format("poses at t = {}", times_text(times_s));
@@ -87,7 +93,8 @@ void add_pictures(const Film& film, const FigureTimes& times, const WritePoses& 
             {"strobe", fmt::format("{}, {}", name, poses),
              fmt::format("Strobe: {}, the fainter the earlier{}.", poses,
                          times.is_swing ? "; the last is where the first swing ends" : ""),
-             [write, times_s](const std::string& path, double width_mm) { write(path, width_mm, times_s); }});
+             [write, times_s](const std::string& path, double width_mm) { write(path, width_mm, times_s); },
+             false, is_on_white});
     }
     std::size_t number = 1;
     for (const double time_s : times.stills_s) {
@@ -96,7 +103,7 @@ void add_pictures(const Film& film, const FigureTimes& times, const WritePoses& 
             {fmt::format("still_{}", number++), fmt::format("{} {}", name, at),
              fmt::format("The scene {}.", at),
              [write, time_s](const std::string& path, double width_mm) { write(path, width_mm, {time_s}); },
-             times.stills_s.size() > 1});
+             times.stills_s.size() > 1, is_on_white});
     }
 }
 
@@ -115,6 +122,22 @@ bool all_turn(const System& system, const MotionSummary& motion) {
         const double length_m = links_length_m(system, system.bodies[body.followed.body]);
         return body.followed.pin && body.followed.is_free_end && body.nearest_m >= kNear * length_m;
     });
+}
+
+/// "The period is 2.006 s, the mean of 9 from 2.005 to 2.007 s; ..."; empty if nothing swings twice.
+std::string period_text(const Scene& scene, const MotionSummary& motion) {
+    const std::vector<double>& all_s = motion.periods_s;
+    if (all_s.empty()) return {};
+    const auto [least, most] = std::minmax_element(all_s.begin(), all_s.end());
+    const double mean_s =
+        std::accumulate(all_s.begin(), all_s.end(), 0.0) / static_cast<double>(all_s.size());
+    std::string text =
+        fmt::format("The period{} is {:.5g} s", motion.bodies.size() > 1 ? " of the first body" : "", mean_s);
+    if (all_s.size() > 1)
+        text += fmt::format(", the mean of {} between {:.5g} and {:.5g} s", all_s.size(), *least, *most);
+    if (const auto theory = period_theory(scene, motion.angle_max_deg.value_or(180.0)))
+        text += fmt::format("; that of {} is {:.5g} s", theory->model, theory->period_s);
+    return text + ".";
 }
 
 /// "link 3 of rope 0 (between its particles 3 and 4)"
@@ -234,6 +257,24 @@ report::Chapter path_chapter(const Film& film, const MotionSummary& motion) {
     return chapter;
 }
 
+report::Chapter angle_chapter(const Film& film, const MotionSummary& motion) {
+    report::Chapter chapter;
+    chapter.title = "Angle";
+    const System& system = film.system();
+    if (motion.bodies.empty() || !all_turn(system, motion)) return chapter;
+    std::vector<Curve> curves = curves_of(film.scene(), system, motion, &BodyCurves::turning);
+    for (Curve& curve : curves)
+        for (view::CurvePoint& point : curve.points)
+            point = {point.time_s, point.time_s, point.x * 180.0 / std::numbers::pi};
+    chapter.summary = period_text(film.scene(), motion);
+    report::Plot plot = make_plot("angle", "Angle over time", {"t", "s"}, {"angle", "°"}, curves);
+    plot.caption =
+        fmt::format("Angle of the line from the pin to {}, from straight down, positive towards +x.{}",
+                    pipeline::particles_text(system, followed_of(motion)), left_out_text(system, motion));
+    add_plot(std::move(plot), kTipData, chapter);
+    return chapter;
+}
+
 report::Chapter phase_chapter(const Film& film, const MotionSummary& motion) {
     report::Chapter chapter;
     chapter.title = "Phase portrait";
@@ -322,6 +363,13 @@ report::Chapter strain_chapter(const Film& film, const MotionSummary& motion) {
             "The largest strain, | length / rest length - 1 |, is {} at {} ({}){}.",
             quantity_text(largest.size, ""), time_text(largest.time_s), link_text(system, largest),
             stretches ? "" : ": an error of the method, because these links do not stretch");
+    }
+    constexpr double kRounding = 1e-13;
+    if (largest.is_known && largest.size < kRounding) {
+        chapter.summary =
+            fmt::format("The links keep their lengths: the largest strain is {}, which is rounding.",
+                        quantity_text(largest.size, ""));
+        return chapter;
     }
     const std::vector<Curve> curves = curves_of(film.scene(), system, motion, &BodyCurves::strain);
     if (curves.empty()) return chapter;

@@ -21,6 +21,9 @@ using WritePoses =
                                              const FigureTimes& times, const WritePoses& write);
 /// The paths of the followed particles.
 [[nodiscard]] report::Chapter path_chapter(const Film& film, const MotionSummary& motion);
+/// Their angles about their pins over time, and the period of the first, compared with theory; empty if one
+/// has no pin or comes close to it.
+[[nodiscard]] report::Chapter angle_chapter(const Film& film, const MotionSummary& motion);
 /// Their phase portraits: angle and angular velocity about the pin if each has one and keeps away from it,
 /// else x and vx.
 [[nodiscard]] report::Chapter phase_chapter(const Film& film, const MotionSummary& motion);

@@ -10,6 +10,7 @@
 #include "corda/core/cancel.hpp"
 #include "corda/core/timeline.hpp"
 #include "corda/sim/recording.hpp"
+#include "corda/sweep/summary.hpp"
 
 namespace corda::figures {
 namespace {
@@ -42,7 +43,7 @@ std::vector<double> times_between_frames_s(const Scene& scene) {
 
 class Reader {
   public:
-    Reader(Film& film, const OpenRows& open) : film_(film), system_(film.system()) {
+    Reader(Film& film, const OpenRows& open) : film_(film), system_(film.system()), swing_(film) {
         for (const pipeline::TrackedParticle& followed : pipeline::tracked_particles(system_))
             motion_.bodies.push_back({followed});
         tells_tension_.resize(system_.bodies.size());
@@ -56,6 +57,7 @@ class Reader {
     void add(const State& state, bool is_frame) {
         add_tips(state, is_frame);
         if (!is_frame) return;
+        swing_.add(state);
         tip_(row_);
         add_energy(state);
         add_links(state);
@@ -67,6 +69,8 @@ class Reader {
     [[nodiscard]] MotionSummary take() {
         for (std::size_t b = 0; b < tells_tension_.size(); ++b)
             if (!tells_tension_[b] && system_.bodies[b].link_count > 0) motion_.unknown_tensions.push_back(b);
+        motion_.periods_s = swing_.periods_s();
+        motion_.angle_max_deg = swing_.summary().angle_max_deg;
         return std::move(motion_);
     }
 
@@ -206,6 +210,7 @@ class Reader {
 
     Film& film_;
     const System& system_;
+    sweep::SummaryReader swing_;
     MotionSummary motion_;
     OnRow tip_;
     OnRow energy_;

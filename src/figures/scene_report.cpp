@@ -56,6 +56,7 @@ std::vector<report::Chapter> list_chapters(Film& film, const MotionSummary& moti
     std::vector<report::Chapter> chapters;
     chapters.push_back(motion_chapter(film, motion, times, write));
     chapters.push_back(path_chapter(film, motion));
+    chapters.push_back(angle_chapter(film, motion));
     chapters.push_back(phase_chapter(film, motion));
     chapters.push_back(energy_chapter(film, motion));
     chapters.push_back(tension_chapter(film, motion));
@@ -69,7 +70,8 @@ std::vector<report::Chapter> list_chapters(Film& film, const MotionSummary& moti
 report::Report page_of(const Film& film, std::vector<report::Chapter> chapters) {
     const Scene& scene = film.scene();
     report::Report page;
-    page.title = "Report of " + printable(scene.name);
+    page.title =
+        scene.overlay.title.empty() ? "Report of " + printable(scene.name) : printable(scene.overlay.title);
     page.setting = {{"Bodies", system_text(film.system())},
                     {"Method", plan_text(film.system(), film.plan())},
                     {"Duration", fmt::format("{:g} s", scene.world.duration_s)},

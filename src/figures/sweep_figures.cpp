@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <optional>
 #include <span>
 
@@ -15,9 +14,9 @@
 #include "corda/core/text.hpp"
 #include "corda/figures/drawings.hpp"
 #include "corda/figures/motion_summary.hpp"
+#include "corda/figures/period_theory.hpp"
 #include "corda/media/png/png.hpp"
 #include "corda/pipeline/film_renderer.hpp"
-#include "corda/reference/pendulum.hpp"
 #include "corda/render/frame_renderer.hpp"
 #include "corda/report/writers.hpp"
 #include "corda/view/font.hpp"
@@ -25,8 +24,6 @@
 
 namespace corda::figures {
 namespace {
-
-constexpr double kDegrees = std::numbers::pi / 180.0;
 
 /// "angle_deg" of "rope[0].hang.angle_deg".
 std::string short_name(const std::string& key) {
@@ -128,37 +125,6 @@ std::string series_of(const std::vector<std::string>& keys, const sweep::SampleR
     return text;
 }
 
-/// The period of a scene that swings through `angle_deg`, by theory; std::nullopt if it is neither a point
-/// pendulum nor a rope of equal masses that hangs from its first particle.
-std::optional<double> theory_period_s(const Scene& scene, double angle_deg) {
-    if (scene.ropes.size() != 1 || !scene.nets.empty()) return std::nullopt;
-    const RopeDef& rope = scene.ropes.front();
-    const Vec2 gravity = scene.world.gravity_m_s2;
-    const bool is_plain = rope.reach == 1 && !rope.closed && rope.rest_m.empty() &&
-                          rope.bending_n_m2 == 0.0 && rope.pinned == std::vector<std::uint32_t>{0} &&
-                          gravity.x == 0.0 && gravity.y < 0.0 && scene.world.drag_1_s == 0.0 &&
-                          rope.material.compliance_1_n == 0.0;
-    if (!is_plain) return std::nullopt;
-    const auto length_m = [&](std::size_t link) {
-        const Vec2 d = rope.points_m[link + 1] - rope.points_m[link];
-        return std::hypot(d.x, d.y);
-    };
-    const int links = static_cast<int>(rope.points_m.size()) - 1;
-    if (links == 1) {
-        if (!(angle_deg < 180.0)) return std::nullopt;
-        return reference::Pendulum(std::sqrt(-gravity.y / length_m(0)), angle_deg * kDegrees).period_s();
-    }
-    const bool has_equal_masses =
-        rope.payload_kg == 0.0 && std::all_of(rope.mass_kg.begin(), rope.mass_kg.end(), [&](double mass_kg) {
-            return mass_kg == rope.mass_kg.front();
-        });
-    for (int link = 1; link < links; ++link)
-        if (std::abs(length_m(link) - length_m(0)) > 1e-9 * length_m(0)) return std::nullopt;
-    if (!has_equal_masses) return std::nullopt;
-    return static_cast<double>(2.0L * std::numbers::pi_v<long double> /
-                               reference::rope_omega0_1_s(links, length_m(0), -gravity.y));
-}
-
 /// A sample in a plot.
 struct Point {
     std::string key;
@@ -193,7 +159,8 @@ SweepPoints read_points(const sweep::SweepDef& sweep, const std::string& folder,
         Point point{sweep::key_of(row.number), series, *x_value, *y_value, {}};
         const auto angle = row.summary.find("angle_max_deg");
         if (y.name == "period_s" && angle != row.summary.end())
-            point.theory = theory_period_s(scene_of(sweep, row.parameters), angle->second);
+            if (const auto theory = period_theory(scene_of(sweep, row.parameters), angle->second))
+                point.theory = theory->period_s;
         all.points.push_back(std::move(point));
     });
     if (all.points.empty())
@@ -245,8 +212,8 @@ report::Plot plot_of(const sweep::SweepDef& sweep, const SweepPoints& all, const
             theory.points.clear();
             for (int k = 0; k <= kCurvePoints; ++k) {
                 const double angle_deg = first_deg + k * extent_deg / kCurvePoints;
-                if (const auto period_s = theory_period_s(scene, angle_deg))
-                    theory.points.emplace_back(angle_deg, *period_s);
+                if (const auto its = period_theory(scene, angle_deg))
+                    theory.points.emplace_back(angle_deg, its->period_s);
             }
         }
         measured.form = report::Series::Form::kPoints;

@@ -108,7 +108,8 @@ struct Picture {
     std::string caption;  ///< stands below it on the page, with a number
     /// Writes it, `width_mm` wide, to a path whose ending is .svg, .png or .pdf. Throws what it likes.
     std::function<void(const std::string& path, double width_mm)> write;
-    bool is_small = false;  ///< stands beside its small neighbours on the page
+    bool is_small = false;     ///< stands beside its small neighbours on the page
+    bool is_on_white = false;  ///< like plots: a dark page shows it inverted
 };
 
 /// One subject: what the figures show, and the figures.

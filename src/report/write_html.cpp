@@ -95,10 +95,10 @@ class Figures {
     Figures(const Report& report, const SvgOf& svg_of) : report_(report), svg_of_(svg_of) {}
 
     [[nodiscard]] std::string html(const std::string& id, const std::string& title,
-                                   const std::string& caption, const std::string& data) {
-        std::string text =
-            fmt::format("<figure id=\"figure-{}\">\n<img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\"/>\n",
-                        id, markup_text(title), base64(svg_of_(id)));
+                                   const std::string& caption, const std::string& data, bool is_on_white) {
+        std::string text = fmt::format(
+            "<figure id=\"figure-{}\"{}>\n<img alt=\"{}\" src=\"data:image/svg+xml;base64,{}\"/>\n", id,
+            is_on_white ? " class=\"white\"" : "", markup_text(title), base64(svg_of_(id)));
         if (!caption.empty())
             text += fmt::format("<figcaption><b>Figure {}.</b> {}{}</figcaption>\n", ++count_,
                                 markup_text(caption), files_html(report_, id, data));
@@ -139,7 +139,7 @@ std::string pictures_html(const Chapter& chapter, Figures& figures) {
     for (const Picture& picture : chapter.pictures) {
         if (picture.is_small != is_in_row) text += is_in_row ? "</div>\n" : "<div class=\"small\">\n";
         is_in_row = picture.is_small;
-        text += figures.html(picture.id, picture.title, picture.caption, "");
+        text += figures.html(picture.id, picture.title, picture.caption, "", picture.is_on_white);
     }
     return text + (is_in_row ? "</div>\n" : "");
 }
@@ -152,7 +152,8 @@ std::string chapter_html(const Chapter& chapter, std::size_t number, Figures& fi
         text += fmt::format("<p>{}</p>\n", markup_text(paragraph));
     }
     text += pictures_html(chapter, figures);
-    for (const Plot& plot : chapter.plots) text += figures.html(plot.id, plot.title, plot.caption, plot.data);
+    for (const Plot& plot : chapter.plots)
+        text += figures.html(plot.id, plot.title, plot.caption, plot.data, true);
     for (const Table& table : chapter.tables) text += table_html(table);
     return text + "</section>\n";
 }

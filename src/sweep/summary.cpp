@@ -106,11 +106,9 @@ void SummaryReader::add_arm(const Arm& arm) {
         if (crosses) {
             const Cubic x{last_->x_m, step_s * last_->vx_m_s, arm.x_m, step_s * arm.vx_m_s};
             const double direction = arm.x_m < 0.0 ? -1.0 : 1.0;
-            last_crossing_s_ = last_->time_s + step_s * root_of([&](double s) { return x.at(s); });
-            if (!first_crossing_s_) first_crossing_s_ = last_crossing_s_;
+            passes_s_.push_back(last_->time_s + step_s * root_of([&](double s) { return x.at(s); }));
             swings_ = swings_ && direction != last_direction_;
             last_direction_ = direction;
-            ++crossings_;
         }
     }
     last_ = arm;
@@ -118,8 +116,9 @@ void SummaryReader::add_arm(const Arm& arm) {
 
 Summary SummaryReader::summary() {
     if (tracked_) summary_.angle_max_deg = angle_max_rad_ * (180.0 / std::numbers::pi);
-    if (crossings_ > 1 && swings_)
-        summary_.period_s = 2.0 * (last_crossing_s_ - *first_crossing_s_) / (crossings_ - 1);
+    if (passes_s_.size() > 1 && swings_)
+        summary_.period_s =
+            2.0 * (passes_s_.back() - passes_s_.front()) / static_cast<double>(passes_s_.size() - 1);
     const Figures& largest = film_->diagnostics().largest;
     summary_.strain_max = largest.strain;
     summary_.energy_error = largest.energy_error;
@@ -127,6 +126,13 @@ Summary SummaryReader::summary() {
     summary_.error_bound_px = film_->error_bound_px();
     summary_.horizon_s = film_->plan().horizon_s;
     return summary_;
+}
+
+std::vector<double> SummaryReader::periods_s() const {
+    std::vector<double> periods_s;
+    for (std::size_t i = 2; swings_ && i < passes_s_.size(); ++i)
+        periods_s.push_back(passes_s_[i] - passes_s_[i - 2]);
+    return periods_s;
 }
 
 }  // namespace corda::sweep

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/tracked_particle.hpp"
@@ -38,6 +39,8 @@ class SummaryReader {
     explicit SummaryReader(Film& film);
     void add(const State& state);
     [[nodiscard]] Summary summary();
+    /// The times from each pass below the pin to the second next one; none if it does not swing to and fro.
+    [[nodiscard]] std::vector<double> periods_s() const;
 
   private:
     /// The tracked particle seen from the pin of its body: x and y in m, their rates in m/s.
@@ -53,9 +56,7 @@ class SummaryReader {
     std::optional<pipeline::TrackedParticle> tracked_;
     std::optional<Arm> last_;
     double angle_max_rad_ = 0.0;
-    std::optional<double> first_crossing_s_;
-    double last_crossing_s_ = 0.0;
-    int crossings_ = 0;
+    std::vector<double> passes_s_;  ///< below the pin
     double last_direction_ = 0.0;
     bool swings_ = true;
     Summary summary_;
