@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -8,14 +9,19 @@
 
 namespace corda::sim {
 
-/// State of a relaxation: x and y of each particle, interleaved.
+/// What Verlet's update knows of a particle: x and y of each. One cache line.
+struct alignas(64) RelaxationMove {
+    std::array<double, 2> move_m{};       ///< Verlet's move in this step, without what the bars add to it
+    std::array<double, 2> unrelaxed_m{};  ///< the position before the bars' moves of this step
+    std::array<double, 2> last_move_m{};  ///< the whole move of the previous step
+    std::array<double, 2> push_m{};       ///< (h^2 / m) f
+};
+
+/// State of a relaxation.
 struct RelaxationMotion {
-    std::vector<double> position_m;
-    std::vector<double> move_m;       ///< Verlet's move in this step, without what the bars add to it
-    std::vector<double> unrelaxed_m;  ///< position_m before the bars' moves of this step
-    std::vector<double> last_move_m;  ///< the whole move of the previous step
-    std::vector<double> push_m;       ///< (h^2 / m) f
-    double keep = 1.0;                ///< share of the velocity kept per step
+    std::vector<double> position_m;     ///< x and y of each particle, interleaved
+    std::vector<RelaxationMove> moves;  ///< one per particle
+    double keep = 1.0;                  ///< share of the velocity kept per step
 };
 
 /// Implementations of the sweeps. All kernels give the same bits: they do the same correctly rounded
@@ -23,7 +29,8 @@ struct RelaxationMotion {
 ///
 /// kScalar takes the bars one by one and waits for the square root and division of each. kSse2 takes two bars
 /// of a packet at once (RelaxationSchedule), and several sweeps, each `lag` packets behind its predecessor.
-/// kAvx2 takes four bars at once: of one packet, or of those of two sweeps if both have at most two.
+/// kAvx2 takes four bars at once, of one packet or of two narrow ones of two sweeps, and begins the packet of
+/// one sweep before it finishes that of another.
 enum class RelaxationKernel { kScalar, kSse2, kAvx2 };
 
 /// The kernels that this CPU can run, the fastest last.

@@ -1,6 +1,7 @@
 #include "corda/sim/relaxation/relaxation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -105,12 +106,10 @@ Relaxation::Relaxation(const System& system, const Forces& forces, const Relaxat
     motion_.keep = (1.0 - def.delta) * forces.decay(step_s_);
     for (std::size_t i = 0; i < system.particle_count(); ++i) {
         const Vec2 push_m = (step_s_ * step_s_ / mass_kg_[i]) * force_n_[i];
-        motion_.push_m.insert(motion_.push_m.end(), {push_m.x, push_m.y});
         motion_.position_m.insert(motion_.position_m.end(), {system.x_m[i], system.y_m[i]});
-        motion_.move_m.insert(motion_.move_m.end(), {step_s_ * system.vx_m_s[i], step_s_ * system.vy_m_s[i]});
+        const std::array move_m{step_s_ * system.vx_m_s[i], step_s_ * system.vy_m_s[i]};
+        motion_.moves.push_back({move_m, {system.x_m[i], system.y_m[i]}, move_m, {push_m.x, push_m.y}});
     }
-    motion_.unrelaxed_m = motion_.position_m;
-    motion_.last_move_m = motion_.move_m;
     if (kernel_ == RelaxationKernel::kScalar) {
         bars_ = movable_bars(system, 0, system.bars.size());
     } else {
@@ -159,8 +158,11 @@ void Relaxation::advance(std::uint64_t steps) {
     // The first step is Euler's: its move, h v(0), is known from the start.
     const bool starts_updated = step_ == 0;
     if (starts_updated) {
-        for (std::size_t k = 0; k < size; ++k) motion_.position_m[k] += motion_.move_m[k];
-        motion_.unrelaxed_m = motion_.position_m;
+        for (std::size_t k = 0; k < size; ++k) {
+            RelaxationMove& verlet = motion_.moves[k / 2];
+            motion_.position_m[k] += verlet.move_m[k % 2];
+            verlet.unrelaxed_m[k % 2] = motion_.position_m[k];
+        }
     }
     const RelaxationSweeps sweeps{0, steps * sweeps_, sweeps_, starts_updated};
     if (kernel_ == RelaxationKernel::kScalar) {
@@ -174,8 +176,9 @@ void Relaxation::advance(std::uint64_t steps) {
     }
     // Add what the bars moved to the move, as the next update would.
     for (std::size_t k = 0; k < size; ++k) {
-        motion_.move_m[k] += motion_.position_m[k] - motion_.unrelaxed_m[k];
-        motion_.unrelaxed_m[k] = motion_.position_m[k];
+        RelaxationMove& verlet = motion_.moves[k / 2];
+        verlet.move_m[k % 2] += motion_.position_m[k] - verlet.unrelaxed_m[k % 2];
+        verlet.unrelaxed_m[k % 2] = motion_.position_m[k];
     }
     step_ += steps;
 }
@@ -184,8 +187,9 @@ void Relaxation::interpolate(double fraction, State& state) const {
     // Newton's form through the states at step_ - 2, step_ - 1 and step_; a straight line in the first step.
     const double second = step_ >= 2 ? 0.5 * fraction * (fraction - 1.0) : 0.0;
     const auto at = [&](std::size_t k) {
-        const double move = motion_.move_m[k];
-        return motion_.position_m[k] - (1.0 - fraction) * move + second * (move - motion_.last_move_m[k]);
+        const RelaxationMove& verlet = motion_.moves[k / 2];
+        const double move = verlet.move_m[k % 2];
+        return motion_.position_m[k] - (1.0 - fraction) * move + second * (move - verlet.last_move_m[k % 2]);
     };
     for (std::size_t i = 0; i < state.x_m.size(); ++i) {
         state.x_m[i] = at(2 * i);
@@ -195,8 +199,8 @@ void Relaxation::interpolate(double fraction, State& state) const {
 
 void Relaxation::velocities(std::vector<double>& vx_m_s, std::vector<double>& vy_m_s) {
     for (std::size_t i = 0; i < vx_m_s.size(); ++i) {
-        vx_m_s[i] = motion_.move_m[2 * i] / step_s_;
-        vy_m_s[i] = motion_.move_m[2 * i + 1] / step_s_;
+        vx_m_s[i] = motion_.moves[i].move_m[0] / step_s_;
+        vy_m_s[i] = motion_.moves[i].move_m[1] / step_s_;
     }
 }
 
@@ -206,8 +210,7 @@ double Relaxation::energy_j() const {
     const double back = step_ == 0 ? 0.0 : 0.5;
     double energy_j = 0.0;
     for (std::size_t i = 0; i < mass_kg_.size(); ++i) {
-        const double move_x = motion_.move_m[2 * i];
-        const double move_y = motion_.move_m[2 * i + 1];
+        const auto [move_x, move_y] = motion_.moves[i].move_m;
         const double vx = move_x / step_s_;
         const double vy = move_y / step_s_;
         energy_j += 0.5 * mass_kg_[i] * (vx * vx + vy * vy);

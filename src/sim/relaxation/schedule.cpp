@@ -9,6 +9,9 @@ namespace {
 
 constexpr std::size_t kLanes = RelaxationPacket::kLanes;
 
+/// Verlet's updates that are made together where a rope is long enough, whose loop is then predictable.
+constexpr std::size_t kUpdatesAtOnce = 8;
+
 /// Bars of a packet.
 struct Lanes {
     std::array<std::uint32_t, kLanes> bars{};  ///< their indices: 0 0 0 0, 0 1 0 1, 0 1 2 2 or 0 1 2 3
@@ -54,13 +57,9 @@ class Packing {
     }
     [[nodiscard]] PacketShares shares(std::size_t k) const {
         PacketShares shares;
-        for (std::size_t i = 0; i < kLanes; ++i) {
-            const RelaxationBar& even = bars_[lanes_[k].bars[i / 2 * 2]];
-            const RelaxationBar& odd = bars_[lanes_[k].bars[i / 2 * 2 + 1]];
-            shares.even_a[i] = even.share_a;
-            shares.even_b[i] = even.share_b;
-            shares.odd_a[i] = odd.share_a;
-            shares.odd_b[i] = odd.share_b;
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            shares.a[lane] = bars_[lanes_[k].bars[lane]].share_a;
+            shares.b[lane] = bars_[lanes_[k].bars[lane]].share_b;
         }
         shares.is_half = lanes_[k].count <= 2;
         return shares;
@@ -133,14 +132,19 @@ RelaxationSchedule schedule_bars(std::span<const RelaxationBar> bars, std::uint3
     assert(first_particle + particle_count <= 1U << 31U);  // twice an index has to fit
     const Packing packing(bars, first_particle, particle_count);
     RelaxationSchedule schedule;
-    schedule.packets.reserve(packing.size());
+    const std::size_t length = packing.size();
+    schedule.packets.reserve(length);
+    schedule.shares = {PacketShares{}, PacketShares{.is_half = true}};
+    std::size_t half = 0;
     for (std::size_t k = 0; k < packing.size(); ++k) {
         schedule.packets.push_back(packing.packet(k));
         const PacketShares shares = packing.shares(k);
         const auto known = std::find(schedule.shares.begin(), schedule.shares.end(), shares);
         schedule.share_index.push_back(static_cast<std::uint8_t>(known - schedule.shares.begin()));
         if (known == schedule.shares.end()) schedule.shares.push_back(shares);
+        half += shares.is_half ? 1 : 0;
     }
+    schedule.is_narrow = 2 * half > length;
     const std::vector<std::uint32_t> first = packing.first();
     schedule.updates = sorted_by(first);
     schedule.update_begin.assign(packing.size() + 1, particle_count);
@@ -153,6 +157,10 @@ RelaxationSchedule schedule_bars(std::span<const RelaxationBar> bars, std::uint3
         if (end > first[i]) schedule.lag = std::max<std::size_t>(schedule.lag, end - first[i]);
     }
     schedule.levels = packing.levels();
+    // A short rope has fewer sweeps under way, the more its updates run ahead.
+    if (length > 2 * std::min(schedule.lag, schedule.levels))
+        schedule.block = std::max<std::size_t>(1, kUpdatesAtOnce * length / std::max(1U, particle_count));
+    schedule.lag = std::min(schedule.lag + schedule.block - 1, std::max<std::size_t>(1, length));
     for (std::uint32_t& particle : schedule.updates) particle += first_particle;
     return schedule;
 }

@@ -28,13 +28,11 @@ struct alignas(64) RelaxationPacket {
     std::array<std::uint32_t, kLanes> b{};
 };
 
-/// Shares of the adjustments that the particles of a packet take, once for x and once for y of each. Few
-/// different ones occur: large ropes are bound by the memory that they read, so packets refer to them.
-struct alignas(64) PacketShares {
-    std::array<double, RelaxationPacket::kLanes> even_a{};  ///< of lanes 0 and 2
-    std::array<double, RelaxationPacket::kLanes> odd_a{};   ///< of lanes 1 and 3
-    std::array<double, RelaxationPacket::kLanes> even_b{};
-    std::array<double, RelaxationPacket::kLanes> odd_b{};
+/// Shares of the adjustments that the particles of a packet take. Few different ones occur: large ropes are
+/// bound by the memory that they read, so packets refer to them.
+struct PacketShares {
+    std::array<double, RelaxationPacket::kLanes> a{0.5, 0.5, 0.5, 0.5};
+    std::array<double, RelaxationPacket::kLanes> b{0.5, 0.5, 0.5, 0.5};
     bool is_half = false;  ///< only lanes 0 and 1 are used
 
     auto operator<=>(const PacketShares&) const = default;
@@ -45,20 +43,26 @@ struct alignas(64) PacketShares {
 /// Each bar goes into the first packet that has room after the packets of all earlier bars that share a
 /// particle with it. So every particle meets its bars in the given order, at most one per packet, and every
 /// number has the bits of that order. The same holds from sweep to sweep, and for Verlet's update of a
-/// particle just before its first packet: a sweep may begin while its predecessor is running, as long as it
-/// stays `lag` packets behind.
+/// particle at most `block` - 1 packets ahead of its first one: a sweep may begin while its predecessor is
+/// running, as long as it stays `lag` packets behind.
 struct RelaxationSchedule {
+    static constexpr std::uint8_t kFree = 0;  ///< index of the shares of a packet without pinned particles
+    static constexpr std::uint8_t kFreeHalf = 1;  ///< the same with lanes 0 and 1 alone
+
     std::vector<RelaxationPacket> packets;
-    std::vector<PacketShares> shares;       ///< all that occur
+    std::vector<PacketShares> shares;       ///< all that occur, after those of kFree and kFreeHalf
     std::vector<std::uint8_t> share_index;  ///< per packet: an index of `shares`
     /// Particles in the order of their first packet; those without a bar come first.
     std::vector<std::uint32_t> updates;
     /// Packet k is preceded by the updates[j] with update_begin[k] <= j < update_begin[k + 1].
     std::vector<std::uint32_t> update_begin;
+    /// Number of packets whose updates may be made together.
+    std::size_t block = 1;
     /// Packet k of a sweep comes after packet k + lag - 1 of the sweep before; 1 .. number of packets.
     std::size_t lag = 1;
     /// Length of the longest row of bars each of which has to wait for its predecessor.
     std::size_t levels = 0;
+    bool is_narrow = false;  ///< most packets have at most two bars
 };
 
 /// Schedules `bars`, to be relaxed in this order, of the `particle_count` particles from `first_particle` on;

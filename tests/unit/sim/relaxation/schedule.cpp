@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <vector>
 
@@ -32,10 +33,14 @@ Events events_in_order(const std::vector<RelaxationBar>& bars, std::size_t parti
     return events;
 }
 
-/// Packet k and the updates before it; false if two of its bars have a particle in common.
+/// Packet k, and the updates of a block before its first packet; false if two of the packet's bars have a
+/// particle in common.
 bool replay_packet(const RelaxationSchedule& schedule, std::size_t k, Events& events) {
-    for (std::uint32_t j = schedule.update_begin[k]; j < schedule.update_begin[k + 1]; ++j)
-        events[schedule.updates[j]].push_back(-1);
+    if (k % schedule.block == 0) {
+        const std::size_t end = std::min(k + schedule.block, schedule.packets.size());
+        for (std::uint32_t j = schedule.update_begin[k]; j < schedule.update_begin[end]; ++j)
+            events[schedule.updates[j]].push_back(-1);
+    }
     const RelaxationPacket& packet = schedule.packets[k];
     std::map<std::uint32_t, double> bar_of;
     for (std::size_t lane = 0; lane < RelaxationPacket::kLanes; ++lane) {
@@ -77,8 +82,9 @@ TEST(RelaxationSchedule, FillsItsLanesAndOverlapsTheSweepsOfALongRope) {
     const RelaxationSchedule schedule = schedule_bars(numbered_bars(system), 0, 1000);
     // 6972 bars fill 1743 packets at best; measured 1749.
     EXPECT_LE(schedule.packets.size(), 1760U);
-    // The reaches' wavefront takes 2 + 3 + ... + 8 = 35 particles, 7 bars each: 62 packets; measured 64.
-    EXPECT_LE(schedule.lag, 70U);
+    // The reaches' wavefront takes 2 + 3 + ... + 8 = 35 particles, 7 bars each: 62 packets, and updates
+    // run 12 packets ahead; measured 76.
+    EXPECT_LE(schedule.lag, 82U);
 }
 
 TEST(RelaxationSchedule, OfABodyWithoutBarsUpdatesItsParticles) {
