@@ -166,7 +166,7 @@ class Refusal : public Error {
         kDefinition,          ///< a field is not what its declaration says
         kBarWithoutLength,    ///< all but `relaxation`: a bar whose particles coincide
         kImaginaryBars,       ///< `exact`: bars of reach > 1
-        kRigidGraph,          ///< `exact`: rigid bars that do not form an open chain
+        kRigidGraph,          ///< `exact`: rigid bars that form neither an open chain nor a suitable net
         kRigidStringGraph,    ///< `exact`: a string of rigid links that does not form an open chain
         kRigidString,         ///< `rattle`: a string of rigid links
         kRigidBendingString,  ///< `exact`: a string of rigid links that resists bending

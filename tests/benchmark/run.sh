@@ -18,7 +18,7 @@ kind=${1:-}
 shift || true
 case "$kind" in
     video) programs=(video) ;;
-    sim) programs=(relaxation rattle exact) ;;
+    sim) programs=(relaxation rattle exact nets) ;;
     draw) programs=(pipeline) ;;
     sweep) programs=(sweep) ;;
     startup) programs=() ;;

@@ -316,10 +316,10 @@ hang = { links = 100000, length = 1.0, angle_deg = 80.0 }
 [solver]
 method = "exact"
 )"},
-                                       {"a net that only rattle moves", R"([world]
+                                       {"a large net", R"([world]
 duration = 10
 [[net]]
-grid = { columns = 40, rows = 30, spacing = 0.1, diagonals = false }
+grid = { columns = 200, rows = 200, spacing = 0.02, diagonals = false }
 pinned = [[0, 0]]
 )"},
                                        {"a million sweeps", R"([world]

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -133,6 +134,27 @@ NetDef grid(Random& random) {
     return net;
 }
 
+/// A net whose cells are parallelograms, on a pin, on a row of pins, or free.
+BoundCase parallelograms(Random& random) {
+    NetDef net = grid(random);
+    const auto is_below = [](const NetBar& bar) { return bar.b != bar.a + 1; };
+    const std::size_t columns = std::find_if(net.bars.begin(), net.bars.end(), is_below)->b;
+    std::vector<Vec2>& at = net.points_m;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        const std::size_t column = i % columns;
+        if (i > column && column > 0) at[i] = at[i - 1] + at[column] - at[column - 1];
+        net.velocity_m_s.push_back({pick_real(random, -1.0, 1.0), pick_real(random, -1.0, 1.0)});
+    }
+    const int pins = pick(random, 0, 2);
+    if (pins == 0) net.pinned = {};
+    for (std::uint32_t i = 1; pins == 2 && i < columns; ++i) net.pinned.push_back(i);
+    BoundCase made;
+    made.scene.nets = {net};
+    made.scene.world.duration_s = 0.5;
+    add_video(random, made.scene);
+    return made;
+}
+
 BoundCase net(Random& random) {
     BoundCase made;
     made.scene.nets = {grid(random)};
@@ -233,6 +255,7 @@ std::span<const BoundFamily> other_families() {
                                                              {"elastic_ring", elastic_ring},
                                                              {"braced", braced},
                                                              {"net", net},
+                                                             {"parallelograms", parallelograms},
                                                              {"elastic_net", elastic_net},
                                                              {"several", several},
                                                              {"units", units},

@@ -59,7 +59,13 @@ bool has_kinks(const System& system) {
 std::vector<Trial> exact_trials(const System& system, double tolerance_m) {
     std::vector<Trial> trials;
     const TightestDigits& tightest = has_kinks(system) ? kWithKinks : kSmooth;
-    const double wanted = tolerance_m / largest_length_m(system);
+    // The links of a rigid net are many times as long as its way from end to end.
+    const Body& body = system.bodies.front();
+    MotionBounds start;
+    start.include({0.0, system.x_m, system.y_m});
+    const Vec2 extent = start.max_m() - start.min_m();
+    const bool is_rigid_net = !body.is_chain && body.material.compliance_1_n == 0.0;
+    const double wanted = tolerance_m / (is_rigid_net ? extent.x + extent.y : largest_length_m(system));
     std::size_t digits = kMaxDigits;
     while (digits < tightest.run && kTolerance[digits] > wanted) ++digits;
     for (;; digits = std::min(digits + kNextDigits, tightest.run)) {
@@ -212,7 +218,9 @@ bool stands_still(const System& system, const Recording& recording) {
     constexpr double kStill = 1e-9;  // of the length
     const Body& body = system.bodies.front();
     const auto pins = std::count(system.inverse_mass_1_kg.begin(), system.inverse_mass_1_kg.end(), 0.0);
-    if (!body.is_net || body.bar_count + 3 < 2 * body.particle_count || pins < 2) return false;
+    if (!body.is_net || body.material.compliance_1_n > 0.0 || body.bar_count + 3 < 2 * body.particle_count ||
+        pins < 2)
+        return false;
     MotionBounds start;
     start.include({0.0, system.x_m, system.y_m});
     const double still_m = kStill * links_length_m(system, body);
@@ -301,7 +309,7 @@ Plan plan_methods(const System& system, const NamedMethods& named, const WorldDe
         BodyPlan& made =
             plan.bodies.emplace_back(named[i] ? record_named(body, world, of_body, *named[i], own)
                                               : plan_body(body, world, of_body, own));
-        made.stands_still = made.reason == PlanReason::kGraph && stands_still(body, own);
+        made.stands_still = made.reason != PlanReason::kNamed && stands_still(body, own);
         known.include(own.bounds());
         if (count > 1) recording.add_body(own, system.bodies[i].first_particle, system.bodies[i].first_bar);
     });

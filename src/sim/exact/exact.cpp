@@ -13,6 +13,7 @@
 #include "corda/sim/exact/chain_dynamics.hpp"
 #include "corda/sim/exact/chain_series.hpp"
 #include "corda/sim/exact/elastic_dynamics.hpp"
+#include "corda/sim/exact/net_dynamics.hpp"
 #include "corda/sim/exact/string/part.hpp"
 #include "corda/sim/system.hpp"
 
@@ -45,13 +46,6 @@ void refuse_imaginary_bars(const System& system) {
                       "method exact moves links between neighbours alone, and the system has bars of reach " +
                           std::to_string(bar.reach) + ", which would make a rope a rigid rod");
     }
-}
-
-void refuse_rigid_graph(const Body& body) {
-    if (body.is_chain) return;
-    throw Refusal(
-        Refusal::Reason::kRigidGraph,
-        "method exact moves rigid links only if they form an open chain, not a closed rope or a net");
 }
 
 void refuse_rigid_string_graph(const Body& body) {
@@ -104,7 +98,10 @@ std::unique_ptr<Exact> Exact::make(const System& system, const Forces& forces, c
         return std::make_unique<OdePart>(system, forces, std::make_unique<ElasticDynamics>(system, forces),
                                          def.tolerance);
     }
-    if (!body.material.is_string) refuse_rigid_graph(body);
+    if (!body.material.is_string && !body.is_chain) {
+        return std::make_unique<OdePart>(system, forces, std::make_unique<NetDynamics>(system, forces),
+                                         def.tolerance);
+    }
     refuse_imaginary_bars(system);
     if (body.material.is_string) {
         refuse_rigid_string_graph(body);
@@ -130,8 +127,13 @@ std::string Exact::text_of(const ExactDef& def) {
 double Exact::step_cost_ns(const ExactDef& /*def*/, const Body& body) {
     // A rigid string is searched for events in every step.
     constexpr double kOfAString = 2.5;
-    const bool is_rigid_string = body.material.is_string && body.material.compliance_1_n == 0.0;
-    return (is_rigid_string ? kOfAString : 1.0) * kParticleCostNs * static_cast<double>(body.particle_count);
+    constexpr double kOfANet = 0.032;  // grids of 30 x 30 to 200 x 200, times the root of their particles
+    const auto particles = static_cast<double>(body.particle_count);
+    const bool is_rigid = body.material.compliance_1_n == 0.0;
+    const double share = is_rigid && !body.is_chain            ? std::max(1.0, kOfANet * std::sqrt(particles))
+                         : is_rigid && body.material.is_string ? kOfAString
+                                                               : 1.0;
+    return share * kParticleCostNs * particles;
 }
 
 Status Exact::advance_to(double time_s, State& state) {

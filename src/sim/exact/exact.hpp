@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -18,12 +20,14 @@ namespace corda::sim {
 ///
 /// - Ropes of rigid links in the directions of the links (ChainDynamics), by Taylor series in time (ChainPart),
 ///   or by Dop853 if they are very long or resist bending.
+/// - Closed ropes and nets of rigid bars in the rotations of the groups of bars that turn together
+///   (NetDynamics), by Dop853.
 /// - Bodies whose bars stretch in the positions of their particles (ElasticDynamics), by Dop853.
 /// - Strings of rigid links from event to event (StringPart), by Dop853.
 class Exact : public Solver {
   public:
-    /// Requires one body. Throws corda::Refusal for rigid bars that are imaginary or do not form an open
-    /// chain, for a rigid rope that is taut between two pins, and for what StringPart refuses.
+    /// Requires one body. Throws corda::Refusal for imaginary bars of a rigid rope, for a rigid rope that
+    /// is taut between two pins, and for what NetDynamics and StringPart refuse.
     [[nodiscard]] static std::unique_ptr<Exact> make(const System& system, const Forces& forces,
                                                      const ExactDef& def);
 
@@ -41,7 +45,7 @@ class Exact : public Solver {
     }
     [[nodiscard]] bool tensions(std::vector<double>& tension_n) override {
         dynamics().tensions(output_.data(), tension_n);
-        return true;
+        return std::none_of(tension_n.begin(), tension_n.end(), [](double n) { return std::isnan(n); });
     }
     [[nodiscard]] std::vector<MethodDef> methods() const override { return {def_}; }
 

@@ -40,6 +40,22 @@ double ConstraintSolver::expected_square_frequency(const System& system, double 
     return square_frequency(expected);
 }
 
+std::vector<double> ConstraintSolver::loads(const Motion& motion, Vec2 uniform_m_s2) const {
+    // d . (acceleration of b - acceleration of a) + |velocity of b - velocity of a|^2 = 0.
+    std::vector<double> load;
+    load.reserve(links_.size());
+    for (const auto& [a, b, rest_m] : links_) {
+        const double ux = motion.vx_m_s[b] - motion.vx_m_s[a];
+        const double uy = motion.vy_m_s[b] - motion.vy_m_s[a];
+        const double falls =
+            (inverse_mass_1_kg_[b] == 0.0 ? 0.0 : 1.0) - (inverse_mass_1_kg_[a] == 0.0 ? 0.0 : 1.0);
+        const double dx = motion.x_m[b] - motion.x_m[a];
+        const double dy = motion.y_m[b] - motion.y_m[a];
+        load.push_back(ux * ux + uy * uy + falls * dot({dx, dy}, uniform_m_s2));
+    }
+    return load;
+}
+
 void ConstraintSolver::kick(const Stage& stage, Motion& motion) const {
     double* __restrict const vx = motion.vx_m_s.data();
     double* __restrict const vy = motion.vy_m_s.data();

@@ -86,6 +86,11 @@ class ConstraintSolver {
     /// False if it cannot.
     [[nodiscard]] virtual bool solve(const Motion& motion, std::span<double> right) = 0;
 
+    /// The right-hand side for solve() whose solution is the tension over length, N / m, of each link if this
+    /// acceleration acts on all free particles. Drag does not enter: it is along the velocities, whose
+    /// differences are across the bars.
+    [[nodiscard]] std::vector<double> loads(const Motion& motion, Vec2 uniform_m_s2) const;
+
     /// True if the bars of the last solve() did not depend on each other, so that it was of full rank.
     [[nodiscard]] virtual bool had_full_rank() const { return true; }
 

@@ -340,19 +340,8 @@ bool Rattle::complete(const Trajectory& trajectory) {
 }
 
 bool Rattle::find_tensions() {
-    // d . (acceleration of b - acceleration of a) + |velocity of b - velocity of a|^2 = 0. Drag does not
-    // enter: it is along the velocities, whose differences are across the bars.
     const auto links = constraints_->links();
-    for (std::size_t k = 0; k < links.size(); ++k) {
-        const auto [a, b, rest_m] = links[k];
-        const double ux = output_.vx_m_s[b] - output_.vx_m_s[a];
-        const double uy = output_.vy_m_s[b] - output_.vy_m_s[a];
-        const double falls =
-            (inverse_mass_1_kg_[b] == 0.0 ? 0.0 : 1.0) - (inverse_mass_1_kg_[a] == 0.0 ? 0.0 : 1.0);
-        const double dx = output_.x_m[b] - output_.x_m[a];
-        const double dy = output_.y_m[b] - output_.y_m[a];
-        tension_over_length_n_m_[k] = ux * ux + uy * uy + falls * dot({dx, dy}, forces_.uniform_m_s2());
-    }
+    tension_over_length_n_m_ = constraints_->loads(output_, forces_.uniform_m_s2());
     if (is_elastic()) {
         for (std::size_t k = 0; k < links.size(); ++k) {
             const auto [a, b, rest_m] = links[k];

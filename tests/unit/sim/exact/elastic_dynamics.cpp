@@ -26,14 +26,13 @@ TEST(Refusals, NameTheReason) {
     EXPECT_EQ(test::refusal_of(strings, ExactDef{1e-9}), std::nullopt);
 
     RopeDef ring = reference::straight_rope(3, 1.0, 30.0);
-    ring.points_m = {{0.0, 0.0}, {1.0, 0.0}, {1.0, -1.0}, {0.0, -1.0}};
+    ring.points_m = {{0.0, 0.0}, {1.0, 0.0}, {1.0, -1.0}, {0.0, -1.1}};
     ring.closed = true;
     const System rings = build_system({&ring, 1});
     EXPECT_EQ(test::refusal_of(rings, ExactDef{1e-9}), Reason::kRigidGraph);
     EXPECT_EQ(test::refusal_of(rings, RattleDef{4}), std::nullopt);
 
     NetDef net = test::cloth(3, 3, 0.1);
-    EXPECT_EQ(test::refusal_of(build_system({}, {&net, 1}), ExactDef{1e-9}), Reason::kRigidGraph);
     net.material.compliance_1_n = 1e-3;
     EXPECT_EQ(test::refusal_of(build_system({}, {&net, 1}), ExactDef{1e-9}), std::nullopt);
     EXPECT_EQ(test::refusal_of(build_system({}, {&net, 1}), RattleDef{4}), std::nullopt);

@@ -1,0 +1,150 @@
+#include "corda/sim/exact/bar_groups.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+namespace corda::sim {
+namespace {
+
+/// Two bars are parallel if their vectors differ by no more than this share of the length of all links and of
+/// the largest coordinate: rounding, also that of the displaced starts of checks.
+constexpr double kSameSide = 16.0 * std::numeric_limits<double>::epsilon();
+/// Cells are flat if the sine of their angle is below this. They could open into two motions.
+constexpr double kFlat = 1e-6;
+/// Finds the bars that turn together.
+class Joiner {
+  public:
+    Joiner(const System& system, const std::vector<double>& inverse_mass_1_kg)
+        : system_(system),
+          ends_(system.particle_count()),
+          held_(system.particle_count()),
+          parent_(system.bars.size() + 1) {
+        double farthest_m = 0.0;
+        for (std::uint32_t k = 0; k < system.bars.size(); ++k) {
+            ends_[system.bars[k].a].push_back({system.bars[k].b, k});
+            ends_[system.bars[k].b].push_back({system.bars[k].a, k});
+        }
+        for (std::size_t i = 0; i < held_.size(); ++i) {
+            held_[i] = inverse_mass_1_kg[i] == 0.0;
+            farthest_m = std::max({farthest_m, std::abs(system.x_m[i]), std::abs(system.y_m[i])});
+        }
+        rounding_m_ = kSameSide * (farthest_m + largest_length_m(system));
+        std::iota(parent_.begin(), parent_.end(), 0U);
+        do {
+            is_new_ = false;
+            hold();
+            for (std::uint32_t k = 0; k < system.bars.size(); ++k) join_around(k);
+        } while (is_new_);
+    }
+
+    void read(BarGroups& groups) {
+        constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+        std::vector<std::uint32_t> number(parent_.size(), kNone);
+        for (std::uint32_t k = 0; k < system_.bars.size(); ++k) {
+            std::uint32_t& own = number[find(k)];
+            if (own == kNone && find(k) != find(ground())) own = static_cast<std::uint32_t>(groups.count++);
+            groups.of_bar.push_back(own);
+        }
+        std::replace(groups.of_bar.begin(), groups.of_bar.end(), kNone,
+                     static_cast<std::uint32_t>(groups.count));
+        groups.is_held = held_;
+    }
+
+  private:
+    struct End {
+        std::uint32_t particle;
+        std::uint32_t bar;
+    };
+
+    /// The group of bars that never turn.
+    [[nodiscard]] std::uint32_t ground() const { return static_cast<std::uint32_t>(system_.bars.size()); }
+
+    [[nodiscard]] std::uint32_t find(std::uint32_t k) {
+        while (parent_[k] != k) k = parent_[k] = parent_[parent_[k]];
+        return k;
+    }
+
+    void unite(std::uint32_t k, std::uint32_t l) {
+        k = find(k);
+        l = find(l);
+        if (k == l) return;
+        parent_[std::max(k, l)] = std::min(k, l);
+        is_new_ = true;
+    }
+
+    /// Bars between held particles never turn, and such bars hold the particles to which they lead.
+    void hold() {
+        std::vector<std::uint32_t> to_do;
+        for (std::uint32_t i = 0; i < held_.size(); ++i) {
+            if (held_[i]) to_do.push_back(i);
+        }
+        while (!to_do.empty()) {
+            const std::uint32_t from = to_do.back();
+            to_do.pop_back();
+            for (const auto& [particle, bar] : ends_[from]) {
+                if (held_[particle]) unite(bar, ground());
+                if (held_[particle] || find(bar) != find(ground())) continue;
+                held_[particle] = true;
+                to_do.push_back(particle);
+            }
+        }
+    }
+
+    /// The bar between two particles, ground() if both are held, std::nullopt if there is none.
+    [[nodiscard]] std::optional<std::uint32_t> between(std::uint32_t a, std::uint32_t d) const {
+        if (held_[a] && held_[d]) return ground();
+        for (const End& end : ends_[a]) {
+            if (end.particle == d) return end.bar;
+        }
+        return std::nullopt;
+    }
+
+    [[nodiscard]] Vec2 along(std::uint32_t a, std::uint32_t b) const {
+        return {system_.x_m[b] - system_.x_m[a], system_.y_m[b] - system_.y_m[a]};
+    }
+
+    /// Unites the sides of the triangles, and the opposite sides of the parallelograms, that have this bar as
+    /// a side.
+    void join_around(std::uint32_t bar) {
+        const auto [b, c, reach, rest_m] = system_.bars[bar];
+        const Vec2 base = along(b, c);
+        for (const End& from_b : ends_[b]) {
+            if (from_b.particle == c) continue;
+            const Vec2 side = along(b, from_b.particle);
+            const bool is_flat = std::abs(base.x * side.y - base.y * side.x) <=
+                                 kFlat * rest_m * system_.bars[from_b.bar].rest_m;
+            for (const End& from_c : ends_[c]) {
+                if (from_c.particle == b) continue;
+                if (from_c.particle == from_b.particle) {
+                    unite(bar, from_b.bar);
+                    unite(bar, from_c.bar);
+                    continue;
+                }
+                const Vec2 differ = along(c, from_c.particle) - side;
+                if (is_flat || !(std::abs(differ.x) + std::abs(differ.y) <= rounding_m_)) continue;
+                const auto top = between(from_b.particle, from_c.particle);
+                if (!top) continue;
+                unite(bar, *top);
+                unite(from_b.bar, from_c.bar);
+            }
+        }
+    }
+
+    const System& system_;
+    std::vector<std::vector<End>> ends_;  ///< of the bars at each particle
+    std::vector<bool> held_;
+    std::vector<std::uint32_t> parent_;
+    double rounding_m_ = 0.0;
+    bool is_new_ = false;
+};
+
+}  // namespace
+
+BarGroups::BarGroups(const System& system, const std::vector<double>& inverse_mass_1_kg) {
+    Joiner(system, inverse_mass_1_kg).read(*this);
+}
+
+}  // namespace corda::sim
