@@ -173,7 +173,9 @@ std::vector<Key> net_keys() {
         {"net.grid", "spacing", or_pair(number(kDistance), "[dx, dy]"), "m", required(spacing()),
          "the distance from one particle to the next"},
         {"net.grid", "diagonals", boolean, "", field(&GridDef::has_diagonals),
-         "two imaginary bars cross in each cell"},
+         "two imaginary bars cross in each cell",
+         "they keep cells from shearing: a rigid net becomes a plate, and one that stretches a stiff sheet; "
+         "without them it drapes"},
     };
 }
 

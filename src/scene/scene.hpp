@@ -87,7 +87,7 @@ struct GridDef {
     int rows = 0;  ///< columns * rows is at least 2
     Vec2 from_m;   ///< the upper left particle
     Vec2 spacing_m;
-    bool has_diagonals = true;  ///< imaginary bars, two per cell
+    bool has_diagonals = false;  ///< imaginary bars, two per cell
 
     friend bool operator==(const GridDef&, const GridDef&) = default;
 };

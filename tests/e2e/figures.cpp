@@ -33,7 +33,7 @@ color = "#e08000a0"
 [[rope]]
 hang = { links = 2, length = 0.7, angle_deg = 150.0, from = [0.5, -0.1] }
 [[net]]
-grid = { columns = 5, rows = 4, spacing = 0.15, from = [-0.9, 0.0] }
+grid = { columns = 5, rows = 4, spacing = 0.15, from = [-0.9, 0.0], diagonals = true }
 [solver]
 method = "relaxation"
 step = 0.005

@@ -214,9 +214,9 @@ TEST_F(Output, ErrorsAreJsonWithJson) {
 }
 
 TEST_F(Output, WarnsAboutAnImmobileNetUntilTheAdviceIsFollowed) {
-    const std::string plate = folder_.write(
-        "plate.toml",
-        "schema = 1\n[[net]]\ngrid = { columns = 5, rows = 4, spacing = 0.1 }\n[world]\nduration = 0.2\n");
+    const std::string plate = folder_.write("plate.toml",
+                                            "schema = 1\n[[net]]\ngrid = { columns = 5, rows = 4, spacing = "
+                                            "0.1, diagonals = true }\n[world]\nduration = 0.2\n");
     EXPECT_THAT(run_corda({"plan", plate}).err, HasSubstr("net 0 stands still: its bars make it a plate"));
     for (const char* advice : {"net[0].pinned=[0]", "net[0].compliance=1e-3", "solver.method=relaxation"}) {
         const auto result = run_corda({"plan", plate, "--set", advice});
@@ -255,7 +255,7 @@ bending = 2
 line = { particles = 3, step = [0, -1] }
 string = true
 [[net]]
-grid = { columns = 3, rows = 2, spacing = 1 }
+grid = { columns = 3, rows = 2, spacing = 1, diagonals = true }
 compliance = 0.5
 [solver]
 method = "exact"

@@ -38,7 +38,8 @@ INSTANTIATE_TEST_SUITE_P(
                "the rope has 2 shapes (hang, points); keep one of them",
                {{{kHang, ""}}, {{"points = [[0, 0], [1, 0]]", ""}}}},
         Remedy{"net_beyond_the_memory",
-               scene_of("[[net]]\ngrid = { columns = 1000, rows = 900, spacing = 0.1 }\npinned = []\n"
+               scene_of("[[net]]\ngrid = { columns = 1000, rows = 900, spacing = 0.1, diagonals = true "
+                        "}\npinned = []\n"
                         "[solver]\nmethod = \"rattle\""),
                "plan SCENE",
                "give fewer particles, or method relaxation",

@@ -93,7 +93,8 @@ TEST(Strobe, CanHaveTenThousandPoses) {
 
 TEST(Strobe, RefusesTooManyLines) {
     Scene scene = parse_scene(
-        "schema = 1\n[[net]]\ngrid = { columns = 120, rows = 100, spacing = 0.1 }\n[world]\nduration = 0.1\n"
+        "schema = 1\n[[net]]\ngrid = { columns = 120, rows = 100, spacing = 0.1, diagonals = true "
+        "}\n[world]\nduration = 0.1\n"
         "[solver]\nmethod = \"relaxation\"\n[video]\nsize = [64, 64]\nfps = 30\n",
         "net.toml");
     Film film(scene);

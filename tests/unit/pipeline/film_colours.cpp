@@ -52,7 +52,8 @@ TEST(Colours, DoNotChangeTheMotion) {
 TEST(Colours, OfUnknownTensionsAreRefused) {
     // Imaginary bars that share the load in any way.
     const Scene scene = parse_scene(
-        "schema = 1\n[[net]]\ngrid = { columns = 4, rows = 3, spacing = 0.2 }\n[style]\ncolor_by = "
+        "schema = 1\n[[net]]\ngrid = { columns = 4, rows = 3, spacing = 0.2, diagonals = true "
+        "}\n[style]\ncolor_by = "
         "\"tension\"\n",
         "stiff.toml");
     const auto failure = test::failure_of([&] { static_cast<void>(Film(scene)); });

@@ -31,7 +31,8 @@ TEST(TrackedParticle, IsInTheMiddleOfBodiesWithoutAFreeEnd) {
     const System system = system_with(
         "[[rope]]\npoints = [[0, 0], [1, -1], [2, -1.5], [3, -1], [4, 0]]\npinned = [0, -1]\n"
         "[[rope]]\npoints = [[0, 0], [1, 0], [1, -1], [0, -1]]\nclosed = true\n"
-        "[[net]]\ngrid = { columns = 5, rows = 3, spacing = 0.1 }\npinned = [[0, 0], [4, 0]]\n");
+        "[[net]]\ngrid = { columns = 5, rows = 3, spacing = 0.1, diagonals = true }\npinned = [[0, 0], [4, "
+        "0]]\n");
     const auto followed = tracked_particles(system);
     ASSERT_EQ(followed.size(), 3U);
     EXPECT_EQ(particle_text(system, followed[0]), "particle 2 of rope 0 (the middle one of its free ones)");

@@ -66,7 +66,8 @@ TEST(SceneLimits, ParticlesOfNets) {
 TEST(SceneLimits, BarsOfNetsCountWithTheRopes) {
     // A rope of 950000 particles with bars up to reach 21 has 19949769 of them, a grid of 200 x 200 158802.
     expect_limit(
-        "schema = 1\n[[net]]\ngrid = { columns = 200, rows = 200, spacing = 0.001 }\n[[rope]]\n"
+        "schema = 1\n[[net]]\ngrid = { columns = 200, rows = 200, spacing = 0.001, diagonals = true "
+        "}\n[[rope]]\n"
         "line = { particles = 950000, step = [0, -0.001] }\n[solver]\nmethod = \"relaxation\"\n"
         "reach = 21\n",
         "swing.toml:2:1: net[0]: ", "20108571 bars, over the limit of 20000000; give fewer");
@@ -74,21 +75,23 @@ TEST(SceneLimits, BarsOfNetsCountWithTheRopes) {
 
 TEST(SceneLimits, BarUpdatesOfNets) {
     expect_limit(
-        "schema = 1\n[[net]]\ngrid = { columns = 1000, rows = 1000, spacing = 0.001 }\n[solver]\n"
+        "schema = 1\n[[net]]\ngrid = { columns = 1000, rows = 1000, spacing = 0.001, diagonals = true "
+        "}\n[solver]\n"
         "method = \"relaxation\"\nsweeps = 1000000\n",
         "swing.toml:6:10: solver.sweeps: ",
         "3994002 bars, 1000000 sweeps and 600 steps are 2.3964e+15 bar updates");
 }
 
 TEST(SceneLimits, MemoryOfWhatFactorsOfANetFillIn) {
-    const std::string net = "schema = 1\n[[net]]\ngrid = { columns = 1000, rows = 1000, spacing = 0.001 }\n";
+    const std::string net =
+        "schema = 1\n[[net]]\ngrid = { columns = 1000, rows = 1000, spacing = 0.001, diagonals = true }\n";
     expect_limit(net, "swing.toml:2:1: net[0]: ", "take some 11 GiB of memory, over the limit of 8");
     EXPECT_NO_THROW(static_cast<void>(parse_scene(net + "[solver]\nmethod = \"relaxation\"\n", "a")));
 }
 
 TEST(SceneLimits, ASceneOfNetsAloneFailsAtTheFirst) {
     expect_limit(
-        "schema = 1\n[[net]]\ngrid = { columns = 1000, rows = 1000, spacing = 0.001 }\n"
+        "schema = 1\n[[net]]\ngrid = { columns = 1000, rows = 1000, spacing = 0.001, diagonals = true }\n"
         "[[net]]\ngrid = { columns = 2, rows = 1, spacing = 1 }\n[solver]\nmethod = \"relaxation\"\n",
         "swing.toml:4:1: net[1]: ", "1000002 particles, over the limit");
 }
@@ -261,11 +264,12 @@ TEST(CostNotice, IsGivenOfAMotionThatTakesLongWithItsReason) {
     EXPECT_THAT(notice_of("world.duration = 1.0\n[solver]\nmethod = \"rattle\"\norder = 8\n[[rope]]\n"
                           "hang = { links = 2000, length = 3.0, angle_deg = 80 }\n"),
                 HasSubstr("may take 19 s"));  // measured 20 s
-    EXPECT_THAT(
-        notice_of("world.duration = 0.05\n[[net]]\ngrid = { rows = 50, columns = 50, spacing = 0.01 }\n"
-                  "string = true\ncompliance = 1e-5\n"),
-        HasSubstr("may take 42 s"));  // measured 37 s
-    const std::string plate = notice_of("[[net]]\ngrid = { rows = 80, columns = 80, spacing = 0.02 }\n");
+    EXPECT_THAT(notice_of("world.duration = 0.05\n[[net]]\ngrid = { rows = 50, columns = 50, spacing = 0.01, "
+                          "diagonals = true }\n"
+                          "string = true\ncompliance = 1e-5\n"),
+                HasSubstr("may take 42 s"));  // measured 37 s
+    const std::string plate =
+        notice_of("[[net]]\ngrid = { rows = 80, columns = 80, spacing = 0.02, diagonals = true }\n");
     EXPECT_THAT(plate, AllOf(HasSubstr("give less speed or gravity, fewer particles or")));
     EXPECT_THAT(
         notice_of("[solver]\nmethod = \"relaxation\"\nreach = 1\nsweeps = 100\nstep = 0.00001\n" + rope),
@@ -276,7 +280,7 @@ TEST(CostNotice, IsNotGivenOfAMotionThatTakesASecond) {
     EXPECT_EQ(notice_of("[[rope]]\nhang = { links = 40, length = 1.0, angle_deg = 90 }\n"), "");
     EXPECT_EQ(notice_of("[[rope]]\nhang = { links = 1000, length = 1.0, angle_deg = 0 }\n"), "");
     EXPECT_EQ(notice_of("world.duration = 0.05\n[solver]\nmethod = \"rattle\"\n[[net]]\n"
-                        "grid = { rows = 60, columns = 60, spacing = 0.01 }\n"),
+                        "grid = { rows = 60, columns = 60, spacing = 0.01, diagonals = true }\n"),
               "");
 }
 

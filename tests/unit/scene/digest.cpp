@@ -57,7 +57,7 @@ TEST(Digest, DiffersInTheKeyThatDiffers) {
              {"rope[0].hang.length=2.0000000000000004",
               "rope[0].hang.length is 2 and was 2.0000000000000004"},
              {"net[0].compliance=1e-5", "net[0].compliance is 0.0001 and was 1e-5"},
-             {"net[0].grid.diagonals=false", "net[0].grid.diagonals is true and was false"},
+             {"net[0].grid.diagonals=true", "net[0].grid.diagonals is false and was true"},
              {"net[0].grid.spacing=[0.5, 1]", "net[0].grid.spacing is 0.5 and was [0.5, 1]"},
              {"solver.tolerance_px=0.2", "solver.tolerance_px is 0.1 and was 0.2"},
          }) {

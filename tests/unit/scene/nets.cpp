@@ -52,7 +52,7 @@ TEST(SceneGrid, OneSpacingIsThatOfBothDirections) {
 }
 
 TEST(SceneGrid, OrdersBarsAlongTheRowsThenTheColumnsThenTheDiagonals) {
-    const auto net = grid("columns = 3, rows = 2, spacing = 1");
+    const auto net = grid("columns = 3, rows = 2, spacing = 1, diagonals = true");
     EXPECT_THAT(bars_of(net, true), ElementsAre(Pair(0, 1), Pair(1, 2), Pair(3, 4), Pair(4, 5), Pair(0, 3),
                                                 Pair(1, 4), Pair(2, 5)));
     EXPECT_THAT(bars_of(net, false), ElementsAre(Pair(0, 4), Pair(1, 3), Pair(1, 5), Pair(2, 4)));
@@ -62,12 +62,14 @@ TEST(SceneGrid, OrdersBarsAlongTheRowsThenTheColumnsThenTheDiagonals) {
 
 TEST(SceneGrid, HasTheBarsOfACloth) {
     // 39 * 30 + 40 * 29 threads, two diagonals in each of 39 * 29 cells.
-    const auto net = grid("columns = 40, rows = 30, spacing = 0.1");
+    const auto net = grid("columns = 40, rows = 30, spacing = 0.1, diagonals = true");
     EXPECT_EQ(bars_of(net, true).size(), 2330U);
     EXPECT_EQ(bars_of(net, false).size(), 2262U);
-    const auto open = grid("columns = 40, rows = 30, spacing = 0.1, diagonals = false");
-    EXPECT_EQ(bars_of(open, true).size(), 2330U);
-    EXPECT_THAT(bars_of(open, false), IsEmpty());
+    for (const char* more : {"", ", diagonals = false"}) {
+        const auto open = grid(std::string("columns = 40, rows = 30, spacing = 0.1") + more);
+        EXPECT_EQ(bars_of(open, true).size(), 2330U);
+        EXPECT_THAT(bars_of(open, false), IsEmpty());
+    }
 }
 
 TEST(SceneGrid, MayBeASingleRowOrColumn) {
@@ -124,7 +126,8 @@ TEST(SceneNet, HasMassesVelocitiesAndMaterialAsARope) {
 
 TEST(SceneNet, ComesAfterTheRopesWhereverItStands) {
     const Scene scene = parse_scene(
-        "schema = 1\n[[net]]\ngrid = { columns = 2, rows = 2, spacing = 1 }\nwidth_px = 7\ncolor = "
+        "schema = 1\n[[net]]\ngrid = { columns = 2, rows = 2, spacing = 1, diagonals = true }\nwidth_px = "
+        "7\ncolor = "
         "\"#010203\"\n[[rope]]\nline = { particles = 3, step = [1, 0] }\nwidth_px = 8\n",
         "a");
     ASSERT_EQ(scene.body_styles.size(), 2U);
@@ -148,7 +151,7 @@ TEST(SceneNet, AloneIsAScene) {
 TEST(SceneNet, SettingsReachIntoIt) {
     const std::string keys = "grid = { columns = 3, rows = 2, spacing = 1 }\n";
     EXPECT_EQ(net_of(keys, {"net[0].grid.columns=5"}).points_m.size(), 10U);
-    EXPECT_EQ(bars_of(net_of(keys, {"net[0].grid.diagonals=false"}), false).size(), 0U);
+    EXPECT_EQ(bars_of(net_of(keys, {"net[0].grid.diagonals=true"}), false).size(), 4U);
     EXPECT_EQ(net_of(keys, {"net[0].mass=2"}).mass_kg[5], 2.0);
     EXPECT_THAT(net_of(keys, {"net[0].pinned=[[1,-1]]"}).pinned, ElementsAre(4U));
     EXPECT_EQ(error_of("schema = 1\n[[net]]\n" + keys, {"net[0].grid.colums=5"}).message,
