@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 or 13 packages that Corda needs; does nothing if all are installed.
-# Usage: setup.sh [build|test|platforms|cluster|list]
+# Usage: setup.sh [build|test|platforms|cluster|peers|list]
 #   test        adds the packages of the tests
 #   platforms   adds the packages that build and run AArch64 programs here
 #   cluster     adds the packages that run a Slurm cluster here
+#   peers       adds the libraries that tests/benchmark/peers.sh compares Corda with
 #   list        prints the packages of build, one per line, and installs nothing
 set -euo pipefail
 
@@ -84,6 +85,20 @@ if [[ "${1:-build}" == cluster ]]; then
         slurm-wlm           # its controller and nodes
         munge               # by which they trust each other
         iproute2            # a network of their own: ip
+    )
+fi
+if [[ "${1:-build}" == peers ]]; then
+    packages+=(
+        libmujoco-dev       # MuJoCo
+        libbullet-dev       # Bullet, in double precision too
+        libbox2d-dev        # Box2D
+        libsimbody-dev      # Simbody
+        libode-dev          # ODE
+        libchipmunk-dev     # Chipmunk
+        libdart-dev         # DART
+        libsundials-dev     # CVODE and IDA
+        libboost-dev        # Boost.odeint
+        python3-matplotlib  # plots with many labelled lines
     )
 fi
 
