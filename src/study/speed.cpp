@@ -14,20 +14,12 @@
 namespace corda::study {
 namespace {
 
-/// The accuracies that are compared, and what the fastest of MuJoCo 3.12, Simbody 3.7, Box2D 2.4 and Bullet
-/// 3.24 takes for each on the source report's swing, in ms per simulated second on one core of the machine
-/// that src/study/README.md names.
-struct Accuracy {
-    double error;
-    double peer_ms;
-};
-constexpr std::array<Accuracy, 6> kAccuracies{
-    {{1e-3, 0.94}, {1e-4, 3.9}, {1e-6, 4.0}, {1e-8, 15}, {1e-9, 15}, {1e-12, 85}}};
+/// The accuracies that are compared.
+constexpr std::array<double, 6> kAccuracies{1e-3, 1e-4, 1e-6, 1e-8, 1e-9, 1e-12};
 
 /// The runs on a problem and their results.
 struct Sweep {
     Subject subject;
-    bool has_peers = false;
     std::vector<Measurement> results;
 
     [[nodiscard]] const Problem& problem() const { return subject.problem; }
@@ -82,20 +74,13 @@ report::Table fastest_table(const Sweep& sweep) {
                      {"ms_per_simulated_s", "ms per simulated second"},
                      {"ms_least", "least"},
                      {"ms_largest", "largest"}};
-    if (sweep.has_peers) {
-        table.columns.push_back({"peer_ms_per_simulated_s", "best peer, ms"});
-        table.note =
-            "Peers: the fastest of MuJoCo 3.12, Simbody 3.7, Box2D 2.4 and Bullet 3.24 at this accuracy, "
-            "measured on another machine of this kind, 2026-11, not by this run.";
-    }
-    for (const auto& [error, peer_ms] : kAccuracies) {
+    for (const double error : kAccuracies) {
         std::vector<report::Cell> row{error, "none", {}, {}, {}, {}, {}};
         if (const Measurement* const best = cheapest_within(sweep.results, error)) {
             const report::Times& ms = best->ms_per_simulated_s;
             row = {error,       best->label, best->parameter, best->rms_error,
                    ms.median(), ms.least(),  ms.largest()};
         }
-        if (sweep.has_peers) row.emplace_back(peer_ms);
         table.add(std::move(row));
     }
     return table;
@@ -275,7 +260,6 @@ ChapterWork speed_work(const StudyDef& def) {
     std::vector<std::shared_ptr<Sweep>> sweeps;
     for (Problem& problem : problems_of(def)) {
         auto sweep = std::make_shared<Sweep>();
-        sweep->has_peers = !def.scene && sweeps.empty();
         sweep->subject.problem = std::move(problem);
         add_jobs(sweep, def.quick, work.jobs);
         sweeps.push_back(std::move(sweep));
