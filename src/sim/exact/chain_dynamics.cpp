@@ -60,9 +60,8 @@ ChainDynamics::ChainDynamics(const System& system, std::span<const Body> bodies,
     bending_ = ChainBending(system, links_, length_m_);
     set_timescales();
     const std::size_t links = length_m_.size();
-    for (std::vector<double>* array : {&cosine_, &sine_, &along_, &pivot_, &weight_, &tension_n_}) {
+    for (std::vector<double>* array : {&beyond_, &cosine_, &sine_, &along_, &pivot_, &weight_, &tension_n_})
         array->assign(links, 0.0);
-    }
     initial_state_.assign(3 * links + extra_count_, 0.0);
     double* const y = initial_state_.data();
     for (Chain& chain : chains_) {
@@ -77,6 +76,7 @@ ChainDynamics::ChainDynamics(const System& system, std::span<const Body> bodies,
             y[links + chain.first_link + i] = along.y / distance_m;
         }
         add_initial_velocities(system, chain, y);
+        if (!chain.starts_pinned) add_center_of_mass(system, chain, y);
     }
     project(y);
 }
@@ -196,12 +196,24 @@ void ChainDynamics::add_initial_velocities(const System& system, const Chain& ch
         const std::size_t link = chain.first_link + i;
         y[2 * links + link] = (y[2 * links + link] + pull_across(chain, i)) * inverse_length_1_m_[link];
     }
-    if (chain.starts_pinned) return;
-    const std::size_t first = chain.first_link;
-    const Vec2 start = velocity(chain.first_particle);
-    const double impulse = chain.inverse_mass_1_kg * tension_n_[first];
-    y[chain.first_extra + 2] = start.x + impulse * y[first];
-    y[chain.first_extra + 3] = start.y + impulse * y[links + first];
+}
+
+void ChainDynamics::add_center_of_mass(const System& system, const Chain& chain, double* y) {
+    double mass_kg = 0.0;
+    Vec2 momentum_n_s;
+    for (std::size_t i = chain.link_count + 1; i-- > 0;) {
+        const std::size_t particle = i == 0 ? chain.first_particle : chain.particle(i - 1);
+        mass_kg += mass_kg_[particle];
+        momentum_n_s = momentum_n_s + mass_kg_[particle] * at(system.vx_m_s, system.vy_m_s, particle);
+        if (i > 0) beyond_[chain.first_link + i - 1] = mass_kg;
+    }
+    for (std::size_t i = 0; i < chain.link_count; ++i) beyond_[chain.first_link + i] /= mass_kg;
+    double* const extra = y + chain.first_extra;
+    walk(chain, y, [&](std::size_t particle, Vec2 moved, Vec2 /*velocity*/) {
+        if (particle == chain.first_particle) extra[0] = -moved.x, extra[1] = -moved.y;
+    });
+    extra[2] = momentum_n_s.x / mass_kg;
+    extra[3] = momentum_n_s.y / mass_kg;
 }
 
 std::vector<ErrorScale> ChainDynamics::error_scales() const {
@@ -290,11 +302,10 @@ void ChainDynamics::add_bending_along(const Chain& chain) {
     }
 }
 
-void ChainDynamics::add_bending_across(const Chain& chain, const double* y, double* slope) const {
-    const std::size_t links = link_count();
+void ChainDynamics::add_bending_across(const Chain& chain, double* slope) const {
     const std::size_t first = chain.first_link;
     const double* const couple = bending_.couple_n().data();
-    double* const slope_omega = slope + 2 * links;
+    double* const slope_omega = slope + 2 * link_count();
     for (std::size_t i = first; i < first + chain.link_count; ++i) {
         const bool is_first = i == first;
         const bool is_last = i + 1 == first + chain.link_count;
@@ -304,10 +315,6 @@ void ChainDynamics::add_bending_across(const Chain& chain, const double* y, doub
         slope_omega[i] +=
             ((near_1_kg + inverse_mass_1_kg_[i]) * couple[i] - after - before) * inverse_length_1_m_[i];
     }
-    if (chain.starts_pinned) return;
-    const Vec2 kick = (chain.inverse_mass_1_kg * couple[first]) * left_of({y[first], y[links + first]});
-    slope[chain.first_extra + 2] -= kick.x;
-    slope[chain.first_extra + 3] -= kick.y;
 }
 
 void ChainDynamics::derivative(const double* y, double* slope) {
@@ -335,22 +342,16 @@ void ChainDynamics::evaluate(const double* y, double* slope) {
         slope_s[i] = omega[i] * c[i];
     }
     for (const Chain& chain : chains_) {
-        Vec2 pull_m_s2;
-        if (chain.link_count > 0) {
-            find_tensions<kBends>(chain, y);
-            turn(chain, y, slope_omega);
-            const std::size_t first = chain.first_link;
-            pull_m_s2 = (chain.inverse_mass_1_kg * tension_n_[first]) * Vec2{c[first], s[first]};
-        }
+        find_tensions<kBends>(chain, y);
+        if (chain.link_count > 0) turn(chain, y, slope_omega);
         if (!chain.starts_pinned) {
             const double* const extra = y + chain.first_extra;
             double* const slope_extra = slope + chain.first_extra;
-            slope_extra[0] = extra[2];
-            slope_extra[1] = extra[3];
-            slope_extra[2] = uniform_m_s2.x + pull_m_s2.x - drag_1_s * extra[2];
-            slope_extra[3] = uniform_m_s2.y + pull_m_s2.y - drag_1_s * extra[3];
+            std::copy_n(extra + 2, 2, slope_extra);
+            slope_extra[2] = uniform_m_s2.x - drag_1_s * extra[2];
+            slope_extra[3] = uniform_m_s2.y - drag_1_s * extra[3];
         }
-        if constexpr (kBends) add_bending_across(chain, y, slope);
+        if constexpr (kBends) add_bending_across(chain, slope);
     }
 }
 
@@ -415,28 +416,32 @@ void ChainDynamics::close(const Chain& chain, double* y) const {
         open = open - (length_m_[i] * y[2 * links + i]) * left_of(direction(i));
     }
     const Vec2 multiplier = matrix.solve(open);
-    for (std::size_t i = chain.first_link; i < end; ++i) {
+    for (std::size_t i = chain.first_link; i < end; ++i)
         y[2 * links + i] += dot(left_of(direction(i)), multiplier);
-    }
 }
 
 template <class Visit>
 void ChainDynamics::walk(const Chain& chain, const double* y, const Visit& visit) const {
     const std::size_t links = link_count();
+    const auto along = [&](std::size_t link) { return length_m_[link] * Vec2{y[link], y[links + link]}; };
+    const auto turning = [&](std::size_t link) {
+        return (length_m_[link] * y[2 * links + link]) * left_of({y[link], y[links + link]});
+    };
     Vec2 moved;
     Vec2 velocity;
     if (!chain.starts_pinned) {
-        const double* const extra = y + chain.first_extra;
-        moved = {extra[0], extra[1]};
-        velocity = {extra[2], extra[3]};
+        moved = {y[chain.first_extra], y[chain.first_extra + 1]};
+        velocity = {y[chain.first_extra + 2], y[chain.first_extra + 3]};
+        for (std::size_t i = chain.first_link; i < chain.first_link + chain.link_count; ++i) {
+            moved = moved - beyond_[i] * along(i);
+            velocity = velocity - beyond_[i] * turning(i);
+        }
         visit(chain.first_particle, moved, velocity);
     }
     const std::size_t moving = chain.ends_pinned ? chain.link_count - 1 : chain.link_count;
     for (std::size_t i = 0; i < moving; ++i) {
-        const std::size_t link = chain.first_link + i;
-        const Vec2 direction{y[link], y[links + link]};
-        moved = moved + length_m_[link] * direction;
-        velocity = velocity + (length_m_[link] * y[2 * links + link]) * left_of(direction);
+        moved = moved + along(chain.first_link + i);
+        velocity = velocity + turning(chain.first_link + i);
         visit(chain.particle(i), moved, velocity);
     }
 }
@@ -478,9 +483,8 @@ double ChainDynamics::energy_j(const double* y) const {
 void ChainDynamics::tensions(const double* y, std::vector<double>& tension_n) {
     find_all_tensions(y);
     tension_n.assign(links_.size() - 1, 0.0);
-    for (std::size_t i = 0; i < tension_n.size(); ++i) {
+    for (std::size_t i = 0; i < tension_n.size(); ++i)
         if (links_[i].moves) tension_n[i] = tension_n_[links_[i].index];
-    }
 }
 
 }  // namespace corda::sim

@@ -18,8 +18,8 @@ namespace corda::sim {
 /// solve a tridiagonal system.
 ///
 /// A state has one array each of c, s and w over the links of all chains, then, for every chain without a
-/// pin, the displacement of its first particle from the start and its velocity (x, y, vx, vy). It does not
-/// depend on where the rope is. A chain with one pin starts at it.
+/// pin, the place of its centre of mass, relative to where its first particle starts, and its velocity (x, y,
+/// vx, vy). It does not depend on where the rope is. A chain with one pin starts at it.
 class ChainDynamics : public Dynamics {
   public:
     /// A chain between two pins, a pin and a free end, or two free ends; or one free particle without a link.
@@ -103,6 +103,8 @@ class ChainDynamics : public Dynamics {
     void add_body(const System& system, const Body& body);
     void add_chain(const System& system, const Body& body, std::size_t from, std::size_t to);
     void add_initial_velocities(const System& system, const Chain& chain, double* y);
+    /// Requires the directions and the angular velocities.
+    void add_center_of_mass(const System& system, const Chain& chain, double* y);
     void set_timescales();
     // kBends: with the couples of bending, which have been found; a parameter, so that loops have no branch.
     template <bool kBends>
@@ -118,7 +120,7 @@ class ChainDynamics : public Dynamics {
     void solve_tensions(const Chain& chain);
     [[nodiscard]] double pull_across(const Chain& chain, std::size_t link) const;
     void add_bending_along(const Chain& chain);
-    void add_bending_across(const Chain& chain, const double* y, double* slope) const;
+    void add_bending_across(const Chain& chain, double* slope) const;
     /// Calls visit(particle, displacement from the chain's start, velocity) for each free particle of a
     /// chain.
     template <class Visit>
@@ -138,6 +140,7 @@ class ChainDynamics : public Dynamics {
     std::vector<double> length_m_;
     std::vector<double> inverse_length_1_m_;
     std::vector<double> inverse_mass_1_kg_;  ///< of the particle at the link's far end
+    std::vector<double> beyond_;             ///< share of a free chain's mass that is beyond the link
     // Scratch of an evaluation.
     std::vector<double> cosine_;  ///< W_i C_i
     std::vector<double> sine_;    ///< W_i S_i

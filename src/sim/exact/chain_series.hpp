@@ -48,8 +48,7 @@ struct SeriesArrays {
     Vec2 fall_m_s2;                        ///< the same if the start is not pinned
     double unit_s = 1.0;                   ///< unit of time: coefficient k belongs to (t / unit_s)^k
 
-    // Directions of the first and the last link; velocity and position of the first particle if it is not
-    // pinned.
+    // Directions of the first and the last link; velocity and place of the centre of mass of a free chain.
     Series first_c{}, first_s{}, last_c{}, last_s{}, vx{}, vy{}, x{}, y{};
 
     std::vector<Lanes> rows;  ///< kRows series of order + 1 coefficients per block

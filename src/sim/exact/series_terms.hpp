@@ -399,17 +399,11 @@ CORDA_INLINE void turn_direction(SeriesArrays& a, std::size_t link, std::size_t 
     s[k + 1] = share * to_s;
 }
 
-/// Coefficient k + 1 of the first particle's velocity and position.
-CORDA_INLINE void move_start(SeriesArrays& a, std::size_t k, double share) {
-    const double* const tension = a.row(0, Row::kTension, 0);
-    Vec2 pull;
-    for (std::size_t j = 0; j <= k; ++j) {
-        pull.x += tension[kLanes * j] * a.first_c[k - j];
-        pull.y += tension[kLanes * j] * a.first_s[k - j];
-    }
+/// Coefficient k + 1 of the velocity and place of a free chain's centre of mass.
+CORDA_INLINE void move_center(SeriesArrays& a, std::size_t k, double share) {
     const Vec2 fall = k == 0 ? a.fall_m_s2 : Vec2{};
-    a.vx[k + 1] = share * (fall.x + a.first_inverse_mass_1_kg * pull.x - a.drag_1_s * a.vx[k]);
-    a.vy[k + 1] = share * (fall.y + a.first_inverse_mass_1_kg * pull.y - a.drag_1_s * a.vy[k]);
+    a.vx[k + 1] = share * (fall.x - a.drag_1_s * a.vx[k]);
+    a.vy[k + 1] = share * (fall.y - a.drag_1_s * a.vy[k]);
     a.x[k + 1] = share * a.vx[k];
     a.y[k + 1] = share * a.vy[k];
 }
@@ -434,7 +428,7 @@ CORDA_INLINE void expand(SeriesArrays& a, const double* c, const double* s, cons
             turn_direction(a, 0, k, share, a.first_c, a.first_s);
             turn_direction(a, last, k, share, a.last_c, a.last_s);
         }
-        if (a.first_inverse_mass_1_kg > 0.0) move_start(a, k, share);
+        if (a.first_inverse_mass_1_kg > 0.0) move_center(a, k, share);
     }
 }
 

@@ -130,5 +130,24 @@ TEST(Exact, ClosedBetweenTwoPinsKeepsEnergyAndEnds) {
     }
 }
 
+TEST(Exact, DoesNotMoveAHeavyParticleBehindLightOnes) {
+    for (const std::size_t heavy : {0U, 1U, 2U}) {
+        RopeDef rope = reference::rope_through({{0.0, 0.0}, {1.0, 0.0}, {1.5, 0.5}});
+        rope.pinned = {};
+        rope.mass_kg.assign(3, 1e-6);
+        rope.mass_kg[heavy] = 1e9;
+        rope.velocity_m_s.assign(3, {0.0, -5.0});
+        rope.velocity_m_s[heavy] = {0.0, 1e-14};  // as much momentum
+        WorldDef world;
+        world.gravity_m_s2 = {};
+        test::ExactRun run(rope, 1e-5, world);
+        ASSERT_TRUE(run.go(5.0, 300));
+        // Within the recoil of 1e-15 of the light ones, and rounding; 1e-8 if the state held a light
+        // particle.
+        EXPECT_NEAR(run.state().x_m[heavy], rope.points_m[heavy].x, 2e-14) << heavy;
+        EXPECT_NEAR(run.state().y_m[heavy], rope.points_m[heavy].y, 2e-14) << heavy;
+    }
+}
+
 }  // namespace
 }  // namespace corda::sim
