@@ -40,6 +40,8 @@ struct ClosingMatrix {
         xy += length_m * across.x * across.y;
         yy += length_m * across.y * across.y;
     }
+    /// The determinant in parts of the squared trace.
+    [[nodiscard]] double regularity() const { return (xx * yy - xy * xy) / ((xx + yy) * (xx + yy)); }
     [[nodiscard]] Vec2 solve(Vec2 right) const {
         const double extra = 1e-14 * (xx + yy);
         const double x1 = xx + extra;
@@ -418,6 +420,13 @@ void ChainDynamics::close(const Chain& chain, double* y) const {
     const Vec2 multiplier = matrix.solve(open);
     for (std::size_t i = chain.first_link; i < end; ++i)
         y[2 * links + i] += dot(left_of(direction(i)), multiplier);
+}
+
+double ChainDynamics::spread(const Chain& chain, const double* y) const {
+    ClosingMatrix matrix;
+    for (std::size_t i = chain.first_link; i < chain.first_link + chain.link_count; ++i)
+        matrix.add(length_m_[i], {y[i], y[link_count() + i]});
+    return matrix.regularity();
 }
 
 template <class Visit>

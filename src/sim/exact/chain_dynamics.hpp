@@ -78,6 +78,10 @@ class ChainDynamics : public Dynamics {
     /// changes of the links' directions and angular velocities.
     void close(const Chain& chain, double* y) const;
 
+    /// 0 if all links of a chain are in one line, where they do not determine the tensions between two pins;
+    /// grows with the square of the angles from it, up to 1/4.
+    [[nodiscard]] double spread(const Chain& chain, const double* y) const;
+
     [[nodiscard]] std::size_t link_count() const { return length_m_.size(); }
     [[nodiscard]] const std::vector<Chain>& chains() const { return chains_; }
     [[nodiscard]] const Forces& forces() const { return forces_; }

@@ -174,6 +174,19 @@ std::size_t order_for(double tolerance) {
     return tolerance >= 1e-12 ? 16 : kMaxSeriesOrder;
 }
 
+// Where all links of a chain between two pins are in line, as in a parallelogram, its tensions are quotients
+// of numbers that vanish, and at an angle a from the line rounding of 1e-16 appears as 1e-16 / a^2. The
+// motion itself is smooth, so steps must lead over the line from afar.
+constexpr double kNearLine = 3e-3;  ///< ChainDynamics::spread() of a state that steps should not start from
+constexpr double kOnLine = 1e-4;    ///< spread() on the line, in parts of that at the start of a step
+constexpr double kOver = 1.3;       ///< a step over the line, in parts of the time to it
+constexpr double kShort = 0.6;      ///< a step that cannot lead over the line, in parts of the time to it
+/// A step over the line in parts of what the tolerance allows: up to 220 times the error, half the tolerance.
+constexpr double kMaxLengthening = 1.4;
+constexpr int kSamples = 16;
+constexpr int kRefinements = 4;
+constexpr double kRefinement = 0.1;
+
 /// Cost of a step per link, in updates of count_work().
 constexpr std::uint64_t kUpdatesPerLink = 8;
 
@@ -308,6 +321,7 @@ ChainPart::ChainPart(const System& system, const Forces& forces, double toleranc
       dynamics_(system, system.bodies, forces),
       state_(dynamics_.initial_state()) {
     output_ = state_;
+    ahead_ = state_;
     movers_.reserve(dynamics_.chains().size());
     for (const ChainDynamics::Chain& chain : dynamics_.chains()) {
         StepControl control = step_control(chain.inverse_timescale_1_s, tolerance);
@@ -326,7 +340,9 @@ Status ChainPart::step(Mover& mover) {
     const double longest_step_s = mover.series.longest_step_s(control.tolerance);
     const double largest_s = last_s > 0.0 ? std::min(kMaxStepGrowth * last_s, control.largest_s) : unit_s;
     // Time and step agree to the last bit, so that no rounding of times adds up.
-    const double end_s = mover.end_s + std::min(longest_step_s, largest_s);
+    double wanted_s = std::min(longest_step_s, largest_s);
+    if (mover.chain.ends_pinned) wanted_s = past_line(mover, wanted_s);
+    const double end_s = mover.end_s + wanted_s;
     const double step_s = end_s - mover.end_s;
     if (!(step_s > control.smallest_s) || mover.steps == StepControl::kMaxSteps) return Status::kDiverged;
     mover.series.evaluate(step_s, state_.data());
@@ -335,6 +351,36 @@ Status ChainPart::step(Mover& mover) {
     mover.end_s = end_s;
     ++mover.steps;
     return Status::kOk;
+}
+
+double ChainPart::past_line(Mover& mover, double step_s) {
+    const auto spread = [&](double time_s) {
+        mover.series.evaluate(time_s, ahead_.data());
+        return dynamics_.spread(mover.chain, ahead_.data());
+    };
+    if (!(spread(step_s) < kNearLine)) return step_s;
+    const double longest_s = std::max(kMaxLengthening * step_s, mover.end_s - mover.start_s);
+    const double part_s = kMaxLengthening * longest_s / kSamples;
+    double before = spread(0.0);
+    const double start = before;
+    double here = spread(part_s);
+    double after = 0.0;
+    double time_s = part_s;
+    for (int k = 2; k <= kSamples; ++k, time_s += part_s, before = here, here = after) {
+        after = spread(time_s + part_s);
+        if (here < before && here <= after) break;
+    }
+    if (!(here < before && here <= after)) return step_s;
+    // Near a line, the spread is a parabola.
+    double width_s = part_s;
+    for (int k = 0; k < kRefinements; ++k, width_s *= kRefinement) {
+        const double low = spread(time_s - width_s);
+        const double high = spread(time_s + width_s);
+        time_s += 0.5 * width_s * (low - high) / (low - 2.0 * spread(time_s) + high);
+    }
+    if (!(time_s > 0.0 && spread(time_s) < kOnLine * start)) return step_s;
+    if (kOver * time_s <= longest_s) return std::max(step_s, kOver * time_s);
+    return std::min(step_s, kShort * time_s);
 }
 
 Status ChainPart::reach(double time_s, State& state) {

@@ -149,9 +149,12 @@ class ChainPart final : public Exact {
     [[nodiscard]] Dynamics& dynamics() const override { return dynamics_; }
     Status reach(double time_s, State& state) override;
     Status step(Mover& mover);
+    /// The length of a step of a chain between two pins that does not end near a line of all its links.
+    [[nodiscard]] double past_line(Mover& mover, double step_s);
 
     mutable ChainDynamics dynamics_;  ///< only its scratch memory changes
     std::vector<double> state_;       ///< each chain at the end of its last step
+    std::vector<double> ahead_;       ///< scratch of past_line()
     std::vector<Mover> movers_;
 };
 

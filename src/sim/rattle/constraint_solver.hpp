@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -71,6 +72,13 @@ class ConstraintSolver {
     /// True if the impulses of the last move() determine the tensions. For bars close to a line in which they
     /// depend on each other, the impulses are differences of second order over the angle to it.
     [[nodiscard]] virtual bool tells_tensions() const { return true; }
+
+    /// How far these positions are from a line in which bars depend on each other: below 1, stages that start
+    /// there are inaccurate or fail. The matrix is factorised for the next move() from there.
+    [[nodiscard]] virtual double distance_from_line(const Motion& motion) {
+        static_cast<void>(motion);
+        return HUGE_VAL;
+    }
 
     /// Advances by `span_s` where move() fails, usually because bars have come to depend on each other: to
     /// the positions nearest to x + span v, weighted with the masses, at which the bars have their lengths,

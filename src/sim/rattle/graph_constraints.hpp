@@ -40,6 +40,10 @@ class GraphConstraints final : public ConstraintSolver {
 
     [[nodiscard]] bool move(const Stage& stage, Motion& motion, std::span<double> impulse) override;
     [[nodiscard]] bool tells_tensions() const override;
+    [[nodiscard]] double distance_from_line(const Motion& motion) override {
+        static_cast<void>(is_regular(motion));
+        return smallest_pivot_ / near_line_;
+    }
     [[nodiscard]] bool leap(double span_s, Motion& motion) override;
     [[nodiscard]] bool solve(const Motion& motion, std::span<double> right) override;
     [[nodiscard]] bool had_full_rank() const override { return smallest_pivot_ > 0.0; }

@@ -158,13 +158,12 @@ Status Rattle::advance_to(double time_s, State& state) {
     const GridTime target = locate(time_s, step_s_);
     assert(step_ <= target.step);
     while (step_ < target.step) {
-        if (!advance(step_s_, grid_, &history_)) return Status::kDiverged;
-        ++step_;
+        if (!step()) return Status::kDiverged;
     }
     if (!target.is_on_grid) {
-        between_ = grid_;
-        if (!advance(time_s - static_cast<double>(step_) * step_s_, between_, nullptr))
-            return Status::kDiverged;
+        between_ = is_near_line_ ? before_ : grid_;
+        const auto from = static_cast<double>(is_near_line_ ? step_ - 1 : step_);
+        if (!advance(time_s - from * step_s_, between_, nullptr)) return Status::kDiverged;
     }
     const Trajectory& reached = target.is_on_grid ? grid_ : between_;
     if (!complete(reached)) return Status::kDiverged;
@@ -173,6 +172,31 @@ Status Rattle::advance_to(double time_s, State& state) {
     state.x_m = output_.x_m;
     state.y_m = output_.y_m;
     return Status::kOk;
+}
+
+bool Rattle::step() {
+    if (is_near_line_ && step_over_line()) return true;
+    const bool has_lines = constraints_->distance_from_line(grid_.motion) < HUGE_VAL;
+    if (has_lines) before_ = grid_;
+    if (!advance(step_s_, grid_, &history_)) return false;
+    ++step_;
+    is_near_line_ = has_lines && constraints_->distance_from_line(grid_.motion) < 1.0;
+    return true;
+}
+
+bool Rattle::step_over_line() {
+    constexpr double kPast = 0.5;
+    is_near_line_ = false;
+    const double near = constraints_->distance_from_line(grid_.motion);
+    over_ = before_;
+    if (!advance((1.0 + kPast) * step_s_, over_, nullptr) || over_.has_leapt ||
+        !(constraints_->distance_from_line(over_.motion) > near) ||
+        !advance((1.0 - kPast) * step_s_, over_, nullptr) || over_.has_leapt)
+        return false;
+    std::swap(grid_, over_);
+    history_.count = 0;
+    ++step_;
+    return true;
 }
 
 bool Rattle::advance(double span_s, Trajectory& trajectory, History* history) {

@@ -32,7 +32,8 @@ struct Composition {
 /// Grid point n is at n h, h being the step; `steps()` counts grid steps. A time between two grid points is
 /// reached by one shorter step on a copy, so the trajectory does not depend on the requested times. A grid
 /// step is divided into 2, 4, 8, ... parts if it is unstable, if a bar turns too far in a stage, or if
-/// Newton's method does not converge. If 2^24 parts are not enough, the rest of the step is one leap
+/// Newton's method does not converge. Steps pass a grid point near a line of bars, from the
+/// point before it. If 2^24 parts are not enough, the rest of the step is one leap
 /// (ConstraintSolver::leap); if there is none, the run has diverged.
 class Rattle final : public Solver {
   public:
@@ -90,6 +91,10 @@ class Rattle final : public Solver {
     };
     static constexpr int kHistory = 3;
 
+    /// Advances the grid by one step.
+    [[nodiscard]] bool step();
+    /// Advances the grid, which is near a line of bars, from the point before it past the line.
+    [[nodiscard]] bool step_over_line();
     /// Advances by `span_s` in as many parts as are needed.
     [[nodiscard]] bool advance(double span_s, Trajectory& trajectory, History* history);
     [[nodiscard]] bool take_part(double part_s, Trajectory& trajectory, History* history);
@@ -124,7 +129,10 @@ class Rattle final : public Solver {
     std::vector<double> inverse_mass_1_kg_;
     /// Empty if the constraints do not determine the tensions.
     std::vector<std::size_t> bar_of_link_;
-    Trajectory grid_;        ///< at step_ * step_s_
+    Trajectory grid_;    ///< at step_ * step_s_
+    Trajectory before_;  ///< a step before grid_, if that is near a line of bars
+    bool is_near_line_ = false;
+    Trajectory over_;        ///< scratch of step_over_line()
     Trajectory between_;     ///< scratch for a time between grid points
     Trajectory part_start_;  ///< from which a part that fails is repeated
     History history_;

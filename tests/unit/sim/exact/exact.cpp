@@ -130,6 +130,29 @@ TEST(Exact, ClosedBetweenTwoPinsKeepsEnergyAndEnds) {
     }
 }
 
+/// Two cranks of 1 m on pins `base_m` apart, joined by a bar as long, turning alike at `speed_m_s`.
+RopeDef parallelogram(double base_m, double speed_m_s) {
+    const Vec2 crank{std::sin(1.0), -std::cos(1.0)};
+    RopeDef rope = reference::rope_through({{0.0, 0.0}, crank, crank + Vec2{base_m, 0.0}, {base_m, 0.0}});
+    rope.pinned = {0, 3};
+    rope.velocity_m_s = {{}, speed_m_s * left_of(crank), speed_m_s * left_of(crank), {}};
+    return rope;
+}
+
+TEST(Exact, FollowsAParallelogramOverTheLineOfItsBars) {
+    for (const double tolerance : {1e-5, 1e-9, 1e-12}) {
+        for (int k = 0; k < 40; ++k) {
+            const double speed_m_s = 2.0 + 0.25 * k;
+            test::ExactRun run(parallelogram(1.0 + 0.05 * k, speed_m_s), tolerance);
+            ASSERT_TRUE(run.go(3.0, 180));
+            // Measured: 0.3, 0.4 and 0.3 times the tolerance; 0.1 m g L and more if steps start near the
+            // line.
+            EXPECT_LT(run.energy_error(), 3.0 * tolerance) << speed_m_s;
+            EXPECT_NEAR(run.state().y_m[1], run.state().y_m[2], 1e-13);  // measured 6e-15
+        }
+    }
+}
+
 TEST(Exact, DoesNotMoveAHeavyParticleBehindLightOnes) {
     for (const std::size_t heavy : {0U, 1U, 2U}) {
         RopeDef rope = reference::rope_through({{0.0, 0.0}, {1.0, 0.0}, {1.5, 0.5}});

@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 #include "corda/core/basics.hpp"
 #include "corda/reference/ropes.hpp"
@@ -151,6 +154,41 @@ TEST(Compositions, AreSymmetricAndAddUpToOne) {
             double sum = 0.0;
             for (const double stage : table.stages) sum += std::pow(stage, power);
             EXPECT_NEAR(sum, 0.0, 1e-15) << order << " " << power;
+        }
+    }
+}
+
+TEST(Lines, AreSteppedOverWhereARhombusIsFlatAtAGridPoint) {
+    // Without forces the half angle of a rhombus changes uniformly.
+    const auto corners = [](double half, double turned) {
+        const Vec2 along{std::cos(turned), std::sin(turned)};
+        const Vec2 side = std::sin(half) * along;
+        const Vec2 top = std::cos(half) * left_of(along);
+        return std::vector<Vec2>{-1.0 * top, side, top, -1.0 * side};
+    };
+    for (const auto& [order, angle] : {std::pair{4, 0.35}, {4, 0.5}, {6, 0.7}, {6, 0.9}, {8, 0.6}}) {
+        for (const double turned : {0.0, 0.3, 0.6, 0.9}) {
+            const double rate_1_s = -angle / 0.35;
+            RopeDef rope = reference::rope_through(corners(angle, turned));
+            rope.closed = true;
+            rope.pinned = {};
+            rope.velocity_m_s.clear();
+            for (const Vec2 along : corners(angle + 0.5 * std::numbers::pi, turned))
+                rope.velocity_m_s.push_back(rate_1_s * along);
+            WorldDef world;
+            world.gravity_m_s2 = {};
+            test::RattleRun run(rope, world, order, 1.0 / 60.0);
+            double largest_m = 0.0;
+            for (int k = 1; k <= 120; ++k) {
+                ASSERT_TRUE(run.go(k / 60.0));
+                const std::vector<Vec2> truth = corners(angle + rate_1_s * k / 60.0, turned);
+                for (std::size_t i = 0; i < 4; ++i) {
+                    const Vec2 off = Vec2{run.state().x_m[i], run.state().y_m[i]} - truth[i];
+                    largest_m = std::max(largest_m, std::hypot(off.x, off.y));
+                }
+            }
+            EXPECT_LT(largest_m, 1e-6) << order << " " << angle << " " << turned;  // 2e-7; 0.02 from a leap
+            EXPECT_FALSE(run.solver().has_branched());
         }
     }
 }
