@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "corda/core/machine.hpp"
+#include "corda/pipeline/motion.hpp"
 #include "corda/pipeline/plan_text.hpp"
 #include "corda/sim/solver.hpp"
 #include "interrupt.hpp"
@@ -64,9 +65,8 @@ void warn_of_horizon(const Console& console, const Film& film) {
             ? ""
             : " of " + body_name(film.system(), static_cast<std::size_t>(first - plan.bodies.begin()));
     if (first->diverges) {
-        console.warning(
-            fmt::format("the simulation{} diverges after {:.6g} s; less speed, force or drag may help", whose,
-                        *plan.horizon_s));
+        console.warning(fmt::format("the simulation{} diverges after {:.6g} s; {} may help", whose,
+                                    *plan.horizon_s, pipeline::divergence_advice(film.system())));
     } else {
         console.warning(
             fmt::format("predictability{} ends at {:.6g} s: from there two runs of high precision differ "

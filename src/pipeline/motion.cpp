@@ -25,6 +25,17 @@ thread_local const SharedMotion::Activity* innermost = nullptr;  ///< of this th
 
 }  // namespace
 
+std::string divergence_advice(const System& system) {
+    constexpr double kUnequal = 1e6;
+    double ratio = 1.0;
+    for (const Body& body : system.bodies) ratio = std::max(ratio, mass_ratio(system, body));
+    return ratio < kUnequal ? "less speed or force"
+                            : fmt::format(
+                                  "less unequal masses of free particles (they differ by a factor of "
+                                  "{:.2g}), less speed or force",
+                                  ratio);
+}
+
 Motion::Motion(const System& system, const WorldDef& world, std::vector<MethodDef> methods, Timeline timeline,
                std::size_t budget_bytes, std::optional<Quantity> quantity, const StateFields& readings)
     : system_(&system),
@@ -119,10 +130,12 @@ void Motion::fail_diverged(double time_s) const {
     const bool has_step = std::any_of(methods_.begin(), methods_.end(), [](const MethodDef& method) {
         return !std::holds_alternative<ExactDef>(method);
     });
-    throw Error(ExitCode::kDiverged,
-                fmt::format("the simulation diverged before t = {:.6g} s (last good state at {:.6g} s); less "
-                            "speed or force may help{}",
-                            time_s, last_s, has_step ? ", or a smaller solver.step" : ""));
+    throw Error(
+        ExitCode::kDiverged,
+        fmt::format("the simulation diverged before t = {:.6g} s (last good state at {:.6g} s); {} may "
+                    "help{}",
+                    time_s, last_s, divergence_advice(*system_),
+                    has_step ? ", or a smaller solver.step" : ""));
 }
 
 Energy Motion::energy_of(const State& state) {

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "corda/core/basics.hpp"
@@ -21,6 +22,9 @@
 #include "corda/view/scene_view.hpp"
 
 namespace corda::pipeline {
+
+/// Changes of a system that may keep it from diverging, in words.
+[[nodiscard]] std::string divergence_advice(const System& system);
 
 /// The states of one run of a system at the times of a timeline, readable in any order. They are simulated on
 /// first use and recorded; states beyond the memory budget are simulated again, with the same bits.

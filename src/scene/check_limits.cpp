@@ -179,22 +179,46 @@ struct Pace {
     std::string remedy;
     std::vector<const char*> keys_of_body;
     const char* key_of_world = nullptr;
+    double mass_ratio = 1.0;  ///< of the heaviest and the lightest particle, if they are the reason
 };
 
-/// Advice for a body whose lightest particles vibrate because the others pull at them.
-std::string less_pull(const System& system, const Body& body) {
-    const auto first = system.inverse_mass_1_kg.begin() + static_cast<std::ptrdiff_t>(body.first_particle);
-    const auto end = first + static_cast<std::ptrdiff_t>(body.particle_count);
-    double lowest = HUGE_VAL;
-    double highest = 0.0;
-    std::for_each(first, end, [&](double inverse_1_kg) {
-        if (inverse_1_kg > 0.0) lowest = std::min(lowest, inverse_1_kg);
-        highest = std::max(highest, inverse_1_kg);
-    });
+/// Rounded down to one digit.
+std::string at_most(double value) {
+    const double unit = std::pow(10.0, std::floor(std::log10(value)));
+    return fmt::format("{:g}", std::floor(value / unit) * unit);
+}
+
+/// Advice for a body that may take only this share of its steps. Steps grow with the root of the ratio of
+/// masses.
+std::string advice_for(const Pace& pace, double share) {
     constexpr double kEqual = 1.001;
-    return fmt::format("{}less speed or gravity, {}",
-                       highest > kEqual * lowest ? "less unequal masses, " : "",
-                       body.is_net ? "fewer particles" : "fewer or longer links");
+    if (pace.mass_ratio < kEqual) return pace.remedy;
+    const double allowed = std::max(1.0, share * share * pace.mass_ratio);
+    return fmt::format("less unequal masses of free particles (a ratio of at most {}; it is {:.2g}), {}",
+                       at_most(allowed), pace.mass_ratio, pace.remedy);
+}
+
+/// Angular frequency of the steps that follow a vibration of a body that stretches. Below some step, the
+/// rounding of a stiff bar's length moves the velocities by more than the tolerance of `exact` in each step,
+/// so that shorter steps are taken (ropes of 10 links and a compliance of 1e-12 to 1e-10: 0.9 to 1.1 times as
+/// many steps).
+double followed_frequency_1_s(const Scene& scene, const System& system, const Body& body,
+                              const SolverDef& solver) {
+    constexpr double kRounding = 5.6e-17;
+    constexpr double kStepsPerTurn = 0.2;
+    constexpr double kShareOfAStep = 0.01;
+    constexpr double kOfAuto = 1e-9;  // its checks
+    const double vibration_1_s = sim::vibration_frequency_1_s(system, body);
+    if (body.material.compliance_1_n == 0.0 || std::holds_alternative<RattleDef>(solver))
+        return vibration_1_s;
+    const double swing_1_s =
+        std::max(sim::Forces(scene.world).inverse_timescale_1_s(links_length_m(system, body), 0.0),
+                 sim::angular_velocity_1_s(system, body));
+    if (swing_1_s == 0.0) return vibration_1_s;
+    const auto* exact = std::get_if<ExactDef>(&solver);
+    const double error = kShareOfAStep * (exact == nullptr ? kOfAuto : exact->tolerance);
+    return std::max(vibration_1_s,
+                    kRounding * vibration_1_s * vibration_1_s / (kStepsPerTurn * error * swing_1_s));
 }
 
 /// The reasons of a body, in the order in which messages name them.
@@ -203,24 +227,33 @@ std::vector<Pace> paces_of(const Scene& scene, const System& system, const Body&
     // The steps of rattle on a chain follow from the weights alone.
     is_moved_by_rounding =
         is_moved_by_rounding || (std::holds_alternative<RattleDef>(solver) && body.is_chain);
-    std::vector<Pace> paces{{sim::vibration_frequency_1_s(system, body),
+    std::vector<Pace> paces{{followed_frequency_1_s(scene, system, body, solver),
                              "vibrates",
                              body.is_net ? "more compliance, heavier particles"
                                          : "more compliance, less bending, heavier particles",
                              {"compliance", "bending"}}};
     if (std::holds_alternative<RelaxationDef>(solver)) return paces;
     paces.push_back({scene.world.drag_1_s, "slows down", "less drag", {}, "drag"});
-    paces.push_back(
-        {sim::angular_velocity_1_s(system, body), "turns", "less speed, longer links", {"velocity"}});
-    paces.push_back({sim::pendulum_frequency_1_s(system, body, scene.world),
+    // Links that throw one another about (4 links at 1e6 m/s: 1.8e7 steps per second).
+    constexpr double kOfWhips = 20.0;
+    paces.push_back({(body.link_count > 1 ? kOfWhips : 1.0) * sim::angular_velocity_1_s(system, body),
+                     "turns",
+                     "less speed, longer links",
+                     {"velocity"}});
+    const double pulled_1_s = sim::tension_frequency_1_s(system, body, scene.world, is_moved_by_rounding);
+    const bool hangs_still = pulled_1_s == 0.0 && body.material.compliance_1_n == 0.0;
+    paces.push_back({hangs_still ? 0.0 : sim::pendulum_frequency_1_s(system, body, scene.world),
                      "swings",
                      "less gravity, longer links",
                      {},
                      "gravity"});
-    paces.push_back({sim::tension_frequency_1_s(system, body, scene.world, is_moved_by_rounding),
+    paces.push_back({pulled_1_s,
                      "is pulled so hard that its lightest particles vibrate",
-                     less_pull(system, body),
-                     {"payload", "mass", "velocity"}});
+                     body.is_net ? "less speed or gravity, fewer particles"
+                                 : "less speed or gravity, fewer or longer links",
+                     {"payload", "mass", "velocity"},
+                     nullptr,
+                     mass_ratio(system, body)});
     return paces;
 }
 
@@ -240,24 +273,39 @@ Work work_of(const Scene& scene, const Body& body, const SolverDef& solver, doub
 }
 
 constexpr double kUpdatesPerSecond = 7e6;
-constexpr double kUpdatesPerHour = 3600.0 * kUpdatesPerSecond;
+
+/// "40 s", "5 min" or "2.5 h".
+std::string duration_text(double seconds) {
+    if (seconds < 100.0) return fmt::format("{:.0f} s", seconds);
+    if (seconds < 6000.0) return fmt::format("{:.0f} min", seconds / 60.0);
+    return fmt::format("{:.2g} h", seconds / 3600.0);
+}
 
 /// Adds at most one problem of a body for its vibrations and one for the rest: each of them is about the same
 /// keys.
 void check_pace(const Sections& sections, const Scene& scene, const System& system, const SolverDef& solver,
                 std::size_t i) {
     const Body& body = system.bodies[i];
-    bool has_problem = false;
     const std::vector<Pace> paces = paces_of(scene, system, body, solver);
+    std::vector<Work> works;
+    std::vector<double> shares;
+    for (const Pace& pace : paces) {
+        const Work& work = works.emplace_back(work_of(scene, body, solver, pace.frequency_1_s));
+        shares.push_back(
+            std::min(Limits::kStepsOfAMotion / work.steps, Limits::kParticleUpdates / work.updates));
+    }
+    const double allowed_s = *std::min_element(shares.begin(), shares.end()) * scene.world.duration_s;
+    bool has_problem = false;
     for (std::size_t k = 0; k < paces.size() && !has_problem; ++k) {
+        if (shares[k] >= 1.0) continue;
         const Pace& pace = paces[k];
-        const Work work = work_of(scene, body, solver, pace.frequency_1_s);
-        if (work.updates <= Limits::kParticleUpdates) continue;
         const std::string problem = fmt::format(
-            "{} so fast that {:g} s take some {:g} steps, {:g} particle updates or {} hours, over the limit "
-            "of {:g}; give {} or a shorter duration",
-            pace.what, scene.world.duration_s, work.steps, work.updates,
-            about(work.updates / kUpdatesPerHour), Limits::kParticleUpdates, pace.remedy);
+            "{} so fast that {:g} s take some {:.2g} steps or {}, {} times the limit; give {}{}", pace.what,
+            scene.world.duration_s, works[k].steps, duration_text(works[k].updates / kUpdatesPerSecond),
+            about(std::ceil(1.0 / shares[k])), advice_for(pace, shares[k]),
+            scene.video.fps.frame_count(allowed_s) < 2
+                ? ""
+                : fmt::format(" or a duration of at most {} s", at_most(allowed_s)));
         if (pace.key_of_world != nullptr)
             fail_at(sections, {{&sections.world, pace.key_of_world}}, problem);
         else
@@ -278,13 +326,6 @@ double cost_of_elastic_net(const Body& body, const SolverDef& solver) {
     if (body.is_chain || body.material.compliance_1_n == 0.0) return 1.0;
     if (!is_auto && !std::holds_alternative<ExactDef>(solver)) return 1.0;
     return kOfNet * (!body.material.is_string ? 1.0 : is_auto ? kOfAuto : kOfExact);
-}
-
-/// "40 s", "5 min" or "2.5 h".
-std::string duration_text(double seconds) {
-    if (seconds < 100.0) return fmt::format("{:.0f} s", seconds);
-    if (seconds < 6000.0) return fmt::format("{:.0f} min", seconds / 60.0);
-    return fmt::format("{:.2g} h", seconds / 3600.0);
 }
 
 }  // namespace
@@ -372,7 +413,7 @@ std::string cost_notice(const Scene& scene) {
             if (pace_s <= body_s) continue;
             body_s = pace_s;
             why = fmt::format("{} so fast that it takes up to {:.2g} steps", pace.what, work.steps);
-            remedy = pace.remedy;
+            remedy = advice_for(pace, kMinToldSeconds / pace_s);
         }
         all_s += body_s;
         if (body_s <= slowest_s) continue;

@@ -118,7 +118,8 @@ std::span<const Bar> bars_of(const System& system, const Body& body) {
     return std::span(system.bars).subspan(body.first_bar, body.bar_count);
 }
 
-/// The free mass in kg that hangs on each bar.
+/// The free mass in kg that each bar pulls: what hangs on it from the pin, or the lighter side of a chain
+/// without pins.
 std::vector<double> carried_kg(const System& system, const Body& body) {
     double all_kg = 0.0;
     bool is_pinned_elsewhere = false;
@@ -127,9 +128,13 @@ std::vector<double> carried_kg(const System& system, const Body& body) {
         is_pinned_elsewhere = is_pinned_elsewhere || (system.is_pinned(i) && i > body.first_particle);
     }
     std::vector<double> carried(body.bar_count, all_kg);
-    if (!body.is_chain || is_pinned_elsewhere || !system.is_pinned(body.first_particle)) return carried;
-    for (std::size_t k = 1; k < body.link_count; ++k)
-        carried[k] = carried[k - 1] - system.mass_kg[body.first_particle + k];
+    if (!body.is_chain || is_pinned_elsewhere) return carried;
+    const double* const mass_kg = &system.mass_kg[body.first_particle];
+    double beyond_kg = 0.0;
+    for (std::size_t k = body.link_count; k-- > 0;) carried[k] = beyond_kg += mass_kg[k + 1];
+    double before_kg = 0.0;
+    for (std::size_t k = 0; k < body.link_count && !system.is_pinned(body.first_particle); ++k)
+        carried[k] = std::min(carried[k], before_kg += mass_kg[k]);
     return carried;
 }
 

@@ -267,6 +267,17 @@ double largest_length_m(const System& system) {
     return longest_m;
 }
 
+double mass_ratio(const System& system, const Body& body) {
+    double lightest_1_kg = 0.0;
+    double heaviest_1_kg = HUGE_VAL;
+    for (std::size_t i = body.first_particle; i < body.first_particle + body.particle_count; ++i) {
+        if (system.is_pinned(i)) continue;
+        lightest_1_kg = std::max(lightest_1_kg, system.inverse_mass_1_kg[i]);
+        heaviest_1_kg = std::min(heaviest_1_kg, system.inverse_mass_1_kg[i]);
+    }
+    return std::max(1.0, lightest_1_kg / heaviest_1_kg);
+}
+
 std::size_t rope_count(const System& system) {
     const auto first_net = std::partition_point(system.bodies.begin(), system.bodies.end(),
                                                 [](const Body& body) { return !body.is_net; });

@@ -91,6 +91,9 @@ struct LinkRange {
 /// The largest of these sums.
 [[nodiscard]] double largest_length_m(const System& system);
 
+/// Ratio of the masses of a body's heaviest and lightest free particle; 1 if none is free.
+[[nodiscard]] double mass_ratio(const System& system, const Body& body);
+
 /// Number of ropes among the bodies; ropes come before nets.
 [[nodiscard]] std::size_t rope_count(const System& system);
 

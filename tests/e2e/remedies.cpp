@@ -121,7 +121,18 @@ INSTANTIATE_TEST_SUITE_P(
                           method_of("relaxation") + "step = 0.03\nforce = [1e300, 0]\n"),
                "simulate SCENE",
                "less speed or force may help, or a smaller solver.step",
-               {{{"force = [1e300, 0]", "force = [1, 0]"}}}}),
+               {{{"force = [1e300, 0]", "force = [1, 0]"}}}},
+        Remedy{"diverges_of_unequal_masses",
+               rope_scene(kHang + "mass = [1, 1, 1, 1, 1e-12]\n",
+                          method_of("relaxation") + "force = [0, -1e6]\n"),
+               "simulate SCENE",
+               "less unequal masses of free particles (they differ by a factor of 1e+12)",
+               {{{"1e-12", "1"}}}},
+        Remedy{"speed",
+               rope_scene("hang = { links = 1, length = 1.0 }\nvelocity = [1e9, 0]\n"),
+               "simulate SCENE",
+               "2 times the limit; give less speed, longer links",
+               {{{"1e9", "1e4"}}, {{"length = 1.0", "length = 1e5"}}}}),
     test::kNameOfCase);
 
 // Limits of a scene.

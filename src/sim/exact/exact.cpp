@@ -24,7 +24,9 @@ namespace {
 // that a run and its check at a tighter tolerance take different steps even if nothing else limits them.
 constexpr double kFirstStep = 4e-3;
 constexpr double kMaxStep = 1.0;
-constexpr double kMinStep = 1e-14;
+/// Light links that a heavy mass pulls taut are in line for the ratio of their masses times this time scale.
+/// A step too short for the time to change ends a run in any case.
+constexpr double kMinStep = 1e-18;
 
 /// Share of the tolerance that one step may use. Errors of steps add up and, in a rope, grow. With this
 /// share, positions after some seconds are correct to about the tolerance unless the motion is chaotic (R5:
