@@ -4,11 +4,13 @@
 #        tests/benchmark/run.sh sim [--json] [GOOGLE BENCHMARK OPTIONS]
 #        tests/benchmark/run.sh draw [--json] [GOOGLE BENCHMARK OPTIONS]
 #        tests/benchmark/run.sh sweep [--json] [GOOGLE BENCHMARK OPTIONS]
+#        tests/benchmark/run.sh long [PERIODS]
 #        tests/benchmark/run.sh startup [--json] [--repeats N] [--beside PROGRAM]
 #   video  renders beside x264 alone: time, stages and memory; with --encodings, presets and codecs
 #   sim    the cost of each method against the number of particles
 #   sweep  clips of a sweep with all labels: whole, and by stages
 #   draw   frames of examples/swing.toml in several styles
+#   long   energy and phase of a pendulum after 10 000 or PERIODS periods; a million take minutes
 #   startup  short commands: milliseconds of each, optionally in turns with another build of the program
 # BUILD_DIR is a build folder of the preset ci or release with tests; build/ci by default.
 set -euo pipefail
@@ -21,14 +23,16 @@ case "$kind" in
     sim) programs=(relaxation rattle exact nets) ;;
     draw) programs=(pipeline) ;;
     sweep) programs=(sweep) ;;
+    long) programs=(long_runs) ;;
     startup) programs=() ;;
-    *) sed -n '2,13s/^# \?//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
+    *) sed -n '2,15s/^# \?//p' "${BASH_SOURCE[0]}" >&2; exit 2 ;;
 esac
 cd "$root"
 [[ -f "$build/build.ninja" ]] || cmake --preset ci >/dev/null
 cmake --build "$build" --target corda "${programs[@]/#/benchmark_}" >&2
 
 if [[ "$kind" == startup ]]; then exec python3 tests/benchmark/startup.py "$build/corda" examples "$@"; fi
+if [[ "$kind" == long ]]; then exec "$build/tests/benchmark_long_runs" "$@"; fi
 if [[ "$kind" == video ]]; then exec "$build/tests/benchmark_video" "$@"; fi
 json=()
 options=()
