@@ -106,6 +106,8 @@ const auto kName = [](const auto& param) { return std::string(param.param.name);
 
 INSTANTIATE_TEST_SUITE_P(Of, AutoBounds, testing::ValuesIn(test::rope_families()), kName);
 INSTANTIATE_TEST_SUITE_P(OfOther, AutoBounds, testing::ValuesIn(test::other_families()), kName);
+INSTANTIATE_TEST_SUITE_P(OfMassesAndLinkages, AutoBounds,
+                         testing::ValuesIn(test::mass_and_linkage_families()), kName);
 
 /// A scene of which a claim was false once.
 struct Fixed {
@@ -151,7 +153,8 @@ class AutoBoundsFound : public testing::TestWithParam<Found> {};
 TEST_P(AutoBoundsFound, IsTrue) {
     const Found& found = GetParam();
     bool is_known = false;
-    for (const auto families : {test::rope_families(), test::other_families()}) {
+    for (const auto families :
+         {test::rope_families(), test::other_families(), test::mass_and_linkage_families()}) {
         for (const BoundFamily& family : families) {
             if (family.name != std::string_view(found.family)) continue;
             is_known = true;

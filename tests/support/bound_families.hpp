@@ -23,6 +23,9 @@ struct BoundFamily {
 /// More families: strings, closed ropes, nets, several bodies, and unusual scales, pictures and places.
 [[nodiscard]] std::span<const BoundFamily> other_families();
 
+/// Masses that differ by up to 1e14, and linkages that pass the line of their bars.
+[[nodiscard]] std::span<const BoundFamily> mass_and_linkage_families();
+
 /// A rope of 1 m from (0, 0) in directions around `angle` from straight down, in radians.
 [[nodiscard]] RopeDef crooked_rope(Random& random, int links, double angle, double spread);
 /// Within -pi .. pi.

@@ -1,6 +1,7 @@
 #include "support/bound_judge.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -29,11 +30,13 @@ std::string why_no_bound(const Plan& plan) {
 }
 
 /// The largest error of a printed position, in m.
-double error_m(const State& state, Vec2 origin_m, const ExtendedMotion& truth) {
+template <class Truth>
+double error_m(const State& state, Vec2 origin_m, const Truth& truth) {
     double largest_m = 0.0;
     for (std::size_t i = 0; i < state.x_m.size(); ++i) {
-        const Real x_m = Real{origin_m.x + state.x_m[i]} - (Real{origin_m.x} + truth.x_m(i));
-        const Real y_m = Real{origin_m.y + state.y_m[i]} - (Real{origin_m.y} + truth.y_m(i));
+        const std::array<Real, 2> at = truth(i);
+        const Real x_m = Real{origin_m.x + state.x_m[i]} - (Real{origin_m.x} + at[0]);
+        const Real y_m = Real{origin_m.y + state.y_m[i]} - (Real{origin_m.y} + at[1]);
         const auto error_m = static_cast<double>(std::hypot(x_m, y_m));
         if (!(error_m <= largest_m)) largest_m = error_m;
     }
@@ -42,6 +45,7 @@ double error_m(const State& state, Vec2 origin_m, const ExtendedMotion& truth) {
 
 /// True if the truth with other steps, and so with other rounding, differs far less than the error.
 bool is_sure(Film& film, const BoundCase& given, const Verdict& verdict) {
+    if (given.truth) return true;
     ExtendedMotion truth(film.system(), given.scene.world, given.start);
     ExtendedMotion other(film.system(), given.scene.world, given.start);
     for (std::int64_t k = 1; k <= film.last_frame() && film.time_s(k) <= verdict.worst_s; ++k) {
@@ -56,15 +60,18 @@ bool is_sure(Film& film, const BoundCase& given, const Verdict& verdict) {
 }
 
 void compare(Film& film, const BoundCase& given, Verdict& verdict) {
-    ExtendedMotion truth(film.system(), given.scene.world, given.start);
+    ExtendedMotion motion(film.system(), given.scene.world, given.start);
     verdict.ratio = 0.0;
     const double until_s = verdict.horizon_s.value_or(given.scene.world.duration_s);
     for (std::int64_t k = 0; k <= film.last_frame() && film.time_s(k) <= until_s; ++k) {
-        if (!truth.advance_to(film.time_s(k))) {
-            verdict.why_not_judged = truth.failure();
+        if (!given.truth && !motion.advance_to(film.time_s(k))) {
+            verdict.why_not_judged = motion.failure();
             if (k == 0) verdict.ratio.reset();
             return;
         }
+        const auto truth = [&](std::size_t i) {
+            return given.truth ? given.truth(film.time_s(k), i) : std::array{motion.x_m(i), motion.y_m(i)};
+        };
         const double ratio = error_m(film.state(k), film.system().origin_m, truth) / verdict.bound_m;
         if (ratio <= *verdict.ratio) continue;
         verdict.ratio = ratio;

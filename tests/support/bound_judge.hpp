@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +16,9 @@ namespace corda::test {
 struct BoundCase {
     Scene scene;
     std::vector<ExtendedMotion::Real> start = {};
+    /// Position of a particle at a time, relative to the scene's origin, in closed form; empty:
+    /// ExtendedMotion computes it. Times never decrease.
+    std::function<std::array<ExtendedMotion::Real, 2>(double time_s, std::size_t particle)> truth = {};
 };
 
 /// The verdict on a claim of method auto.
@@ -29,7 +34,7 @@ struct Verdict {
     double truth_s = 0.0;  ///< duration of computing the truth
 };
 
-/// Compares the bound that method auto claims with ExtendedMotion, in world coordinates at all frame times up
+/// Compares the bound that method auto claims with the truth, in world coordinates at all frame times up
 /// to the horizon. If the truth ends early, the times before its end count.
 [[nodiscard]] Verdict judge_bound(const BoundCase& given);
 
