@@ -79,7 +79,7 @@ class MujocoRun : public SteppedRun {
         std::ostringstream xml;
         xml.precision(17);
         xml << "<mujoco><compiler angle='radian' boundmass='0' boundinertia='0'/><size njmax='500' "
-               "nconmax='10' nstack='5000000'/>"
+               "nconmax='10'/>"
             << "<option timestep='" << step_s_ << "' gravity='0 " << -problem.gravity() << " 0' integrator='"
             << integrator << "' jacobian='" << (is_net(problem) ? "sparse" : "dense")
             << "'><flag contact='disable'/></option><worldbody>"
@@ -152,12 +152,17 @@ class MujocoRun : public SteppedRun {
     mjData* data_ = nullptr;
 };
 
-Series series(const char* integrator) {
+Series series(const char* integrator, bool (*can_run)(const Problem&)) {
     return {integrator, kStepsPerFrame, step_counts(),
             [integrator](const Problem& problem, double steps) {
                 return std::make_unique<MujocoRun>(problem, integrator, steps);
             },
-            is_any};
+            can_run};
+}
+
+/// Without velocities in the forces, the implicit method gives the same as Euler's, and its stack overflows.
+bool is_no_net(const Problem& problem) {
+    return !is_net(problem);
 }
 
 void ignore(const char* /*message*/) {}
@@ -169,5 +174,5 @@ int main(int argc, char** argv) {
     using namespace corda::peers;
     mju_user_warning = ignore;
     return run_peer(argc, argv, "MuJoCo", mj_versionString(),
-                    {series("Euler"), series("implicit"), series("RK4")});
+                    {series("Euler", is_any), series("implicit", is_no_net), series("RK4", is_any)});
 }

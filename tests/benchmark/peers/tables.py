@@ -7,6 +7,7 @@ The time of a method at an error is read from the line between its two neighbour
 stands for looser errors. A peer's time is that of its best method.
 """
 import csv
+import io
 import math
 import pathlib
 import platform
@@ -17,10 +18,11 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
+from PIL import Image  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 STUDY = ROOT / "src" / "study"
-GOALS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-9)
+GOALS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-9)
 # They know no mechanics: the equations of motion that they integrate are those of equations.hpp.
 SOLVERS = ("SUNDIALS", "Boost.odeint")
 CLEARLY = 0.7  # beyond the floor of rounding, errors vary by chance
@@ -84,6 +86,10 @@ def best_at(methods, goal):
     return min(found, key=lambda time: time[0]) if found else None
 
 
+def goal_text(goal):
+    return f"{goal:g}".replace("e-0", "e-")
+
+
 def number(value):
     text = f"{value:.3g}" if value < 100 else f"{value:.0f}"
     return text if value < 1e5 else f"{value:.1e}".replace("e+0", "e")
@@ -101,7 +107,7 @@ def reached(methods):
 def problem_table(peers):
     """Time of every peer at each error, and its ratio to Corda's."""
     corda = {goal: best_at(peers["Corda"], goal) for goal in GOALS}
-    heads = [f"{goal:g}" for goal in GOALS]
+    heads = [goal_text(goal) for goal in GOALS]
     lines = ["| largest error / L | " + " | ".join(heads) + " | least error reached, and how |"]
     lines.append("|---|" + "---:|" * len(GOALS) + "---|")
     rows = []
@@ -117,7 +123,7 @@ def problem_table(peers):
             else:
                 cells.append(f"{number(time[0])} ({number(time[0] / corda[goal][0])}x)")
         version = next(iter(methods.values()))[0]["version"]
-        name = peer if version == "own" else f"{peer} {version.removeprefix('Boost ')}"
+        name = peer if version == "own" else f"{peer} {version.removeprefix('Boost ').replace('_', '.')}"
         rows.append((peer != "Corda", [-sum(map(math.isfinite, rank)), *rank], f"| {name} | " + " | ".join(cells)
                      + f" | {reached(methods)} |"))
     return "\n".join(lines + [row for _, _, row in sorted(rows)])
@@ -137,7 +143,7 @@ def winners(runs, without=()):
 
 
 def ratio_table(found, head):
-    lines = [f"| {head} | " + " | ".join(f"{goal:g}" for goal in GOALS) + " |"]
+    lines = [f"| {head} | " + " | ".join(map(goal_text, GOALS)) + " |"]
     lines.append("|---|" + "---|" * len(GOALS))
     for problem, title in PROBLEMS.items():
         cells = []
@@ -155,7 +161,7 @@ def plot(problem, peers, names):
     figure, axes = plt.subplots(figsize=(9, 5.6))
     labels = []
     for peer, methods in sorted(peers.items(), key=lambda item: item[0] == "Corda"):
-        # One line per peer: what none of its runs beats.
+        # One line per peer, of the runs that none of its others beats.
         line = line_of([run for method_runs in methods.values() for run in method_runs])
         line = [point for point in line if point[0] < 1]
         if not line:
@@ -174,15 +180,17 @@ def plot(problem, peers, names):
     heights = []
     for _, ms, _, _ in sorted(labels, key=lambda label: label[1]):
         heights.append(max(math.log10(ms), heights[-1] + gap if heights else low))
-    shift = max(0.0, heights[-1] - high)
-    heights = [height - shift for height in heights]
+    for index in reversed(range(len(heights))):
+        heights[index] = min(heights[index], high - gap * (len(heights) - 1 - index))
     for (error, ms, peer, colour), height in zip(sorted(labels, key=lambda label: label[1]), heights):
         axes.annotate(peer, (error, ms), (1.03, (height - low) / (high - low)), textcoords="axes fraction",
                       color=colour, va="center", fontsize=9,
                       arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.5, "alpha": 0.6})
-    figure.savefig(STUDY / f"peers_{problem}.png", dpi=80, bbox_inches="tight",
-                   pil_kwargs={"optimize": True}, metadata={"Software": None})
+    picture = io.BytesIO()
+    figure.savefig(picture, dpi=80, bbox_inches="tight")
     plt.close(figure)
+    with Image.open(picture) as image:  # fewer colours take a third of the bytes
+        image.convert("RGB").quantize(96).save(STUDY / f"peers_{problem}.png", optimize=True)
 
 
 def put(path, title, text):
@@ -202,7 +210,7 @@ def processor():
 
 
 def readme_rows(found, engines):
-    lines = ["| largest error / L | Corda, ms per simulated second | best engine, ms | best solver of the same equations, ms |",
+    lines = ["| largest error / L | Corda, ms per simulated second | best engine or published method, ms | best solver of the same equations, ms |",
              "|---:|---:|---|---|"]
 
     def cell(best, corda):
@@ -210,7 +218,7 @@ def readme_rows(found, engines):
 
     for goal in (1e-3, 1e-6, 1e-9):
         corda, best = found["swing"][goal]
-        lines.append(f"| {goal:g} | {number(corda[0])} | {cell(engines['swing'][goal][1], corda)} | {cell(best, corda)} |")
+        lines.append(f"| {goal_text(goal)} | {number(corda[0])} | {cell(engines['swing'][goal][1], corda)} | {cell(best, corda)} |")
     return "\n".join(lines)
 
 
@@ -220,7 +228,7 @@ def main():
     runs = read_runs(sys.argv[1])
     found, engines = winners(runs), winners(runs, SOLVERS)
     names = sorted({peer for peers in runs.values() for peer in peers} - {"Corda"})
-    parts = [f"Processor: {processor()}, one core. All rows are from one run.",
+    parts = [f"Processor: {processor()}, one thread.",
              ratio_table(engines, "time of the best engine or published method, over Corda's"),
              ratio_table(found, "the same, of all peers")]
     for problem, title in PROBLEMS.items():
@@ -228,7 +236,7 @@ def main():
         absent = [name for name in names if name not in runs[problem]]
         parts.append(f"### {title}\n\n![Time against error of every peer](peers_{problem}.png)\n\n"
                      + problem_table(runs[problem])
-                     + (f"\n\nNot run, for want of a joint or a force that fits: {', '.join(absent)}." if absent else ""))
+                     + (f"\n\nWithout a formulation of this problem: {', '.join(absent)}." if absent else ""))
     put(STUDY / "README.md", "Peers", "\n\n".join(parts))
     put(ROOT / "README.md", "Peers", readme_rows(found, engines))
 
