@@ -22,7 +22,8 @@ install(TARGETS corda_library EXPORT corda_targets
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
 install(TARGETS corda RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 # The README and its pages for users, at the same relative places.
-foreach(page LICENSE README.md src/CHANGELOG.md src/cmake/LICENSES.md src/study/speed.png
+foreach(page LICENSE README.md src/CHANGELOG.md src/cmake/LICENSES.md src/study/speed.png src/study/horizons.png
+        src/study/challenge_three.png src/study/challenge_masses.png src/study/challenge_ten.png src/study/challenge_forty.png
         src/app/README.md src/golden/README.md src/media/README.md src/python/README.md src/scene/README.md src/study/README.md
         src/serve/README.md src/sweep/README.md)
     cmake_path(GET page PARENT_PATH folder)

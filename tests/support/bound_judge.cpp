@@ -59,11 +59,11 @@ bool is_sure(Film& film, const BoundCase& given, const Verdict& verdict) {
     return largest_m <= 0.1 * *verdict.ratio * verdict.bound_m;
 }
 
-void compare(Film& film, const BoundCase& given, Verdict& verdict) {
+void compare(Film& film, const BoundCase& given, bool beyond, Verdict& verdict) {
     ExtendedMotion motion(film.system(), given.scene.world, given.start);
     verdict.ratio = 0.0;
     const double until_s = verdict.horizon_s.value_or(given.scene.world.duration_s);
-    for (std::int64_t k = 0; k <= film.last_frame() && film.time_s(k) <= until_s; ++k) {
+    for (std::int64_t k = 0; k <= film.last_frame() && (beyond || film.time_s(k) <= until_s); ++k) {
         if (!given.truth && !motion.advance_to(film.time_s(k))) {
             verdict.why_not_judged = motion.failure();
             if (k == 0) verdict.ratio.reset();
@@ -73,7 +73,11 @@ void compare(Film& film, const BoundCase& given, Verdict& verdict) {
             return given.truth ? given.truth(film.time_s(k), i) : std::array{motion.x_m(i), motion.y_m(i)};
         };
         const double ratio = error_m(film.state(k), film.system().origin_m, truth) / verdict.bound_m;
-        if (ratio <= *verdict.ratio) continue;
+        if (beyond && ratio > 1.0) {
+            verdict.passes_s = film.time_s(k);
+            beyond = false;
+        }
+        if (ratio <= *verdict.ratio || film.time_s(k) > until_s) continue;
         verdict.ratio = ratio;
         verdict.worst_s = film.time_s(k);
     }
@@ -81,7 +85,7 @@ void compare(Film& film, const BoundCase& given, Verdict& verdict) {
 
 }  // namespace
 
-Verdict judge_bound(const BoundCase& given) {
+Verdict judge_bound(const BoundCase& given, bool beyond) {
     Verdict verdict;
     const Watch watch;
     try {
@@ -91,7 +95,7 @@ Verdict judge_bound(const BoundCase& given) {
         verdict.horizon_s = plan.horizon_s;
         if (plan.error_bound_m) {
             verdict.bound_m = *plan.error_bound_m;
-            compare(film, given, verdict);
+            compare(film, given, beyond, verdict);
             if (verdict.ratio > 1.0 && !is_sure(film, given, verdict)) {
                 verdict.ratio.reset();
                 verdict.why_not_judged = "the truth is not sure";

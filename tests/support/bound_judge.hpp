@@ -28,6 +28,9 @@ struct Verdict {
     std::string why_no_bound;    ///< empty if there is a bound
     std::string why_not_judged;  ///< empty if the truth reached the end of the claim
     std::optional<double> horizon_s;
+    /// The first frame time at which the error is larger than the bound, if judge_bound() looks for it and
+    /// the scene does not end before.
+    std::optional<double> passes_s;
     double bound_m = 0.0;
     double worst_s = 0.0;  ///< when the ratio is largest
     double plan_s = 0.0;   ///< duration of planning
@@ -35,7 +38,8 @@ struct Verdict {
 };
 
 /// Compares the bound that method auto claims with the truth, in world coordinates at all frame times up
-/// to the horizon. If the truth ends early, the times before its end count.
-[[nodiscard]] Verdict judge_bound(const BoundCase& given);
+/// to the horizon. If the truth ends early, the times before its end count. `beyond`: also looks for
+/// Verdict::passes_s, at the frame times after the horizon as well.
+[[nodiscard]] Verdict judge_bound(const BoundCase& given, bool beyond = false);
 
 }  // namespace corda::test
