@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "corda/core/cancel.hpp"
@@ -149,8 +150,10 @@ class Linkage {
 
     /// Bound on the move by rounding up to this state, the next of the motion.
     [[nodiscard]] double moved_m(const State& state) {
-        has_passed_ = has_passed_ || (moved_m_ > 0.0 && side(state) * side_ <= 0.0);
-        return has_passed_ ? moved_m_ : 0.0;
+        if (moved_m_ == 0.0) return 0.0;
+        const double before = std::exchange(side_, side(state));
+        passes_ += before * side_ <= 0.0 ? 1.0 : 0.0;
+        return passes_ * moved_m_;
     }
 
   private:
@@ -164,7 +167,7 @@ class Linkage {
 
     double moved_m_ = 0.0;
     double side_ = 0.0;
-    bool has_passed_ = false;
+    double passes_ = 0.0;
 };
 
 }  // namespace
