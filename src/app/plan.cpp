@@ -59,6 +59,7 @@ nlohmann::json to_json(const Film& film, std::size_t i) {
                            {"reason", reason_text(body)},
                            {"error_bound_m", or_null(body.error_bound_m)},
                            {"horizon_s", or_null(body.horizon_s)},
+                           {"horizon_reason", or_null(horizon_reason(body))},
                            {"trials", nlohmann::json::array()}};
     for (const Trial& trial : body.trials) json["trials"].push_back(to_json(trial));
     return json;
@@ -87,10 +88,15 @@ void report_in_words(const Console& console, Film& film, const std::vector<std::
     console.result(fmt::format("{}: {}", film.scene().name, system_text(film.system())));
     for (const std::string& term : terms) console.result("modelled: " + term);
     report_methods(console, film);
-    if (const auto bound = bound_text(film)) {
+    const Plan& plan = film.plan();
+    if (const auto bound = bound_text(film)) console.result("expected error: at most " + *bound);
+    for (std::size_t i = 0; i < plan.bodies.size(); ++i) {
+        const auto reason = horizon_reason(plan.bodies[i]);
+        if (!reason) continue;
+        const std::string whose = plan.bodies.size() == 1 ? "" : " of " + body_name(film.system(), i);
         console.result(
-            fmt::format("expected error: at most {}{}", *bound,
-                        film.plan().horizon_s ? "; after that the motion cannot be predicted" : ""));
+            fmt::format("horizon{}: {:.6g} s; after that the motion cannot be predicted, because {}", whose,
+                        *plan.bodies[i].horizon_s, *reason));
     }
 }
 

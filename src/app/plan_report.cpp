@@ -68,12 +68,11 @@ void warn_of_horizon(const Console& console, const Film& film) {
         console.warning(fmt::format("the simulation{} diverges after {:.6g} s; {} may help", whose,
                                     *plan.horizon_s, pipeline::divergence_advice(film.system())));
     } else {
-        console.warning(
-            fmt::format("predictability{} ends at {:.6g} s: from there two runs of high precision differ "
-                        "by more than {:g} px, because the motion magnifies the least differences{}; what "
-                        "is drawn after it is one possible motion",
-                        whose, *plan.horizon_s, std::get<AutoDef>(film.scene().solver).tolerance_px,
-                        first->reason == PlanReason::kGraph ? " or bars come into line" : ""));
+        const double tolerance_px = std::get<AutoDef>(film.scene().solver).tolerance_px;
+        console.warning(fmt::format(
+            "predictability{} ends at {:.6g} s: from there two runs of high precision {}differ by "
+            "more than {:g} px, because {}; what is drawn after it is one possible motion",
+            whose, *plan.horizon_s, first->undecided ? "can " : "", tolerance_px, *horizon_reason(*first)));
     }
 }
 

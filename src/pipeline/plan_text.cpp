@@ -162,6 +162,17 @@ std::string reason_text(const BodyPlan& plan) {
     return "";
 }
 
+std::optional<std::string> horizon_reason(const BodyPlan& plan) {
+    if (!plan.horizon_s) return std::nullopt;
+    if (plan.diverges) return "the simulation diverges";
+    if (plan.undecided) {
+        return "links of a string come taut so nearly at once, or one so barely, that rounding decides which "
+               "do";
+    }
+    return std::string("the motion magnifies the least differences") +
+           (plan.reason == PlanReason::kGraph ? " or bars come into line" : "");
+}
+
 std::vector<MethodGroup> groups_of(const Plan& plan) {
     std::vector<MethodGroup> groups;
     std::map<std::pair<MethodDef, PlanReason>, std::size_t> group_of;

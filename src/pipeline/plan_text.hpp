@@ -19,6 +19,9 @@ namespace corda {
 /// The reason for a body's method, as a clause.
 [[nodiscard]] std::string reason_text(const BodyPlan& plan);
 
+/// The reason for the horizon of a body; std::nullopt if it has none.
+[[nodiscard]] std::optional<std::string> horizon_reason(const BodyPlan& plan);
+
 /// Bodies with the same method for the same reason.
 struct MethodGroup {
     MethodDef method;

@@ -123,6 +123,7 @@ struct Trial {
     double hundredth_s = 0.0;           ///< the same for a hundredth of the tolerance
     bool to_the_end = false;            ///< within the tolerance at all frame times
     bool diverged = false;              ///< the run or a check diverged or branched after `reached_s`
+    bool undecided = false;             ///< rounding decides on a snap of a string after `reached_s`
 };
 
 /// Reason for the method of a body.
@@ -145,6 +146,7 @@ struct BodyPlan {
     std::optional<double> horizon_s;
     bool diverges = false;      ///< the run ends before the scene does
     bool stands_still = false;  ///< a net that its bars make rigid and its pins hold
+    bool undecided = false;     ///< rounding decides on a snap of a string after the horizon
     std::vector<Trial> trials;  ///< all that were run, the chosen one last
     int passes = 0;             ///< number of integrations of the motion, including checks and failed trials
 };

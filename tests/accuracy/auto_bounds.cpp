@@ -132,15 +132,14 @@ TEST_P(AutoBoundsFixed, IsTrue) {
                 verdict.plan_s, verdict.truth_s);
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, AutoBoundsFixed,
-                         testing::Values(Fixed{"false_01_hang15_150", 15, 1.0, 150.0},
-                                         Fixed{"false_03_hang8_90", 8, 1.0, 90.0},
-                                         Fixed{"false_10_beam", 2, 0.1, 2.0},
-                                         Fixed{"false_12_beam60", 2, 2.0, 10.0}, Fixed{"far_origin"},
-                                         Fixed{"gen_chaosmany38"}, Fixed{"gen_elastic14"},
-                                         Fixed{"gen_frames1"}, Fixed{"gen_payload14"}, Fixed{"gen_payload20"},
-                                         Fixed{"gen_stringhard34"}, Fixed{"gen_units46"}),
-                         kName);
+INSTANTIATE_TEST_SUITE_P(
+    Of, AutoBoundsFixed,
+    testing::Values(Fixed{"false_01_hang15_150", 15, 1.0, 150.0}, Fixed{"false_03_hang8_90", 8, 1.0, 90.0},
+                    Fixed{"false_10_beam", 2, 0.1, 2.0}, Fixed{"false_12_beam60", 2, 2.0, 10.0},
+                    Fixed{"far_origin"}, Fixed{"gen_chaosmany38"}, Fixed{"gen_elastic14"},
+                    Fixed{"gen_frames1"}, Fixed{"near_snaps"}, Fixed{"grazing_snap"}, Fixed{"gen_payload14"},
+                    Fixed{"gen_payload20"}, Fixed{"gen_stringhard34"}, Fixed{"gen_units46"}),
+    kName);
 
 /// A random scene of which a claim was false once.
 struct Found {

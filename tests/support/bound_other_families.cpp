@@ -59,6 +59,130 @@ BoundCase string_thrown(Random& random) {
     return one_rope(random, rope, 2.0);
 }
 
+/// A slack string whose particles fall freely from the start until a link snaps.
+struct Falling {
+    RopeDef rope;
+
+    [[nodiscard]] double distance_m(std::size_t link, double time_s) const {
+        const Vec2 apart = position_m(link + 1, time_s) - position_m(link, time_s);
+        return std::hypot(apart.x, apart.y);
+    }
+    [[nodiscard]] double largest_m(std::size_t link, double until_s) const {
+        double largest = 0.0;
+        for (int i = 0; i <= 1000; ++i) largest = std::max(largest, distance_m(link, 1e-3 * i * until_s));
+        return largest;
+    }
+
+  private:
+    [[nodiscard]] Vec2 position_m(std::size_t i, double time_s) const {
+        for (const std::uint32_t pin : rope.pinned) {
+            if (pin == i) return rope.points_m[i];
+        }
+        return rope.points_m[i] + time_s * rope.velocity_m_s[i] + Vec2{0.0, -0.5 * 9.81 * time_s * time_s};
+    }
+};
+
+Falling falling_string(Random& random, int links) {
+    Falling falling{crooked_rope(random, links, any_angle(random), 1.5)};
+    falling.rope.material.is_string = true;
+    add_velocities(random, falling.rope, 2.0);
+    if (links > 1 && pick(random, 0, 2) == 0) falling.rope.pinned = {0, static_cast<std::uint32_t>(links)};
+    return falling;
+}
+
+/// A length from below the rounding of a metre to far above it, or 0, of either sign.
+double tiny_m(Random& random, double most_m) {
+    const double size_m = pick(random, 0, 7) == 0 ? 0.0 : pick_log(random, 1e-17, most_m);
+    return pick(random, 0, 1) == 0 ? size_m : -size_m;
+}
+
+BoundCase without_drag(BoundCase made) {
+    made.scene.world.drag_1_s = 0.0;
+    return made;
+}
+
+/// Two links that share a particle snap almost at once, the first of the string to do so.
+BoundCase near_snaps(Random& random) {
+    constexpr double kRisesBy = 1e-3;
+    for (;;) {
+        const int links = pick(random, 2, 4);
+        Falling falling = falling_string(random, links);
+        const auto first = static_cast<std::size_t>(pick(random, 0, links - 2));
+        const double snap_s = pick_real(random, 0.1, 0.6);
+        bool both_rise = true;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(links); ++k) {
+            const bool snaps = k == first || k == first + 1;
+            const double rest_m = falling.distance_m(k, snap_s);
+            if (snaps && falling.largest_m(k, 0.99 * snap_s) > rest_m * (1.0 - kRisesBy)) both_rise = false;
+            falling.rope.rest_m.push_back(snaps ? rest_m + tiny_m(random, 1e-7)
+                                                : 1.3 * falling.largest_m(k, snap_s));
+        }
+        if (both_rise) return without_drag(one_rope(random, falling.rope, snap_s + 0.5));
+    }
+}
+
+/// A string between two pins that is its own mirror image, all slack and of equal lengths, or taut and thrown
+/// up. The truth's points differ by less than the rounding of those of the scene.
+BoundCase equal_snaps(Random& random) {
+    const int half = pick(random, 1, 2);
+    const double width_m = pick_real(random, 0.5, 1.0);
+    Falling falling;
+    RopeDef& rope = falling.rope;
+    rope.material.is_string = true;
+    rope.pinned = {0, static_cast<std::uint32_t>(2 * half)};
+    const bool is_taut = pick(random, 0, 2) == 0;
+    const double speed_m_s = is_taut ? pick_real(random, 0.5, 3.0) : pick_real(random, -2.0, 2.0);
+    const double across_m_s = pick_real(random, -1.0, 1.0);
+    std::vector<double> drop_m{0.0};
+    for (int i = 1; i <= half; ++i) drop_m.push_back(drop_m.back() + pick_real(random, -0.2, 0.2) / half);
+    for (int i = -half; i <= half; ++i) {
+        const int from_end = half - std::abs(i);
+        rope.points_m.push_back({width_m * i / half, -drop_m[static_cast<std::size_t>(from_end)]});
+        const double side = std::abs(i) == half || i == 0 ? 0.0 : (i < 0 ? 1.0 : -1.0);
+        rope.velocity_m_s.push_back({side * across_m_s, std::abs(i) == half ? 0.0 : speed_m_s});
+    }
+    const double stretch = is_taut ? 1.0 : pick_real(random, 1.05, 1.3);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(half); ++k)
+        rope.rest_m.push_back(stretch * falling.distance_m(k, 0.0));
+    for (int k = half; k-- > 0;) rope.rest_m.push_back(rope.rest_m[static_cast<std::size_t>(k)]);
+    BoundCase made = without_drag(one_rope(random, rope, 1.5));
+    for (const Vec2& point : rope.points_m) made.start.push_back(point.x);
+    for (const Vec2& point : rope.points_m) made.start.push_back(point.y);
+    made.start[static_cast<std::size_t>(half)] += ExtendedMotion::Real{1e-16L} * pick_real(random, -1.0, 1.0);
+    return made;
+}
+
+/// A link that just reaches its rest length, or just does not, and returns.
+BoundCase grazing_snap(Random& random) {
+    constexpr double kDuration = 1.0;
+    for (;;) {
+        const int links = pick(random, 1, 3);
+        Falling falling = falling_string(random, links);
+        const auto grazing = static_cast<std::size_t>(pick(random, 0, links - 1));
+        double top_s = 0.0;
+        bool turns = false;
+        for (int i = 1; i < 800 && !turns; ++i) {
+            const bool is_top = falling.distance_m(grazing, 1e-3 * i) > falling.distance_m(grazing, top_s);
+            turns = !is_top && top_s > 0.05;
+            if (is_top) top_s = 1e-3 * i;
+        }
+        if (!turns || falling.distance_m(grazing, top_s) < 1.001 * falling.distance_m(grazing, 0.0)) continue;
+        double low_s = top_s - 2e-3;
+        double high_s = top_s + 2e-3;
+        for (int i = 0; i < 60; ++i) {
+            const double third_s = (high_s - low_s) / 3.0;
+            const bool rises =
+                falling.distance_m(grazing, low_s + third_s) < falling.distance_m(grazing, high_s - third_s);
+            (rises ? low_s : high_s) += rises ? third_s : -third_s;
+        }
+        for (std::size_t k = 0; k < static_cast<std::size_t>(links); ++k) {
+            falling.rope.rest_m.push_back(k == grazing ? falling.distance_m(k, low_s) - tiny_m(random, 1e-5)
+                                                       : 1.1 * falling.largest_m(k, kDuration));
+        }
+        return without_drag(one_rope(random, falling.rope, kDuration));
+    }
+}
+
 RopeDef bungee_rope(Random& random) {
     RopeDef rope = crooked_rope(random, pick(random, 1, 5), any_angle(random), 1.5);
     rope.material.is_string = true;
@@ -250,6 +374,9 @@ std::span<const BoundFamily> other_families() {
                                                              {"string_many", string_many},
                                                              {"string_swing", string_swing},
                                                              {"string_thrown", string_thrown},
+                                                             {"near_snaps", near_snaps},
+                                                             {"equal_snaps", equal_snaps},
+                                                             {"grazing_snap", grazing_snap},
                                                              {"bungee", bungee},
                                                              {"ring", ring},
                                                              {"elastic_ring", elastic_ring},

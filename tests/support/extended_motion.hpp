@@ -87,6 +87,7 @@ class ExtendedMotion {
     [[nodiscard]] Answer accelerated();
     [[nodiscard]] Vector raw_margins(const Vector& y);
     [[nodiscard]] Vector margins(Real step);
+    [[nodiscard]] Real highest(Eigen::Index link, Real low, Real high);
     [[nodiscard]] std::optional<Real> event_within(Real step);
     [[nodiscard]] Real event_before(Real low, Real high);
     [[nodiscard]] Real longest_step();

@@ -189,6 +189,19 @@ ExtendedMotion::Vector ExtendedMotion::margins(Real step) {
     return margin;
 }
 
+/// The time between two times at which a link's margin is largest, or a time at which it is not negative.
+Real ExtendedMotion::highest(Eigen::Index link, Real low, Real high) {
+    for (int round = 0; round < 60; ++round) {
+        const Real third = (high - low) / 3;
+        const Real early = margins(low + third)[link];
+        const Real later = margins(high - third)[link];
+        if (early >= 0) return low + third;
+        if (later >= 0) return high - third;
+        (early < later ? low : high) += early < later ? third : -third;
+    }
+    return low;
+}
+
 /// The time from the step's start to the first event in it.
 std::optional<Real> ExtendedMotion::event_within(Real step) {
     const Vector start = margins(0);
@@ -205,7 +218,9 @@ std::optional<Real> ExtendedMotion::event_within(Real step) {
         if (!(curve < 0 && top > 0 && top < late.value_or(step))) continue;
         const Real height = start[k] + slope * top / 2;
         const Real range = std::max({start[k], half[k], end[k]}) - std::min({start[k], half[k], end[k]});
-        if (height > -range / 2 && margins(top).maxCoeff() >= 0) late = top;
+        if (!(height > -range / 2)) continue;
+        const Real high = highest(k, std::max(Real{0}, top - step / 4), std::min(step, top + step / 4));
+        if (margins(high).maxCoeff() >= 0) late = high;
     }
     if (!late) return std::nullopt;
     return event_before(0, *late);

@@ -97,9 +97,9 @@ std::vector<Trial> graph_trials(const System& system, const WorldDef& world, con
     return trials;
 }
 
-/// True if two trials in a row diverged at the same time: a finer trial would too.
+/// True if two trials in a row diverged or were undecided at the same time: a finer trial would be too.
 bool give_up_together(const Trial& a, const Trial& b) {
-    return a.diverged && b.diverged && a.reached_s == b.reached_s;
+    return ((a.diverged && b.diverged) || (a.undecided && b.undecided)) && a.reached_s == b.reached_s;
 }
 
 /// A horizon before this share of the motion is not worth the tightest method's cost.
@@ -183,6 +183,7 @@ void run_until_one_holds(const System& system, const WorldDef& world, const Plan
     const Trial& chosen = plan.trials.back();
     plan.error_bound_m = chosen.error_bound_m;
     if (!chosen.to_the_end) plan.horizon_s = chosen.reached_s;
+    plan.undecided = chosen.undecided;
     plan.diverges = recording.size() < def.timeline.size();
 }
 

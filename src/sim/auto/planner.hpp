@@ -63,6 +63,9 @@ class Checks {
     /// `count` of them, 1 to kMaxCount.
     Checks(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
            std::size_t count);
+    /// For a string of rigid links: runs in which links come taut `longer_m` later or earlier. Of any two of
+    /// eight neighbours, each is the earlier one in some run.
+    Checks(const System& string, const Forces& forces, const ExactDef& method, double longer_m);
     Checks(const Checks&) = delete;
     Checks& operator=(const Checks&) = delete;
     /// Ends the work of start().
@@ -80,6 +83,9 @@ class Checks {
     /// and far from the truth. Infinite for a NaN.
     [[nodiscard]] double difference_m(const State& state) const;
 
+    /// For a string of rigid links, StringPart::margin_m() of the first check; otherwise infinite.
+    [[nodiscard]] double margin_m() const;
+
     /// Steps of the first check up to the last finish().
     [[nodiscard]] std::uint64_t steps() const { return steps_; }
 
@@ -88,6 +94,7 @@ class Checks {
 
     std::atomic<bool> is_abandoned_ = false;
     bool in_threads_;
+    bool are_alike_ = true;  ///< they differ by rounding alone
     double time_s_ = 0.0;
     std::uint64_t steps_ = 0;
     std::vector<std::unique_ptr<Check>> checks_;

@@ -2,16 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "corda/core/cancel.hpp"
 #include "corda/sim/defs.hpp"
+#include "corda/sim/exact/string/part.hpp"
 #include "corda/sim/solver.hpp"
 
 namespace corda::sim {
@@ -39,6 +42,17 @@ void move_by_rounding(System& system, std::uint32_t order) {
     }
 }
 
+/// Per link of a string, twice the rounding of lengths at which it comes taut: a run and a check that rounded
+/// alike would both miss what a snap makes of it.
+std::vector<double> rounding_of_snaps_m(const System& string) {
+    constexpr double kOfALink = 2e-14;
+    constexpr double kOfAPlace = 16.0 * std::numeric_limits<double>::epsilon();
+    const double length_m = links_length_m(string, string.bodies.front());
+    std::vector<double> longer_m;
+    for (const Bar& link : string.bars) longer_m.push_back(kOfALink * link.rest_m + kOfAPlace * length_m);
+    return longer_m;
+}
+
 /// Ratio of the bound on an error to the difference from a check. The error may exceed the difference by the
 /// check's own error, a sixth of it near rounding.
 constexpr double kBoundPerDifference = 3.0;
@@ -55,6 +69,11 @@ class Comparison {
         records_.back().until_s = time_s;
         has_parted_ =
             !(kBoundPerDifference * records_.back().largest_m <= kHopeless * (*tolerance_m_)(bounds_so_far));
+    }
+
+    /// Bound of the error so far, without rounding.
+    [[nodiscard]] double bound_m() const {
+        return records_.empty() ? 0.0 : kBoundPerDifference * records_.back().largest_m;
     }
 
     /// True if the difference is more than the tolerance will ever allow.
@@ -175,8 +194,8 @@ class Linkage {
 class Checks::Check {
   public:
     Check(const System& system, const Forces& forces, const MethodDef& method, double frame_interval_s,
-          std::size_t number)
-        : turn_(turn(number)), system_(system) {
+          std::size_t number, const std::vector<double>& longer_m = {})
+        : turn_(turn(number % kMaxCount)), system_(system) {
         if (number > 0) move_by_rounding(system_, static_cast<std::uint32_t>(number));
         for (std::size_t i = 0; i < system.particle_count(); ++i) {
             const Vec2 position = turn_.of({system_.x_m[i], system_.y_m[i]});
@@ -186,12 +205,23 @@ class Checks::Check {
             system_.vx_m_s[i] = velocity.x;
             system_.vy_m_s[i] = velocity.y;
         }
-        solver_ = make_solver(system_, Forces(ForceTerm{turn_.of(forces.uniform_m_s2()), forces.drag_1_s()}),
-                              {&method, 1}, frame_interval_s);
+        const Forces turned(ForceTerm{turn_.of(forces.uniform_m_s2()), forces.drag_1_s()});
+        const MaterialDef& material = system.bodies.front().material;
+        const auto* exact = std::get_if<ExactDef>(&method);
+        if (exact != nullptr && material.is_string && material.compliance_1_n == 0.0) {
+            auto string = std::make_unique<StringPart>(
+                system_, turned, exact->tolerance, longer_m.empty() ? rounding_of_snaps_m(system) : longer_m);
+            string_ = string.get();
+            solver_ = std::move(string);
+        } else {
+            solver_ = make_solver(system_, turned, {&method, 1}, frame_interval_s);
+        }
         state_ = {0.0, system_.x_m, system_.y_m};
     }
     Check(const Check&) = delete;
     Check& operator=(const Check&) = delete;
+
+    [[nodiscard]] double margin_m() const { return string_ == nullptr ? HUGE_VAL : string_->margin_m(); }
 
     /// kDiverged also if it has branched.
     Status advance_to(double time_s) {
@@ -220,6 +250,7 @@ class Checks::Check {
     Turn turn_;
     System system_;
     std::unique_ptr<Solver> solver_;
+    const StringPart* string_ = nullptr;  ///< solver_, if it is one
     State state_;
 };
 
@@ -228,6 +259,18 @@ Checks::Checks(const System& system, const Forces& forces, const MethodDef& meth
     : in_threads_(system.particle_count() >= kManyParticles) {
     for (std::size_t number = 0; number < count; ++number)
         checks_.push_back(std::make_unique<Check>(system, forces, method, frame_interval_s, number));
+}
+
+Checks::Checks(const System& string, const Forces& forces, const ExactDef& method, double longer_m)
+    : in_threads_(string.particle_count() >= kManyParticles), are_alike_(false) {
+    constexpr std::size_t kMaxBits = 3;
+    std::vector<double> longer(string.bars.size());
+    const auto bits = static_cast<std::size_t>(std::bit_width(longer.size() - 1));
+    for (std::size_t number = 0; number < 2 * std::clamp<std::size_t>(bits, 1, kMaxBits); ++number) {
+        for (std::size_t k = 0; k < longer.size(); ++k)
+            longer[k] = ((k >> (number / 2)) + number) % 2 == 0 ? longer_m : -longer_m;
+        checks_.push_back(std::make_unique<Check>(string, forces, method, 0.0, number, longer));
+    }
 }
 
 Checks::~Checks() {
@@ -272,7 +315,7 @@ double Checks::difference_m(const State& state) const {
             const Vec2 at = checks_[a]->position_m(i);
             const Vec2 apart = at - Vec2{state.x_m[i], state.y_m[i]};
             distance_m = std::max(length(apart.x, apart.y), distance_m);
-            for (std::size_t b = 0; b < a; ++b) {
+            for (std::size_t b = 0; are_alike_ && b < a; ++b) {
                 const Vec2 differ = at - checks_[b]->position_m(i);
                 rounding_m = std::max(length(differ.x, differ.y), rounding_m);
             }
@@ -282,6 +325,61 @@ double Checks::difference_m(const State& state) const {
     }
     return largest_m;
 }
+
+double Checks::margin_m() const {
+    return checks_.front()->margin_m();
+}
+
+namespace {
+
+/// Follows the other outcomes of snaps of a rigid string on which the errors of its run and checks decide: in
+/// another order, or not at all.
+class OtherSnaps {
+  public:
+    OtherSnaps(const System& system, const Forces& forces, const PlanDef& def, const MethodDef& check)
+        : system_(system), forces_(forces), check_(std::get_if<ExactDef>(&check)), alone_(def.tolerance_m) {}
+
+    /// The largest difference of `state`, the run's, from the checks and from other outcomes at a frame time.
+    double difference_m(double time_s, const Checks& checks, const State& state, const MotionBounds& bounds,
+                        int& passes) {
+        const double error_m = alone_.bound_m() + rounding_m(system_, bounds);
+        const double difference_m = checks.difference_m(state);
+        alone_.add(time_s, difference_m, bounds);
+        const double margin_m = checks.margin_m();
+        if (margin_m <= kSure * error_m && longer_m_ < std::max(kCovers * margin_m, error_m)) {
+            longer_m_ = kCovers * kSure * error_m;
+            runs_.emplace(system_, forces_, *check_, longer_m_);
+            passes += static_cast<int>(runs_->size());
+        }
+        if (!runs_) return difference_m;
+        runs_->start(time_s);
+        if (runs_->finish() == Status::kDiverged) return HUGE_VAL;
+        return std::max(difference_m, runs_->difference_m(state));
+    }
+
+    /// The last time at which the checks alone differ by less than a hundredth of the tolerance; 0 if no
+    /// other outcomes are followed.
+    [[nodiscard]] double reached_s(const MotionBounds& bounds) const {
+        Trial alone;
+        if (runs_) alone_.conclude(bounds, 0.0, alone);
+        return alone.hundredth_s;
+    }
+
+  private:
+    /// A decision whose margin exceeds this multiple of the error bound is the true one.
+    static constexpr double kSure = 4.0;
+    /// Displacement of snaps in parts of the margins that it covers.
+    static constexpr double kCovers = 2.0;
+
+    const System& system_;
+    const Forces& forces_;
+    const ExactDef* check_;
+    Comparison alone_;  ///< without other outcomes
+    double longer_m_ = 0.0;
+    std::optional<Checks> runs_;
+};
+
+}  // namespace
 
 CancelScope report_frames(const PlanDef& def, const std::int64_t& frames_done) {
     return CancelScope([&def, &frames_done] {
@@ -301,6 +399,8 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
     Checks checks(system, world, trial.check, interval_s, has_one ? 1 : Checks::kMaxCount);
     Comparison comparison(def.tolerance_m);
     Linkage linkage(system);
+    const Forces forces(world);
+    OtherSnaps other_snaps(system, forces, def, trial.check);
     recording.clear();
     bool is_checked = true;
     for (; i < total && (is_checked || kind.is_last); ++i) {
@@ -316,10 +416,12 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
         if (!compares) continue;
         if (i == 0) passes += static_cast<int>(checks.size());
         if (checks.finish() == Status::kDiverged) trial.diverged = true;
-        if (!trial.diverged)
-            comparison.add(def.timeline.time_s(static_cast<std::size_t>(i)),
-                           checks.difference_m(run.state()) + linkage.moved_m(run.state()),
-                           recording.bounds());
+        if (!trial.diverged) {
+            const double time_s = def.timeline.time_s(static_cast<std::size_t>(i));
+            const MotionBounds& bounds = recording.bounds();
+            const double difference_m = other_snaps.difference_m(time_s, checks, run.state(), bounds, passes);
+            comparison.add(time_s, difference_m + linkage.moved_m(run.state()), bounds);
+        }
         is_checked = !trial.diverged && !comparison.has_parted();
     }
     trial.steps = run.diagnostics().steps;
@@ -327,6 +429,7 @@ void run_trial(const System& system, const WorldDef& world, const PlanDef& def, 
     comparison.conclude(recording.bounds(), hidden_m(system, trial), trial);
     trial.error_bound_m += rounding_m(system, recording.bounds());
     trial.to_the_end = trial.to_the_end && !trial.diverged;
+    trial.undecided = !trial.to_the_end && other_snaps.reached_s(recording.bounds()) > trial.reached_s;
 }
 
 std::optional<Refusal> refusal(const System& system, const WorldDef& world, const MethodDef& method,

@@ -11,9 +11,12 @@ namespace {
 
 using Side = TensionLcp::Side;
 
-/// Events closer than this, in parts of the string's time scale, count as simultaneous. Integration errors
-/// move events by less, so links that reach their rest length together by symmetry still do.
-constexpr double kSimultaneous = 1e-11;
+/// Events closer than this, in parts of the string's time scale, count as simultaneous. Rounding moves the
+/// events of a symmetric scene by less.
+constexpr double kSimultaneous = 1e-13;
+
+/// Upper bound of the acceleration at which a link turns back, in parts of the string's own.
+constexpr double kTurnsBack = 10.0;
 
 /// Rounding of a distance, in units in the last place of the farthest coordinate.
 constexpr double kUlps = 8.0;
@@ -50,6 +53,7 @@ double cross(Vec2 a, Vec2 b) {
 StringContacts::StringContacts(const System& string, const Forces& forces, double tolerance)
     : forces_(forces),
       no_bounce_(std::clamp(kNoBouncePerTolerance * tolerance, kMinNoBounce, kMaxNoBounce)),
+      left_s_(string.bars.size(), -std::numeric_limits<double>::infinity()),
       direction_(string.bars.size()),
       inward_m_s_(string.bars.size()),
       lcp_(string.inverse_mass_1_kg) {
@@ -66,9 +70,10 @@ StringContacts::StringContacts(const System& string, const Forces& forces, doubl
     }
 }
 
-bool StringContacts::resolve(System& string, std::vector<std::uint8_t>& is_taut) {
+bool StringContacts::resolve(System& string, std::vector<std::uint8_t>& is_taut, double time_s) {
     const std::size_t links = rest_m_.size();
     measure(string);
+    find_margin(string, is_taut, time_s);
     find_present(string, is_taut);
     for (std::size_t k = 0; k < links; ++k) lcp_.z_error[k] = speed_error_m_s_ * largest_mass_kg_[k];
     if (!lcp_.solve(speed_error_m_s_)) return false;
@@ -79,10 +84,13 @@ bool StringContacts::resolve(System& string, std::vector<std::uint8_t>& is_taut)
     }
     if (!find_tensions(string)) return false;
     for (std::size_t k = 0; k < links; ++k) is_taut[k] = lcp_.side[k] == Side::kPulls ? 1 : 0;
+    // A link that pulls from now on could not have turned back.
+    if (excess_m_ < margin_m_ && is_taut[first_] == 0) margin_m_ = excess_m_;
     return true;
 }
 
 void StringContacts::measure(const System& string) {
+    for (std::size_t k = 0; k < rest_m_.size(); ++k) rest_m_[k] = string.bars[k].rest_m;
     double fastest_m_s = 0.0;
     double farthest_m = 0.0;
     for (std::size_t i = 0; i < string.particle_count(); ++i) {
@@ -122,6 +130,41 @@ bool StringContacts::find_tensions(const System& string) {
         }
         if (is_done) return true;
     }
+}
+
+void StringContacts::find_margin(const System& string, const std::vector<std::uint8_t>& is_taut,
+                                 double time_s) {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    margin_m_ = excess_m_ = kNever;
+    first_ = rest_m_.size();
+    const auto missing_m = [&](std::size_t k) {
+        const Vec2 along = between(string.x_m, string.y_m, k);
+        return rest_m_[k] - length(along.x, along.y);
+    };
+    for (std::size_t k = 0; k < rest_m_.size(); ++k) {
+        if (is_taut[k] != 0 || (string.is_pinned(k) && string.is_pinned(k + 1))) continue;
+        const bool is_there = missing_m(k) <= length_error_m(k);
+        if (is_there && (first_ == rest_m_.size() || missing_m(k) < missing_m(first_))) first_ = k;
+    }
+    for (std::size_t k = 0; first_ < rest_m_.size() && k < rest_m_.size(); ++k) {
+        if (is_taut[k] != 0 || (string.is_pinned(k) && string.is_pinned(k + 1))) continue;
+        if (k != first_) {
+            margin_m_ = std::min(margin_m_, missing_m(k) / error_share(k, time_s));
+            continue;
+        }
+        const Vec2 along = between(string.x_m, string.y_m, k);
+        const double speed_m_s =
+            dot(between(string.vx_m_s, string.vy_m_s, k), along) / length(along.x, along.y);
+        const double turns_m_s2 = kTurnsBack * length_m_ * inverse_timescale_1_s_ * inverse_timescale_1_s_;
+        excess_m_ = 0.5 * speed_m_s * speed_m_s / turns_m_s2 / error_share(k, time_s);
+    }
+    for (std::size_t k = 0; k < rest_m_.size(); ++k) {
+        if (is_taut[k] != 0 || missing_m(k) <= length_error_m(k)) left_s_[k] = time_s;
+    }
+}
+
+double StringContacts::error_share(std::size_t link, double time_s) const {
+    return std::min(1.0, (time_s - left_s_[link]) * inverse_timescale_1_s_);
 }
 
 void StringContacts::find_present(const System& string, const std::vector<std::uint8_t>& is_taut) {

@@ -23,13 +23,22 @@ class StringContacts {
     /// slack. False if no such solution was found.
     ///
     /// `is_taut`, one entry per link: on entry before the snap, on return after it. A slack link takes part
-    /// if it is at its rest length to rounding, or gets there within 1e-11 of the string's time scale: events
+    /// if it is at its rest length to rounding, or gets there within 1e-13 of the string's time scale: events
     /// that are simultaneous in a symmetric scene must not depend on their order.
     ///
     /// A link counts as taut if the snap of another link shortens it by less than a hundredth of the
     /// tolerance of its length before it returns. Two links that lie on each other shorten each other in this
     /// way in turn, ever more slowly; impulses along both at once give the limit.
-    [[nodiscard]] bool resolve(System& string, std::vector<std::uint8_t>& is_taut);
+    [[nodiscard]] bool resolve(System& string, std::vector<std::uint8_t>& is_taut, double time_s = 0.0);
+
+    /// Share of the error of positions in the length of a slack link, at most 1: little if the link was at
+    /// its rest length a moment ago.
+    [[nodiscard]] double error_share(std::size_t link, double time_s) const;
+
+    /// Error of positions in metres from which the last snap may have been another one: a second slack link
+    /// would have been the first to snap, or the one that did would not have reached its rest length.
+    /// Infinite if no slack link snapped.
+    [[nodiscard]] double margin_m() const { return margin_m_; }
 
     // In the state that was resolved last, smaller tensions and changes of length are rounding.
     [[nodiscard]] double tension_error_n(std::size_t link) const {
@@ -43,6 +52,7 @@ class StringContacts {
     static constexpr double kLengthRounding = 1e-14;
 
     void measure(const System& string);
+    void find_margin(const System& string, const std::vector<std::uint8_t>& is_taut, double time_s);
     void find_present(const System& string, const std::vector<std::uint8_t>& is_taut);
     void snap(System& string) const;
     /// Finds the links that stay taut after the snap.
@@ -60,6 +70,10 @@ class StringContacts {
     double speed_error_m_s_ = 0.0;
     double acceleration_error_m_s2_ = 0.0;
     double place_error_m_ = 0.0;
+    double margin_m_ = 0.0;
+    std::size_t first_ = 0;           ///< the slack link that snaps first
+    double excess_m_ = 0.0;           ///< by which it would exceed its rest length if it turned back
+    std::vector<double> left_s_;      ///< one per link: the last time at which it was at its rest length
     std::vector<Vec2> direction_;     ///< one per link, of those at their rest length
     std::vector<double> inward_m_s_;  ///< one per link: its speed after the snap; 0 if that is rounding
     TensionLcp lcp_;

@@ -42,6 +42,9 @@ constexpr int kTopPoints = 8;
 /// No point is tried nearer to the last one than this share of the interval: it would add no information.
 constexpr double kApart = 0.01;
 
+/// A rise by less than this share of the length is rounding.
+constexpr double kTurns = 1e-14;
+
 /// Regula falsi takes some ten points; a bisection every fourth time bounds their number.
 constexpr int kRootPoints = 240;
 
@@ -121,6 +124,7 @@ std::optional<double> StringEvents::first_in_step(Dop853& integrator, StringDyna
     const Motion motion{integrator, dynamics};
     const double start_s = integrator.old_time_s();
     const double part_s = (integrator.time_s() - start_s) / static_cast<double>(kParts);
+    misses_.clear();
     for (std::size_t j = 0; j < kParts; ++j) time_s_[j] = start_s + static_cast<double>(j) * part_s;
     time_s_[kParts] = integrator.time_s();
     if (knows_start_) {
@@ -160,6 +164,13 @@ std::optional<StringEvents::Sample> StringEvents::first_top(const Motion& motion
 
 std::optional<StringEvents::Sample> StringEvents::top(const Motion& motion, std::size_t link, Sample before,
                                                       Sample middle, Sample after) {
+    // A link that has just left is not one that turns back.
+    const double sides = std::max(before.margin, after.margin) + kTurns * rest_m_[link];
+    const auto misses = [&] {
+        if (is_taut_[link] == 0 && middle.margin > sides)
+            misses_.push_back({link, middle.time_s, -middle.margin});
+        return std::nullopt;
+    };
     for (int point = 0; point < kTopPoints; ++point) {
         const double whole_s = after.time_s - before.time_s;
         const double rise = (middle.margin - before.margin) / (middle.time_s - before.time_s);
@@ -171,7 +182,7 @@ std::optional<StringEvents::Sample> StringEvents::top(const Motion& motion, std:
         const double expected =
             before.margin + (time_s - before.time_s) * (rise + bend * (time_s - middle.time_s));
         const double height = std::max(expected, middle.margin) - std::min(before.margin, after.margin);
-        if (!(expected + kNearTop * height >= 0.0)) return std::nullopt;
+        if (!(expected + kNearTop * height >= 0.0)) return misses();
         const double apart_s = kApart * whole_s;
         if (std::abs(time_s - middle.time_s) < apart_s) {
             const bool is_early = middle.time_s - before.time_s > after.time_s - middle.time_s;
@@ -188,7 +199,7 @@ std::optional<StringEvents::Sample> StringEvents::top(const Motion& motion, std:
             (is_early ? before : after) = next;
         }
     }
-    return std::nullopt;
+    return misses();
 }
 
 double StringEvents::root(const Motion& motion, Sample low, Sample high) {

@@ -43,6 +43,13 @@ class StringEvents {
   public:
     static constexpr std::size_t kParts = 8;
 
+    /// The largest length of a slack link that turned back without a snap.
+    struct Miss {
+        std::size_t link = 0;
+        double time_s = 0.0;    ///< of the integrator
+        double margin_m = 0.0;  ///< by which it was less than the rest length
+    };
+
     /// For a string of this many particles.
     explicit StringEvents(std::size_t particles);
 
@@ -54,6 +61,9 @@ class StringEvents {
     /// The first event in the last step of `integrator`, which integrates `dynamics`: the time, to rounding,
     /// from which on a margin is not negative. std::nullopt if there is none.
     [[nodiscard]] std::optional<double> first_in_step(Dop853& integrator, StringDynamics& dynamics);
+
+    /// Those found by the last first_in_step(), which may be after its event.
+    [[nodiscard]] const std::vector<Miss>& misses() const { return misses_; }
 
   private:
     struct Sample {
@@ -86,7 +96,8 @@ class StringEvents {
     std::vector<std::uint8_t> is_taut_;
     std::vector<double> rest_m_;
     std::vector<double> threshold_;  ///< subtracted from a margin, in N (taut) or m (slack)
-    bool knows_start_ = false;       ///< the last row is that of the next step's start
+    std::vector<Miss> misses_;
+    bool knows_start_ = false;  ///< the last row is that of the next step's start
     std::array<double, kParts + 1> time_s_{};
     std::vector<double> margin_;                ///< [0 .. kParts][link]
     std::array<double, kParts + 1> largest_{};  ///< largest margin of all links

@@ -91,13 +91,15 @@ void refuse_taut(const System& string) {
 
 }  // namespace
 
-StringPart::StringPart(const System& system, const Forces& forces, double tolerance)
+StringPart::StringPart(const System& system, const Forces& forces, double tolerance,
+                       std::vector<double> longer_m)
     : Exact(system, forces, tolerance),
       forces_(forces),
       tolerance_(tolerance),
       offset_m_{system.x_m.front(), system.y_m.front()},
       string_(relative_to_first(system)),
       is_taut_(links_at_rest_length(string_)),
+      longer_m_(std::move(longer_m)),
       contacts_(string_, forces, tolerance),
       finder_(string_.particle_count()) {
     count_work(1 + string_.particle_count());
@@ -118,6 +120,12 @@ Status StringPart::reach(double time_s, State& state) {
     while (known_s_ < time_s) {
         if (!(event_s_ ? pass_event() : take_step())) return Status::kDiverged;
     }
+    margin_m_ = std::numeric_limits<double>::infinity();
+    std::erase_if(decisions_, [&](const Decision& decision) {
+        if (decision.time_s > time_s) return false;
+        margin_m_ = std::min(margin_m_, decision.margin_m);
+        return true;
+    });
     output_.resize(integrator_->size());
     integrator_->interpolate(std::clamp(time_s - start_s_, integrator_->old_time_s(), integrator_->time_s()),
                              output_.data());
@@ -132,7 +140,11 @@ Status StringPart::reach(double time_s, State& state) {
 }
 
 bool StringPart::start(double first_step_s) {
-    if (!contacts_.resolve(string_, is_taut_)) return false;
+    if (!contacts_.resolve(string_, is_taut_, start_s_)) return false;
+    decisions_.push_back({start_s_, contacts_.margin_m()});
+    for (std::size_t k = 0; k < longer_m_.size(); ++k) {
+        if (is_taut_[k] == 0) string_.bars[k].rest_m += std::exchange(longer_m_[k], 0.0);
+    }
     // Each of these costs about one update per particle.
     const std::size_t updates = 1 + string_.particle_count();
     count_work(updates);
@@ -152,6 +164,11 @@ bool StringPart::take_step() {
     if (integrator_->step() == Status::kDiverged) return false;
     event_s_ = finder_.first_in_step(*integrator_, *dynamics_);
     known_s_ = start_s_ + (event_s_ ? *event_s_ : integrator_->time_s());
+    for (const StringEvents::Miss& miss : finder_.misses()) {
+        const double time_s = start_s_ + miss.time_s;
+        if (time_s <= known_s_)
+            decisions_.push_back({time_s, miss.margin_m / contacts_.error_share(miss.link, time_s)});
+    }
     return true;
 }
 

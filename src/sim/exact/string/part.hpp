@@ -27,8 +27,10 @@ class StringPart final : public Exact {
   public:
     /// Requires one body, a chain with is_string and without compliance. Throws corda::Refusal if it resists
     /// bending, if a link is longer than its rest length, if it is taut between two pins, or if its start
-    /// does not determine which links are taut.
-    StringPart(const System& system, const Forces& forces, double tolerance);
+    /// does not determine which links are taut. `longer_m`: added to the rest length of a link when it first
+    /// is slack, to see what its snaps depend on; one entry per link, or none.
+    StringPart(const System& system, const Forces& forces, double tolerance,
+               std::vector<double> longer_m = {});
 
     [[nodiscard]] double energy_j() const override;
     [[nodiscard]] std::uint64_t steps() const override;
@@ -37,7 +39,16 @@ class StringPart final : public Exact {
     /// Number of times at which links went slack or snapped.
     [[nodiscard]] std::uint64_t events() const { return events_; }
 
+    /// Error of positions in metres from which snaps between the last two requested times may have happened
+    /// in another order, or not at all, or a link that nearly reached its rest length may have snapped.
+    [[nodiscard]] double margin_m() const { return margin_m_; }
+
   private:
+    struct Decision {
+        double time_s;
+        double margin_m;
+    };
+
     [[nodiscard]] Dynamics& dynamics() const override { return *dynamics_; }
     Status reach(double time_s, State& state) override;
     /// Finds the taut links of string_ and starts the motion there, with a first step of at least
@@ -53,14 +64,17 @@ class StringPart final : public Exact {
     Vec2 offset_m_;                      ///< position of string_ in the system
     System string_;                      ///< the system relative to its first particle, at start_s_
     std::vector<std::uint8_t> is_taut_;  ///< one per link, from start_s_ on
+    std::vector<double> longer_m_;       ///< 0 once it is added
     StringContacts contacts_;
     StringEvents finder_;
     std::unique_ptr<StringDynamics> dynamics_;
     std::unique_ptr<Dop853> integrator_;  ///< its time 0 is start_s_
     double start_s_ = 0.0;
-    double known_s_ = 0.0;           ///< until then the motion is that of integrator_
-    std::optional<double> event_s_;  ///< if known_s_ is an event: the time of integrator_ there
-    State local_;                    ///< positions of string_'s particles there; scratch
+    double known_s_ = 0.0;             ///< until then the motion is that of integrator_
+    std::optional<double> event_s_;    ///< if known_s_ is an event: the time of integrator_ there
+    State local_;                      ///< positions of string_'s particles there; scratch
+    std::vector<Decision> decisions_;  ///< after the requested time
+    double margin_m_ = 0.0;
     std::uint64_t events_ = 0;
     std::uint64_t burst_ = 0;  ///< events since burst_s_
     double burst_s_ = 0.0;

@@ -9,6 +9,7 @@
 #include "corda/core/timeline.hpp"
 #include "corda/reference/ropes.hpp"
 #include "support/nets.hpp"
+#include "support/strings.hpp"
 
 namespace corda::sim {
 namespace {
@@ -90,6 +91,37 @@ TEST(Trial, BoundIncludesHiddenVibrations) {
     const Outcome outcome = outcome_of(beam, ExactDef{1e-4}, ExactDef{1e-6}, 1e-3);
     EXPECT_TRUE(outcome.trial.to_the_end);
     EXPECT_GE(outcome.trial.error_bound_m, 1e-6 * 0.1);
+}
+
+/// A particle that falls from between two pins until links of these lengths stop it, after 0.46 s.
+RopeDef caught(double left_m, double right_m) {
+    RopeDef rope = test::string_of({{-0.6, 0.0}, {0.0, 0.0}, {0.6, 0.0}}, {left_m, right_m});
+    rope.pinned = {0, 2};
+    return rope;
+}
+
+TEST(Trial, EndsWhereRoundingDecidesWhichLinkSnapsFirst) {
+    const Outcome equal = outcome_of(caught(1.2, 1.2), ExactDef{1e-5}, ExactDef{1e-9}, 1e-3);
+    EXPECT_FALSE(equal.trial.to_the_end);
+    EXPECT_TRUE(equal.trial.undecided);
+    EXPECT_EQ(equal.trial.reached_s, 27.0 / 60.0);
+    EXPECT_EQ(equal.passes, 4);
+    const Outcome unequal = outcome_of(caught(1.2, 1.2 + 1.2e-11), ExactDef{1e-5}, ExactDef{1e-9}, 1e-3);
+    EXPECT_TRUE(unequal.trial.to_the_end);
+    EXPECT_FALSE(unequal.trial.undecided);
+    EXPECT_EQ(unequal.passes, 2);
+}
+
+TEST(Trial, CoversBothOutcomesOfALinkThatBarelySnaps) {
+    RopeDef rope = test::string_of({{0.0, 0.0}, {0.3, 0.2}}, {1.0});
+    rope.velocity_m_s[1] = {0.0, 3.8460742493873763};  // its distance is 1 m at the top
+    for (const double tolerance_m : {1e-3, 1e-9}) {
+        const Outcome outcome = outcome_of(rope, ExactDef{1e-5}, ExactDef{1e-9}, tolerance_m);
+        EXPECT_EQ(outcome.trial.to_the_end, tolerance_m == 1e-3);
+        EXPECT_EQ(outcome.trial.undecided, tolerance_m == 1e-9);
+        EXPECT_EQ(outcome.passes, 4);
+        if (outcome.trial.to_the_end) EXPECT_GT(outcome.trial.error_bound_m, 2e-7);  // what the snap changes
+    }
 }
 
 TEST(Trial, ThatDivergesAtItsStartIsOnePass) {
