@@ -8,12 +8,13 @@
 #include <cmath>
 
 #include "corda/reference/ropes.hpp"
+#include "support/gravity.hpp"
 #include "support/slope.hpp"
 
 namespace corda {
 namespace {
 
-using reference::kGravity;
+using test::kGravity;
 
 TEST(Xpbd, ConvergesToAReleasedChainWithFirstOrder) {
     const reference::ReleasedChain row{10, 1, 45, 1, 1, reference::released_tip_m(10, 45, 1)};
