@@ -31,8 +31,8 @@ constexpr int kMinSidePx = 160;
 constexpr double kBarPerWidth = 0.2;
 constexpr int kMaxDecimals = 9;
 
-/// U+2007, as wide as a digit.
-constexpr const char* kFigureSpace = "\u2007";
+/// Texts to the right of the time leave room for this one, so that they keep their places until 100 s.
+constexpr double kTwoDigitsS = 10.0;
 
 /// Where the character that begins at byte `i` of a UTF-8 text ends.
 std::size_t end_of_character(std::string_view utf8, std::size_t i) {
@@ -60,8 +60,7 @@ std::string time_label(const std::string& digits) {
     return "t = " + digits + " s";
 }
 
-Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int height, double interval_s,
-                 double end_s)
+Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int height, double interval_s)
     : def_(def),
       side_px_(std::min(width, height)),
       em_px_(def.text_px ? rounded(*def.text_px) : em_of(side_px_)),
@@ -80,7 +79,6 @@ Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int he
     legend_ = quantity_of(style.color_by) && def.legend.value_or(by_default);
     color_ = text_color(look);
     while (decimals_ < kMaxDecimals && interval_s * power_of_10(decimals_) < 1.0) ++decimals_;
-    time_digits_ = fmt::format("{:.{}f}", std::max(0.0, end_s - interval_s), decimals_).size();
 }
 
 bool Overlay::has_bottom() const {
@@ -121,12 +119,8 @@ Insets Overlay::insets() const {
     return insets;
 }
 
-std::string Overlay::padded_time_label(double time_s) const {
-    std::string digits = fmt::format("{:.{}f}", time_s, decimals_);
-    while (digits.size() < time_digits_) digits.insert(0, 1, ' ');
-    std::string text;
-    for (const char digit : digits) text += digit == ' ' ? kFigureSpace : std::string(1, digit);
-    return time_label(text);
+std::string Overlay::time_text(double time_s) const {
+    return time_label(fmt::format("{:.{}f}", time_s, decimals_));
 }
 
 void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& list) {
@@ -134,7 +128,7 @@ void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& li
     int left_px = edge_px_;
     int right_px = width_ - edge_px_;
     if (time_ && caption.time_s)
-        left_px = write_bottom(padded_time_label(*caption.time_s), left_px, right_px, list);
+        left_px = write_bottom(time_text(*caption.time_s), left_px, right_px, list, time_text(kTwoDigitsS));
     if (scale_bar_) right_px = draw_scale_bar(pixels_per_metre, left_px, list);
     for (const BottomText& item : kBottomTexts) {
         if (item.is_shown(def_) && caption.time_s)
@@ -158,11 +152,12 @@ int Overlay::fitting_title_px(int end_px) {
     return size_px;
 }
 
-int Overlay::write_bottom(const std::string& text, int x_px, int end_px, DrawList& list) {
-    const int text_end_px = x_px + font_.width_px(text, em_px_);
-    if (text_end_px > end_px) return x_px;
+int Overlay::write_bottom(const std::string& text, int x_px, int end_px, DrawList& list,
+                          const std::string& widest) {
+    const int width_px = font_.width_px(text, em_px_);
+    if (x_px + width_px > end_px) return x_px;
     font_.write({x_px, height_ - edge_px_, em_px_, color_, text}, list);
-    return text_end_px + rounded(kLine * em_px_);
+    return x_px + std::max(width_px, font_.width_px(widest, em_px_)) + rounded(kLine * em_px_);
 }
 
 int Overlay::draw_scale_bar(double pixels_per_metre, int begin_px, DrawList& list) {

@@ -26,10 +26,8 @@ struct Caption {
 /// A long title or method is shortened; other items without room are left out.
 class Overlay {
   public:
-    /// `interval_s`: frame interval, which sets the number of decimals of the time. `end_s`: end of the
-    /// scene; every time is as wide as that of the last frame.
-    Overlay(const OverlayDef& def, const StyleDef& style, int width, int height, double interval_s,
-            double end_s);
+    /// `interval_s`: frame interval, which sets the number of decimals of the time.
+    Overlay(const OverlayDef& def, const StyleDef& style, int width, int height, double interval_s);
 
     /// Space that the camera must leave free.
     [[nodiscard]] Insets insets() const;
@@ -52,11 +50,12 @@ class Overlay {
     [[nodiscard]] int method_baseline_px() const;
     /// Baseline of the legend's numbers.
     [[nodiscard]] int legend_baseline_px() const;
-    /// Padded to the width of the last frame's time.
-    [[nodiscard]] std::string padded_time_label(double time_s) const;
+    /// Left aligned without padding: the same text at the same place in a film of any duration.
+    [[nodiscard]] std::string time_text(double time_s) const;
     /// Writes a text at the left end of the lower baseline if it ends before `end_px`; returns where the next
-    /// may begin.
-    int write_bottom(const std::string& text, int x_px, int end_px, DrawList& list);
+    /// may begin, with room for the text `widest`.
+    int write_bottom(const std::string& text, int x_px, int end_px, DrawList& list,
+                     const std::string& widest = {});
     /// The same for the scale bar, from the right; returns where it begins.
     int draw_scale_bar(double pixels_per_metre, int begin_px, DrawList& list);
     /// Draws the legend; returns where it begins.
@@ -83,7 +82,6 @@ class Overlay {
     int edge_px_;  ///< from the edges of the frame to the texts
     double interval_s_;
     int decimals_ = 2;
-    std::size_t time_digits_ = 0;  ///< with the decimal point
     Font font_;
     PlotPanel plot_;
 };

@@ -17,11 +17,11 @@ namespace {
 constexpr double kFrameS = 1.0 / 60.0;
 
 DrawList drawn(const OverlayDef& def, const Caption& caption, int width, int height,
-               double pixels_per_metre = 100.0, double end_s = 10.0, const StyleDef& style = {}) {
+               double pixels_per_metre = 100.0, const StyleDef& style = {}) {
     DrawList list;
     list.width = width;
     list.height = height;
-    Overlay(def, style, width, height, kFrameS, end_s).draw(caption, pixels_per_metre, list);
+    Overlay(def, style, width, height, kFrameS).draw(caption, pixels_per_metre, list);
     return list;
 }
 
@@ -65,24 +65,26 @@ TEST(Overlays, AreOffByDefaultOnATransparentGround) {
     StyleDef style;
     style.background = Ground{{0, 0, 0, 255}, {0, 0, 0, 0}};
     const Caption caption{1.2, {}, {}};
-    EXPECT_TRUE(words(drawn({}, caption, 640, 360, 100.0, 10.0, style)).empty());
+    EXPECT_TRUE(words(drawn({}, caption, 640, 360, 100.0, style)).empty());
     OverlayDef always;
     always.scale_bar = true;
-    EXPECT_EQ(words(drawn(always, caption, 640, 360, 100.0, 10.0, style)), Words{"1 m"});
+    EXPECT_EQ(words(drawn(always, caption, 640, 360, 100.0, style)), Words{"1 m"});
 }
 
-TEST(Overlays, KeepTheDigitsOfTheTimeInPlace) {
-    const auto time = [](double time_s, double end_s) {
-        return drawn({}, {time_s, {}, {}}, 640, 360, 100.0, end_s).texts[0].utf8;
-    };
-    EXPECT_EQ(time(9.5, 10.0), "t = 9.50 s");
-    EXPECT_EQ(time(9.5, 100.0), "t = \u20079.50 s");
-    EXPECT_EQ(time(99.5, 100.0), "t = 99.50 s");
-    Font font;
-    EXPECT_EQ(font.width_px(time(9.5, 100.0), 12), font.width_px(time(99.5, 100.0), 12));
+TEST(Overlays, KeepTheirPlacesWhateverTheDuration) {
+    OverlayDef def;
+    def.energy = true;
+    const auto texts = [&](double time_s) { return drawn(def, {time_s, 1e-9, {}}, 640, 360).texts; };
+    EXPECT_EQ(texts(9.5)[0].utf8, "t = 9.50 s");
+    EXPECT_EQ(texts(99.5)[0].utf8, "t = 99.50 s");
+    EXPECT_EQ(texts(9.5)[0].x_px, texts(999.5)[0].x_px);
+    // The energy, to the right of the time.
+    ASSERT_EQ(texts(9.5).back().utf8, texts(99.5).back().utf8);
+    EXPECT_EQ(texts(9.5).back().x_px, texts(99.5).back().x_px);
+    EXPECT_LT(texts(9.5).back().x_px, texts(100.0).back().x_px);
     DrawList list;
     list.width = list.height = 400;
-    Overlay({}, {}, 400, 400, 1.0 / 1500.0, 1.0).draw({0.25, {}, {}}, 100.0, list);
+    Overlay({}, {}, 400, 400, 1.0 / 1500.0).draw({0.25, {}, {}}, 100.0, list);
     EXPECT_EQ(list.texts[0].utf8, "t = 0.2500 s");
 }
 
@@ -119,7 +121,7 @@ TEST(Overlays, AreNeverCutAndNeverMeet) {
                                         {16, 16},
                                         {1, 1}}) {
         SCOPED_TRACE(std::to_string(width) + "x" + std::to_string(height));
-        const DrawList list = drawn(all, caption, width, height, 0.37, 200000.0);
+        const DrawList list = drawn(all, caption, width, height, 0.37);
         Font font;
         for (const Text& text : list.texts) {
             const PixelRect ink = font.ink(text);
@@ -131,7 +133,7 @@ TEST(Overlays, AreNeverCutAndNeverMeet) {
         }
         EXPECT_TRUE(width < 640 || list.texts.size() == 5U) << list.texts.size();
         // What the camera fits is clear of them.
-        const Insets insets = Overlay(all, {}, width, height, kFrameS, 10.0).insets();
+        const Insets insets = Overlay(all, {}, width, height, kFrameS).insets();
         EXPECT_LE(insets.top_px + insets.bottom_px, 0.5 * height + 1e-9);
         if (height < 200) continue;
         for (const Stamp& stamp : list.stamps)
@@ -144,7 +146,7 @@ TEST(Overlays, StandOutFromTheirGround) {
          {std::pair{Color{0xff, 0xff, 0xf0}, true}, {Color{0x10, 0x10, 0x30}, false}}) {
         StyleDef style;
         style.background = Ground{ground, ground};
-        const DrawList list = drawn(bar_alone(), {}, 640, 360, 100.0, 10.0, style);
+        const DrawList list = drawn(bar_alone(), {}, 640, 360, 100.0, style);
         EXPECT_EQ(list.texts[0].color.g < 128, is_dark);
     }
 }
@@ -168,7 +170,7 @@ DrawList with_legend(const ColorScale& scale, OverlayDef def, int width, int hei
     list.height = height;
     def.time = def.scale_bar = false;
     def.legend = true;
-    Overlay overlay(def, by_tension(), width, height, kFrameS, 10.0);
+    Overlay overlay(def, by_tension(), width, height, kFrameS);
     overlay.set_scale(scale);
     overlay.draw({}, 100.0, list);
     return list;
@@ -204,7 +206,7 @@ TEST(Legends, StayInTheirFrameAndKeepClearOfTheTitle) {
         OverlayDef alone;
         alone.legend = true;
         alone.time = false;
-        const Insets insets = Overlay(alone, by_tension(), width, height, kFrameS, 10.0).insets();
+        const Insets insets = Overlay(alone, by_tension(), width, height, kFrameS).insets();
         for (std::size_t i = 1; i < 4; ++i) EXPECT_LE(font.ink(list.texts[i]).y1, insets.top_px) << width;
     }
 }
@@ -253,8 +255,8 @@ TEST(Legends, AreLeftOutIfThereIsNoRoomOrNoScale) {
     EXPECT_TRUE(words(with_legend(kilonewtons(), {}, 60, 400)).empty());
     OverlayDef def = bar_alone();
     def.scale_bar = false;
-    EXPECT_TRUE(words(drawn(def, {}, 960, 540, 100.0, 10.0, by_tension())).empty());
-    EXPECT_EQ(Overlay(def, {}, 960, 540, kFrameS, 10.0).insets().top_px, 0.0);
+    EXPECT_TRUE(words(drawn(def, {}, 960, 540, 100.0, by_tension())).empty());
+    EXPECT_EQ(Overlay(def, {}, 960, 540, kFrameS).insets().top_px, 0.0);
 }
 
 TEST(Titles, OfAMegabyteAreShortenedAtOnce) {

@@ -218,10 +218,10 @@ TEST(PlotPanel, ShowsNothingOfTheScene) {
 TEST(PlotPanel, LeavesTheCameraTheRest) {
     OverlayDef def;
     def.plot = LivePlot::kTip;
-    const Insets beside = Overlay(def, {}, 1280, 720, 0.02, 10.0).insets();
+    const Insets beside = Overlay(def, {}, 1280, 720, 0.02).insets();
     EXPECT_EQ(beside.right_panel_px, 461.0);
     EXPECT_EQ(beside.bottom_panel_px, 0.0);
-    const Insets below = Overlay(def, {}, 720, 1280, 0.02, 10.0).insets();
+    const Insets below = Overlay(def, {}, 720, 1280, 0.02).insets();
     EXPECT_EQ(below.right_panel_px, 0.0);
     EXPECT_EQ(below.bottom_panel_px, 461.0);
     MotionBounds bounds;
