@@ -19,6 +19,7 @@
 #include "corda/core/text.hpp"
 #include "corda/core/workers.hpp"
 #include "corda/golden/perceived.hpp"
+#include "corda/golden/suite.hpp"
 #include "corda/media/defs.hpp"
 #include "interrupt.hpp"
 
@@ -261,15 +262,13 @@ nlohmann::json figures_json(const Difference& difference) {
     const auto figure = [&](const nlohmann::json& value) {
         return difference.same_size ? value : nlohmann::json();
     };
-    return {{"equal", difference.equal},           {"same_size", difference.same_size},
-            {"max", figure(max_json(difference))}, {"mean", figure(difference.mean)},
-            {"share", figure(difference.share)},   {"flip", or_null(difference.flip)},
+    return {{"equal", difference.equal},
+            {"same_size", difference.same_size},
+            {"max", figure(golden::max_json(difference))},
+            {"mean", figure(difference.mean)},
+            {"share", figure(difference.share)},
+            {"flip", or_null(difference.flip)},
             {"ssim", or_null(difference.ssim)}};
-}
-
-nlohmann::json max_json(const Difference& difference) {
-    const auto whole = static_cast<int>(difference.max);
-    return difference.max == whole ? nlohmann::json(whole) : nlohmann::json(difference.max);
 }
 
 PerceivedFigures figures_for(const CompareOptions& options) {

@@ -23,8 +23,6 @@ struct CompareOptions {
 
 /// The figures of a difference; null for those that were not computed.
 [[nodiscard]] nlohmann::json figures_json(const Difference& difference);
-/// The largest difference: a whole number, but of pictures with 16 bits.
-[[nodiscard]] nlohmann::json max_json(const Difference& difference);
 /// Which figures the limits ask for.
 [[nodiscard]] PerceivedFigures figures_for(const CompareOptions& options);
 

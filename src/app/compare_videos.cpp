@@ -11,6 +11,7 @@
 #include "corda/core/child_process.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
+#include "corda/golden/suite.hpp"
 #include "corda/media/defs.hpp"
 #include "corda/media/read/stored_video.hpp"
 #include "interrupt.hpp"
@@ -111,7 +112,7 @@ Json json_of(const VideoDifference& found) {
     const bool same_times = are_same_rate(found.rates) && found.time_s <= kSameTimeS;
     Json json = figures_json(found.worst);
     if (found.worst.same_size) {
-        json["max"] = max_json(found.largest);
+        json["max"] = golden::max_json(found.largest);
         json["mean"] = found.largest.mean;
         json["share"] = found.largest.share;
     }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <string>
 
 #include <fmt/format.h>
@@ -22,19 +21,14 @@ using golden::Verdict;
 struct GoldenOptions {
     golden::SuiteDef def;
     GlOptions gl;
+    std::string shard;
     std::string junit;
     std::string html;
+    std::string markdown;
 };
 
 /// A page of more pictures is too large to open.
 constexpr int kMaxOnPage = 200;
-
-/// In the order of Verdict.
-constexpr std::array<const char*, 6> kWords{"passed", "different", "missing", "empty", "stale", "invalid"};
-
-const char* word_of(Verdict verdict) {
-    return kWords.at(static_cast<std::size_t>(verdict));
-}
 
 std::string line_of(const Checked& picture, const GoldenOptions& options) {
     std::string line = picture.name + ": ";
@@ -43,31 +37,13 @@ std::string line_of(const Checked& picture, const GoldenOptions& options) {
         line += picture.verdict == Verdict::kStale ? "removed: " : "written: ";
     }
     if (!picture.changed || picture.verdict != Verdict::kPassed) line += word_of(picture.verdict);
-    if (picture.verdict == Verdict::kDifferent && picture.difference.same_size)
-        line += ": " + figures_text(picture.difference);
+    if (picture.verdict == Verdict::kDifferent && !picture.figures().empty())
+        line += ": " + picture.figures();
     if (!picture.cause.empty()) line += (line.ends_with(' ') ? "" : "; ") + picture.cause;
     if (picture.failed() && picture.verdict == Verdict::kMissing) line += "; --update adds it";
     if (picture.failed() && picture.verdict == Verdict::kStale && !picture.has_no_record)
         line += "; --update removes it";
     return line;
-}
-
-nlohmann::json to_json(const Checked& picture) {
-    nlohmann::json json{{"name", picture.name},
-                        {"scene", picture.scene},
-                        {"time_s", picture.time_s},
-                        {"result", word_of(picture.verdict)},
-                        {"cause", picture.cause},
-                        {"compared_with", picture.variant},
-                        {"changed", picture.changed},
-                        {"max", nullptr},
-                        {"mean", nullptr},
-                        {"share", nullptr}};
-    if (picture.variant.empty() || !picture.difference.same_size) return json;
-    json["max"] = max_json(picture.difference);
-    json["mean"] = picture.difference.mean;
-    json["share"] = picture.difference.share;
-    return json;
 }
 
 void write_text(const std::string& path, const std::string& text) {
@@ -79,14 +55,12 @@ void write_text(const std::string& path, const std::string& text) {
 /// Prints failures, changes and totals.
 void tell(const Console& console, const GoldenOptions& options, const golden::SuiteResult& result) {
     nlohmann::json pictures = nlohmann::json::array();
-    std::int64_t changed = 0;
     for (const Checked& picture : result.pictures) {
         if (picture.verdict == Verdict::kInvalid)
             console.error(picture.cause);
         else if (picture.failed() || picture.changed)
             console.result(line_of(picture, options));
-        changed += picture.changed ? 1 : 0;
-        pictures.push_back(to_json(picture));
+        pictures.push_back(golden::picture_json(picture));
     }
     for (const std::string& note : result.notes) console.warning(note);
     for (const std::string& detail : result.details) console.detail(detail);
@@ -96,20 +70,21 @@ void tell(const Console& console, const GoldenOptions& options, const golden::Su
     const std::int64_t missing = result.count(Verdict::kMissing);
     const std::int64_t stale = result.count(Verdict::kStale);
     const std::int64_t invalid = result.count(Verdict::kInvalid);
-    std::string sums = fmt::format("{}: {} failed, {} missing, {} stale",
-                                   counted(passed, "picture") + " passed", failed, missing, stale);
-    if (invalid > 0) sums += fmt::format("; {} invalid", counted(invalid, "scene"));
-    if (options.def.update)
-        sums += fmt::format("; {}{} written or removed", changed, options.def.dry_run ? " would be" : "");
-    console.result(sums);
+    console.result(result.totals());
     std::error_code none;
     if (missing > 0 && !std::filesystem::exists(options.def.folder, none))
         console.warning(fmt::format("there is no folder '{}'; --update makes it", options.def.folder));
     else if (missing > 0)
         console.info("--update draws the missing pictures and keeps them");
-    nlohmann::json json = {{"schema", 1},         {"passed", passed},        {"failed", failed},
-                           {"missing", missing},  {"stale", stale},          {"invalid", invalid},
-                           {"changed", changed},  {"frozen", result.frozen}, {"notes", result.notes},
+    nlohmann::json json = {{"schema", 1},
+                           {"passed", passed},
+                           {"failed", failed},
+                           {"missing", missing},
+                           {"stale", stale},
+                           {"invalid", invalid},
+                           {"changed", result.changed()},
+                           {"frozen", result.frozen},
+                           {"notes", result.notes},
                            {"pictures", pictures}};
     if (invalid > 0) {
         const auto first =
@@ -142,17 +117,33 @@ golden::SuiteResult run_until_asked(golden::SuiteDef& def) {
     }
 }
 
-ExitCode run_suite(const Console& console, GoldenOptions options) {
-    if ((options.def.dry_run || options.def.replan || options.def.force) && !options.def.update)
-        throw Error(ExitCode::kUsage, "--dry-run, --replan and --force say how --update works; add --update");
-    for (const std::string& path : {options.junit, options.html})
+void check_options(const GoldenOptions& options) {
+    const golden::SuiteDef& def = options.def;
+    const auto refuse = [](const char* text) { throw Error(ExitCode::kUsage, text); };
+    if ((def.replan || def.force) && !def.update)
+        refuse("--replan and --force say how --update works; add --update");
+    if (def.dry_run && !def.update && def.accepted.empty())
+        refuse("--dry-run says what --update or --accept would change; add one of them");
+    for (const std::string& path : {options.junit, options.html, options.markdown})
         if (!path.empty()) check_output(path, "", true);
+    if (def.new_folder.empty()) return;
+    std::error_code none;
+    if (std::filesystem::equivalent(def.new_folder, def.folder, none))
+        refuse("--new would write to the folder of the kept pictures; name another folder");
+    check_folder(def.new_folder);
+}
+
+ExitCode run_suite(const Console& console, GoldenOptions options) {
+    check_options(options);
+    if (!options.shard.empty()) options.def.shard = parse_shard(options.shard);
     if (!options.html.empty()) options.def.most_drawn = kMaxOnPage;
     options.gl.apply_to(options.def.film);
-    const golden::SuiteResult result = run_until_asked(options.def);
+    const golden::SuiteResult result =
+        options.def.accepted.empty() ? run_until_asked(options.def) : golden::accept(options.def);
     const CancelScope finishing({}, CancelScope::Outer::kIgnored);  // an update has been published
     if (!options.junit.empty()) write_text(options.junit, golden::junit_xml(result));
-    if (!options.html.empty()) write_text(options.html, golden::page_html(result, options.def.folder));
+    if (!options.html.empty()) write_text(options.html, golden::page_html(result));
+    if (!options.markdown.empty()) write_text(options.markdown, golden::markdown(result));
     tell(console, options, result);
     if (result.count(Verdict::kInvalid) > 0) return ExitCode::kInvalidScene;
     const bool failed = std::any_of(result.pictures.begin(), result.pictures.end(),
@@ -170,16 +161,38 @@ void add_golden(CLI::App& app, Action& action) {
         .add_option("SCENE", options.def.paths, "scene files, or folders with them in it or in its folders")
         ->required();
     command.add_option("--dir", options.def.folder, "folder of the kept pictures")->required();
-    command.add_flag("--update", options.def.update,
-                     "write pictures that are missing or differ, and remove stale ones");
-    command.add_flag("--dry-run", options.def.dry_run, "with --update: only say what would change");
+    command
+        .add_option("--only", options.def.only,
+                    "only pictures with these names, or of scenes with these names; * stands for any text")
+        ->type_name("NAME");
+    command.add_option("--shard", options.shard, "only every N-th scene, from scene I (0 .. N - 1) on")
+        ->type_name("I/N");
+    auto* const stale = command.add_flag("--stale", options.def.stale_only,
+                                         "draw nothing: only look for pictures that no scene asks for");
+    auto* const update = command.add_flag("--update", options.def.update,
+                                          "write pictures that are missing or differ, and remove stale ones");
+    command.add_flag("--dry-run", options.def.dry_run,
+                     "with --update or --accept: only say what would change");
     command.add_flag(
         "--force", options.def.force,
         "with --update: also replace files that are no PNG, and remove pictures without a record");
     command.add_flag("--replan", options.def.replan,
                      "with --update: choose new solvers and cameras instead of those of the kept pictures");
+    auto* const fresh = command
+                            .add_option("--new", options.def.new_folder,
+                                        "also write the failed pictures to this folder, for --accept")
+                            ->type_name("DIR")
+                            ->excludes(update);
+    command
+        .add_option("--accept", options.def.accepted,
+                    "draw nothing: keep the pictures that an earlier --new wrote to this folder")
+        ->type_name("DIR")
+        ->allow_extra_args(false)
+        ->excludes(update, fresh, stale);
     command.add_option("--html", options.html,
                        "also write a page of the failed pictures: reference, new and difference");
+    command.add_option("--markdown", options.markdown,
+                       "also write the failures as Markdown to this file, for a pull request");
     command.add_option("--junit", options.junit, "also write the results as JUnit XML to this file");
     command.add_option("--set", options.def.settings, "key=value in place of what the scenes say")
         ->type_name("KEY=VALUE");

@@ -1,5 +1,7 @@
 #include "corda/golden/cases.hpp"
 
+#include <fnmatch.h>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,13 +42,30 @@ std::string name_of(const std::string& scene, double time_s) {
     return name;
 }
 
+/// The picture golden.mask of a scene. Throws corda::Error (kInvalidScene).
+std::optional<Image> mask_of(const std::string& scene, const GoldenDef& golden) {
+    if (golden.mask.empty()) return std::nullopt;
+    const std::string path = (fs::path(scene).parent_path() / golden.mask).string();
+    try {
+        const Image mask = read_png(path);
+        const Image blank(golden.width_px, golden.height_px);
+        static_cast<void>(compare(blank, blank, &mask));
+        return mask;
+    } catch (const Error& error) {
+        throw Error(ExitCode::kInvalidScene,
+                    fmt::format("{}: golden.mask: '{}': {}", scene, path, error.what()));
+    }
+}
+
 Case make_case(const std::string& path, const SuiteDef& def, std::set<std::string>& names) {
     Case made{.path = path,
               .settings = def.settings,
               .scene = load_scene(path, def.settings),
               .pictures = {},
+              .mask = {},
               .frozen = {}};
     if (!made.scene.golden) return made;
+    made.mask = mask_of(path, *made.scene.golden);
     made.settings.push_back(
         fmt::format("video.size=[{},{}]", made.scene.golden->width_px, made.scene.golden->height_px));
     for (const double at_s : made.scene.golden->at_s) {
@@ -87,10 +106,7 @@ bool has_schema(std::string_view text) {
 /// True for a TOML file of another program. Files of a folder are judged by this before they are read as
 /// scenes; a file that is named is always read.
 bool is_foreign(const std::string& path) {
-    const FileHandle file = open_for_reading(path);
-    std::string text(file_size(path), '\0');
-    text.resize(read_bytes(file, path, text.data(), text.size()));
-    return !has_schema(text);
+    return !has_schema(file_bytes(path));
 }
 
 /// The provenance of a golden picture; empty if it cannot be read.
@@ -117,6 +133,56 @@ std::string scene_in_name(const std::string& name) {
 }
 
 }  // namespace
+
+bool Case::is_whole() const {
+    return std::all_of(pictures.begin(), pictures.end(), [](const Checked& one) { return one.selected; });
+}
+
+void select(const SuiteDef& def, std::vector<Case>& cases, std::vector<std::string>& stale,
+            std::vector<Checked>& invalid) {
+    std::vector<bool> is_used(def.only.size());
+    std::vector<std::string_view> known;
+    const auto is_named = [&](const std::string& file, const std::string& scene) {
+        bool is = def.only.empty();
+        for (std::size_t i = 0; i < def.only.size(); ++i)
+            for (const std::string& name : {file, fs::path(file).stem().string(), scene})
+                if (fnmatch(def.only[i].c_str(), name.c_str(), 0) == 0) is = is_used[i] = true;
+        return is;
+    };
+    const auto is_in_shard = [&](std::size_t i) {
+        return static_cast<std::int64_t>(i) % def.shard.count == def.shard.index;
+    };
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        known.push_back(cases[i].scene.name);
+        for (Checked& picture : cases[i].pictures) {
+            known.push_back(picture.name);
+            picture.selected = is_named(picture.name, picture.scene) && is_in_shard(i) && !def.stale_only;
+        }
+    }
+    std::size_t count = 0;
+    std::erase_if(stale, [&](const std::string& path) {
+        const std::string name = fs::path(path).filename().string();
+        return !is_named(name, scene_in_name(name)) || !is_in_shard(count++);
+    });
+    count = 0;
+    std::erase_if(invalid, [&](const Checked& scene) {
+        return !is_named(scene.name, scene.scene) || !is_in_shard(count++);
+    });
+    for (std::size_t i = 0; i < def.only.size(); ++i) {
+        if (is_used[i]) continue;
+        const auto likely = nearest(def.only[i], known);
+        throw Error(ExitCode::kUsage,
+                    fmt::format("--only {}: no picture and no scene has this name{}", def.only[i],
+                                likely ? fmt::format("; did you mean {}?", *likely) : ""));
+    }
+}
+
+std::string file_bytes(const std::string& path) {
+    const FileHandle file = open_for_reading(path);
+    std::string bytes(file_size(path), '\0');
+    bytes.resize(read_bytes(file, path, bytes.data(), bytes.size()));
+    return bytes;
+}
 
 bool is_no_png(const std::string& path) {
     std::error_code none;
@@ -152,7 +218,8 @@ std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid,
             invalid.push_back({.scene = fs::path(file).stem().string(),
                                .name = file,
                                .verdict = Verdict::kInvalid,
-                               .cause = error.what()});
+                               .cause = error.what(),
+                               .group = "invalid scene"});
             return std::nullopt;
         }
     };

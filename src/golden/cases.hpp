@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,13 +17,37 @@ struct Case {
     std::vector<Setting> settings;  ///< those of the suite, and the picture size
     Scene scene;                    ///< with these settings
     std::vector<Checked> pictures;
+    std::optional<Image> mask;
     std::string frozen;  ///< what its references freeze, in words
+
+    /// True if no picture is left out by SuiteDef::only.
+    [[nodiscard]] bool is_whole() const;
 };
 
 /// The scenes of a suite; those that are invalid go to `invalid`, but for those of an update. TOML files of
 /// folders that are no scenes are told in `passed_over`. Throws corda::Error as run().
 [[nodiscard]] std::vector<Case> load_cases(const SuiteDef& def, std::vector<Checked>& invalid,
                                            std::vector<std::string>& passed_over);
+
+/// Leaves the pictures out that the suite does not ask for: those of `cases` stay, unselected. Throws
+/// corda::Error (kUsage) for a name of SuiteDef::only that is none.
+void select(const SuiteDef& def, std::vector<Case>& cases, std::vector<std::string>& stale,
+            std::vector<Checked>& invalid);
+
+/// The bytes of pictures by their names.
+using Files = std::map<std::string, std::string>;
+
+/// Writes pictures to a folder, each as a whole, and removes others by their paths. A signal lets this be
+/// completed. Throws corda::Error (kIo).
+void publish(const std::string& folder, const Files& files, const std::vector<std::string>& removed);
+
+/// Writes the failed pictures of a run to SuiteDef::new_folder, with what accept() must know of each in its
+/// file golden.json, and removes those of an earlier run. Without any no folder is made. Throws corda::Error:
+/// kIo; kUsage for a golden.json of another kind.
+void write_new(const SuiteDef& def, const std::vector<Case>& cases, const Files& files);
+
+/// The bytes of a file. Throws corda::Error (kIo).
+[[nodiscard]] std::string file_bytes(const std::string& path);
 
 /// The pictures of the folder of references, sorted; none if there is no folder. Throws corda::Error (kIo).
 [[nodiscard]] std::vector<std::string> references_in(const std::string& folder);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <filesystem>
 
 #include "corda/core/file.hpp"
 #include "corda/core/markup.hpp"
@@ -48,27 +47,22 @@ std::string figure_html(const char* kind, const std::string& caption, const Imag
 }
 
 /// The reference of a picture, if it can be read.
-std::optional<Image> reference_of(const Checked& picture, const std::string& folder) {
-    const std::string& name = picture.verdict == Verdict::kStale ? picture.name : picture.variant;
-    if (name.empty()) return std::nullopt;
+std::optional<Image> reference_of(const Checked& picture) {
+    if (picture.reference.empty()) return std::nullopt;
     try {
-        return read_png((std::filesystem::path(folder) / name).string());
+        return read_png(picture.reference);
     } catch (const Error&) {
         return std::nullopt;
     }
 }
 
-std::string figures_of(const Checked& picture) {
-    if (picture.variant.empty() || !picture.difference.same_size) return "";
-    return fmt::format("<p class=\"figures\">{}</p>\n", figures_text(picture.difference));
-}
-
-std::string case_html(const Checked& picture, const std::string& folder) {
-    const std::string cause = picture.verdict == Verdict::kMissing ? "there is no reference" : picture.cause;
-    std::string html = fmt::format("<section id=\"{0}\">\n<h2>{0}</h2>\n<p class=\"cause\">{1}</p>\n{2}",
-                                   markup_text(picture.name), markup_text(cause), figures_of(picture));
+std::string case_html(const Checked& picture) {
+    std::string html = fmt::format("<section id=\"{0}\">\n<h2>{0}</h2>\n<p class=\"cause\">{1}</p>\n",
+                                   markup_text(picture.name), markup_text(picture.why()));
+    if (const std::string figures = picture.figures(); !figures.empty())
+        html += fmt::format("<p class=\"figures\">{}</p>\n", figures);
     const bool is_shown = picture.drawn || picture.verdict == Verdict::kStale;
-    const auto reference = is_shown ? reference_of(picture, folder) : std::nullopt;
+    const auto reference = is_shown ? reference_of(picture) : std::nullopt;
     if (!is_shown) html += "<p>Too many pictures failed to show all of them; check this scene alone.</p>\n";
     if (reference && picture.drawn) html += kPageModes;
     html += "<div class=\"pictures\">\n";
@@ -81,14 +75,14 @@ std::string case_html(const Checked& picture, const std::string& folder) {
 
 }  // namespace
 
-std::string page_html(const SuiteResult& result, const std::string& folder) {
+std::string page_html(const SuiteResult& result) {
     const std::int64_t failed = std::count_if(result.pictures.begin(), result.pictures.end(),
                                               [](const Checked& picture) { return picture.failed(); });
     std::string html = fmt::format(kPageHead, kPageStyle, kPicturesStyle);
-    html += fmt::format("<h1>Golden pictures: {} failed</h1>\n<p>{} passed. Drawn by corda {}.</p>\n", failed,
-                        counted(result.count(Verdict::kPassed), "picture"), version());
+    html += fmt::format("<h1>Golden pictures: {} failed</h1>\n<p>{}. Drawn by corda {}.</p>\n", failed,
+                        result.totals(), version());
     for (const Checked& picture : result.pictures)
-        if (picture.failed()) html += case_html(picture, folder);
+        if (picture.failed()) html += case_html(picture);
     if (!result.frozen.empty()) html += "<section><h2>Frozen</h2>\n";
     for (const std::string& frozen : result.frozen)
         html += "<p class=\"figures\">" + markup_text(frozen) + "</p>\n";

@@ -18,7 +18,8 @@ GoldenRecord record_of(Film& film, double time_s) {
                         .solver = solver_setting(frozen_scene(film)),
                         .center_m = *camera.center_m,
                         .height_m = *camera.height_m,
-                        .margin = camera.margin};
+                        .margin = camera.margin,
+                        .color_scale = film.color_scale()};
     const State& state = film.state_at(time_s);
     std::vector<double> positions_m;
     for (std::size_t i = 0; i < state.x_m.size(); ++i)
@@ -64,44 +65,62 @@ std::optional<double> largest_distance_m(const GoldenRecord& a, const GoldenReco
     return largest;
 }
 
-std::string scene_change(const std::string& reference, const Scene& now) {
-    const auto of_pixels = [](const Scene& scene) {
-        auto all = digest(scene);
-        std::erase_if(all, [](const auto& entry) {
-            constexpr std::array kOfPixels{"video.size", "video.shutter", "video.subframes"};
-            const std::string& key = entry.first;
-            return key.starts_with("video.") &&
-                   std::find(kOfPixels.begin(), kOfPixels.end(), key) == kOfPixels.end();
-        });
-        return all;
-    };
+std::map<std::string, std::string> pixel_digest(const Scene& scene) {
+    auto all = digest(scene);
+    std::erase_if(all, [](const auto& entry) {
+        constexpr std::array kOfPixels{"video.size", "video.fps", "video.shutter", "video.subframes"};
+        return entry.first.starts_with("video.") &&
+               std::find(kOfPixels.begin(), kOfPixels.end(), entry.first) == kOfPixels.end();
+    });
+    return all;
+}
+
+std::string scene_change(const std::string& reference, const Scene& now,
+                         const std::vector<Setting>& settings) {
+    std::vector<std::string> changes;
     try {
-        return differences_text(
-            differences(of_pixels(now), of_pixels(scene_of(read_provenance(reference), reference))));
+        changes =
+            differences(pixel_digest(now), pixel_digest(scene_of(read_provenance(reference), reference)));
     } catch (const Error&) {  // of another Corda, whose scenes this one does not read
         return "";
     }
+    for (std::string& change : changes) {
+        const bool is_set = std::any_of(settings.begin(), settings.end(), [&](const Setting& setting) {
+            const std::string key = setting.substr(0, std::min(setting.find('='), setting.find(' ')));
+            return change.starts_with(key) &&
+                   std::string_view(" .[").find(change[key.size()]) != std::string_view::npos;
+        });
+        if (is_set) change += " (by --set)";
+    }
+    return differences_text(changes);
 }
 
-std::string cause_of(const Provenance& kept, const GoldenRecord& now) {
-    if (!kept.golden) return "pixels differ; the reference does not say how it was made";
+Cause cause_of(const Provenance& kept, const GoldenRecord& now) {
+    if (!kept.golden) {
+        constexpr const char* kUnknown = "pixels differ; the reference does not say how it was made";
+        return {kUnknown, kUnknown};
+    }
     const GoldenRecord& reference = *kept.golden;
     if (reference.state != now.state) {
         const auto distance_m = largest_distance_m(reference, now);
         const std::string why = reference.solver == now.solver ? "" : ", by another solver";
-        if (!distance_m) return fmt::format("another number of particles{}", why);
-        if (*distance_m > 0.0) return fmt::format("positions differ by {:.2g} m{}", *distance_m, why);
-        return fmt::format("positions differ, if not those of the particles that are kept{}", why);
+        if (!distance_m) return {"another number of particles" + why, "another number of particles"};
+        const std::string group = "positions differ" + why;
+        if (*distance_m > 0.0)
+            return {fmt::format("positions differ by {:.2g} m{}", *distance_m, why), group};
+        return {fmt::format("positions differ, if not those of the particles that are kept{}", why), group};
     }
     if (reference.center_m != now.center_m || reference.height_m != now.height_m)
-        return "same positions, other camera";
+        return {"same positions, other camera", "other camera"};
+    const auto drawn = [](const std::string& how) { return Cause{"same positions and camera, " + how, how}; };
+    if (!reference.color_scale.empty() && reference.color_scale != now.color_scale)
+        return drawn(fmt::format("another scale of colours: {}, now {}", reference.color_scale,
+                                 now.color_scale.empty() ? "none" : now.color_scale));
     if (kept.corda != version())
-        return fmt::format("same positions and camera, drawn by another version of Corda: {}, now {}",
-                           kept.corda, version());
+        return drawn(fmt::format("drawn by another version of Corda: {}, now {}", kept.corda, version()));
     if (reference.renderer != now.renderer)
-        return fmt::format("same positions and camera, drawn by another OpenGL: {}, now {}",
-                           reference.renderer, now.renderer);
-    return "same positions, camera and version, but pixels differ";
+        return drawn(fmt::format("drawn by another OpenGL: {}, now {}", reference.renderer, now.renderer));
+    return {"same positions, camera and version, but pixels differ", kPixelsDiffer};
 }
 
 }  // namespace corda::golden

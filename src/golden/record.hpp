@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,13 +20,26 @@ namespace corda::golden {
 /// open: a method or a camera that the scene names is what a golden test checks.
 [[nodiscard]] std::vector<Setting> freezing(const Scene& scene, const std::optional<GoldenRecord>& made);
 
+/// The values of the keys that may change pixels; see digest().
+[[nodiscard]] std::map<std::string, std::string> pixel_digest(const Scene& scene);
+
 /// The changes of a scene since its picture was kept, of the keys that may change pixels: "world.drag is 0.2
-/// and was 0, rope[0].hang.links is 31 and was 30". Empty if there are none, or the kept picture does not
-/// carry its scene.
-[[nodiscard]] std::string scene_change(const std::string& reference, const Scene& now);
+/// and was 0, rope[0].hang.links is 31 and was 30". Those that `settings` make say so. Empty if there are
+/// none, or the kept picture does not carry its scene.
+[[nodiscard]] std::string scene_change(const std::string& reference, const Scene& now,
+                                       const std::vector<Setting>& settings = {});
+
+/// Why pictures differ.
+struct Cause {
+    std::string text;
+    std::string group;  ///< the same for all pictures that differ for this reason, whatever the figures
+};
+
+/// Cause::group of pictures that nothing known distinguishes.
+inline constexpr const char* kPixelsDiffer = "pixels differ";
 
 /// The most likely cause of the difference from a kept picture, in words.
-[[nodiscard]] std::string cause_of(const Provenance& kept, const GoldenRecord& now);
+[[nodiscard]] Cause cause_of(const Provenance& kept, const GoldenRecord& now);
 
 /// The largest distance between particles in m; empty if positions are not known or differ in number.
 [[nodiscard]] std::optional<double> largest_distance_m(const GoldenRecord& a, const GoldenRecord& b);

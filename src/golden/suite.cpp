@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <mutex>
 
 #include "corda/core/cancel.hpp"
 #include "corda/core/machine.hpp"
-#include "corda/core/output_file.hpp"
 #include "corda/core/workers.hpp"
 #include "corda/golden/cases.hpp"
 #include "corda/golden/perceived.hpp"
@@ -34,32 +33,35 @@ struct Drawn {
     const Image& image;
     const GoldenRecord& made;
     const Scene& scene;  ///< that of its film
+    const Image* mask;   ///< nullptr: none
 };
 
 /// Compares a picture with one of its references; false if it does not pass.
 bool passes(const Drawn& drawn, const DifferenceLimits& limits, const std::string& path, Checked& picture) {
-    picture.variant = fs::path(path).filename().string();
+    picture.reference = path;
     Picture reference;
     try {
         reference = read_picture(path);
     } catch (const Error& error) {
         picture.difference = {.same_size = false, .equal = false};
-        picture.cause = fmt::format("the kept picture {} ({})",
-                                    is_no_png(path) ? "is no PNG, and --update --force replaces it"
-                                                    : "is damaged, and --update replaces it",
-                                    error.what());
+        picture.group = is_no_png(path) ? "is no PNG, and --update --force replaces it"
+                                        : "is damaged, and --update replaces it";
+        picture.cause = fmt::format("the kept picture {} ({})", picture.group, error.what());
         return false;
     }
-    picture.difference =
-        reference.deep ? compare(reference, {.image = drawn.image}) : compare(reference.image, drawn.image);
+    picture.difference = reference.deep ? compare(reference, {.image = drawn.image}, drawn.mask)
+                                        : compare(reference.image, drawn.image, drawn.mask);
     add_perceived(reference.image, drawn.image,
-                  {.flip = limits.flip.has_value(), .ssim = limits.ssim.has_value()}, picture.difference);
+                  {.flip = limits.flip.has_value(), .ssim = limits.ssim.has_value()}, picture.difference,
+                  drawn.mask);
     if (picture.difference.within(limits)) return true;
-    picture.cause = cause_of(provenance_in(read_png_info(path)), drawn.made);
-    picture.change = scene_change(path, drawn.scene);
+    const Cause cause = cause_of(provenance_in(read_png_info(path)), drawn.made);
+    picture.cause = cause.text;
+    picture.group = cause.group;
     if (!picture.difference.same_size)
-        picture.cause = fmt::format("{}x{} pixels, now {}x{}", reference.image.width(),
-                                    reference.image.height(), drawn.image.width(), drawn.image.height());
+        picture.cause = picture.group =
+            fmt::format("{}x{} pixels, now {}x{}", reference.image.width(), reference.image.height(),
+                        drawn.image.width(), drawn.image.height());
     return false;
 }
 
@@ -78,13 +80,13 @@ void judge(const Drawn& drawn, const std::vector<std::string>& variants, Checked
         if (passes(drawn, limits, path, result)) {
             picture = result;
             picture.verdict = Verdict::kPassed;
-            picture.cause.clear();
-            picture.change.clear();
+            picture.cause = picture.group = "";
             return;
         }
-        if (!told || result.variant == picture.name) told = result;
+        if (!told || fs::path(path).filename() == picture.name) told = result;
     }
     if (told) picture = *told;
+    if (picture.verdict == Verdict::kMissing) picture.group = "there is no reference";
 }
 
 /// A scene that is being drawn.
@@ -108,22 +110,8 @@ class Runner {
         queue_.run(threads_);
     }
 
-    /// Writes the pictures of an update and removes stale ones. Each is replaced as a whole.
-    void publish(const std::vector<std::string>& stale) {
-        if (files_.empty() && stale.empty()) return;
-        const Saving saving;
-        make_folder(def_.folder);
-        for (const auto& [name, bytes] : files_) {
-            OutputFile file((fs::path(def_.folder) / name).string(), {.force = true});
-            file.write(bytes);
-            file.commit();
-        }
-        for (const std::string& path : stale) {
-            std::error_code failure;
-            fs::remove(path, failure);
-            if (failure) fail_file("remove", path, failure.value());
-        }
-    }
+    /// The pictures of an update, or those for SuiteDef::new_folder, by their names.
+    [[nodiscard]] const Files& files() const { return files_; }
 
   private:
     /// Makes the film of a scene, and pieces of work of its pictures.
@@ -133,12 +121,12 @@ class Runner {
         job->left = one.pictures.size();
         job->frozen = def_.replan ? std::vector<Setting>{} : frozen_settings(one);
         make_film(*job);
-        // A camera that was fitted to another motion may miss this one.
-        if (def_.update && !job->frozen.empty() && leaves_frame(*job)) {
+        // A camera that was fitted to another motion may miss this one. All pictures of a scene share it.
+        if (def_.update && one.is_whole() && !job->frozen.empty() && leaves_frame(*job)) {
             job->frozen.clear();
             make_film(*job, {});
         }
-        if (def_.update) freeze(*job);
+        if (def_.update || !def_.new_folder.empty()) freeze(*job);
         if (def_.update) tell_frozen(one, freezing(one.scene, job->made.front()), "its pictures freeze");
         const std::size_t count = one.pictures.size();
         const bool may_split = job->film->scene().video.shutter == 0.0;
@@ -209,32 +197,52 @@ class Runner {
         std::optional<FilmRenderer> renderer(std::in_place, *job.film);
         for (std::size_t i = first; i < end; ++i) {
             Checked& picture = job.scene->pictures[i];
+            if (!picture.selected) continue;
+            const auto start = std::chrono::steady_clock::now();
             renderer->draw(picture.time_s);
             const Image& drawn = renderer->image();
-            judge({drawn, job.made[i], job.film->scene()}, variants_of(references_, picture.name), picture);
+            judge({drawn, job.made[i], job.film->scene(), job.scene->mask ? &*job.scene->mask : nullptr},
+                  variants_of(references_, picture.name), picture);
             if (renderer->shows_nothing() || has_one_color(drawn)) {
                 picture.verdict = Verdict::kEmpty;
-                picture.cause = "nothing is in view";
-            } else if (def_.update) {
-                update(job, i, drawn, picture);
+                picture.cause = picture.group = "nothing is in view";
+            } else if (def_.update || !def_.new_folder.empty()) {
+                add_file(job, i, drawn, picture);
             }
             if (picture.failed()) keep(drawn, picture);
+            picture.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
             count_one();
         }
         renderer.reset();
-        const std::lock_guard lock(mutex_);
-        job.left -= end - first;
-        if (job.left > 0) return;
+        {
+            const std::lock_guard lock(mutex_);
+            job.left -= end - first;
+            if (job.left > 0) return;
+        }
         tell_since_when(job);
+        tell_changes(job);
+        job.film.reset();
+    }
+
+    /// Adds to the causes what the scene says that the kept pictures' did not.
+    void tell_changes(Job& job) const {
         const bool is_cut = !job.frozen.empty() && leaves_frame(job);
         for (Checked& picture : job.scene->pictures) {
             const auto add = [&cause = picture.cause](const std::string& text) {
                 cause += (cause.empty() ? "" : "; ") + text;
             };
-            if (!picture.change.empty()) add(picture.change);
+            const bool differs = picture.verdict == Verdict::kDifferent || picture.verdict == Verdict::kEmpty;
+            const std::string change =
+                differs ? scene_change(picture.reference, job.film->scene(), def_.settings) : "";
+            if (!change.empty()) {
+                if (picture.group == kPixelsDiffer)
+                    picture.cause = "same positions and camera, but " + change;
+                else
+                    add(change);
+                picture.group = change;
+            }
             if (is_cut && picture.failed()) add("it leaves the frozen frame, and --update fits another");
         }
-        job.film.reset();
     }
 
     /// What the references of a scene freeze; from the first that says it.
@@ -260,20 +268,21 @@ class Runner {
         for (const Setting& setting : frozen) one.frozen += " " + setting;
     }
 
-    /// Writes a picture that is missing, differs, or freezes something else.
-    void update(Job& job, std::size_t i, const Image& drawn, Checked& picture) {
+    /// Encodes a picture that is missing or differs, in an update also one that freezes something else.
+    void add_file(Job& job, std::size_t i, const Image& drawn, Checked& picture) {
         const GoldenRecord& made = job.made[i];
+        const std::string path = (fs::path(def_.folder) / picture.name).string();
         if (picture.verdict == Verdict::kPassed) {
-            const std::string path = (fs::path(def_.folder) / picture.name).string();
-            if (picture.variant != picture.name) return;
+            if (!def_.update || fs::path(picture.reference).filename() != picture.name) return;
             const std::optional<GoldenRecord> kept = provenance_in(read_png_info(path)).golden;
             if (kept && kept->is_frozen_as(made)) return;
             picture.cause = kept ? "the same pixels, by another solver or camera"
                                  : "the same pixels, without a record of how they were made";
         }
-        if (!def_.force && is_no_png((fs::path(def_.folder) / picture.name).string())) return;
-        picture.changed = true;
+        if (!def_.force && is_no_png(path)) return;
+        picture.changed = def_.update;
         if (def_.dry_run) return;
+        if (!def_.update) picture.drawn_path = (fs::path(def_.new_folder) / picture.name).string();
         std::string bytes = media::png_bytes(drawn, to_png_info(made, *job.film, picture.time_s));
         const std::lock_guard lock(mutex_);
         files_[picture.name] = std::move(bytes);
@@ -286,9 +295,8 @@ class Runner {
         if (std::none_of(pictures.begin(), pictures.end(), moved)) return;
         std::size_t first = 0;
         const auto is_the_same = [&](std::size_t i) {
-            if (pictures[i].verdict != Verdict::kPassed) return !moved(pictures[i]);
-            const auto path = (fs::path(def_.folder) / pictures[i].variant).string();
-            const auto reference = provenance_in(read_png_info(path)).golden;
+            if (!pictures[i].selected || pictures[i].verdict != Verdict::kPassed) return !moved(pictures[i]);
+            const auto reference = provenance_in(read_png_info(pictures[i].reference)).golden;
             return !reference || reference->state == job.made[i].state;
         };
         while (is_the_same(first)) ++first;
@@ -308,7 +316,7 @@ class Runner {
 
     const SuiteDef& def_;
     const std::vector<std::string>& references_;
-    std::map<std::string, std::string> files_;  ///< of an update, written when all pictures are drawn
+    Files files_;  ///< written when all pictures are drawn
     std::int64_t all_;
     int threads_ = usable_cores();
     std::mutex mutex_;
@@ -317,22 +325,13 @@ class Runner {
     TaskQueue queue_;
 };
 
-}  // namespace
-
-std::int64_t SuiteResult::count(Verdict verdict) const {
-    return std::count_if(pictures.begin(), pictures.end(), [&](const Checked& picture) {
-        return picture.verdict == verdict && (verdict == Verdict::kPassed || !picture.changed);
-    });
-}
-
-namespace {
-
 /// Notes the kept pictures that freeze nothing because their texts are gone.
 void tell_lost_records(const SuiteDef& def, const std::vector<Case>& cases, SuiteResult& result) {
     std::vector<std::string> names;
     for (const Case& one : cases)
         for (const Checked& picture : one.pictures)
-            if (lacks_record((fs::path(def.folder) / picture.name).string())) names.push_back(picture.name);
+            if (picture.selected && lacks_record((fs::path(def.folder) / picture.name).string()))
+                names.push_back(picture.name);
     if (names.empty()) return;
     constexpr std::size_t kMaxNames = 3;
     const std::size_t shown = std::min(names.size(), kMaxNames);
@@ -364,19 +363,33 @@ void require_files(const SuiteDef& def, const std::vector<Case>& cases) {
 
 SuiteResult run(const SuiteDef& def) {
     std::vector<Checked> invalid;
-    SuiteResult result;
+    SuiteResult result{.may_change = def.update, .dry_run = def.dry_run};
     std::vector<Case> cases = load_cases(def, invalid, result.details);
-    require_files(def, cases);
     const std::vector<std::string> references = references_in(def.folder);
+    std::vector<std::string> stale =
+        invalid.empty() ? stale_ones(def, cases, references) : std::vector<std::string>{};
+    select(def, cases, stale, invalid);
+    require_files(def, cases);
+    std::erase_if(cases, [](const Case& one) {
+        return std::none_of(one.pictures.begin(), one.pictures.end(),
+                            [](const Checked& picture) { return picture.selected; });
+    });
     std::int64_t all = 0;
-    for (const Case& one : cases) all += std::ssize(one.pictures);
+    for (const Case& one : cases) {
+        all += std::count_if(one.pictures.begin(), one.pictures.end(),
+                             [](const Checked& picture) { return picture.selected; });
+        if (def.replan && !one.is_whole())
+            throw Error(ExitCode::kUsage, fmt::format("--replan changes all pictures of '{}'; give --only {}",
+                                                      one.path, one.scene.name));
+    }
     Runner runner(def, references, all);
     runner.check(cases);
-    const std::vector<std::string> stale =
-        invalid.empty() ? stale_ones(def, cases, references) : std::vector<std::string>{};
+    if (!def.new_folder.empty()) write_new(def, cases, runner.files());
     if (!def.update) tell_lost_records(def, cases, result);
     for (Case& one : cases) {
-        std::move(one.pictures.begin(), one.pictures.end(), std::back_inserter(result.pictures));
+        std::copy_if(std::make_move_iterator(one.pictures.begin()),
+                     std::make_move_iterator(one.pictures.end()), std::back_inserter(result.pictures),
+                     [](const Checked& picture) { return picture.selected; });
         if (!one.frozen.empty()) result.frozen.push_back(one.frozen);
     }
     std::vector<std::string> removed;
@@ -385,19 +398,22 @@ SuiteResult run(const SuiteDef& def) {
         const bool is_lost = is_foreign || lacks_record(path);
         const bool is_removed = def.update && (!is_lost || def.force);
         if (is_removed) removed.push_back(path);
+        constexpr const char* kNoScene = "no scene asks for it";
         result.pictures.push_back(
             {.scene = {},
              .name = fs::path(path).filename().string(),
              .verdict = Verdict::kStale,
+             .reference = path,
              .cause = is_foreign ? "no scene asks for it; it is no PNG, and --update --force removes it"
                       : is_lost  ? "no scene asks for it; it has no record of how it was made, and --update "
                                    "--force removes it"
-                                 : "no scene asks for it",
+                                 : kNoScene,
+             .group = kNoScene,
              .changed = is_removed,
              .has_no_record = is_lost});
     }
     std::move(invalid.begin(), invalid.end(), std::back_inserter(result.pictures));
-    if (def.update && !def.dry_run) runner.publish(removed);
+    if (def.update && !def.dry_run) publish(def.folder, runner.files(), removed);
     return result;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,43 +17,66 @@ struct SuiteDef {
     std::vector<std::string> paths;
     std::vector<Setting> settings;  ///< of all scenes
     std::string folder;             ///< of the references
-    bool update = false;            ///< replace references that differ, add missing ones, remove stale ones
+    /// Names of pictures, with or without .png, and of scenes; * stands for any text. Empty: all.
+    std::vector<std::string> only;
+    Shard shard;              ///< every N-th scene and stale picture
+    bool stale_only = false;  ///< draw nothing; look for stale pictures
+    bool update = false;      ///< replace references that differ, add missing ones, remove stale ones
     bool force =
         false;  ///< with `update`: also replace files that are no PNG, and remove stale ones without a record
     bool replan = false;   ///< with `update`: choose solver and camera of all scenes again
-    bool dry_run = false;  ///< with `update`: change nothing
-    int most_drawn = 0;    ///< largest number of failed pictures that are kept for a page
+    bool dry_run = false;  ///< with `update` and in accept(): change nothing
+    /// Where failed pictures are written for accept(), as an update would, by the frozen solver and camera.
+    /// Empty: nowhere. One with earlier pictures is emptied of them.
+    std::string new_folder;
+    std::vector<std::string> accepted;  ///< folders of earlier runs, see accept()
+    int most_drawn = 0;                 ///< largest number of failed pictures that are kept for a page
     FilmDef film;
     OnProgress on_progress;  ///< called with the pictures done, by one thread at a time; false stops
 };
 
 enum class Verdict { kPassed, kDifferent, kMissing, kEmpty, kStale, kInvalid };
 
-/// One picture of a suite, or a scene file that is invalid.
+/// "passed", "different" and so on.
+[[nodiscard]] const char* word_of(Verdict verdict);
+
+/// One picture of a suite, or a scene file that is invalid: what all reports tell.
 struct Checked {
     std::string scene;
     std::string name;  ///< of its file in the folder of references; of a scene, its path
     double time_s = 0.0;
     Verdict verdict = Verdict::kPassed;
     Difference difference{};
-    std::string variant{};         ///< the file that it was compared with last, NAME.png or NAME.CAUSE.png
+    std::string reference{};       ///< path that it was compared with last; empty: none
+    std::string drawn_path{};      ///< in SuiteDef::new_folder; empty: it was not written
     std::string cause{};           ///< why it failed, in words
-    std::string change{};          ///< what its scene says that the kept one's did not
+    std::string group{};           ///< the same for all that fail for this reason
+    double seconds = 0.0;          ///< that drawing and comparing took
     bool changed = false;          ///< written or removed by an update, or to be: then it is no failure
     bool has_no_record = false;    ///< stale by its name alone: removed with SuiteDef::force alone
+    bool selected = true;          ///< see SuiteDef::only; others are not in a result
     std::optional<Image> drawn{};  ///< if it failed, see SuiteDef::most_drawn
 
     [[nodiscard]] bool failed() const { return verdict != Verdict::kPassed && !changed; }
+    /// The cause, or what it has in common with others.
+    [[nodiscard]] const std::string& why() const { return cause.empty() ? group : cause; }
+    /// The figures of the difference, if there are any.
+    [[nodiscard]] std::string figures() const;
 };
 
 struct SuiteResult {
-    std::vector<Checked> pictures;     ///< scene by scene in order of time; stale ones, invalid scenes last
-    std::vector<std::string> frozen;   ///< per scene whose solver or camera its references fix: in words
-    std::vector<std::string> details;  ///< files that were passed over, in words
-    std::vector<std::string> notes;    ///< what the user must know besides: sentences
+    std::vector<Checked> pictures = {};  ///< scene by scene in order of time; stale ones, invalid scenes last
+    std::vector<std::string> frozen = {};   ///< per scene whose solver or camera its references fix: in words
+    std::vector<std::string> details = {};  ///< files that were passed over, in words
+    std::vector<std::string> notes = {};    ///< what the user must know besides: sentences
+    bool may_change = false;                ///< of an update or accept()
+    bool dry_run = false;
 
     /// The pictures of a verdict, without those that an update has put right.
     [[nodiscard]] std::int64_t count(Verdict verdict) const;
+    [[nodiscard]] std::int64_t changed() const;
+    /// "61 pictures: 43 passed, 13 failed, 3 missing, 2 stale": each picture once.
+    [[nodiscard]] std::string totals() const;
 };
 
 /// Draws all pictures of a suite, one per core at a time, as frames of a video: exposed as video.shutter
@@ -61,11 +86,26 @@ struct SuiteResult {
 /// kIo.
 [[nodiscard]] SuiteResult run(const SuiteDef& def);
 
+/// Puts the pictures of SuiteDef::accepted, which earlier runs wrote to their SuiteDef::new_folder, in the
+/// place of their references, as an update does: each as a whole; a repeated call completes one that was
+/// killed. Draws nothing. Pictures that were removed from their folder are passed over. Throws corda::Error
+/// as run(), and kUsage, before anything is written, if a picture belongs to another suite, scene or
+/// reference.
+[[nodiscard]] SuiteResult accept(const SuiteDef& def);
+
+/// A picture in the results of `corda golden --json`, and in golden.json.
+[[nodiscard]] nlohmann::json picture_json(const Checked& picture);
+/// The largest difference: a whole number, but of pictures with 16 bits.
+[[nodiscard]] nlohmann::json max_json(const Difference& difference);
+
 /// As JUnit's XML: a test suite per scene, a test case per picture.
 [[nodiscard]] std::string junit_xml(const SuiteResult& result);
 
+/// Failures as Markdown, for the summary or a comment of a pull request: a table per cause.
+[[nodiscard]] std::string markdown(const SuiteResult& result);
+
 /// One page of HTML that needs no other file: per failed picture the reference, what was drawn and sixteen
-/// times their difference, beside each other, blinking, or under a slider. `folder`: of the references.
-[[nodiscard]] std::string page_html(const SuiteResult& result, const std::string& folder);
+/// times their difference, beside each other, blinking, or under a slider.
+[[nodiscard]] std::string page_html(const SuiteResult& result);
 
 }  // namespace corda::golden

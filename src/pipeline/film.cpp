@@ -15,21 +15,13 @@
 #include "corda/sim/auto/planner.hpp"
 #include "corda/sim/system.hpp"
 #include "corda/view/camera.hpp"
+#include "corda/view/number_text.hpp"
 
 namespace corda {
 namespace {
 
 /// Maximum number of capsules in several poses: more would be indistinguishable, and take much memory.
 constexpr std::size_t kMaxPoseCapsules = 5'000'000;
-
-/// Opacity of pose `k` of `count`: 1 for the last one, decreasing with age.
-double pose_opacity(std::size_t k, std::size_t count) {
-    constexpr double kFirst = 0.2;
-    constexpr double kSecondLast = 0.65;
-    if (k + 1 == count) return 1.0;
-    const double age = count < 3 ? 1.0 : static_cast<double>(k) / static_cast<double>(count - 2);
-    return kFirst + (kSecondLast - kFirst) * age;
-}
 
 }  // namespace
 
@@ -196,7 +188,7 @@ struct Film::Impl {
             check_cancelled();
             const std::size_t first_layer = list.layers.size();
             view.draw_pose(read(times_s[k], drawing), map, list);
-            const double opacity = pose_opacity(k, times_s.size());
+            const double opacity = view::pose_opacity(k, times_s.size());
             for (std::size_t l = first_layer; l < list.layers.size(); ++l) {
                 Color& color = list.layers[l].color;
                 color.a = static_cast<std::uint8_t>(std::lround(opacity * color.a));
@@ -367,6 +359,12 @@ std::optional<double> Film::error_bound_px() {
 
 const CameraDef& Film::camera() {
     return impl_->find_camera();
+}
+
+std::string Film::color_scale() {
+    impl_->find_camera();
+    const auto& scale = impl_->drawing.renderer.view().scale();
+    return scale ? view::scale_text(*scale) : "";
 }
 
 int Film::simulation_passes() const {

@@ -79,6 +79,9 @@ class Film {
     /// The camera with center and height filled in; a scene with this camera gives the same bytes. Simulates
     /// the motion to its end unless the scene gives both and has no supports.
     [[nodiscard]] const CameraDef& camera();
+    /// The scale of colours that show a quantity: "tension (N) 0 .. 20"; empty for others. Throws what
+    /// camera() throws.
+    [[nodiscard]] std::string color_scale();
     /// Number of simulations of the motion so far.
     [[nodiscard]] int simulation_passes() const;
 

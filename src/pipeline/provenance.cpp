@@ -69,13 +69,15 @@ std::vector<double> from_hex(std::string_view text) {
 }
 
 Json json_of(const GoldenRecord& golden) {
-    return {{"renderer", golden.renderer},
-            {"solver", golden.solver},
-            {"center", {golden.center_m.x, golden.center_m.y}},
-            {"height", golden.height_m},
-            {"margin", golden.margin},
-            {"state", golden.state},
-            {"positions", hex_of(golden.positions_m)}};
+    Json json{{"renderer", golden.renderer},
+              {"solver", golden.solver},
+              {"center", {golden.center_m.x, golden.center_m.y}},
+              {"height", golden.height_m},
+              {"margin", golden.margin},
+              {"state", golden.state},
+              {"positions", hex_of(golden.positions_m)}};
+    if (!golden.color_scale.empty()) json["color_scale"] = golden.color_scale;
+    return json;
 }
 
 /// Throws what the JSON library throws for other types.
@@ -86,6 +88,7 @@ GoldenRecord golden_of(const Json& json) {
                         .center_m = {center.at(0).get<double>(), center.at(1).get<double>()},
                         .height_m = json.at("height").get<double>(),
                         .margin = json.at("margin").get<double>(),
+                        .color_scale = printable(json.value("color_scale", "")),
                         .state = json.at("state").get<std::string>(),
                         .positions_m = from_hex(json.at("positions").get<std::string>())};
     if (!golden.solver.starts_with("solver=")) throw Error(ExitCode::kUsage, "its solver is no setting");

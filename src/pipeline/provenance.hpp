@@ -35,12 +35,13 @@ struct PictureOrigin {
 struct GoldenRecord {
     static constexpr std::size_t kMaxParticles = 256;
 
-    std::string renderer = {};  ///< GL_RENDERER
-    std::string solver = {};    ///< setting "solver={...}"
-    Vec2 center_m = {};         ///< of the camera
-    double height_m = 0.0;      ///< of the camera
-    double margin = 0.0;        ///< camera.margin, to which both were fitted
-    std::string state = {};     ///< FNV-1a of the positions' bits, in hexadecimal
+    std::string renderer = {};     ///< GL_RENDERER
+    std::string solver = {};       ///< setting "solver={...}"
+    Vec2 center_m = {};            ///< of the camera
+    double height_m = 0.0;         ///< of the camera
+    double margin = 0.0;           ///< camera.margin, to which both were fitted
+    std::string color_scale = {};  ///< see Film::color_scale(); empty also in pictures that do not say it
+    std::string state = {};        ///< FNV-1a of the positions' bits, in hexadecimal
     /// x and y of each particle in turn; of more than kMaxParticles, of every second, third, ... alone.
     std::vector<double> positions_m = {};
 

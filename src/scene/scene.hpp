@@ -58,6 +58,7 @@ struct GoldenDef {
     std::optional<double> share;  ///< share of the pixels that differ at all, 0 .. 1
     std::optional<double> flip;   ///< mean FLIP, 0 .. 1
     std::optional<double> ssim;   ///< least structural similarity, -1 .. 1; see kMinSsimSidePx
+    std::string mask;  ///< PNG of the same size whose black pixels are not compared; from the scene's folder
 };
 
 // Shapes of bodies in a scene file. Written scenes and reported changes use them instead of points.

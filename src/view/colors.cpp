@@ -157,4 +157,12 @@ ColorScale scale_of(Quantity quantity, const sim::Histogram& histogram, const St
     return scale;
 }
 
+double pose_opacity(std::size_t k, std::size_t count) {
+    constexpr double kFirst = 0.2;
+    constexpr double kSecondLast = 0.65;
+    if (k + 1 == count) return 1.0;
+    const double age = count < 3 ? 1.0 : static_cast<double>(k) / static_cast<double>(count - 2);
+    return kFirst + (kSecondLast - kFirst) * age;
+}
+
 }  // namespace corda::view

@@ -23,6 +23,9 @@ struct Look {
 
 [[nodiscard]] Look look_of(const StyleDef& style);
 
+/// Opacity of pose `k` of `count` in one picture: 1 for the last one, decreasing with age.
+[[nodiscard]] double pose_opacity(std::size_t k, std::size_t count);
+
 /// A colour that can be read on the background; on a transparent background, the theme's.
 [[nodiscard]] Color text_color(const Look& look);
 

@@ -51,5 +51,7 @@ struct NumberTitle {
 /// The title for values up to `largest`. `unit` takes a prefix, or is empty for bare numbers.
 [[nodiscard]] NumberTitle title_of(const std::string& name, const std::string& unit, double largest);
 [[nodiscard]] NumberTitle title_of(const ColorScale& scale);
+/// A scale in words: "tension (kN) 0 .. 2".
+[[nodiscard]] std::string scale_text(const ColorScale& scale);
 
 }  // namespace corda::view

@@ -54,6 +54,8 @@ class SceneView {
     [[nodiscard]] bool needs_motion() const;
     /// Colours links by a quantity, whose fields the states must then have.
     void set_scale(const ColorScale& scale) { scale_ = scale; }
+    /// That scale; std::nullopt if colours show no quantity.
+    [[nodiscard]] const std::optional<ColorScale>& scale() const { return scale_; }
     /// Chooses the supports by the bounds of each particle. There are none before the call.
     void set_motion(std::span<const MotionBounds> motion);
     /// Extents of everything drawn for particles that stay within `motion`.

@@ -28,15 +28,17 @@ GoldenRecord made_of(Film film, double time_s) {
 }
 
 TEST(GoldenRecords, SurvivesARoundTrip) {
-    Film film = swing();
+    Film film = swing(5, {"style.color_by=\"speed\""});
     const GoldenRecord made = record_of(film, 0.25);
+    EXPECT_EQ(made.color_scale, "speed (m/s) 0 .. 3");
     const Provenance read = provenance_in(to_png_info(made, film, 0.25));
     EXPECT_EQ(read.name, "swing");
     ASSERT_TRUE(read.golden);
     EXPECT_EQ(read.golden->state, made.state);
     EXPECT_EQ(read.golden->positions_m, made.positions_m);
+    EXPECT_EQ(read.golden->color_scale, made.color_scale);
     EXPECT_TRUE(read.golden->is_frozen_as(made));
-    EXPECT_EQ(cause_of(read, made), "same positions, camera and version, but pixels differ");
+    EXPECT_EQ(cause_of(read, made).text, "same positions, camera and version, but pixels differ");
 }
 
 TEST(GoldenRecords, NamesTheKeyOfTheSceneThatChanged) {
@@ -49,6 +51,10 @@ TEST(GoldenRecords, NamesTheKeyOfTheSceneThatChanged) {
     EXPECT_EQ(scene_change(kept, swing(5, {"rope[0].hang.links=6", "world.drag=0.5"}).scene()),
               "rope[0].hang.links is 6 and was 5, world.drag is 0.5 and was 0");
     EXPECT_EQ(scene_change(kept, swing(5, {"video.crf=30"}).scene()), "");  // affects videos only
+    EXPECT_EQ(scene_change(kept, swing(5, {"video.fps=50"}).scene()), "video.fps is 50 and was 60");
+    const std::vector<Setting> settings{"rope[0].hang={links=6,length=1,angle_deg=40}", "world.dr=1"};
+    EXPECT_EQ(scene_change(kept, swing(6, {"world.drag=0.5"}).scene(), settings),
+              "rope[0].hang.links is 6 and was 5 (by --set), world.drag is 0.5 and was 0");
     EXPECT_EQ(scene_change(kept, swing(5, {"video.shutter=0.5"}).scene()), "video.shutter is 0.5 and was 0");
     write_png(folder.file("plain.png"), Image(2, 2));
     EXPECT_EQ(scene_change(folder.file("plain.png"), film.scene()), "");
@@ -95,20 +101,24 @@ TEST(GoldenRecords, ReportTheFirstDifference) {
     Provenance kept{.corda = std::string(version()), .golden = made};
     GoldenRecord& other = *kept.golden;
     other.renderer = "Voodoo";
-    EXPECT_THAT(cause_of(kept, made), HasSubstr("another OpenGL: Voodoo"));
+    EXPECT_THAT(cause_of(kept, made).text, HasSubstr("another OpenGL: Voodoo"));
     kept.corda = "0.0.1";
-    EXPECT_THAT(cause_of(kept, made), HasSubstr("another version of Corda: 0.0.1"));
+    EXPECT_THAT(cause_of(kept, made).text, HasSubstr("another version of Corda: 0.0.1"));
+    other.color_scale = "speed (m/s) 0 .. 2";
+    EXPECT_EQ(cause_of(kept, made).text,
+              "same positions and camera, another scale of colours: speed (m/s) 0 .. 2, now none");
     other.height_m = 9.0;
-    EXPECT_EQ(cause_of(kept, made), "same positions, other camera");
+    EXPECT_EQ(cause_of(kept, made).text, "same positions, other camera");
     other.state = "0";
-    EXPECT_EQ(cause_of(kept, made), "positions differ, if not those of the particles that are kept");
+    EXPECT_EQ(cause_of(kept, made).text, "positions differ, if not those of the particles that are kept");
     other.positions_m[2] += 3e-4;
-    EXPECT_EQ(cause_of(kept, made), "positions differ by 0.0003 m");
+    EXPECT_EQ(cause_of(kept, made).text, "positions differ by 0.0003 m");
+    EXPECT_EQ(cause_of(kept, made).group, "positions differ");
     other.solver = "solver={method = \"rattle\"}";
-    EXPECT_EQ(cause_of(kept, made), "positions differ by 0.0003 m, by another solver");
+    EXPECT_EQ(cause_of(kept, made).text, "positions differ by 0.0003 m, by another solver");
     other.positions_m.pop_back();
-    EXPECT_THAT(cause_of(kept, made), HasSubstr("another number of particles"));
-    EXPECT_THAT(cause_of({}, made), HasSubstr("does not say how it was made"));
+    EXPECT_THAT(cause_of(kept, made).text, HasSubstr("another number of particles"));
+    EXPECT_THAT(cause_of({}, made).text, HasSubstr("does not say how it was made"));
 }
 
 TEST(GoldenRecords, AreReadOnlyIfTheyAreSound) {
