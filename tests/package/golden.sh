@@ -24,24 +24,48 @@ cmake --build "$work/build" >"$work/log" 2>&1 || fail "the project does not buil
 grep -q "CORDA_PROGRAM:.*=$work/prefix/bin/corda" "$work/build/CMakeCache.txt" || fail "another corda is used"
 
 # Nothing is kept yet.
-check ref fails
+check ref.swing fails
+check ref.stale passes
 check frames fails
 grep -q "there is no golden picture" "$work/log" || fail "the matcher does not say what is missing"
 
 cmake --build "$work/build" --target update_ref >"$work/log" 2>&1 || fail "update_ref"
 CORDA_UPDATE_GOLDENS=1 check frames passes
-check ref passes
+check ref.swing passes
 check frames passes
+! ls "$work"/build/ref.swing.new/*.png >/dev/null 2>&1 || fail "a passed test left pictures"
 
 # A later change of the scene.
 sed -i 's/length = 1.0/length = 1.1/' "$work/project/scenes/swing.toml"
-check ref fails
+check ref.swing fails
 grep -q "positions differ by" "$work/log" || fail "the suite does not say why"
-xmllint --noout "$work/build/ref.xml" || fail "JUnit's XML"
-[[ -s $work/build/ref.html ]] || fail "there is no page"
+xmllint --noout "$work/build/ref.swing.xml" || fail "JUnit's XML"
+[[ -s $work/build/ref.swing.html ]] || fail "there is no page"
+"$work/prefix/bin/corda" golden "$work/project/scenes" --dir "$work/project/ref" --accept "$work/build/ref.swing.new" >"$work/log" ||
+    fail "the new pictures are not accepted"
+check ref.swing passes
 CORDA_GOLDEN_ARTIFACTS="$work/artifacts" check frames fails
 grep -q "see $work/artifacts/swing_0030.new.png and $work/artifacts/swing_0030.difference.png" "$work/log" ||
     fail "the matcher does not say where the pictures are"
 "$work/prefix/bin/corda" compare "$work/artifacts/swing_0030.new.png" "$work/project/frames/swing_0030.png" >"$work/log" &&
     fail "the new picture is the golden one"
 [[ -s $work/artifacts/swing_0030.difference.png ]] || fail "there is no difference picture"
+
+# A scene that gets its table later, in a folder, and a picture that no scene asks for.
+mkdir "$work/project/scenes/deep"
+grep -v golden "$work/project/scenes/swing.toml" | grep -v '^at' >"$work/project/scenes/deep/later.toml"
+cmake --build "$work/build" >"$work/log" 2>&1 || fail "the project does not build"
+! ctest --test-dir "$work/build" -N | grep -q later || fail "a scene without pictures has a test"
+printf '[golden]\nat = [0.1]\n' >>"$work/project/scenes/deep/later.toml"
+cmake --build "$work/build" >"$work/log" 2>&1 || fail "the project does not build"
+check ref.deep/later fails
+mv "$work/project/scenes/swing.toml" "$work"
+check ref.stale fails
+mv "$work/swing.toml" "$work/project/scenes"
+check ref.stale passes
+
+# Shards.
+sed -i 's/GOLDEN ref)/GOLDEN ref SHARDS 2)/' "$work/project/CMakeLists.txt"
+cmake --build "$work/build" --target update_ref >"$work/log" 2>&1 || fail "update_ref"
+check ref.0 passes
+check ref.1 passes
