@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -7,9 +8,12 @@
 #include "commands.hpp"
 #include "corda/core/basics.hpp"
 #include "corda/core/cancel.hpp"
+#include "corda/core/file.hpp"
 #include "corda/core/output_file.hpp"
 #include "corda/core/text.hpp"
 #include "corda/golden/suite.hpp"
+#include "corda/serve/review.hpp"
+#include "corda/serve/server.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -25,6 +29,7 @@ struct GoldenOptions {
     std::string junit;
     std::string html;
     std::string markdown;
+    bool reviews = false;
 };
 
 /// A page of more pictures is too large to open.
@@ -133,8 +138,24 @@ void check_options(const GoldenOptions& options) {
     check_folder(def.new_folder);
 }
 
+/// Shows failed pictures on a page of this machine until it is closed there. Returns the number of those that
+/// were not accepted.
+std::size_t review(const Console& console, const golden::SuiteDef& def, const golden::SuiteResult& result) {
+    constexpr int kWaitMs = 200;
+    serve::Review review(def, result);
+    const serve::Server server({},
+                               [&review](const serve::Request& request) { return review.answer(request); });
+    console.result(server.address());
+    console.info("open this address in a browser; Finish on the page or Ctrl-C here ends the review");
+    while (!review.wait(kWaitMs)) stop_if_asked();
+    return review.open_count();
+}
+
 ExitCode run_suite(const Console& console, GoldenOptions options) {
     check_options(options);
+    std::optional<TemporaryFolder> drawn;
+    if (options.reviews && options.def.new_folder.empty())
+        options.def.new_folder = drawn.emplace().file("new");
     if (!options.shard.empty()) options.def.shard = parse_shard(options.shard);
     if (!options.html.empty()) options.def.most_drawn = kMaxOnPage;
     options.gl.apply_to(options.def.film);
@@ -146,8 +167,9 @@ ExitCode run_suite(const Console& console, GoldenOptions options) {
     if (!options.markdown.empty()) write_text(options.markdown, golden::markdown(result));
     tell(console, options, result);
     if (result.count(Verdict::kInvalid) > 0) return ExitCode::kInvalidScene;
-    const bool failed = std::any_of(result.pictures.begin(), result.pictures.end(),
-                                    [](const Checked& picture) { return picture.failed(); });
+    bool failed = std::any_of(result.pictures.begin(), result.pictures.end(),
+                              [](const Checked& picture) { return picture.failed(); });
+    if (failed && options.reviews) failed = review(console, options.def, result) > 0;
     return failed ? ExitCode::kMismatch : ExitCode::kOk;
 }
 
@@ -183,12 +205,17 @@ void add_golden(CLI::App& app, Action& action) {
                                         "also write the failed pictures to this folder, for --accept")
                             ->type_name("DIR")
                             ->excludes(update);
+    auto* const review =
+        command
+            .add_flag("--review", options.reviews,
+                      "show failed pictures on a page at 127.0.0.1, to accept or reject each")
+            ->excludes(update, stale);
     command
         .add_option("--accept", options.def.accepted,
                     "draw nothing: keep the pictures that an earlier --new wrote to this folder")
         ->type_name("DIR")
         ->allow_extra_args(false)
-        ->excludes(update, fresh, stale);
+        ->excludes(update, fresh, stale, review);
     command.add_option("--html", options.html,
                        "also write a page of the failed pictures: reference, new and difference");
     command.add_option("--markdown", options.markdown,

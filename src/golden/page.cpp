@@ -15,30 +15,6 @@ namespace {
 
 constexpr int kGain = 16;  // of the difference: one step of 255 is seen
 
-/// Sixteen times the difference of each channel on black, that of alpha in all three. Blue: what only one of
-/// them has.
-Image amplified(const Image& a, const Image& b) {
-    Image result(std::max(a.width(), b.width()), std::max(a.height(), b.height()));
-    for (int y = 0; y < result.height(); ++y) {
-        for (int x = 0; x < result.width(); ++x) {
-            std::uint8_t* const to = result.pixel(x, y);
-            to[3] = 255;
-            const bool in_both = x < std::min(a.width(), b.width()) && y < std::min(a.height(), b.height());
-            if (!in_both) {
-                to[2] = 255;
-                continue;
-            }
-            const std::uint8_t* const p = a.pixel(x, y);
-            const std::uint8_t* const q = b.pixel(x, y);
-            const int alpha = std::abs(p[3] - q[3]);
-            for (int c = 0; c < 3; ++c)
-                to[c] =
-                    static_cast<std::uint8_t>(std::min(255, kGain * std::max(alpha, std::abs(p[c] - q[c]))));
-        }
-    }
-    return result;
-}
-
 std::string figure_html(const char* kind, const std::string& caption, const Image& image) {
     return fmt::format(
         "<figure class=\"{}\"><img alt=\"{}\" width=\"{}\" height=\"{}\" "
@@ -74,6 +50,28 @@ std::string case_html(const Checked& picture) {
 }
 
 }  // namespace
+
+Image amplified(const Image& a, const Image& b) {
+    Image result(std::max(a.width(), b.width()), std::max(a.height(), b.height()));
+    for (int y = 0; y < result.height(); ++y) {
+        for (int x = 0; x < result.width(); ++x) {
+            std::uint8_t* const to = result.pixel(x, y);
+            to[3] = 255;
+            const bool in_both = x < std::min(a.width(), b.width()) && y < std::min(a.height(), b.height());
+            if (!in_both) {
+                to[2] = 255;
+                continue;
+            }
+            const std::uint8_t* const p = a.pixel(x, y);
+            const std::uint8_t* const q = b.pixel(x, y);
+            const int alpha = std::abs(p[3] - q[3]);
+            for (int c = 0; c < 3; ++c)
+                to[c] =
+                    static_cast<std::uint8_t>(std::min(255, kGain * std::max(alpha, std::abs(p[c] - q[c]))));
+        }
+    }
+    return result;
+}
 
 std::string page_html(const SuiteResult& result) {
     const std::int64_t failed = std::count_if(result.pictures.begin(), result.pictures.end(),

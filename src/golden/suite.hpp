@@ -108,4 +108,8 @@ struct SuiteResult {
 /// times their difference, beside each other, blinking, or under a slider.
 [[nodiscard]] std::string page_html(const SuiteResult& result);
 
+/// Sixteen times the difference of each channel on black, that of alpha in all three. Blue: only one of the
+/// pictures has the pixel.
+[[nodiscard]] Image amplified(const Image& a, const Image& b);
+
 }  // namespace corda::golden

@@ -120,6 +120,10 @@ Response text_response(unsigned status, std::string text) {
     return {status, "text/plain; charset=utf-8", std::move(text)};
 }
 
+Response page_response(std::string_view type, std::string_view text) {
+    return {200, fmt::format("{}; charset=utf-8", type), std::string(text)};
+}
+
 bool is_known_host(std::string_view host, std::span<const std::string> others) {
     const std::size_t end = host.find(':', host.starts_with('[') ? host.find(']') : 0);
     const std::string name = lower(host.substr(0, end));

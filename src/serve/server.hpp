@@ -28,6 +28,9 @@ struct Response {
 /// A response whose body is a text for a person.
 [[nodiscard]] Response text_response(unsigned status, std::string text);
 
+/// A part of a page, in UTF-8. `type`: "text/html".
+[[nodiscard]] Response page_response(std::string_view type, std::string_view text);
+
 /// Whether a Host header, "localhost:8000", names this machine or one of `others`; the port is not compared.
 [[nodiscard]] bool is_known_host(std::string_view host, std::span<const std::string> others);
 

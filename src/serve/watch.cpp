@@ -98,10 +98,6 @@ std::int64_t number_in(const Request& request, std::string_view name) {
     return status == std::errc{} && end == text.data() + text.size() ? number : -1;
 }
 
-Response page(std::string_view type, std::string_view text) {
-    return {200, fmt::format("{}; charset=utf-8", type), std::string(text)};
-}
-
 }  // namespace
 
 /// A film, its renderer, and the OpenGL canvas that the next one takes over.
@@ -342,9 +338,9 @@ void Watch::keep(std::int64_t k, Picture picture) {
 
 Response Watch::answer(const Request& request) {
     if (!request.is_post) {
-        if (request.path.empty()) return page("text/html", kWatchHtml);
-        if (request.path == "watch.css") return page("text/css", kWatchCss);
-        if (request.path == "watch.js") return page("text/javascript", kWatchJs);
+        if (request.path.empty()) return page_response("text/html", kWatchHtml);
+        if (request.path == "style.css") return page_response("text/css", kStyleCss);
+        if (request.path == "watch.js") return page_response("text/javascript", kWatchJs);
         if (request.path == "state") return state_after(number_in(request, "after"));
         if (request.path == "curves") return curves(number_in(request, "film"));
         std::int64_t k = 0;

@@ -45,7 +45,7 @@ class Watch {
     void reload();
 
     /// Answers a request of the page:
-    ///   "", "watch.css", "watch.js"       the page
+    ///   "", "style.css", "watch.js"       the page
     ///   "state?after=V"                   JSON: film, errors and numbers, once their version is not V
     ///   "frame/K.png?film=N"              frame K of film N, with the bytes that `still` writes at that size
     ///   "curves?film=N"                   JSON: angle and energy at the times of frames
