@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <memory>
 
 #include <fmt/format.h>
@@ -13,6 +15,8 @@
 #include "corda/core/output_file.hpp"
 #include "corda/pipeline/film.hpp"
 #include "corda/pipeline/plan_text.hpp"
+#include "corda/sweep/archive.hpp"
+#include "corda/sweep/labels.hpp"
 #include "interrupt.hpp"
 
 namespace corda::app {
@@ -30,14 +34,15 @@ struct SimulateOptions {
     SceneOptions scene;
     std::string output;
     Columns columns;
+    CsvStyle style = CsvStyle::kPoint;
     bool force = false;
     bool dry_run = false;
 };
 
 /// The names of the columns, with units as the files of `report` have them. The time and the positions, in s
 /// and m, have the names that scripts know.
-std::string csv_header(const System& system, const Columns& columns) {
-    CsvLine line;
+std::string csv_header(const System& system, const Columns& columns, CsvStyle style) {
+    CsvLine line(style);
     line.add("t");
     for (std::size_t i = 0; i < system.particle_count(); ++i)
         for (const char axis : {'x', 'y'}) line.add(fmt::format("{}{}", axis, i));
@@ -133,19 +138,60 @@ std::string cost_text(const Film& film) {
     return fmt::format("{:.0f} steps in {:.3g} s: {:.4g} steps/s", steps, wall_s, steps / wall_s);
 }
 
-/// Writes the states of all frame times.
-void write_states(const Console& console, Film& film, const Columns& columns, OutputFile* csv) {
+/// Writes the states of all frame times as CSV; without a file, only simulates.
+void write_states(const Console& console, Film& film, const SimulateOptions& options, OutputFile* csv) {
     Progress progress(console, "simulate", film.last_frame() + 1);
-    CsvLine line;
+    if (csv != nullptr) csv->write(csv_header(film.system(), options.columns, options.style));
+    CsvLine line(options.style);
     for (std::int64_t k = 0; k <= film.last_frame(); ++k) {
         check_cancelled();
         const State& state = film.state(k);
         if (csv != nullptr) {
-            add_row(film, state, columns, line);
+            add_row(film, state, options.columns, line);
             csv->write(line.end());
         }
         progress.update(k + 1);
     }
+}
+
+/// The states of all frame times as arrays of NumPy, with the names that sweeps use.
+std::string states_npz(const Console& console, Film& film, const Columns& columns) {
+    std::vector<const sweep::Label*> labels;
+    const auto add = [&](const char* name, bool is_wanted) {
+        if (is_wanted) labels.push_back(sweep::find_label(name));
+    };
+    add("times", true);
+    add("positions", true);
+    add("velocities", columns.velocities);
+    add("tensions", columns.tensions);
+    add("energy", columns.energy);
+    const std::int64_t count = film.last_frame() + 1;
+    Progress progress(console, "simulate", count);
+    const auto arrays = sweep::read_labels(
+        film, labels, count, [&, k = std::int64_t{0}](const State&) mutable { progress.update(++k); });
+    return sweep::npz_bytes(arrays, "write .csv, or fewer frames (--fps, --duration)");
+}
+
+/// Warns of bodies whose tensions are missing.
+void warn_of_tensions(const Console& console, Film& film) {
+    const System& system = film.system();
+    const State& state = film.state(0);
+    std::vector<std::size_t> unknown;
+    for (std::size_t i = 0; i < system.bodies.size(); ++i) {
+        const auto first = state.tension_n.begin() + static_cast<std::ptrdiff_t>(system.bodies[i].first_bar);
+        if (std::any_of(first, first + static_cast<std::ptrdiff_t>(system.bodies[i].link_count),
+                        [](double tension_n) { return std::isnan(tension_n); }))
+            unknown.push_back(i);
+    }
+    if (unknown.empty()) return;
+    console.warning(fmt::format(
+        "--tension: the tensions of {} are left empty: method relaxation has none, and bars that depend on "
+        "each other share them in any way; another solver.method or a compliance gives them",
+        bodies_text(system, unknown)));
+}
+
+bool is_npz(const std::string& output) {
+    return std::filesystem::path(output).extension() == ".npz";
 }
 
 /// Refuses an ending that is not known; a device such as /dev/null needs none.
@@ -154,10 +200,39 @@ void check_ending(const std::string& output) {
     std::error_code ignored;
     const bool is_device =
         std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
-    if (output.empty() || is_standard_output(output) || path.extension() == ".csv" || is_device) return;
-    throw Error(
-        ExitCode::kUsage,
-        fmt::format("-o {}: states are written as .csv; give such a name, or - for standard output", output));
+    if (output.empty() || is_standard_output(output) || path.extension() == ".csv" || is_npz(output) ||
+        is_device)
+        return;
+    throw Error(ExitCode::kUsage,
+                fmt::format("-o {}: states are written as .csv or .npz; give such a name, or - for CSV on "
+                            "standard output",
+                            output));
+}
+
+/// Simulates the motion and writes it, if there is an output.
+void write_output(const Console& console, Film& film, const SimulateOptions& options) {
+    const bool to_npz = is_npz(options.output);
+    std::unique_ptr<OutputFile> file;
+    if (!options.output.empty()) {
+        file = std::make_unique<OutputFile>(options.output, OutputOptions{.force = options.force});
+        constexpr std::size_t kMaxToldBodies = 20;
+        const std::size_t bodies = film.system().bodies.size();
+        if (bodies > 1 && bodies <= kMaxToldBodies) console.info(columns_text(film.system()));
+    }
+    try {
+        if (options.columns.tensions) warn_of_tensions(console, film);
+        if (to_npz)
+            file->write(states_npz(console, film, options.columns));
+        else
+            write_states(console, film, options, file.get());
+    } catch (const Error& error) {
+        const bool ends_early = error.code() == ExitCode::kDiverged || error.code() == interruption();
+        if (!file || to_npz || !ends_early) throw;
+        const std::string kept = file->keep();
+        if (is_standard_output(options.output)) throw;
+        throw Error(error.code(), fmt::format("{}; the rows before it are in {}", error.what(), kept));
+    }
+    if (file) file->commit();
 }
 
 ExitCode simulate(const Console& console, const SimulateOptions& options) {
@@ -166,6 +241,12 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
         throw Error(ExitCode::kUsage, "-o - and --json both want standard output; give the CSV a file name");
     }
     check_ending(options.output);
+    const bool to_npz = is_npz(options.output);
+    if (to_npz && (options.style != CsvStyle::kPoint || options.columns.diagnostics)) {
+        throw Error(ExitCode::kUsage, fmt::format("-o {}: --decimal and --diagnostics are for .csv; leave "
+                                                  "them out, or give such a name",
+                                                  options.output));
+    }
     Scene scene = options.scene.load(console);
     const bool to_file = !options.output.empty() && !to_stdout;
     if (to_file) check_output(options.output, options.scene.path, options.force, OutputKind::kStream);
@@ -174,7 +255,9 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
     def.on_progress = [&](std::int64_t done, std::int64_t all) {
         return !on_progress || on_progress(done, all);
     };
-    def.readings = {options.columns.velocities, options.columns.tensions};
+    def.readings = {.velocities = options.columns.velocities || (to_npz && options.columns.energy),
+                    .tensions = options.columns.tensions,
+                    .unknown_tensions = options.columns.tensions};
     Film film(scene, def);
     report_plan(console, film);
     console.info(fmt::format("{}: {}, method {}", film.scene().name, system_text(film.system()),
@@ -186,24 +269,7 @@ ExitCode simulate(const Console& console, const SimulateOptions& options) {
 
     set_interruption_message(kSomethingWritten);
     on_progress = {};
-    std::unique_ptr<OutputFile> csv;
-    if (!options.output.empty()) {
-        csv = std::make_unique<OutputFile>(options.output, OutputOptions{.force = options.force});
-        csv->write(csv_header(film.system(), options.columns));
-        constexpr std::size_t kMaxToldBodies = 20;
-        const std::size_t bodies = film.system().bodies.size();
-        if (bodies > 1 && bodies <= kMaxToldBodies) console.info(columns_text(film.system()));
-    }
-    try {
-        write_states(console, film, options.columns, csv.get());
-    } catch (const Error& error) {
-        const bool ends_early = error.code() == ExitCode::kDiverged || error.code() == interruption();
-        if (!csv || !ends_early) throw;
-        const std::string kept = csv->keep();
-        if (to_stdout) throw;
-        throw Error(error.code(), fmt::format("{}; the rows before it are in {}", error.what(), kept));
-    }
-    if (csv) csv->commit();
+    write_output(console, film, options);
     console.info(
         fmt::format("{}; largest strain {:.3g}", cost_text(film), film.diagnostics().largest.strain));
     warn_of_branch(console, film);
@@ -218,18 +284,28 @@ void add_simulate(CLI::App& app, Action& action) {
     auto [command, options] = add_command(
         app, action, "simulate", "run the simulation alone; positions as CSV, figures as JSON", simulate);
     options.scene.add_to(command);
-    command.add_option("-o,--output", options.output,
-                       "CSV file, or - for standard output; none: figures only. Its first line names the "
-                       "columns: t in s, x0, y0, ... in m");
+    command.add_option(
+        "-o,--output", options.output,
+        "CSV or .npz file, or - for CSV on standard output; none: figures only. The first line "
+        "of CSV names the columns: t in s, x0, y0, ... in m; the arrays of .npz are times, "
+        "positions, ...");
     options.scene.add_timing(command, "rows per second");
     command.add_flag("--velocity", options.columns.velocities,
                      "add the velocity of every particle: vx0_m_s, vy0_m_s, ...");
-    command.add_flag("--tension", options.columns.tensions,
-                     "add the tension of every link, positive if it pulls: tension0_n, ...");
+    command.add_flag(
+        "--tension", options.columns.tensions,
+        "add the tension of every link, positive if it pulls: tension0_n, ...; empty if the method does "
+        "not know it");
     command.add_flag("--energy", options.columns.energy,
                      "add the change of kinetic and potential energy since the start: energy_change_j");
     command.add_flag("--diagnostics", options.columns.diagnostics,
                      "add energy error, strain, pin force and tension to every row");
+    command
+        .add_option("--decimal", options.style,
+                    "decimal sign of CSV: point, or comma with semicolons between the cells")
+        ->transform(CLI::Transformer(
+            std::map<std::string, CsvStyle>{{"point", CsvStyle::kPoint}, {"comma", CsvStyle::kComma}}))
+        ->type_name("point|comma");
     command.add_flag("--force", options.force, "replace an existing output");
     command.add_flag("--dry-run", options.dry_run, "check everything and write nothing");
 }

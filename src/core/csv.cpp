@@ -13,19 +13,23 @@ void CsvLine::begin_cell() {
     if (is_ended_)
         line_.clear();
     else
-        line_ += ',';
+        line_ += style_ == CsvStyle::kComma ? ';' : ',';
     is_ended_ = false;
 }
 
 void CsvLine::add(double value) {
     begin_cell();
-    if (!std::isnan(value)) fmt::format_to(std::back_inserter(line_), "{:.17g}", value);
+    if (std::isnan(value)) return;
+    const std::size_t first = line_.size();
+    fmt::format_to(std::back_inserter(line_), "{:.17g}", value);
+    if (style_ == CsvStyle::kPoint) return;
+    if (const std::size_t point = line_.find('.', first); point != std::string::npos) line_[point] = ',';
 }
 
 void CsvLine::add(std::string_view text) {
     begin_cell();
     const std::string readable = utf8(text);
-    if (readable.find_first_of(",\"\r\n") == std::string::npos) {
+    if (readable.find_first_of(style_ == CsvStyle::kComma ? ";\"\r\n" : ",\"\r\n") == std::string::npos) {
         line_ += readable;
         return;
     }

@@ -53,11 +53,9 @@ void append(std::string& text, std::initializer_list<std::string_view> parts) {
     for (const std::string_view part : parts) text += part;
 }
 
-void check_zip_bytes(std::uint64_t bytes) {
+void check_zip_bytes(std::uint64_t bytes, std::string_view remedy) {
     if (bytes > 0xffffffffU)
-        throw Error(ExitCode::kUsage,
-                    "the arrays of a sample are over 4 GiB; leave out some of output.labels, or the frames "
-                    "(output.pictures)");
+        throw Error(ExitCode::kUsage, fmt::format("the arrays of an .npz file are over 4 GiB; {}", remedy));
 }
 
 /// Compressed bytes without the head and the checksum of a zlib stream.
@@ -91,7 +89,7 @@ std::string tar_end() {
     return zeros(2 * kTarBlockBytes);
 }
 
-std::string npz_bytes(const std::vector<Array>& arrays) {
+std::string npz_bytes(const std::vector<Array>& arrays, std::string_view remedy) {
     // ZIP without its 64-bit extensions (PKWARE, APPNOTE.TXT 6.3.10, section 4.3). A library's heads would
     // change with its version.
     const std::string version = little_endian(20, 2);
@@ -102,7 +100,7 @@ std::string npz_bytes(const std::vector<Array>& arrays) {
         const std::string name = array.name + ".npy";
         std::string content = npy_head(array) + array.data;
         const std::size_t size = content.size();
-        check_zip_bytes(size);
+        check_zip_bytes(size, remedy);
         const auto checksum =
             crc32(0, reinterpret_cast<const Bytef*>(content.data()), static_cast<uInt>(size));
         if (array.is_bytes) content = deflated(content);
@@ -112,7 +110,7 @@ std::string npz_bytes(const std::vector<Array>& arrays) {
                       little_endian(name.size(), 2), zeros(2)});
         append(directory, {"PK\1\2", version, head, zeros(10), little_endian(files.size(), 4), name});
         append(files, {"PK\3\4", head, name, content});
-        check_zip_bytes(files.size() + directory.size());
+        check_zip_bytes(files.size() + directory.size(), remedy);
     }
     const std::string count = little_endian(arrays.size(), 2);
     append(directory, {"PK\5\6", zeros(4), count, count, little_endian(directory.size(), 4),

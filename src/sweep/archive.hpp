@@ -15,8 +15,11 @@ namespace corda::sweep {
 /// Two empty blocks, with which a tar ends.
 [[nodiscard]] std::string tar_end();
 
+inline constexpr std::string_view kFewerLabels =
+    "leave out some of output.labels, or the frames (output.pictures)";
+
 /// Arrays as numpy.load() reads them from an .npz file. Those of bytes are compressed. Throws corda::Error:
-/// kUsage if they are over 4 GiB, kTemporary.
-[[nodiscard]] std::string npz_bytes(const std::vector<Array>& arrays);
+/// kUsage with `remedy` if they are over 4 GiB, kTemporary.
+[[nodiscard]] std::string npz_bytes(const std::vector<Array>& arrays, std::string_view remedy = kFewerLabels);
 
 }  // namespace corda::sweep

@@ -81,18 +81,18 @@ const Label* find_label(std::string_view name) {
     return found == kLabels.end() ? nullptr : &*found;
 }
 
-std::vector<Array> read_labels(Film& film, std::span<const Label* const> labels,
+std::vector<Array> read_labels(Film& film, std::span<const Label* const> labels, std::int64_t frames,
                                const std::function<void(const State&)>& visit) {
     std::vector<Array> arrays;
     for (const Label* const label : labels) {
         Dimensions shape = label->shape(film);
-        shape.insert(shape.begin(), film.frame_count());
+        shape.insert(shape.begin(), frames);
         std::size_t bytes = label->is_bytes ? 1 : sizeof(double);
         for (const std::int64_t count : shape) bytes *= static_cast<std::size_t>(count);
         arrays.push_back({std::string(label->name), label->is_bytes, std::move(shape), {}});
         arrays.back().data.reserve(bytes);
     }
-    for (std::int64_t k = 0; k < film.frame_count(); ++k) {
+    for (std::int64_t k = 0; k < frames; ++k) {
         check_cancelled();
         if (visit) visit(film.state(k));
         for (std::size_t i = 0; i < labels.size(); ++i)

@@ -33,10 +33,11 @@ struct Label {
 /// Null for none.
 [[nodiscard]] const Label* find_label(std::string_view name);
 
-/// The arrays of all frames. Calls `visit`, if there is one, with each state. Velocities, tensions and energy
-/// need a film whose states have velocities and tensions. Throws corda::Error as Film::state() and
-/// Film::mask(), kInterrupted if cancelled.
+/// The arrays of the first `frames` frames. Calls `visit`, if there is one, with each state. Velocities,
+/// tensions and energy need a film whose states have velocities and tensions. Throws corda::Error as
+/// Film::state() and Film::mask(), kInterrupted if cancelled.
 [[nodiscard]] std::vector<Array> read_labels(Film& film, std::span<const Label* const> labels,
+                                             std::int64_t frames,
                                              const std::function<void(const State&)>& visit = {});
 
 }  // namespace corda::sweep

@@ -85,7 +85,8 @@ void SampleMaker::make_of(const Scene& scene, Sample& sample) {
     def.readings = {.velocities = true, .tensions = true, .unknown_tensions = true};
     Film film(scene, std::move(def));
     SummaryReader summary(film);
-    sample.arrays = read_labels(film, sweep_->labels, [&summary](const State& state) { summary.add(state); });
+    sample.arrays = read_labels(film, sweep_->labels, film.frame_count(),
+                                [&summary](const State& state) { summary.add(state); });
     sample.summary = summary.summary();
     sample.info = info_of(film, *sweep_, sample);
     if (sweep_->pictures != Pictures::kNone) draw(film, sample);

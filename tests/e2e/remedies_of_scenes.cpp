@@ -362,15 +362,13 @@ INSTANTIATE_TEST_SUITE_P(
                {{{"\"tension\"", "\"speed\""}},
                 {{"\"tension\"", "\"strain\""}},
                 {{"\"relaxation\"", "\"exact\""}}}},
-        Remedy{
-            "tensions_of_dependent_bars",
-            net_scene(kGrid, kByTension),
-            "plan SCENE",
-            "leave out --tension, set style.color_by = \"strain\" or \"speed\", or let the bars stretch by a "
-            "compliance",
-            {{{"\"tension\"", "\"speed\""}},
-             {{"\"tension\"", "\"strain\""}},
-             {{kGrid, kGrid + "compliance = 1e-4\n"}}}}),
+        Remedy{"tensions_of_dependent_bars",
+               net_scene(kGrid, kByTension),
+               "plan SCENE",
+               "set style.color_by = \"strain\" or \"speed\", or let the bars stretch by a compliance",
+               {{{"\"tension\"", "\"speed\""}},
+                {{"\"tension\"", "\"strain\""}},
+                {{kGrid, kGrid + "compliance = 1e-4\n"}}}}),
     test::kNameOfCase);
 
 }  // namespace

@@ -23,6 +23,16 @@ TEST(CsvLine, QuotesTextsThatNeedItAndLeavesNanEmpty) {
     EXPECT_EQ(line.end(), "\n");
 }
 
+TEST(CsvLine, SeparatesCellsBySemicolonsIfNumbersHaveACommaAsDecimalSign) {
+    CsvLine line(CsvStyle::kComma);
+    line.add("a,b");
+    line.add("c;d");
+    line.add(-0.5);
+    line.add(2.0);
+    line.add(1e-30);
+    EXPECT_EQ(line.end(), "a,b;\"c;d\";-0,5;2;1,0000000000000001e-30\n");
+}
+
 TEST(CsvFile, HasAHeaderAndARowPerCall) {
     const test::ScratchFolder folder;
     CsvFile file(folder.file("a.csv"), {}, {"time_s", "x_m"});
