@@ -21,8 +21,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Matroska counts milliseconds.
-constexpr double kSameTimeS = 1e-3;
+/// Matroska counts milliseconds, GIF hundredths; each time is the nearest one.
+constexpr double kSameTimeS = 5.001e-3;
 constexpr double kSameRate = 1e-4;
 
 /// Result of the comparison of two videos so far.

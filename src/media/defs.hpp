@@ -41,6 +41,7 @@ struct EncoderDef {
 /// The picture size and rate of a video, and how long its frames are exposed.
 struct VideoDef {
     static constexpr int kMaxSubframes = 64;
+    static constexpr int kMaxLoop = 65535;
 
     int width_px = 1920;  ///< see is_picture_size(); even for 4:2:0
     int height_px = 1080;
@@ -50,6 +51,8 @@ struct VideoDef {
     /// where things are at its time; not before the motion's start, nor after its end.
     double shutter = 0.0;
     int subframes = 16;  ///< 2 .. kMaxSubframes: of how many pictures a blurred one is the mean
+    /// How often a GIF, APNG or WebP plays, 0 .. kMaxLoop; 0: for ever.
+    int loop = 0;
     EncoderDef encoder;
 };
 

@@ -26,6 +26,7 @@ struct AnimationDef {
     std::vector<ChunkFile> chunks;  ///< one after the other; they are exact
     std::int64_t frames = 0;        ///< in all
     Rational fps;
+    int loop = 0;     ///< how often it plays; 0: for ever
     int threads = 1;  ///< change the time that it takes, and no byte
 };
 

@@ -50,8 +50,8 @@ ApngFrame encode_apng(const PictureChange& change) {
 
 class ApngFile {
   public:
-    ApngFile(Rational fps, std::int64_t frames, OutputFile& output)
-        : fps_(fps), frames_(frames), output_(output) {}
+    ApngFile(const AnimationDef& def, OutputFile& output)
+        : fps_(def.fps), frames_(def.frames), loop_(def.loop), output_(output) {}
 
     void write(const ApngFrame& frame) {
         if (written_++ == 0) {
@@ -67,9 +67,9 @@ class ApngFile {
     }
 
   private:
-    /// For ever.
     [[nodiscard]] std::string plays() const {
-        return big_endian(static_cast<std::uint64_t>(frames_), 4) + big_endian(0, 4);
+        return big_endian(static_cast<std::uint64_t>(frames_), 4) +
+               big_endian(static_cast<std::uint64_t>(loop_), 4);
     }
     /// Where and how long a frame is shown; it stays, under the next one.
     std::string control(const ApngFrame& frame) {
@@ -85,6 +85,7 @@ class ApngFile {
 
     Rational fps_;
     std::int64_t frames_;
+    int loop_;
     OutputFile& output_;
     std::int64_t written_ = 0;
     std::uint32_t sequence_ = 0;
@@ -94,7 +95,7 @@ class ApngFile {
 
 void write_apng(const Ending& /*ending*/, const AnimationDef& def, const OnProgress& on_progress,
                 OutputFile& output) {
-    ApngFile file(def.fps, def.frames, output);
+    ApngFile file(def, output);
     for_each_frame<ApngFrame>(
         def, on_progress, [](const LosslessFrames& pictures) { return encode_apng(pictures.change()); },
         [&file](const ApngFrame& frame) { file.write(frame); });

@@ -117,7 +117,7 @@ void write_gif(const Ending& ending, const AnimationDef& def, const OnProgress& 
     TrackOutput track(
         output, ending.muxer,
         open_encoder(ending, def.fps, pictures.picture(), std::make_shared<Colors>(palette))->parameters(),
-        {.fps = def.fps, .title = {}, .comment = {}});
+        {.fps = def.fps, .title = {}, .comment = {}, .frames = def.frames, .loop = def.loop});
     using Packets = std::vector<Packet>;
     const auto new_maker = [&] {
         return [encoder = std::make_shared<SectionEncoder>(ending, def, palette)](

@@ -81,8 +81,8 @@ void write_webp(const Ending& /*ending*/, const AnimationDef& def, const OnProgr
     };
     for_each_frame<WebpFrame>(
         def, on_progress, [](const LosslessFrames& pictures) { return encode_webp(pictures.change()); }, add);
-    const WebPMuxAnimParams forever{0, 0};
-    if (WebPMuxSetAnimationParams(mux.get(), &forever) != WEBP_MUX_OK ||
+    const WebPMuxAnimParams plays{0, def.loop};
+    if (WebPMuxSetAnimationParams(mux.get(), &plays) != WEBP_MUX_OK ||
         WebPMuxSetCanvasSize(mux.get(), canvas.width(), canvas.height()) != WEBP_MUX_OK)
         fail_webp("takes no picture of this size");
     WebPData whole{};

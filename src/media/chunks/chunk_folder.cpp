@@ -24,7 +24,7 @@
 
 namespace corda::media {
 
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Manifest, made_from, fps, first, end, per_chunk, title, comment)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Manifest, made_from, fps, loop, first, end, per_chunk, title, comment)
 
 namespace {
 

@@ -22,6 +22,7 @@ namespace corda::media {
 struct Manifest {
     std::map<std::string, std::string> made_from{};  ///< everything that determines the bytes, by key
     Rational fps{};
+    int loop = 0;                ///< see VideoDef
     std::int64_t first = 0;      ///< number of the first frame in the film
     std::int64_t end = 0;        ///< one past the last
     std::int64_t per_chunk = 1;  ///< chunk c has those of the frames c * per_chunk <= k < (c + 1) * per_chunk

@@ -27,7 +27,8 @@ std::uint32_t tag_of(const AVCodecParameters& parameters) {
 }
 
 /// The muxer's options.
-void set_options(std::string_view container, Rational fps, Options& options) {
+void set_options(std::string_view container, const TrackInfo& info, Options& options) {
+    const Rational fps = info.fps;
     if (container == "mp4" || container == "mov") {
         // Both clocks count in units of the rate's numerator, so that no stamp and no duration is ever
         // rounded.
@@ -37,7 +38,13 @@ void set_options(std::string_view container, Rational fps, Options& options) {
     } else if (container == "matroska" || container == "webm") {
         options.set("cues_to_front", "1");
     } else if (container == "gif") {
-        options.set("loop", "0").set("final_delay", std::to_string(100 * fps.den / fps.num));
+        // Each frame ends at the hundredth that is the nearest to its time, so that delays add up exactly.
+        const auto end = [fps](std::int64_t frames) { return av_rescale(100 * frames, fps.den, fps.num); };
+        // The muxer counts repetitions, -1 for none.
+        options.set("loop", std::to_string(info.loop == 0   ? 0
+                                           : info.loop == 1 ? -1
+                                                            : info.loop - 1))
+            .set("final_delay", std::to_string(end(info.frames) - end(info.frames - 1)));
     }
 }
 
@@ -96,7 +103,7 @@ TrackOutput::TrackOutput(const OutputFile& output, const char* container, const 
 
     if (has_old_header()) format_->metadata_header_padding = kNewMatroskaBytes;
     Options options;
-    set_options(container, info.fps, options);
+    set_options(container, info, options);
     check_libav(avformat_write_header(format_.get(), options.get()), kIo,
                 fmt::format("cannot write the header of '{}'", path_));
     if (const std::string name = options.left_over(); !name.empty()) {

@@ -17,6 +17,9 @@ struct TrackInfo {
     std::string title;
     std::string comment;
     bool has_alpha = false;  ///< of VP9, which keeps alpha in a second stream
+    // Of a GIF.
+    std::int64_t frames = 0;
+    int loop = 0;  ///< how often it plays; 0: for ever
 };
 
 /// Writes a file with one video track by a muxer of libav, with its index ahead of the pictures. Time stamps

@@ -254,6 +254,7 @@ Manifest manifest_of(const CheckedVideo& output, const VideoMetadata& metadata) 
     if (output.format.codec->crf) comment["crf"] = output.format.crf_of(output.def.encoder);
     return {.made_from = metadata.made_from,
             .fps = output.def.fps.rational(),
+            .loop = output.def.loop,
             .first = output.first,
             .end = output.end,
             .per_chunk = frames_per_chunk(output.format, output.def.fps),

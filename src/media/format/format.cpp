@@ -220,18 +220,14 @@ constexpr double kMaxMsRate = 1000.0;
 
 /// The pauses of a GIF are whole hundredths of a second, and pauses shorter than two play slowly.
 void check_gif_rate(Rational fps) {
-    const Rational hundredths = Rational::reduced(100 * fps.den, fps.num);
-    if (hundredths.den == 1 && hundredths.num >= 2 && hundredths.num <= 65535) return;
-    const std::int64_t longer = std::max<std::int64_t>(2, (100 * fps.den + fps.num - 1) / fps.num);
-    const auto rate = [](std::int64_t pause) {
-        return Rational::reduced(100, std::clamp<std::int64_t>(pause, 2, 65535)).text();
-    };
-    const std::string slower = rate(longer);
-    const std::string faster = rate(longer - 1);
+    constexpr std::int64_t kLongestPause = 65535;
+    const bool is_fast = fps.num > 50 * fps.den;
+    if (!is_fast && 100 * fps.den <= kLongestPause * fps.num) return;
+    const std::string possible = is_fast ? "50" : Rational::reduced(100, kLongestPause).text();
     fail_usage(
-        "a GIF cannot have {} frames per second: its pauses are hundredths of a second, two at least; use {} "
+        "a GIF cannot have {} frames per second: its pauses are 2 to {} hundredths of a second; use {} "
         "(--fps {}){}",
-        fps.text(), slower == faster ? slower : slower + " or " + faster, slower,
+        fps.text(), kLongestPause, possible, possible,
         fps.value() <= kMaxMsRate ? ", or .apng or .webp" : "");
 }
 

@@ -65,7 +65,7 @@ struct StoredVideo::Impl {
             webp.emplace(path);
             if (!webp->is_open())
                 throw Error(ExitCode::kIo, fmt::format("libwebp cannot open '{}' as an animated WebP", path));
-            if (const auto told = rate_of_ms(webp->told_ends_ms())) rate = *told;
+            if (const auto told = rate_of_ends(webp->told_ends_ms())) rate = *told;
             return;
         }
         decoder.emplace(path);

@@ -26,28 +26,29 @@ std::string all_of(const std::string& path) {
     return all;
 }
 
-bool fits(Rational fps, const std::vector<std::int64_t>& ends_ms) {
+bool fits(Rational fps, const std::vector<std::int64_t>& ends, std::int64_t ticks_per_second) {
     std::int64_t k = 0;
-    return std::all_of(ends_ms.begin(), ends_ms.end(), [&](std::int64_t end) {
+    return std::all_of(ends.begin(), ends.end(), [&](std::int64_t end) {
         ++k;
-        return (std::int64_t{2000} * k * fps.den + fps.num) / (2 * fps.num) == end;
+        return (2 * ticks_per_second * k * fps.den + fps.num) / (2 * fps.num) == end;
     });
 }
 
 /// The fraction of smallest denominator that fits.
-std::optional<Rational> simplest_rate(const std::vector<std::int64_t>& ends_ms) {
+std::optional<Rational> simplest_rate(const std::vector<std::int64_t>& ends, std::int64_t ticks_per_second) {
     constexpr std::int64_t kMaxDenominator = 10'000;
     double low = 0.0;  // that fitting rates are above, and those up to which they are
-    double high = 2000.0;
-    for (std::size_t i = 0; i < ends_ms.size(); ++i) {
-        const double frames = 2000.0 * static_cast<double>(i + 1);
-        const double twice_end = 2.0 * static_cast<double>(ends_ms[i]);
+    double high = 2.0 * static_cast<double>(ticks_per_second);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        const double frames = 2.0 * static_cast<double>(ticks_per_second) * static_cast<double>(i + 1);
+        const double twice_end = 2.0 * static_cast<double>(ends[i]);
         low = std::max(low, frames / (twice_end + 1.0));
         if (twice_end > 0.0) high = std::min(high, frames / (twice_end - 1.0));
     }
     for (std::int64_t den = 1; den <= kMaxDenominator; ++den) {
         const auto num = static_cast<std::int64_t>(std::floor(high * static_cast<double>(den)));
-        if (num > 0 && static_cast<double>(num) > low * static_cast<double>(den) && fits({num, den}, ends_ms))
+        if (num > 0 && static_cast<double>(num) > low * static_cast<double>(den) &&
+            fits({num, den}, ends, ticks_per_second))
             return Rational{num, den};
     }
     return std::nullopt;
@@ -102,15 +103,16 @@ std::vector<std::int64_t> WebpReader::told_ends_ms() const {
     return ends_ms;
 }
 
-std::optional<Rational> rate_of_ms(const std::vector<std::int64_t>& ends_ms, std::optional<Rational> told) {
-    if (ends_ms.empty() || ends_ms.back() <= 0) return std::nullopt;
-    if (told && fits(*told, ends_ms)) return told;
+std::optional<Rational> rate_of_ends(const std::vector<std::int64_t>& ends, std::optional<Rational> told,
+                                     std::int64_t ticks_per_second) {
+    if (ends.empty() || ends.back() <= 0) return std::nullopt;
+    if (told && fits(*told, ends, ticks_per_second)) return told;
     for (const Rational usual :
          {Rational{60, 1}, Rational{30, 1}, Rational{25, 1}, Rational{24, 1}, Rational{50, 1},
           Rational{30000, 1001}, Rational{24000, 1001}, Rational{60000, 1001}})
-        if (fits(usual, ends_ms)) return usual;
-    const Rational mean = Rational::reduced(1000 * std::ssize(ends_ms), ends_ms.back());
-    return mean.den == 1 && fits(mean, ends_ms) ? mean : simplest_rate(ends_ms);
+        if (fits(usual, ends, ticks_per_second)) return usual;
+    const Rational mean = Rational::reduced(ticks_per_second * std::ssize(ends), ends.back());
+    return mean.den == 1 && fits(mean, ends, ticks_per_second) ? mean : simplest_rate(ends, ticks_per_second);
 }
 
 }  // namespace corda::media

@@ -46,9 +46,10 @@ class WebpReader {
     std::vector<std::int64_t> ends_ms_;
 };
 
-/// The rate whose frames, rounded to milliseconds, end at these times: of several `told`, a usual one, or the
+/// The rate whose frames, rounded to ticks, end at these times: of several `told`, a usual one, or the
 /// simplest. The times are those of frames 1, 2, ... and of the end; std::nullopt if no rate fits.
-[[nodiscard]] std::optional<Rational> rate_of_ms(const std::vector<std::int64_t>& ends_ms,
-                                                 std::optional<Rational> told = {});
+[[nodiscard]] std::optional<Rational> rate_of_ends(const std::vector<std::int64_t>& ends,
+                                                   std::optional<Rational> told = {},
+                                                   std::int64_t ticks_per_second = 1000);
 
 }  // namespace corda::media

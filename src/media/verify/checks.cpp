@@ -275,9 +275,10 @@ void add_notes(const DecodedVideo& video, VerifyDepth depth, VerifyReport& repor
     if (report.alpha)
         report.notes.emplace_back("the first frame is transparent in places; alpha is straight");
     if (video.is_rounded) {
-        report.notes.emplace_back(
-            "the container counts milliseconds: each frame's time is the nearest one to k/fps, the rate is "
-            "the one stated in the file");
+        report.notes.push_back(
+            fmt::format("the container counts {}: each frame's time is the nearest one to k/fps{}",
+                        report.container == "gif" ? "hundredths of a second" : "milliseconds",
+                        report.container == "gif" ? "" : ", the rate is the one stated in the file"));
     }
     if (report.faststart)
         report.notes.emplace_back(

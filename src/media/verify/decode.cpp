@@ -67,12 +67,14 @@ std::array<double, 3> mean_rgb_of(const AVFrame& frame, const PixelRect& part) {
                                                          : rgb_from_ycbcr(means[0], means[1], means[2]);
 }
 
+constexpr std::int64_t kGifTicks = 100;  // per second
+
 /// Decodes one file and fills in a DecodedVideo.
 class Decoding {
   public:
-    Decoding(DecodedVideo& video, VerifyReport& report, VerifyDepth depth,
+    Decoding(DecodedVideo& video, VerifyReport& report, VerifyDepth depth, std::optional<Rational> told,
              const std::vector<FrameColors>& rendered)
-        : video_(video), report_(report), depth_(depth), rendered_(rendered) {}
+        : video_(video), report_(report), depth_(depth), told_(told), rendered_(rendered) {}
 
     void run(const std::string& path) {
         if (!open(path)) return;
@@ -89,6 +91,7 @@ class Decoding {
                 note_bad(status);
         }
         take_stamps(0);
+        if (is_gif_ && report_.frames > 0) find_gif_rate();
         // libav guesses the duration of the last frame; check_clocks in checks.cpp compares the end with the
         // track's stored duration.
         const std::int64_t duration = decoder_->stream().duration;
@@ -119,6 +122,8 @@ class Decoding {
         video_.tick = {stream.time_base.num, stream.time_base.den};
         find_rounded_rate();
         if (is_kind("apng")) take_delays(read_apng_times(path));
+        is_gif_ = is_kind("gif");
+        counts_frames_ = counts_frames_ || is_gif_;
         return true;
     }
 
@@ -146,6 +151,26 @@ class Decoding {
         video_.uneven_at = times.uneven_at;
     }
 
+    /// A GIF counts hundredths, and its delays are rounded unless all are equal.
+    void find_gif_rate() {
+        const std::int64_t start = ends_.front();
+        video_.first_pts = start;
+        ends_.push_back(ends_.back() + last_duration_);
+        ends_.erase(ends_.begin());
+        for (std::int64_t& end : ends_) end -= start;
+        const std::int64_t delay = ends_.front();
+        std::int64_t k = 0;
+        const bool is_even =
+            std::all_of(ends_.begin(), ends_.end(), [&](std::int64_t end) { return end == ++k * delay; });
+        auto fps = rate_of_ends(ends_, told_, kGifTicks);
+        if (is_even && fps != told_ && delay > 0) fps = Rational::reduced(kGifTicks, delay);
+        video_.is_rounded = !is_even;
+        if (fps)
+            video_.tick = {fps->den, fps->num};
+        else
+            video_.uneven_at = 1;
+    }
+
     /// The number of the frame that a rounded stamp is the nearest to, or one that fits nowhere.
     [[nodiscard]] std::int64_t unrounded(std::int64_t pts) const {
         const AVRational frame = frame_time_base(*rounded_to_);
@@ -166,6 +191,7 @@ class Decoding {
     /// Decodes all packets, or each key frame alone; then the stamps of packets count. Of frames whose
     /// rendered colours are known in part, the key frames without known colours are skipped.
     Decoder::PacketUse use_of(const AVPacket& packet) {
+        last_duration_ = packet.duration;
         if ((packet.flags & AV_PKT_FLAG_CORRUPT) != 0) note_bad(AVERROR_INVALIDDATA);
         if (depth_ == VerifyDepth::kAllFrames) return Decoder::PacketUse::kDecode;
         const bool is_wanted = rendered_.empty() || packets_ < rendered_.front().frame ||
@@ -204,6 +230,7 @@ class Decoding {
             return;
         }
         if (rounded_to_) pts = unrounded(pts);
+        if (is_gif_) ends_.push_back(pts);
         if (counts_frames_) pts = report_.frames;
         if (report_.frames == 0) {
             video_.first_pts = pts;
@@ -271,6 +298,7 @@ class Decoding {
     DecodedVideo& video_;
     VerifyReport& report_;
     VerifyDepth depth_;
+    std::optional<Rational> told_;  ///< the rate that the file was rendered for
     const std::vector<FrameColors>& rendered_;
     LogCapture log_;
     std::optional<Decoder> decoder_;
@@ -280,6 +308,9 @@ class Decoding {
     bool is_described_ = false;
     bool is_readable_ = false;  ///< its colours can be measured
     std::int64_t packets_ = 0;  ///< so far, of kKeyFrames
+    bool is_gif_ = false;
+    std::vector<std::int64_t> ends_;  ///< of a GIF: the times of its frames
+    std::int64_t last_duration_ = 0;
     /// Of packets, the least on top.
     std::priority_queue<std::int64_t, std::vector<std::int64_t>, std::greater<>> stamps_;
 };
@@ -293,10 +324,10 @@ const FrameColors* find_rendered(const std::vector<FrameColors>& rendered, std::
     return known != rendered.end() && known->frame == frame ? &*known : nullptr;
 }
 
-DecodedVideo decode(const std::string& path, VerifyDepth depth, const std::vector<FrameColors>& rendered,
-                    VerifyReport& report) {
+DecodedVideo decode(const std::string& path, VerifyDepth depth, std::optional<Rational> told,
+                    const std::vector<FrameColors>& rendered, VerifyReport& report) {
     DecodedVideo video;
-    Decoding(video, report, depth, rendered).run(path);
+    Decoding(video, report, depth, told, rendered).run(path);
     return video;
 }
 
@@ -331,7 +362,7 @@ DecodedVideo decode_webp(const std::string& path, std::optional<Rational> told,
     }
     video.step = 1;
     video.end = report.frames;
-    const auto fps = rate_of_ms(reader.read_ends_ms(), told);
+    const auto fps = rate_of_ends(reader.read_ends_ms(), told);
     if (fps) {
         video.tick = {fps->den, fps->num};
     } else {

@@ -271,6 +271,55 @@ TEST_F(Video, OneFrameIsAVideoWhereAContainerHoldsOne) {
     }
 }
 
+/// The delays of the frames of a GIF, in hundredths of a second.
+std::vector<int> delays_of(const std::string& gif) {
+    constexpr std::string_view kControl = "\x21\xf9\x04";  // GIF89a, 23
+    std::vector<int> delays;
+    for (std::size_t at = gif.find(kControl); at != std::string::npos; at = gif.find(kControl, at + 8)) {
+        if (gif.at(at + 7) != 0) continue;  // other bytes by chance
+        delays.push_back(static_cast<unsigned char>(gif[at + 4]) +
+                         256 * static_cast<unsigned char>(gif[at + 5]));
+    }
+    return delays;
+}
+
+TEST_F(Video, AGifOfAnyRateHasDelaysThatAddUpExactly) {
+    constexpr std::int64_t kFrames = 25;
+    for (const Rational rate : {Rational{24, 1}, Rational{30, 1}, Rational{30000, 1001}, Rational{50, 1}}) {
+        make_video(file("a.gif"), small_video(rate), kFrames);
+        const std::vector<int> delays = delays_of(test::read_file(file("a.gif")));
+        ASSERT_EQ(delays.size(), kFrames) << rate.text();
+        std::int64_t end = 0;
+        for (std::int64_t k = 1; k <= kFrames; ++k) {
+            end += delays[static_cast<std::size_t>(k - 1)];
+            EXPECT_EQ(end, std::llround(100.0 * static_cast<double>(k) / rate.value())) << rate.text() << k;
+        }
+        const VerifyReport report = verify(file("a.gif"), VerifyDepth::kAllFrames, {}, rate);
+        EXPECT_TRUE(report.ok()) << all_problems(report);
+        EXPECT_EQ(report.fps, rate) << report.fps.text();
+    }
+}
+
+TEST_F(Video, AnAnimationPlaysAsOftenAsAsked) {
+    const auto bytes_of = [&](const char* ending, int loop) {
+        VideoDef def = small_video({25, 1});
+        def.loop = loop;
+        make_video(file(std::string("a") + ending), def, 3);
+        return test::read_file(file(std::string("a") + ending));
+    };
+    using namespace std::string_literals;
+    const auto has = [](const std::string& bytes, const std::string& part) {
+        return bytes.find(part) != std::string::npos;
+    };
+    EXPECT_TRUE(has(bytes_of(".gif", 0), "NETSCAPE2.0\x03\x01\0\0"s));
+    EXPECT_TRUE(has(bytes_of(".gif", 3), "NETSCAPE2.0\x03\x01\x02\0"s));  // repetitions
+    EXPECT_FALSE(has(bytes_of(".gif", 1), "NETSCAPE2.0"));
+    EXPECT_TRUE(has(bytes_of(".apng", 0), "acTL\0\0\0\x03\0\0\0\0"s));
+    EXPECT_TRUE(has(bytes_of(".apng", 3), "acTL\0\0\0\x03\0\0\0\x03"s));
+    EXPECT_EQ(bytes_of(".webp", 0).substr(bytes_of(".webp", 0).find("ANIM") + 12, 2), "\0\0"s);
+    EXPECT_EQ(bytes_of(".webp", 3).substr(bytes_of(".webp", 3).find("ANIM") + 12, 2), "\x03\0"s);
+}
+
 TEST_F(Video, AGifOfManyColoursHasTheNearest) {
     const auto colourful = [](std::int64_t k) {
         Image image(kWidth, kHeight);

@@ -118,12 +118,11 @@ TEST(Formats, RatesThatAContainerCannotCountAreRefused) {
         def.fps = FrameRate(fps);
         return failure_of([&] { static_cast<void>(find_format(path, def)); }).message;
     };
-    EXPECT_EQ(message_for("a.gif", {50, 1}) + message_for("a.gif", {100, 3}) + message_for("a.gif", {1, 10}),
-              "");
+    for (const Rational rate :
+         {Rational{50, 1}, Rational{100, 3}, Rational{30000, 1001}, Rational{24, 1}, Rational{1, 10}})
+        EXPECT_EQ(message_for("a.gif", rate), "") << rate.text();
     EXPECT_THAT(message_for("a.gif", {60, 1}), HasSubstr("use 50 (--fps 50)"));
     EXPECT_THAT(message_for("a.gif", {100, 1}), HasSubstr("use 50 (--fps 50)"));
-    EXPECT_THAT(message_for("a.gif", {30, 1}), HasSubstr("use 25 or 100/3 (--fps 25)"));
-    EXPECT_THAT(message_for("a.gif", {30000, 1001}), HasSubstr("use 25 or 100/3 (--fps 25)"));
     EXPECT_THAT(message_for("a.gif", {1, 1000}), HasSubstr("use 20/13107 (--fps 20/13107)"));
     EXPECT_THAT(message_for("a.webm", {2000, 1}), HasSubstr("use 1000 or less"));
     EXPECT_THAT(message_for("a.apng", {70000, 1001}), HasSubstr("30000/1001"));
