@@ -55,7 +55,7 @@ bool parse_frame(std::string_view text, Frame& frame) {
 
 /// The frames that a word of `--frame` names.
 RequestedFrames frames_of(const std::string& word, const Scene& scene) {
-    const std::int64_t count = scene.video.fps.frame_count(scene.world.duration_s);
+    const std::int64_t count = scene.video.scene_rate().frame_count(scene.world.duration_s);
     RequestedFrames range;
     if (parse_frame(word, range.first)) {
         range.end = range.first + (range.first < count ? 1 : 0);
@@ -315,7 +315,7 @@ std::vector<RequestedTime> TimeOptions::list(const Scene& scene) const {
                                                       word, count, kMaxTimes));
         }
         for (std::int64_t k = range.first; k < *range.end; ++k)
-            times.push_back({scene.video.fps.time_s(k), k});
+            times.push_back({scene.video.scene_rate().time_s(k), k});
     }
     std::stable_sort(times.begin(), times.end(),
                      [](const RequestedTime& a, const RequestedTime& b) { return a.time_s < b.time_s; });

@@ -61,7 +61,8 @@ std::string range_of(const Console& console, const RenderOptions& options) {
     const std::vector<std::string>& settings = options.scene.settings;
     const bool has_its_frames =
         std::none_of(settings.begin(), settings.end(), [](const std::string& setting) {
-            return setting.starts_with("world.duration") || setting.starts_with("video.fps");
+            return setting.starts_with("world.duration") || setting.starts_with("video.fps") ||
+                   setting.starts_with("video.speed");
         });
     const bool takes_its = options.scene.is_from() && options.frames.empty() && has_its_frames;
     return takes_its ? options.scene.provenance(console).frames : options.frames;
@@ -101,6 +102,7 @@ nlohmann::json report(Film& film, const RenderOptions& options, const Rendered& 
     json["width"] = video.width_px;
     json["height"] = video.height_px;
     json["fps"] = video.fps.per_second();
+    json["speed"] = video.speed.text();
     json["fps_exact"] = video.fps.rational().text();
     json["wall_s"] = wall_s;
     json["frames_per_wall_s"] = static_cast<double>(rendered.frames) / wall_s;
@@ -224,9 +226,10 @@ ExitCode render(const Console& console, const RenderOptions& options) {
     report_plan(console, film);
     const std::int64_t count = output.end() - output.first();
     const VideoDef& video = film.scene().video;
-    console.info(fmt::format("{}: {}, method {}; {} of {}x{} at {} per second", film.scene().name,
+    console.info(fmt::format("{}: {}, method {}; {} of {}x{} at {} per second{}", film.scene().name,
                              system_text(film.system()), method_names(film.plan()), counted(count, "frame"),
-                             video.width_px, video.height_px, video.fps.rational().text()));
+                             video.width_px, video.height_px, video.fps.rational().text(),
+                             video.speed == Rational{1, 1} ? "" : ", at speed " + video.speed.text()));
     static_cast<void>(film.camera());
     if (options.dry_run) {
         console.report(film_json(film));

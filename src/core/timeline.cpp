@@ -14,8 +14,10 @@ std::optional<double> time_within(double time_s, double end_s) {
     return std::clamp(time_s, 0.0, end_s) + 0.0;  // not -0.0, whose sign would be in names of files
 }
 
-Timeline::Timeline(FrameRate fps, std::int64_t last_frame, std::vector<double> still_times_s)
+Timeline::Timeline(FrameRate fps, std::int64_t last_frame, std::vector<double> still_times_s,
+                   std::optional<double> step_s)
     : fps_(fps),
+      step_s_(step_s.value_or(fps.interval_s())),
       frame_count_(static_cast<std::size_t>(last_frame) + 1),
       still_times_s_(std::move(still_times_s)) {
     assert(last_frame >= 0);

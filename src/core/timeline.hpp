@@ -18,7 +18,9 @@ namespace corda {
 class Timeline {
   public:
     /// `still_times_s` may come in any order and may repeat frame times; every one is finite and >= 0.
-    Timeline(FrameRate fps, std::int64_t last_frame, std::vector<double> still_times_s = {});
+    /// `step_s`: see step_s(); default: the time from frame to frame.
+    Timeline(FrameRate fps, std::int64_t last_frame, std::vector<double> still_times_s = {},
+             std::optional<double> step_s = {});
 
     [[nodiscard]] std::size_t size() const { return frame_count_ + still_times_s_.size(); }
     /// Time `i` in seconds, i < size(); increasing.
@@ -28,12 +30,16 @@ class Timeline {
     /// The index of exactly this time; std::nullopt if the timeline does not have it.
     [[nodiscard]] std::optional<std::size_t> find(double time_s) const;
     [[nodiscard]] FrameRate fps() const { return fps_; }
+    /// The interval from which methods of fixed step derive their step. It does not depend on the speed of a
+    /// video, so that slow motion shows the same motion.
+    [[nodiscard]] double step_s() const { return step_s_; }
 
   private:
     /// Number of frames before `time_s`.
     [[nodiscard]] std::size_t frames_before(double time_s) const;
 
     FrameRate fps_;
+    double step_s_;
     std::size_t frame_count_;
     std::vector<double> still_times_s_;     ///< increasing; none is a frame time
     std::vector<std::size_t> still_index_;  ///< their indices

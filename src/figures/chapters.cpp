@@ -197,7 +197,7 @@ report::Chapter motion_chapter(Film& film, const MotionSummary& motion, const Fi
     report::Chapter chapter;
     chapter.title = "Motion";
     chapter.summary = model_text(film) + " " + method_text(film);
-    const Rational fps = film.scene().video.fps.rational();
+    const Rational fps = film.scene().video.scene_rate().rational();
     chapter.paragraphs.push_back(
         fmt::format("All numbers are at frame times, {} per second: {} of them, from 0 to {}. Paths and "
                     "phase portraits have up to eight points per frame.",

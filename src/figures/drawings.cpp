@@ -75,7 +75,7 @@ FigureTimes find_figure_times(const Film& film, const MotionSummary& motion,
     if (!motion.bodies.empty()) {
         if (const auto turn_s = first_turn_s(motion.bodies.front().path)) {
             times.is_swing = true;
-            end = std::min(last, film.scene().video.fps.last_frame_within(*turn_s));
+            end = std::min(last, film.scene().video.scene_rate().last_frame_within(*turn_s));
         }
     }
     times.strobe_s = spread(film, end, kPoses);

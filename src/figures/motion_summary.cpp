@@ -28,7 +28,7 @@ std::vector<double> times_between_frames_s(const Scene& scene) {
     constexpr std::int64_t kMaxStates = 4000;
     constexpr std::int64_t kMaxPerFrame = 8;
     constexpr std::size_t kMaxParticles = 2'000'000;  // in all states: 80 MB
-    const FrameRate fps = scene.video.fps;
+    const FrameRate fps = scene.video.scene_rate();
     const std::int64_t frames = fps.last_frame_within(scene.world.duration_s) + 1;
     const std::size_t particles = build_system(scene.ropes, scene.nets).particle_count();
     const auto states = std::min(kMaxStates, static_cast<std::int64_t>(kMaxParticles / particles));
@@ -242,7 +242,8 @@ FilmDef film_def(const Scene& scene) {
 
 MotionSummary read_motion(Film& film, const OpenRows& open, const OnProgress& on_progress) {
     const std::int64_t rows = film.last_frame() + 1;
-    const Timeline timeline(film.scene().video.fps, film.last_frame(), times_between_frames_s(film.scene()));
+    const Timeline timeline(film.scene().video.scene_rate(), film.last_frame(),
+                            times_between_frames_s(film.scene()));
     Reader reader(film, open);
     std::optional<Error> failure;
     std::int64_t k = 0;

@@ -75,7 +75,7 @@ report::Report page_of(const Film& film, std::vector<report::Chapter> chapters) 
     page.setting = {{"Bodies", system_text(film.system())},
                     {"Method", plan_text(film.system(), film.plan())},
                     {"Duration", fmt::format("{:g} s", scene.world.duration_s)},
-                    {"Rows", fmt::format("{} per second", scene.video.fps.rational().text())},
+                    {"Rows", fmt::format("{} per second", scene.video.scene_rate().rational().text())},
                     {"Corda", std::string(version())}};
     page.chapters = std::move(chapters);
     return page;

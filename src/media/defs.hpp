@@ -46,6 +46,9 @@ struct VideoDef {
     int width_px = 1920;  ///< see is_picture_size(); even for 4:2:0
     int height_px = 1080;
     FrameRate fps{Rational{60, 1}};
+    /// Seconds of the scene per second of the video, 1e-6 .. 1e6: 1/4 is slow motion. Frame k shows the scene
+    /// at exactly k * speed / fps.
+    Rational speed{1, 1};
     /// The share of the interval between frames in which the shutter is open, 0 .. 1: motion is blurred. 0:
     /// no blur. It is open for as long before a frame's time as after, so that the frame shows on average
     /// where things are at its time; not before the motion's start, nor after its end.
@@ -54,6 +57,13 @@ struct VideoDef {
     /// How often a GIF, APNG or WebP plays, 0 .. kMaxLoop; 0: for ever.
     int loop = 0;
     EncoderDef encoder;
+
+    /// Frames per second of the scene: fps / speed. Requires that is_rate().
+    [[nodiscard]] FrameRate scene_rate() const { return FrameRate(scene_fraction()); }
+    [[nodiscard]] Rational scene_fraction() const {
+        const Rational rate = fps.rational();
+        return Rational::reduced(rate.num * speed.den, rate.den * speed.num);
+    }
 };
 
 /// One of several processes, perhaps on several machines, that make the chunks of a video together.

@@ -77,16 +77,16 @@ struct Film::Impl {
         const auto subframes = static_cast<std::size_t>((last_frame + 1) * video.subframes);
         const bool has_room = subframes <= most_states;
         for (std::int64_t k = 0; video.shutter > 0.0 && has_room && k <= last_frame; ++k) {
-            const double time_s = video.fps.time_s(k);
+            const double time_s = video.scene_rate().time_s(k);
             for (int i = 0; i < video.subframes; ++i)
                 times_s.push_back(subframe_s(time_s, video.shutter, scene.world.duration_s, i));
         }
-        return {video.fps, last_frame, std::move(times_s)};
+        return {video.scene_rate(), last_frame, std::move(times_s), video.fps.interval_s()};
     }
 
     /// The time of sub-frame `i` of the exposure at `time_s`, clipped to the motion.
     double subframe_s(double time_s, double shutter, double end_s, int i) const {
-        const double half_s = 0.5 * shutter * scene.video.fps.interval_s();
+        const double half_s = 0.5 * shutter * scene.video.scene_rate().interval_s();
         const double from_s = std::max(0.0, time_s - half_s);
         const double until_s = std::min(std::max(end_s, time_s), time_s + half_s);
         return from_s + (i + 0.5) / scene.video.subframes * (until_s - from_s);
@@ -282,7 +282,7 @@ struct Film::Impl {
     bool holds(std::int64_t end) {
         const Use use = reading();
         const VideoDef& video = scene.video;
-        const double last_frame_s = video.fps.time_s(end - 1);
+        const double last_frame_s = video.scene_rate().time_s(end - 1);
         const double needed_s = video.shutter > 0.0
                                     ? std::max(last_frame_s, subframe_s(last_frame_s, video.shutter,
                                                                         last_s_locked(), video.subframes - 1))
@@ -336,7 +336,7 @@ const System& Film::system() const {
 }
 
 std::int64_t Film::frame_count() const {
-    return impl_->scene.video.fps.frame_count(impl_->scene.world.duration_s);
+    return impl_->scene.video.scene_rate().frame_count(impl_->scene.world.duration_s);
 }
 
 std::int64_t Film::last_frame() const {
@@ -344,7 +344,7 @@ std::int64_t Film::last_frame() const {
 }
 
 double Film::time_s(std::int64_t k) const {
-    if (k >= 0 && k <= last_frame()) return impl_->scene.video.fps.time_s(k);
+    if (k >= 0 && k <= last_frame()) return impl_->scene.video.scene_rate().time_s(k);
     throw Error(ExitCode::kUsage, fmt::format("frame {} is not within 0 .. {}", k, last_frame()));
 }
 

@@ -17,7 +17,7 @@ namespace pipeline {
 struct DrawContext {
     DrawContext(const Scene& scene, const System& system, const FilmDef& def)
         : renderer(scene, system, def.backend, def.require_gpu),
-          trails(renderer.traced(), scene.style.trail_s, scene.video.fps) {}
+          trails(renderer.traced(), scene.style.trail_s, scene.video.scene_rate()) {}
 
     SceneRenderer renderer;
     TrailRecorder trails;

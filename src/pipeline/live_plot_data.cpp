@@ -100,7 +100,7 @@ view::PlotData LivePlotData::read(const std::vector<MethodDef>& methods, double 
                                   const std::function<const State&(double time_s)>& state_at,
                                   const std::function<Energy(const State&)>& energy_of) const {
     view::PlotData data = axes();
-    const FrameRate fps = scene_->video.fps;
+    const FrameRate fps = scene_->video.scene_rate();
     const Timeline timeline(fps, fps.last_frame_within(scene_->world.duration_s), times_s());
     const std::size_t stride = timeline.size() / kMaxSamples + 1;
     for (std::size_t i = 0; i < timeline.size() && timeline.time_s(i) <= end_s; i += stride)

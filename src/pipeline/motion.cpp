@@ -57,7 +57,7 @@ Plan Motion::record(const std::function<Plan(const Timeline&, sim::Recording&)>&
 void Motion::start() {
     next_ = 0;
     run_.reset();
-    run_.emplace(*system_, world_, methods_, timeline_.fps().interval_s());
+    run_.emplace(*system_, world_, methods_, timeline_.step_s());
     run_->set_outputs(recording_.fields());
     methods_ = run_->methods();
 }

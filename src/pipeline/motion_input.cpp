@@ -29,13 +29,13 @@ void validate_frame_rate(const Scene& scene) {
 }
 
 void validate_frames(const Scene& scene) {
-    const Rational fps = scene.video.fps.rational();
-    const double frames = scene.world.duration_s * scene.video.fps.per_second();
+    const FrameRate rate = scene.video.scene_rate();
+    const double frames = scene.world.duration_s * rate.per_second();
     constexpr auto kMost = static_cast<double>(scene::Limits::kFrames);
-    if (frames <= kMost && scene.video.fps.frame_count(scene.world.duration_s) >= 1) return;
+    if (frames <= kMost && rate.frame_count(scene.world.duration_s) >= 1) return;
     throw Error(ExitCode::kInvalidScene,
                 fmt::format("world.duration: {:g} s at {} frames per second are {:g} frames; give 1 .. {}",
-                            scene.world.duration_s, fps.text(), frames, scene::Limits::kFrames));
+                            scene.world.duration_s, rate.rational().text(), frames, scene::Limits::kFrames));
 }
 
 /// Relative differences of kinetic energy or velocity below this one come from rounded numbers in the scene.
@@ -203,11 +203,11 @@ std::vector<MethodDef> if_all_named(const sim::NamedMethods& named) {
 }
 
 std::int64_t last_frame_of(const Scene& scene) {
-    return scene.video.fps.last_frame_within(scene.world.duration_s);
+    return scene.video.scene_rate().last_frame_within(scene.world.duration_s);
 }
 
 std::optional<double> motion_time_s(const Scene& scene, double time_s) {
-    const double last_s = scene.video.fps.time_s(last_frame_of(scene));
+    const double last_s = scene.video.scene_rate().time_s(last_frame_of(scene));
     return time_within(time_s, std::max(scene.world.duration_s, last_s));
 }
 

@@ -78,8 +78,8 @@ media::VideoMetadata metadata(Film& film, std::int64_t first, std::int64_t end,
     const std::string provenance = provenance_text(std::move(made));
     comment[kProvenanceKey] = nlohmann::json::parse(provenance);
     return {title, comment.dump(), !view::look_of(scene.style).ground.is_opaque(),
-            [name = scene.name, fps = scene.video.fps, of_picture](std::int64_t frame) {
-                return picture_info(name, fmt::format("{}", fps.time_s(frame)), std::to_string(frame),
+            [name = scene.name, rate = scene.video.scene_rate(), of_picture](std::int64_t frame) {
+                return picture_info(name, fmt::format("{}", rate.time_s(frame)), std::to_string(frame),
                                     of_picture);
             },
             origin};
@@ -289,7 +289,7 @@ std::int64_t CheckedOutput::end() const {
 CheckedOutput check_render(const Scene& scene, const std::string& path, const RenderDef& def,
                            const std::string& input) {
     pipeline::validate(scene, {});
-    const std::int64_t count = scene.video.fps.frame_count(scene.world.duration_s);
+    const std::int64_t count = scene.video.scene_rate().frame_count(scene.world.duration_s);
     const std::int64_t end = def.end.value_or(count);
     if (def.first < 0 || def.first >= end || end > count) {
         throw Error(

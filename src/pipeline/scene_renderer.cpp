@@ -34,7 +34,7 @@ SceneRenderer::SceneRenderer(const Scene& scene, const System& system, const std
       view_(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, scene.video.width_px,
             scene.video.height_px),
       overlay_(scene.overlay, scene.style, scene.video.width_px, scene.video.height_px,
-               scene.video.fps.interval_s()) {
+               scene.video.scene_rate().interval_s()) {
     gl_.require_gpu = require_gpu;
 }
 

@@ -81,10 +81,10 @@ class ValueChecker {
             default:
                 break;
         }
-        if (key_->type.kind == Kind::kFrameRate && node.is_number()) return check_rate(node, path);
+        if (key_->type.kind == Kind::kFraction && node.is_number()) return check_rate(node, path);
         if (!node.is_string()) return fail_type(node, path, one_words());
         const std::string& text = node.as_string()->get();
-        if (key_->type.kind == Kind::kFrameRate) return check_rate(node, path);
+        if (key_->type.kind == Kind::kFraction) return check_rate(node, path);
         if (key_->type.kind == Kind::kText) return check_text(text, node, path);
         return key_->type.kind == Kind::kChoice ? check_choice(text, node, path)
                                                 : check_color(text, node, path);
@@ -151,7 +151,7 @@ class ValueChecker {
                 return "an integer";
             case Kind::kNumber:
                 return "a number";
-            case Kind::kFrameRate:
+            case Kind::kFraction:
                 return "a number or text in quotes";
             default:
                 return "text in quotes";

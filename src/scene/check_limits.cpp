@@ -33,17 +33,20 @@ void fail_at(const Sections& sections, std::initializer_list<Place> places, std:
 }
 
 bool check_frames(const Sections& sections, const Scene& scene) {
-    if (!sections.world.is_sound("duration") || !sections.video.is_sound("fps")) return false;
+    if (!sections.world.is_sound("duration") || !sections.video.is_sound("fps") ||
+        !sections.video.is_sound("speed"))
+        return false;
     const double duration_s = scene.world.duration_s;
-    const double frames = duration_s * scene.video.fps.per_second();
-    const std::initializer_list<Place> places{{&sections.world, "duration"}, {&sections.video, "fps"}};
+    const double frames = duration_s * scene.video.scene_rate().per_second();
+    const std::initializer_list<Place> places{
+        {&sections.world, "duration"}, {&sections.video, "fps"}, {&sections.video, "speed"}};
     std::string problem;
     if (frames > static_cast<double>(Limits::kFrames)) {
         problem = fmt::format(
             "{:g} s at {} frames per second are {:g} frames, over the limit of {}; give a shorter duration "
             "or fewer frames per second",
-            duration_s, scene.video.fps.rational().text(), frames, Limits::kFrames);
-    } else if (scene.video.fps.frame_count(duration_s) < 1) {
+            duration_s, scene.video.scene_rate().rational().text(), frames, Limits::kFrames);
+    } else if (scene.video.scene_rate().frame_count(duration_s) < 1) {
         problem = fmt::format("{:g} s hold no frame; give a longer duration", duration_s);
     }
     if (!problem.empty()) fail_at(sections, places, problem);
@@ -126,11 +129,11 @@ double trail_bytes(const Scene& scene) {
     constexpr double kPerPoint = 2.0 * sizeof(Vec2);  // a vector that grows has as much again
     constexpr double kPerPointInPicture = 2.0 * 26.0 * 32.0;
     constexpr double kMaxPoints = 400.0;
-    const double in_trail = scene.style.trail_s * scene.video.fps.per_second();
+    const double in_trail = scene.style.trail_s * scene.video.scene_rate().per_second();
     const double stride = std::max(1.0, in_trail / kMaxPoints);
     // A film of more frames is refused for its duration.
-    const double frames =
-        std::min(scene.world.duration_s * scene.video.fps.per_second(), static_cast<double>(Limits::kFrames));
+    const double frames = std::min(scene.world.duration_s * scene.video.scene_rate().per_second(),
+                                   static_cast<double>(Limits::kFrames));
     const double points = frames / stride;
     return kPerPoint * points + kPerPointInPicture * std::min({in_trail, points, kMaxPoints});
 }
@@ -303,7 +306,7 @@ void check_pace(const Sections& sections, const Scene& scene, const System& syst
             "{} so fast that {:g} s take some {:.2g} steps or {}, {} times the limit; give {}{}", pace.what,
             scene.world.duration_s, works[k].steps, duration_text(works[k].updates / kUpdatesPerSecond),
             about(std::ceil(1.0 / shares[k])), advice_for(pace, shares[k]),
-            scene.video.fps.frame_count(allowed_s) < 2
+            scene.video.scene_rate().frame_count(allowed_s) < 2
                 ? ""
                 : fmt::format(" or a duration of at most {} s", at_most(allowed_s)));
         if (pace.key_of_world != nullptr)

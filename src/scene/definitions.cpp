@@ -8,6 +8,14 @@
 namespace corda::scene {
 
 std::vector<DefProblem> problems_of(const VideoDef& video) {
+    // A speed out of its range is refused by itself.
+    if (video.speed.is_rate() && !video.scene_fraction().is_rate())
+        return {
+            {"speed",
+             {},
+             fmt::format("{} frames per second at this speed are {} per second of the scene, not a "
+                         "fraction of integers within 1 .. {}; give a simpler fraction",
+                         video.fps.rational().text(), video.scene_fraction().text(), Rational::kMaxPart)}};
     const std::int64_t pixels = std::int64_t{video.width_px} * video.height_px;
     if (pixels <= kMaxPicturePx) return {};
     return {{"size",

@@ -57,9 +57,12 @@ std::string toml_text(const Ground& value) {
     return fmt::format("[{}, {}]", toml_text(value.top), toml_text(value.bottom));
 }
 
+std::string toml_text(const Rational& value) {
+    return value.den == 1 ? toml_text(value.num) : toml_text(value.text());
+}
+
 std::string toml_text(const FrameRate& value) {
-    const Rational rate = value.rational();
-    return rate.den == 1 ? toml_text(rate.num) : toml_text(rate.text());
+    return toml_text(value.rational());
 }
 
 std::string toml_text(const NetBar& value) {

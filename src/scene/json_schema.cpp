@@ -66,7 +66,7 @@ Json value_json(const Type& type) {
             break;
         case Kind::kColor:
             return {{"type", "string"}, {"pattern", "^(#[0-9A-Fa-f]{6}([0-9A-Fa-f]{2})?|[A-Za-z]+)$"}};
-        case Kind::kFrameRate: {
+        case Kind::kFraction: {
             Json number{{"type", "number"}};
             add_range(type.range, number);
             return {{"anyOf", {number, {{"type", "string"}, {"pattern", "^[0-9]+([./][0-9]+)?$"}}}}};

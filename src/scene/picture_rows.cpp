@@ -37,8 +37,11 @@ std::vector<Key> video_keys() {
         fmt::format("even for a video in 4:2:0; {} pixels in all at most", kMaxPicturePx);
     return {
         {"video", "size", picture_size(), "px", size_field<VideoDef>(), "the size of the picture", size_note},
-        {"video", "fps", of(Kind::kFrameRate, {.low = 1e-3, .high = 1e5}), "1/s", field(&VideoDef::fps),
+        {"video", "fps", of(Kind::kFraction, {.low = 1e-3, .high = 1e5}), "1/s", field(&VideoDef::fps),
          "the frames per second", "up to three decimals; 29.97 is \"30000/1001\""},
+        {"video", "speed", of(Kind::kFraction, {.low = 1e-6, .high = 1e6}), "", field(&VideoDef::speed),
+         "the seconds of the scene per second of the video",
+         "\"1/4\" is slow motion; times, plots and the shutter are those of the scene"},
         {"video", "shutter", number({.low = 0.0, .high = 1.0}), "", field(&VideoDef::shutter),
          "how long a frame is exposed, as a share of the time from frame to frame",
          "for motion blur in videos; the exposure is centred on the frame's time"},

@@ -70,7 +70,7 @@ std::string kind_text(Kind kind) {
             return "colour";
         case Kind::kText:
             return "text";
-        case Kind::kFrameRate:
+        case Kind::kFraction:
             return "number or fraction as text";
     }
     return "";
@@ -221,7 +221,7 @@ std::string remedy(const Key& key) {
                                kColorWords);
         case Kind::kText:
             return fmt::format("give {} as one line of text in quotes", key.meaning);
-        case Kind::kFrameRate:
+        case Kind::kFraction:
             return fmt::format(
                 R"(give {}, {}, as a number of up to three decimals or as a fraction in quotes such as "30000/1001")",
                 key.meaning, range_text(key));

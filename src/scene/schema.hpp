@@ -30,9 +30,9 @@ struct Limits {
     static constexpr double kCoordinateMetres = 1e9;
 };
 
-/// The type of a value. A choice is one word of a list; text is one line; a frame rate is an integer, or a
-/// fraction as text.
-enum class Kind { kTable, kTables, kBoolean, kInteger, kNumber, kChoice, kColor, kText, kFrameRate };
+/// The type of a value. A choice is one word of a list; text is one line; a fraction is a number of up to
+/// three decimals, or text.
+enum class Kind { kTable, kTables, kBoolean, kInteger, kNumber, kChoice, kColor, kText, kFraction };
 
 /// The forms of a value: one value, a pair, a list of values, a list of pairs. A key may allow several.
 enum Form : unsigned { kOne = 1, kPair = 2, kList = 4, kPairs = 8 };
@@ -49,7 +49,7 @@ struct Range {
 struct Type {
     Kind kind = Kind::kNumber;
     unsigned forms = kOne;
-    Range range = {};                            ///< of every number; of kFrameRate too
+    Range range = {};                            ///< of every number; of kFraction too
     std::vector<std::string_view> choices = {};  ///< the only values, in the order of their enum; empty: any
     std::string_view pair = {};                  ///< the form of a pair, e.g. "[x, y]"
     std::string_view list = {};                  ///< the entries of a list

@@ -55,8 +55,10 @@ class Value {
         } else if constexpr (std::is_same_v<T, Ground>) {
             return is_list() ? Ground{at(0).as<Color>(), at(1).as<Color>()}
                              : Ground{as<Color>(), as<Color>()};
+        } else if constexpr (std::is_same_v<T, Rational>) {
+            return std::get<Rational>(read_rate(*node_));
         } else if constexpr (std::is_same_v<T, FrameRate>) {
-            return FrameRate(std::get<Rational>(read_rate(*node_)));
+            return FrameRate(as<Rational>());
         } else if constexpr (kIsVector<T>) {
             T values;
             for (std::size_t i = 0; i < size(); ++i) values.push_back(at(i).as<typename T::value_type>());

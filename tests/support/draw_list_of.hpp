@@ -46,7 +46,7 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
     view::SceneView scene_view(system, scene.world.gravity_m_s2, scene.style, scene.body_styles, width_px,
                                height_px);
     scene_view.set_motion(motion);
-    view::Overlay overlay(scene.overlay, scene.style, width_px, height_px, scene.video.fps.interval_s());
+    view::Overlay overlay(scene.overlay, scene.style, width_px, height_px, scene.video.scene_rate().interval_s());
     if (const auto quantity = quantity_of(scene.style.color_by)) {
         scene_view.set_scale(view::scale_of(*quantity, histogram, scene.style));
         overlay.set_scale(view::scale_of(*quantity, histogram, scene.style));

@@ -152,7 +152,7 @@ void record(const System& system, const WorldDef& world, const PlanDef& def, Bod
     const auto total = static_cast<std::int64_t>(def.timeline.size());
     std::int64_t i = 0;
     const CancelScope progress = report_frames(def, i);
-    Simulation run(system, world, plan.method, def.timeline.fps().interval_s());
+    Simulation run(system, world, plan.method, def.timeline.step_s());
     plan.method = run.methods().front();
     recording.clear();
     ++plan.passes;
@@ -251,7 +251,7 @@ void sum_up(const System& system, Plan& plan) {
 }  // namespace
 
 BodyPlan plan_body(const System& system, const WorldDef& world, const PlanDef& def, Recording& recording) {
-    const double interval_s = def.timeline.fps().interval_s();
+    const double interval_s = def.timeline.step_s();
     const auto refusal_of = [&](const MethodDef& method) {
         const std::int64_t none_done = 0;
         const CancelScope progress = report_frames(def, none_done);

@@ -389,7 +389,7 @@ CancelScope report_frames(const PlanDef& def, const std::int64_t& frames_done) {
 
 void run_trial(const System& system, const WorldDef& world, const PlanDef& def, TrialKind kind, Trial& trial,
                Recording& recording, int& passes) {
-    const double interval_s = def.timeline.fps().interval_s();
+    const double interval_s = def.timeline.step_s();
     const auto total = static_cast<std::int64_t>(def.timeline.size());
     std::int64_t i = 0;
     const CancelScope progress = report_frames(def, i);

@@ -110,6 +110,16 @@ TEST(Definitions, HaveKnownWords) {
 TEST(Definitions, AreSoundTogether) {
     EXPECT_THAT(message_of([](Scene& scene) { scene.video.width_px = scene.video.height_px = kMaxSidePx; }),
                 testing::StartsWith("video.size: 16384 x 16384 are 268435456 pixels, over the limit"));
+    EXPECT_THAT(message_of([](Scene& scene) {
+                    scene.video.speed = {1, 100'000'000};
+                }),
+                testing::StartsWith("video.speed: 1/100000000 is out of range"));
+    EXPECT_THAT(message_of([](Scene& scene) {
+                    scene.video.fps = FrameRate({999'999'937, 10'000'000});
+                    scene.video.speed = {1, 3};
+                }),
+                testing::StartsWith("video.speed: 999999937/10000000 frames per second at this speed are "
+                                    "2999999811/10000000 per second of the scene"));
     EXPECT_THAT(message_of([](Scene& scene) { scene.overlay.title = "\xF0\x9F\xA7\xB6"; }),
                 testing::StartsWith("overlay.title: the font, DejaVu Sans, has no U+1F9F6"));
     EXPECT_THAT(message_of([](Scene& scene) {
