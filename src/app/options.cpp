@@ -78,6 +78,8 @@ RequestedFrames frames_of(const std::string& word, const Scene& scene) {
 }  // namespace
 
 std::string size_setting(const std::string& text) {
+    for (const NamedSize& named : kNamedSizes)
+        if (named.name == text) return fmt::format("video.size=\"{}\"", text);
     const auto cross = text.find('x');
     const auto is_number = [](const std::string& part) {
         return !part.empty() && part.find_first_not_of("0123456789") == std::string::npos;
@@ -86,7 +88,9 @@ std::string size_setting(const std::string& text) {
     const std::string height = cross == std::string::npos ? "" : text.substr(cross + 1);
     if (!is_number(width) || !is_number(height)) {
         throw Error(ExitCode::kUsage,
-                    fmt::format("--size {}: is not WIDTHxHEIGHT; write e.g. 1920x1080", text));
+                    fmt::format("--size {}: is not WIDTHxHEIGHT; write e.g. 1920x1080, 4k, 1080p, square or "
+                                "portrait",
+                                text));
     }
     return fmt::format("video.size=[{},{}]", width, height);
 }
@@ -232,8 +236,8 @@ void SceneOptions::add_size(CLI::App& command) {
                 settings.push_back(size_setting(value));
                 of_options_.push_back(settings.back());
             },
-            "picture size in pixels (--set video.size)")
-        ->type_name("WxH");
+            "picture size in pixels, or 4k, 1080p, square or portrait (--set video.size)")
+        ->type_name("WxH|NAME");
 }
 
 void SceneOptions::add_timing(CLI::App& command, const std::string& rate) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -39,6 +40,15 @@ constexpr bool is_picture_size(std::int64_t width, std::int64_t height) {
     return width >= 1 && height >= 1 && width <= kMaxSidePx && height <= kMaxSidePx &&
            width * height <= kMaxPicturePx;
 }
+
+/// A picture size with a name.
+struct NamedSize {
+    std::string_view name;
+    int width_px;
+    int height_px;
+};
+inline constexpr std::array<NamedSize, 4> kNamedSizes{
+    {{"4k", 3840, 2160}, {"1080p", 1920, 1080}, {"square", 1080, 1080}, {"portrait", 1080, 1920}}};
 
 /// A half-open rectangle of pixels, x0 <= x < x1 and y0 <= y < y1, row 0 on top.
 struct PixelRect {

@@ -39,6 +39,8 @@ class ValueChecker {
     /// Whether the value is one that the key may have; adds a problem if not.
     bool check(const toml::node& node, const std::string& path) const {
         const toml::array* const list = node.as_array();
+        if (!key_->type.names.empty() && node.is_string())
+            return check_word(key_->type.names, node.as_string()->get(), node, path);
         if (list == nullptr && takes(kOne)) return check_one(node, path);
         if (list == nullptr) return fail_type(node, path, takes(kList | kPairs) ? "a list" : key_->type.pair);
         if (key_->type.forms == kOne) return fail_type(node, path, one_words());
@@ -116,7 +118,11 @@ class ValueChecker {
     }
 
     bool check_choice(const std::string& text, const toml::node& node, const std::string& path) const {
-        const auto& words = key_->type.choices;
+        return check_word(key_->type.choices, text, node, path);
+    }
+
+    bool check_word(const std::vector<std::string_view>& words, const std::string& text,
+                    const toml::node& node, const std::string& path) const {
         if (std::find(words.begin(), words.end(), text) != words.end()) return true;
         if (node.is_number()) return fail(node, path, fmt::format("{} is not allowed", text));
         const auto meant = nearest(text, words);

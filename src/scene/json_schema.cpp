@@ -111,6 +111,7 @@ Json key_json(const Key& key) {
     std::vector<Json> forms;
     for (const Form form : {kOne, kPair, kList, kPairs})
         if ((key.type.forms & form) != 0) forms.push_back(form_json(key.type, form));
+    if (!key.type.names.empty()) forms.push_back({{"enum", key.type.names}});
     if (forms.size() == 1)
         json.update(forms.front());
     else

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "corda/core/image.hpp"
 #include "corda/media/format/format.hpp"
 #include "corda/scene/rows.hpp"
@@ -12,8 +14,16 @@ template <class Def>
 Binding size_field() {
     return custom_field<Def>(
         [](const Value& value, Def& def) {
-            def.width_px = value.at(0).as<int>();
-            def.height_px = value.at(1).as<int>();
+            if (value.is_list()) {
+                def.width_px = value.at(0).as<int>();
+                def.height_px = value.at(1).as<int>();
+                return;
+            }
+            const auto named = std::find_if(
+                kNamedSizes.begin(), kNamedSizes.end(),
+                [name = value.as<std::string_view>()](const NamedSize& size) { return size.name == name; });
+            def.width_px = named->width_px;
+            def.height_px = named->height_px;
         },
         [](const Def& def) {
             return toml_text(std::vector<int>{def.width_px, def.height_px});
@@ -23,6 +33,7 @@ Binding size_field() {
 Type picture_size() {
     Type size = pair("[width, height]", {.low = 1, .high = kMaxSidePx});
     size.kind = Kind::kInteger;
+    for (const NamedSize& named : kNamedSizes) size.names.push_back(named.name);
     return size;
 }
 

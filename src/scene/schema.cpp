@@ -102,6 +102,7 @@ std::string number_remedy(const Key& key) {
     if ((key.type.forms & kPair) != 0) forms.emplace_back(key.type.pair);
     if (!key.type.list.empty()) forms.emplace_back(key.type.list);
     if (key.type.forms == kPairs) forms.push_back(fmt::format("a list of {}", key.type.pair));
+    for (const std::string_view name : key.type.names) forms.push_back(fmt::format("\"{}\"", name));
     if (!forms.empty())
         text += fmt::format(", {} {}", (key.type.forms & kOne) != 0 ? "or" : "as", fmt::join(forms, " or "));
     return key.type.min_entries == 0 ? text : fmt::format("{}, {}", text, entries_text(key));
@@ -194,6 +195,7 @@ std::string type_text(const Key& key) {
     if ((key.type.forms & kPair) != 0) forms.emplace_back(key.type.pair);
     if ((key.type.forms & kList) != 0) forms.push_back(fmt::format("list of {}s", one));
     if ((key.type.forms & kPairs) != 0) forms.push_back(fmt::format("list of {}", key.type.pair));
+    if (!key.type.names.empty()) forms.push_back(fmt::format("{}", fmt::join(key.type.names, ", ")));
     return fmt::format("{}", fmt::join(forms, " or "));
 }
 

@@ -51,6 +51,7 @@ struct Type {
     unsigned forms = kOne;
     Range range = {};                            ///< of every number; of kFraction too
     std::vector<std::string_view> choices = {};  ///< the only values, in the order of their enum; empty: any
+    std::vector<std::string_view> names = {};    ///< words that stand for values of another kind
     std::string_view pair = {};                  ///< the form of a pair, e.g. "[x, y]"
     std::string_view list = {};                  ///< the entries of a list
     std::size_t min_entries = 0;                 ///< of a list

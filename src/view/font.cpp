@@ -206,6 +206,12 @@ int em_of(int side_px) {
     return rounded(std::max({kEm * side_px, std::min(kReadablePx, kSmallEm * side_px), kMinPx}));
 }
 
+int em_of(int width_px, int height_px) {
+    constexpr double kMaxLarger = 1.5;
+    const double larger = std::clamp(static_cast<double>(height_px) / width_px, 1.0, kMaxLarger);
+    return em_of(rounded(larger * std::min(width_px, height_px)));
+}
+
 int edge_of(int side_px, int em_px) {
     constexpr double kEdge = 0.03;
     constexpr double kEdgePerEm = 0.45;

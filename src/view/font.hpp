@@ -67,6 +67,8 @@ inline constexpr double kGap = 0.4;       ///< between a text and other items
 [[nodiscard]] int rounded(double px);
 /// The em in a frame whose shorter side is `side_px`.
 [[nodiscard]] int em_of(int side_px);
+/// The em in a frame. It is larger in an upright one, which a phone shows at the width of a hand.
+[[nodiscard]] int em_of(int width_px, int height_px);
 /// From the edges of that frame to its texts, of that em.
 [[nodiscard]] int edge_of(int side_px, int em_px);
 

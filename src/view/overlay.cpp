@@ -63,7 +63,7 @@ std::string time_label(const std::string& digits) {
 Overlay::Overlay(const OverlayDef& def, const StyleDef& style, int width, int height, double interval_s)
     : def_(def),
       side_px_(std::min(width, height)),
-      em_px_(def.text_px ? rounded(*def.text_px) : em_of(side_px_)),
+      em_px_(def.text_px ? rounded(*def.text_px) : em_of(width, height)),
       edge_px_(edge_of(side_px_, em_px_)),
       interval_s_(interval_s),
       plot_(style, width, height) {

@@ -62,7 +62,7 @@ Room room_beside(LivePlot plot, int width_px, int height_px) {
     const bool is_beside = width_px > height_px;
     const int all_px = std::max(width_px, height_px);
     const double least_em = is_beside ? kMinPanelWidth : kMinPanelHeight;
-    const int least_px = rounded(least_em * em_of(std::min(width_px, height_px)));
+    const int least_px = rounded(least_em * em_of(width_px, height_px));
     const int panel_px = std::max(rounded(kPanelShare * all_px), least_px);
     const bool has_room = panel_px <= (is_beside ? kMaxWidthShare : kMaxHeightShare) * all_px;
     if (plot == LivePlot::kNone || !has_room) return {width_px, height_px};
@@ -73,7 +73,7 @@ Room room_beside(LivePlot plot, int width_px, int height_px) {
 PlotPanel::PlotPanel(const StyleDef& style, int width_px, int height_px)
     : width_px_(width_px), height_px_(height_px), is_beside_(width_px > height_px) {
     const int side_px = std::min(width_px, height_px);
-    plot_.em_px = em_of(side_px);
+    plot_.em_px = em_of(width_px, height_px);
     edge_px_ = edge_of(side_px, plot_.em_px);
     plot_.line_px = std::max(1, rounded(kBoxLineWidth * side_px));
     text_color_ = text_color(look_of(style));

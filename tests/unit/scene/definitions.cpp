@@ -46,7 +46,7 @@ TEST(Definitions, AreRefusedByKeyValueAndRange) {
               "in m, -1e9 .. 1e9, as [x, y]");
     EXPECT_EQ(message_of([](Scene& scene) { scene.video.height_px = 0; }),
               "video.size[1]: 0 is not >= 1; give the size of the picture in px, 1 .. 16384, as [width, "
-              "height]");
+              "height] or \"4k\" or \"1080p\" or \"square\" or \"portrait\"");
 }
 
 TEST(Definitions, HaveValuesWithinTheirRange) {
