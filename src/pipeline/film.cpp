@@ -215,7 +215,9 @@ struct Film::Impl {
     view::Caption caption_of(const DrawContext& by, const view::Camera& map) const {
         std::optional<double> bound_px;
         if (plan.error_bound_m) bound_px = *plan.error_bound_m * map.pixels_per_metre();
-        return {by.state.time_s, by.figures.energy_error, method_caption(plan, bound_px)};
+        view::Caption caption{by.state.time_s, by.figures.energy_error, method_caption(plan, bound_px), {}};
+        by.renderer.locate_labels(by.state, map, caption);
+        return caption;
     }
 
     /// Requires a Use of the context's renderer. `camera_def`: as find_camera() returns it.

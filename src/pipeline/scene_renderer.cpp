@@ -50,7 +50,9 @@ CameraDef SceneRenderer::fit(std::span<const MotionBounds> motion, const sim::Hi
         view_.set_scale(scale);
         overlay_.set_scale(scale);
     }
-    return view::fit_camera(scene_->camera, system_->origin_m, view_.drawn(motion), scene_->video.width_px,
+    std::vector<view::Drawn> drawn = view_.drawn(motion);
+    overlay_.set_labels(view_.labels(), motion, drawn);
+    return view::fit_camera(scene_->camera, system_->origin_m, drawn, scene_->video.width_px,
                             scene_->video.height_px, overlay_.insets());
 }
 
@@ -232,7 +234,10 @@ Image Renderer::draw(std::span<const Vec2> positions_m) {
         state.y_m[i] = positions_m[i].y - impl_->system.origin_m.y;
     }
     const pipeline::SceneRenderer::Use use(impl_->renderer);
-    impl_->renderer.draw(state, impl_->renderer.map_of(impl_->camera));
+    const view::Camera map = impl_->renderer.map_of(impl_->camera);
+    view::Caption caption;
+    impl_->renderer.locate_labels(state, map, caption);
+    impl_->renderer.draw(state, map, caption);
     return impl_->renderer.image();
 }
 

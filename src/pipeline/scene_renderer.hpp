@@ -99,6 +99,10 @@ class SceneRenderer {
     Damage develop(const view::Caption& caption, const view::Camera& map);
     /// Draws a list of this renderer's size like draw().
     Damage draw(view::DrawList list);
+    /// Adds the places of the labels to a caption.
+    void locate_labels(const State& state, const view::Camera& map, view::Caption& caption) const {
+        view::locate(overlay_.labels(), state, map, caption);
+    }
     /// Adds the overlay to a list, without the curves of the plot.
     void annotate(const view::Caption& caption, const view::Camera& map, view::DrawList& list) {
         overlay_.draw(caption, map.pixels_per_metre(), list);

@@ -11,6 +11,7 @@
 #include "corda/core/text.hpp"
 #include "corda/scene/schema.hpp"
 #include "corda/scene/table_reader.hpp"
+#include "corda/view/font.hpp"
 
 namespace corda::scene {
 namespace {
@@ -138,10 +139,14 @@ class ValueChecker {
                 node, path,
                 fmt::format("a text of {} bytes, over the limit of {}", text.size(), Limits::kTextBytes));
         }
-        return printable(text) == text ||
-               fail(node, path,
-                    fmt::format("\"{}\" {}", excerpt(text),
-                                utf8(text) == text ? "has a control character" : "is not UTF-8"));
+        if (printable(text) != text) {
+            return fail(node, path,
+                        fmt::format("\"{}\" {}", excerpt(text),
+                                    utf8(text) == text ? "has a control character" : "is not UTF-8"));
+        }
+        const std::string missing = view::missing_glyph(text);
+        if (!missing.empty()) problems_->add(node.source(), path, missing);
+        return missing.empty();
     }
 
     bool check_color(const std::string& text, const toml::node& node, const std::string& path) const {

@@ -3,7 +3,6 @@
 
 #include "corda/core/image.hpp"
 #include "corda/scene/readers.hpp"
-#include "corda/view/font.hpp"
 
 namespace corda::scene {
 
@@ -22,12 +21,6 @@ std::vector<DefProblem> problems_of(const VideoDef& video) {
              {},
              fmt::format("{} x {} are {} pixels, over the limit of {}; give a smaller size", video.width_px,
                          video.height_px, pixels, kMaxPicturePx)}};
-}
-
-std::vector<DefProblem> problems_of(const OverlayDef& overlay) {
-    const std::string missing = view::missing_glyph(overlay.title);
-    if (missing.empty()) return {};
-    return {{"title", {}, missing}};
 }
 
 std::vector<DefProblem> problems_of(const GoldenDef& golden) {

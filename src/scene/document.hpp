@@ -47,6 +47,10 @@ void apply_setting(toml::table& document, const Setting& setting, Problems& prob
 /// Bad values are taken out of the document, so that their defaults stand in for them.
 void check_document(toml::table& document, Problems& problems);
 
+/// Adds the copies of ropes as ropes, in a document without problems; the problem of a copy is that of its
+/// rope.
+void expand_copies(toml::table& document, Problems& problems);
+
 /// Checks one value of a key, as TOML, against the schema.
 void check_value(const Key& key, const std::string& toml, const std::string& path, Problems& problems);
 

@@ -69,6 +69,11 @@ std::vector<Key> body_keys(std::string_view section, std::vector<Key> keys, std:
          "a list: of its links in turn, with style.color_by = \"link\""},
         {section, "width_px", number(kWidthPx), "px", otherwise(width, field(&BodyStyleDef::width_px)),
          "the width"},
+        {section, "merged", of(Kind::kBoolean), "", field(&BodyStyleDef::merged),
+         "drawn in one layer with the body before",
+         "without a gap between them, in a gradient of colours; no outlines of balls"},
+        {section, "label", of(Kind::kText), "", field(&BodyStyleDef::label),
+         "the name, drawn at its pin or its free end", "in legends, tables and messages too"},
     };
     keys.insert(keys.end(), common.begin(), common.end());
     return keys;
@@ -103,6 +108,8 @@ std::vector<Key> rope_keys() {
          "without compliance they come taut plastically"},
         {"rope", "bending", number({.low = 0.0, .high = 1e12}), "N m2", field(&RopeDef::bending_n_m2),
          "the bending stiffness E I", "not for a string"},
+        {"rope", "copies", of(Kind::kTable), "", none(), "copies = { count = 50, angle_deg = 0.001 }",
+         "more ropes, each turned that much further about its first pin, and merged"},
         {"rope", "link_length", or_list(number(kLength), "a list with one per link"), "m",
          otherwise("the distance at the start",
                    body_field<RopeDef>([](const RopeDef& def) { return toml_of_all(def.rest_m); })),
@@ -110,6 +117,12 @@ std::vector<Key> rope_keys() {
          "needs compliance or string; a string that is too short for its points starts pulled in towards the "
          "pin"},
     };
+}
+
+/// Written as links.
+Binding hang_particles() {
+    return custom_field<HangDef>([](const Value& value, HangDef& def) { def.links = value.as<int>() - 1; },
+                                 [](const HangDef&) { return std::string(); });
 }
 
 std::vector<Key> rope_shape_keys() {
@@ -121,8 +134,14 @@ std::vector<Key> rope_shape_keys() {
         {"rope.line", "from", from, "m", field(&LineDef::from_m), first},
         {"rope.line", "step", pair("[dx, dy]", kCoordinate), "m", required(field(&LineDef::step_m)),
          "the way from one particle to the next"},
-        {"rope.hang", "links", integer(1, kMaxParticles - 1), "", required(field(&HangDef::links)),
-         "the number of links", "one less than particles"},
+        {"rope.copies", "count", integer(2, 10'000), "", required(field(&CopiesDef::count)),
+         "the number of ropes, with this one"},
+        {"rope.copies", "angle_deg", number(), "degrees", field(&CopiesDef::angle_deg),
+         "the angle from one to the next", "positive to +x for what hangs"},
+        {"rope.hang", "links", integer(1, kMaxParticles - 1), "",
+         otherwise("particles - 1", field(&HangDef::links)), "the number of links"},
+        {"rope.hang", "particles", integer(2, kMaxParticles), "", otherwise("links + 1", hang_particles()),
+         "the number of particles", "exactly one of links and particles"},
         {"rope.hang", "length", number(kAbove0), "m", required(field(&HangDef::length_m)),
          "the length of the whole rope"},
         {"rope.hang", "angle_deg", number(), "degrees", field(&HangDef::angle_deg),

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 #include "corda/core/basics.hpp"
 #include "corda/core/text.hpp"
@@ -49,7 +50,17 @@ double number_of(const toml::node& node) {
                              : node.as_floating_point()->get();
 }
 
-void Problems::add(const toml::source_region& region, std::string_view key, std::string_view problem) {
+std::string Problems::file_key(std::string_view key) const {
+    constexpr std::string_view kRope = "rope[";
+    std::size_t index = 0;
+    if (!key.starts_with(kRope)) return std::string(key);
+    const auto [rest, status] = std::from_chars(key.data() + kRope.size(), key.data() + key.size(), index);
+    if (status != std::errc{} || index >= file_index_.size()) return std::string(key);
+    return fmt::format("{}{}{}", kRope, file_index_[index], std::string_view(rest, key.data() + key.size()));
+}
+
+void Problems::add(const toml::source_region& region, std::string_view path, std::string_view problem) {
+    const std::string key = file_key(path);
     if (problems_.size() == kMaxKept) {
         ++not_kept_;
         return;

@@ -33,6 +33,9 @@ class Problems {
     /// value came with. Only the first problem of a key counts.
     void add(const toml::source_region& region, std::string_view key, std::string_view problem);
 
+    /// From now on, keys of rope i are those of rope `file_index[i]` of the file.
+    void set_ropes(std::vector<std::size_t> file_index) { file_index_ = std::move(file_index); }
+
     /// Adds a problem whose message is complete.
     void add(const std::string& message);
 
@@ -41,7 +44,7 @@ class Problems {
 
     /// True if neither `key` nor anything in it has a problem. A contradiction with an unsound value would
     /// only repeat its problem.
-    [[nodiscard]] bool is_sound(std::string_view key) const { return !unsound_.contains(key); }
+    [[nodiscard]] bool is_sound(std::string_view key) const { return !unsound_.contains(file_key(key)); }
 
     [[nodiscard]] bool empty() const { return problems_.empty(); }
 
@@ -59,6 +62,9 @@ class Problems {
         [[nodiscard]] auto place() const { return std::tuple(is_setting, line, column); }
     };
 
+    [[nodiscard]] std::string file_key(std::string_view key) const;
+
+    std::vector<std::size_t> file_index_;
     std::string source_name_;
     bool has_places_ = true;
     toml::source_path_ptr document_path_;

@@ -96,7 +96,6 @@ struct DefProblem {
 };
 
 [[nodiscard]] std::vector<DefProblem> problems_of(const VideoDef& video);
-[[nodiscard]] std::vector<DefProblem> problems_of(const OverlayDef& overlay);
 /// Golden times that do not increase, and pictures that are too large.
 [[nodiscard]] std::vector<DefProblem> problems_of(const GoldenDef& golden);
 

@@ -49,7 +49,7 @@ bool read_hang(const TableReader& table, RopeDef& def, ShapeDef& shape) {
     HangDef hang;
     read_fields(table, hang);
     const auto length = table.find("length");
-    if (!length) return false;
+    if (!length || hang.links < 1) return false;
     if (hang.length_m / hang.links < kMinBarMetres) {
         length->add_problem(fmt::format("{} m are less than {} m per link; make the rope longer",
                                         hang.length_m, number_text(kMinBarMetres)));
@@ -111,9 +111,18 @@ std::int64_t read_particle_count(const TableReader& rope) {
     std::int64_t particles = 0;
     rope.table("line").read("particles", particles);
     if (particles > 0) return particles;
-    std::int64_t links = 0;
-    rope.table("hang").read("links", links);
-    if (links > 0) return links + 1;
+    if (rope.has("hang")) {
+        const TableReader hang = rope.table("hang");
+        std::int64_t links = 0;
+        hang.read("links", links);
+        hang.read("particles", particles);
+        if (hang.is_given("links") == hang.is_given("particles"))
+            hang.add_problem(links > 0 ? "links and particles are both given; keep one of them"
+                                       : "give links, the number of links, or particles");
+        else if (links > 0)
+            particles = links + 1;
+        return particles;
+    }
     const auto points = rope.find("points");
     return points ? static_cast<std::int64_t>(points->size()) : 0;
 }

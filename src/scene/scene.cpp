@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "corda/core/basics.hpp"
@@ -70,6 +71,7 @@ Scene parse_scene(std::string_view toml, const std::string& source_name,
     Problems problems(source_name, document);
     for (const Setting& setting : settings) apply_setting(document, setting, problems);
     check_document(document, problems);
+    expand_copies(document, problems);
     check_cancelled();
     const Sections sections = sections_of(document, problems);
 
@@ -80,7 +82,7 @@ Scene parse_scene(std::string_view toml, const std::string& source_name,
     const SolverSection solver = read_solver(sections, scene);
     read_section(sections.video, scene.video);
     read_fields(sections.style, scene.style);
-    read_section(sections.overlay, scene.overlay);
+    read_fields(sections.overlay, scene.overlay);
     read_fields(sections.camera, scene.camera);
     if (document.contains("golden")) read_section(sections.golden, scene.golden.emplace());
     const SceneSize size = count_bodies(sections, solver, scene);
@@ -104,7 +106,10 @@ SolverDef solver_of(const MethodDef& method) {
 }
 
 System system_of(const Scene& scene) {
-    return build_system(scene.ropes, scene.nets);
+    System system = build_system(scene.ropes, scene.nets);
+    for (std::size_t i = 0; i < std::min(scene.body_styles.size(), system.bodies.size()); ++i)
+        system.bodies[i].label = scene.body_styles[i].label;
+    return system;
 }
 
 std::vector<SolverDef> solvers_of(const Scene& scene) {

@@ -93,6 +93,12 @@ struct GridDef {
     friend bool operator==(const GridDef&, const GridDef&) = default;
 };
 
+/// Copies of a rope in a scene file, each a rope of its own, turned `angle_deg` further about its first pin.
+struct CopiesDef {
+    int count = 1;           ///< with the rope itself, 2 .. 10'000
+    double angle_deg = 0.0;  ///< finite
+};
+
 using ShapeDef = std::variant<std::monostate, LineDef, HangDef, GridDef>;
 
 /// The particles of a straight rope, into `rope.origin_m` and `rope.points_m`. Requires a shape in its

@@ -354,7 +354,6 @@ void check_definitions(const Scene& scene) {
             problems.add({}, dotted(section, one.key), one.problem);
     };
     check_all("video", scene.video);
-    check_all("overlay", scene.overlay);
     if (scene.golden) {
         check(table_of("golden", "golden", {part(*scene.golden)}));
         check_all("golden", *scene.golden);

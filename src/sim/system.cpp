@@ -285,6 +285,7 @@ std::size_t rope_count(const System& system) {
 }
 
 std::string body_name(const System& system, std::size_t body) {
+    if (!system.bodies[body].label.empty()) return system.bodies[body].label;
     const std::size_t ropes = rope_count(system);
     return body < ropes ? "rope " + std::to_string(body) : "net " + std::to_string(body - ropes);
 }

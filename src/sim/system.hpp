@@ -26,6 +26,7 @@ struct Body {
     bool is_net = false;         ///< made from a NetDef
     double payload_kg = 0.0;     ///< share of the last particle's mass
     MaterialDef material;
+    std::string label = {};  ///< its name in texts; empty: see body_name()
 };
 
 /// Two particles held at a distance. A bar of reach 1 is real, a link of a rope; a bar of longer reach is

@@ -83,6 +83,10 @@ struct BodyStyleDef {
     /// Colours of its links in turn, for ColorBy::kLink, with the alpha of the first; empty: `color`.
     std::vector<Color> link_colors;
     std::optional<double> width_px;  ///< 0.1 .. 1000; default: rope_width_px, or net_width_px for a net
+    /// Drawn in one layer with the body before it: without a halo between them, and in a gradient of the
+    /// theme's colours along such a row, but for bodies with a colour of their own.
+    bool merged = false;
+    std::string label;  ///< its name, drawn at its pin or its free end; empty: none
 };
 
 /// Content of a live plot: the energy or the position of a tip over time, or the phase plane of the tip's

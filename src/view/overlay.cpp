@@ -56,6 +56,13 @@ constexpr BottomText kBottomTexts[] = {
 
 }  // namespace
 
+void locate(std::span<const BodyLabel> labels, const State& state, const Camera& camera, Caption& caption) {
+    const auto at = [&](std::size_t i) {
+        return PixelPoint{camera.x_px(state.x_m[i]), camera.y_px(state.y_m[i])};
+    };
+    for (const BodyLabel& label : labels) caption.labels.emplace_back(at(label.particle), at(label.from));
+}
+
 std::string time_label(const std::string& digits) {
     return "t = " + digits + " s";
 }
@@ -119,12 +126,44 @@ Insets Overlay::insets() const {
     return insets;
 }
 
+void Overlay::set_labels(std::vector<BodyLabel> labels, std::span<const MotionBounds> motion,
+                         std::vector<Drawn>& drawn) {
+    labels_ = std::move(labels);
+    for (const BodyLabel& label : labels_) {
+        const double width_px = font_.width_px(label.text, em_px_);
+        const double clear_px = label.clear_px + kGap * em_px_;
+        Drawn text;
+        text.bounds = motion[label.particle];
+        text.up_px = clear_px + kAscent * em_px_;
+        const bool is_above = label.from == label.particle;
+        text.left_px = text.right_px = is_above ? 0.5 * width_px : clear_px + width_px;
+        if (!is_above) text.down_px = text.up_px;
+        drawn.push_back(text);
+    }
+}
+
+void Overlay::draw_label(const BodyLabel& label, PixelPoint at, PixelPoint from, DrawList& list) {
+    PixelPoint along{at.x - from.x, at.y - from.y};
+    const double length = sim::length(along.x, along.y);
+    along = length > 0.0 ? PixelPoint{along.x / length, along.y / length} : PixelPoint{0.0, -1.0};
+    const int width_px = font_.width_px(label.text, em_px_);
+    const double clear_px = label.clear_px + kGap * em_px_;
+    const double middle_px = at.x + along.x * (clear_px + 0.5 * width_px);
+    const double baseline_px = at.y + along.y * clear_px + 0.5 * (1.0 + along.y) * kAscent * em_px_;
+    // Beyond the frame, pixels may be more than an int holds.
+    if (!(std::abs(middle_px) < width_ + width_px && std::abs(baseline_px) < height_ + em_px_)) return;
+    font_.write({rounded(middle_px - 0.5 * width_px), rounded(baseline_px), em_px_, color_, label.text},
+                list);
+}
+
 std::string Overlay::time_text(double time_s) const {
     return time_label(fmt::format("{:.{}f}", time_s, decimals_));
 }
 
 void Overlay::draw(const Caption& caption, double pixels_per_metre, DrawList& list) {
     plot_.draw_axes(list, font_);
+    for (std::size_t i = 0; i < caption.labels.size(); ++i)
+        draw_label(labels_[i], caption.labels[i].first, caption.labels[i].second, list);
     int left_px = edge_px_;
     int right_px = width_ - edge_px_;
     if (time_ && caption.time_s)

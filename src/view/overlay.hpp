@@ -4,6 +4,8 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "corda/view/camera.hpp"
 #include "corda/view/colors.hpp"
@@ -11,6 +13,7 @@
 #include "corda/view/draw_list.hpp"
 #include "corda/view/font.hpp"
 #include "corda/view/plot_panel.hpp"
+#include "corda/view/scene_view.hpp"
 
 namespace corda::view {
 
@@ -19,7 +22,12 @@ struct Caption {
     std::optional<double> time_s;  ///< std::nullopt: no time is shown
     std::optional<double> energy_error;
     std::string method;
+    /// Where the particles of each label are: that next to it, and that from which its line comes.
+    std::vector<std::pair<PixelPoint, PixelPoint>> labels = {};
 };
+
+/// Adds the points of a state to a caption.
+void locate(std::span<const BodyLabel> labels, const State& state, const Camera& camera, Caption& caption);
 
 /// Texts and scale bar at the edges of a picture, and the live plot. Time and energy are at the lower
 /// left, the scale bar at the lower right, title and method at the upper left, the legend at the upper right.
@@ -33,6 +41,10 @@ class Overlay {
     [[nodiscard]] Insets insets() const;
     /// Sets the scale of the legend; without a scale there is no legend.
     void set_scale(const ColorScale& scale) { scale_ = scale; }
+    /// Sets the labels of bodies, and adds their extents for particles that stay within `motion`.
+    void set_labels(std::vector<BodyLabel> labels, std::span<const MotionBounds> motion,
+                    std::vector<Drawn>& drawn);
+    [[nodiscard]] std::span<const BodyLabel> labels() const { return labels_; }
     /// Sets the data of the plot; without data there is no plot.
     void set_plot(const PlotData& data, std::span<const Color> body_colors) {
         plot_.set_data(data, body_colors, font_);
@@ -60,6 +72,7 @@ class Overlay {
     int draw_scale_bar(double pixels_per_metre, int begin_px, DrawList& list);
     /// Draws the legend; returns where it begins.
     int draw_legend(DrawList& list);
+    void draw_label(const BodyLabel& label, PixelPoint at, PixelPoint from, DrawList& list);
     void draw_gradient(const PixelRect& bar, DrawList& list) const;
     /// Size of the title: smaller, down to the size of the other texts, if it would not end before `end_px`.
     int fitting_title_px(int end_px);
@@ -73,6 +86,7 @@ class Overlay {
     bool scale_bar_;
     bool legend_;
     std::optional<ColorScale> scale_;
+    std::vector<BodyLabel> labels_;
     Color color_;
     Insets panel_;  ///< space taken by the plot
     int width_;     ///< width left by the plot

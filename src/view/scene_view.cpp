@@ -157,8 +157,21 @@ SceneView::SceneView(const System& system, Vec2 gravity_m_s2, const StyleDef& st
         if (!by_link && !own.color && !quantity_of(style.color_by))
             color = look_.palette[next_color++ % look_.palette.size()];
         bodies_.push_back({color, by_link ? own.link_colors : std::vector<Color>{}, 0.5 * width_px,
-                           balls_of(body, 0.5 * width_px)});
+                           i > 0 && own.merged, balls_of(body, 0.5 * width_px)});
         ball_count_ += bodies_.back().balls.size();
+    }
+    if (style.color_by == ColorBy::kBody) color_merged(body_styles);
+}
+
+void SceneView::color_merged(const std::vector<BodyStyleDef>& body_styles) {
+    const ColorScale scale = scale_of(Quantity::kSpeed, {}, style_);
+    for (std::size_t first = 0, end = 0; first < bodies_.size(); first = end) {
+        for (end = first + 1; end < bodies_.size() && bodies_[end].is_merged;) ++end;
+        for (std::size_t i = first; i < end && end - first > 1; ++i) {
+            const double share = static_cast<double>(i - first) / static_cast<double>(end - first - 1);
+            if (i >= body_styles.size() || !body_styles[i].color)
+                bodies_[i].color = scale.color(scale.low + share * (scale.high - scale.low));
+        }
     }
 }
 
@@ -179,6 +192,45 @@ std::vector<SceneView::Ball> SceneView::balls_of(const Body& body, double line_p
         balls.push_back({i, link, std::max(radius_px, kBallPerLine * line_px)});
     }
     return balls;
+}
+
+BodyLabel SceneView::label_of(std::size_t b) const {
+    const Body& body = system_->bodies[b];
+    const std::size_t end = body.first_particle + body.particle_count;
+    const auto first_pin = [&](const Body& of) {
+        std::size_t i = of.first_particle;
+        while (i < of.first_particle + of.particle_count && !system_->is_pinned(i)) ++i;
+        return i;
+    };
+    const std::size_t pin = first_pin(body);
+    const auto shares_pin = [&](const Body& other) {
+        const std::size_t its = first_pin(other);
+        return &other != &body && !other.label.empty() && its < other.first_particle + other.particle_count &&
+               system_->x_m[its] == system_->x_m[pin] && system_->y_m[its] == system_->y_m[pin];
+    };
+    const std::vector<std::size_t> ends = free_ends(*system_);
+    const auto free = std::lower_bound(ends.begin(), ends.end(), body.first_particle);
+    const bool has_free_end = free != ends.end() && *free < end;
+    if (has_free_end &&
+        (pin == end || std::any_of(system_->bodies.begin(), system_->bodies.end(), shares_pin))) {
+        double clear_px = bodies_[b].radius_px;
+        for (const Ball& ball : bodies_[b].balls)
+            if (ball.particle == *free) clear_px = ball.radius_px;
+        return {body.label, *free, *free == body.first_particle ? *free + 1 : *free - 1, clear_px};
+    }
+    if (pin == end) return {body.label, body.first_particle, body.first_particle, bodies_[b].radius_px};
+    std::vector<Drawn> supports;
+    supports_.list(supports);
+    double clear_px = marker_radius_px(b, true);
+    for (const Drawn& support : supports) clear_px = std::max(clear_px, support.up_px);
+    return {body.label, pin, pin, clear_px};
+}
+
+std::vector<BodyLabel> SceneView::labels() const {
+    std::vector<BodyLabel> labels;
+    for (std::size_t b = 0; b < bodies_.size(); ++b)
+        if (!system_->bodies[b].label.empty()) labels.push_back(label_of(b));
+    return labels;
 }
 
 std::vector<Color> SceneView::body_colors() const {
@@ -281,7 +333,13 @@ void SceneView::start(DrawList& list) const {
 void SceneView::draw_pose(const State& state, const Camera& camera, DrawList& list) const {
     const Positions positions(state, camera);
     if (style_.bars == Bars::kAll) draw_bars(false, positions, list);
-    for (std::size_t i = 0; i < bodies_.size(); ++i) draw_body(i, positions, list);
+    // Sums of tints are exact up to 257 capsules in a pixel: two links and a ball of each body.
+    constexpr std::size_t kMaxMerged = 64;
+    for (std::size_t first = 0, end = 0; first < bodies_.size(); first = end) {
+        for (end = first + 1; end < bodies_.size() && bodies_[end].is_merged && end - first < kMaxMerged;)
+            ++end;
+        draw_bodies(first, end, positions, list);
+    }
     if (style_.bars != Bars::kNone) draw_bars(true, positions, list);
     if (style_.markers == Markers::kAll) draw_markers(false, positions, list);
 }
@@ -295,19 +353,18 @@ void SceneView::draw_supports(const State& state, const Camera& camera, DrawList
 Tint SceneView::tint_of(std::size_t body, std::size_t link, const State& state) const {
     const Body& of = system_->bodies[body];
     const std::vector<Color>& in_turn = bodies_[body].link_colors;
-    const Color color = scale_
-                            ? scale_->color(sim::kind_of(scale_->quantity).value(*system_, of, link, state))
-                            : in_turn[(link - of.first_bar) % in_turn.size()];
+    Color color = bodies_[body].color;
+    if (scale_)
+        color = scale_->color(sim::kind_of(scale_->quantity).value(*system_, of, link, state));
+    else if (!in_turn.empty())
+        color = in_turn[(link - of.first_bar) % in_turn.size()];
     return {color.r, color.g, color.b};
 }
 
-void SceneView::draw_body(std::size_t i, const Positions& positions, DrawList& list) const {
+void SceneView::draw_links(std::size_t i, bool is_tinted, double halo_px, const Positions& positions,
+                           DrawList& list) const {
     const Body& body = system_->bodies[i];
     const BodyLook& look = bodies_[i];
-    // Only the background is behind the first body.
-    const double halo_px = style_.halo && i > 0 ? kHaloPerWidth * 2.0 * look.radius_px : 0.0;
-    const bool is_tinted = scale_.has_value() || !look.link_colors.empty();
-    list.add_layer(look.color, is_tinted);
     for (std::size_t k = body.first_bar; k < body.first_bar + body.link_count; ++k) {
         const Bar& link = system_->bars[k];
         const Tint tint = is_tinted ? tint_of(i, k, positions.state()) : Tint{};
@@ -316,18 +373,30 @@ void SceneView::draw_body(std::size_t i, const Positions& positions, DrawList& l
         else
             list.add_capsule(positions.px(link.a), positions.px(link.b), look.radius_px, halo_px, tint);
     }
-    if (look.balls.empty()) return;
+}
+
+void SceneView::draw_bodies(std::size_t first, std::size_t end, const Positions& positions,
+                            DrawList& list) const {
+    const bool is_one = end - first == 1;
+    const bool is_tinted = scale_.has_value() || !is_one || !bodies_[first].link_colors.empty();
+    list.add_layer(bodies_[first].color, is_tinted);
     const double outline_px = kOutlineWidth * side_px_;
     const auto inside_px = [&](const Ball& ball) { return ball.radius_px - 0.5 * outline_px; };
-    for (const Ball& ball : look.balls) {
-        Tint tint = is_tinted ? tint_of(i, ball.link, positions.state()) : Tint{};
-        tint.weight = kBallWeight;
-        list.add_capsule(positions.px(ball.particle), positions.px(ball.particle), inside_px(ball), halo_px,
-                         tint);
+    for (std::size_t i = first; i < end; ++i) {
+        const BodyLook& look = bodies_[i];
+        // Only the background is behind the first body.
+        const double halo_px = style_.halo && first > 0 ? kHaloPerWidth * 2.0 * look.radius_px : 0.0;
+        draw_links(i, is_tinted, halo_px, positions, list);
+        for (const Ball& ball : look.balls) {
+            Tint tint = is_tinted ? tint_of(i, ball.link, positions.state()) : Tint{};
+            if (is_one) tint.weight = kBallWeight;
+            list.add_capsule(positions.px(ball.particle), positions.px(ball.particle), inside_px(ball),
+                             halo_px, tint);
+        }
     }
-    if (ball_count_ > kMaxOutlines) return;
+    if (!is_one || bodies_[first].balls.empty() || ball_count_ > kMaxOutlines) return;
     list.add_layer(look_.outline);
-    for (const Ball& ball : look.balls)
+    for (const Ball& ball : bodies_[first].balls)
         list.add_ring(positions.px(ball.particle), inside_px(ball), outline_px);
 }
 

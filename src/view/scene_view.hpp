@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "corda/core/image.hpp"
@@ -39,6 +40,15 @@ struct FadingPoint {
 /// cross. `radius_px` is the radius at the young end.
 void add_trail(std::span<const FadingPoint> points, double radius_px, Color color, DrawList& list);
 
+/// The label of a body, next to one of its particles.
+struct BodyLabel {
+    std::string text;
+    std::size_t particle = 0;
+    /// The label continues the line from this particle; if it is `particle`, the label is above it.
+    std::size_t from = 0;
+    double clear_px = 0.0;  ///< free distance around the particle
+};
+
 /// Turns states into draw lists. The content and its layers are chosen at construction, positions per frame.
 ///
 /// From back to front: trails; imaginary bars; each body, its links and then its balls; real bars, markers of
@@ -64,6 +74,10 @@ class SceneView {
     /// The colour of each body; of its first link if links differ.
     [[nodiscard]] std::vector<Color> body_colors() const;
 
+    /// The labels of bodies that have one: above its first pin, unless another label's body is pinned there
+    /// too, at its free end, or above its first particle. Final after set_motion().
+    [[nodiscard]] std::vector<BodyLabel> labels() const;
+
     /// The particles whose paths are drawn: free_ends(), or none without trails.
     [[nodiscard]] std::vector<std::size_t> traced() const;
 
@@ -78,7 +92,7 @@ class SceneView {
     void draw_pose(const State& state, const Camera& camera, DrawList& list) const;
     /// Draws the links and balls of one body.
     void draw_body(std::size_t i, const State& state, const Camera& camera, DrawList& list) const {
-        draw_body(i, Positions(state, camera), list);
+        draw_bodies(i, i + 1, Positions(state, camera), list);
     }
     /// Draws the supports, which never move; any `state` will do.
     void draw_supports(const State& state, const Camera& camera, DrawList& list) const;
@@ -93,6 +107,7 @@ class SceneView {
         Color color;
         std::vector<Color> link_colors;  ///< in turn; empty: `color`
         double radius_px;                ///< of its links
+        bool is_merged;                  ///< drawn in the layer of the body before
         std::vector<Ball> balls;
     };
     /// A state as the camera sees it.
@@ -114,12 +129,18 @@ class SceneView {
         const Camera* camera_;
     };
 
+    [[nodiscard]] BodyLabel label_of(std::size_t body) const;
     [[nodiscard]] std::vector<Ball> balls_of(const Body& body, double line_px) const;
     [[nodiscard]] double marker_radius_px(std::size_t body, bool pinned) const;
     /// Includes the positions that slack links of a string may reach.
     void include_slack(const Body& body, std::span<const MotionBounds> motion, MotionBounds& bounds) const;
     [[nodiscard]] Tint tint_of(std::size_t body, std::size_t link, const State& state) const;
-    void draw_body(std::size_t i, const Positions& positions, DrawList& list) const;
+    /// Gives a row of merged bodies its gradient of colours.
+    void color_merged(const std::vector<BodyStyleDef>& body_styles);
+    /// Draws the bodies first <= i < end in one layer.
+    void draw_bodies(std::size_t first, std::size_t end, const Positions& positions, DrawList& list) const;
+    void draw_links(std::size_t i, bool is_tinted, double halo_px, const Positions& positions,
+                    DrawList& list) const;
     void draw_slack(const Bar& link, double radius_px, double halo_px, Tint tint, const Positions& positions,
                     DrawList& list) const;
     void draw_bars(bool real, const Positions& positions, DrawList& list) const;

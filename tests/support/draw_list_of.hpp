@@ -56,7 +56,11 @@ inline view::DrawList draw_list_of(const Scene& scene, const System& system, con
     scene_view.draw(state, map, list, trails);
     if (plot) overlay.set_plot(*plot, scene_view.body_colors());
     if (plot) overlay.draw_curves(state.time_s, list);
-    overlay.draw(caption, map.pixels_per_metre(), list);
+    std::vector<view::Drawn> drawn;
+    overlay.set_labels(scene_view.labels(), motion, drawn);
+    view::Caption located = caption;
+    view::locate(overlay.labels(), state, map, located);
+    overlay.draw(located, map.pixels_per_metre(), list);
     return list;
 }
 
@@ -99,8 +103,8 @@ inline view::DrawList draw_list_of(Film& film, double time_s) {
     }
     const State state = film.state_at(time_s);
     add_points(film, state, 0.0, trails);
-    const view::Caption caption{time_s, film.figures().energy_error,
-                                method_caption(film.plan(), film.error_bound_px())};
+    const view::Caption caption{
+        time_s, film.figures().energy_error, method_caption(film.plan(), film.error_bound_px()), {}};
     return draw_list_of(film.scene(), film.system(), film.camera(), state, motion, caption, trails, histogram,
                         plotted_of(film));
 }

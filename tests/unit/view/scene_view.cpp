@@ -54,6 +54,52 @@ TEST(SceneView, APlainRopeIsOneLayerOfItsLinks) {
     EXPECT_EQ(list.capsules[0].halo_radius, 0.0F);
 }
 
+/// The labels of ropes at their start.
+std::vector<BodyLabel> labels_of(const std::vector<RopeDef>& ropes, const std::vector<std::string>& names) {
+    System system = build_system(ropes);
+    for (std::size_t i = 0; i < names.size(); ++i) system.bodies[i].label = names[i];
+    return SceneView(system, {0.0, -9.81}, {}, {}, kWidth, kHeight).labels();
+}
+
+TEST(SceneView, ALabelIsAboveItsPinOrAtItsFreeEnd) {
+    RopeDef rope = reference::straight_rope(3, 1.0, 30.0);
+    RopeDef apart = rope;
+    apart.origin_m = {1.0, 0.0};
+    EXPECT_TRUE(labels_of({rope}, {""}).empty());
+    const auto at_pins = labels_of({rope, apart}, {"a", "b"});
+    ASSERT_EQ(at_pins.size(), 2U);
+    EXPECT_EQ(at_pins[1].text, "b");
+    EXPECT_EQ(at_pins[1].particle, 4U);
+    EXPECT_EQ(at_pins[1].from, 4U);
+    // A pin that another labelled body shares has no room; that of one without a label has.
+    const auto at_ends = labels_of({rope, rope, rope}, {"a", "b", ""});
+    EXPECT_EQ(at_ends[1].particle, 7U);
+    EXPECT_EQ(at_ends[1].from, 6U);
+    EXPECT_EQ(labels_of({rope, rope}, {"a", ""})[0].particle, 0U);
+    rope.pinned = {};
+    EXPECT_EQ(labels_of({rope}, {"free"})[0].particle, 3U);
+}
+
+TEST(SceneView, MergedBodiesAreOneTintedLayerInAGradient) {
+    std::vector<BodyStyleDef> styles(4);
+    for (const std::size_t i : {1, 2, 3}) styles[i].merged = i > 1;
+    StyleDef style = plain();
+    style.halo = true;
+    const std::vector<RopeDef> ropes(4, reference::straight_rope(5, 1.0, 30.0));
+    const DrawList list = draw(ropes, style, styles);
+    ASSERT_EQ(list.layers.size(), 2U);
+    EXPECT_FALSE(list.layers[0].is_tinted);
+    EXPECT_TRUE(list.layers[1].is_tinted);
+    EXPECT_EQ(list.layers[1].capsule_count, 15U);
+    const auto tint = [&](std::size_t i) { return list.capsules.at(5 + 5 * i).tint; };
+    EXPECT_EQ(tint(0), (Tint{0x79, 0x5b, 0xce}));  // the ends of the dark theme's scale
+    EXPECT_EQ(tint(2), (Tint{0xff, 0xf4, 0x65}));
+    EXPECT_NE(tint(1), tint(0));
+    EXPECT_GT(list.capsules[5].halo_radius, 0.0F);
+    styles[2].color = Color{1, 2, 3, 255};
+    EXPECT_EQ(draw(ropes, style, styles).capsules.at(10).tint, (Tint{1, 2, 3}));
+}
+
 TEST(SceneView, EveryBodyIsOneLayerOfItsColour) {
     StyleDef style = plain();
     style.palette = {Color{1, 2, 3, 255}, Color{4, 5, 6, 255}};
